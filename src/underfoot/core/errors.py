@@ -1,0 +1,130 @@
+"""The error family: every message says where, what, what is allowed, the nearest match, the remedy."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Sequence
+
+
+class UnderfootError(Exception):
+    """Base of all errors a user can meet.
+
+    Parameters
+    ----------
+    what
+        What was found, with the offending value.
+    where
+        Dotted path, file, line or argument name.
+    allowed
+        What would have been accepted.
+    nearest
+        The closest accepted value, if there is one.
+    remedy
+        What to do next.
+    """
+
+    exit_code = 1
+
+    def __init__(
+        self,
+        what: str,
+        *,
+        where: str | None = None,
+        allowed: str | None = None,
+        nearest: str | None = None,
+        remedy: str | None = None,
+    ) -> None:
+        super().__init__(what)
+        self.what = what
+        self.where = where
+        self.allowed = allowed
+        self.nearest = nearest
+        self.remedy = remedy
+
+    def __str__(self) -> str:
+        parts = [f"{self.where}: {self.what}" if self.where else self.what]
+        if self.allowed:
+            parts.append(f"Allowed: {self.allowed}")
+        if self.nearest:
+            parts.append(f'Did you mean "{self.nearest}"?')
+        if self.remedy:
+            parts.append(self.remedy)
+        return " ".join(_sentence(part) for part in parts)
+
+
+class InputError(UnderfootError):
+    """A value, key, name or unit that can't be accepted."""
+
+    exit_code = 2
+
+
+class RangeError(InputError):
+    """A value outside the physical range or outside the range a closure was tested on."""
+
+
+class DataError(UnderfootError):
+    """A measurement or geometry file that can't be read or can't be analysed."""
+
+    exit_code = 3
+
+
+class ConvergenceError(UnderfootError):
+    """An iteration that did not reach its tolerance; carries the residual history."""
+
+    exit_code = 4
+
+    def __init__(
+        self,
+        what: str,
+        *,
+        history: Sequence[float] = (),
+        where: str | None = None,
+        allowed: str | None = None,
+        nearest: str | None = None,
+        remedy: str | None = None,
+    ) -> None:
+        super().__init__(what, where=where, allowed=allowed, nearest=nearest, remedy=remedy)
+        self.history = tuple(float(value) for value in history)
+
+
+class MissingExtraError(UnderfootError):
+    """A feature that needs an optional package which is not installed."""
+
+    exit_code = 5
+
+    def __init__(self, package: str, extra: str, purpose: str) -> None:
+        super().__init__(
+            f"{purpose} needs the package {package}, which is not installed",
+            remedy=f'Install it with: pip install "underfoot[{extra}]"',
+        )
+
+
+class Cancelled(UnderfootError):
+    """The user stopped the work."""
+
+    exit_code = 130
+
+
+def nearest_match(given: str, known: Iterable[str]) -> str | None:
+    """Return the known name closest to ``given``, or None when nothing is close."""
+    names = list(known)
+    folded = {name.casefold(): name for name in names}
+    matches = difflib.get_close_matches(given.casefold(), folded, n=1, cutoff=0.5)
+    return folded[matches[0]] if matches else None
+
+
+def unknown_name(kind: str, given: str, known: Iterable[str], *, where: str | None = None) -> InputError:
+    """Return the error for a name that is not in a list, with the list and the nearest match."""
+    names = sorted(known)
+    shown = ", ".join(names[:12]) + (f" and {len(names) - 12} more" if len(names) > 12 else "")
+    return InputError(
+        f'unknown {kind} "{given}"',
+        where=where,
+        allowed=shown or "none defined",
+        nearest=nearest_match(given, names),
+    )
+
+
+def _sentence(text: str) -> str:
+    text = text.rstrip()
+    return text if text.endswith((".", "?", "!")) else text + "."

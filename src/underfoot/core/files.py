@@ -1,0 +1,49 @@
+"""Output that is either whole or absent."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from .errors import InputError
+
+
+@contextmanager
+def whole_folder(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
+    """Yield a temporary folder that becomes ``path`` only when the block ends well.
+
+    An existing, non-empty ``path`` is refused unless ``overwrite``; then it is replaced as a
+    whole, and kept as it was if the block fails.
+    """
+    path = Path(path)
+    check_writable_folder(path, overwrite=overwrite)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    staging = Path(tempfile.mkdtemp(prefix=f".{path.name}-", dir=path.parent))
+    staging.chmod(0o755)
+    try:
+        yield staging
+        if path.exists():
+            aside = staging.with_name(staging.name + "-old")
+            path.rename(aside)
+            staging.rename(path)
+            shutil.rmtree(aside)
+        else:
+            staging.rename(path)
+    except BaseException:
+        shutil.rmtree(staging, ignore_errors=True)
+        raise
+
+
+def check_writable_folder(path: Path, *, overwrite: bool = False) -> None:
+    """Refuse an output folder that holds something, before any work is done."""
+    if path.is_file():
+        raise InputError(f"{path} is a file", where="--out", allowed="a folder to be made")
+    if path.is_dir() and any(path.iterdir()) and not overwrite:
+        raise InputError(
+            f"the folder {path} exists and is not empty",
+            where="--out",
+            remedy="Choose another folder, or add --overwrite to replace it as a whole",
+        )

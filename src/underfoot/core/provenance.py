@@ -1,0 +1,55 @@
+"""Where a result comes from: versions, closures, citations, errata and timings."""
+
+from __future__ import annotations
+
+import platform
+from dataclasses import asdict, dataclass, field
+from datetime import UTC, datetime
+from importlib import metadata
+from typing import Any
+
+
+def version() -> str:
+    """Return the version of this package."""
+    return metadata.version("underfoot")
+
+
+@dataclass(frozen=True, slots=True)
+class Provenance:
+    """Everything needed to make a result again."""
+
+    case_hash: str
+    closures: dict[str, str] = field(default_factory=dict)
+    citations: tuple[str, ...] = ()
+    errata: tuple[str, ...] = ()
+    timings: dict[str, float] = field(default_factory=dict)
+    versions: dict[str, str] = field(default_factory=dict)
+    created: str = ""
+
+    @classmethod
+    def now(
+        cls,
+        case_hash: str,
+        *,
+        closures: dict[str, str],
+        citations: tuple[str, ...] = (),
+        errata: tuple[str, ...] = (),
+        timings: dict[str, float] | None = None,
+    ) -> Provenance:
+        """Return a provenance stamped with the present time and the versions in use."""
+        packages = ("underfoot", "numpy", "scipy")
+        versions = {name: metadata.version(name) for name in packages}
+        versions["python"] = platform.python_version()
+        return cls(
+            case_hash=case_hash,
+            closures=dict(closures),
+            citations=citations,
+            errata=errata,
+            timings=dict(timings or {}),
+            versions=versions,
+            created=datetime.now(UTC).isoformat(timespec="seconds"),
+        )
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data for JSON."""
+        return asdict(self)

@@ -1,0 +1,149 @@
+"""Units at the door: text with a unit becomes an SI float; SI floats become readable text."""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import cache
+from typing import Any
+
+from .errors import InputError, nearest_match
+
+_EXAMPLES = {
+    "m": "3 mm",
+    "m/s": "0.7 m/s",
+    "m/s^2": "9.81 m/s^2",
+    "N": "500 N",
+    "Pa": "5.0 MPa",
+    "Pa*s": "219 cP",
+    "rad": "10 deg",
+    "rad/s": "100 rad/s",
+    "Hz": "1 kHz",
+    "s": "30 ms",
+    "1/s": "0.013 1/s",
+    "K": "20 degC",
+    "kg": "70 kg",
+    "kg/m^3": "1100 kg/m^3",
+    "m^2": "10 mm^2",
+    "1/m": "4 1/mm",
+    "1": "0.5",
+}
+_SCALES = {
+    "m": ((1.0, "m"), (1e-3, "mm"), (1e-6, "um"), (1e-9, "nm")),
+    "Pa": ((1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1.0, "Pa")),
+    "s": ((1.0, "s"), (1e-3, "ms"), (1e-6, "us")),
+    "N": ((1e3, "kN"), (1.0, "N"), (1e-3, "mN")),
+    "Pa*s": ((1e-3, "cP"),),
+    "rad": ((math.pi / 180.0, "deg"),),
+    "m^2": ((1e-4, "cm^2"), (1e-6, "mm^2")),
+    "m/s": ((1.0, "m/s"), (1e-3, "mm/s")),
+}
+_NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
+_KNOWN = (
+    "m mm um nm cm inch N kN mN kgf lbf Pa kPa MPa GPa psi bar cP mPa*s Pa*s P m/s mm/s cm/s "
+    "s ms us min rad deg degC degF K kg g Hz kHz rad/s mm^2 cm^2 m^2 1/s 1/mm kg/m^3 g/cm^3 percent"
+).split()
+
+
+@cache
+def _registry() -> Any:
+    import pint
+
+    return pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
+
+
+def to_si(given: object, unit: str, *, where: str) -> float:
+    """Return ``given`` (text such as ``"219 cP"``) as a float in the SI unit ``unit``.
+
+    Plain numbers are accepted only where ``unit`` is ``"1"`` (dimensionless): elsewhere a number
+    without a unit is refused, because guessing it would change results silently.
+
+    Errors
+    ------
+    InputError
+        Unit missing, unknown or of another dimension; text that is no number; not finite.
+    """
+    example = _EXAMPLES.get(unit, f"1 {unit}")
+    if isinstance(given, bool):
+        raise InputError(f"{given} is not a number", where=where, allowed=f'for example "{example}"')
+    if isinstance(given, int | float):
+        if unit == "1":
+            return _finite(float(given), given, where)
+        raise InputError(
+            f"{given} has no unit",
+            where=where,
+            allowed=f"a number with a unit of {unit}",
+            remedy=f'Write it as text with its unit, for example "{example}"',
+        )
+    if not isinstance(given, str):
+        raise InputError(
+            f"{given!r} is not a quantity", where=where, allowed=f'text such as "{example}"'
+        )
+    match = _NUMBER.match(given.replace("µ", "u").replace("μ", "u").replace("°", "deg"))
+    if match is None:
+        raise InputError(
+            f'"{given}" is not a number with a unit',
+            where=where,
+            allowed=f'for example "{example}"',
+        )
+    number, text = float(match.group(1)), match.group(2)
+    if not text:
+        return to_si(number, unit, where=where)
+    text = {"%": "percent", "deg C": "degC", "degC": "degC", "degF": "degF"}.get(text, text)
+    if unit == "K" and text in ("C", "F"):
+        text = "deg" + text
+    return _finite(_convert(number, text, unit, given, where, example), given, where)
+
+
+def display(value: float, unit: str, digits: int = 3) -> str:
+    """Return an SI value as short text in a unit people read, for example ``"219 cP"``."""
+    if not math.isfinite(value):
+        return "not a number"
+    factor, name = display_unit(value, unit)
+    number = f"{value / factor:.{digits}g}"
+    if "e" in number and 1e-3 <= abs(value / factor) < 1e6:
+        number = f"{value / factor:.0f}"
+    return number if name == "1" else f"{number} {name}"
+
+
+def display_unit(value: float, unit: str) -> tuple[float, str]:
+    """Return (factor, name) of the unit in which ``value`` has a readable size."""
+    scales = _SCALES.get(unit)
+    if scales is None:
+        return 1.0, unit
+    if value == 0.0:
+        return scales[min(1, len(scales) - 1)]
+    for factor, name in scales:
+        if abs(value) >= factor * 0.9995:
+            return factor, name
+    return scales[-1]
+
+
+def _convert(number: float, text: str, unit: str, given: str, where: str, example: str) -> float:
+    import pint
+
+    registry = _registry()
+    try:
+        quantity = registry.Quantity(number, text)
+    except Exception as error:
+        raise InputError(
+            f'"{given}": unknown unit "{text}"',
+            where=where,
+            allowed=f'a unit of {unit}, for example "{example}"',
+            nearest=nearest_match(text, _KNOWN),
+        ) from error
+    target = "dimensionless" if unit == "1" else {"K": "kelvin"}.get(unit, unit)
+    try:
+        return float(quantity.to(target).magnitude)
+    except pint.DimensionalityError as error:
+        raise InputError(
+            f'"{given}" is not a value in {unit}',
+            where=where,
+            allowed=f'for example "{example}"',
+        ) from error
+
+
+def _finite(value: float, given: object, where: str) -> float:
+    if not math.isfinite(value):
+        raise InputError(f"{given} is not finite", where=where, allowed="a finite number")
+    return value

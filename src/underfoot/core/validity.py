@@ -1,0 +1,59 @@
+"""Validity ranges as data: what a closure was tested on, and what leaves that range."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .units import display
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """Tested interval of one input, in SI."""
+
+    low: float
+    high: float
+    unit: str = "1"
+    source: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Breach:
+    """One input of one closure outside its tested range."""
+
+    closure: str
+    quantity: str
+    low: float
+    high: float
+    range: Range
+
+    def __str__(self) -> str:
+        unit = self.range.unit
+        given = display(self.low, unit)
+        if self.high != self.low:
+            given += f" to {display(self.high, unit)}"
+        tested = f"{display(self.range.low, unit)} to {display(self.range.high, unit)}"
+        source = f" ({self.range.source})" if self.range.source else ""
+        return f"{self.closure}: {self.quantity} {given} is outside the tested range {tested}{source}"
+
+
+def breaches(
+    closure: str, ranges: Mapping[str, Range], values: Mapping[str, ArrayLike]
+) -> list[Breach]:
+    """Return which of ``values`` leave the tested ``ranges`` (a relative slack of 1e-9 is allowed)."""
+    found = []
+    for quantity, allowed in ranges.items():
+        if quantity not in values:
+            continue
+        array = np.asarray(values[quantity], dtype=float)
+        if array.size == 0:
+            continue
+        low, high = float(array.min()), float(array.max())
+        slack = 1e-9 * max(abs(allowed.low), abs(allowed.high))
+        if low < allowed.low - slack or high > allowed.high + slack:
+            found.append(Breach(closure, quantity, low, high, allowed))
+    return found

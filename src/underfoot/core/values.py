@@ -1,0 +1,57 @@
+"""A number that knows its unit, its source, how sure it is and whether it was assumed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from .units import display
+
+
+@dataclass(frozen=True, slots=True)
+class SourcedValue:
+    """A value in SI with what a reader must know to trust it.
+
+    Parameters
+    ----------
+    value
+        In ``unit``; None when it could not be determined (then ``reason`` says why).
+    unit
+        SI unit, ``"1"`` when dimensionless.
+    source
+        Where it comes from: paper and table, measurement, or the model that computed it.
+    uncertainty
+        Standard deviation in ``unit``; None when not estimated (then ``reason`` says why).
+    reason
+        Why the value or its uncertainty is missing.
+    assumed
+        True when no measurement or publication stands behind it.
+    note
+        Erratum, convention or caution that belongs to the value.
+    """
+
+    value: float | None
+    unit: str = "1"
+    source: str = ""
+    uncertainty: float | None = None
+    reason: str = ""
+    assumed: bool = False
+    note: str = ""
+
+    def __post_init__(self) -> None:
+        if self.uncertainty is None and not self.reason:
+            object.__setattr__(self, "reason", "uncertainty not estimated")
+        if self.uncertainty is not None and self.uncertainty < 0:
+            raise ValueError(f"uncertainty {self.uncertainty} is negative")
+
+    def __str__(self) -> str:
+        if self.value is None:
+            return f"not estimated ({self.reason})"
+        text = display(self.value, self.unit)
+        if self.uncertainty is not None:
+            text += f" ± {display(self.uncertainty, self.unit, 2)}"
+        return text + (" (assumed)" if self.assumed else "")
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data for JSON and CSV."""
+        return {name: getattr(self, name) for name in self.__slots__}
