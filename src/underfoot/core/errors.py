@@ -1,4 +1,4 @@
-"""The error family: every message says where, what, what is allowed, the nearest match, the remedy."""
+"""The error family: where, what, what is allowed, the nearest match, the remedy."""
 
 from __future__ import annotations
 
@@ -113,7 +113,9 @@ def nearest_match(given: str, known: Iterable[str]) -> str | None:
     return folded[matches[0]] if matches else None
 
 
-def unknown_name(kind: str, given: str, known: Iterable[str], *, where: str | None = None) -> InputError:
+def unknown_name(
+    kind: str, given: str, known: Iterable[str], *, where: str | None = None
+) -> InputError:
     """Return the error for a name that is not in a list, with the list and the nearest match."""
     names = sorted(known)
     shown = ", ".join(names[:12]) + (f" and {len(names) - 12} more" if len(names) > 12 else "")

@@ -39,10 +39,7 @@ _SCALES = {
     "m/s": ((1.0, "m/s"), (1e-3, "mm/s")),
 }
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
-_KNOWN = (
-    "m mm um nm cm inch N kN mN kgf lbf Pa kPa MPa GPa psi bar cP mPa*s Pa*s P m/s mm/s cm/s "
-    "s ms us min rad deg degC degF K kg g Hz kHz rad/s mm^2 cm^2 m^2 1/s 1/mm kg/m^3 g/cm^3 percent"
-).split()
+_KNOWN = ["m", "mm", "um", "nm", "cm", "inch", "N", "kN", "mN", "kgf", "lbf", "Pa", "kPa", "MPa", "GPa", "psi", "bar", "cP", "mPa*s", "Pa*s", "P", "m/s", "mm/s", "cm/s", "s", "ms", "us", "min", "rad", "deg", "degC", "degF", "K", "kg", "g", "Hz", "kHz", "rad/s", "mm^2", "cm^2", "m^2", "1/s", "1/mm", "kg/m^3", "g/cm^3", "percent"]
 
 
 @cache
@@ -65,7 +62,9 @@ def to_si(given: object, unit: str, *, where: str) -> float:
     """
     example = _EXAMPLES.get(unit, f"1 {unit}")
     if isinstance(given, bool):
-        raise InputError(f"{given} is not a number", where=where, allowed=f'for example "{example}"')
+        raise InputError(
+            f"{given} is not a number", where=where, allowed=f'for example "{example}"'
+        )
     if isinstance(given, int | float):
         if unit == "1":
             return _finite(float(given), given, where)

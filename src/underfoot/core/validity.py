@@ -38,13 +38,15 @@ class Breach:
             given += f" to {display(self.high, unit)}"
         tested = f"{display(self.range.low, unit)} to {display(self.range.high, unit)}"
         source = f" ({self.range.source})" if self.range.source else ""
-        return f"{self.closure}: {self.quantity} {given} is outside the tested range {tested}{source}"
+        return (
+            f"{self.closure}: {self.quantity} {given} is outside the tested range {tested}{source}"
+        )
 
 
 def breaches(
     closure: str, ranges: Mapping[str, Range], values: Mapping[str, ArrayLike]
 ) -> list[Breach]:
-    """Return which of ``values`` leave the tested ``ranges`` (a relative slack of 1e-9 is allowed)."""
+    """Return which ``values`` leave the tested ``ranges`` (relative slack 1e-9)."""
     found = []
     for quantity, allowed in ranges.items():
         if quantity not in values:
