@@ -36,10 +36,15 @@ _SCALES = {
     "Pa*s": ((1e-3, "cP"),),
     "rad": ((math.pi / 180.0, "deg"),),
     "m^2": ((1e-4, "cm^2"), (1e-6, "mm^2")),
-    "m/s": ((1.0, "m/s"), (1e-3, "mm/s")),
 }
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
-_KNOWN = ["m", "mm", "um", "nm", "cm", "inch", "N", "kN", "mN", "kgf", "lbf", "Pa", "kPa", "MPa", "GPa", "psi", "bar", "cP", "mPa*s", "Pa*s", "P", "m/s", "mm/s", "cm/s", "s", "ms", "us", "min", "rad", "deg", "degC", "degF", "K", "kg", "g", "Hz", "kHz", "rad/s", "mm^2", "cm^2", "m^2", "1/s", "1/mm", "kg/m^3", "g/cm^3", "percent"]
+_KNOWN = tuple(
+    (
+        "m mm um nm cm inch N kN mN kgf lbf Pa kPa MPa GPa psi bar cP mPa*s Pa*s P m/s mm/s cm/s "
+        "s ms us min rad deg degC degF K kg g Hz kHz rad/s mm^2 cm^2 m^2 1/s 1/mm kg/m^3 g/cm^3 "
+        "percent"
+    ).split()
+)
 
 
 @cache

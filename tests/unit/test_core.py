@@ -1,0 +1,99 @@
+"""Errors, values, status, validity, cache and whole folders."""
+
+import numpy as np
+import pytest
+
+from underfoot.core import (
+    Breach,
+    Cache,
+    InputError,
+    Range,
+    SourcedValue,
+    Status,
+    breaches,
+    content_hash,
+    unknown_name,
+)
+from underfoot.core.files import whole_folder
+from underfoot.core.status import worst
+
+
+def test_an_error_says_where_what_allowed_nearest_and_remedy():
+    error = InputError("a", where="b", allowed="c", nearest="d", remedy="e")
+    assert str(error) == 'b: a. Allowed: c. Did you mean "d"? e.'
+
+
+def test_an_unknown_name_lists_what_is_known():
+    error = unknown_name("fluid", "glycerin_50", ["glycerol_50pct", "water"], where="contaminant")
+    assert error.nearest == "glycerol_50pct"
+    assert "water" in str(error)
+
+
+def test_an_unknown_uncertainty_is_never_zero():
+    value = SourcedValue(2.0, "N")
+    assert value.uncertainty is None
+    assert value.reason
+    assert "not estimated" in str(SourcedValue(None, "N", reason="two repeats"))
+    with pytest.raises(ValueError, match="negative"):
+        SourcedValue(1.0, uncertainty=-1.0)
+
+
+def test_every_status_but_success_has_a_remedy():
+    assert all(status.remedy or status is Status.CONVERGED for status in Status)
+    assert worst(Status.CONVERGED, Status.NOT_CONVERGED, Status.OUT_OF_RANGE) == "not converged"
+    assert not Status.NOT_CONVERGED.usable
+
+
+def test_breaches_name_the_quantity_and_the_tested_range():
+    ranges = {"speed": Range(0.01, 1.0, "m/s", "paper")}
+    assert breaches("law", ranges, {"speed": [0.01, 1.0]}) == []
+    (found,) = breaches("law", ranges, {"speed": np.array([0.5, 3.0])})
+    assert isinstance(found, Breach)
+    assert "law: speed 0.5 m/s to 3 m/s is outside the tested range 0.01 m/s" in str(found)
+
+
+def test_the_hash_follows_content_not_identity():
+    array = np.arange(6.0).reshape(2, 3)
+    assert content_hash({"a": 1, "b": array}) == content_hash({"b": array.copy(), "a": 1})
+    assert content_hash(array) != content_hash(array.T)
+    assert content_hash(1) != content_hash(1.0)
+    assert content_hash(["ab"]) != content_hash(["a", "b"])
+    with pytest.raises(TypeError):
+        content_hash(object())
+
+
+def test_the_cache_returns_what_was_stored_and_survives_damage(tmp_path):
+    cache = Cache("room-1", tmp_path)
+    assert cache.load("k") is None
+    cache.store("k", {"x": np.eye(3)})
+    loaded = cache.load("k")
+    assert loaded is not None
+    assert np.array_equal(loaded["x"], np.eye(3))
+    entry = tmp_path / "room-1" / "k.npz"
+    entry.write_bytes(entry.read_bytes()[:40])
+    assert cache.load("k") is None
+    assert not entry.exists()
+
+
+def interrupted(target):
+    with whole_folder(target) as folder:
+        (folder / "half").write_text("x")
+        raise KeyboardInterrupt
+
+
+def test_a_folder_is_whole_or_absent(tmp_path):
+    target = tmp_path / "out"
+    with pytest.raises(KeyboardInterrupt):
+        interrupted(target)
+    assert list(tmp_path.iterdir()) == []
+    with whole_folder(target) as folder:
+        (folder / "a").write_text("1")
+    with pytest.raises(InputError, match="not empty"), whole_folder(target):
+        pass
+    with pytest.raises(ValueError, match="boom"), whole_folder(target, overwrite=True):
+        raise ValueError("boom")
+    assert (target / "a").read_text() == "1"
+    with whole_folder(target, overwrite=True) as folder:
+        (folder / "b").write_text("2")
+    assert [path.name for path in target.iterdir()] == ["b"]
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]

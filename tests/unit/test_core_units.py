@@ -1,0 +1,70 @@
+"""Units at the door."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from underfoot.core import InputError, display, to_si
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "expected"),
+    [
+        ("219 cP", "Pa*s", 0.219),
+        ("219 mPa*s", "Pa*s", 0.219),
+        ("3 mm", "m", 3e-3),
+        ("35.1 µm", "m", 35.1e-6),
+        ("10 deg", "rad", math.radians(10)),
+        ("10°", "rad", math.radians(10)),
+        ("20 degC", "K", 293.15),
+        ("20 °C", "K", 293.15),
+        ("160 kPa", "Pa", 160e3),
+        ("90 %", "1", 0.9),
+        ("1e-3 m", "m", 1e-3),
+        ("30 ms", "s", 0.03),
+    ],
+)
+def test_text_with_a_unit_becomes_si(text, unit, expected):
+    assert to_si(text, unit, where="x") == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_plain_number_is_dimensionless_only():
+    assert to_si(0.5, "1", where="x") == 0.5
+    with pytest.raises(InputError, match=r"shoe\.tread\.depth: 3 has no unit.*\"3 mm\""):
+        to_si(3, "m", where="shoe.tread.depth")
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "message"),
+    [
+        ("3 mmm", "m", "unknown unit"),
+        ("3 kPa", "m", "is not a value in m"),
+        ("three mm", "m", "is not a number"),
+        ("inf m", "m", "is not a number"),
+        ("1e999 m", "m", "not finite"),
+        ("", "m", "is not a number"),
+        (True, "1", "is not a number"),
+        ([1], "1", "is not a quantity"),
+    ],
+)
+def test_bad_text_is_refused_with_an_example(text, unit, message):
+    with pytest.raises(InputError, match=message) as caught:
+        to_si(text, unit, where="here")
+    assert str(caught.value).startswith("here: ")
+
+
+def test_a_misspelt_unit_gets_the_nearest_match():
+    with pytest.raises(InputError) as caught:
+        to_si("5 MPaa", "Pa", where="x")
+    assert caught.value.nearest == "MPa"
+
+
+@given(st.floats(1e-9, 1e9), st.sampled_from(["m", "Pa", "s", "N", "m/s", "m^2"]))
+def test_displayed_text_reads_back(value, unit):
+    assert to_si(display(value, unit, 12), unit, where="x") == pytest.approx(value, rel=1e-9)
+
+
+def test_display_says_when_it_is_not_a_number():
+    assert display(float("nan"), "Pa") == "not a number"
