@@ -1,0 +1,71 @@
+"""One self-contained HTML page for a result: opens offline, prints to PDF from any browser."""
+
+from __future__ import annotations
+
+import base64
+import io
+from typing import TYPE_CHECKING, Any
+
+from .maps import overview_figure
+from .sentences import summary_rows, verdict
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+    from matplotlib.figure import Figure
+
+    from underfoot.case.result import Result
+
+
+def result_page(result: Result) -> str:
+    """Return the page of one result as HTML text."""
+    template = environment().get_template("result.html")
+    return template.render(
+        result=result,
+        verdict=verdict(result),
+        rows=summary_rows(result),
+        maps=embedded_png(overview_figure(result.fields)),
+        history=embedded_png(history_figure(result)) if "time" in result.fields.dims else None,
+        provenance=result.provenance.as_dict(),
+    )
+
+
+def history_figure(result: Result) -> Figure:
+    """Return how the load is shared between fluid and contact over time."""
+    from matplotlib.figure import Figure
+
+    fields = result.fields
+    figure = Figure(figsize=(7.5, 2.8), layout="constrained")
+    axes = figure.add_subplot()
+    time = fields["time"].values * 1e3
+    for name, label, colour, line in (
+        ("load_history", "applied load", "0.3", "--"),
+        ("fluid_load_history", "carried by the fluid", "tab:blue", "-"),
+    ):
+        if name in fields:
+            axes.plot(time, fields[name].values, label=label, color=colour, linestyle=line)
+    axes.set_xlabel("time after the heel meets the film (ms)")
+    axes.set_ylabel("load (N)")
+    axes.set_ylim(bottom=0)
+    axes.legend(frameon=False)
+    axes.spines[["top", "right"]].set_visible(False)
+    return figure
+
+
+def embedded_png(figure: Figure, dpi: int = 130) -> str:
+    """Return a figure as a data address for an ``img`` element."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, dpi=dpi, format="png")
+    return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")
+
+
+def environment() -> Environment:
+    """Return the template environment of this room, escaping everything by default."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    settings: dict[str, Any] = {"trim_blocks": True, "lstrip_blocks": True}
+    return Environment(
+        loader=PackageLoader("underfoot.document"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        **settings,
+    )
