@@ -1,0 +1,30 @@
+"""What the hardness relations share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..core import RangeError
+
+
+def checked_hardness(shore_a: ArrayLike, *, below: float = np.inf, up_to: float = 100.0) -> Any:
+    """Return hardness as an array; refuse what no durometer shows."""
+    hardness = np.asarray(shore_a, dtype=float)
+    good = np.isfinite(hardness) & (hardness >= 0.0) & (hardness <= up_to) & (hardness < below)
+    if not np.all(good):
+        wrong = np.atleast_1d(hardness)[~np.atleast_1d(good)][0]
+        raise RangeError(
+            f"Shore A hardness {wrong:g}",
+            where="shore_a",
+            allowed="0 to below 100" if np.isfinite(below) else "0 to 100",
+            remedy="A harder material has no Shore A value: enter its modulus",
+        )
+    return hardness
+
+
+def plain(array: Any) -> Any:
+    """Return a float for a zero-dimensional array, else the array."""
+    return float(array) if np.ndim(array) == 0 else array
