@@ -71,7 +71,7 @@ class Marker:
     @property
     def missing(self) -> np.ndarray:
         """True where the marker was not seen, shape (n,)."""
-        return ~np.isfinite(self.positions).all(axis=1)
+        return np.asarray(~np.isfinite(self.positions).all(axis=1))
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,91 @@
+"""Baseline of an unloaded force plate and saturated samples: found, subtracted, said."""
+
+from __future__ import annotations
+
+import numpy as np
+
+SHEAR_WARNING = 2.0  # N; above it the required friction moves by more than about 0.01
+UNLOADED_LIMIT = 100.0  # N; a larger "offset" is a load that never left the plate
+_MINIMUM_SAMPLES = 50
+_MARGIN = 0.025  # s, kept away from a loaded stretch on both sides
+
+
+def unloaded(vertical: np.ndarray, rate: float) -> np.ndarray:
+    """Return a mask of the samples in which nothing stood on the plate, shape (n,).
+
+    The lowest well-filled level of the vertical force is the unloaded one; samples within
+    5 robust standard deviations (2 N at least) and 25 ms away from any load are kept. Empty
+    when the plate was never unloaded.
+
+    Parameters
+    ----------
+    vertical
+        Upward force on the foot (N), shape (n,); NaN samples count as loaded.
+    rate
+        Samples per second.
+    """
+    mask = np.zeros(len(vertical), dtype=bool)
+    finite = np.isfinite(vertical)
+    if finite.sum() < _MINIMUM_SAMPLES:
+        return mask
+    low, high = np.percentile(vertical[finite], [0.5, 99.5])
+    if high - low < 30.0:
+        level, width = float(np.median(vertical[finite])), 30.0
+    else:
+        candidates = vertical[finite & (vertical < low + 0.15 * (high - low))]
+        counts, edges = np.histogram(candidates, bins=max(3, int(np.ptp(candidates) / 5.0)))
+        fullest = int(np.argmax(counts))
+        inside = (candidates >= edges[fullest] - 5.0) & (candidates <= edges[fullest + 1] + 5.0)
+        level = float(np.median(candidates[inside]))
+        spread = 1.4826 * float(np.median(np.abs(candidates[inside] - level)))
+        width = float(np.clip(5.0 * spread, 2.0, 15.0))
+    if abs(level) > UNLOADED_LIMIT:
+        return mask
+    mask = finite & (np.abs(vertical - level) <= width)
+    return _away_from_load(mask, max(1, round(_MARGIN * rate)))
+
+
+def enough(mask: np.ndarray) -> bool:
+    """True when the mean of the masked samples may serve as a baseline."""
+    return int(mask.sum()) >= _MINIMUM_SAMPLES
+
+
+def saturated(signal: np.ndarray, rate: float) -> bool:
+    """True when a raw signal (n,) stays at its extreme value for 10 ms and 8 samples or more.
+
+    Levels that the signal also holds at rest (its median) do not count.
+    """
+    finite = signal[np.isfinite(signal)]
+    if finite.size < 16:
+        return False
+    rest = float(np.median(finite))
+    spread = float(np.percentile(np.abs(finite - rest), 90)) + 1e-12
+    run = max(8, round(0.01 * rate))
+    for extreme in (float(finite.max()), float(finite.min())):
+        if abs(extreme - rest) < 0.2 * spread or extreme in (0.0, rest):
+            continue
+        if longest_run(signal == extreme) >= run:
+            return True
+    return False
+
+
+def longest_run(mask: np.ndarray) -> int:
+    """Return the length of the longest stretch of True in a mask (n,)."""
+    return max((stop - start for start, stop in runs(mask)), default=0)
+
+
+def runs(mask: np.ndarray) -> list[tuple[int, int]]:
+    """Return (start, stop) of every stretch of True in a mask (n,); ``stop`` is excluded."""
+    padded = np.concatenate(([False], mask, [False])).astype(np.int8)
+    steps = np.diff(padded)
+    starts, stops = np.flatnonzero(steps == 1), np.flatnonzero(steps == -1)
+    return [(int(a), int(b)) for a, b in zip(starts, stops, strict=True)]
+
+
+def _away_from_load(mask: np.ndarray, margin: int) -> np.ndarray:
+    kept = np.zeros_like(mask)
+    for start, stop in runs(mask):
+        first = start + (margin if start > 0 else 0)
+        last = stop - (margin if stop < len(mask) else 0)
+        kept[first : max(first, last)] = True
+    return kept

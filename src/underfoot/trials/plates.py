@@ -1,0 +1,219 @@
+"""Force plates: from analog channels (C3D types 1-4) to the force on the foot in lab axes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from underfoot.core import DataError
+
+from .baseline import SHEAR_WARNING, enough, saturated, unloaded
+from .trial import Plate
+
+KINDS = {
+    1: "type 1 (force, centre of pressure, free moment)",
+    2: "type 2 (force and moment)",
+    3: "type 3 (eight Kistler channels)",
+    4: "type 4 (force and moment through a calibration matrix)",
+}
+CHANNELS = {1: 6, 2: 6, 3: 8, 4: 6}
+_LOADED = 20.0  # N, below it a centre of pressure has no meaning
+_IMPLAUSIBLE = 10_000.0  # N, far above any step or slip test
+_STANDING = 200.0  # N, a median beyond it means the plate is loaded most of the time
+
+
+def plate_axes(corners: np.ndarray) -> np.ndarray:
+    """Return the plate's axes as columns in lab axes, shape (3, 3), from its corners (4, 3).
+
+    Corner 1 lies at +x +y of the plate, 2 at -x +y, 3 at -x -y, 4 at +x -y (c3d.org); x is kept,
+    y made normal to it, z = x cross y (down into the floor in a plate wired as the format says).
+
+    Errors
+    ------
+    DataError
+        Corners missing or without area.
+    """
+    if corners.shape != (4, 3) or not np.isfinite(corners).all():
+        raise DataError("the plate's corners are missing")
+    x = corners[0] - corners[1] + corners[3] - corners[2]
+    y = corners[0] - corners[3] + corners[1] - corners[2]
+    z = np.cross(x, y)
+    lengths = np.linalg.norm(x), np.linalg.norm(y), np.linalg.norm(z)
+    if min(lengths[:2]) < 0.02 or lengths[2] < 0.1 * lengths[0] * lengths[1]:
+        raise DataError("the plate's corners enclose no area")
+    x, z = x / lengths[0], z / lengths[2]
+    return np.column_stack((x, np.cross(z, x), z))
+
+
+def channel_forces(
+    kind: int, signals: np.ndarray, origin: np.ndarray, calibration: np.ndarray | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return force and moment about the surface's centre, plate axes, both (n, 3) in N and N m.
+
+    Parameters
+    ----------
+    kind
+        C3D plate type 1 to 4.
+    signals
+        Shape (n, 6) or (n, 8), SI (type 4: raw, the calibration matrix makes them SI).
+    origin
+        FORCE_PLATFORM:ORIGIN (m), shape (3,): from the transducers' origin to the surface's
+        centre (types 2, 4); half spacings a, b and depth of the sensors (type 3).
+    calibration
+        Shape (6, 6), type 4 only.
+
+    Errors
+    ------
+    DataError
+        Type or number of channels not supported.
+
+    Source: c3d.org, the FORCE_PLATFORM group.
+    """
+    if kind not in CHANNELS:
+        raise DataError(f"plate type {kind} is not supported", allowed="types 1 to 4")
+    if signals.shape[1] != CHANNELS[kind]:
+        raise DataError(
+            f"type {kind} needs {CHANNELS[kind]} channels, the file names {signals.shape[1]}"
+        )
+    if kind == 1:
+        force = signals[:, :3]
+        x, y, free = signals[:, 3], signals[:, 4], signals[:, 5]
+        fx, fy, fz = force.T
+        return force, np.column_stack((y * fz, -x * fz, x * fy - y * fx + free))
+    if kind == 3:
+        fx12, fx34, fy14, fy23, fz1, fz2, fz3, fz4 = signals.T
+        a, b = float(origin[0]), float(origin[1])
+        force = np.column_stack((fx12 + fx34, fy14 + fy23, fz1 + fz2 + fz3 + fz4))
+        moment = np.column_stack(
+            (
+                b * (fz1 + fz2 - fz3 - fz4),
+                a * (-fz1 + fz2 + fz3 - fz4),
+                b * (-fx12 + fx34) + a * (fy14 - fy23),
+            )
+        )
+        to_surface = np.array([0.0, 0.0, origin[2]])
+    else:
+        if kind == 4:
+            if calibration is None or calibration.shape != (6, 6):
+                raise DataError("type 4 needs a 6 x 6 calibration matrix")
+            signals = signals @ calibration.T
+        force, moment = signals[:, :3], signals[:, 3:]
+        to_surface = np.asarray(origin, dtype=float)
+    if to_surface[2] > 0:  # z points down and the transducers lie below the surface
+        to_surface = -to_surface
+    return force, moment - np.cross(np.broadcast_to(to_surface, force.shape), force)
+
+
+def finished_plate(
+    name: str,
+    force: np.ndarray,
+    *,
+    rate: float,
+    start: float = 0.0,
+    up: np.ndarray,
+    moment: np.ndarray | None = None,
+    centre_of_pressure: np.ndarray | None = None,
+    corners: np.ndarray | None = None,
+    raw: np.ndarray | None = None,
+    kind: str = "",
+    notes: tuple[str, ...] = (),
+    subtract_baseline: bool = True,
+) -> Plate:
+    """Return the plate with sign checked, baseline subtracted and centre of pressure worked out.
+
+    Parameters
+    ----------
+    force, moment, centre_of_pressure
+        Shape (n, 3), lab axes; the moment about the centre of the surface.
+    up
+        Unit vector out of the floor, shape (3,).
+    raw
+        Channels before any arithmetic (n, k), searched for saturation.
+    """
+    force = np.array(force, dtype=float)
+    said = list(notes)
+    lost = ~np.isfinite(force).all(axis=1)
+    if lost.any():
+        said.append(f"{int(lost.sum())} samples without a number")
+    vertical = force @ up
+    with_load = vertical[np.isfinite(vertical)]
+    if with_load.size and _upside_down(with_load):
+        force, vertical = -force, -vertical
+        moment = None if moment is None else -moment
+        said.append("signs reversed: the file holds the force on the plate")
+    baseline, samples = None, 0
+    empty = unloaded(vertical, rate)
+    if not subtract_baseline:
+        said.append("baseline not subtracted: switched off")
+    elif enough(empty):
+        baseline, samples = force[empty].mean(axis=0), int(empty.sum())
+        force = force - baseline
+        if moment is not None:
+            moment = moment - moment[empty].mean(axis=0)
+        across = float(np.linalg.norm(baseline - (baseline @ up) * up))
+        if across > SHEAR_WARNING:
+            said.append(f"shear baseline of {across:.1f} N was subtracted")
+    else:
+        said.append("baseline not subtracted: the plate is never unloaded for long enough")
+    channels = force if raw is None else raw
+    if any(saturated(channels[:, i], rate) for i in range(channels.shape[1])):
+        said.append("saturated: a channel stays at its extreme value")
+    peak = float(np.nanmax(np.abs(force @ up), initial=0.0))
+    if peak > _IMPLAUSIBLE:
+        said.append(f"peak vertical force {peak:.0f} N is implausible: is the unit right?")
+    elif 0.05 < peak < _LOADED:
+        said.append(f"never loaded beyond {peak:.1f} N: unused, or is the unit right?")
+    elif peak <= 0.05:
+        said.append("never loaded")
+    if centre_of_pressure is None and moment is not None and corners is not None:
+        centre_of_pressure = _centre_of_pressure(force, moment, up, corners.mean(axis=0))
+    return Plate(
+        name=name,
+        force=force,
+        rate=rate,
+        start=start,
+        moment=moment,
+        centre_of_pressure=centre_of_pressure,
+        corners=corners,
+        baseline=baseline,
+        baseline_samples=samples,
+        kind=kind,
+        notes=tuple(said),
+    )
+
+
+def refused_plate(name: str, problem: str, *, rate: float = 0.0, kind: str = "") -> Plate:
+    """Return a plate that can't be used, with the reason."""
+    return Plate(name, np.empty((0, 3)), rate, kind=kind, problem=problem)
+
+
+def up_from_normal(normal: np.ndarray) -> np.ndarray:
+    """Return the normal (3,) turned so that its largest component is positive.
+
+    Laboratories have their vertical axis upward; a plate's own z axis points down.
+    """
+    largest = int(np.argmax(np.abs(normal)))
+    return normal if normal[largest] > 0 else -normal
+
+
+def _upside_down(vertical: np.ndarray) -> bool:
+    centre = float(np.median(vertical))
+    above = float(np.percentile(vertical, 99.5)) - centre
+    below = centre - float(np.percentile(vertical, 0.5))
+    if max(above, below) < _LOADED:
+        return False
+    # A plate loaded most of the time has its median in the load.
+    return centre < -_STANDING if abs(centre) > _STANDING else below > above
+
+
+
+
+
+def _centre_of_pressure(
+    force: np.ndarray, moment: np.ndarray, up: np.ndarray, centre: np.ndarray
+) -> np.ndarray:
+    """r = up x M / (up . F), from M = r x F + T up with r in the surface."""
+    vertical = force @ up
+    place = np.full(force.shape, np.nan)
+    loaded = vertical > _LOADED
+    place[loaded] = np.cross(up, moment[loaded]) / vertical[loaded, None] + centre
+    return place

@@ -1,0 +1,213 @@
+"""Text measurement files: encoding, delimiter, decimal sign, tables with holes, unique names."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from underfoot.core import DataError
+
+_COMMA_NUMBER = re.compile(r"(?<![\d.,])[+-]?\d+,\d+(?:[eE][+-]?\d+)?(?![\d.,])")
+_NUMBER = re.compile(r"^\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?\s*$")
+
+
+def decoded(data: bytes, where: str) -> str:
+    """Return the text of a file: UTF-8, UTF-16 with mark, else Latin-1.
+
+    Errors
+    ------
+    DataError
+        Binary content.
+    """
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        try:
+            text = data.decode("utf-16")
+        except UnicodeDecodeError as error:
+            raise DataError("damaged UTF-16 text", where=where) from error
+    else:
+        try:
+            text = data.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            text = data.decode("latin-1")
+    if "\0" in text or not text.strip():
+        raise DataError(
+            "empty" if not text.strip("\0 \r\n\t") else "not a text file",
+            where=where,
+            remedy="Export it again as text",
+        )
+    return text
+
+
+def lines_of(text: str) -> list[str]:
+    """Return the lines without line ends; only CR and LF count as ends."""
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+
+def is_number(cell: str) -> bool:
+    """True when a cell is a plain number with a decimal point."""
+    return bool(_NUMBER.match(cell))
+
+
+def delimiter_of(lines: Sequence[str]) -> str:
+    """Return the delimiter (tab, semicolon, comma or blank ``""``) that divides most lines."""
+    sample = [line for line in lines if line.strip()][:60]
+    for candidate in ("\t", ";"):
+        if sum(candidate in line for line in sample) > 0.5 * len(sample):
+            return candidate
+    commas = sum("," in line for line in sample)
+    if commas > 0.5 * len(sample):
+        return ","
+    return ""
+
+
+def split(line: str, delimiter: str) -> list[str]:
+    """Return the cells of a line, quotes and blanks around them removed."""
+    cells = line.split(delimiter) if delimiter else line.split()
+    return [cell.strip().strip('"').strip() for cell in cells]
+
+
+def uses_decimal_comma(lines: Sequence[str], delimiter: str) -> bool:
+    """True when numbers are written with a comma (never when the comma is the delimiter)."""
+    if delimiter == ",":
+        return False
+    return any(_COMMA_NUMBER.search(line) for line in lines[:50])
+
+
+def table(
+    lines: Sequence[str], delimiter: str, columns: int, where: str, *, first_line: int = 1
+) -> tuple[np.ndarray, list[str]]:
+    """Return the numbers (rows, columns) of a table and what was odd about it.
+
+    Empty cells become NaN, decimal commas are understood, short rows are filled with NaN.
+
+    Errors
+    ------
+    DataError
+        A cell that is no number, a row longer than the header, no rows.
+    """
+    notes: list[str] = []
+    rows = [line for line in lines if line.strip(" \t;,")]
+    if not rows:
+        raise DataError("the table has no rows", where=where)
+    if uses_decimal_comma(rows, delimiter):
+        rows = [row.replace(",", ".") for row in rows]
+        notes.append("decimal commas")
+    values = _fast(rows, delimiter, columns)
+    if values is None:
+        values = _slow(rows, delimiter, columns, where, first_line, notes)
+    if not np.isfinite(values).any():
+        raise DataError("the table holds no number", where=where)
+    return values, notes
+
+
+def _fast(rows: Sequence[str], delimiter: str, columns: int) -> np.ndarray | None:
+    try:
+        values = np.loadtxt(rows, delimiter=delimiter or None, ndmin=2, comments=None)
+    except (ValueError, OverflowError):
+        return None
+    return values if values.shape[1] == columns else None
+
+
+def _slow(
+    rows: Sequence[str],
+    delimiter: str,
+    columns: int,
+    where: str,
+    first_line: int,
+    notes: list[str],
+) -> np.ndarray:
+    values = np.full((len(rows), columns), np.nan)
+    short = 0
+    for i, row in enumerate(rows):
+        cells = split(row, delimiter)
+        while len(cells) > columns and not cells[-1]:
+            cells.pop()
+        if len(cells) > columns:
+            raise DataError(
+                f"row {i + 1} of the table has {len(cells)} cells, the header {columns}",
+                where=f"{where}, line {first_line + i}",
+            )
+        short += len(cells) < columns
+        for j, cell in enumerate(cells):
+            if cell:
+                values[i, j] = _number(cell, f"{where}, line {first_line + i}")
+    if short > 1 or (short and len(cells) == columns):
+        notes.append(f"{short} rows are shorter than the header")
+    elif short:
+        raise DataError(
+            "truncated: the last row is shorter than the header",
+            where=f"{where}, line {first_line + len(rows) - 1}",
+            remedy="Export or copy the file again",
+        )
+    return values
+
+
+def _number(cell: str, where: str) -> float:
+    try:
+        return float(cell)
+    except ValueError:
+        if cell.casefold() in ("nan", "na", "n/a", "-", "--", "null", "none", "#n/a"):
+            return math.nan
+        raise DataError(f'"{cell[:40]}" is not a number', where=where) from None
+
+
+def number_after(line: str, where: str, delimiter: str = "=") -> float:
+    """Return the number behind ``delimiter`` in a header line.
+
+    Errors
+    ------
+    DataError
+        There is none.
+    """
+    text = line.split(delimiter, 1)[-1].strip().replace(",", ".")
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise DataError(f'"{line.strip()[:60]}" holds no number', where=where)
+    return value
+
+
+def unique_names(labels: Sequence[str], kind: str, notes: list[str]) -> list[str]:
+    """Return the labels made unique (``name #2``); unnamed ones are numbered."""
+    seen: dict[str, int] = {}
+    names: list[str] = []
+    for i, label in enumerate(labels):
+        base = label.strip() or f"{kind} {i + 1}"
+        seen[base] = seen.get(base, 0) + 1
+        name = base if seen[base] == 1 else f"{base} #{seen[base]}"
+        while name in names:
+            seen[base] += 1
+            name = f"{base} #{seen[base]}"
+        names.append(name)
+    repeated = [name for name, count in seen.items() if count > 1]
+    if repeated:
+        shown = ", ".join(repeated[:5]) + (" ..." if len(repeated) > 5 else "")
+        notes.append(f"duplicate {kind} names, numbered #2, #3 ...: {shown}")
+    return names
+
+
+def rate_of(times: np.ndarray, where: str) -> tuple[float, float, np.ndarray | None]:
+    """Return (rate, start, times or None) of a time column; times only when unequally spaced.
+
+    Errors
+    ------
+    DataError
+        Times missing, not increasing or fewer than two.
+    """
+    if len(times) < 2 or not np.isfinite(times).all():
+        raise DataError("the time column has holes or fewer than two rows", where=where)
+    steps = np.diff(times)
+    if (steps <= 0).any():
+        row = int(np.argmax(steps <= 0)) + 2
+        raise DataError(f"time does not increase at row {row}", where=where)
+    step = float(np.median(steps))
+    # Rounded time stamps differ by one last digit, dropped samples by a whole step.
+    mean = float((times[-1] - times[0]) / (len(times) - 1))
+    grid = times[0] + mean * np.arange(len(times))
+    even = float(np.abs(times - grid).max()) < 0.5 * step
+    return (1.0 / mean, float(times[0]), None) if even else (1.0 / step, float(times[0]), times)
