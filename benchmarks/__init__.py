@@ -1,0 +1,1 @@
+"""Measured cost, memory and scaling, beside named peers or physical limits in the same run."""
