@@ -1,0 +1,1 @@
+"""Pure functions of arrays behind the rough-contact solvers."""

@@ -1,0 +1,168 @@
+"""What steady_sliding accepts, and what it says about its input."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from underfoot.core import Breach, InputError, Range, breaches
+
+from ._kernels.symbols import wavenumbers
+from ._kernels.transforms import RealTransform
+
+Array = Any
+
+
+class HasComplexModulus(Protocol):
+    """A material: E*(angular frequency, rad/s) in Pa."""
+
+    def complex_modulus(self, angular_frequency: Any) -> Any:
+        """Return E* (Pa, complex) at the angular frequencies (rad/s)."""
+        ...
+
+
+Modulus = float | HasComplexModulus | Callable[[Array], Any]
+
+_RANGES = {
+    "rms slope": Range(0.0, 0.5, "1", "small-slope theory, limit assumed"),
+    "share of the mean square slope in waves shorter than 4 grid spacings": Range(
+        0.0, 0.1, "1", "resolution, limit assumed"
+    ),
+}
+_NEGLIGIBLE_LOSS_TANGENT = 1e-3
+
+
+def checked_contact_input(
+    height: ArrayLike,
+    spacing: float | tuple[float, float],
+    speed: float,
+    pressure: float,
+    poisson_ratio: float,
+    layer_thickness: float | None,
+) -> tuple[Array, tuple[float, float]]:
+    """Return (heights as floats, (dx, dy)) or raise InputError with the remedy."""
+    h = np.asarray(height, dtype=float)
+    if h.ndim != 2:
+        raise InputError(
+            f"height has {h.ndim} dimension(s)",
+            where="height",
+            allowed="a map (nx, ny)",
+            remedy="Give a profile as (n, 4) equal columns: np.repeat(profile[:, None], 4, axis=1)",
+        )
+    if min(h.shape) < 4 or max(h.shape) < 8:
+        raise InputError(
+            f"height has shape {h.shape}", where="height", allowed="at least 8 x 4 nodes"
+        )
+    bad = np.flatnonzero(~np.isfinite(h).ravel())
+    if bad.size:
+        first = tuple(int(i) for i in np.unravel_index(bad[0], h.shape))
+        raise InputError(
+            f"{bad.size} of {h.size} heights are missing or infinite, the first at {first}",
+            where="height",
+            allowed="a finite height at every node",
+            remedy="Fill or cut them away first (surface.fill_missing)",
+        )
+    steps: Any = (spacing, spacing) if np.ndim(spacing) == 0 else spacing
+    if len(steps) != 2:
+        raise InputError(f"spacing {spacing}", where="spacing", allowed="one length or two, m")
+    dx, dy = (_positive("spacing", value, "m") for value in steps)
+    _positive("pressure", pressure, "Pa")
+    if not math.isfinite(speed):
+        raise InputError(f"speed {speed} m/s", where="speed", allowed="a finite speed, m/s")
+    if not 0.0 <= poisson_ratio <= 0.5:
+        raise InputError(
+            f"Poisson's ratio {poisson_ratio}", where="poisson_ratio", allowed="0 to 0.5"
+        )
+    if layer_thickness is not None:
+        _positive("layer_thickness", layer_thickness, "m")
+    return h, (dx, dy)
+
+
+def modulus_function(modulus: Modulus, frequencies: Array) -> Callable[[Array], Array]:
+    """Return E*(w) as a vectorised function, after checking it at ``frequencies`` (rad/s)."""
+    given: Any = modulus
+    if isinstance(given, int | float | np.integer | np.floating):
+        value = _positive("modulus", float(given), "Pa")
+        return lambda w: np.full(np.shape(w), value, dtype=complex)
+    call = getattr(given, "complex_modulus", given)
+    if not callable(call):
+        raise InputError(
+            f"modulus is a {type(modulus).__name__}",
+            where="modulus",
+            allowed="a number (Pa), a material with complex_modulus, or a callable E*(rad/s)",
+        )
+
+    def young(w: Array) -> Array:
+        values = np.asarray(call(np.asarray(w, dtype=float)), dtype=complex)
+        return np.broadcast_to(values, np.shape(w))
+
+    values = young(frequencies)
+    wrong = ~(np.isfinite(values) & (values.real > 0.0))
+    if np.any(wrong):
+        at = int(np.flatnonzero(wrong)[0])
+        raise InputError(
+            f"E* = {values[at]:.4g} Pa at {frequencies[at]:.4g} rad/s",
+            where="modulus",
+            allowed="a finite modulus with a positive real part at every frequency, 0 included",
+            remedy="A liquid (no equilibrium modulus) can't carry the mean pressure; "
+            "a fitted spectrum must not have negative terms",
+        )
+    if np.any(values.imag < -1e-9 * values.real):
+        at = int(np.argmin(values.imag / values.real))
+        raise InputError(
+            f"E* = {values[at]:.4g} Pa at {frequencies[at]:.4g} rad/s gives energy back",
+            where="modulus",
+            allowed="a loss modulus E'' >= 0 (convention E' + i E'')",
+            remedy="Take the conjugate if your convention is E' - i E''",
+        )
+    return young
+
+
+def loss_reason(young: Callable[[Array], Array], frequencies: Array) -> list[str]:
+    """Return why the hysteresis is (nearly) zero, if it is for want of loss in the material."""
+    w = frequencies[frequencies > 0.0]
+    if w.size == 0:
+        return []
+    values = young(w)
+    tangent = float(np.max(values.imag / values.real))
+    if tangent >= _NEGLIGIBLE_LOSS_TANGENT:
+        return []
+    return [
+        f"hysteresis is negligible because the material is: its loss tangent is at most "
+        f"{tangent:.1e} between {w.min():.3g} and {w.max():.3g} rad/s, the frequencies this "
+        f"surface excites at this speed; a spectrum with relaxation times near those is needed"
+    ]
+
+
+def resolution_breaches(
+    height: Array, spacing: tuple[float, float], transform: RealTransform
+) -> list[Breach]:
+    """Return whether slopes are too steep for the theory or too short for the grid."""
+    qx, qy = wavenumbers(height.shape, spacing)
+    spectrum = transform.forward(height)
+    power = spectrum.real**2 + spectrum.imag**2
+    power[:, 1 : (height.shape[1] + 1) // 2] *= 2.0
+    power *= qx**2 + qy**2
+    total = float(power.sum())
+    limit = 0.5 * math.pi / max(spacing)
+    short = float(power[np.hypot(qx, qy) > limit].sum())
+    values = dict(
+        zip(
+            _RANGES,
+            (math.sqrt(total) / height.size, short / total if total else 0.0),
+            strict=True,
+        )
+    )
+    return breaches("steady_sliding", _RANGES, values)
+
+
+def _positive(name: str, value: float, unit: str) -> float:
+    if not (math.isfinite(value) and value > 0.0):
+        raise InputError(
+            f"{name} {value} {unit}", where=name, allowed=f"a finite value above 0 {unit}"
+        )
+    return float(value)
