@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from decimal import Decimal
 from functools import cache
 from typing import Any
 
@@ -38,6 +39,7 @@ _SCALES = {
     "m^2": ((1e-4, "cm^2"), (1e-6, "mm^2")),
 }
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
+_ALIASES = {"%": "percent", "deg C": "degC", "mPa s": "mPa*s", "mPas": "mPa*s", "Pa s": "Pa*s"}
 _KNOWN = tuple(
     (
         "m mm um nm cm inch N kN mN kgf lbf Pa kPa MPa GPa psi bar cP mPa*s Pa*s P m/s mm/s cm/s "
@@ -45,6 +47,25 @@ _KNOWN = tuple(
         "percent"
     ).split()
 )
+
+
+# Powers of ten of the units people write most: a unit library takes a second to start, and moving
+# the decimal point is exact.
+_POWERS: dict[str, dict[str, int]] = {
+    "m": {"m": 0, "mm": -3, "um": -6, "nm": -9, "cm": -2},
+    "m/s": {"m/s": 0, "mm/s": -3, "cm/s": -2},
+    "N": {"N": 0, "kN": 3, "mN": -3},
+    "Pa": {"Pa": 0, "kPa": 3, "MPa": 6, "GPa": 9},
+    "Pa*s": {"Pa*s": 0, "cP": -3, "mPa*s": -3},
+    "s": {"s": 0, "ms": -3, "us": -6},
+    "kg": {"kg": 0, "g": -3},
+    "kg/m^3": {"kg/m^3": 0, "g/cm^3": 3},
+    "Hz": {"Hz": 0, "kHz": 3},
+    "rad": {"rad": 0},
+    "1/s": {"1/s": 0},
+    "K": {"K": 0},
+    "1": {"percent": -2},
+}
 
 
 @cache
@@ -83,7 +104,7 @@ def to_si(given: object, unit: str, *, where: str) -> float:
         raise InputError(
             f"{given!r} is not a quantity", where=where, allowed=f'text such as "{example}"'
         )
-    match = _NUMBER.match(given.replace("µ", "u").replace("μ", "u").replace("°", "deg"))
+    match = _NUMBER.match(_plain(given))
     if match is None:
         raise InputError(
             f'"{given}" is not a number with a unit',
@@ -93,7 +114,7 @@ def to_si(given: object, unit: str, *, where: str) -> float:
     number, text = float(match.group(1)), match.group(2)
     if not text:
         return to_si(number, unit, where=where)
-    text = {"%": "percent", "deg C": "degC", "degC": "degC", "degF": "degF"}.get(text, text)
+    text = _ALIASES.get(text, text)
     if unit == "K" and text in ("C", "F"):
         text = "deg" + text
     return _finite(_convert(number, text, unit, given, where, example), given, where)
@@ -123,7 +144,46 @@ def display_unit(value: float, unit: str) -> tuple[float, str]:
     return scales[-1]
 
 
+def si_unit(given: str, *, where: str) -> str:
+    """Return the SI unit (as used by ``to_si``) that fits a text such as ``"219 cP"``.
+
+    Errors
+    ------
+    InputError
+        No number, or a unit that fits none of the units in use.
+    """
+    match = _NUMBER.match(_plain(given))
+    if match is None:
+        raise InputError(f'"{given}" is not a number with a unit', where=where)
+    text = _ALIASES.get(match.group(2), match.group(2))
+    if not text:
+        return "1"
+    for unit, names in _POWERS.items():
+        if text in names:
+            return unit
+    for unit in _EXAMPLES:
+        try:
+            to_si(given, unit, where=where)
+        except InputError:
+            continue
+        return unit
+    raise InputError(
+        f'"{given}": unknown unit "{text}"', where=where, nearest=nearest_match(text, _KNOWN)
+    )
+
+
+def _plain(text: str) -> str:
+    return text.replace("µ", "u").replace("μ", "u").replace("°", "deg")
+
+
 def _convert(number: float, text: str, unit: str, given: str, where: str, example: str) -> float:
+    power = _POWERS.get(unit, {}).get(text)
+    if power is not None:
+        return float(Decimal(repr(number)).scaleb(power))
+    if unit == "K" and text == "degC":
+        return float(Decimal(repr(number)) + Decimal("273.15"))
+    if unit == "rad" and text == "deg":
+        return math.radians(number)
     import pint
 
     registry = _registry()

@@ -1,0 +1,333 @@
+"""Catalogue: materials, floors, fluids, shoes, set-ups and published figures, each with its source.
+
+An entry is a table in a TOML file, ``[fluid.canola_oil]``. Its leaves are plain values, which take
+the ``source`` of the entry, or tables with ``value`` and any of ``uncertainty``, ``source``,
+``assumed``, ``verified`` and ``note``. ``from = "name"`` takes over another entry of its kind.
+"""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from .errors import InputError, unknown_name
+from .units import si_unit, to_si
+from .values import SourcedValue
+
+KINDS = ("fluid", "floor", "material", "published", "setup", "shoe")
+BUILT_IN = "built in"
+_NO_SOURCE = "no source given"
+_INHERITED = ("source", "assumed", "verified", "note")
+_LEAF_KEYS = frozenset({"value", "uncertainty", *_INHERITED})
+_ENTRY_KEYS = frozenset({"title", "from", "replaces", *_INHERITED})
+
+
+@dataclass(frozen=True, slots=True)
+class Leaf:
+    """One value as written, with what a reader must know to trust it.
+
+    ``given`` is text with a unit, a plain number, a word, or a list of these. ``verified`` is False
+    for values from memory, not checked against their source.
+    """
+
+    given: Any
+    source: str = ""
+    uncertainty: str | float | None = None
+    assumed: bool = False
+    verified: bool = True
+    note: str = ""
+
+    def sourced(self, unit: str | None = None, *, where: str) -> SourcedValue:
+        """Return the value in SI; ``unit`` None takes the SI unit that fits the text."""
+        if unit is None:
+            unit = si_unit(self.given, where=where) if isinstance(self.given, str) else "1"
+        spread = self.uncertainty
+        return SourcedValue(
+            to_si(self.given, unit, where=where),
+            unit,
+            source=self.source + ("" if self.verified else " (from memory, not verified)"),
+            uncertainty=None if spread is None else to_si(spread, unit, where=where),
+            assumed=self.assumed,
+            note=self.note,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One entry of the catalogue; ``values`` maps dotted paths to leaves."""
+
+    kind: str
+    name: str
+    title: str
+    origin: str
+    values: Mapping[str, Leaf]
+    note: str = ""
+    parents: tuple[str, ...] = ()
+
+    def leaf(self, path: str) -> Leaf:
+        """Return the leaf at a dotted path."""
+        try:
+            return self.values[path]
+        except KeyError:
+            raise unknown_name(
+                f"value of {self.kind} {self.name}", path, self.values, where=self._where(path)
+            ) from None
+
+    def sourced(self, path: str, unit: str | None = None) -> SourcedValue:
+        """Return a number in SI with its source; ``unit`` None takes the unit that fits."""
+        return self.leaf(path).sourced(unit, where=self._where(path))
+
+    def numbers(self, path: str, unit: str | None = None) -> tuple[float, ...]:
+        """Return a list of numbers in SI."""
+        leaf = self.leaf(path)
+        if not isinstance(leaf.given, list | tuple):
+            raise InputError(f"{leaf.given!r} is no list", where=self._where(path))
+        found = []
+        for index, given in enumerate(leaf.given):
+            value = replace(leaf, given=given).sourced(unit, where=f"{self._where(path)}[{index}]")
+            found.append(float(value.value or 0.0))
+        return tuple(found)
+
+    def text(self, path: str) -> str:
+        """Return a word."""
+        return str(self.leaf(path).given)
+
+    def under(self, section: str) -> dict[str, Leaf]:
+        """Return the leaves of one sub-table, by the rest of their path."""
+        start = section + "."
+        return {path[len(start) :]: v for path, v in self.values.items() if path.startswith(start)}
+
+    def _where(self, path: str) -> str:
+        return f"{self.origin}, {self.kind}.{self.name}.{path}"
+
+
+@dataclass(frozen=True, slots=True)
+class Catalogue:
+    """All entries of the package and of the user's folders."""
+
+    entries: Mapping[tuple[str, str], Entry] = field(default_factory=dict)
+    folders: tuple[str, ...] = ()
+
+    @classmethod
+    def load(cls, folders: Iterable[Path | str] = ()) -> Catalogue:
+        """Return the built-in entries and those of ``folders``, read in order.
+
+        A name may stand once for each kind: a second entry of the same name is refused, unless
+        it comes from a user's folder and says ``replaces = true``.
+
+        Errors
+        ------
+        InputError
+            A folder or file that can't be read, an unknown kind, a name clash, a ``from`` that
+            leads nowhere or in a circle.
+        """
+        chosen = tuple(str(Path(folder)) for folder in folders)
+        if not chosen:
+            return _built_in()
+        raw = dict(_built_in_tables())
+        for folder in chosen:
+            _add(raw, _folder_tables(Path(folder)))
+        return cls(_entries(raw), chosen)
+
+    def names(self, kind: str) -> list[str]:
+        """Return the sorted names of one kind."""
+        if kind not in KINDS:
+            raise unknown_name("kind of catalogue entry", kind, KINDS)
+        return sorted(name for known, name in self.entries if known == kind)
+
+    def entry(self, kind: str, name: str, *, where: str | None = None) -> Entry:
+        """Return one entry; an unknown name is answered with the nearest one."""
+        known = self.names(kind)
+        if name not in known:
+            raise unknown_name(kind, name, known, where=where)
+        return self.entries[kind, name]
+
+    def describe(self, name: str) -> str:
+        """Return every entry of this name in words: values, sources, notes."""
+        found = [entry for (_, known), entry in self.entries.items() if known == name]
+        if not found:
+            raise unknown_name("catalogue entry", name, {known for _, known in self.entries})
+        return "\n\n".join(_described(entry) for entry in found)
+
+
+def catalogue_folders(
+    beside: Path | str | None = None, extra: Iterable[Path | str] = ()
+) -> list[Path]:
+    """Return the user's catalogue folders, in the order in which they are read.
+
+    ``UNDERFOOT_CATALOGUE`` (several folders, separated as in PATH), then the folder ``catalogue``
+    beside the case, then ``extra``.
+    """
+    found = [Path(part) for part in os.environ.get("UNDERFOOT_CATALOGUE", "").split(os.pathsep)]
+    found = [path for path in found if str(path) != "."]
+    if beside is not None and (Path(beside) / "catalogue").is_dir():
+        found.append(Path(beside) / "catalogue")
+    found += [Path(path) for path in extra]
+    unique = {path.resolve(): path for path in found}
+    return list(unique.values())
+
+
+def leaves(
+    table: Mapping[str, Any], *, source: str = "", skip: Iterable[str] = ()
+) -> dict[str, Leaf]:
+    """Return the leaves of nested tables by dotted path; sub-tables inherit source and marks."""
+    found: dict[str, Leaf] = {}
+    _collect(found, table, (), Leaf(None, source=source), frozenset(skip))
+    return found
+
+
+def _collect(
+    found: dict[str, Leaf],
+    table: Mapping[str, Any],
+    path: tuple[str, ...],
+    inherited: Leaf,
+    skip: frozenset[str],
+) -> None:
+    marks = {k: table[k] for k in _INHERITED if k in table and (path or k != "note")}
+    inherited = replace(inherited, **marks)
+    for key, item in table.items():
+        if key in _INHERITED or (not path and key in skip):
+            continue
+        here = (*path, key)
+        where = ".".join(here)
+        if isinstance(item, Mapping) and "value" in item:
+            unknown = set(item) - _LEAF_KEYS
+            if unknown:
+                raise unknown_name("mark", sorted(unknown)[0], _LEAF_KEYS, where=where)
+            marks = {k: item[k] for k in _INHERITED if k in item}
+            if "source" in marks and "assumed" not in marks:
+                marks["assumed"] = False
+            found[where] = replace(
+                inherited, given=item["value"], uncertainty=item.get("uncertainty"), **marks
+            )
+        elif isinstance(item, Mapping):
+            _collect(found, item, here, inherited, skip)
+        else:
+            found[where] = replace(inherited, given=item)
+
+
+@cache
+def _built_in_tables() -> dict[tuple[str, str], tuple[str, dict[str, Any]]]:
+    raw: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {}
+    with resources.as_file(resources.files("underfoot") / "data") as folder:
+        _add(raw, _folder_tables(folder, built_in=True))
+    return raw
+
+
+@cache
+def _built_in() -> Catalogue:
+    return Catalogue(_entries(_built_in_tables()))
+
+
+def _folder_tables(
+    folder: Path, *, built_in: bool = False
+) -> dict[tuple[str, str], tuple[str, dict[str, Any]]]:
+    if not folder.is_dir():
+        raise InputError(
+            f"the catalogue folder {folder} does not exist",
+            allowed="a folder with TOML files",
+        )
+    tables: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {}
+    for file in sorted(folder.rglob("*.toml")):
+        origin = BUILT_IN if built_in else str(file)
+        try:
+            content = tomllib.loads(file.read_text(encoding="utf-8"))
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            raise InputError(f"is no TOML file ({error})", where=str(file)) from error
+        for kind, entries in content.items():
+            if kind not in KINDS:
+                raise unknown_name("kind of catalogue entry", kind, KINDS, where=str(file))
+            if not isinstance(entries, dict):
+                raise InputError(f"{kind} is no table of entries", where=str(file))
+            for name, table in entries.items():
+                if not isinstance(table, dict):
+                    raise InputError(f"{kind}.{name} is no table", where=str(file))
+                if (kind, name) in tables:
+                    raise _clash(kind, name, str(file), tables[kind, name][0])
+                tables[kind, name] = (origin, table)
+    return tables
+
+
+def _add(
+    raw: dict[tuple[str, str], tuple[str, dict[str, Any]]],
+    new: Mapping[tuple[str, str], tuple[str, dict[str, Any]]],
+) -> None:
+    for (kind, name), (origin, table) in new.items():
+        if (kind, name) in raw and not table.get("replaces", False):
+            raise _clash(kind, name, origin, raw[kind, name][0])
+        raw[kind, name] = (origin, table)
+
+
+def _clash(kind: str, name: str, here: str, there: str) -> InputError:
+    return InputError(
+        f'the {kind} "{name}" is defined twice, here and in: {there}',
+        where=here,
+        remedy="Give it another name, or write replaces = true in a catalogue of your own",
+    )
+
+
+def _entries(
+    raw: Mapping[tuple[str, str], tuple[str, dict[str, Any]]],
+) -> dict[tuple[str, str], Entry]:
+    done: dict[tuple[str, str], Entry] = {}
+    for kind, name in raw:
+        _resolve(kind, name, raw, done, ())
+    return done
+
+
+def _resolve(
+    kind: str,
+    name: str,
+    raw: Mapping[tuple[str, str], tuple[str, dict[str, Any]]],
+    done: dict[tuple[str, str], Entry],
+    chain: tuple[str, ...],
+) -> Entry:
+    if (kind, name) in done:
+        return done[kind, name]
+    origin, table = raw[kind, name]
+    where = f"{origin}, {kind}.{name}"
+    if name in chain:
+        raise InputError(f"from leads in a circle: {' -> '.join((*chain, name))}", where=where)
+    values: dict[str, Leaf] = {}
+    parents: tuple[str, ...] = ()
+    parent = table.get("from")
+    if parent is not None:
+        if (kind, parent) not in raw or (parent == name):
+            known = {n for k, n in raw if k == kind} - {name}
+            raise unknown_name(kind, str(parent), known, where=f"{where}.from")
+        base = _resolve(kind, parent, raw, done, (*chain, name))
+        values.update(base.values)
+        parents = (parent, *base.parents)
+    own = leaves(table, skip=_ENTRY_KEYS - set(_INHERITED))
+    values.update(_with_source(path, leaf, origin) for path, leaf in own.items())
+    title, note = str(table.get("title", name)), str(table.get("note", ""))
+    done[kind, name] = Entry(kind, name, title, origin, values, note, parents)
+    return done[kind, name]
+
+
+def _with_source(path: str, leaf: Leaf, origin: str) -> tuple[str, Leaf]:
+    if leaf.source:
+        return path, leaf
+    return path, replace(leaf, source=f"{_NO_SOURCE} ({origin})", assumed=True)
+
+
+def _described(entry: Entry) -> str:
+    lines = [f"{entry.kind} {entry.name}: {entry.title}"]
+    if entry.note:
+        lines.append(entry.note)
+    if entry.parents:
+        lines.append(f"takes over: {', '.join(entry.parents)}")
+    for path, leaf in entry.values.items():
+        spread = "" if leaf.uncertainty is None else f" ± {leaf.uncertainty}"
+        marks = [leaf.source]
+        marks += ["assumed"] if leaf.assumed else []
+        marks += [] if leaf.verified else ["from memory, not verified"]
+        marks += [leaf.note] if leaf.note and leaf.note != entry.note else []
+        lines.append(f"  {path} = {leaf.given}{spread}   [{'; '.join(marks)}]")
+    return "\n".join(lines)
