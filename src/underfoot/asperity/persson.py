@@ -8,8 +8,9 @@ from numpy.typing import ArrayLike
 from underfoot.core import Range, breaches
 
 from . import persson_2001, scaraggi_persson_2015, yang_persson_2008
-from .persson_2001 import Modulus, contact_fractions, direction_means
+from .persson_2001 import contact_fractions, direction_means
 from .spectral_moments import checked_spectrum
+from .steady_checks import Modulus, modulus_function
 from .theory_contact import TheoryContact
 
 TESTED = {
@@ -36,10 +37,10 @@ def persson(
     p = np.atleast_1d(np.asarray(pressure, dtype=float))
     stiffness_squared, _ = direction_means(modulus, q, speed, poisson_ratio)
     area = np.array([contact_fractions(float(value), q, c, stiffness_squared)[-1] for value in p])
-    elastic = speed == 0.0 or not callable(modulus)
+    elastic = speed == 0.0 or isinstance(modulus, int | float)
     gap, reason, source = None, "", persson_2001.SOURCE
     if elastic:
-        young = float(np.real(modulus(np.zeros(1))[0])) if callable(modulus) else modulus
+        young = float(np.real(modulus_function(modulus, np.zeros(1))(np.zeros(1))[0]))
         gap = yang_persson_2008.yang_persson_mean_gap(p, q, c, young, poisson_ratio)
         source += "; " + yang_persson_2008.SOURCE
     else:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,9 +10,9 @@ from numpy.typing import ArrayLike
 from underfoot.core import InputError
 
 from .spectral_moments import checked_spectrum
+from .steady_checks import Modulus, modulus_function
 
 SOURCE = "Persson (2001) J. Chem. Phys. 115:3840-3861"
-Modulus = float | Callable[[np.ndarray], np.ndarray]
 _DIRECTIONS = 48
 
 
@@ -37,7 +36,7 @@ def persson_contact_fractions(
     wavenumber, spectrum
         q (rad/m, rising) and the isotropic 2-D spectrum C(q) (m^4), <h^2> = 2 pi int q C dq.
     modulus
-        Young's modulus E (Pa), or the complex E at angular frequencies (rad/s).
+        Young's modulus as in ``steady_sliding``: Pa, a material, or E*(rad/s).
     speed
         m/s; 0 takes the modulus at rest.
 
@@ -68,15 +67,8 @@ def direction_means(
     factor = 1.0 / (1.0 - poisson_ratio**2)
     nodes, weights = np.polynomial.legendre.leggauss(_DIRECTIONS)
     cosine = np.cos(0.25 * np.pi * (nodes + 1.0))
-    if callable(modulus):
-        frequency = np.abs(speed) * q[:, None] * cosine[None, :]
-        e = np.asarray(modulus(frequency), dtype=complex) * factor
-    else:
-        e = np.full((q.size, cosine.size), modulus * factor, dtype=complex)
-    if not np.all(np.isfinite(e)) or np.real(e).min() <= 0.0:
-        raise InputError(
-            "the modulus is not finite or not positive", where="Persson", allowed="Re E > 0"
-        )
+    frequency = np.abs(speed) * q[:, None] * cosine[None, :]
+    e = modulus_function(modulus, frequency.ravel())(frequency) * factor
     quadrant = 0.25 * np.pi * weights
     total = 4.0 * (np.abs(e) ** 2 @ quadrant)
     loss = 4.0 * ((np.imag(e) * cosine) @ quadrant) * np.sign(speed)

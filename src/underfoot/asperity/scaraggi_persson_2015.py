@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .persson_2001 import Modulus, contact_fractions, cumulative, direction_means
+from .persson_2001 import contact_fractions, cumulative, direction_means
 from .spectral_moments import checked_spectrum
+from .steady_checks import Modulus
 
 SOURCE = (
     "Persson (2001) J. Chem. Phys. 115:3840-3861; S(q): Scaraggi and Persson (2015) "
@@ -31,11 +32,10 @@ def persson_friction(
     S = gamma + (1-gamma) P^2, P(q) from ``persson_contact_fractions``. gamma = 1 leaves S out.
     Exact in full contact (P = S = 1), where it is a sum over independent waves.
 
-    ``modulus`` as in ``persson_contact_fractions``: complex Young's modulus at rad/s with
-    E'' >= 0. ``speed`` (m/s) may be negative: mu(-v) = -mu(v). In partial contact expect the
-    right order and trends, not the percent: see the comparison on the physics page. It is
-    known to be worse where sliding strongly reduces the area (Sukhomlinov and Mueser 2021,
-    arXiv:2104.15056).
+    ``modulus`` as in ``steady_sliding``. ``speed`` (m/s) may be negative: mu(-v) = -mu(v).
+    In partial contact expect the right order and trends, not the percent: see the comparison on
+    the physics page. It is known to be worse where sliding strongly reduces the area
+    (Sukhomlinov and Mueser 2021, arXiv:2104.15056).
     """
     return persson_cumulative_friction(
         pressure, wavenumber, spectrum, modulus, speed, poisson_ratio, gamma
