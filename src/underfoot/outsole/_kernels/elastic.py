@@ -1,0 +1,148 @@
+"""Surface deflection under pressure: symbols of layers, coefficients of the half-space."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
+
+Array = NDArray[np.float64]
+
+
+def bonded_layer_symbol(
+    wavenumber: Array, modulus: float, poisson_ratio: float, thickness: float
+) -> Array:
+    """Return deflection over pressure (m/Pa) of a layer bonded to a rigid base.
+
+    C(k) = 2 (1 - nu^2) / (E k) ((3 - 4 nu) sinh 2q - 2q)
+           / ((3 - 4 nu) cosh 2q + 2 q^2 + 5 - 12 nu + 8 nu^2),   q = k T
+
+    with the limit T (1 + nu)(1 - 2 nu) / (E (1 - nu)) at k = 0 (Johnson, Contact Mechanics, 1985,
+    section 5.8; the half-space 2 (1 - nu^2)/(E k) at large q).
+    """
+    k = np.asarray(wavenumber, dtype=float)
+    nu = poisson_ratio
+    q = np.clip(k * thickness, 1e-3, 40.0)
+    ratio = ((3 - 4 * nu) * np.sinh(2 * q) - 2 * q) / (
+        (3 - 4 * nu) * np.cosh(2 * q) + 2 * q * q + 5 - 12 * nu + 8 * nu * nu
+    )
+    return 2 * (1 - nu**2) * thickness / modulus * ratio / np.maximum(k * thickness, 1e-3)
+
+
+def free_sided_symbol(
+    wavenumber: Array, modulus: float, poisson_ratio: float, height: float, shape_factor: float
+) -> Array:
+    """Return deflection over pressure (m/Pa) of a block with free sides.
+
+    1 / (E_app / d + E* k / 2) with E_app = E (1 + 2 S^2): a uniform pressure compresses the
+    block by p d / E_app (bonded block, Gent and Lindley 1959), a short wave meets the half-space.
+    Positive in real space.
+    """
+    plane = modulus / (1 - poisson_ratio**2)
+    apparent = modulus * (1 + 2 * shape_factor**2)
+    return 1 / (apparent / height + 0.5 * plane * np.asarray(wavenumber, dtype=float))
+
+
+def attenuation(wavenumber: Array, depth: float) -> Array:
+    """Return the share (1 + k d) exp(-k d) of a surface pressure wave that reaches depth d."""
+    reduced = np.asarray(wavenumber, dtype=float) * depth
+    return (1 + reduced) * np.exp(-reduced)
+
+
+def wavenumbers(shape: tuple[int, int], spacing: float) -> Array:
+    """Return |k| (rad/m) on the layout of ``rfft2``."""
+    kx = 2 * np.pi * np.fft.fftfreq(shape[0], spacing)
+    ky = 2 * np.pi * np.fft.rfftfreq(shape[1], spacing)
+    return np.hypot(kx[:, None], ky[None, :])
+
+
+def influence_from_symbol(symbol: Array, box: int, shape: tuple[int, int]) -> Array:
+    """Return the (2 nx - 1, 2 ny - 1) coefficients of a symbol sampled on a square box."""
+    coefficients = inverse_transform(symbol, (box, box))
+    nx, ny = shape
+    rows = np.arange(-nx + 1, nx) % box
+    columns = np.arange(-ny + 1, ny) % box
+    return coefficients[np.ix_(rows, columns)]
+
+
+def fast_length(least: int) -> int:
+    """Return the next length that the real transform does fast."""
+    length = fft.next_fast_len(least, True)
+    assert length is not None
+    return length
+
+
+def transform(field: Array, shape: tuple[int, int]) -> NDArray[np.complex128]:
+    """Return the real transform of a field padded with zeros to ``shape``."""
+    return np.asarray(fft.rfft2(field, s=shape))
+
+
+def inverse_transform(spectrum: NDArray[np.complex128] | Array, shape: tuple[int, int]) -> Array:
+    """Return the real field of a spectrum."""
+    return np.asarray(fft.irfft2(spectrum, s=shape))
+
+
+def half_space_influence(shape: tuple[int, int], spacing: float, plane_modulus: float) -> Array:
+    """Return the deflection (m/Pa) at offset (i, j) of a unit pressure on one square cell.
+
+    Love (1929): exact for a piecewise constant pressure; (2 nx - 1, 2 ny - 1), its centre at
+    (nx - 1, ny - 1).
+    """
+    nx, ny = shape
+    x = np.arange(-nx + 1, nx)[:, None] * spacing
+    y = np.arange(-ny + 1, ny)[None, :] * spacing
+    half = 0.5 * spacing
+    total = np.zeros((2 * nx - 1, 2 * ny - 1))
+    for sx in (-1, 1):
+        for sy in (-1, 1):
+            a, b = x + sx * half, y + sy * half
+            total += sx * sy * (a * np.arcsinh(b / np.abs(a)) + b * np.arcsinh(a / np.abs(b)))
+    return total / (np.pi * plane_modulus)
+
+
+def balanced_weights(influence: Array, mask: NDArray[np.bool_], uniform: float) -> Array:
+    """Return weights w, 0 outside the mask, such that w * K(w) equals ``uniform`` on the mask.
+
+    K is the convolution with the (positive) influence coefficients. w K w is symmetric, so work
+    done by one pressure on the deflection of another is reciprocal, and a uniform pressure deflects
+    the masked area uniformly, as a block with free sides does (symmetric matrix balancing, Sinkhorn
+    1964).
+    """
+    convolution = Convolution(influence, mask.shape)
+    weight = mask.astype(float)
+    for _ in range(60):
+        row = weight * convolution(weight)
+        error = np.abs(row[mask] / uniform - 1).max()
+        if error < 1e-3:
+            break
+        safe = np.where(mask, np.maximum(row, 0.02 * uniform), uniform)
+        weight = np.where(mask, weight * np.sqrt(uniform / safe), 0.0)
+    return weight
+
+
+class Convolution:
+    """Linear (not periodic) convolution of (nx, ny) fields with influence coefficients."""
+
+    def __init__(self, influence: Array, shape: tuple[int, int]) -> None:
+        nx, ny = shape
+        self.shape = shape
+        self.padded = (
+            fast_length(2 * nx - 1),
+            fast_length(2 * ny - 1),
+        )
+        wrapped = np.zeros(self.padded)
+        rows = np.arange(-nx + 1, nx) % self.padded[0]
+        columns = np.arange(-ny + 1, ny) % self.padded[1]
+        wrapped[np.ix_(rows, columns)] = influence
+        self.spectrum = transform(wrapped, self.padded)
+
+    def transform(self, field: Array) -> NDArray[np.complex128]:
+        """Return the zero-padded transform of a field."""
+        return transform(field, self.padded)
+
+    def inverse(self, spectrum: NDArray[np.complex128]) -> Array:
+        """Return the field of a spectrum, cut to the shape."""
+        return inverse_transform(spectrum, self.padded)[: self.shape[0], : self.shape[1]]
+
+    def __call__(self, field: Array) -> Array:
+        return self.inverse(self.transform(field) * self.spectrum)

@@ -1,0 +1,284 @@
+"""Whole-shoe contact with fluid: a sole pressed and slid over a flooded floor."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core import ConvergenceError, InputError, Progress, Status, silent
+
+from .compliance import Compliance
+from .contact.march import Counts, History, March, march
+from .contact.newton import Problem, State
+from .contact.preconditioner import pole_fit
+
+if TYPE_CHECKING:
+    from underfoot.asperity.law import PressureGapLaw
+
+    from .geometry import SoleMap
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+FAR = 1.0  # m, clearance that stands for "outside the plan form"
+
+
+@dataclass(frozen=True, slots=True)
+class SolverSettings:
+    """How the sole meets the floor and how exactly it is solved.
+
+    Parameters
+    ----------
+    pool_depth
+        Depth of the fluid on the floor, m; deeper gaps hold no film. 0.6 mm is 150 ml on
+        0.4 m x 0.6 m (report, G.6.1).
+    start_film
+        Height of the lowest point above the floor when the load starts to rise, m (assumed).
+    rise_time
+        Time over which the load rises linearly to its full value, s (report, G.4.1: 30 ms).
+    end_time
+        Time at which the result is taken, s (assumed: 90 ms of sliding under full load).
+    steady
+        Go on until nothing moves instead of stopping at ``end_time``.
+    tolerance
+        Largest relative imbalance of volume, of load and of the cavitation condition.
+    backend
+        Sparse factorization: "pardiso", "superlu" or None for the fastest installed.
+    """
+
+    pool_depth: float = 0.6e-3
+    start_film: float = 50e-6
+    rise_time: float = 0.03
+    end_time: float = 0.12
+    steady: bool = False
+    tolerance: float = 1e-4
+    backend: str | None = None
+    most_newton: int = 40
+    most_time_steps: int = 400
+    krylov_tolerance: float = 1e-3
+    time_resolution: float = 8.0
+
+
+@dataclass(frozen=True, slots=True)
+class SoleContact:
+    """Pressures and film under the sole; arrays (nx, ny), SI.
+
+    ``film_thickness`` is the mean gap, at most the pool depth. ``wet`` marks the film (cavitated
+    cells included, see ``cavitated``). ``approach`` is how far the rigid foot has come down since
+    the lowest point touched the floor. ``status`` other than CONVERGED: not a result, see
+    ``remedy``.
+    """
+
+    x: Array
+    y: Array
+    spacing: float
+    contact_pressure: Array
+    fluid_pressure: Array
+    film_thickness: Array
+    wet: Mask
+    cavitated: Mask
+    approach: float
+    normal_force: float
+    time: float
+    status: Status
+    remedy: str
+    history: History
+    residuals: tuple[float, ...]
+    counts: Counts
+
+    @property
+    def fluid_load(self) -> float:
+        """Load carried by the fluid, N."""
+        return float(self.fluid_pressure.sum()) * self.spacing**2
+
+    @property
+    def contact_load(self) -> float:
+        """Load carried by asperities, N."""
+        return float(self.contact_pressure.sum()) * self.spacing**2
+
+    @property
+    def total_pressure(self) -> Array:
+        """Fluid and contact pressure together, Pa."""
+        return self.fluid_pressure + self.contact_pressure
+
+
+def solve_sliding(
+    sole: SoleMap,
+    compliance: Compliance,
+    law: PressureGapLaw,
+    *,
+    viscosity: float | None,
+    speed: float,
+    normal_force: float,
+    settings: SolverSettings | None = None,
+    progress: Progress = silent,
+) -> SoleContact:
+    """Return contact pressure, fluid pressure and film under a sole pressed and slid.
+
+    h = G - d + C[p_t],  p_t = p_f + p_c,  p_c = P(h),  sum p_t dA = F(t)
+    -div(phi h^3 / (12 eta) grad p_f) - (V / 2) dh/dx + dh/dt = lambda,  p_f >= 0, lambda >= 0,
+    p_f lambda = 0
+
+    Parameters
+    ----------
+    sole
+        Undeformed sole over the floor.
+    compliance
+        Surface deflection under pressure on the same grid.
+    law
+        Asperity pressure and flow factor against the mean gap.
+    viscosity
+        Pa s; None for a dry floor.
+    speed
+        Sliding speed of the shoe along +x, m/s; negative slides backward, 0 only squeezes.
+    normal_force
+        Full load, N.
+    settings
+        Start, times and accuracy.
+    progress
+        Receives stage, fraction of the time and residual; an exception it raises stops the work.
+
+    Raises
+    ------
+    InputError
+        A value that is not finite or not physical.
+    ConvergenceError
+        Not even the first instant could be solved.
+    """
+    settings = settings or SolverSettings()
+    _check(sole, viscosity, speed, normal_force, settings)
+    clearance = np.where(np.isfinite(sole.clearance), sole.clearance, FAR)
+    clearance = np.minimum(clearance, FAR)
+    clearance = clearance - clearance.min()
+    extent = max(clearance.shape) * sole.spacing
+    decay, touch = asperity_scale(law, normal_force / (0.01 * extent**2))
+    problem = Problem(
+        clearance=clearance,
+        spacing=sole.spacing,
+        compliance=compliance,
+        law=law,
+        viscosity=viscosity,
+        wall_speed=-speed,
+        largest_gap=min(4 * settings.pool_depth, 5e-3),
+        decay=decay,
+        backend=settings.backend,
+        tolerance=settings.tolerance,
+        most_newton=settings.most_newton,
+        krylov_tolerance=settings.krylov_tolerance,
+    )
+    fit = pole_fit(compliance, extent, sole.spacing)
+    lift = settings.start_film if viscosity is not None else touch
+    blank = np.zeros_like(clearance)
+    start = State(blank, -lift, clearance + lift, blank, blank, blank > 0)
+    rise = settings.rise_time
+
+    def load_at(time: float) -> float:
+        return normal_force * min(time / rise, 1.0)
+
+    def longest_step(time: float) -> float:
+        span = rise if time < rise * (1 - 1e-9) else max(settings.end_time - rise, rise)
+        remaining = rise - time if time < rise * (1 - 1e-9) else math.inf
+        return min(span / settings.time_resolution, remaining)
+
+    result = march(
+        problem,
+        fit,
+        start,
+        load_at=load_at,
+        first_step=rise / 30,
+        longest_step=longest_step,
+        end_time=settings.end_time,
+        pool_depth=settings.pool_depth,
+        settled=None,
+        most_steps=settings.most_time_steps,
+        progress=progress,
+        stage="Pressing and sliding the sole",
+    )
+    return _result(sole, result, normal_force, settings)
+
+
+def asperity_scale(law: PressureGapLaw, pressure: float) -> tuple[float, float]:
+    """Return the gap over which the law decays at ``pressure``, and where it has all but faded."""
+    gaps = np.geomspace(1e-8, 1e-2, 400)
+    values = law.pressure(gaps)
+    near = int(np.argmin(np.abs(np.log(np.maximum(values, 1e-300) / pressure))))
+    decay = float(values[near] / max(float(law.stiffness(gaps[near : near + 1])[0]), 1e-300))
+    faint = values < 1e-3 * pressure
+    touch = float(gaps[int(np.argmax(faint))]) if faint.any() else float(gaps[-1])
+    return decay, touch
+
+
+def _result(
+    sole: SoleMap, end: March, normal_force: float, settings: SolverSettings
+) -> SoleContact:
+    if end.counts.time_steps == 0:
+        raise ConvergenceError(
+            "the contact could not be solved even at the start of loading",
+            history=end.residuals,
+            where="outsole.solver",
+            remedy="Start from a thicker film, refine the grid or check the pressure law.",
+        )
+    status = Status.CONVERGED if end.finished else Status.NOT_CONVERGED
+    state = end.state
+    film = np.clip(state.gap, 0.0, settings.pool_depth)
+    return SoleContact(
+        x=sole.x,
+        y=sole.y,
+        spacing=sole.spacing,
+        contact_pressure=state.contact,
+        fluid_pressure=state.fluid,
+        film_thickness=film,
+        wet=end.film & sole.inside,
+        cavitated=state.cavitated & end.film,
+        approach=state.approach,
+        normal_force=normal_force,
+        time=end.time,
+        status=status,
+        remedy=status.remedy,
+        history=end.history,
+        residuals=tuple(end.residuals),
+        counts=end.counts,
+    )
+
+
+def _check(
+    sole: SoleMap,
+    viscosity: float | None,
+    speed: float,
+    normal_force: float,
+    settings: SolverSettings,
+) -> None:
+    positive = {
+        "normal_force": normal_force,
+        "spacing": sole.spacing,
+        "settings.pool_depth": settings.pool_depth,
+        "settings.start_film": settings.start_film,
+        "settings.rise_time": settings.rise_time,
+        "settings.end_time": settings.end_time,
+        "settings.tolerance": settings.tolerance,
+    }
+    if viscosity is not None:
+        positive["viscosity"] = viscosity
+    for where, value in positive.items():
+        if not (math.isfinite(value) and value > 0):
+            raise InputError(
+                f"{value} is not positive", where=where, allowed="a finite value above 0"
+            )
+    if not math.isfinite(speed):
+        raise InputError(f"{speed} is not finite", where="speed", allowed="a finite speed, m/s")
+    clearance = np.asarray(sole.clearance)
+    if clearance.ndim != 2 or np.isnan(clearance).any() or not np.isfinite(clearance).any():
+        raise InputError(
+            "the clearance holds NaN or no finite height",
+            where="sole.clearance",
+            allowed="heights in m, inf outside the plan form",
+        )
+    if (clearance < 0).any():
+        raise InputError(
+            "the clearance is negative somewhere",
+            where="sole.clearance",
+            allowed="heights above the lowest point, so 0 or more",
+        )
