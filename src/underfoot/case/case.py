@@ -1,0 +1,351 @@
+"""The case: shoe, floor, contaminant, motion and models; frozen, complete, with a hash."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import Field, PrivateAttr, ValidationError
+
+from underfoot.core import InputError, SourcedValue, content_hash, unknown_name
+from underfoot.core.catalogue import Catalogue, Leaf, catalogue_folders
+
+from . import toml
+from .checks import mismatches
+from .compose import DEFAULT, DRY, GIVEN, Origin, composed, nested
+from .errors import CaseError, translated
+from .places import Places
+from .quantity import DOOR, Quantity, default_of
+from .schema import FILE_VERSION, fields, section_of
+from .sections import (
+    Contaminant,
+    Floor,
+    Interface,
+    Models,
+    Motion,
+    Numerics,
+    Risk,
+    Section,
+    Sensor,
+    Shoe,
+)
+from .unused import unused
+
+_NAMES = ("file_version", "name", "description")
+
+
+class Case(Section):
+    """Everything one computation needs. Values are SI floats; text with units is for the door.
+
+    Make one with ``load`` (a TOML file) or ``from_mapping``; change one with ``replace``. Two
+    cases are equal when their content is: ``name``, ``description``, comments and values that no
+    chosen model looks at don't count.
+    """
+
+    file_version: int = FILE_VERSION
+    name: str = "case"
+    description: str = ""
+    shoe: Shoe
+    floor: Floor
+    contaminant: Contaminant | None = Field(None, description='"none" for a dry floor')
+    motion: Motion
+    interface: Interface = Interface()
+    models: Models = Models()
+    numerics: Numerics = Numerics()
+    sensor: Sensor = Sensor()
+    risk: Risk = Risk()
+
+    _origins: dict[str, Origin] = PrivateAttr(default_factory=dict)
+    _entries: dict[str, str] = PrivateAttr(default_factory=dict)
+    _text: str = PrivateAttr(default="")
+    _catalogue: Catalogue = PrivateAttr(default_factory=Catalogue)
+    _hash: str = PrivateAttr(default="")
+
+    @classmethod
+    def load(
+        cls,
+        path: Path | str,
+        *,
+        catalogue: Catalogue | None = None,
+        settings: Mapping[str, Any] | None = None,
+    ) -> Case:
+        """Return the case in a TOML file.
+
+        Parameters
+        ----------
+        path
+            The file. A folder ``catalogue`` beside it and ``UNDERFOOT_CATALOGUE`` are read too.
+        catalogue
+            To use instead of those.
+        settings
+            Dotted paths and values that replace what the file says.
+
+        Errors
+        ------
+        CaseError
+            Everything that is wrong with the file, each with its line.
+        """
+        path = Path(path)
+        text = toml.read(path)
+        if catalogue is None:
+            catalogue = Catalogue.load(catalogue_folders(path.parent))
+        if settings:
+            text = toml.changed(text, settings, _check_path)
+        return cls._from_text(text, catalogue, Places(str(path), text))
+
+    @classmethod
+    def from_text(cls, text: str, *, catalogue: Catalogue | None = None) -> Case:
+        """Return the case in a TOML text."""
+        return cls._from_text(text, catalogue or Catalogue.load(), Places())
+
+    @classmethod
+    def from_mapping(
+        cls, mapping: Mapping[str, Any], *, catalogue: Catalogue | None = None
+    ) -> Case:
+        """Return the case in nested mappings, numbers as text with units as in a file."""
+        return cls.from_text(toml.written(mapping), catalogue=catalogue)
+
+    @classmethod
+    def _from_text(cls, text: str, catalogue: Catalogue, places: Places) -> Case:
+        mapping = toml.parsed(text, places.file)
+        _check_version(mapping, places)
+        dry = _is_dry(mapping)
+        if dry:
+            mapping = {**mapping, "contaminant": {"from": DRY}}
+        elif "contaminant" not in mapping:
+            raise CaseError(
+                [
+                    InputError(
+                        "this section is missing",
+                        where=places("contaminant"),
+                        remedy='Write contaminant = "glycerol_90pct" (any fluid of the catalogue), '
+                        'or contaminant = "none" for a dry floor',
+                    )
+                ]
+            )
+        parts = composed(mapping, catalogue, places)
+        origins = parts.origins
+        tree = nested(origins, mapping)
+        if dry:
+            tree.pop("contaminant", None)
+        try:
+            case = cls.model_validate(tree, context=DOOR)
+        except ValidationError as error:
+            found = translated(error, cls, places, without=parts.failed)
+            raise CaseError([*parts.errors, *found]) from None
+        if parts.errors:
+            raise CaseError(parts.errors)
+        given = {path for path, origin in origins.items() if origin.kind == GIVEN}
+        problems = list(mismatches(case, given, places))
+        if problems:
+            raise CaseError(problems)
+        case._origins = {**case._default_origins(origins), **origins}
+        case._entries = parts.entries
+        case._text = text
+        case._catalogue = catalogue
+        case._hash = case._content()
+        return case
+
+    def save(self, path: Path | str, *, overwrite: bool = False) -> None:
+        """Write the file as it was read: comments, catalogue entries and units kept."""
+        toml.save(self._text, Path(path), overwrite=overwrite)
+
+    def to_toml(self, *, complete: bool = False) -> str:
+        """Return the file's text; ``complete`` writes every value with its source, no entries."""
+        return toml.complete_text(self) if complete else self._text
+
+    def replace(self, path: str | Mapping[str, Any], value: Any = None, /) -> Case:
+        """Return a new case with one value changed (or several, as a mapping).
+
+        ``case.replace("contaminant.viscosity", "41 cP")``; None takes a key out, so that the
+        catalogue or the default counts again; a section's path takes the name of an entry.
+        """
+        settings = path if isinstance(path, Mapping) else {path: value}
+        text = toml.changed(self._text, settings, _check_path)
+        return type(self)._from_text(text, self._catalogue, Places())
+
+    @property
+    def hash(self) -> str:
+        """Hash of the content, the same on every machine; names and comments don't count."""
+        return self._hash
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Case) and self._hash == other._hash
+
+    def __hash__(self) -> int:
+        return hash(self._hash)
+
+    def __str__(self) -> str:
+        from .describe import composition
+
+        return composition(self)
+
+    @property
+    def origins(self) -> Mapping[str, Origin]:
+        """Where each value comes from, by dotted path."""
+        return self._origins
+
+    @property
+    def entries(self) -> Mapping[str, str]:
+        """Catalogue entry of each section that was taken from one."""
+        return self._entries
+
+    def value(self, path: str) -> Any:
+        """Return the value at a dotted path, in SI."""
+        found: Any = self
+        for part in path.split("."):
+            if found is None:
+                return None
+            if not isinstance(found, Section) or part not in type(found).model_fields:
+                raise _unknown_path(path)
+            found = getattr(found, part)
+        return found
+
+    def sourced(self, path: str) -> SourcedValue:
+        """Return the number at a dotted path with its uncertainty, source and marks."""
+        value, unit = self.value(path), unit_at(path)
+        if value is None:
+            return SourcedValue(None, unit, reason="not given in the case")
+        origin = self._origins.get(path)
+        if origin is None:
+            return SourcedValue(float(value), unit, source="case")
+        leaf = origin.leaf
+        source = leaf.source or ("given in the case" if origin.kind == GIVEN else origin.kind)
+        return SourcedValue(
+            float(value),
+            unit,
+            source=source + ("" if leaf.verified else " (from memory, not verified)"),
+            uncertainty=self._spread(path, leaf, unit),
+            assumed=leaf.assumed,
+            note=leaf.note,
+        )
+
+    @property
+    def effective_rq(self) -> SourcedValue:
+        """Rq of the interface, m: as given, else sqrt(Rq_shoe^2 + Rq_floor^2) of the stylus."""
+        if self.interface.effective_rq is not None:
+            return self.sourced("interface.effective_rq")
+        shoe, floor = self.shoe.roughness.rq_or_estimate, self.floor.roughness.rq_or_estimate
+        if shoe is None or floor is None:
+            raise InputError("no roughness is given", where="interface.effective_rq")
+        return SourcedValue(
+            math.hypot(shoe, floor),
+            "m",
+            source="composite of the stylus Rq of shoe and floor",
+            assumed=True,
+            note="the stylus' cut-off hides long waves: leakage may ask for several times as much",
+        )
+
+    def _spread(self, path: str, leaf: Leaf, unit: str) -> float | None:
+        from underfoot.core import to_si
+
+        if leaf.uncertainty is None:
+            return None
+        return to_si(leaf.uncertainty, unit, where=f"{path}.uncertainty")
+
+    def _default_origins(self, known: Mapping[str, Origin]) -> dict[str, Origin]:
+        found = {}
+        for path, field in fields(type(self)):
+            default = default_of(field)
+            if default is None or path in known or self.value(path) is None:
+                continue
+            leaf = Leaf(default.text, source=default.source, assumed=default.assumed)
+            found[path] = Origin(DEFAULT, leaf)
+        return found
+
+    def _content(self) -> str:
+        content = _rounded(self.model_dump(exclude=set(_NAMES)))
+        left_aside = unused(self)
+        for path in left_aside:
+            *parents, key = path.split(".")
+            table = content
+            for parent in parents:
+                table = table[parent] or {}
+            table.pop(key, None)
+        spreads = {
+            path: _rounded(self._spread(path, origin.leaf, unit_at(path)))
+            for path, origin in self._origins.items()
+            if origin.leaf.uncertainty is not None and path not in left_aside
+        }
+        return content_hash(content, spreads)[:32]
+
+
+def unit_at(path: str) -> str:
+    """Return the SI unit of the value at a dotted path of a case, ``"1"`` for words."""
+    for known, field in fields(Case):
+        if known == path:
+            marks = [*field.metadata, *_annotated(field.annotation)]
+            return next((mark.unit for mark in marks if isinstance(mark, Quantity)), "1")
+    raise _unknown_path(path)
+
+
+def paths() -> list[str]:
+    """Return every dotted path that a case file may set, sections included."""
+    leaf_paths = [path for path, _ in fields(Case)]
+    sections = {path.rsplit(".", depth)[0] for path in leaf_paths for depth in (1, 2, 3)}
+    return sorted({*leaf_paths, *(path for path in sections if path)})
+
+
+def _annotated(annotation: Any) -> list[Any]:
+    import typing
+
+    found = list(getattr(annotation, "__metadata__", ()))
+    for part in typing.get_args(annotation):
+        found += _annotated(part)
+    return found
+
+
+def _check_path(path: str) -> str:
+    """Return "section" or "value"; refuse unknown paths."""
+    plain = path.removesuffix(".from")
+    field: Any = None
+    model: Any = Case
+    for part in plain.split("."):
+        if model is None or part not in model.model_fields:
+            raise _unknown_path(path)
+        field = model.model_fields[part]
+        model = section_of(field)
+    if path.endswith(".from"):
+        return "value"
+    return "value" if model is None else "section"
+
+
+def _unknown_path(path: str) -> InputError:
+    return unknown_name("path", path, paths())
+
+
+def _is_dry(mapping: Mapping[str, Any]) -> bool:
+    fluid = mapping.get("contaminant")
+    return fluid == DRY or (isinstance(fluid, Mapping) and fluid.get("from") == DRY)
+
+
+def _check_version(mapping: Mapping[str, Any], places: Places) -> None:
+    version = mapping.get("file_version", FILE_VERSION)
+    if isinstance(version, bool) or not isinstance(version, int) or version < 1:
+        raise CaseError(
+            [InputError(f"{version!r} is no version", where=places("file_version"), allowed="1")]
+        )
+    if version > FILE_VERSION:
+        raise CaseError(
+            [
+                InputError(
+                    f"the file was written for version {version} of the case format",
+                    where=places("file_version"),
+                    allowed=f"{FILE_VERSION} or older",
+                    remedy="Update underfoot",
+                )
+            ]
+        )
+
+
+def _rounded(value: Any) -> Any:
+    """Return the value with 12 significant digits: "219 cP" and "0.219 Pa*s" are the same."""
+    if isinstance(value, float):
+        return float(f"{value:.12g}")
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_rounded(item) for item in value]
+    return value

@@ -1,0 +1,215 @@
+"""What must fit together within a case: checked once every single value is sound."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator
+from typing import TYPE_CHECKING
+
+from underfoot.core import InputError, RangeError, display
+
+if TYPE_CHECKING:
+    from .case import Case
+    from .places import Places
+
+_CELLS = 2.0  # across a channel or lug: fewer and its width is wrong by half or more
+
+
+def mismatches(case: Case, given: Collection[str], places: Places) -> Iterator[InputError]:
+    """Yield what does not fit together; ``given`` are the paths written in the file."""
+    yield from _material(case, places)
+    yield from _roughness(case, places)
+    yield from _heel(case, given, places)
+    yield from _tread(case, places)
+    yield from _contaminant(case, given, places)
+    yield from _rest(case, places)
+
+
+def _material(case: Case, places: Places) -> Iterator[InputError]:
+    material, sole = case.shoe.material, case.shoe.sole
+    if material.shore_a is None and material.modulus is None:
+        yield InputError(
+            "neither hardness nor modulus is given",
+            where=places("shoe.material"),
+            remedy='Write shore_a = 68 (a durometer reading) or modulus = "5 MPa"',
+        )
+    if material.modulus is None and material.shore_a is not None and material.shore_a >= 100:
+        yield RangeError(
+            "Shore A 100 has no finite modulus",
+            where=places("shoe.material.shore_a"),
+            allowed="below 100",
+            remedy='Write modulus = "50 MPa" from a measurement instead',
+        )
+    if (sole.midsole_modulus is None) != (sole.midsole_thickness is None):
+        missing = "midsole_modulus" if sole.midsole_modulus is None else "midsole_thickness"
+        yield InputError(
+            "a midsole needs both its modulus and its thickness",
+            where=places(f"shoe.sole.{missing}"),
+        )
+
+
+def _roughness(case: Case, places: Places) -> Iterator[InputError]:
+    if case.interface.effective_rq is not None:
+        return
+    for path, roughness in (("shoe", case.shoe.roughness), ("floor", case.floor.roughness)):
+        if roughness.rq_or_estimate is None:
+            yield InputError(
+                "neither Rq nor Ra is given",
+                where=places(f"{path}.roughness"),
+                remedy=f'Write {path}.roughness.rq = "5 um" (or ra), or interface.effective_rq',
+            )
+
+
+def _heel(case: Case, given: Collection[str], places: Places) -> Iterator[InputError]:
+    heel = case.shoe.heel
+    needed = {
+        "flat": (),
+        "facet": ("facet_angle", "facet_length"),
+        "rocker": ("rocker_radius", "rocker_start"),
+    }
+    for name in needed[heel.profile]:
+        if getattr(heel, name) is None:
+            yield InputError(
+                f'is missing for the profile "{heel.profile}"', where=places(f"shoe.heel.{name}")
+            )
+    for profile, names in needed.items():
+        for name in names:
+            if profile != heel.profile and f"shoe.heel.{name}" in given:
+                yield InputError(
+                    f'is not used by the profile "{heel.profile}"',
+                    where=places(f"shoe.heel.{name}"),
+                    remedy=f'Remove it, or write profile = "{profile}"',
+                )
+    if (
+        heel.profile == "rocker"
+        and heel.rocker_radius is not None
+        and heel.rocker_start is not None
+        and heel.rocker_start >= heel.rocker_radius
+    ):
+        yield RangeError(
+            f"{display(heel.rocker_start, 'm')} reaches beyond the rocker's radius",
+            where=places("shoe.heel.rocker_start"),
+            allowed=f"below {display(heel.rocker_radius, 'm')} (rocker_radius)",
+        )
+    limit = min(heel.width, heel.length) / 2
+    for name in ("rear_radius", "front_radius", "edge_radius"):
+        if getattr(heel, name) > limit:
+            yield RangeError(
+                f"{display(getattr(heel, name), 'm')} does not fit the plan form",
+                where=places(f"shoe.heel.{name}"),
+                allowed=f"at most {display(limit, 'm')} (half of the smaller of length and width)",
+            )
+
+
+def _tread(case: Case, places: Places) -> Iterator[InputError]:
+    tread, thickness = case.shoe.tread, case.shoe.sole.outsole_thickness
+    parts: list[tuple[str, float]] = [("shoe.wear.depth", case.shoe.wear.depth)]
+    if tread.pattern != "none":
+        for name in ("depth", "lug_width", "channel_width"):
+            if getattr(tread, name) is None:
+                yield InputError(
+                    f'is missing for the pattern "{tread.pattern}"',
+                    where=places(f"shoe.tread.{name}"),
+                )
+        if tread.depth == 0.0:
+            yield RangeError(
+                "0 mm is no tread",
+                where=places("shoe.tread.depth"),
+                allowed="above 0 mm",
+                remedy='Write pattern = "none" for a sole without tread',
+            )
+        if tread.depth is not None:
+            parts.append(("shoe.tread.depth", tread.depth))
+        for name in ("lug_width", "channel_width"):
+            yield from _resolved(case, f"shoe.tread.{name}", getattr(tread, name), places)
+        rounding = min(tread.depth or math.inf, (tread.lug_width or math.inf) / 2)
+        if tread.edge_radius > rounding:
+            yield RangeError(
+                f"{display(tread.edge_radius, 'm')} does not fit on the lug",
+                where=places("shoe.tread.edge_radius"),
+                allowed=f"at most {display(rounding, 'm')} (the depth and half the lug width)",
+            )
+    if tread.arc_channel is not None:
+        parts.append(("shoe.tread.arc_channel.depth", tread.arc_channel.depth))
+        yield from _resolved(case, "shoe.tread.arc_channel.width", tread.arc_channel.width, places)
+    for path, depth in parts:
+        if depth >= thickness:
+            yield RangeError(
+                f"{display(depth, 'm')} goes through the outsole",
+                where=places(path),
+                allowed=f"below {display(thickness, 'm')} (shoe.sole.outsole_thickness)",
+            )
+
+
+def _resolved(case: Case, path: str, width: float | None, places: Places) -> Iterator[InputError]:
+    if width is None:
+        return
+    for name in ("grid_spacing", "quick_grid_spacing"):
+        spacing = getattr(case.numerics, name)
+        if width < _CELLS * spacing * (1 - 1e-9):
+            yield InputError(
+                f"{display(width, 'm')} is too narrow for the grid of {display(spacing, 'm')}",
+                where=places(path),
+                allowed=f"at least {display(_CELLS * spacing, 'm')} (two cells)",
+                remedy=f'Write numerics.{name} = "{display(width / 4, "m")}" (four cells)',
+            )
+
+
+def _contaminant(case: Case, given: Collection[str], places: Places) -> Iterator[InputError]:
+    fluid = case.contaminant
+    if fluid is None:
+        return
+    if fluid.viscosity is None and fluid.glycerol_fraction is None:
+        yield InputError(
+            "neither a viscosity nor a share of glycerol is given",
+            where=places("contaminant"),
+            remedy='Write viscosity = "219 cP", or glycerol_fraction = "90 %" with its basis',
+        )
+    if fluid.viscosity is not None and fluid.glycerol_fraction is not None:
+        yield InputError(
+            "viscosity and glycerol_fraction say the same thing twice",
+            where=places("contaminant.glycerol_fraction"),
+            remedy="Keep the measured viscosity, or only the share of glycerol",
+        )
+    if fluid.glycerol_fraction is not None and fluid.fraction_basis is None:
+        yield InputError(
+            "is missing: the same percentage by mass and by volume differs by half in viscosity",
+            where=places("contaminant.fraction_basis"),
+            allowed='"mass" or "volume"',
+        )
+    if fluid.glycerol_fraction is None and "contaminant.fraction_basis" in given:
+        yield InputError(
+            "is not used without glycerol_fraction", where=places("contaminant.fraction_basis")
+        )
+
+
+def _rest(case: Case, places: Places) -> Iterator[InputError]:
+    motion = case.motion
+    if motion.duration < motion.force_rise_time:
+        yield RangeError(
+            f"{display(motion.duration, 's')} ends before the force has risen",
+            where=places("motion.duration"),
+            allowed=f"at least {display(motion.force_rise_time, 's')} (motion.force_rise_time)",
+        )
+    if case.models.friction == "constant" and case.interface.constant_cof is None:
+        yield InputError(
+            'is missing for models.friction = "constant"',
+            where=places("interface.constant_cof"),
+        )
+    boundary = case.contaminant.boundary if case.contaminant is not None else None
+    needed = {"boundary": ("cof_bl",), "stribeck": ("cof_bl", "tau_hydro", "cof_asymptote")}
+    for name in needed.get(case.models.friction, ()):
+        if boundary is not None and getattr(boundary, name) is None:
+            yield InputError(
+                f'is missing for models.friction = "{case.models.friction}"',
+                where=places(f"contaminant.boundary.{name}"),
+                remedy="Give a measured value, choose a fluid that has one (underfoot catalogue "
+                "fluid), or another friction model",
+            )
+    measured = case.interface.dry_adhesion_cof
+    if case.contaminant is None and case.models.friction != "constant" and measured is None:
+        yield InputError(
+            "a dry case needs a measured coefficient of friction",
+            where=places("interface.constant_cof"),
+            remedy='Write interface.constant_cof = 0.8 and models.friction = "constant"',
+        )

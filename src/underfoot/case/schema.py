@@ -1,0 +1,144 @@
+"""What a case file may hold: every key with its section, unit, default; and the JSON Schema."""
+
+from __future__ import annotations
+
+import types
+import typing
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+FILE_VERSION = 1
+"""Version of the case files that this package writes; it reads this and older ones."""
+
+CATALOGUE_SECTIONS: dict[str, tuple[str, str]] = {
+    "shoe": ("shoe", ""),
+    "shoe.material": ("material", ""),
+    "shoe.roughness": ("material", "roughness"),
+    "floor": ("floor", ""),
+    "contaminant": ("fluid", ""),
+    "motion": ("setup", "motion"),
+    "sensor": ("setup", "sensor"),
+    "risk": ("setup", "risk"),
+}
+"""Sections that can be taken ``from`` the catalogue: kind of entry and its sub-table."""
+
+MARKS = ("source", "assumed", "verified", "note")
+
+
+def section_of(field: FieldInfo) -> type[BaseModel] | None:
+    """Return the section a field holds, or None for a value."""
+    return _section(field.annotation)
+
+
+def _section(annotation: Any) -> type[BaseModel] | None:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    if typing.get_origin(annotation) in (typing.Union, types.UnionType):
+        for part in typing.get_args(annotation):
+            found = _section(part)
+            if found is not None:
+                return found
+    return None
+
+
+def field_model(model: type[BaseModel], location: Sequence[str]) -> type[BaseModel] | None:
+    """Return the section at a location within ``model``, looking through lists of sections."""
+    found: type[BaseModel] | None = model
+    for part in location:
+        if found is None:
+            return None
+        if part.isdigit():
+            continue
+        field = found.model_fields.get(part)
+        if field is None:
+            return None
+        found = section_of(field)
+        if found is None:
+            items = [_section(argument) for argument in typing.get_args(field.annotation)]
+            found = next((item for item in items if item is not None), None)
+    return found
+
+
+def fields(model: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, FieldInfo]]:
+    """Yield every leaf field of a section tree with its dotted path."""
+    for name, field in model.model_fields.items():
+        path = f"{prefix}{name}"
+        section = section_of(field)
+        if section is None:
+            yield path, field
+        else:
+            yield from fields(section, f"{path}.")
+
+
+def json_schema(model: type[BaseModel]) -> dict[str, Any]:
+    """Return the JSON Schema of case files: units, ranges in SI, defaults as text, ``from``."""
+    schema = model.model_json_schema(mode="validation")
+    marks = {
+        "source": {"type": "string"},
+        "assumed": {"type": "boolean"},
+        "verified": {"type": "boolean"},
+        "note": {"type": "string"},
+    }
+    origins = {path: kind for path, (kind, _) in CATALOGUE_SECTIONS.items()}
+    named = {
+        section.__name__: origins[path] for path, section in _sections(model) if path in origins
+    }
+    for name, definition in [(model.__name__, schema), *schema.get("$defs", {}).items()]:
+        if definition.get("type") != "object":
+            continue
+        for key, entry in list(definition["properties"].items()):
+            definition["properties"][key] = _file_entry(entry, marks)
+        if name != model.__name__ and name != "RelaxationTerm":
+            definition["properties"].update(marks)
+            # a section may come from the catalogue, so no key of it is required in the file
+            definition.pop("required", None)
+        if name in named:
+            definition["properties"]["from"] = {
+                "type": "string",
+                "description": f"name of a {named[name]} in the catalogue; keys beside it override",
+            }
+    for path in origins:
+        if "." not in path and path in schema["properties"]:
+            entry = schema["properties"][path]
+            schema["properties"][path] = {"anyOf": [entry, {"type": "string"}]}
+    schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
+    schema["title"] = "Underfoot case"
+    return schema
+
+
+def _sections(model: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, type[BaseModel]]]:
+    for name, field in model.model_fields.items():
+        section = section_of(field)
+        if section is not None:
+            yield f"{prefix}{name}", section
+            yield from _sections(section, f"{prefix}{name}.")
+
+
+def _file_entry(entry: dict[str, Any], marks: dict[str, Any]) -> dict[str, Any]:
+    entry = dict(entry)
+    text = entry.pop("default_text", None)
+    entry.pop("default", None)
+    if text is not None:
+        entry["default"] = text
+    options = [option for option in entry.pop("anyOf", []) if option.get("type") != "null"]
+    if len(options) == 1:
+        entry = {**options[0], **entry}
+    elif options:
+        entry["anyOf"] = options
+    if "$ref" in entry or entry.get("type") in ("array", None):
+        return entry
+    about = {
+        k: entry.pop(k)
+        for k in ("title", "description", "default", "source", "assumed")
+        if k in entry
+    }
+    sourced = {
+        "type": "object",
+        "properties": {"value": entry, "uncertainty": {"type": ["number", "string"]}, **marks},
+        "required": ["value"],
+        "additionalProperties": False,
+    }
+    return {**about, "anyOf": [entry, sourced]}

@@ -1,0 +1,278 @@
+"""The sections of a case: frozen, SI inside. The schema of case files is made from here."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from .quantity import Quantity, default
+
+_REPORT = "Beschorner, final progress report R01OH008986"
+_HEEL = "assumption"
+_TESTER = f"{_REPORT}, G.4.1"
+_STRICT = ConfigDict(frozen=True, extra="forbid", ser_json_inf_nan="constants")
+
+_mm, _um = 1e-3, 1e-6
+Length = Annotated[float, Quantity("m", 0.0, 0.5, open_low=True)]
+Depth = Annotated[float, Quantity("m", 0.0, 0.05)]
+Rounding = Annotated[float, Quantity("m", 0.0, 0.1)]
+Roughness_ = Annotated[float, Quantity("m", 1e-9, 1e-3)]
+Cutoff = Annotated[float, Quantity("m", 1e-6, 0.1)]
+LargeRadius = Annotated[float, Quantity("m", 1e-3, 10.0)]
+Modulus = Annotated[float, Quantity("Pa", 1e4, 1e12)]
+TermModulus = Annotated[float, Quantity("Pa", 0.0, 1e12, open_low=True)]
+Hardness = Annotated[float, Quantity("1", 0.0, 100.0, open_low=True)]
+Poisson = Annotated[float, Quantity("1", 0.0, 0.5)]
+Angle = Annotated[float, Quantity("rad", 0.0, math.radians(60))]
+ShoeAngle = Annotated[float, Quantity("rad", math.radians(-30), math.radians(60))]
+WearAngle = Annotated[float, Quantity("rad", 0.0, math.radians(45))]
+Speed = Annotated[float, Quantity("m/s", 0.0, 20.0, open_low=True)]
+Force = Annotated[float, Quantity("N", 0.0, 1e4, open_low=True)]
+Time = Annotated[float, Quantity("s", 0.0, 60.0, open_low=True)]
+RelaxationTime = Annotated[float, Quantity("s", 0.0, 1e12, open_low=True)]
+Viscosity = Annotated[float, Quantity("Pa*s", 1e-5, 1e3)]
+Temperature = Annotated[float, Quantity("K", 250.0, 450.0)]
+Density = Annotated[float, Quantity("kg/m^3", 10.0, 3e4)]
+Fraction = Annotated[float, Quantity("1", 0.0, 1.0)]
+Friction = Annotated[float, Quantity("1", 0.0, 5.0)]
+Tolerance = Annotated[float, Quantity("1", 1e-10, 0.1)]
+
+
+class Section(BaseModel):
+    """Base of all sections."""
+
+    model_config = _STRICT
+
+
+class RelaxationTerm(Section):
+    """One Maxwell element: shear modulus that decays with a time constant."""
+
+    shear_modulus: TermModulus
+    time: RelaxationTime
+
+
+class Relaxation(Section):
+    """Relaxation spectrum G(t) = equilibrium + sum of terms exp(-t / time)."""
+
+    equilibrium_shear_modulus: TermModulus
+    terms: tuple[RelaxationTerm, ...]
+
+
+class Material(Section):
+    """Outsole compound. A measured modulus goes before one from hardness."""
+
+    shore_a: Hardness | None = Field(default=None, description="Shore A hardness")
+    modulus: Modulus | None = Field(default=None, description="measured Young's modulus")
+    poisson_ratio: Poisson = default(0.49, 0.49, "rubber, nearly incompressible", assumed=True)
+    bulk_modulus: Modulus | None = None
+    density: Density | None = None
+    relaxation: Relaxation | None = None
+
+
+class SurfaceRoughness(Section):
+    """Roughness numbers of a profile after the cut-off."""
+
+    ra: Roughness_ | None = Field(default=None, description="mean deviation")
+    rq: Roughness_ | None = Field(default=None, description="root-mean-square deviation")
+    rz: Roughness_ | None = Field(default=None, description="mean peak-to-valley height")
+    rp: Roughness_ | None = Field(default=None, description="highest peak")
+    rt: Roughness_ | None = Field(default=None, description="total height")
+    cutoff: Cutoff | None = Field(default=None, description="cut-off wavelength of the filter")
+
+    @property
+    def rq_or_estimate(self) -> float | None:
+        """Rq as given, else 1.25 Ra (Gaussian heights: sqrt(pi/2) = 1.253), m; None if unknown."""
+        if self.rq is not None:
+            return self.rq
+        return None if self.ra is None else RQ_PER_RA * self.ra
+
+
+RQ_PER_RA = math.sqrt(math.pi / 2)
+
+
+class HeelShape(Section):
+    """Heel in its own frame: x from the rear end towards the toe."""
+
+    length: Length = default(60 * _mm, "60 mm", _HEEL, assumed=True)
+    width: Length = default(60 * _mm, "60 mm", _HEEL, assumed=True)
+    rear_radius: Rounding = default(28 * _mm, "28 mm", _HEEL, assumed=True)
+    front_radius: Rounding = default(0.0, "0 mm", "the heel goes on into the shoe")
+    profile: Literal["flat", "facet", "rocker"] = default("facet", "facet", _HEEL, assumed=True)
+    facet_angle: Angle | None = Field(default=None, description="facet: between facet and sole")
+    facet_length: Length | None = Field(
+        default=None, description="facet: along the sole, from the rear"
+    )
+    rocker_radius: LargeRadius | None = Field(default=None, description="rocker: radius along x")
+    rocker_start: Length | None = Field(default=None, description="rocker: from the rear end")
+    edge_radius: Rounding = default(2 * _mm, "2 mm", _HEEL, assumed=True)
+    crown_radius: LargeRadius | None = Field(
+        default=None, description="radius of a sole bulged across"
+    )
+
+
+class ArcChannel(Section):
+    """One channel that follows the rounded rear of the heel."""
+
+    width: Length
+    depth: Depth
+    position: Length = Field(description="from the rear end, on the centre line")
+    radius: Length = Field(description="of the channel's middle line")
+
+
+class Tread(Section):
+    """Straight lugs between straight channels; an arc channel may be added."""
+
+    pattern: Literal["none", "grid", "transverse", "longitudinal"]
+    depth: Depth | None = None
+    lug_width: Length | None = None
+    channel_width: Length | None = None
+    edge_radius: Rounding = default(0.0, "0 mm", "sharp lug edges", assumed=True)
+    arc_channel: ArcChannel | None = None
+
+
+class Wear(Section):
+    """Wear as a plane cut at a shoe angle."""
+
+    depth: Depth = default(0.0, "0 mm", "unworn beyond the heel shape given")
+    angle: WearAngle = default(0.0, "0 deg", "even wear")
+
+
+class Sole(Section):
+    """What carries the tread: outsole layer and midsole on a stiff foot."""
+
+    outsole_thickness: Length = default(25 * _mm, "25 mm", _HEEL, assumed=True)
+    midsole_modulus: Modulus | None = None
+    midsole_thickness: Length | None = None
+    midsole_poisson_ratio: Poisson = default(0.3, 0.3, "foam", assumed=True)
+
+
+class Shoe(Section):
+    """Heel of a shoe: compound, surface, shape, tread, wear, layers."""
+
+    material: Material
+    roughness: SurfaceRoughness
+    heel: HeelShape = HeelShape()
+    tread: Tread
+    wear: Wear = Wear()
+    sole: Sole = Sole()
+
+
+class Floor(Section):
+    """Hard floor."""
+
+    roughness: SurfaceRoughness
+    shore_a: Annotated[float, Quantity("1", 0.0, 100.0, open_low=True)] | None = None
+
+
+class Boundary(Section):
+    """Friction measured where the film carries nothing, and how it falls with speed."""
+
+    cof_bl: Friction | None = Field(
+        default=None, description="COF in boundary lubrication (Eq. 17)"
+    )
+    tau_hydro: Speed | None = Field(default=None, description="decay speed (Eq. 17)")
+    cof_asymptote: Friction | None = Field(default=None, description="COF at high speed (Eq. 17)")
+    alpha: Annotated[float, Quantity("N", 0.0, 1e4)] | None = Field(
+        default=None, description="adhesion independent of the pair (Eq. 26)"
+    )
+    beta: Annotated[float, Quantity("1", 0.0, 1.0)] | None = Field(
+        default=None, description="share of dry adhesion left (Eq. 26)"
+    )
+    load: Force | None = Field(default=None, description="load at which alpha was measured")
+    pair: str | None = Field(default=None, description="sole and floor it was measured on")
+
+
+class Contaminant(Section):
+    """Fluid on the floor. Give its viscosity, or the share of glycerol in water."""
+
+    viscosity: Viscosity | None = Field(default=None, description="dynamic viscosity as measured")
+    glycerol_fraction: Fraction | None = None
+    fraction_basis: Literal["mass", "volume"] | None = None
+    temperature: Temperature = default(293.15, "20 degC", "room temperature", assumed=True)
+    pool_depth: Annotated[float, Quantity("m", 1e-6, 0.05)] = default(
+        0.6 * _mm, "0.6 mm", f"{_REPORT}, G.6.1 (150 ml on 0.4 m x 0.6 m)"
+    )
+    boundary: Boundary = Boundary()
+
+
+class Motion(Section):
+    """How the heel meets the floor."""
+
+    speed: Speed
+    normal_force: Force
+    shoe_angle: ShoeAngle = Field(description="toe up positive")
+    force_rise_time: Time = default(0.03, "30 ms", _TESTER)
+    duration: Time = default(0.12, "0.12 s", "90 ms of sliding under full load", assumed=True)
+    start_film: Annotated[float, Quantity("m", 1e-6, 0.01)] = default(
+        50 * _um, "50 um", "lowest point above the floor when loading starts", assumed=True
+    )
+    steady: bool = default(False, False, "the result is taken at the end of the duration")
+
+
+class Interface(Section):
+    """What sole and floor make together; the least known part of a case."""
+
+    effective_rq: Roughness_ | None = Field(
+        default=None,
+        description="roughness that lets fluid leak and asperities touch; default: composite of "
+        "the stylus Rq of shoe and floor, which may be several times too small",
+    )
+    constant_cof: Friction | None = Field(
+        default=None, description="for models.friction = 'constant'"
+    )
+    hysteresis_cof: Friction | None = Field(
+        default=None, description="hysteresis part, if measured"
+    )
+    dry_adhesion_cof: Friction | None = Field(
+        default=None, description="adhesion part dry, if measured"
+    )
+
+
+class Models(Section):
+    """One model for each slot of the physics."""
+
+    hardness: Literal["gent", "ruess"] = default("gent", "gent", "Gent 1958")
+    asperity: Literal["exponential", "contact_table"] = default(
+        "exponential", "exponential", "Persson 2007, low-load form"
+    )
+    flow_factor: Literal["law", "smooth"] = default("law", "law", "that of the asperity law")
+    compliance: Literal["layered", "half_space"] = default(
+        "layered", "layered", "outsole layer with free edges"
+    )
+    friction: Literal["boundary", "stribeck", "constant"] = default(
+        "boundary", "boundary", "boundary friction of the pair and fluid"
+    )
+
+
+class Numerics(Section):
+    """Grid and tolerance."""
+
+    grid_spacing: Annotated[float, Quantity("m", 5e-5, 0.005)] = default(
+        0.6 * _mm, "0.6 mm", "four cells in the narrowest channel of the report"
+    )
+    quick_grid_spacing: Annotated[float, Quantity("m", 5e-5, 0.005)] = default(
+        1.0 * _mm, "1 mm", "for a first look"
+    )
+    tolerance: Tolerance = default(1e-4, 1e-4, "relative imbalance of volume and load")
+
+
+class Sensor(Section):
+    """Fluid-pressure sensor in the floor, as the report's instrument reads."""
+
+    inlet_diameter: Length = default(10 * _mm, "10 mm", _TESTER)
+    scan_spacing: Length = default(10 * _mm, "10 mm", _TESTER)
+    scans: Annotated[int, Field(ge=1, le=200, strict=True)] = default(7, 7, _TESTER)
+
+
+class Risk(Section):
+    """Who walks: the required friction of the people concerned."""
+
+    rcof_mean: Friction = default(
+        0.20, 0.20, "adults on level floor, from memory, not verified", assumed=True
+    )
+    rcof_sd: Friction = default(
+        0.03, 0.03, "adults on level floor, from memory, not verified", assumed=True
+    )
+    model: Literal["report_g6"] = default("report_g6", "report_g6", f"{_REPORT}, G.6.3")

@@ -1,0 +1,35 @@
+"""Which values of a case no model looks at: left out of its hash and of what was assumed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .case import Case
+
+
+def unused(case: Case) -> frozenset[str]:
+    """Return the dotted paths of values that the chosen shape, fluid and models leave aside."""
+    found: list[str] = []
+    shoe = case.shoe
+    if shoe.heel.profile != "facet":
+        found += ["shoe.heel.facet_angle", "shoe.heel.facet_length"]
+    if shoe.heel.profile != "rocker":
+        found += ["shoe.heel.rocker_radius", "shoe.heel.rocker_start"]
+    if shoe.tread.pattern == "none":
+        names = ("depth", "lug_width", "channel_width", "edge_radius")
+        found += [f"shoe.tread.{name}" for name in names]
+    if shoe.wear.depth == 0.0:
+        found.append("shoe.wear.angle")
+    if shoe.sole.midsole_modulus is None:
+        found.append("shoe.sole.midsole_poisson_ratio")
+    if shoe.material.modulus is not None:
+        found += ["shoe.material.shore_a", "models.hardness"]
+    for path, roughness in (("shoe", shoe.roughness), ("floor", case.floor.roughness)):
+        if roughness.rq is not None:
+            found.append(f"{path}.roughness.ra")
+    if case.contaminant is not None and case.contaminant.glycerol_fraction is None:
+        found += ["contaminant.temperature", "contaminant.fraction_basis"]
+    if case.models.friction != "constant":
+        found.append("interface.constant_cof")
+    return frozenset(found)
