@@ -1,0 +1,39 @@
+"""Rubber hardness to Young's modulus: the error-function relation of BS 903 (1950)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from ..core import Breach, Range, breaches
+from ._hardness import checked_hardness, plain
+
+NAME = "bs903_1950"
+SOURCE = "BS 903:1950; S = 100 erf(3.186e-4 E^(1/2)), E in Pa, as quoted by Gent (1958) and later"
+RANGES = {"shore_a": Range(30.0, 95.0, "1", "assumed: standard hardness range of IRHD")}
+
+
+def youngs_modulus_bs903(shore_a: ArrayLike) -> Any:
+    """Return Young's modulus, Pa, of a rubber from its hardness.
+
+    S = 100 erf(3.186e-4 sqrt(E / Pa))
+
+    Strictly for British Standard / international hardness degrees, which are close to Shore A.
+    Better than Gent's relation below about 40 and above 80, because both ends are bounded by
+    experiment. ``shore_a`` of any shape, 0 <= S < 100.
+
+    Errors
+    ------
+    RangeError
+        Hardness outside 0 to below 100.
+    """
+    from scipy.special import erfinv
+
+    hardness = checked_hardness(shore_a, below=100.0)
+    return plain((erfinv(hardness / 100.0) / 3.186e-4) ** 2)
+
+
+def bs903_breaches(shore_a: ArrayLike) -> list[Breach]:
+    """Return whether the hardness leaves the range of the relation."""
+    return breaches(NAME, RANGES, {"shore_a": shore_a})

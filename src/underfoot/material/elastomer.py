@@ -1,0 +1,104 @@
+"""A rubber: Young's modulus (elastic or viscoelastic) with its Poisson ratio."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..core import InputError
+from . import elastic
+from .spectrum import RelaxationSpectrum
+
+
+@dataclass(frozen=True, slots=True)
+class Elastomer:
+    """A shoe or floor material for small strains.
+
+    Parameters
+    ----------
+    modulus
+        Young's modulus: Pa (elastic) or a ``RelaxationSpectrum`` (viscoelastic).
+    poisson_ratio
+        The same at every time: bulk and shear relax together. Right for rubber near 0.5, not
+        for foams.
+    name, source
+        What it is and where the numbers come from.
+    density
+        kg/m^3, where known.
+    assumed
+        True when no measurement of this material stands behind the modulus.
+    """
+
+    modulus: float | RelaxationSpectrum
+    poisson_ratio: float = 0.499
+    name: str = ""
+    source: str = ""
+    density: float | None = None
+    assumed: bool = False
+
+    def __post_init__(self) -> None:
+        elastic.check_poisson_ratio(self.poisson_ratio)
+        if not isinstance(self.modulus, RelaxationSpectrum):
+            if not (np.isfinite(self.modulus) and self.modulus > 0.0):
+                raise InputError(
+                    f"modulus {self.modulus:g} Pa", where="modulus", allowed="above 0 Pa"
+                )
+            object.__setattr__(self, "modulus", float(self.modulus))
+        if self.density is not None and not (np.isfinite(self.density) and self.density > 0.0):
+            raise InputError(
+                f"density {self.density:g} kg/m^3", where="density", allowed="above 0 kg/m^3"
+            )
+
+    @property
+    def spectrum(self) -> RelaxationSpectrum:
+        """Young's modulus as a spectrum; without terms when elastic."""
+        if isinstance(self.modulus, RelaxationSpectrum):
+            return self.modulus
+        return RelaxationSpectrum(self.modulus, source=self.source, assumed=self.assumed)
+
+    @property
+    def viscoelastic(self) -> bool:
+        """True when the modulus depends on time."""
+        return bool(self.spectrum.term_moduli.sum() > 0.0)
+
+    @property
+    def equilibrium_modulus(self) -> float:
+        """Young's modulus after infinite time, Pa."""
+        return self.spectrum.equilibrium_modulus
+
+    @property
+    def instantaneous_modulus(self) -> float:
+        """Young's modulus at time zero, Pa."""
+        return self.spectrum.instantaneous_modulus
+
+    def complex_modulus(self, angular_frequency: ArrayLike) -> Any:
+        """Return E*(w), Pa, complex, for ``angular_frequency`` in rad/s of any shape."""
+        return self.spectrum.complex_modulus(angular_frequency)
+
+    def shear_modulus(self, angular_frequency: ArrayLike) -> Any:
+        """Return G*(w) = E*(w) / (2 (1 + nu)), Pa, complex."""
+        return elastic.shear_modulus(self.complex_modulus(angular_frequency), self.poisson_ratio)
+
+    def plane_strain_modulus(self, angular_frequency: ArrayLike) -> Any:
+        """Return E*(w) / (1 - nu^2), Pa, complex: the modulus of contact problems."""
+        return elastic.plane_strain_modulus(
+            self.complex_modulus(angular_frequency), self.poisson_ratio
+        )
+
+    @property
+    def bulk_modulus(self) -> float:
+        """K = E_inf / (3 (1 - 2 nu)), Pa, at equilibrium; infinite for nu = 0.5."""
+        return float(elastic.bulk_modulus(self.equilibrium_modulus, self.poisson_ratio))
+
+
+def young_from_shear(shear: RelaxationSpectrum, poisson_ratio: float = 0.499) -> RelaxationSpectrum:
+    """Return the spectrum of E from that of G: every modulus times 2 (1 + nu)."""
+    return shear.scaled(elastic.youngs_modulus_from_shear(1.0, poisson_ratio))
+
+
+def shear_from_young(young: RelaxationSpectrum, poisson_ratio: float = 0.499) -> RelaxationSpectrum:
+    """Return the spectrum of G from that of E: every modulus over 2 (1 + nu)."""
+    return young.scaled(elastic.shear_modulus(1.0, poisson_ratio))
