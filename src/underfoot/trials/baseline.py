@@ -51,21 +51,25 @@ def enough(mask: np.ndarray) -> bool:
 
 
 def saturated(signal: np.ndarray, rate: float) -> bool:
-    """True when a raw signal (n,) stays at its extreme value for 10 ms and 8 samples or more.
+    """True when a raw signal (n,) is cut flat at its extreme value.
 
-    Levels that the signal also holds at rest (its median) do not count.
+    Cut flat: it stays at the extreme for 20 ms and 16 samples or more, and comes within 5 ms from
+    further away than 1 % of the extreme's height over rest (a rounded peak arrives slowly).
     """
-    finite = signal[np.isfinite(signal)]
-    if finite.size < 16:
+    signal = signal[np.isfinite(signal)]
+    if signal.size < 16:
         return False
-    rest = float(np.median(finite))
-    spread = float(np.percentile(np.abs(finite - rest), 90)) + 1e-12
-    run = max(8, round(0.01 * rate))
-    for extreme in (float(finite.max()), float(finite.min())):
-        if abs(extreme - rest) < 0.2 * spread or extreme in (0.0, rest):
+    rest = float(np.median(signal))
+    spread = float(np.percentile(np.abs(signal - rest), 90))
+    length, approach = max(16, round(0.02 * rate)), max(3, round(0.005 * rate))
+    for extreme in (float(signal.max()), float(signal.min())):
+        height = abs(extreme - rest)
+        if height <= 0.2 * spread or extreme == 0.0:
             continue
-        if longest_run(signal == extreme) >= run:
-            return True
+        for start, stop in runs(signal == extreme):
+            before = abs(signal[max(start - approach, 0)] - extreme)
+            if stop - start >= length and before > 0.01 * height:
+                return True
     return False
 
 

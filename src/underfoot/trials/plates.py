@@ -205,9 +205,6 @@ def _upside_down(vertical: np.ndarray) -> bool:
     return centre < -_STANDING if abs(centre) > _STANDING else below > above
 
 
-
-
-
 def _centre_of_pressure(
     force: np.ndarray, moment: np.ndarray, up: np.ndarray, centre: np.ndarray
 ) -> np.ndarray:

@@ -6,10 +6,13 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
 from underfoot.core import DataError, nearest_match
+
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,6 +232,29 @@ class Trial:
     def with_notes(self, *notes: str) -> Trial:
         """Return the trial with further notes."""
         return replace(self, notes=(*self.notes, *notes))
+
+
+def joined(first: Trial, second: Trial) -> Trial:
+    """Return one trial from two files of the same recording, for example .trc and .forces.
+
+    Both must count time from the same instant. Names that both use get the ending `` (2)``.
+    """
+    return Trial(
+        name=f"{first.name} + {second.name}",
+        channels={**first.channels, **_other_names(second.channels, first.channels)},
+        plates=(*first.plates, *second.plates),
+        markers={**first.markers, **_other_names(second.markers, first.markers)},
+        source=f"{first.source} + {second.source}",
+        checksum=hashlib.sha256(f"{first.checksum}{second.checksum}".encode()).hexdigest(),
+        notes=(*first.notes, *second.notes),
+        events=(*first.events, *second.events),
+        edits=(*first.edits, *second.edits),
+        settings={**first.settings, **second.settings},
+    )
+
+
+def _other_names(added: Mapping[str, _T], present: Mapping[str, object]) -> dict[str, _T]:
+    return {f"{name} (2)" if name in present else name: value for name, value in added.items()}
 
 
 def file_checksum(path: Path) -> str:

@@ -94,9 +94,7 @@ def _markers(raw: C3DFile, scale: float, start: float, notes: list[str]) -> dict
     }
 
 
-def _channels(
-    raw: C3DFile, units: list[str], start: float, notes: list[str]
-) -> dict[str, Channel]:
+def _channels(raw: C3DFile, units: list[str], start: float, notes: list[str]) -> dict[str, Channel]:
     count = raw.analog.shape[1]
     labels = raw.texts("ANALOG", "LABELS")[:count]
     labels += [f"channel {i + 1}" for i in range(len(labels), count)]

@@ -138,9 +138,7 @@ def _frame_range(words: np.ndarray, shell: C3DFile) -> tuple[int, int]:
     return first, last
 
 
-def _rates(
-    frame_rate: float, per_frame: int, shell: C3DFile, where: str
-) -> tuple[float, float]:
+def _rates(frame_rate: float, per_frame: int, shell: C3DFile, where: str) -> tuple[float, float]:
     point = frame_rate if frame_rate > 0 else shell.number("POINT", "RATE")
     analog = shell.number("ANALOG", "RATE")
     if not point > 0 and analog > 0 and per_frame:

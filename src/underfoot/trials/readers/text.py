@@ -11,6 +11,7 @@ import numpy as np
 from underfoot.core import DataError
 
 _COMMA_NUMBER = re.compile(r"(?<![\d.,])[+-]?\d+,\d+(?:[eE][+-]?\d+)?(?![\d.,])")
+_WITH_UNIT = re.compile(r"^(.*?\S)\s*[(\[]([^()\[\]]*)[)\]]$")
 _NUMBER = re.compile(r"^\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?\s*$")
 
 
@@ -51,6 +52,12 @@ def is_number(cell: str) -> bool:
     return bool(_NUMBER.match(cell))
 
 
+def name_and_unit(label: str) -> tuple[str, str]:
+    """Return the name and the unit in ``"Fx (N)"`` or ``"Fx [N]"``; the unit may be empty."""
+    match = _WITH_UNIT.match(label.strip())
+    return (match[1].strip(), match[2].strip()) if match else (label.strip(), "")
+
+
 def delimiter_of(lines: Sequence[str]) -> str:
     """Return the delimiter (tab, semicolon, comma or blank ``""``) that divides most lines."""
     sample = [line for line in lines if line.strip()][:60]
@@ -77,11 +84,18 @@ def uses_decimal_comma(lines: Sequence[str], delimiter: str) -> bool:
 
 
 def table(
-    lines: Sequence[str], delimiter: str, columns: int, where: str, *, first_line: int = 1
+    lines: Sequence[str],
+    delimiter: str,
+    columns: int,
+    where: str,
+    *,
+    first_line: int = 1,
+    ignored: frozenset[int] = frozenset(),
 ) -> tuple[np.ndarray, list[str]]:
     """Return the numbers (rows, columns) of a table and what was odd about it.
 
-    Empty cells become NaN, decimal commas are understood, short rows are filled with NaN.
+    Empty cells become NaN, decimal commas are understood, short rows are filled with NaN;
+    ``ignored`` columns hold text and become NaN.
 
     Errors
     ------
@@ -97,7 +111,7 @@ def table(
         notes.append("decimal commas")
     values = _fast(rows, delimiter, columns)
     if values is None:
-        values = _slow(rows, delimiter, columns, where, first_line, notes)
+        values = _slow(rows, delimiter, columns, where, first_line, notes, ignored)
     if not np.isfinite(values).any():
         raise DataError("the table holds no number", where=where)
     return values, notes
@@ -118,9 +132,10 @@ def _slow(
     where: str,
     first_line: int,
     notes: list[str],
+    ignored: frozenset[int],
 ) -> np.ndarray:
     values = np.full((len(rows), columns), np.nan)
-    short = 0
+    counts = []
     for i, row in enumerate(rows):
         cells = split(row, delimiter)
         while len(cells) > columns and not cells[-1]:
@@ -130,18 +145,19 @@ def _slow(
                 f"row {i + 1} of the table has {len(cells)} cells, the header {columns}",
                 where=f"{where}, line {first_line + i}",
             )
-        short += len(cells) < columns
+        counts.append(len(cells))
         for j, cell in enumerate(cells):
-            if cell:
+            if cell and j not in ignored:
                 values[i, j] = _number(cell, f"{where}, line {first_line + i}")
-    if short > 1 or (short and len(cells) == columns):
-        notes.append(f"{short} rows are shorter than the header")
-    elif short:
+    if len(counts) > 1 and counts[-1] < min(counts[:-1]):
         raise DataError(
-            "truncated: the last row is shorter than the header",
+            "truncated: the last row is shorter than the others",
             where=f"{where}, line {first_line + len(rows) - 1}",
             remedy="Export or copy the file again",
         )
+    uneven = sum(count != max(counts) for count in counts)
+    if uneven:
+        notes.append(f"{uneven} rows are shorter than the others: the missing cells have no value")
     return values
 
 
@@ -209,5 +225,5 @@ def rate_of(times: np.ndarray, where: str) -> tuple[float, float, np.ndarray | N
     # Rounded time stamps differ by one last digit, dropped samples by a whole step.
     mean = float((times[-1] - times[0]) / (len(times) - 1))
     grid = times[0] + mean * np.arange(len(times))
-    even = float(np.abs(times - grid).max()) < 0.5 * step
+    even = float(np.abs(times - grid).max()) < 0.1 * step
     return (1.0 / mean, float(times[0]), None) if even else (1.0 / step, float(times[0]), times)

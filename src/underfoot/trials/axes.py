@@ -1,0 +1,233 @@
+"""Which way is up, which way is forward, which marker is a heel: found, shown, overridable."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from underfoot.core import InputError
+
+from .plates import plate_axes, up_from_normal
+from .trial import Marker, Plate, Trial
+
+WALKING_SPEED = 0.3  # m/s; slower than that nobody walks
+TREADMILL = "shear force; the centre of pressure moves backward: a treadmill"
+_NAMES = "xyz"
+_HEEL = re.compile(r"heel|hee$|cal$|calc|talon|ferse|hiel", re.IGNORECASE)
+_NOT_HEEL = re.compile(r"force|moment|angle|power|grf|scale", re.IGNORECASE)
+_LEFT = re.compile(r"^(l|left|izq|esq|gauche)[ _.\-]?|[ _.\-](l|left|izq)$|izq", re.IGNORECASE)
+_RIGHT = re.compile(r"^(r|right|der|dro|droit)[ _.\-]?|[ _.\-](r|right|der)$|der", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class Axes:
+    """Directions in laboratory axes and how each was found.
+
+    ``up`` and ``walking`` are unit vectors (3,); ``walking`` is None when nothing tells it.
+    """
+
+    up: np.ndarray
+    up_from: str
+    walking: np.ndarray | None
+    walking_from: str
+
+    @property
+    def across(self) -> np.ndarray | None:
+        """Unit vector to the left of the walker, up x walking."""
+        return None if self.walking is None else np.cross(self.up, self.walking)
+
+
+def axis_vector(text: str, where: str = "axis") -> np.ndarray:
+    """Return the unit vector named ``"x"``, ``"+y"``, ``"-z"`` ..."""
+    if (
+        len(text) not in (1, 2)
+        or text[-1] not in _NAMES
+        or (len(text) == 2 and text[0] not in "+-")
+    ):
+        raise InputError(f'"{text}" is no axis', where=where, allowed="x, y, z, +x, -x ...")
+    vector = np.zeros(3)
+    vector[_NAMES.index(text[-1])] = -1.0 if text[0] == "-" else 1.0
+    return vector
+
+
+def axis_name(vector: np.ndarray | None) -> str:
+    """Return ``"+x"`` ... for a vector within 1 degree of an axis, else its components."""
+    if vector is None:
+        return "unknown"
+    largest = int(np.argmax(np.abs(vector)))
+    if abs(vector[largest]) > 0.9998:
+        return ("-" if vector[largest] < 0 else "+") + _NAMES[largest]
+    return "(" + ", ".join(f"{component:.2f}" for component in vector) + ")"
+
+
+def axes_of(trial: Trial, *, vertical: str | None = None, walking: str | None = None) -> Axes:
+    """Return the axes of a trial: from overrides, plates, then markers.
+
+    Vertical: the normal of the plates' corners; else the axis that carries the load; else the
+    axis along which the markers spread least over time. Walking: the path of the markers over
+    the whole recording. For one step use ``walking_direction``, which looks at that step.
+    """
+    if vertical:
+        up, how = axis_vector(vertical, "vertical"), "given"
+    else:
+        up, how = _up(trial)
+    if walking:
+        return Axes(up, how, _flat(axis_vector(walking, "walking"), up), "given")
+    path = marker_velocity(trial, -np.inf, np.inf, up)
+    speed = 0.0 if path is None else float(np.linalg.norm(path))
+    if path is not None and speed > WALKING_SPEED:
+        return Axes(up, how, path / speed, f"path of the markers ({speed:.2f} m/s)")
+    reason = "no markers" if path is None else f"markers move at {speed:.2f} m/s only"
+    return Axes(up, how, None, f"not found: {reason}")
+
+
+def marker_velocity(trial: Trial, begin: float, end: float, up: np.ndarray) -> np.ndarray | None:
+    """Return the horizontal velocity (3,) of the middle of the markers between two times (m/s).
+
+    The median over the markers of their mean velocities, so that a swinging limb or a few lost
+    markers don't count. None with fewer than three markers seen.
+    """
+    found = []
+    for marker in trial.markers.values():
+        time = marker.time
+        inside = np.flatnonzero(~marker.missing & (time >= begin) & (time <= end))
+        if len(inside) < 3 or time[inside[-1]] - time[inside[0]] < 0.05:
+            continue
+        step = marker.positions[inside[-1]] - marker.positions[inside[0]]
+        found.append(step / (time[inside[-1]] - time[inside[0]]))
+    if len(found) < 3:
+        return None
+    middle = np.median(found, axis=0)
+    return middle - (middle @ up) * up
+
+
+def walking_direction(
+    trial: Trial, plate: Plate, start: int, stop: int, up: np.ndarray, walking: str | None = None
+) -> tuple[np.ndarray | None, str]:
+    """Return the walking direction (3,) during a stance and how it was found.
+
+    In this order: the override, the markers during the first half of the stance, the path of
+    the centre of pressure (heel to toe), the shear force (braking first, then driving). A centre
+    of pressure that moves against the shear's direction is carried by a treadmill's belt.
+    """
+    if walking:
+        return _flat(axis_vector(walking, "walking"), up), "given"
+    time = plate.start + np.array([start, (start + stop) / 2.0]) / plate.rate
+    path = marker_velocity(trial, float(time[0]), float(time[1]), up)
+    speed = 0.0 if path is None else float(np.linalg.norm(path))
+    if path is not None and speed > WALKING_SPEED:
+        return path / speed, f"markers in this step ({speed:.2f} m/s)"
+    step, swing = _pressure_path(plate, start, stop, up), _shear_swing(plate, start, stop, up)
+    length, size = float(np.linalg.norm(step)), float(np.linalg.norm(swing))
+    if length > 0.2 and size > 10.0 and step @ swing < 0:
+        return swing / size, TREADMILL
+    if path is not None:
+        return None, f"the markers move at {speed:.2f} m/s only"
+    if length > 0.05:
+        return step / length, f"centre of pressure, {1e3 * length:.0f} mm heel to toe"
+    if size > 10.0:
+        return swing / size, "shear force, braking before driving"
+    return None, "nothing tells it"
+
+
+def _pressure_path(plate: Plate, start: int, stop: int, up: np.ndarray) -> np.ndarray:
+    if plate.centre_of_pressure is None:
+        return np.zeros(3)
+    place = plate.centre_of_pressure[start:stop]
+    place = place[np.isfinite(place).all(axis=1)]
+    fifth = len(place) // 5
+    if fifth < 3:
+        return np.zeros(3)
+    step = place[-fifth:].mean(axis=0) - place[:fifth].mean(axis=0)
+    return step - (step @ up) * up
+
+
+def _shear_swing(plate: Plate, start: int, stop: int, up: np.ndarray) -> np.ndarray:
+    force = plate.force[start:stop]
+    force = force[np.isfinite(force).all(axis=1)]
+    half = len(force) // 2
+    if half < 3:
+        return np.zeros(3)
+    swing = force[half:].mean(axis=0) - force[:half].mean(axis=0)
+    return swing - (swing @ up) * up
+
+
+def heel_candidates(trial: Trial, heels: Mapping[str, str] | None = None) -> dict[str, list[str]]:
+    """Return the markers that may be heels by side: ``left``, ``right``, ``unknown``.
+
+    ``heels`` (from a profile) names them and wins. The best-seen candidates come first.
+
+    Errors
+    ------
+    DataError
+        A marker named in ``heels`` is not in the trial.
+    """
+    found: dict[str, list[str]] = {"left": [], "right": [], "unknown": []}
+    for side, name in (heels or {}).items():
+        trial.marker(name)
+        found[side] = [name]
+    if heels:
+        return found
+    for name, marker in trial.markers.items():
+        plain = name.rsplit(":", 1)[-1].strip()
+        if not _HEEL.search(plain) or _NOT_HEEL.search(plain) or marker.missing.all():
+            continue
+        side = "left" if _LEFT.search(plain) else "right" if _RIGHT.search(plain) else "unknown"
+        found[side].append(name)
+    for names in found.values():
+        names.sort(key=lambda name: int(trial.markers[name].missing.sum()))
+    return found
+
+
+def heel_of(trial: Trial, side: str, heels: Mapping[str, str] | None = None) -> Marker | None:
+    """Return the heel marker of a side, or None."""
+    names = heel_candidates(trial, heels)[side]
+    return trial.marker(names[0]) if names else None
+
+
+def _up(trial: Trial) -> tuple[np.ndarray, str]:
+    normals = []
+    for plate in trial.plates:
+        if plate.usable and plate.corners is not None:
+            normals.append(up_from_normal(plate_axes(plate.corners)[:, 2]))
+    if normals:
+        votes = Counter(int(np.argmax(np.abs(normal))) for normal in normals)
+        up = np.zeros(3)
+        up[votes.most_common(1)[0][0]] = 1.0
+        return up, "normal of the force plates"
+    loads = [np.nanpercentile(np.abs(p.force), 99, axis=0) for p in trial.plates if p.usable]
+    if loads:
+        up = np.zeros(3)
+        up[int(np.argmax(np.sum(loads, axis=0)))] = 1.0
+        return up, "axis that carries the load"
+    spans = [
+        np.ptp(marker.positions[~marker.missing], axis=0)
+        for marker in trial.markers.values()
+        if (~marker.missing).sum() > 2
+    ]
+    up = np.zeros(3)
+    if not spans:
+        up[2] = 1.0
+        return up, "assumed z: neither plates nor markers"
+    # Everything moves along the walkway or sways across it, feet most; heights return.
+    heights = np.array(
+        [
+            np.nanmedian(marker.positions, axis=0)
+            for marker in trial.markers.values()
+            if (~marker.missing).sum() > 2
+        ]
+    )
+    up[int(np.argmax(np.ptp(heights, axis=0) / (np.median(spans, axis=0) + 0.05)))] = 1.0
+    return up, "axis along which markers differ most and move least"
+
+
+def _flat(vector: np.ndarray, up: np.ndarray) -> np.ndarray:
+    flat = vector - (vector @ up) * up
+    length = float(np.linalg.norm(flat))
+    if length < 0.5:
+        raise InputError("the walking axis is the vertical axis", where="walking")
+    return flat / length

@@ -1,0 +1,252 @@
+"""Profile files: a small TOML that says what a laboratory's columns, axes and markers mean."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from underfoot.core import InputError, nearest_match
+
+from .unit_factors import known_units, si_unit
+
+
+@dataclass(frozen=True, slots=True)
+class PlateColumns:
+    """Columns of one force plate in a table."""
+
+    force: tuple[str, str, str]
+    unit: str = "N"
+    force_is: str = "on the foot"
+    sign: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    centre_of_pressure: tuple[str, str, str] | None = None
+    moment: tuple[str, str, str] | None = None
+    length_unit: str = "m"
+    corners: tuple[tuple[float, float, float], ...] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """What a profile file says; every part is optional.
+
+    See ``docs/guide/trials_reading.md`` for the file.
+    """
+
+    name: str = ""
+    delimiter: str | None = None
+    header_line: int | None = None
+    sheet: str | None = None
+    rate: float | None = None
+    time: str | None = None
+    time_unit: str | None = None
+    subtract_baseline: bool = True
+    channels: Mapping[str, tuple[str, str, float]] = field(default_factory=dict)
+    plates: Mapping[str, PlateColumns] = field(default_factory=dict)
+    markers: Mapping[str, tuple[tuple[str, str, str], str]] = field(default_factory=dict)
+    vertical: str | None = None
+    walking: str | None = None
+    heels: Mapping[str, str] = field(default_factory=dict)
+    body_mass: float | None = None
+    sensors: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+
+
+def read_profile(path: Path) -> Profile:
+    """Return the profile in a TOML file.
+
+    Errors
+    ------
+    InputError
+        Not TOML, an unknown key or unit, a wrong type; names the key and the nearest match.
+    """
+    path = Path(path)
+    try:
+        data = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+    except OSError as error:
+        raise InputError(f"can't read the profile: {error.strerror}", where=str(path)) from error
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise InputError(f"the profile is not valid TOML: {error}", where=str(path)) from error
+    return profile_from(data, where=path.name)
+
+
+def profile_from(data: Mapping[str, Any], *, where: str = "profile") -> Profile:
+    """Return the profile in plain data (the parsed TOML); errors as ``read_profile``."""
+    top = ("name", "file", "channels", "plates", "markers", "axes", "heel", "subject", "sensors")
+    _known(data, top, where)
+    file = _part(data, "file", where)
+    _known(
+        file,
+        ("delimiter", "header_line", "sheet", "rate", "time", "time_unit", "subtract_baseline"),
+        f"{where}.file",
+    )
+    axes, heel = _part(data, "axes", where), _part(data, "heel", where)
+    _known(axes, ("vertical", "walking"), f"{where}.axes")
+    _known(heel, ("left", "right"), f"{where}.heel")
+    subject = _part(data, "subject", where)
+    _known(subject, ("mass",), f"{where}.subject")
+    for key, allowed in (("vertical", _DIRECTIONS), ("walking", _DIRECTIONS)):
+        if key in axes and axes[key] not in allowed:
+            raise InputError(
+                f'"{axes[key]}" is no axis', where=f"{where}.axes.{key}", allowed=", ".join(allowed)
+            )
+    header = file.get("header_line")
+    if header is not None and (not isinstance(header, int) or header < 1):
+        raise InputError(f"{header!r} is no line number", where=f"{where}.file.header_line")
+    return Profile(
+        name=str(data.get("name", "")),
+        delimiter=_text(file, "delimiter", where),
+        header_line=header,
+        sheet=_text(file, "sheet", where),
+        rate=_quantity(file["rate"], "Hz", f"{where}.file.rate") if "rate" in file else None,
+        time=_text(file, "time", where),
+        time_unit=_text(file, "time_unit", where),
+        subtract_baseline=bool(file.get("subtract_baseline", True)),
+        channels={
+            str(key): _channel(value, f"{where}.channels.{key}")
+            for key, value in _part(data, "channels", where).items()
+        },
+        plates={
+            str(key): _plate(value, f"{where}.plates.{key}")
+            for key, value in _part(data, "plates", where).items()
+        },
+        markers={
+            str(key): _marker(value, f"{where}.markers.{key}")
+            for key, value in _part(data, "markers", where).items()
+        },
+        vertical=axes.get("vertical"),
+        walking=axes.get("walking"),
+        heels={str(key): str(value) for key, value in heel.items()},
+        body_mass=(
+            _quantity(subject["mass"], "kg", f"{where}.subject.mass") if "mass" in subject else None
+        ),
+        sensors=_sensors(_part(data, "sensors", where), f"{where}.sensors"),
+    )
+
+
+_DIRECTIONS = ("x", "y", "z", "+x", "+y", "+z", "-x", "-y", "-z")
+
+
+def _known(data: Mapping[str, Any], allowed: tuple[str, ...], where: str) -> None:
+    for key in data:
+        if key not in allowed:
+            raise InputError(
+                f'unknown key "{key}"',
+                where=where,
+                allowed=", ".join(allowed),
+                nearest=nearest_match(str(key), allowed),
+            )
+
+
+def _part(data: Mapping[str, Any], key: str, where: str) -> Mapping[str, Any]:
+    part = data.get(key, {})
+    if not isinstance(part, Mapping):
+        raise InputError(f"{part!r} is not a table", where=f"{where}.{key}", allowed=f"[{key}]")
+    return part
+
+
+def _text(data: Mapping[str, Any], key: str, where: str) -> str | None:
+    value = data.get(key)
+    if value is not None and not isinstance(value, str):
+        raise InputError(f"{value!r} is not text", where=f"{where}.file.{key}")
+    return value
+
+
+def _unit(text: object, dimension: str, where: str) -> str:
+    unit = si_unit(text) if isinstance(text, str) else None
+    if unit is None or (dimension and unit[0] != dimension):
+        raise InputError(
+            f"{text!r} is no known unit" + (f" of {dimension}" if dimension else ""),
+            where=where,
+            nearest=nearest_match(str(text), known_units()),
+        )
+    return str(text)
+
+
+def _quantity(value: object, unit: str, where: str) -> float:
+    from underfoot.core import to_si
+
+    number = to_si(value, unit, where=where)
+    if number <= 0:
+        raise InputError(f"{value!r} is not positive", where=where)
+    return number
+
+
+def _channel(value: object, where: str) -> tuple[str, str, float]:
+    if not isinstance(value, Mapping) or not isinstance(value.get("column"), str):
+        raise InputError("a channel needs its column", where=where, allowed='column = "P1"')
+    _known(value, ("column", "unit", "scale"), where)
+    unit = _unit(value["unit"], "", f"{where}.unit") if "unit" in value else ""
+    scale = value.get("scale", 1.0)
+    if isinstance(scale, bool) or not isinstance(scale, int | float):
+        raise InputError(f"{scale!r} is no number", where=f"{where}.scale")
+    return value["column"], unit, float(scale)
+
+
+def _three(value: object, where: str) -> tuple[str, str, str]:
+    if not isinstance(value, list) or len(value) != 3 or not all(isinstance(v, str) for v in value):
+        raise InputError(f"{value!r} are not three column names", where=where)
+    return value[0], value[1], value[2]
+
+
+def _numbers(value: object, where: str) -> tuple[float, float, float]:
+    if (
+        not isinstance(value, list)
+        or len(value) != 3
+        or any(isinstance(v, bool) or not isinstance(v, int | float) for v in value)
+    ):
+        raise InputError(f"{value!r} are not three numbers", where=where)
+    return float(value[0]), float(value[1]), float(value[2])
+
+
+def _plate(value: object, where: str) -> PlateColumns:
+    if not isinstance(value, Mapping) or "force" not in value:
+        raise InputError("a plate needs its force columns", where=where)
+    _known(value, tuple(PlateColumns.__dataclass_fields__), where)
+    force_is = value.get("force_is", "on the foot")
+    if force_is not in ("on the foot", "on the plate"):
+        raise InputError(
+            f"{force_is!r}", where=f"{where}.force_is", allowed='"on the foot" or "on the plate"'
+        )
+    corners = value.get("corners")
+    if corners is not None and (not isinstance(corners, list) or len(corners) != 4):
+        raise InputError("a plate has four corners", where=f"{where}.corners")
+    three = {
+        key: _three(value[key], f"{where}.{key}") if key in value else None
+        for key in ("centre_of_pressure", "moment")
+    }
+    return PlateColumns(
+        force=_three(value["force"], f"{where}.force"),
+        unit=_unit(value.get("unit", "N"), "N", f"{where}.unit"),
+        force_is=force_is,
+        sign=_numbers(value.get("sign", [1, 1, 1]), f"{where}.sign"),
+        centre_of_pressure=three["centre_of_pressure"],
+        moment=three["moment"],
+        length_unit=_unit(value.get("length_unit", "m"), "m", f"{where}.length_unit"),
+        corners=(
+            tuple(_numbers(corner, f"{where}.corners") for corner in corners) if corners else None
+        ),
+    )
+
+
+def _marker(value: object, where: str) -> tuple[tuple[str, str, str], str]:
+    if not isinstance(value, Mapping) or "columns" not in value:
+        raise InputError("a marker needs its three columns", where=where)
+    _known(value, ("columns", "unit"), where)
+    return (
+        _three(value["columns"], f"{where}.columns"),
+        _unit(value.get("unit", "m"), "m", f"{where}.unit"),
+    )
+
+
+def _sensors(part: Mapping[str, Any], where: str) -> dict[str, tuple[float, float, float]]:
+    if not part:
+        return {}
+    unit = si_unit(_unit(part.get("unit", "m"), "m", f"{where}.unit"))
+    factor = unit[1] if unit else 1.0
+    found = {}
+    for name, value in part.items():
+        if name != "unit":
+            x, y, z = _numbers(value, f"{where}.{name}")
+            found[str(name)] = (x * factor, y * factor, z * factor)
+    return found

@@ -1,0 +1,295 @@
+"""CSV and XLSX as named columns: where the header is, which units, numbers or text."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+
+from underfoot.core import DataError, MissingExtraError
+
+from .text import (
+    decoded,
+    delimiter_of,
+    is_number,
+    lines_of,
+    name_and_unit,
+    split,
+    unique_names,
+    uses_decimal_comma,
+)
+from .unit_factors import si_unit
+
+_MOST_CELLS = 50_000_000
+_HEAD = 300  # lines in which the table must begin
+_NOTHING = ("", "nan", "na", "n/a", "none", "null", "-", "--", "#n/a", "#div/0!", "#value!")
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """Columns of a table; numbers as float arrays (NaN where empty), the rest as text.
+
+    ``units`` are as written in the file; ``header`` holds the lines above the table.
+    """
+
+    name: str
+    numbers: Mapping[str, np.ndarray]
+    texts: Mapping[str, tuple[str, ...]]
+    units: Mapping[str, str]
+    header: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    @property
+    def columns(self) -> list[str]:
+        """Names of all columns, numbers first."""
+        return [*self.numbers, *self.texts]
+
+
+def read_sheet(
+    path: Path,
+    *,
+    sheet: str | None = None,
+    delimiter: str | None = None,
+    header_line: int | None = None,
+) -> Sheet:
+    """Return a CSV, text or XLSX table as named columns, with text columns kept as text.
+
+    Parameters
+    ----------
+    sheet
+        Name of the worksheet; the first one by default.
+    delimiter
+        Found when not given.
+    header_line
+        Line (from 1) of the column names; found when not given.
+
+    Errors
+    ------
+    DataError
+        Can't be read, no table, or ragged beyond repair.
+    """
+    path = Path(path)
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise DataError(f"can't be read: {error.strerror}", where=path.name) from error
+    return sheet_from(data, path, sheet=sheet, delimiter=delimiter, header_line=header_line)
+
+
+def sheet_from(
+    data: bytes,
+    path: Path,
+    *,
+    sheet: str | None = None,
+    delimiter: str | None = None,
+    header_line: int | None = None,
+) -> Sheet:
+    """Return the table in a file's bytes; see ``read_sheet``."""
+    where = path.name
+    notes: list[str] = []
+    if data[:4] == b"PK\x03\x04":
+        rows = _workbook_rows(data, where, sheet)
+        table = _layout(rows, header_line, where)
+        return _sheet(rows, table, rows[table.first :], None, where, notes)
+    lines = lines_of(decoded(data, where))
+    while lines and not lines[-1].strip():
+        lines.pop()
+    body = lines[len(lines) // 2 :]  # a free header may hold other signs: the body decides
+    if delimiter is None:
+        delimiter = delimiter_of(body)
+    comma = uses_decimal_comma(body, delimiter)
+    if comma:
+        notes.append("decimal commas")
+    rows = [_cells(line, delimiter, comma) for line in lines[: max(_HEAD, header_line or 0) + 2]]
+    table = _layout(rows, header_line, where)
+    values = _all_numbers(lines[table.first :], delimiter, comma)
+    if values is not None and (table.head is None or values.shape[1] == len(rows[table.head])):
+        return _sheet(rows, table, [], values, where, notes)
+    rest = [_cells(line, delimiter, comma) for line in lines[table.first :]]
+    return _sheet(rows, table, rest, None, where, notes)
+
+
+@dataclass(frozen=True, slots=True)
+class _Layout:
+    """Indices of the header, the units line and the first row of numbers."""
+
+    head: int | None
+    units: int | None
+    first: int
+
+
+def _sheet(
+    rows: list[list[str]],
+    table: _Layout,
+    body: list[list[str]],
+    values: np.ndarray | None,
+    where: str,
+    notes: list[str],
+) -> Sheet:
+    labels = list(rows[table.head]) if table.head is not None else []
+    while labels and not labels[-1]:
+        labels.pop()
+    body = [row for row in body if any(row)]
+    if values is None and labels:
+        _check_rows(body, len(labels), table.first, where)
+    width = len(labels) or (values.shape[1] if values is not None else max(map(len, body)))
+    if not labels:
+        labels = [f"column {i + 1}" for i in range(width)]
+        notes.append("the table has no column names: numbered")
+    pairs = [name_and_unit(label) for label in labels]
+    written = rows[table.units] if table.units is not None else []
+    numbers: dict[str, np.ndarray] = {}
+    texts: dict[str, tuple[str, ...]] = {}
+    units: dict[str, str] = {}
+    for i, name in enumerate(unique_names([name for name, _ in pairs], "column", notes)):
+        units[name] = pairs[i][1] or (written[i] if i < len(written) else "")
+        if values is not None:
+            numbers[name] = values[:, i]
+            continue
+        cells = [row[i] if i < len(row) else "" for row in body]
+        column = _numeric(cells)
+        if column is None:
+            texts[name] = tuple(cells)
+        else:
+            numbers[name] = column
+    above = rows[: table.head if table.head is not None else table.first]
+    header = tuple(" ".join(cell for cell in row if cell) for row in above)
+    return Sheet(where, numbers, texts, units, header, tuple(notes))
+
+
+def _check_rows(body: list[list[str]], width: int, first: int, where: str) -> None:
+    for i, row in enumerate(body):
+        if len(row) > width and any(row[width:]):
+            raise DataError(
+                f"row {i + 1} of the table has {len(row)} cells, the header {width}",
+                where=f"{where}, line {first + i + 1}",
+            )
+    lengths = [len(row) for row in body]
+    if len(body) > 1 and lengths[-1] < min(min(lengths[:-1]), width):
+        raise DataError(
+            "truncated: the last row is shorter than the others",
+            where=f"{where}, line {first + len(body)}",
+            remedy="Export or copy the file again",
+        )
+
+
+def _cells(line: str, delimiter: str, comma: bool) -> list[str]:
+    cells = split(line, delimiter)
+    return [_point(cell) for cell in cells] if comma else cells
+
+
+def _all_numbers(lines: list[str], delimiter: str, comma: bool) -> np.ndarray | None:
+    if comma:
+        lines = [line.replace(",", ".") for line in lines]
+    try:
+        return np.loadtxt(lines, delimiter=delimiter or None, ndmin=2, comments=None)
+    except (ValueError, OverflowError):
+        return None
+
+
+def _numeric(cells: list[str]) -> np.ndarray | None:
+    try:
+        return np.array(cells, dtype=float)
+    except ValueError:
+        pass
+    values = np.full(len(cells), np.nan)
+    for i, cell in enumerate(cells):
+        if cell.casefold() in _NOTHING:
+            continue
+        try:
+            values[i] = float(cell)
+        except ValueError:
+            return None
+    return values
+
+
+def _layout(rows: list[list[str]], header_line: int | None, where: str) -> _Layout:
+    if not rows:
+        raise DataError("empty", where=where)
+    if header_line is not None:
+        head = header_line - 1
+        if head >= len(rows) - 1:
+            raise DataError(f"there is no line {header_line} with rows below it", where=where)
+        if _are_units(rows[head + 1]) and head + 2 < len(rows):
+            return _Layout(head, head + 1, head + 2)
+        return _Layout(head, None, head + 1)
+    first = next((i for i in range(min(len(rows), _HEAD)) if _is_row(rows, i)), None)
+    if first is None:
+        raise DataError("no table of numbers was found", where=where)
+    above = [i for i in range(first) if any(rows[i])]
+    width = len([cell for cell in rows[first] if cell])
+    if not above:
+        return _Layout(None, None, first)
+    head, units = above[-1], None
+    if _are_units(rows[head]) and len(above) > 1 and _is_head(rows[above[-2]], width):
+        head, units = above[-2], head
+    return (
+        _Layout(head, units, first) if _is_head(rows[head], width) else _Layout(None, None, first)
+    )
+
+
+def _is_row(rows: list[list[str]], i: int) -> bool:
+    """A row in which most cells are numbers and that looks like the one after it."""
+    filled = [cell for cell in rows[i] if cell]
+    numbers = sum(is_number(cell) for cell in filled)
+    if len(filled) < 1 or numbers < max(1, 0.5 * len(filled)):
+        return False
+    if i + 1 < len(rows):
+        following = [cell for cell in rows[i + 1] if cell]
+        return abs(len(rows[i + 1]) - len(rows[i])) <= 1 and sum(
+            is_number(cell) for cell in following
+        ) >= 0.5 * len(following)
+    return True
+
+
+def _is_head(row: list[str], width: int) -> bool:
+    filled = [cell for cell in row if cell]
+    return len(filled) >= max(1, 0.6 * width) and not any(is_number(cell) for cell in filled)
+
+
+def _are_units(row: list[str]) -> bool:
+    filled = [cell for cell in row if cell]
+    return bool(filled) and all(si_unit(cell) for cell in filled)
+
+
+def _point(cell: str) -> str:
+    changed = cell.replace(",", ".")
+    return changed if is_number(changed) else cell
+
+
+def _workbook_rows(data: bytes, where: str, sheet: str | None) -> list[list[str]]:
+    try:
+        from openpyxl import load_workbook
+    except ImportError as error:
+        raise MissingExtraError("openpyxl", "trials", "reading XLSX files") from error
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # styles and extensions that do not matter here
+            book = load_workbook(BytesIO(data), read_only=True, data_only=True)
+        names = book.sheetnames
+        if not names:
+            raise DataError("the workbook has no sheet", where=where)
+        if sheet is not None and sheet not in names:
+            raise DataError(f'no sheet named "{sheet}"', where=where, allowed=", ".join(names))
+        rows: list[list[str]] = []
+        cells = 0
+        for row in book[sheet or names[0]].iter_rows(values_only=True):
+            cells += len(row)
+            if cells > _MOST_CELLS:
+                raise DataError("the sheet is larger than any recording", where=where)
+            rows.append(["" if cell is None else str(cell).strip() for cell in row])
+    except DataError:
+        raise
+    except Exception as error:  # openpyxl raises whatever its parsers raise on damaged files
+        raise DataError(
+            f"the workbook is damaged ({type(error).__name__})",
+            where=where,
+            remedy="Save it again, or export it as CSV",
+        ) from error
+    while rows and not any(rows[-1]):
+        rows.pop()
+    return rows
