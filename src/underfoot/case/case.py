@@ -18,7 +18,7 @@ from .compose import DEFAULT, DRY, GIVEN, Origin, composed, nested
 from .errors import CaseError, translated
 from .places import Places
 from .quantity import DOOR, Quantity, default_of
-from .schema import FILE_VERSION, fields, section_of
+from .schema import FILE_VERSION, field_at, fields, marks_of, section_of
 from .sections import (
     Contaminant,
     Floor,
@@ -274,10 +274,9 @@ class Case(Section):
 
 def unit_at(path: str) -> str:
     """Return the SI unit of the value at a dotted path of a case, ``"1"`` for words."""
-    for known, field in fields(Case):
-        if known == path:
-            marks = [*field.metadata, *_annotated(field.annotation)]
-            return next((mark.unit for mark in marks if isinstance(mark, Quantity)), "1")
+    field = field_at(Case, path)
+    if field is not None:
+        return next((mark.unit for mark in marks_of(field) if isinstance(mark, Quantity)), "1")
     raise _unknown_path(path)
 
 
@@ -286,15 +285,6 @@ def paths() -> list[str]:
     leaf_paths = [path for path, _ in fields(Case)]
     sections = {path.rsplit(".", depth)[0] for path in leaf_paths for depth in (1, 2, 3)}
     return sorted({*leaf_paths, *(path for path in sections if path)})
-
-
-def _annotated(annotation: Any) -> list[Any]:
-    import typing
-
-    found = list(getattr(annotation, "__metadata__", ()))
-    for part in typing.get_args(annotation):
-        found += _annotated(part)
-    return found
 
 
 def _check_path(path: str) -> str:

@@ -151,7 +151,7 @@ def _resolved(case: Case, path: str, width: float | None, places: Places) -> Ite
                 f"{display(width, 'm')} is too narrow for the grid of {display(spacing, 'm')}",
                 where=places(path),
                 allowed=f"at least {display(_CELLS * spacing, 'm')} (two cells)",
-                remedy=f'Write numerics.{name} = "{display(width / 4, "m")}" (four cells)',
+                remedy=f'Write numerics.{name} = "{width / 4 * 1e3:.3g} mm" (four cells)',
             )
 
 

@@ -86,6 +86,35 @@ def assumptions(case: Case) -> list[str]:
     return found
 
 
+def tested_range_breaches(case: Case) -> list[str]:
+    """Return in words which inputs leave the range on which a property relation was tested."""
+    from underfoot.fluid import glycerol_water_breaches
+    from underfoot.material import gent_breaches
+
+    found: list[object] = []
+    material, fluid = case.shoe.material, case.contaminant
+    if material.modulus is None and material.shore_a is not None and case.models.hardness == "gent":
+        found += gent_breaches(material.shore_a)
+    if fluid is not None and fluid.glycerol_fraction is not None:
+        found += glycerol_water_breaches(fluid.glycerol_fraction, fluid.temperature)
+    return [str(breach) for breach in found]
+
+
+def differences(first: str, second: str) -> list[tuple[str, str, str]]:
+    """Return (path, first, second) of what differs between two complete cases in TOML."""
+    from .case import Case
+
+    left, right = (
+        {path: value for path, value, _ in rows(Case.from_text(text))} for text in (first, second)
+    )
+    paths = [*left, *(path for path in right if path not in left)]
+    return [
+        (path, left.get(path, "-"), right.get(path, "-"))
+        for path in paths
+        if left.get(path) != right.get(path)
+    ]
+
+
 def _text(given: Any, spread: Any) -> str:
     if isinstance(given, bool):
         return "yes" if given else "no"

@@ -43,7 +43,9 @@ def key_lines(text: str) -> dict[tuple[str, ...], int]:
         if not line or line.startswith("#") or "=" not in line:
             continue
         key, _, value = line.partition("=")
-        found.setdefault((*table, *_key_parts(key)), number)
+        parts = _key_parts(key)
+        for depth in range(1, len(parts) + 1):
+            found.setdefault((*table, *parts[:depth]), number)
         for mark in ('"""', "'''"):
             if value.count(mark) == 1:
                 fence = mark

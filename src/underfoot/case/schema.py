@@ -73,6 +73,32 @@ def fields(model: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, Fiel
             yield from fields(section, f"{path}.")
 
 
+def field_at(model: type[BaseModel], path: str) -> FieldInfo | None:
+    """Return the leaf field at a dotted path, or None."""
+    return dict(fields(model)).get(path)
+
+
+def marks_of(field: FieldInfo) -> list[Any]:
+    """Return the marks (such as the unit) annotated on a field."""
+    return [*field.metadata, *_annotations(field.annotation)]
+
+
+def _annotations(annotation: Any) -> list[Any]:
+    found = list(getattr(annotation, "__metadata__", ()))
+    for part in typing.get_args(annotation):
+        found += _annotations(part)
+    return found
+
+
+def schema_text() -> str:
+    """Return the JSON Schema of case files as text."""
+    import json
+
+    from .case import Case
+
+    return json.dumps(json_schema(Case), indent=2, ensure_ascii=False) + "\n"
+
+
 def json_schema(model: type[BaseModel]) -> dict[str, Any]:
     """Return the JSON Schema of case files: units, ranges in SI, defaults as text, ``from``."""
     schema = model.model_json_schema(mode="validation")

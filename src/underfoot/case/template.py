@@ -1,0 +1,112 @@
+"""A new case file, commented for someone who has never seen one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from underfoot.core.catalogue import Catalogue
+
+from .case import Case
+from .compose import DRY
+from .schema import CATALOGUE_SECTIONS, FILE_VERSION, field_model, fields
+
+if TYPE_CHECKING:
+    from pydantic.fields import FieldInfo
+
+_COLUMN = 44
+_HEAD = """\
+# {title}
+#
+#   underfoot check {file}     reads it, prints all of it, solves nothing
+#   underfoot run {file}       computes it
+#
+# A number with a unit stands in quotes: "3 mm", "219 cP", "10 deg".
+# "from" takes a part from the catalogue; underfoot catalogue lists what there is. A line that
+# begins with # is not read: it shows the catalogue's value. Remove the # to set your own.
+"""
+
+
+def template(
+    *,
+    shoe: str,
+    floor: str,
+    contaminant: str,
+    motion: str,
+    catalogue: Catalogue,
+    name: str = "",
+    description: str = "",
+    file: str = "case.toml",
+) -> str:
+    """Return the text of a new case made of catalogue entries.
+
+    Errors
+    ------
+    InputError
+        A name that is not in the catalogue.
+    """
+    chosen = {"shoe": shoe, "floor": floor, "contaminant": contaminant, "motion": motion}
+    titles = {}
+    for section, entry in chosen.items():
+        kind, _ = CATALOGUE_SECTIONS[section]
+        dry = section == "contaminant" and entry == DRY
+        titles[section] = "dry" if dry else catalogue.entry(kind, entry, where=section).title
+    title = name or f"{titles['shoe']}; {titles['contaminant']}"
+    lines = [_HEAD.format(title=title, file=file)]
+    lines.append(f"file_version = {FILE_VERSION}")
+    lines.append(f"name = {_text(title)}")
+    lines.append(f"description = {_text(description)}\n")
+    for section, entry in chosen.items():
+        lines.append(f"[{section}]")
+        kind, _ = CATALOGUE_SECTIONS[section]
+        note = f"# {titles[section]}; others: underfoot catalogue {kind}"
+        lines.append(_commented(f'from = "{entry}"', note))
+        if entry != DRY or section != "contaminant":
+            lines += _overrides(section, entry, catalogue)
+        lines.append("")
+    if contaminant == DRY:
+        lines += ["[models]", 'friction = "constant"', "", "[interface]"]
+        lines += ["constant_cof = 0.8  # measured on this shoe and floor, dry: set your own", ""]
+    else:
+        lines += ["[interface]"]
+        about = "# roughness that lets fluid leak; default from both Rq. Uncertain: vary it"
+        lines += [_commented('# effective_rq = "6 um"', about), ""]
+    lines += ["[risk]"]
+    lines += ["# rcof_mean = 0.20  # friction that the people who walk there need, and its"]
+    lines += ["# rcof_sd = 0.03    # standard deviation between them"]
+    return "\n".join(lines) + "\n"
+
+
+def _overrides(section: str, name: str, catalogue: Catalogue) -> list[str]:
+    kind, part = CATALOGUE_SECTIONS[section]
+    entry = catalogue.entry(kind, name)
+    values = entry.under(part) if part else entry.values
+    model = field_model(Case, [section])
+    if model is None:
+        return []
+    lines = []
+    for path, field in fields(model):
+        leaf = values.get(path)
+        if leaf is None or isinstance(leaf.given, list):
+            continue
+        remark = _remark(field, assumed=leaf.assumed)
+        lines.append(_commented(f"# {path} = {_text(leaf.given)}", remark))
+    return lines
+
+
+def _remark(field: FieldInfo, *, assumed: bool) -> str:
+    parts = [field.description or "", "assumed" if assumed else ""]
+    text = "; ".join(part for part in parts if part)
+    return f"# {text}" if text else ""
+
+
+def _commented(line: str, remark: str) -> str:
+    return f"{line:{_COLUMN}} {remark}".rstrip()
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, int | float):
+        return str(value)
+    escaped = str(value).replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'

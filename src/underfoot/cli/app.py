@@ -1,0 +1,57 @@
+"""The commands, each a thin module that imports what it needs when it runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated
+
+import typer
+
+from .catalogue import catalogue
+from .check import check
+from .compare import compare
+from .doctor import doctor
+from .explain import explain
+from .guard import guarded
+from .new import new
+from .run import run
+from .schema import schema
+from .validate import validate
+
+app = typer.Typer(
+    name="underfoot",
+    help="Friction between a shoe, a floor and what is spilled on it.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    add_completion=False,
+)
+COMMANDS: tuple[Callable[..., None], ...] = (
+    new,
+    check,
+    run,
+    compare,
+    explain,
+    catalogue,
+    schema,
+    validate,
+    doctor,
+)
+for command in COMMANDS:
+    app.command()(guarded(command))
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from underfoot.core.provenance import version
+
+        print(f"underfoot {version()}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """Friction between a shoe, a floor and what is spilled on it."""

@@ -1,0 +1,51 @@
+"""Errors as plain words and exit codes; a traceback only on request."""
+
+from __future__ import annotations
+
+import functools
+import os
+import sys
+from collections.abc import Callable
+from typing import ParamSpec, TypeVar
+
+import typer
+
+P = ParamSpec("P")
+R = TypeVar("R")
+STOPPED = 130
+
+
+def guarded(command: Callable[P, R]) -> Callable[P, R]:
+    """Return the command with its errors told on standard error; UNDERFOOT_DEBUG=1 shows all."""
+
+    @functools.wraps(command)
+    def told(*args: P.args, **kwargs: P.kwargs) -> R:
+        from underfoot.core.errors import Cancelled, UnderfootError
+
+        if os.environ.get("UNDERFOOT_DEBUG") == "1":
+            return command(*args, **kwargs)
+        try:
+            return command(*args, **kwargs)
+        except (KeyboardInterrupt, Cancelled):
+            say("stopped; nothing half-written was left behind")
+            raise typer.Exit(STOPPED) from None
+        except UnderfootError as error:
+            say(f"error: {error}")
+            raise typer.Exit(error.exit_code) from None
+        except BrokenPipeError:
+            # the reader of a pipe (head, less) closed it: that is no error of ours
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            raise typer.Exit(0) from None
+        except OSError as error:
+            say(f"error: {error.strerror or error}: {error.filename or ''}".rstrip(": "))
+            raise typer.Exit(1) from None
+        except MemoryError:
+            say("error: not enough memory. Choose a coarser numerics.grid_spacing.")
+            raise typer.Exit(1) from None
+
+    return told
+
+
+def say(text: str) -> None:
+    """Print one message on standard error."""
+    print(text, file=sys.stderr)
