@@ -1,7 +1,10 @@
 """Whole shoes: geometry, compliance, contact with fluid, and how a floor sensor reads it."""
 
 from .geometry import SoleMap
-from .heel import Facet, Flat, Heel, Profile, Rocker, heel_map
+from .heel import Heel
+from .heel_grid import heel_map
+from .profile import Facet, Flat, Profile, Rocker
+from .reading import SensorReading, floor_sensor_reading
 from .tread import ArcChannel, Tread
 from .wear import WearPlane
 
@@ -12,8 +15,10 @@ __all__ = [
     "Heel",
     "Profile",
     "Rocker",
+    "SensorReading",
     "SoleMap",
     "Tread",
     "WearPlane",
+    "floor_sensor_reading",
     "heel_map",
 ]

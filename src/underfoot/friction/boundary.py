@@ -1,0 +1,160 @@
+"""Boundary friction of the pair and fluid, as measured, at every speed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from numpy.typing import ArrayLike
+
+from underfoot.core import Breach, InputError, Range, SourcedValue
+
+from ._shared import (
+    PIN_PRESSURE,
+    REPORT,
+    checked,
+    checked_viscosity,
+    coefficient,
+    law_breaches,
+    viscous_shear,
+)
+from .law import FrictionDeviation, FrictionParts
+from .measured import BoundaryFriction, friction_left
+
+RANGES = {
+    "contact pressure": Range(0.0, PIN_PRESSURE, "Pa", f"{REPORT}, G.2.1: one load; lower assumed"),
+    "sliding speed": Range(0.05, 1.0, "m/s", f"{REPORT}, G.2.1"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class BoundaryLaw:
+    """tau = COF_BL p_c, split into hysteresis and adhesion, plus eta V / h.
+
+    COF_BL is the friction of the pair with this fluid between the asperities and no film that
+    carries load. It holds no fall with speed: what the film takes from the asperities on the scale
+    of the shoe is left to the film, and the fall that a pin shows within boundary lubrication
+    (Eq. 17) is another law, ``StribeckLaw``.
+
+    Hysteresis is the friction that is left when adhesion is blocked, at most COF_BL; adhesion is
+    the rest. Only their sum was measured with the fluid itself.
+
+    Parameters
+    ----------
+    cof_boundary
+        COF_BL of the pair and fluid.
+    cof_hysteresis
+        Friction left when adhesion is blocked, see ``friction_left``.
+    viscosity
+        Pa s; None leaves out the viscous part.
+    assumed
+        Further assumptions behind the numbers, in words.
+    """
+
+    cof_boundary: SourcedValue
+    cof_hysteresis: SourcedValue
+    viscosity: float | None = None
+    assumed: tuple[str, ...] = ()
+    name: str = field(default="boundary", init=False)
+
+    def __post_init__(self) -> None:
+        coefficient(self.cof_boundary, "cof_boundary")
+        coefficient(self.cof_hysteresis, "cof_hysteresis")
+        checked_viscosity(self.viscosity)
+
+    @classmethod
+    def measured(
+        cls,
+        friction: BoundaryFriction | None,
+        *,
+        cof_hysteresis: SourcedValue | None = None,
+        others: tuple[BoundaryFriction, ...] = (),
+    ) -> BoundaryLaw:
+        """Return the law of a measured fluid.
+
+        Parameters
+        ----------
+        friction
+            Of the pair and fluid; None when nothing was measured.
+        cof_hysteresis
+            Measured hysteresis of the pair; None takes ``friction_left`` of ``others``.
+        others
+            Fluids measured on the same pair.
+
+        Errors
+        ------
+        InputError
+            No boundary friction (as for a dry floor: the report prints none) or no hysteresis.
+        """
+        if friction is None or friction.cof_boundary.value is None:
+            fluid = "a dry floor" if friction is None else friction.fluid
+            raise InputError(
+                f"no boundary friction was measured for {fluid}",
+                where="contaminant.boundary",
+                remedy="Give the adhesion and hysteresis coefficients of the pair "
+                "(models.friction = constant), or cof_boundary of the fluid",
+            )
+        notes = []
+        if cof_hysteresis is None:
+            cof_hysteresis = friction_left(others or (friction,))
+            notes.append(
+                "Hysteresis is the friction that stays at high speed under glycerol "
+                "(COF_asymptote), also for other fluids."
+            )
+        if friction.cof_boundary.assumed:
+            notes.append(friction.cof_boundary.note or f"COF_BL of {friction.fluid} is assumed.")
+        if friction.pair:
+            notes.append(f"Boundary friction was measured on {friction.pair}.")
+        return cls(friction.cof_boundary, cof_hysteresis, friction.viscosity, tuple(notes))
+
+    @property
+    def source(self) -> str:
+        """Where COF_BL comes from."""
+        return self.cof_boundary.source or "given"
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What no measurement stands behind."""
+        return (
+            "Contact friction is proportional to the contact pressure and the same at all speeds.",
+            *self.assumed,
+        )
+
+    @property
+    def cof_parts(self) -> tuple[float, float]:
+        """Coefficients of the contact (adhesion, hysteresis); their sum is COF_BL."""
+        whole = coefficient(self.cof_boundary, "cof_boundary")
+        hysteresis = min(coefficient(self.cof_hysteresis, "cof_hysteresis"), whole)
+        return whole - hysteresis, hysteresis
+
+    def __call__(
+        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+    ) -> FrictionParts:
+        """Return the shear stresses in Pa."""
+        pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
+        adhesion, hysteresis = self.cof_parts
+        return FrictionParts(
+            adhesion * pressure,
+            hysteresis * pressure,
+            viscous_shear(self.viscosity, velocity, film),
+        )
+
+    def deviation(
+        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+    ) -> FrictionDeviation | None:
+        """Return the standard deviations of the shear stresses, Pa."""
+        whole, hysteresis = self.cof_boundary.uncertainty, self.cof_hysteresis.uncertainty
+        if whole is None or hysteresis is None:
+            return None
+        pressure, _, _ = checked(contact_pressure, speed, film_thickness)
+        return FrictionDeviation(
+            whole * pressure, math.hypot(whole, hysteresis) * pressure, hysteresis * pressure
+        )
+
+    def breaches(
+        self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+    ) -> list[Breach]:
+        """Return what leaves the pin-on-disk tests: pressure (mean seen by the load) and speed."""
+        return law_breaches(
+            self.name, RANGES, self.viscosity, contact_pressure, speed, film_thickness
+        )

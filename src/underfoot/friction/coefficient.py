@@ -1,0 +1,126 @@
+"""Eq. (1): from shear stresses under the sole to the coefficient of friction and its parts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from underfoot.core import InputError, SourcedValue
+
+from .law import FrictionDeviation, FrictionParts
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class FrictionCoefficients:
+    """Coefficient of friction of the sole and its parts; ``cof`` is their sum.
+
+    Forces in N. ``fluid_load`` is the part of ``normal_force`` that the fluid carries.
+    """
+
+    cof: SourcedValue
+    cof_adhesion: SourcedValue
+    cof_hysteresis: SourcedValue
+    cof_viscous: SourcedValue
+    friction_force: float
+    normal_force: float
+    fluid_load: float
+
+
+def cof(
+    parts: FrictionParts,
+    contact_pressure: ArrayLike,
+    fluid_pressure: ArrayLike,
+    *,
+    spacing: float,
+    wet: ArrayLike | None = None,
+    deviation: FrictionDeviation | None = None,
+    source: str = "",
+) -> FrictionCoefficients:
+    """Return the coefficient of friction of the whole sole and its parts (Eq. 1).
+
+    COF = sum(tau_adhesion + tau_hysteresis + tau_viscous) dA / sum(p_c + p_f) dA. The report
+    writes Eq. (1) as (COF_asp F_asp + F_fluid) / F_tot; here COF_asp may differ from place to
+    place.
+
+    Parameters
+    ----------
+    parts
+        Shear stresses from a law, Pa.
+    contact_pressure, fluid_pressure
+        Pa, of the same shape; 0 outside contact and film.
+    spacing
+        Side of a cell, m.
+    wet
+        Where a film is: the viscous part counts only there. None counts it everywhere.
+    deviation
+        Standard deviations from the same law, fully correlated over the sole; None leaves the
+        uncertainties out, with the reason.
+    source
+        Name and origin of the law, for the result.
+
+    Notes
+    -----
+    The part of the floor's shear that comes from the pressure gradient, (h/2) dp/dx, is left out;
+    by partial integration it is sum(p_f dh/dx / 2) dA, the fluid load times half the slope of the
+    film under it.
+
+    Errors
+    ------
+    InputError
+        Shapes that differ, values that are not finite, no normal force.
+    """
+    if not spacing > 0:
+        raise InputError(f"{spacing:g} m is not positive", where="spacing", allowed="above 0")
+    contact = np.asarray(contact_pressure, dtype=float)
+    fluid = np.asarray(fluid_pressure, dtype=float)
+    mask = np.ones(contact.shape, dtype=bool) if wet is None else np.asarray(wet, dtype=bool)
+    shears = {
+        "adhesion": parts.adhesion,
+        "hysteresis": parts.hysteresis,
+        "viscous": parts.viscous,
+    }
+    for name, array in {**shears, "fluid_pressure": fluid, "wet": mask}.items():
+        if np.shape(array) != contact.shape:
+            raise InputError(f"shape {np.shape(array)}", where=name, allowed=f"{contact.shape}")
+    shears["viscous"] = np.where(mask, parts.viscous, 0.0)
+    for name, array in {**shears, "contact_pressure": contact, "fluid_pressure": fluid}.items():
+        if not np.isfinite(array).all():
+            raise InputError("a value is not finite", where=name)
+    area = spacing**2
+    fluid_load = float(fluid.sum()) * area
+    normal = float(contact.sum()) * area + fluid_load
+    if not normal > 0:
+        raise InputError(
+            f"the normal force is {normal:.3g} N", where="contact_pressure", allowed="above 0"
+        )
+    coefficients = {name: float(array.sum()) * area / normal for name, array in shears.items()}
+    whole = sum(coefficients.values())
+    spread: dict[str, float | None] = dict.fromkeys(("solid", "adhesion", "hysteresis"))
+    if deviation is not None:
+        spread = {name: float(np.sum(getattr(deviation, name))) * area / normal for name in spread}
+    film = "the film's own uncertainty is not estimated"
+    none = "the law gives no uncertainty"
+
+    def value(number: float, uncertainty: float | None, reason: str) -> SourcedValue:
+        return SourcedValue(
+            number,
+            "1",
+            source=source,
+            uncertainty=uncertainty,
+            reason=reason if uncertainty is None else "",
+            note="" if uncertainty is None else f"from the friction law alone; {film}",
+        )
+
+    return FrictionCoefficients(
+        cof=value(whole, spread["solid"], none),
+        cof_adhesion=value(coefficients["adhesion"], spread["adhesion"], none),
+        cof_hysteresis=value(coefficients["hysteresis"], spread["hysteresis"], none),
+        cof_viscous=value(coefficients["viscous"], None, film),
+        friction_force=whole * normal,
+        normal_force=normal,
+        fluid_load=fluid_load,
+    )

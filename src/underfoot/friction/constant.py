@@ -1,0 +1,89 @@
+"""Friction given by the user as two constant coefficients."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from underfoot.core import Breach, InputError
+
+from ._shared import checked, checked_viscosity, law_breaches, viscous_shear
+from .law import FrictionDeviation, FrictionParts
+
+
+@dataclass(frozen=True, slots=True)
+class ConstantLaw:
+    """Adhesion and hysteresis in proportion to the contact pressure: tau = mu p_c; plus eta V / h.
+
+    Parameters
+    ----------
+    cof_adhesion, cof_hysteresis
+        Coefficients of the contact, 1.
+    source
+        Where they come from.
+    viscosity
+        Pa s; None for a dry floor.
+    adhesion_deviation, hysteresis_deviation
+        Standard deviations, 1, taken as independent; None when not known.
+    """
+
+    cof_adhesion: float
+    cof_hysteresis: float
+    source: str
+    viscosity: float | None = None
+    adhesion_deviation: float | None = None
+    hysteresis_deviation: float | None = None
+    name: str = field(default="constant", init=False)
+    assumptions: tuple[str, ...] = field(
+        default=("Contact friction does not depend on pressure, speed or film.",), init=False
+    )
+
+    def __post_init__(self) -> None:
+        for label in ("cof_adhesion", "cof_hysteresis"):
+            _coefficient(getattr(self, label), label)
+        for label in ("adhesion_deviation", "hysteresis_deviation"):
+            if getattr(self, label) is not None:
+                _coefficient(getattr(self, label), label)
+        checked_viscosity(self.viscosity)
+        if not self.source.strip():
+            raise InputError(
+                "no source", where="source", remedy="Say where the coefficients come from"
+            )
+
+    def __call__(
+        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+    ) -> FrictionParts:
+        """Return the shear stresses in Pa."""
+        pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
+        return FrictionParts(
+            self.cof_adhesion * pressure,
+            self.cof_hysteresis * pressure,
+            viscous_shear(self.viscosity, velocity, film),
+        )
+
+    def deviation(
+        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+    ) -> FrictionDeviation | None:
+        """Return the standard deviations of the shear stresses, Pa."""
+        if self.adhesion_deviation is None or self.hysteresis_deviation is None:
+            return None
+        pressure, _, _ = checked(contact_pressure, speed, film_thickness)
+        both = float(np.hypot(self.adhesion_deviation, self.hysteresis_deviation))
+        return FrictionDeviation(
+            both * pressure,
+            self.adhesion_deviation * pressure,
+            self.hysteresis_deviation * pressure,
+        )
+
+    def breaches(
+        self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+    ) -> list[Breach]:
+        """Return films below the bound of the viscous part."""
+        return law_breaches(self.name, {}, self.viscosity, contact_pressure, speed, film_thickness)
+
+
+def _coefficient(value: float, where: str) -> None:
+    if not (np.isfinite(value) and value >= 0):
+        raise InputError(f"{value:g}", where=where, allowed="a finite number, 0 or more")

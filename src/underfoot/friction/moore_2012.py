@@ -1,0 +1,216 @@
+"""Measured fall of friction with speed within boundary lubrication: Moore et al. (2012), Eq. 17."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from underfoot.core import Breach, InputError, Range, SourcedValue
+
+from ._shared import (
+    PIN_PRESSURE,
+    REPORT,
+    checked,
+    checked_viscosity,
+    coefficient,
+    law_breaches,
+    viscous_shear,
+)
+from .law import FrictionDeviation, FrictionParts
+from .measured import BoundaryFriction, boundary_friction_at, friction_left, viscous_decay
+
+SOURCE = (
+    f"Moore, Menezes, Lovell, Beschorner, J. Tribology 134 (2012) 041104; {REPORT}, G.2, Eq. 17"
+)
+RANGES = {
+    "contact pressure": Range(0.0, PIN_PRESSURE, "Pa", f"{REPORT}, G.2.1: one load; lower assumed"),
+    "sliding speed": Range(0.05, 1.0, "m/s", f"{REPORT}, G.2.1"),
+}
+
+
+def stribeck_cof(
+    speed: ArrayLike, cof_boundary: float, tau_hydro: float, cof_asymptote: float
+) -> Any:
+    """Return COF = COF_asymptote + (COF_BL - COF_asymptote) exp(-v / tau_hydro) (Eq. 17).
+
+    ``speed`` and ``tau_hydro`` in m/s; fitted from 0.05 to 1 m/s at 266.1 kPa on a pin of 10 mm.
+    """
+    decay = np.exp(-np.abs(np.asarray(speed, dtype=float)) / tau_hydro)
+    found = cof_asymptote + (cof_boundary - cof_asymptote) * decay
+    return float(found) if found.ndim == 0 else found
+
+
+@dataclass(frozen=True, slots=True)
+class StribeckLaw:
+    """tau = COF(V) p_c with COF(V) of Eq. 17, plus eta V / h.
+
+    What it means: Eq. 17 was measured on a pin of 10 mm. There the mean-film theory (Eq. 18)
+    leaves all fluids with a fit in boundary lubrication at every speed, so the report reads the
+    fall as "a speed effect within boundary lubrication": something that happens between the
+    asperities. Used locally under a shoe, that effect is kept and the film on the scale of the
+    shoe comes on top. If part of the fall was a film under the pin after all, that part is counted
+    twice. The report leaves the question open. For 50 % glycerol at 0.3 m/s the law gives 0.19;
+    treaded boots without fluid pressure had 0.159 to 0.182 (G.6.2), where COF_BL alone is 0.47.
+
+    Parameters
+    ----------
+    cof_boundary, tau_hydro, cof_asymptote
+        Of Eq. 17: 1, m/s, 1.
+    viscosity
+        Pa s; None leaves out the viscous part.
+    cof_hysteresis
+        Friction left when adhesion is blocked; None takes cof_asymptote. Needed for fluids whose
+        asymptote lies at the bound of the fit (0.001 for water and detergent).
+    assumed
+        Further assumptions behind the numbers, in words.
+    """
+
+    cof_boundary: SourcedValue
+    tau_hydro: SourcedValue
+    cof_asymptote: SourcedValue
+    viscosity: float | None = None
+    cof_hysteresis: SourcedValue | None = None
+    assumed: tuple[str, ...] = ()
+    name: str = field(default="stribeck", init=False)
+    source: str = field(default=SOURCE, init=False)
+
+    def __post_init__(self) -> None:
+        coefficient(self.cof_boundary, "cof_boundary")
+        coefficient(self.cof_asymptote, "cof_asymptote")
+        if coefficient(self.tau_hydro, "tau_hydro") == 0:
+            raise InputError("0 m/s", where="tau_hydro", allowed="above 0")
+        if self.cof_hysteresis is not None:
+            coefficient(self.cof_hysteresis, "cof_hysteresis")
+        checked_viscosity(self.viscosity)
+
+    @classmethod
+    def measured(
+        cls, friction: BoundaryFriction, *, cof_hysteresis: SourcedValue | None = None
+    ) -> StribeckLaw:
+        """Return the law of a fluid that has the fit.
+
+        Errors
+        ------
+        InputError
+            No fit of Eq. 17 for this fluid (75 % glycerol and canola oil have none).
+        """
+        if friction.tau_hydro is None or friction.cof_asymptote is None:
+            raise InputError(
+                f"Eq. 17 was not fitted for {friction.fluid}",
+                where="contaminant.boundary.tau_hydro",
+                remedy="Choose models.friction = boundary, or give tau_hydro and cof_asymptote",
+            )
+        notes = [f"Friction was measured on {friction.pair}."] if friction.pair else []
+        if friction.cof_boundary.assumed:
+            notes.append(friction.cof_boundary.note or f"COF_BL of {friction.fluid} is assumed.")
+        return cls(
+            friction.cof_boundary,
+            friction.tau_hydro,
+            friction.cof_asymptote,
+            friction.viscosity,
+            cof_hysteresis,
+            tuple(notes),
+        )
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What no measurement stands behind."""
+        return (
+            "Contact friction is proportional to the contact pressure.",
+            "The fall with speed of a pin happens between the asperities, not in a film under it.",
+            *self.assumed,
+        )
+
+    def __call__(
+        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+    ) -> FrictionParts:
+        """Return the shear stresses in Pa; hysteresis is what is left of COF at high speed."""
+        pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
+        whole = self._cof(velocity)
+        left = self.cof_hysteresis or self.cof_asymptote
+        hysteresis = np.minimum(coefficient(left, "cof_hysteresis"), whole)
+        return FrictionParts(
+            (whole - hysteresis) * pressure,
+            hysteresis * pressure,
+            viscous_shear(self.viscosity, velocity, film),
+        )
+
+    def deviation(
+        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+    ) -> FrictionDeviation | None:
+        """Return the standard deviations of the shear stresses, Pa.
+
+        First order in the three fitted numbers, taken as independent (their correlation is not
+        printed); bounded by COF itself.
+        """
+        boundary, tau = self.cof_boundary.uncertainty, self.tau_hydro.uncertainty
+        asymptote = self.cof_asymptote.uncertainty
+        left = (self.cof_hysteresis or self.cof_asymptote).uncertainty
+        if boundary is None or tau is None or asymptote is None or left is None:
+            return None
+        pressure, velocity, _ = checked(contact_pressure, speed, film_thickness)
+        scale = coefficient(self.tau_hydro, "tau_hydro")
+        decay = np.exp(-velocity / scale)
+        height = abs((self.cof_boundary.value or 0.0) - (self.cof_asymptote.value or 0.0))
+        terms = (
+            decay * boundary,
+            (1 - decay) * asymptote,
+            height * decay * velocity / scale**2 * tau,
+        )
+        solid = np.minimum(np.sqrt(sum(term**2 for term in terms)), self._cof(velocity))
+        return FrictionDeviation(
+            solid * pressure, np.hypot(solid, left) * pressure, left * pressure
+        )
+
+    def breaches(
+        self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+    ) -> list[Breach]:
+        """Return what leaves the pin-on-disk tests: pressure (mean seen by the load) and speed."""
+        return law_breaches(
+            self.name, RANGES, self.viscosity, contact_pressure, speed, film_thickness
+        )
+
+    def _cof(self, speed: NDArray[np.float64]) -> NDArray[np.float64]:
+        boundary, asymptote = self.cof_boundary.value, self.cof_asymptote.value
+        decay = np.exp(-speed / coefficient(self.tau_hydro, "tau_hydro"))
+        return (asymptote or 0.0) + ((boundary or 0.0) - (asymptote or 0.0)) * decay
+
+
+def stribeck_law_at(
+    viscosity: float, measured: Sequence[BoundaryFriction], *, fluid: str = ""
+) -> StribeckLaw:
+    """Return an assumed Eq. 17 for a fluid of which only the viscosity is known.
+
+    tau_hydro = (mean of viscosity x tau_hydro over the fitted fluids) / viscosity, COF_asymptote
+    the friction left of the fitted fluids, COF_BL by ``boundary_friction_at`` among the fitted
+    fluids. The report states that all its data fall on one curve of viscosity x speed (Fig. 16),
+    but publishes no such fit.
+    """
+    fitted = [m for m in measured if m.tau_hydro is not None and m.cof_asymptote is not None]
+    decay = viscous_decay(fitted)
+    between = boundary_friction_at(viscosity, fitted, fluid=fluid)
+    tau = (decay.value or 0.0) / viscosity
+    left = friction_left(fitted)
+    return StribeckLaw(
+        cof_boundary=between.cof_boundary,
+        tau_hydro=SourcedValue(
+            tau,
+            "m/s",
+            source=decay.source,
+            uncertainty=(None if decay.uncertainty is None else decay.uncertainty / viscosity),
+            assumed=True,
+            note=decay.note,
+        ),
+        cof_asymptote=left,
+        viscosity=viscosity,
+        assumed=(
+            f"{between.cof_boundary.note}.",
+            "One constant viscosity x tau_hydro holds for all fluids of the pair "
+            f"({1e3 * (decay.value or math.nan):.3g} mPa m).",
+        ),
+    )

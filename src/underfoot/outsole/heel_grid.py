@@ -1,0 +1,180 @@
+"""A tilted heel on a grid of square cells in the floor's frame."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core import Breach, InputError, Range, breaches
+
+from ._checks import between, not_negative, positive
+from .geometry import SoleMap
+from .heel import Heel
+
+Array = NDArray[np.float64]
+CELLS_REFUSED = 2.0
+"""A channel or lug of fewer cells is refused: its width would be wrong by half or more."""
+CELLS_WANTED = 4.0
+"""A channel or lug of fewer cells is listed as a breach."""
+_BISECTIONS = 48
+
+
+def heel_map(heel: Heel, *, shoe_angle: float, spacing: float, padding: float = 0.004) -> SoleMap:
+    """Return the heel, tilted by the shoe angle, on a grid of square cells in the floor's frame.
+
+    A point (x, z) of the heel goes to x' = x cos a - z sin a, z' = x sin a + z cos a. The map
+    follows the land surface exactly; a channel keeps its depth straight above the land it cuts.
+    Tread and land are decided in the untilted frame.
+
+    Parameters
+    ----------
+    heel
+        The heel in its own frame.
+    shoe_angle
+        a, rad, toe up positive, -30 to 60 deg.
+    spacing
+        Side of a cell, m. A channel or lug of fewer than 2 cells is refused, one of fewer than 4
+        is listed in ``SoleMap.breaches``.
+    padding
+        Free margin around the plan form, m.
+
+    Errors
+    ------
+    InputError
+        Grid too coarse for the plan form, a channel or a lug; angle out of range.
+    """
+    positive(spacing, "grid.spacing")
+    not_negative(padding, "grid.padding")
+    between(shoe_angle, math.radians(-30), math.radians(60), "shoe_angle", "-30 deg to 60 deg")
+    found = _resolution(heel, spacing)
+    cosine, sine = math.cos(shoe_angle), math.sin(shoe_angle)
+
+    def along(x: Array, y: Array) -> Array:
+        return x * cosine - heel.land_height(x, y) * sine
+
+    ends = along(np.array([0.0, heel.length]), np.zeros(2))
+    rear = float(ends[0])
+    margin = max(1, math.ceil(padding / spacing - 1e-9))
+    count_x = math.ceil((ends[1] - rear) / spacing - 1e-9) + 2 * margin
+    count_y = math.ceil(heel.width / spacing - 1e-9) + 2 * margin
+    x_floor = (np.arange(count_x) + 0.5 - margin) * spacing
+    y = (np.arange(count_y, dtype=np.float64) - (count_y - 1) / 2) * spacing
+    target, y_map = np.meshgrid(x_floor + rear, y, indexing="ij")
+    x = _solved(along, target, y_map, -2 * margin * spacing - heel.length, 3 * heel.length)
+    inside = heel.inward_distance(x, y_map) > 0
+    height, land, tread_depth = _with_channels(heel, x, y_map)
+    land &= inside
+    clearance = np.where(inside, x * sine + height * cosine, np.inf)
+    if inside.any():
+        clearance -= clearance.min()
+    return SoleMap(
+        x=x_floor,
+        y=y,
+        clearance=clearance,
+        inside=inside,
+        land=land,
+        tread_depth=np.where(land, tread_depth, 0.0),
+        spacing=float(spacing),
+        outline=_outline(heel, along, rear),
+        breaches=tuple(found),
+    )
+
+
+def _solved(
+    along: Callable[[Array, Array], Array], target: Array, y: Array, low: float, high: float
+) -> Array:
+    """Return the x of the sole whose place on the floor is ``target``, by bisection."""
+    below, above = np.full_like(target, low), np.full_like(target, high)
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (below + above)
+        short = along(middle, y) < target
+        below = np.where(short, middle, below)
+        above = np.where(short, above, middle)
+    return 0.5 * (below + above)
+
+
+def _with_channels(heel: Heel, x: Array, y: Array) -> tuple[Array, NDArray[np.bool_], Array]:
+    """Return height over the sole plane, land and lug height, all in the frame of the sole."""
+    unworn = heel.unworn_height(x, y)
+    base = heel.land_height(x, y)
+    height = base.copy()
+    land = np.ones(x.shape, dtype=bool)
+    lug = np.zeros_like(x)
+    tread = heel.tread
+    if tread is not None and tread.depth > 0:
+        into = tread.channel_distance(x, y)
+        if tread.edge_radius > 0:
+            edge = np.clip(tread.edge_radius + into, 0.0, tread.edge_radius)
+            rounding = tread.edge_radius - np.sqrt(tread.edge_radius**2 - edge**2)
+            height = np.maximum(unworn + rounding, base)
+        lug = np.maximum(tread.depth - (base - unworn), 0.0)
+        height, land = _cut(height, land, into > 0, unworn + tread.depth, base)
+    arc = heel.arc_channel
+    if arc is not None and arc.depth > 0:
+        into = arc.channel_distance(x, y)
+        height, land = _cut(height, land, into > 0, unworn + arc.depth, base)
+    return height, land, lug
+
+
+def _cut(
+    height: Array, land: NDArray[np.bool_], channel: NDArray[np.bool_], bottom: Array, base: Array
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Return height and land with a channel; where wear has reached its bottom it is land."""
+    open_channel = channel & (bottom > base)
+    height = np.where(channel, np.maximum(np.where(open_channel, height, base), base), height)
+    return np.where(open_channel, np.maximum(height, bottom), height), land & ~open_channel
+
+
+def _resolution(heel: Heel, spacing: float) -> list[Breach]:
+    """Return what the grid resolves with too few cells; refuse what it can't show at all."""
+    smallest = min(heel.length, heel.width)
+    if smallest < CELLS_WANTED * spacing:
+        raise InputError(
+            f"the plan form is {smallest * 1e3:g} mm small, the grid spacing {spacing * 1e3:g} mm",
+            where="grid.spacing",
+            allowed=f"at most {smallest / CELLS_WANTED * 1e3:.3g} mm for this plan form",
+        )
+    features: list[tuple[str, str, float]] = []
+    if heel.tread is not None and heel.tread.depth > 0:
+        features.append(("tread.channel_width", "channel", heel.tread.channel_width))
+        features.append(("tread.lug_width", "lug", heel.tread.lug_width))
+    if heel.arc_channel is not None and heel.arc_channel.depth > 0:
+        features.append(("arc_channel.width", "arc channel", heel.arc_channel.width))
+    found: list[Breach] = []
+    tested = Range(CELLS_WANTED, math.floor(1e6), "1", "grid refinement of the tread")
+    for where, name, width in features:
+        cells = width / spacing
+        if cells < CELLS_REFUSED * (1 - 1e-9):
+            raise InputError(
+                f"the {name} of {width * 1e3:g} mm spans {cells:.2g} cells of {spacing * 1e3:g} mm",
+                where=where,
+                allowed=f"at least {CELLS_REFUSED:g} cells, {CELLS_WANTED:g} for a result to trust",
+                remedy=f"Use a grid spacing of {width / CELLS_WANTED * 1e3:.3g} mm or less",
+            )
+        found += breaches(
+            "grid", {f"cells across the {name}": tested}, {f"cells across the {name}": cells}
+        )
+    return found
+
+
+def _outline(
+    heel: Heel, along: Callable[[Array, Array], Array], rear: float, nodes: int = 24
+) -> Array:
+    """Return the closed polygon of the plan form, projected on the floor."""
+    half = heel.width / 2
+    corners = (  # centre of the corner's circle, its radius, first angle; anticlockwise
+        (heel.length - heel.front_radius, half - heel.front_radius, heel.front_radius, 0.0),
+        (heel.rear_radius, half - heel.rear_radius, heel.rear_radius, 0.5),
+        (heel.rear_radius, heel.rear_radius - half, heel.rear_radius, 1.0),
+        (heel.length - heel.front_radius, heel.front_radius - half, heel.front_radius, 1.5),
+    )
+    points = []
+    for x, y, radius, first in corners:
+        angle = math.pi * (first + np.linspace(0.0, 0.5, nodes if radius > 0 else 1))
+        points.append(np.column_stack([x + radius * np.cos(angle), y + radius * np.sin(angle)]))
+    rim = np.concatenate(points)
+    rim = np.column_stack([along(rim[:, 0], rim[:, 1]) - rear, rim[:, 1]])
+    return np.concatenate([rim, rim[:1]])

@@ -1,0 +1,79 @@
+"""Logistic slip model of the report: ACOF minus RCOF (G.6)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from underfoot.core import Breach, InputError, Range, breaches
+
+from ._checks import available, deviation, required
+from ._logistic import logistic, normal_mean_of_logistic
+
+SOURCE = "Beschorner, final progress report R01OH008986, G.6.2 and G.6.3"
+SLOPE = -49.2
+FIFTY_PERCENT_AT = -0.06
+TESTED = Range(-0.111, 0.044, "1", f"{SOURCE}: predicted risks of 92.5 % and 0.6 %")
+"""ACOF - RCOF of the pairs of subject and outsole in the study, from their printed extreme risks
+(computed with the published slope and 50 % point)."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReportG6:
+    """P = 1 / (1 + exp(-slope (ACOF - RCOF - x50))), slope -49.2, x50 -0.06.
+
+    From unexpected slips of 29 young adults on vinyl with 50 % glycerol, three outsoles of one
+    tread (ACOF 0.159 to 0.182 measured at 250 N, 0.3 m/s, 7 deg); a slip is a heel speed above
+    0.2 m/s. The report prints no standard errors. Two slips of each person were taken as
+    independent.
+
+    Parameters
+    ----------
+    slope
+        Change of the log odds per unit of ACOF - RCOF; negative.
+    fifty_percent_at
+        ACOF - RCOF at which half of the steps slip.
+    """
+
+    slope: float = SLOPE
+    fifty_percent_at: float = FIFTY_PERCENT_AT
+    name: str = field(default="report_g6", init=False)
+    source: str = field(default=SOURCE, init=False)
+    assumptions: tuple[str, ...] = field(
+        default=(
+            "The available friction was found under the conditions of the study's slip tester "
+            "(250 N, 0.3 m/s, 7 deg), or means the same.",
+        ),
+        init=False,
+    )
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.slope) and self.slope < 0):
+            raise InputError(f"{self.slope:g}", where="slope", allowed="a number below 0")
+        if not math.isfinite(self.fifty_percent_at):
+            raise InputError("is not finite", where="fifty_percent_at")
+
+    def __call__(self, acof: ArrayLike, rcof: ArrayLike) -> Any:
+        """Return the probability of a slip for persons of known RCOF (arrays broadcast)."""
+        found = logistic(self._log_odds(available(acof), required(rcof)))
+        return float(found) if np.ndim(found) == 0 else found
+
+    def population(self, acof: ArrayLike, rcof_mean: ArrayLike, rcof_sd: ArrayLike) -> Any:
+        """Return the mean probability over RCOF ~ normal(mean, sd) (arrays broadcast)."""
+        a, mean, sd = np.broadcast_arrays(
+            available(acof), required(rcof_mean, "rcof_mean"), deviation(rcof_sd, "rcof_sd")
+        )
+        found = normal_mean_of_logistic(self._log_odds(a, mean), -self.slope * sd)
+        return float(found) if np.ndim(found) == 0 else found
+
+    def breaches(self, acof: ArrayLike, rcof: ArrayLike) -> list[Breach]:
+        """Return whether ACOF - RCOF leaves that of the study."""
+        difference = np.asarray(acof, dtype=float) - np.asarray(rcof, dtype=float)
+        return breaches(self.name, {"ACOF - RCOF": TESTED}, {"ACOF - RCOF": difference})
+
+    def _log_odds(self, acof: Any, rcof: Any) -> Any:
+        return self.slope * (acof - rcof - self.fifty_percent_at)
