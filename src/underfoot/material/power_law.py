@@ -16,7 +16,7 @@ def power_law_spectrum(
     *,
     shortest_time: float = 1e-7,
     longest_time: float = 1.0,
-    terms_per_decade: int = 1,
+    terms_per_decade: int = 2,
 ) -> RelaxationSpectrum:
     """Return non-negative Maxwell terms that follow E*(w) = modulus (i w s)^exponent.
 
@@ -33,7 +33,7 @@ def power_law_spectrum(
     shortest_time, longest_time
         First and last relaxation time, s.
     terms_per_decade
-        1 or more.
+        2 follows the loss tangent to 1 % away from the ends; 1 leaves a ripple of 6 %.
 
     The fit is a non-negative least squares one to real and imaginary part, each relative to
     |E*|, at eight frequencies a decade from 1 / longest_time to 1 / shortest_time.
