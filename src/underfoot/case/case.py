@@ -188,6 +188,11 @@ class Case(Section):
         return self._origins
 
     @property
+    def catalogue(self) -> Catalogue:
+        """The catalogue that the case was read with."""
+        return self._catalogue
+
+    @property
     def entries(self) -> Mapping[str, str]:
         """Catalogue entry of each section that was taken from one."""
         return self._entries

@@ -24,6 +24,10 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 FAR = 1.0  # m, clearance that stands for "outside the plan form"
+FIRST_STEP = 1 / 150  # of the rise time
+LONGEST_TIME = 1e5  # s, when a film that still moves is given up as not steady
+STEADY_STEP = 0.2  # share of the elapsed time over which a steady state must not move
+STEADY_CHANGE = 1e-3  # share of the load by which the pressures may change over such a step
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,21 +182,38 @@ def solve_sliding(
     def load_at(time: float) -> float:
         return normal_force * min(time / rise, 1.0)
 
+    end_time = LONGEST_TIME if settings.steady else settings.end_time
+
     def longest_step(time: float) -> float:
-        span = rise if time < rise * (1 - 1e-9) else max(settings.end_time - rise, rise)
-        remaining = rise - time if time < rise * (1 - 1e-9) else math.inf
-        return min(span / settings.time_resolution, remaining)
+        if time < rise * (1 - 1e-9):
+            return min(rise / settings.time_resolution, rise - time)
+        if settings.steady:
+            return math.inf
+        return max(settings.end_time - rise, rise) / settings.time_resolution
+
+    def fraction(time: float) -> float:
+        return time / (time + rise) if settings.steady else min(time / end_time, 1.0)
+
+    def settled(before: State, after: State, step: float, time: float) -> bool:
+        change = float(np.abs(after.pressure - before.pressure).sum()) * sole.spacing**2
+        moved = abs(float((after.fluid - before.fluid).sum())) * sole.spacing**2
+        return (
+            time > 2 * rise
+            and step > STEADY_STEP * time
+            and max(change, moved) < STEADY_CHANGE * normal_force
+        )
 
     result = march(
         problem,
         fit,
         start,
         load_at=load_at,
-        first_step=rise / 30,
+        first_step=rise * FIRST_STEP,
         longest_step=longest_step,
-        end_time=settings.end_time,
+        end_time=end_time,
         pool_depth=settings.pool_depth,
-        settled=None,
+        settled=settled if settings.steady else None,
+        fraction=fraction,
         most_steps=settings.most_time_steps,
         progress=progress,
         stage="Pressing and sliding the sole",
@@ -228,7 +249,7 @@ def _result(
         x=sole.x,
         y=sole.y,
         spacing=sole.spacing,
-        contact_pressure=state.contact,
+        contact_pressure=np.maximum(state.contact, 0.0),  # rounding in unloaded cells
         fluid_pressure=state.fluid,
         film_thickness=film,
         wet=end.film & sole.inside,

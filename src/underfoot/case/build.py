@@ -1,0 +1,226 @@
+"""From the values of a case to the objects the physics works with, one function a slot."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from underfoot.core import Breach, InputError, SourcedValue
+
+if TYPE_CHECKING:
+    from underfoot.asperity.law import PressureGapLaw
+    from underfoot.core.catalogue import Catalogue
+    from underfoot.friction import BoundaryFriction, FrictionLaw
+    from underfoot.outsole import SoleMap
+    from underfoot.outsole.compliance import Compliance
+
+    from .case import Case
+
+HARDNESS_SPREAD = 0.3
+"""Relative standard deviation of a modulus from hardness (assumed: tens of percent)."""
+
+
+def youngs_modulus(case: Case) -> tuple[SourcedValue, list[Breach]]:
+    """Return the outsole's Young's modulus: measured, or from hardness by the chosen relation."""
+    from underfoot import material
+
+    if case.shoe.material.modulus is not None:
+        return case.sourced("shoe.material.modulus"), []
+    hardness = case.shoe.material.shore_a
+    assert hardness is not None  # the case checks that one of the two is there
+    if case.models.hardness == "gent":
+        value, found = material.youngs_modulus_gent(hardness), material.gent_breaches(hardness)
+        source = "Gent 1958 from Shore A"
+    else:
+        value, found = material.youngs_modulus_ruess(hardness), material.ruess_breaches(hardness)
+        source = "Ruess from Shore A"
+    modulus = SourcedValue(
+        float(value),
+        "Pa",
+        source=f"{source} {hardness:g}",
+        uncertainty=HARDNESS_SPREAD * float(value),
+        note="static modulus from hardness, good to tens of percent",
+    )
+    return modulus, found
+
+
+def viscosity(case: Case) -> SourcedValue | None:
+    """Return the contaminant's viscosity in Pa s; None on a dry floor."""
+    fluid = case.contaminant
+    if fluid is None:
+        return None
+    if fluid.viscosity is not None:
+        return case.sourced("contaminant.viscosity")
+    from underfoot.fluid import glycerol_water
+
+    assert fluid.glycerol_fraction is not None  # the case checks that one of the two is there
+    return glycerol_water(
+        fluid.glycerol_fraction, fluid.temperature, fluid.fraction_basis or "mass"
+    ).viscosity
+
+
+def sole_map(case: Case, spacing: float) -> SoleMap:
+    """Return the tilted heel of the case on a grid of ``spacing`` (m)."""
+    from underfoot import outsole
+
+    shape, tread, wear = case.shoe.heel, case.shoe.tread, case.shoe.wear
+    profile: outsole.Profile = outsole.Flat()
+    if shape.profile == "facet" and shape.facet_angle and shape.facet_length:
+        profile = outsole.Facet(shape.facet_angle, shape.facet_length)
+    elif shape.profile == "rocker" and shape.rocker_radius and shape.rocker_start:
+        profile = outsole.Rocker(shape.rocker_radius, shape.rocker_start)
+    lugs = None
+    if tread.pattern != "none" and tread.lug_width and tread.channel_width:
+        lugs = outsole.Tread(
+            tread.pattern,
+            tread.lug_width,
+            tread.channel_width,
+            tread.depth or 0.0,
+            tread.edge_radius,
+        )
+    arc = tread.arc_channel
+    heel = outsole.Heel(
+        length=shape.length,
+        width=shape.width,
+        rear_radius=shape.rear_radius,
+        front_radius=shape.front_radius,
+        outsole_thickness=case.shoe.sole.outsole_thickness,
+        profile=profile,
+        edge_radius=shape.edge_radius,
+        crown_radius=shape.crown_radius,
+        tread=lugs,
+        arc_channel=arc and outsole.ArcChannel(arc.position, arc.radius, arc.width, arc.depth),
+        wear=outsole.WearPlane(wear.depth, wear.angle) if wear.depth > 0 else None,
+    )
+    return outsole.heel_map(heel, shoe_angle=case.motion.shoe_angle, spacing=spacing)
+
+
+def compliance(case: Case, sole: SoleMap, modulus: float) -> Compliance:
+    """Return how the sole gives way under pressure."""
+    from underfoot.outsole.compliance import half_space_compliance, layered_compliance
+
+    poisson_ratio = case.shoe.material.poisson_ratio
+    if case.models.compliance == "half_space":
+        shape = (sole.x.size, sole.y.size)
+        return half_space_compliance(
+            shape, sole.spacing, modulus=modulus, poisson_ratio=poisson_ratio
+        )
+    layers = case.shoe.sole
+    return layered_compliance(
+        sole,
+        modulus=modulus,
+        poisson_ratio=poisson_ratio,
+        thickness=layers.outsole_thickness,
+        midsole_modulus=layers.midsole_modulus,
+        midsole_thickness=layers.midsole_thickness,
+        midsole_poisson_ratio=layers.midsole_poisson_ratio,
+    )
+
+
+def asperity_law(case: Case, modulus: float) -> PressureGapLaw:
+    """Return how the rough interface carries load and lets fluid through."""
+    from underfoot.asperity.exponential import ExponentialLaw
+
+    rq = case.effective_rq.value
+    assert rq is not None  # effective_rq raises when it is not known
+    return ExponentialLaw(modulus, case.shoe.material.poisson_ratio, rq)
+
+
+def friction_law(case: Case, catalogue: Catalogue) -> FrictionLaw:
+    """Return the local friction law of the pair and fluid that the case chooses."""
+    from underfoot.friction import BoundaryLaw, ConstantLaw, StribeckLaw, stribeck_law_at
+
+    fluid = viscosity(case)
+    thickness = None if fluid is None else fluid.value
+    given = case.interface
+    hysteresis = None
+    if given.hysteresis_cof is not None:
+        hysteresis = case.sourced("interface.hysteresis_cof")
+    if case.models.friction == "constant":
+        whole = given.constant_cof
+        assert whole is not None  # the case checks that the constant model has its number
+        left = min(given.hysteresis_cof or 0.0, whole)
+        source = case.sourced("interface.constant_cof")
+        return ConstantLaw(whole - left, left, source.source, thickness, source.uncertainty)
+    measured = measured_fluids(catalogue)
+    own = _measured_friction(case, thickness)
+    if case.models.friction == "stribeck":
+        if own is not None and own.tau_hydro is not None and own.cof_asymptote is not None:
+            return StribeckLaw.measured(own, cof_hysteresis=hysteresis)
+        if thickness is None:
+            raise _no_dry_friction()
+        return stribeck_law_at(thickness, measured, fluid=_fluid_name(case))
+    if thickness is None:
+        raise _no_dry_friction()
+    if own is None:
+        from underfoot.friction import boundary_friction_at
+
+        own = boundary_friction_at(thickness, measured, fluid=_fluid_name(case))
+    return BoundaryLaw.measured(own, cof_hysteresis=hysteresis, others=measured)
+
+
+def measured_fluids(catalogue: Catalogue) -> tuple[BoundaryFriction, ...]:
+    """Return every fluid of the catalogue whose own boundary friction was measured."""
+    from underfoot.friction import BoundaryFriction
+
+    found = []
+    for name in catalogue.names("fluid"):
+        entry = catalogue.entry("fluid", name)
+        leaf = entry.values.get("boundary.cof_bl")
+        if leaf is None or leaf.assumed or entry.parents or "boundary.pair" not in entry.values:
+            continue
+        optional = {
+            key: entry.sourced(f"boundary.{path}", unit)
+            for key, path, unit in (
+                ("tau_hydro", "tau_hydro", "m/s"),
+                ("cof_asymptote", "cof_asymptote", "1"),
+            )
+            if f"boundary.{path}" in entry.values
+        }
+        thickness = entry.sourced("viscosity", "Pa*s").value
+        assert thickness is not None
+        found.append(
+            BoundaryFriction(
+                fluid=name,
+                pair=entry.text("boundary.pair"),
+                viscosity=thickness,
+                cof_boundary=entry.sourced("boundary.cof_bl", "1"),
+                **optional,
+            )
+        )
+    return tuple(found)
+
+
+def _measured_friction(case: Case, thickness: float | None) -> BoundaryFriction | None:
+    """Return the friction that the case itself holds for its fluid, if any."""
+    from underfoot.friction import BoundaryFriction
+
+    fluid = case.contaminant
+    if fluid is None or thickness is None or fluid.boundary.cof_bl is None:
+        return None
+    boundary = fluid.boundary
+
+    def optional(name: str) -> SourcedValue | None:
+        path = f"contaminant.boundary.{name}"
+        return case.sourced(path) if getattr(boundary, name) is not None else None
+
+    return BoundaryFriction(
+        fluid=_fluid_name(case),
+        pair=boundary.pair or "",
+        viscosity=thickness,
+        cof_boundary=case.sourced("contaminant.boundary.cof_bl"),
+        tau_hydro=optional("tau_hydro"),
+        cof_asymptote=optional("cof_asymptote"),
+    )
+
+
+def _fluid_name(case: Case) -> str:
+    return case.entries.get("contaminant", "the fluid")
+
+
+def _no_dry_friction() -> InputError:
+    return InputError(
+        "the dry friction of this pair is not known: no publication in the catalogue prints it",
+        where="models.friction",
+        remedy='Measure it and write models.friction = "constant" with interface.constant_cof '
+        "(and interface.hysteresis_cof, its hysteresis part)",
+    )

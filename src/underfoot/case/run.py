@@ -1,0 +1,218 @@
+"""From a case to its result: geometry, compliance, film and contact, friction, slip."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from underfoot.core import (
+    Breach,
+    Progress,
+    Provenance,
+    SourcedValue,
+    Status,
+    silent,
+)
+
+from . import build
+from .describe import assumptions
+from .result import Result
+from .scalars import regime, scalars
+
+if TYPE_CHECKING:
+    import xarray
+
+    from underfoot.outsole import SensorReading, SoleMap
+    from underfoot.outsole.solver import SoleContact
+
+    from .case import Case
+
+
+def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Result:
+    """Return the friction of a case with everything that explains it.
+
+    Parameters
+    ----------
+    case
+        What to compute.
+    quick
+        Use the coarse grid of the case: a first look.
+    progress
+        Receives stage, fraction and residual; an exception it raises stops the work.
+
+    Errors
+    ------
+    InputError
+        A case whose parts don't fit together on this grid.
+    ConvergenceError
+        Not even the first contact could be solved.
+    """
+    from underfoot.friction import cof
+    from underfoot.outsole import floor_sensor_reading
+    from underfoot.outsole.solver import SolverSettings, solve_sliding
+
+    started = time.perf_counter()
+    spacing = case.numerics.quick_grid_spacing if quick else case.numerics.grid_spacing
+    law = build.friction_law(case, case.catalogue)
+    modulus, found = build.youngs_modulus(case)
+    fluid = build.viscosity(case)
+    assert modulus.value is not None
+    sole = build.sole_map(case, spacing)
+    asperities = build.asperity_law(case, modulus.value)
+    motion = case.motion
+    settings = SolverSettings(
+        pool_depth=case.contaminant.pool_depth if case.contaminant else 0.6e-3,
+        start_film=motion.start_film,
+        rise_time=motion.force_rise_time,
+        end_time=max(motion.duration, motion.force_rise_time),
+        steady=motion.steady,
+        tolerance=case.numerics.tolerance,
+    )
+    prepared = time.perf_counter()
+    contact = solve_sliding(
+        sole,
+        build.compliance(case, sole, modulus.value),
+        asperities,
+        viscosity=None if fluid is None else fluid.value,
+        speed=motion.speed,
+        normal_force=motion.normal_force,
+        settings=settings,
+        progress=progress,
+    )
+    solved = time.perf_counter()
+    local = {
+        "contact_pressure": contact.contact_pressure,
+        "speed": motion.speed,
+        "film_thickness": contact.film_thickness,
+    }
+    parts = law(**local)
+    friction = cof(
+        parts,
+        contact.contact_pressure,
+        contact.fluid_pressure,
+        spacing=sole.spacing,
+        wet=contact.wet,
+        deviation=law.deviation(**local),
+        source=f"{law.name} law: {law.source}",
+    )
+    sensor = floor_sensor_reading(
+        sole.x,
+        sole.y,
+        contact.fluid_pressure,
+        contact.film_thickness,
+        inlet_diameter=case.sensor.inlet_diameter,
+        scan_spacing=case.sensor.scan_spacing,
+        scans=case.sensor.scans,
+    )
+    numbers, risk = scalars(case, contact, friction, sensor)
+    found = [
+        *found,
+        *sole.breaches,
+        *asperities.breaches(pressure=contact.contact_pressure.max(), speed=motion.speed),
+        *law.breaches(**local),
+        *risk.breaches,
+    ]
+    status = contact.status
+    if status is Status.CONVERGED and found:
+        status = Status.OUT_OF_RANGE
+    return Result(
+        name=case.name,
+        scalars=numbers,
+        labels=regime(contact),
+        fields=_fields(sole, contact, sensor, parts.total),
+        status=status,
+        breaches=_words(found),
+        assumptions=(*assumptions(case), *law.assumptions, *risk.assumptions),
+        provenance=Provenance.now(
+            case.hash,
+            closures=_closures(case, law.name, asperities.name, modulus, risk.model, spacing),
+            citations=tuple(
+                dict.fromkeys((law.source, asperities.source, modulus.source, _source(numbers)))
+            ),
+            errata=_errata(case),
+            timings={
+                "preparation_s": prepared - started,
+                "solution_s": solved - prepared,
+                "evaluation_s": time.perf_counter() - solved,
+            },
+        ),
+        case_text=case.to_toml(),
+    )
+
+
+def _closures(
+    case: Case, friction: str, asperity: str, modulus: SourcedValue, slip: str, spacing: float
+) -> dict[str, str]:
+    cavitation = "Reynolds equation with cavitation, wedge and squeeze (Eq. 4, 5)"
+    return {
+        "friction": friction,
+        "asperity contact": asperity,
+        "film": cavitation if case.contaminant else "none: dry floor",
+        "compliance": case.models.compliance,
+        "modulus": modulus.source,
+        "slip": slip,
+        "grid": f"{spacing * 1e3:g} mm",
+    }
+
+
+def _source(numbers: dict[str, SourcedValue]) -> str:
+    return numbers["slip_probability"].source
+
+
+def _words(found: list[Breach]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(str(breach) for breach in found))
+
+
+def _errata(case: Case) -> tuple[str, ...]:
+    """Return the notes on printed values that the case uses in corrected form."""
+    notes = [
+        f"{path}: {origin.leaf.note}"
+        for path, origin in case.origins.items()
+        if "printed as" in origin.leaf.note and case.value(path) is not None
+    ]
+    return tuple(dict.fromkeys(notes))
+
+
+def _fields(
+    sole: SoleMap, contact: SoleContact, sensor: SensorReading, shear: object
+) -> xarray.Dataset:
+    import xarray
+
+    def on_sole(values: object, unit: str, name: str) -> tuple[tuple[str, str], object, dict]:
+        return (("x", "y"), values, {"units": unit, "long_name": name})
+
+    def in_time(values: object, unit: str, name: str) -> tuple[str, object, dict]:
+        return ("time", values, {"units": unit, "long_name": name})
+
+    history = contact.history
+    return xarray.Dataset(
+        {
+            "contact_pressure": on_sole(
+                contact.contact_pressure, "Pa", "asperity contact pressure"
+            ),
+            "fluid_pressure": on_sole(contact.fluid_pressure, "Pa", "fluid pressure"),
+            "film_thickness": on_sole(contact.film_thickness, "m", "mean gap, at most the pool"),
+            "shear_stress": on_sole(shear, "Pa", "shear stress on the sole"),
+            "clearance": on_sole(sole.clearance, "m", "height of the undeformed sole"),
+            "inside": on_sole(sole.inside, "1", "within the plan form"),
+            "land": on_sole(sole.land, "1", "can touch the floor"),
+            "wet": on_sole(contact.wet, "1", "within the film"),
+            "sensor_pressure": (
+                ("sensor_x", "sensor_y"),
+                sensor.pressure,
+                {"units": "Pa", "long_name": "fluid pressure as floor sensors read it"},
+            ),
+            "outline_x": ("outline", sole.outline[:, 0], {"units": "m"}),
+            "outline_y": ("outline", sole.outline[:, 1], {"units": "m"}),
+            "load_history": in_time(history.load, "N", "applied load"),
+            "fluid_load_history": in_time(history.fluid_load, "N", "load carried by the fluid"),
+            "approach_history": in_time(history.approach, "m", "approach of the foot"),
+        },
+        coords={
+            "x": ("x", sole.x, {"units": "m", "long_name": "along the walking direction"}),
+            "y": ("y", sole.y, {"units": "m", "long_name": "across"}),
+            "time": ("time", history.time, {"units": "s", "long_name": "time"}),
+            "sensor_x": ("sensor_x", sensor.x, {"units": "m"}),
+            "sensor_y": ("sensor_y", sensor.scan_y, {"units": "m"}),
+        },
+    )

@@ -1,0 +1,86 @@
+"""The named numbers of a result, each with its spread or the reason why there is none."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from underfoot.core import SourcedValue
+
+if TYPE_CHECKING:
+    from underfoot.friction import FrictionCoefficients
+    from underfoot.outsole import SensorReading
+    from underfoot.outsole.solver import SoleContact
+    from underfoot.slip import SlipRisk
+
+    from .case import Case
+
+_NOT_ESTIMATED = "heel shape and interface roughness dominate; their spread is not propagated yet"
+CONTACT_SHARE = 1e-3
+"""Contact pressure below this share of the mean pressure doesn't count as contact."""
+REGIMES = ((0.05, "boundary lubrication"), (0.95, "mixed lubrication"), (np.inf, "full film"))
+
+
+def scalars(
+    case: Case,
+    contact: SoleContact,
+    friction: FrictionCoefficients,
+    sensor: SensorReading,
+) -> tuple[dict[str, SourcedValue], SlipRisk]:
+    """Return the numbers of a result by name, and the slip risk behind one of them."""
+    from underfoot.slip import RequiredFriction, slip_model, slip_risk
+
+    mean, spread = case.sourced("risk.rcof_mean"), case.sourced("risk.rcof_sd")
+    risk = slip_risk(
+        friction.cof,
+        rcof=RequiredFriction(
+            case.risk.rcof_mean, case.risk.rcof_sd, mean.source, mean.assumed or spread.assumed
+        ),
+        model=slip_model(case.risk.model),
+    )
+
+    def computed(value: float, unit: str, note: str = "") -> SourcedValue:
+        return SourcedValue(
+            value, unit, source="coupled contact and film", reason=_NOT_ESTIMATED, note=note
+        )
+
+    touching = contact.contact_pressure > CONTACT_SHARE * _mean_pressure(contact)
+    under_load = touching | (contact.fluid_pressure > 0)
+    thinnest = None
+    if under_load.any() and case.contaminant is not None:
+        thinnest = float(contact.film_thickness[under_load].min())
+    numbers = {
+        "cof": friction.cof,
+        "cof_adhesion": friction.cof_adhesion,
+        "cof_hysteresis": friction.cof_hysteresis,
+        "cof_viscous": friction.cof_viscous,
+        "normal_force": case.sourced("motion.normal_force"),
+        "fluid_load": computed(contact.fluid_load, "N"),
+        "fluid_load_sensor": sensor.load,
+        "peak_fluid_pressure": computed(float(contact.fluid_pressure.max()), "Pa"),
+        "peak_fluid_pressure_sensor": sensor.peak_pressure,
+        "contact_area": computed(
+            float(np.count_nonzero(touching)) * contact.spacing**2, "m^2", "apparent, on the grid"
+        ),
+        "minimum_film_thickness": computed(thinnest, "m")
+        if thinnest is not None
+        else SourcedValue(None, "m", reason="dry floor: no film"),
+        "slip_probability": risk.probability,
+    }
+    return numbers, risk
+
+
+def regime(contact: SoleContact) -> dict[str, str]:
+    """Return the lubrication regime by the share of the load that the fluid carries."""
+    share = contact.fluid_load / contact.normal_force
+    name = next(name for limit, name in REGIMES if share <= limit)
+    return {
+        "regime": name,
+        "regime_rule": "by load share: below 5 % boundary, above 95 % full film",
+    }
+
+
+def _mean_pressure(contact: SoleContact) -> float:
+    loaded = np.count_nonzero(contact.total_pressure > 0)
+    return contact.normal_force / max(loaded * contact.spacing**2, contact.spacing**2)
