@@ -267,7 +267,7 @@ class Case(Section):
             *parents, key = path.split(".")
             table = content
             for parent in parents:
-                table = table[parent] or {}
+                table = table.get(parent) or {}
             table.pop(key, None)
         spreads = {
             path: _rounded(self._spread(path, origin.leaf, unit_at(path)))

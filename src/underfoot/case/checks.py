@@ -196,20 +196,39 @@ def _rest(case: Case, places: Places) -> Iterator[InputError]:
             'is missing for models.friction = "constant"',
             where=places("interface.constant_cof"),
         )
-    boundary = case.contaminant.boundary if case.contaminant is not None else None
-    needed = {"boundary": ("cof_bl",), "stribeck": ("cof_bl", "tau_hydro", "cof_asymptote")}
-    for name in needed.get(case.models.friction, ()):
-        if boundary is not None and getattr(boundary, name) is None:
-            yield InputError(
-                f'is missing for models.friction = "{case.models.friction}"',
-                where=places(f"contaminant.boundary.{name}"),
-                remedy="Give a measured value, choose a fluid that has one (underfoot catalogue "
-                "fluid), or another friction model",
-            )
-    measured = case.interface.dry_adhesion_cof
-    if case.contaminant is None and case.models.friction != "constant" and measured is None:
+    yield from _friction(case, places)
+
+
+def _friction(case: Case, places: Places) -> Iterator[InputError]:
+    model, interface = case.models.friction, case.interface
+    if case.contaminant is None and model != "constant":
         yield InputError(
             "a dry case needs a measured coefficient of friction",
-            where=places("interface.constant_cof"),
-            remedy='Write interface.constant_cof = 0.8 and models.friction = "constant"',
+            where=places("models.friction"),
+            remedy='Write models.friction = "constant" and interface.constant_cof = 0.8',
         )
+    if model == "constant" and interface.constant_cof is None:
+        yield InputError(
+            'is missing for models.friction = "constant"', where=places("interface.constant_cof")
+        )
+    if (
+        model == "constant"
+        and interface.constant_cof is not None
+        and (interface.hysteresis_cof or 0.0) > interface.constant_cof
+    ):
+        yield RangeError(
+            f"{interface.hysteresis_cof:g} is more than the whole",
+            where=places("interface.hysteresis_cof"),
+            allowed=f"at most {interface.constant_cof:g} (interface.constant_cof)",
+        )
+    if model == "adhesion_blocking" and case.contaminant is not None:
+        boundary = case.contaminant.boundary
+        needed = {
+            "interface.dry_adhesion_cof": interface.dry_adhesion_cof,
+            "interface.hysteresis_cof": interface.hysteresis_cof,
+            "contaminant.boundary.alpha": boundary.alpha,
+            "contaminant.boundary.beta": boundary.beta,
+        }
+        for path, value in needed.items():
+            if value is None:
+                yield InputError(f'is missing for models.friction = "{model}"', where=places(path))

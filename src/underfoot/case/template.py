@@ -17,8 +17,8 @@ _COLUMN = 44
 _HEAD = """\
 # {title}
 #
-#   underfoot check {file}     reads it, prints all of it, solves nothing
-#   underfoot run {file}       computes it
+# Read it, print all of it, solve nothing:  underfoot check {file}
+# Compute it:                               underfoot run {file}
 #
 # A number with a unit stands in quotes: "3 mm", "219 cP", "10 deg".
 # "from" takes a part from the catalogue; underfoot catalogue lists what there is. A line that

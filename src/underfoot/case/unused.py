@@ -32,4 +32,11 @@ def unused(case: Case) -> frozenset[str]:
         found += ["contaminant.temperature", "contaminant.fraction_basis"]
     if case.models.friction != "constant":
         found.append("interface.constant_cof")
+    if case.models.friction != "adhesion_blocking":
+        found += ["interface.dry_adhesion_cof", "contaminant.boundary.load"]
+        found += ["contaminant.boundary.alpha", "contaminant.boundary.beta"]
+    if case.models.friction not in ("boundary", "stribeck"):
+        found.append("contaminant.boundary.cof_bl")
+    if case.models.friction != "stribeck":
+        found += ["contaminant.boundary.tau_hydro", "contaminant.boundary.cof_asymptote"]
     return frozenset(found)

@@ -44,6 +44,12 @@ def explain(
     closures = dict(_closures())
     if name in closures:
         found.append(_documented(name, closures[name]))
+    else:
+        found += [
+            _documented(one, item)
+            for one, item in closures.items()
+            if name.casefold() in {*one.casefold().split("_"), item.__module__.rpartition(".")[2]}
+        ]
     if not found:
         from underfoot.case import paths
 
@@ -53,13 +59,14 @@ def explain(
 
 
 def _key(path: str) -> str:
-    from underfoot.case import Case, unit_at
+    from underfoot.case import Case, paths, unit_at
     from underfoot.case.quantity import Quantity, default_of
     from underfoot.case.schema import field_at, marks_of
 
     field = field_at(Case, path)
     if field is None:
-        return ""
+        keys = [key for key in paths() if key.startswith(path + ".")]
+        return f"{path} holds: {', '.join(keys)}" if keys else ""
     lines = [f"{path}: {field.description or 'a value of case files'}"]
     quantity = next((mark for mark in marks_of(field) if isinstance(mark, Quantity)), None)
     if quantity is not None:

@@ -13,6 +13,7 @@ import typer
 P = ParamSpec("P")
 R = TypeVar("R")
 STOPPED = 130
+FAULT = 70
 
 
 def guarded(command: Callable[P, R]) -> Callable[P, R]:
@@ -42,6 +43,12 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
         except MemoryError:
             say("error: not enough memory. Choose a coarser numerics.grid_spacing.")
             raise typer.Exit(1) from None
+        except typer.Exit:
+            raise
+        except Exception as error:
+            say(f"fault of the program: {type(error).__name__}: {error}")
+            say("UNDERFOOT_DEBUG=1 shows where; please report it with the case file.")
+            raise typer.Exit(FAULT) from None
 
     return told
 

@@ -1,0 +1,78 @@
+"""``underfoot trials ...``: measurement files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .guard import guarded
+from .options import AsJson
+
+trials_app = typer.Typer(
+    name="trials",
+    help="Measurement files: from recordings to the numbers the field publishes.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+)
+
+
+@trials_app.callback()
+def trials() -> None:
+    """Measurement files: from recordings to the numbers the field publishes."""
+
+
+def describe(
+    file: Annotated[
+        Path,
+        typer.Argument(
+            help="C3D, TRC, MOT/STO, .forces, BioWare text, CETR or PCS log, CSV or XLSX.",
+            show_default=False,
+        ),
+    ],
+    companion: Annotated[
+        Path | None,
+        typer.Option(
+            "--with",
+            help="Second file of the same recording, as .forces beside .trc.",
+            show_default=False,
+        ),
+    ] = None,
+    profile: Annotated[
+        Path | None,
+        typer.Option(help="Profile (TOML) of columns, axes and heels.", show_default=False),
+    ] = None,
+    definition: Annotated[str, typer.Option(help="Definition of RCOF.")] = "default",
+    vertical: Annotated[
+        str | None, typer.Option(help="Vertical axis, as z.", show_default=False)
+    ] = None,
+    walking: Annotated[
+        str | None, typer.Option(help="Walking direction, as +x.", show_default=False)
+    ] = None,
+    baseline: Annotated[
+        bool, typer.Option(help="Subtract the force of the unloaded plate.")
+    ] = True,
+    as_json: AsJson = False,
+) -> None:
+    """Show plates, rates, axes, signs, baselines, heels and every step, taken or left and why."""
+    from underfoot.trials.describe import described_file
+
+    found = described_file(
+        file,
+        companion=companion,
+        profile=profile,
+        definition=definition,
+        vertical=vertical,
+        walking=walking,
+        subtract_baseline=baseline,
+    )
+    if as_json:
+        import json
+
+        print(json.dumps([one.as_dict() for one in found], indent=2, allow_nan=False))
+    else:
+        print("\n\n".join(one.text() for one in found))
+
+
+trials_app.command()(guarded(describe))
