@@ -1,0 +1,275 @@
+"""Computing a contact table: every surface, speed and pressure, cached part by part."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from underfoot.core import (
+    Cache,
+    ConvergenceError,
+    InputError,
+    Progress,
+    content_hash,
+    silent,
+)
+
+from .contact_table import QUANTITIES, ContactTable
+from .flow_factor import flow_factors
+from .steady import steady_sliding
+from .steady_checks import Modulus, modulus_function
+
+ROOM = "contact_table-1"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """One surface at one speed: the unit of work and of the cache."""
+
+    heights: np.ndarray
+    spacing: float
+    modulus: Any
+    speed: float
+    pressure: np.ndarray
+    poisson_ratio: float
+    layer_thickness: float | None
+
+    @property
+    def key(self) -> str:
+        """Return the content key: heights, pressures and the modulus at every frequency met."""
+        q = 2.0 * np.pi * np.fft.rfftfreq(self.heights.shape[0], self.spacing)
+        young = modulus_function(self.modulus, q * self.speed)(q * self.speed)
+        return content_hash(
+            self.heights,
+            self.spacing,
+            young,
+            self.speed,
+            self.pressure,
+            self.poisson_ratio,
+            self.layer_thickness,
+        )
+
+
+def computed(
+    surfaces: Sequence[Any],
+    modulus: Modulus,
+    pressure: ArrayLike,
+    speed: ArrayLike,
+    *,
+    poisson_ratio: float = 0.5,
+    layer_thickness: float | None = None,
+    processes: int = 1,
+    cache: Cache | None = None,
+    description: str = "",
+    progress: Progress = silent,
+) -> ContactTable:
+    """Return the contact table of an ensemble of surfaces of one texture.
+
+    Every node is ``steady_sliding`` followed by ``flow_factors`` on its gap, with contact closed.
+    The contact fraction is the perimeter-corrected one.
+
+    Parameters
+    ----------
+    surfaces
+        Periodic height maps (``HeightMap``), one or more; the spread between them becomes the
+        uncertainty. Their shortest wave decides the contact fraction: see
+        ``cutoff_dependence``.
+    modulus
+        As in ``steady_sliding``.
+    pressure, speed
+        Nodes: Pa and m/s, rising, > 0; at least 4 pressures, 1 speed.
+    processes
+        Worker processes; with more than 1 the modulus must be picklable (no lambda).
+    cache
+        Where finished parts are kept; None takes the user's cache.
+    progress
+        Receives the fraction done; may raise ``Cancelled``: finished parts stay in the cache.
+
+    Errors
+    ------
+    InputError
+        No surface, not periodic, nodes not rising, modulus that can't be sent to a process.
+    ConvergenceError
+        A node where no surface converged.
+    """
+    p, v = _nodes("pressure", pressure, 4), _nodes("speed", speed, 1)
+    _check_surfaces(surfaces)
+    store = Cache(ROOM) if cache is None else cache
+    parts = [
+        Part(np.asarray(s.heights), s.spacing, modulus, float(u), p, poisson_ratio, layer_thickness)
+        for s in surfaces
+        for u in v
+    ]
+    results: dict[int, dict[str, np.ndarray]] = {}
+    missing: list[int] = []
+    keys = [part.key for part in parts]
+    for n, key in enumerate(keys):
+        found = store.load(key)
+        if found is None:
+            missing.append(n)
+        else:
+            results[n] = found
+    progress("contact table", len(results) / len(parts))
+    for n, column in _columns(parts, missing, processes):
+        store.store(keys[n], column)
+        results[n] = column
+        progress("contact table", len(results) / len(parts))
+    return _table(surfaces, p, v, [results[n] for n in range(len(parts))], keys, description)
+
+
+def part_column(part: Part) -> dict[str, np.ndarray]:
+    """Return the averages of one surface at one speed over all pressures, with their status."""
+    rows: list[list[float]] = []
+    errors: list[float] = []
+    notes: list[str] = []
+    for p in part.pressure:
+        contact = steady_sliding(
+            part.heights,
+            part.spacing,
+            part.modulus,
+            part.speed,
+            float(p),
+            part.poisson_ratio,
+            layer_thickness=part.layer_thickness,
+        )
+        errors.append(contact.complementarity_error)
+        if not contact.status.usable:
+            rows.append([np.nan] * len(QUANTITIES))
+            continue
+        flow = flow_factors(np.where(contact.pressure > 0.0, 0.0, contact.gap), part.spacing)
+        rows.append(
+            [
+                contact.real_contact_fraction_corrected,
+                contact.cof_hysteresis,
+                contact.mean_gap,
+                flow.along,
+                flow.across,
+            ]
+        )
+        notes += [f"breach|{breach}" for breach in contact.breaches]
+        notes += [f"note|{note}" for note in contact.notes if note.startswith("hysteresis")]
+    values = np.array(rows)
+    column = {name: values[:, n] for n, name in enumerate(QUANTITIES)}
+    column["error"] = np.array(errors)
+    column["notes"] = np.array(list(dict.fromkeys(notes)), dtype=np.str_)
+    return column
+
+
+def _columns(
+    parts: list[Part], missing: list[int], processes: int
+) -> Iterator[tuple[int, dict[str, np.ndarray]]]:
+    if processes <= 1 or len(missing) < 2:
+        for n in missing:
+            yield n, part_column(parts[n])
+        return
+    try:
+        pickle.dumps(parts[missing[0]].modulus)
+    except Exception as error:
+        raise InputError(
+            f"the modulus can't be sent to another process ({error})",
+            where="modulus",
+            remedy="Use a material or a named function instead of a lambda, or processes=1",
+        ) from error
+    pool = ProcessPoolExecutor(max_workers=min(processes, len(missing)))
+    try:
+        waiting = {pool.submit(part_column, parts[n]): n for n in missing}
+        while waiting:
+            done, _ = wait(waiting, return_when=FIRST_COMPLETED)
+            for future in done:
+                yield waiting.pop(future), future.result()
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _table(
+    surfaces: Sequence[Any],
+    p: np.ndarray,
+    v: np.ndarray,
+    columns: list[dict[str, np.ndarray]],
+    keys: Iterable[str],
+    description: str,
+) -> ContactTable:
+    shape = (len(surfaces), v.size, p.size)
+    stacked = {
+        name: np.array([column[name] for column in columns]).reshape(shape) for name in QUANTITIES
+    }
+    usable = np.isfinite(stacked["mean_gap"])
+    count = usable.sum(axis=0)
+    if count.min() == 0:
+        at = np.argwhere(count == 0)[0]
+        raise ConvergenceError(
+            f"no surface converged at {p[at[1]]:.4g} Pa and {v[at[0]]:.4g} m/s "
+            f"({int((count == 0).sum())} such nodes)",
+            history=[float(np.max(column["error"])) for column in columns],
+            where="contact table",
+            remedy="Leave out the highest pressures (near full contact) or take finer surfaces",
+        )
+    values, deviation = {}, {}
+    for name, array in stacked.items():
+        kept = np.where(usable, array, 0.0)
+        mean = kept.sum(axis=0) / count
+        square = np.where(usable, (array - mean) ** 2, 0.0).sum(axis=0)
+        spread = np.sqrt(square / np.maximum(count - 1, 1))
+        values[name] = mean.T
+        deviation[name] = np.where(count > 1, spread, np.nan).T
+    said = dict.fromkeys(str(text) for column in columns for text in column["notes"])
+    notes = [text.removeprefix("note|") for text in said if text.startswith("note|")]
+    notes.insert(0, _about(surfaces))
+    dropped = int((~usable).sum())
+    if dropped:
+        notes.append(f"{dropped} of {usable.size} solutions did not converge and were left out")
+    return ContactTable(
+        pressure=p,
+        speed=v,
+        values=values,
+        deviation=deviation,
+        realizations=count.T,
+        description=description,
+        key=content_hash(list(keys)),
+        notes=tuple(notes),
+        out_of_range=tuple(
+            text.removeprefix("breach|") for text in said if text.startswith("breach|")
+        ),
+    )
+
+
+def _about(surfaces: Sequence[Any]) -> str:
+    first = surfaces[0]
+    shortest = [s.resolution if s.resolution is not None else 2.0 * s.spacing for s in surfaces]
+    nx, ny = first.heights.shape
+    return (
+        f"{len(surfaces)} surface(s) of {nx} x {ny} points, spacing {first.spacing * 1e6:.3g} um, "
+        f"shortest wave {max(shortest) * 1e6:.3g} um: contact fraction and hysteresis belong to this shortest wave"
+    )
+
+
+def _nodes(name: str, given: ArrayLike, least: int) -> np.ndarray:
+    values = np.atleast_1d(np.asarray(given, dtype=float))
+    good = values.ndim == 1 and values.size >= least and np.all(np.isfinite(values))
+    if not (good and values[0] > 0.0 and np.all(np.diff(values) > 0.0)):
+        raise InputError(
+            f"{name} nodes {given}",
+            where=name,
+            allowed=f"{least} or more rising values above zero",
+            remedy="For example numpy.geomspace(low, high, 8)",
+        )
+    return values
+
+
+def _check_surfaces(surfaces: Sequence[Any]) -> None:
+    if len(surfaces) == 0:
+        raise InputError("no surface", where="surfaces", allowed="one height map or more")
+    for n, surface in enumerate(surfaces):
+        if not surface.periodic:
+            raise InputError(
+                f"surface {n + 1} is not periodic",
+                where="surfaces",
+                remedy="Make it periodic first (taper or mirror its edges), or generate surfaces "
+                "from its spectrum",
+            )
