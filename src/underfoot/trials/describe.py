@@ -1,0 +1,276 @@
+"""What is in a measurement file and what was made of it, for people to check before they trust."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from underfoot.core import InputError
+
+from .axes import Axes, axes_of, axis_name, heel_candidates
+from .gait import DEFINITIONS, RcofDefinition, RequiredFriction, mean_of, required_frictions
+from .readers import Profile, read_profile, read_trials
+from .trial import Plate, Trial, joined
+
+_SHOWN = 12
+
+
+@dataclass(frozen=True, slots=True)
+class Description:
+    """A trial with its axes, heels and stances; ``text()`` prints it, ``as_dict()`` is data."""
+
+    trial: Trial
+    axes: Axes
+    heels: dict[str, list[str]]
+    steps: tuple[RequiredFriction, ...]
+    conventions: dict[str, str]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data for JSON."""
+        return {
+            "name": self.trial.name,
+            "format": self.trial.source,
+            "checksum": self.trial.checksum,
+            "settings": dict(self.trial.settings),
+            "notes": list(self.trial.notes),
+            "edits": [f"{e.what}: {e.before} -> {e.after} ({e.why})" for e in self.trial.edits],
+            "axes": {
+                "vertical": axis_name(self.axes.up),
+                "vertical_from": self.axes.up_from,
+                "walking": axis_name(self.axes.walking),
+                "walking_from": self.axes.walking_from,
+            },
+            "plates": [_plate_data(plate) for plate in self.trial.plates],
+            "markers": list(self.trial.markers),
+            "heels": self.heels,
+            "channels": {
+                name: {"unit": channel.unit, "rate": channel.rate, "note": channel.note}
+                for name, channel in self.trial.channels.items()
+            },
+            "events": [
+                {"name": e.name, "side": e.side, "time": e.time, "source": e.source}
+                for e in self.trial.events
+            ],
+            "stances": [_stance_data(step) for step in self.steps],
+            "conventions": self.conventions,
+        }
+
+    def text(self) -> str:
+        """Return the description as lines of text."""
+        trial = self.trial
+        lines = [f"{trial.name}: {trial.source}, sha256 {trial.checksum[:12]}"]
+        lines += [f"  {key}: {value}" for key, value in list(trial.settings.items())[:_SHOWN]]
+        lines += ["", "Axes"]
+        lines.append(f"  vertical {axis_name(self.axes.up)} ({self.axes.up_from})")
+        lines.append(f"  walking  {axis_name(self.axes.walking)} ({self.axes.walking_from})")
+        lines += self._plates() + self._markers() + self._channels()
+        if trial.events:
+            lines += ["", "Events in the file"]
+            lines += [f"  {e.time:8.3f} s  {e.side:6s} {e.name}" for e in trial.events[:40]]
+        lines += self._stances()
+        if trial.notes:
+            lines += ["", "Notes", *(f"  - {note}" for note in trial.notes)]
+        if trial.edits:
+            lines += ["", "Edits"]
+            lines += [f"  - {e.what}: {e.before} -> {e.after} ({e.why})" for e in trial.edits]
+        return "\n".join(lines)
+
+    def _plates(self) -> list[str]:
+        if not self.trial.plates:
+            return ["", "Force plates", "  none"]
+        lines = ["", "Force plates (force of the floor on the foot)"]
+        for plate in self.trial.plates:
+            if plate.problem:
+                lines.append(f"  {plate.name}: not usable: {plate.problem} [{plate.kind}]")
+                continue
+            seconds = len(plate.force) / plate.rate
+            lines.append(f"  {plate.name}: {plate.kind}, {plate.rate:g} Hz, {seconds:.2f} s")
+            lines.append(f"    baseline {_baseline(plate)}")
+            lines += [f"    ! {note}" for note in plate.notes]
+        return lines
+
+    def _markers(self) -> list[str]:
+        markers = self.trial.markers
+        if not markers:
+            return ["", "Markers", "  none"]
+        first = next(iter(markers.values()))
+        lines = ["", f"Markers: {len(markers)} at {first.rate:g} Hz"]
+        lines.append("  " + _some(list(markers)))
+        for side, names in self.heels.items():
+            for name in names:
+                lost = 100.0 * float(markers[name].missing.mean()) if name in markers else 0.0
+                lines.append(f"  {side} heel candidate: {name} (missing {lost:.0f} %)")
+        if not any(self.heels.values()):
+            lines.append("  no heel was recognised: name it under [heel] in a profile")
+        return lines
+
+    def _channels(self) -> list[str]:
+        channels = self.trial.channels
+        if not channels:
+            return []
+        rates = sorted({channel.rate for channel in channels.values()})
+        lines = ["", f"Channels: {len(channels)} at {', '.join(f'{r:.6g}' for r in rates)} Hz"]
+        shown = [f"{name} ({channel.unit or 'unit?'})" for name, channel in channels.items()]
+        return [*lines, "  " + _some(shown, 2 * _SHOWN)]
+
+    def _stances(self) -> list[str]:
+        if not any(plate.usable for plate in self.trial.plates):
+            return []
+        lines = ["", "Contacts with the plates"]
+        if not self.steps:
+            return [*lines, "  none"]
+        for step in self.steps:
+            stance = step.stance
+            head = (
+                f"  {stance.contact:7.3f} s  {stance.plate}, {1e3 * stance.duration:.0f} ms, peak "
+                f"{stance.peak:.0f} N, {stance.side} foot, walking {axis_name(stance.walking)}"
+            )
+            lines.append(head)
+            value = step.measurement.value
+            if value is None:
+                lines.append(f"             rejected: {step.measurement.reason}")
+            else:
+                after = 1e3 * (step.peak_time - stance.contact)
+                lines.append(
+                    f"             accepted: RCOF {value:.3f}, {after:.0f} ms after contact"
+                )
+            lines += [f"             ! {flag}" for flag in step.measurement.flags]
+        good = [step.measurement for step in self.steps if step.measurement.estimated]
+        if len(good) > 1:
+            lines.append(f"  mean of {len(good)}: {mean_of(good)}")
+        if good:
+            lines += ["", "Conventions behind RCOF"]
+            lines += [f"  {key}: {value}" for key, value in self.conventions.items()]
+        return lines
+
+
+def described(
+    trial: Trial,
+    *,
+    definition: RcofDefinition | None = None,
+    vertical: str | None = None,
+    walking: str | None = None,
+    profile: Profile | None = None,
+) -> Description:
+    """Return the description of a trial.
+
+    Parameters
+    ----------
+    vertical, walking
+        Overrides such as ``"z"``, ``"+x"``; a profile's are used when these are not given.
+    """
+    profile = profile or Profile()
+    definition = definition or DEFINITIONS["default"]
+    vertical, walking = vertical or profile.vertical, walking or profile.walking
+    axes = axes_of(trial, vertical=vertical, walking=walking)
+    steps = required_frictions(trial, definition, axes=axes, walking=walking, heels=profile.heels)
+    return Description(
+        trial,
+        axes,
+        heel_candidates(trial, profile.heels),
+        tuple(steps),
+        definition.conventions(),
+    )
+
+
+def described_file(
+    path: Path | str,
+    *,
+    companion: Path | str | None = None,
+    profile: Profile | Path | str | None = None,
+    definition: str = "default",
+    vertical: str | None = None,
+    walking: str | None = None,
+    subtract_baseline: bool = True,
+) -> tuple[Description, ...]:
+    """Return the descriptions of the trials in a file (one a step for tribometer logs).
+
+    Parameters
+    ----------
+    companion
+        A second file of the same recording (.forces beside .trc); needs one trial in each.
+    definition
+        A name in ``DEFINITIONS``.
+
+    Errors
+    ------
+    DataError
+        The file can't be read.
+    InputError
+        The profile, an axis or the definition is wrong.
+    """
+    from underfoot.core import unknown_name
+
+    if definition not in DEFINITIONS:
+        raise unknown_name("RCOF definition", definition, DEFINITIONS, where="definition")
+    if profile is not None and not isinstance(profile, Profile):
+        profile = read_profile(Path(profile))
+    trials = read_trials(path, profile, subtract_baseline=subtract_baseline)
+    if companion is not None:
+        others = read_trials(companion, profile, subtract_baseline=subtract_baseline)
+        if len(trials) != 1 or len(others) != 1:
+            raise InputError("only files that hold one trial each can be joined", where="--with")
+        trials = (joined(trials[0], others[0]),)
+    return tuple(
+        described(
+            trial,
+            definition=DEFINITIONS[definition],
+            vertical=vertical,
+            walking=walking,
+            profile=profile,
+        )
+        for trial in trials
+    )
+
+
+def _baseline(plate: Plate) -> str:
+    if plate.baseline is None:
+        return "not subtracted"
+    if not np.abs(plate.baseline).max() > 5e-4:
+        return f"zero ({plate.baseline_samples} unloaded samples)"
+    numbers = ", ".join(
+        f"{name} {value:.1f}" for name, value in zip("xyz", plate.baseline, strict=True)
+    )
+    return f"{numbers} N, mean of {plate.baseline_samples} unloaded samples, subtracted"
+
+
+def _some(names: Sequence[str], most: int = _SHOWN) -> str:
+    more = len(names) - most
+    return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
+
+
+def _plate_data(plate: Plate) -> dict[str, Any]:
+    return {
+        "name": plate.name,
+        "kind": plate.kind,
+        "problem": plate.problem,
+        "rate": plate.rate,
+        "samples": len(plate.force),
+        "baseline": None if plate.baseline is None else [float(v) for v in plate.baseline],
+        "baseline_samples": plate.baseline_samples,
+        "corners": None if plate.corners is None else plate.corners.tolist(),
+        "notes": list(plate.notes),
+    }
+
+
+def _stance_data(step: RequiredFriction) -> dict[str, Any]:
+    stance = step.stance
+    return {
+        "plate": stance.plate,
+        "contact": stance.contact,
+        "toe_off": stance.toe_off,
+        "peak": stance.peak,
+        "side": stance.side,
+        "heel": stance.heel,
+        "walking": axis_name(stance.walking),
+        "walking_from": stance.walking_from,
+        "accepted": stance.accepted,
+        "reason": stance.reason,
+        "peak_time": None if math.isnan(step.peak_time) else step.peak_time,
+        "rcof": step.measurement.as_dict(),
+    }

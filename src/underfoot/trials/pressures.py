@@ -1,0 +1,312 @@
+"""Fluid pressures under the foot: pulses of sensors in the floor and the heel's passage."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from underfoot.core import InputError
+
+from .baseline import runs, saturated
+from .measurement import Measurement
+from .slips import HeelMotion
+from .trial import Channel
+
+BASELINE_SAMPLES = 500  # fewer let noise pass 5 standard deviations in 1 % of empty records
+
+
+@dataclass(frozen=True, slots=True)
+class PulseDefinition:
+    """What counts as pressure above the baseline.
+
+    Parameters
+    ----------
+    deviations
+        Threshold over the baseline's mean in its standard deviations (5 in report G.5.1).
+    margin
+        The baseline ends this long before contact (s).
+    run
+        Samples in a row that must be above: one alone is noise.
+    """
+
+    deviations: float = 5.0
+    margin: float = 0.05
+    run: int = 3
+
+    def conventions(self) -> dict[str, str]:
+        """Return the choices in words."""
+        return {
+            "threshold": f"{self.deviations:g} standard deviations over the baseline's mean",
+            "baseline": f"samples until {1e3 * self.margin:g} ms before contact",
+            "run": f"{self.run} samples in a row",
+            "duration": "between the first and the last moment above the threshold",
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Pulse:
+    """Pressure pulse of one sensor: peak over the baseline (Pa) and duration (s)."""
+
+    sensor: str
+    peak: Measurement
+    duration: Measurement
+    baseline: float
+    deviation: float
+    peak_time: float = math.nan
+    first: float = math.nan
+    last: float = math.nan
+
+
+@dataclass(frozen=True, slots=True)
+class Passage:
+    """The heel passing one sensor.
+
+    ``row`` counts from 1, the row the walker meets first. ``speed`` is the instantaneous
+    slipping speed (m/s), ``lateral`` the distance of the heel from the sensor across the walk
+    (m, positive when the heel is to the walker's left of it).
+    """
+
+    sensor: str
+    row: int
+    time: float
+    speed: Measurement
+    lateral: Measurement
+
+
+def pressure_pulse(
+    sensor: str,
+    channel: Channel,
+    contact: float,
+    *,
+    until: float | None = None,
+    definition: PulseDefinition | None = None,
+) -> Pulse:
+    """Return the peak and the duration of a sensor's pressure after contact.
+
+    With fewer than 500 baseline samples the numbers carry a flag; with fewer than 20 there are
+    none. A pressure that never passes the threshold has a peak (flagged) and no duration.
+
+    Parameters
+    ----------
+    channel
+        Pressure (Pa), shape (n,).
+    contact
+        Time of heel contact (s).
+    until
+        End of the search (s); by default the end of the record.
+    """
+    definition = definition or PulseDefinition()
+    said = definition.conventions()
+    time = channel.time
+    values = channel.values
+    quiet = values[(time < contact - definition.margin) & np.isfinite(values)]
+
+    def without(reason: str) -> Pulse:
+        peak, duration = (
+            Measurement.not_estimated(name, reason, unit=unit, conventions=said)
+            for name, unit in (("peak pressure", "Pa"), ("pressure duration", "s"))
+        )
+        return Pulse(sensor, peak, duration, math.nan, math.nan)
+
+    if channel.unit != "Pa":
+        return without(f'the unit of the channel is "{channel.unit}", not a pressure')
+    if len(quiet) < 20:
+        return without(f"{len(quiet)} samples before contact are no baseline (500 wanted)")
+    flags: tuple[str, ...] = ()
+    if len(quiet) < BASELINE_SAMPLES:
+        flags = (f"baseline of {len(quiet)} samples: 500 keep false alarms at 0.1 %",)
+    mean, deviation = float(quiet.mean()), float(quiet.std(ddof=1))
+    inside = (time >= contact) & (time <= (until if until is not None else time[-1]))
+    if not (inside & np.isfinite(values)).any():
+        return without("no samples after contact")
+    if np.isnan(values[inside]).any():
+        flags += (f"{int(np.isnan(values[inside]).sum())} samples without a number",)
+    if saturated(values, channel.rate):
+        flags += ("the sensor is saturated: the peak is a lower bound",)
+    over = np.where(inside, values - mean, np.nan)
+    top = int(np.nanargmax(over))
+    limit = definition.deviations * deviation
+    above = np.asarray(np.nan_to_num(over, nan=-np.inf) > limit)
+    stretches = [(a, b) for a, b in runs(above) if b - a >= definition.run]
+    if not stretches:
+        peak = Measurement(
+            "peak pressure",
+            float(over[top]),
+            "Pa",
+            deviation,
+            n=len(quiet),
+            flags=(*flags, "within the noise: never above the threshold"),
+            conventions=said,
+        )
+        reason = f"never above the threshold of {limit:.0f} Pa"
+        none = Measurement.not_estimated(
+            "pressure duration", reason, unit="s", flags=flags, conventions=said
+        )
+        return Pulse(sensor, peak, none, mean, deviation, float(time[top]))
+    first, last = stretches[0][0], stretches[-1][1] - 1
+    if last == np.flatnonzero(inside)[-1]:
+        flags += ("still above the threshold when the search ends",)
+    step = 1.0 / channel.rate
+    return Pulse(
+        sensor,
+        Measurement(
+            "peak pressure",
+            float(over[top]),
+            "Pa",
+            deviation,
+            n=len(quiet),
+            flags=flags,
+            conventions={**said, "uncertainty": "standard deviation of the baseline"},
+        ),
+        Measurement(
+            "pressure duration",
+            float(time[last] - time[first]),
+            "s",
+            step / math.sqrt(6.0),
+            flags=flags,
+            conventions={**said, "uncertainty": "time between samples"},
+        ),
+        mean,
+        deviation,
+        float(time[top]),
+        float(time[first]),
+        float(time[last]),
+    )
+
+
+def sensor_rows(
+    sensors: Mapping[str, tuple[float, float, float]], walking: np.ndarray
+) -> dict[str, int]:
+    """Return the row of each sensor along the walk, 1 = met first.
+
+    Sensors whose places along the walk differ by less than a third of the largest gap between
+    neighbours share a row.
+    """
+    places = {name: float(np.dot(position, walking)) for name, position in sensors.items()}
+    ordered = sorted(places, key=lambda name: places[name])
+    gaps = np.diff([places[name] for name in ordered])
+    limit = max(float(gaps.max()) / 3.0, 1e-4) if len(gaps) else 0.0
+    rows, row = {}, 1
+    for i, name in enumerate(ordered):
+        if i and gaps[i - 1] > limit:
+            row += 1
+        rows[name] = row
+    return rows
+
+
+def passages(
+    motion: HeelMotion,
+    sensors: Mapping[str, tuple[float, float, float]],
+    *,
+    up: np.ndarray,
+    walking: np.ndarray,
+    contact: float,
+    until: float,
+    conventions: Mapping[str, str] | None = None,
+) -> list[Passage]:
+    """Return for each sensor when, how fast and how far to the side the heel passed it.
+
+    The heel passes a sensor when it first comes level with it along the walk after contact;
+    the instant is interpolated between frames.
+
+    Parameters
+    ----------
+    sensors
+        Places in lab axes (m).
+    until
+        End of the slip (s): later passages are those of the swing.
+
+    Source: grant report G.5.1.
+    """
+    if not until > contact:
+        raise InputError("the slip ends before it begins", where="passages")
+    across = np.cross(up, walking)
+    rows = sensor_rows(sensors, walking)
+    said = dict(conventions or {})
+    inside = np.flatnonzero((motion.time >= contact) & (motion.time <= until))
+    found = []
+    for name, place in sensors.items():
+        ahead = (motion.position[inside] - np.asarray(place)) @ walking
+        reason, at = _crossing(ahead)
+        if reason:
+            speed, lateral = (
+                Measurement.not_estimated(what, reason, unit=unit, conventions=said)
+                for what, unit in (
+                    ("instantaneous slipping speed", "m/s"),
+                    ("medio-lateral distance", "m"),
+                )
+            )
+            found.append(Passage(name, rows[name], math.nan, speed, lateral))
+            continue
+        index = inside[int(at)]
+        share = at - int(at)
+        when = _between(motion.time, index, share)
+        side = _between((motion.position - np.asarray(place)) @ across, index, share)
+        found.append(
+            Passage(
+                name,
+                rows[name],
+                when,
+                Measurement(
+                    "instantaneous slipping speed",
+                    _between(motion.speed, index, share),
+                    "m/s",
+                    motion.speed_noise,
+                    conventions=said,
+                ),
+                Measurement(
+                    "medio-lateral distance",
+                    side,
+                    "m",
+                    motion.noise,
+                    conventions={**said, "sign": "positive: heel to the walker's left"},
+                ),
+            )
+        )
+    return found
+
+
+def heel_track(
+    motion: HeelMotion,
+    sensors: Mapping[str, tuple[float, float, float]],
+    *,
+    up: np.ndarray,
+    walking: np.ndarray,
+    contact: float,
+    until: float,
+) -> tuple[np.ndarray, bool]:
+    """Return the heel's path over the sensor array and whether it crossed the array.
+
+    The path (n, 2) is along and across the walk (m) from the middle of the array. It crossed
+    when the marker was within the outer sensors' rectangle at any time of the slip.
+    """
+    across = np.cross(up, walking)
+    places = np.array(list(sensors.values()))
+    flat = np.column_stack((places @ walking, places @ across))
+    middle = (flat.min(axis=0) + flat.max(axis=0)) / 2.0
+    inside = (motion.time >= contact) & (motion.time <= until)
+    position = motion.position[inside]
+    path = np.column_stack((position @ walking, position @ across))
+    within = (path >= flat.min(axis=0)) & (path <= flat.max(axis=0))
+    return path - middle, bool(within.all(axis=1).any())
+
+
+def _crossing(ahead: np.ndarray) -> tuple[str, float]:
+    """Why the heel does not pass, or at which fraction of the frames it does."""
+    if not len(ahead) or not np.isfinite(ahead).all():
+        return "the heel marker is missing", 0.0
+    if ahead[0] >= 0:
+        return f"the heel landed {1e3 * ahead[0]:.0f} mm beyond the sensor", 0.0
+    beyond = np.flatnonzero(ahead >= 0)
+    if not len(beyond):
+        return f"the heel stops {-1e3 * float(ahead.max()):.0f} mm before the sensor", 0.0
+    i = int(beyond[0])
+    return "", i - 1 + float(-ahead[i - 1] / (ahead[i] - ahead[i - 1]))
+
+
+def _between(values: np.ndarray, index: int, share: float) -> float:
+    following = min(index + 1, len(values) - 1)
+    return float(values[index] + share * (values[following] - values[index]))
