@@ -82,7 +82,8 @@ def risk_curve(
         raise InputError("the slope is zero", where="risk_curve")
     line = LogisticLine(float(b0), float(b1))
     if x is None:
-        x = np.linspace(*sorted((line.at_probability(0.005), line.at_probability(0.995))), 201)
+        ends = sorted((line.at_probability(0.005), line.at_probability(0.995)))
+        x = np.linspace(ends[0], ends[1], 201)
     x = np.asarray(x, dtype=float)
     rows = np.column_stack((np.ones_like(x), x))
     error = np.sqrt(np.einsum("ij,jk,ik->i", rows, fit.covariance, rows))
@@ -91,10 +92,11 @@ def risk_curve(
     half = float(-b0 / b1)
     gradient = np.array([-1.0 / b1, b0 / b1**2])
     half_error = float(np.sqrt(gradient @ fit.covariance @ gradient))
-    curve = [0.5 * (1.0 + np.tanh(0.5 * value)) for value in (eta, eta - z * error, eta + z * error)]
-    return RiskCurve(
-        fit.coefficients[1].name, x, *curve, half, half_error, fit.method, confidence
+    risk, low, high = (
+        0.5 * (1.0 + np.tanh(0.5 * value)) for value in (eta, eta - z * error, eta + z * error)
     )
+    name = fit.coefficients[1].name
+    return RiskCurve(name, x, risk, low, high, half, half_error, fit.method, confidence)
 
 
 def _between(value: float) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -211,7 +212,8 @@ def _profile(
         for _ in range(12):
             outer = inner + direction * step
             if drop(outer) > limit:
-                return float(brentq(lambda v: drop(v) - limit, inner, outer, xtol=1e-9))
+                root: Any = brentq(lambda v: drop(v) - limit, inner, outer, xtol=1e-9)
+                return float(root)
             inner, step = outer, 1.6 * step
         return None
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -44,7 +45,7 @@ def regression_line(x: Sequence[float] | np.ndarray, y: Sequence[float] | np.nda
         raise DataError("a regression line needs three complete pairs", where="regression")
     if np.ptp(a) == 0 or np.ptp(b) == 0:
         raise DataError("x or y is constant", where="regression")
-    fit = stats.linregress(a, b)
+    fit: Any = stats.linregress(a, b)
     residual = b - (fit.intercept + fit.slope * a)
     return Line(
         float(fit.slope),

@@ -149,7 +149,7 @@ def _pieces(
 def _correlation(
     matrix: np.ndarray, y: np.ndarray, beta: np.ndarray, groups: list[np.ndarray]
 ) -> float:
-    """Return the moment estimate of the exchangeable correlation, scale parameter 1."""
+    """Return the moment estimate of the exchangeable correlation, with estimated dispersion."""
     mean = probability(matrix @ beta)
     pearson = (y - mean) / np.sqrt(mean * (1.0 - mean))
     pairs, total = 0.0, 0.0
@@ -161,4 +161,5 @@ def _correlation(
         return 0.0
     largest = max(len(rows) for rows in groups)
     low = -1.0 / (largest - 1) * 0.99 if largest > 1 else 0.0
-    return float(np.clip(total / (pairs - len(beta)), low, 0.99))
+    dispersion = float(np.sum(pearson**2)) / (len(y) - len(beta))
+    return float(np.clip(total / dispersion / (pairs - len(beta)), low, 0.99))
