@@ -20,6 +20,7 @@ from underfoot.core import (
     silent,
 )
 
+from ._kernels.monotone import interpolated, pchip_slopes
 from .contact_table import QUANTITIES, ContactTable
 from .flow_factor import flow_factors
 from .steady import steady_sliding
@@ -201,19 +202,17 @@ def _table(
     }
     usable = np.isfinite(stacked["mean_gap"])
     count = usable.sum(axis=0)
-    if count.min() == 0:
-        at = np.argwhere(count == 0)[0]
-        raise ConvergenceError(
-            f"no surface converged at {p[at[1]]:.4g} Pa and {v[at[0]]:.4g} m/s "
-            f"({int((count == 0).sum())} such nodes)",
-            history=[float(np.max(column["error"])) for column in columns],
-            where="contact table",
-            remedy="Leave out the highest pressures (near full contact) or take finer surfaces",
-        )
+    holes = _holes(count, p, v, columns)
     values, deviation = {}, {}
     for name, array in stacked.items():
         kept = np.where(usable, array, 0.0)
-        mean = kept.sum(axis=0) / count
+        mean = kept.sum(axis=0) / np.maximum(count, 1)
+        for row, hole in enumerate(holes):
+            if hole.any():
+                slopes = pchip_slopes(np.log(p[~hole]), mean[row, ~hole])
+                mean[row, hole], _ = interpolated(
+                    np.log(p[~hole]), mean[row, ~hole], slopes, np.log(p[hole])
+                )
         square = np.where(usable, (array - mean) ** 2, 0.0).sum(axis=0)
         spread = np.sqrt(square / np.maximum(count - 1, 1))
         values[name] = mean.T
@@ -224,6 +223,10 @@ def _table(
     dropped = int((~usable).sum())
     if dropped:
         notes.append(f"{dropped} of {usable.size} solutions did not converge and were left out")
+    notes += [
+        f"no solution at {p[n]:.3g} Pa and {v[row]:.3g} m/s: interpolated between its neighbours"
+        for row, n in np.argwhere(holes)
+    ]
     return ContactTable(
         pressure=p,
         speed=v,
@@ -239,13 +242,36 @@ def _table(
     )
 
 
+def _holes(
+    count: np.ndarray, p: np.ndarray, v: np.ndarray, columns: list[dict[str, np.ndarray]]
+) -> np.ndarray:
+    """Return the nodes without a solution; they are bridged only one by one and not at an end."""
+    holes = count == 0
+    bridged = holes.copy()
+    bridged[:, [0, -1]] = False
+    bridged[:, 1:] &= ~holes[:, :-1]
+    bridged[:, :-1] &= ~holes[:, 1:]
+    lost = holes & ~bridged
+    if lost.any():
+        at = np.argwhere(lost)[0]
+        raise ConvergenceError(
+            f"no surface converged at {p[at[1]]:.4g} Pa and {v[at[0]]:.4g} m/s "
+            f"({int(lost.sum())} such nodes)",
+            history=[float(np.max(column["error"])) for column in columns],
+            where="contact table",
+            remedy="Leave out the highest pressures (near full contact) or take finer surfaces",
+        )
+    return holes
+
+
 def _about(surfaces: Sequence[Any]) -> str:
     first = surfaces[0]
     shortest = [s.resolution if s.resolution is not None else 2.0 * s.spacing for s in surfaces]
     nx, ny = first.heights.shape
     return (
         f"{len(surfaces)} surface(s) of {nx} x {ny} points, spacing {first.spacing * 1e6:.3g} um, "
-        f"shortest wave {max(shortest) * 1e6:.3g} um: contact fraction and hysteresis belong to this shortest wave"
+        f"shortest wave {max(shortest) * 1e6:.3g} um: contact fraction and "
+        "hysteresis belong to this shortest wave"
     )
 
 
