@@ -1,5 +1,10 @@
 """Whole shoes: geometry, compliance, contact with fluid, and how a floor sensor reads it."""
 
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from .geometry import SoleMap
 from .heel import Heel
 from .heel_grid import heel_map
@@ -8,17 +13,50 @@ from .reading import SensorReading, floor_sensor_reading
 from .tread import ArcChannel, Tread
 from .wear import WearPlane
 
+if TYPE_CHECKING:
+    from .compliance import (
+        Compliance,
+        ConvolutionCompliance,
+        half_space_compliance,
+        layered_compliance,
+    )
+    from .solver import SoleContact, SolverSettings, solve_sliding
+
+# the solver loads sparse linear algebra, which geometry and reading do not need
+_LATER = {
+    "Compliance": "compliance",
+    "ConvolutionCompliance": "compliance",
+    "SoleContact": "solver",
+    "SolverSettings": "solver",
+    "half_space_compliance": "compliance",
+    "layered_compliance": "compliance",
+    "solve_sliding": "solver",
+}
+
 __all__ = [
     "ArcChannel",
+    "Compliance",
+    "ConvolutionCompliance",
     "Facet",
     "Flat",
     "Heel",
     "Profile",
     "Rocker",
     "SensorReading",
+    "SoleContact",
     "SoleMap",
+    "SolverSettings",
     "Tread",
     "WearPlane",
     "floor_sensor_reading",
+    "half_space_compliance",
     "heel_map",
+    "layered_compliance",
+    "solve_sliding",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _LATER:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f".{_LATER[name]}", __name__), name)

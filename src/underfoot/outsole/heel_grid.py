@@ -63,7 +63,10 @@ def heel_map(heel: Heel, *, shoe_angle: float, spacing: float, padding: float = 
     x_floor = (np.arange(count_x) + 0.5 - margin) * spacing
     y = (np.arange(count_y, dtype=np.float64) - (count_y - 1) / 2) * spacing
     target, y_map = np.meshgrid(x_floor + rear, y, indexing="ij")
-    x = _solved(along, target, y_map, -2 * margin * spacing - heel.length, 3 * heel.length)
+    if sine == 0.0:
+        x = target
+    else:
+        x = _solved(along, target, y_map, -2 * margin * spacing - heel.length, 3 * heel.length)
     inside = heel.inward_distance(x, y_map) > 0
     height, land, tread_depth = _with_channels(heel, x, y_map)
     land &= inside

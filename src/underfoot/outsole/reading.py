@@ -166,13 +166,12 @@ def _pocket_pressure(
 
     flow = np.zeros((places.size, lanes.size))
     weight = np.zeros_like(flow)
-    # interpolating h^3 and p apart would mix a channel's gap with a lug's pressure at lug edges
+    # The product is interpolated, not its factors: next to a lug's edge the factors would put the
+    # lug's pressure on the channel's conductance.
     driven = conductance * pressure
     for along, across in rim:
         at = np.meshgrid(places + along, lanes + across, indexing="ij")
-        # The product is interpolated, not its factors: next to a lug's edge the factors would put
-        # the lug's pressure on the channel's conductance.
-        flow += map_coordinates(conductance * pressure, at, order=1, mode="constant", cval=0.0)
+        flow += map_coordinates(driven, at, order=1, mode="constant", cval=0.0)
         weight += map_coordinates(conductance, at, order=1, mode="constant", cval=outside)
     return flow / weight
 
