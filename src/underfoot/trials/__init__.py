@@ -1,15 +1,101 @@
 """Measurements: files to trials, trials to the numbers the field publishes."""
 
-from .measurement import Measurement
-from .trial import Channel, Edit, Event, Marker, Plate, Trial, file_checksum
+from .available import ACOF_WINDOWS, available_friction, available_frictions, mean_friction
+from .axes import Axes, axes_of, axis_name, axis_vector, heel_candidates, heel_of
+from .describe import Description, described, described_file
+from .events import Stance, body_mass, contacts, stances
+from .filters import FILTERS, FORCE_FILTER, MARKER_FILTER, LowPass, low_passed, velocity
+from .gait import (
+    DEFINITIONS,
+    RcofDefinition,
+    RequiredFriction,
+    required_friction,
+    required_frictions,
+)
+from .measurement import Measurement, mean_of
+from .plates import finished_plate
+from .pressures import (
+    Passage,
+    Pulse,
+    PulseDefinition,
+    heel_track,
+    passages,
+    pressure_pulse,
+    sensor_rows,
+)
+from .readers import (
+    PlateColumns,
+    Profile,
+    Sheet,
+    profile_from,
+    read_profile,
+    read_sheet,
+    read_trial,
+    read_trials,
+)
+from .slips import HeelMotion, Slip, SlipDefinition, contact_from_heel, heel_motion, slip, slip_of
+from .trial import Channel, Edit, Event, Marker, Plate, Trial, file_checksum, joined
 
 __all__ = [
+    "ACOF_WINDOWS",
+    "DEFINITIONS",
+    "FILTERS",
+    "FORCE_FILTER",
+    "MARKER_FILTER",
+    "Axes",
     "Channel",
+    "Description",
     "Edit",
     "Event",
+    "HeelMotion",
+    "LowPass",
     "Marker",
     "Measurement",
+    "Passage",
     "Plate",
+    "PlateColumns",
+    "Profile",
+    "Pulse",
+    "PulseDefinition",
+    "RcofDefinition",
+    "RequiredFriction",
+    "Sheet",
+    "Slip",
+    "SlipDefinition",
+    "Stance",
     "Trial",
+    "available_friction",
+    "available_frictions",
+    "axes_of",
+    "axis_name",
+    "axis_vector",
+    "body_mass",
+    "contact_from_heel",
+    "contacts",
+    "described",
+    "described_file",
     "file_checksum",
+    "finished_plate",
+    "heel_candidates",
+    "heel_motion",
+    "heel_of",
+    "heel_track",
+    "joined",
+    "low_passed",
+    "mean_friction",
+    "mean_of",
+    "passages",
+    "pressure_pulse",
+    "profile_from",
+    "read_profile",
+    "read_sheet",
+    "read_trial",
+    "read_trials",
+    "required_friction",
+    "required_frictions",
+    "sensor_rows",
+    "slip",
+    "slip_of",
+    "stances",
+    "velocity",
 ]

@@ -13,7 +13,8 @@ import numpy as np
 from underfoot.core import InputError
 
 from .axes import Axes, axes_of, axis_name, heel_candidates
-from .gait import DEFINITIONS, RcofDefinition, RequiredFriction, mean_of, required_frictions
+from .gait import DEFINITIONS, RcofDefinition, RequiredFriction, required_frictions
+from .measurement import mean_of
 from .readers import Profile, read_profile, read_trials
 from .trial import Plate, Trial, joined
 
@@ -131,6 +132,8 @@ class Description:
                 f"{stance.peak:.0f} N, {stance.side} foot, walking {axis_name(stance.walking)}"
             )
             lines.append(head)
+            if stance.walking is not None and not stance.walking_from.startswith("markers"):
+                lines.append(f"             walking direction from {stance.walking_from}")
             value = step.measurement.value
             if value is None:
                 lines.append(f"             rejected: {step.measurement.reason}")

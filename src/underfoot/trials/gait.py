@@ -1,10 +1,10 @@
-"""Required friction of a step and available friction of a loaded slide, every convention named."""
+"""Required friction (RCOF) of a step, every convention named."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -14,7 +14,8 @@ from .axes import Axes, axes_of
 from .events import Stance, body_mass, stances
 from .filters import FORCE_FILTER, LowPass, low_passed
 from .measurement import Measurement
-from .trial import Plate, Trial
+from .plates import baseline_words, plate_named
+from .trial import Trial
 
 PEAKS = {
     "largest-local-maximum": "largest local maximum",
@@ -27,7 +28,6 @@ SHEARS = {
     "anterior-posterior": "shear along the walking direction only",
 }
 GRAVITY = 9.80665
-ACOF_WINDOWS = (0.002, 0.05, 0.1, 0.2)  # s
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,191 +206,6 @@ def required_frictions(
     return [required_friction(trial, stance, definition, axes=axes) for stance in found]
 
 
-def mean_of(measurements: Sequence[Measurement], name: str | None = None) -> Measurement:
-    """Return the mean of several measurements with its standard error, sd / sqrt(n).
-
-    Those without a value are left out and counted in a flag. Conventions must agree.
-
-    Errors
-    ------
-    InputError
-        Nothing given, or different units or conventions.
-    """
-    if not measurements:
-        raise InputError("nothing to average", where="mean_of")
-    first = measurements[0]
-    ignored = ("baseline", "walking direction")
-    kept = {k: v for k, v in first.conventions.items() if k not in ignored}
-    for other in measurements:
-        theirs = {k: v for k, v in other.conventions.items() if k not in ignored}
-        if other.unit != first.unit or theirs != kept:
-            raise InputError("measurements of different conventions can't be averaged")
-    values = np.array([m.value for m in measurements if m.value is not None])
-    name = name or first.name
-    lost = len(measurements) - len(values)
-    flags = (f"{lost} of {len(measurements)} without a value are left out",) if lost else ()
-    if not len(values):
-        return Measurement.not_estimated(
-            name, first.reason, unit=first.unit, flags=flags, conventions=kept
-        )
-    deviation = float(values.std(ddof=1) / math.sqrt(len(values))) if len(values) > 1 else None
-    return Measurement(
-        name,
-        float(values.mean()),
-        first.unit,
-        deviation,
-        "" if deviation is not None else "a single value has no scatter",
-        len(values),
-        flags,
-        {**kept, "uncertainty": "standard error of the mean"},
-    )
-
-
-def mean_friction(
-    normal: np.ndarray,
-    shear: np.ndarray,
-    rate: float,
-    *,
-    target: float,
-    window: float = 0.2,
-    name: str = "acof",
-) -> Measurement:
-    """Return the mean of shear over normal force in a window after the target force is reached.
-
-    ``mean(shear / normal)`` over ``window`` seconds from the first sample at which ``normal``
-    reaches ``target``. The uncertainty is the standard error with the number of samples lowered
-    for their correlation, n (1 - r) / (1 + r) with r the correlation of neighbours.
-
-    Parameters
-    ----------
-    normal, shear
-        Shape (n,), N; the shear as a resultant (not negative).
-    rate
-        Samples per second.
-    target
-        Normal force that opens the window (N).
-    window
-        Length (s): 0.2 in the grant report (G.6.1); 0.05 is enough by Iraqi et al. (PMC6922306).
-    """
-    normal, shear = np.asarray(normal, dtype=float), np.asarray(shear, dtype=float)
-    said = {
-        "window": f"{1e3 * window:g} ms from the first sample at or above {target:g} N",
-        "average": "mean of the ratios of the samples",
-    }
-    if normal.shape != shear.shape or not target > 0 or not window > 0:
-        raise InputError("normal and shear must match; target and window be positive", where=name)
-    reached = np.flatnonzero(normal >= target)
-    if not len(reached):
-        top = float(np.nanmax(normal, initial=0.0))
-        return Measurement.not_estimated(
-            name, f"the normal force reaches {top:.0f} N, not {target:g} N", conventions=said
-        )
-    start = int(reached[0])
-    count = max(1, round(window * rate))
-    if start + count > len(normal):
-        return Measurement.not_estimated(
-            name, "the recording ends inside the window", conventions=said
-        )
-    part, across = normal[start : start + count], shear[start : start + count]
-    if not (np.isfinite(part).all() and np.isfinite(across).all()):
-        return Measurement.not_estimated(
-            name, "samples without a number inside the window", conventions=said
-        )
-    if part.min() < 0.2 * target:
-        return Measurement.not_estimated(
-            name, f"the normal force falls to {part.min():.0f} N in the window", conventions=said
-        )
-    ratio = across / part
-    flags = ()
-    if part.min() < 0.9 * target:
-        flags = (f"the normal force falls to {part.min():.0f} N in the window",)
-    error = _standard_error(ratio)
-    return Measurement(
-        name,
-        float(ratio.mean()),
-        uncertainty=error,
-        reason="" if error is not None else "too few samples for a scatter",
-        n=count,
-        flags=flags,
-        conventions=said,
-    )
-
-
-def available_friction(
-    plate: Plate,
-    *,
-    target: float,
-    window: float = 0.2,
-    up: np.ndarray | None = None,
-    low_pass: LowPass | None = None,
-) -> Measurement:
-    """Return the available friction (ACOF) of a loaded slide over a force plate.
-
-    Resultant shear over normal force, see ``mean_friction``. Not filtered unless ``low_pass``
-    is given: the average does that.
-
-    Parameters
-    ----------
-    up
-        Unit vector out of the floor, lab axes; by default the plate's normal, or z.
-    """
-    if not plate.usable:
-        return Measurement.not_estimated("acof", plate.problem or "the plate has no samples")
-    if up is None:
-        up = axes_of(Trial("", plates=(plate,))).up
-    force = plate.force
-    words = "no filter"
-    if low_pass is not None:
-        words = str(low_pass)
-        try:
-            force = low_passed(force, plate.rate, low_pass)
-        except DataError as error:
-            return Measurement.not_estimated("acof", error.what)
-    normal = force @ up
-    shear = np.linalg.norm(force - np.outer(normal, up), axis=1)
-    found = mean_friction(normal, shear, plate.rate, target=target, window=window)
-    said = {
-        **found.conventions,
-        "shear": SHEARS["resultant"],
-        "filter": words,
-        "baseline": baseline_words(plate),
-    }
-    return replace(found, conventions=said)
-
-
-def available_frictions(
-    plate: Plate, *, target: float, windows: Sequence[float] = ACOF_WINDOWS
-) -> list[Measurement]:
-    """Return the available friction in several windows (2, 50, 100 and 200 ms by default)."""
-    return [available_friction(plate, target=target, window=window) for window in windows]
-
-
-def plate_named(trial: Trial, name: str) -> Plate:
-    """Return the plate called ``name``.
-
-    Errors
-    ------
-    DataError
-        There is none.
-    """
-    for plate in trial.plates:
-        if plate.name == name:
-            return plate
-    raise DataError(
-        f"no plate named {name}",
-        where=trial.name,
-        allowed=", ".join(p.name for p in trial.plates) or "the trial has no plates",
-    )
-
-
-def baseline_words(plate: Plate) -> str:
-    """Return what was done about a plate's baseline."""
-    if plate.baseline is None:
-        return "not subtracted"
-    size = ", ".join(f"{component:.1f}" for component in plate.baseline)
-    return f"mean of {plate.baseline_samples} unloaded samples subtracted ({size} N)"
-
-
 def _allowed(
     definition: RcofDefinition, normal: np.ndarray, along: np.ndarray, gate: float
 ) -> np.ndarray:
@@ -416,15 +231,3 @@ def _peak(definition: RcofDefinition, ratio: np.ndarray, allowed: np.ndarray) ->
     if definition.peak == "first-local-maximum":
         return int(candidates[0])
     return int(candidates[np.argmax(ratio[candidates])])
-
-
-def _standard_error(values: np.ndarray) -> float | None:
-    if len(values) < 4:
-        return None
-    deviation = values - values.mean()
-    power = float(deviation @ deviation)
-    if power == 0.0:
-        return 0.0
-    correlation = float(np.clip(deviation[1:] @ deviation[:-1] / power, 0.0, 0.99))
-    independent = max(2.0, len(values) * (1.0 - correlation) / (1.0 + correlation))
-    return float(math.sqrt(power / (len(values) - 1) / independent))

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from underfoot.core import display
+import numpy as np
+
+from underfoot.core import InputError, display
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,3 +105,43 @@ class Measurement:
             "flags": list(self.flags),
             "conventions": dict(self.conventions),
         }
+
+
+def mean_of(measurements: Sequence[Measurement], name: str | None = None) -> Measurement:
+    """Return the mean of several measurements with its standard error, sd / sqrt(n).
+
+    Those without a value are left out and counted in a flag. Conventions must agree.
+
+    Errors
+    ------
+    InputError
+        Nothing given, or different units or conventions.
+    """
+    if not measurements:
+        raise InputError("nothing to average", where="mean_of")
+    first = measurements[0]
+    ignored = ("baseline", "walking direction")
+    kept = {k: v for k, v in first.conventions.items() if k not in ignored}
+    for other in measurements:
+        theirs = {k: v for k, v in other.conventions.items() if k not in ignored}
+        if other.unit != first.unit or theirs != kept:
+            raise InputError("measurements of different conventions can't be averaged")
+    values = np.array([m.value for m in measurements if m.value is not None])
+    name = name or first.name
+    lost = len(measurements) - len(values)
+    flags = (f"{lost} of {len(measurements)} without a value are left out",) if lost else ()
+    if not len(values):
+        return Measurement.not_estimated(
+            name, first.reason, unit=first.unit, flags=flags, conventions=kept
+        )
+    deviation = float(values.std(ddof=1) / math.sqrt(len(values))) if len(values) > 1 else None
+    return Measurement(
+        name,
+        float(values.mean()),
+        first.unit,
+        deviation,
+        "" if deviation is not None else "a single value has no scatter",
+        len(values),
+        flags,
+        {**kept, "uncertainty": "standard error of the mean"},
+    )

@@ -7,7 +7,7 @@ import numpy as np
 from underfoot.core import DataError
 
 from .baseline import SHEAR_WARNING, enough, saturated, unloaded
-from .trial import Plate
+from .trial import Plate, Trial
 
 KINDS = {
     1: "type 1 (force, centre of pressure, free moment)",
@@ -184,6 +184,32 @@ def finished_plate(
 def refused_plate(name: str, problem: str, *, rate: float = 0.0, kind: str = "") -> Plate:
     """Return a plate that can't be used, with the reason."""
     return Plate(name, np.empty((0, 3)), rate, kind=kind, problem=problem)
+
+
+def plate_named(trial: Trial, name: str) -> Plate:
+    """Return the plate called ``name``.
+
+    Errors
+    ------
+    DataError
+        There is none.
+    """
+    for plate in trial.plates:
+        if plate.name == name:
+            return plate
+    raise DataError(
+        f"no plate named {name}",
+        where=trial.name,
+        allowed=", ".join(p.name for p in trial.plates) or "the trial has no plates",
+    )
+
+
+def baseline_words(plate: Plate) -> str:
+    """Return what was done about a plate's baseline."""
+    if plate.baseline is None:
+        return "not subtracted"
+    size = ", ".join(f"{component:.1f}" for component in plate.baseline)
+    return f"mean of {plate.baseline_samples} unloaded samples subtracted ({size} N)"
 
 
 def up_from_normal(normal: np.ndarray) -> np.ndarray:

@@ -14,8 +14,8 @@ from .axes import Axes, axes_of, heel_of, walking_direction
 from .baseline import runs
 from .events import Stance
 from .filters import MARKER_FILTER, LowPass, bridged, low_passed
-from .gait import plate_named
 from .measurement import Measurement
+from .plates import plate_named
 from .trial import Marker, Trial
 
 PLANES = {

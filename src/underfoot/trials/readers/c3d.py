@@ -99,15 +99,30 @@ def _channels(raw: C3DFile, units: list[str], start: float, notes: list[str]) ->
     labels = raw.texts("ANALOG", "LABELS")[:count]
     labels += [f"channel {i + 1}" for i in range(len(labels), count)]
     channels = {}
+    counts = _raw_columns(raw)
     for i, name in enumerate(unique_names(labels, "channel", notes)):
         written = units[i] if i < len(units) else ""
         unit = si_unit(written) if written else None
+        if i in counts:  # the unit belongs to what the plate's calibration matrix makes of them
+            channels[name] = Channel(
+                raw.analog[:, i], "", raw.analog_rate, start, note="before the plate's calibration"
+            )
+            continue
         si, factor, offset = unit if unit else ("", 1.0, 0.0)
         note = f'in "{written}" in the file' if written else "no unit in the file"
         channels[name] = Channel(
             raw.analog[:, i] * factor + offset, si, raw.analog_rate, start, note=note
         )
     return channels
+
+
+def _raw_columns(raw: C3DFile) -> set[int]:
+    kinds = raw.whole_numbers("FORCE_PLATFORM", "TYPE").ravel(order="F")
+    columns = raw.whole_numbers("FORCE_PLATFORM", "CHANNEL")
+    if columns.ndim != 2:
+        return set()
+    plates = [i for i in range(min(len(kinds), columns.shape[1])) if kinds[i] == 4]
+    return {int(column) - 1 for i in plates for column in columns[:, i]}
 
 
 def _plate_count(raw: C3DFile) -> int:
@@ -120,14 +135,14 @@ def _plate(
     raw: C3DFile, index: int, units: list[str], scale: float, start: float, subtract: bool
 ) -> Plate:
     name = f"plate {index + 1}"
-    kinds = raw.numbers("FORCE_PLATFORM", "TYPE").ravel(order="F")
+    kinds = raw.whole_numbers("FORCE_PLATFORM", "TYPE").ravel(order="F")
     kind = int(kinds[index]) if index < kinds.size else 0
     words = KINDS.get(kind, f"type {kind}")
     try:
         if kind not in CHANNELS:
             raise DataError(f"plate type {kind} is not supported", allowed="types 1 to 4")
-        numbers = _column(raw.numbers("FORCE_PLATFORM", "CHANNEL"), index, "CHANNEL")
-        columns = numbers[: CHANNELS[kind]].astype(int) - 1
+        numbers = _column(raw.whole_numbers("FORCE_PLATFORM", "CHANNEL"), index, "CHANNEL")
+        columns = numbers[: CHANNELS[kind]] - 1
         if len(columns) < CHANNELS[kind]:
             raise DataError(f"{words} needs {CHANNELS[kind]} channels")
         if columns.min() < 0 or columns.max() >= raw.analog.shape[1]:

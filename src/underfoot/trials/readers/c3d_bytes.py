@@ -39,6 +39,11 @@ class C3DFile:
         value = self.parameters.get(group, {}).get(name)
         return value if isinstance(value, np.ndarray) else np.empty(0)
 
+    def whole_numbers(self, group: str, name: str) -> np.ndarray:
+        """Return a parameter as whole numbers; what can't be one is 0."""
+        values = np.nan_to_num(self.numbers(group, name), nan=0.0, posinf=0.0, neginf=0.0)
+        return np.where(np.abs(values) < 1e6, values, 0.0).astype(int)
+
     def number(self, group: str, name: str, default: float = 0.0) -> float:
         """Return the first number of a parameter."""
         values = self.numbers(group, name).ravel(order="F")
@@ -125,8 +130,8 @@ def _check_size(length: int, start: int, frames: int, width: int, where: str) ->
 def _frame_range(words: np.ndarray, shell: C3DFile) -> tuple[int, int]:
     """Header words hold 16 bits; longer recordings put the range in parameters."""
     first, last = int(words[3]), int(words[4])
-    begin = shell.numbers("TRIAL", "ACTUAL_START_FIELD").ravel(order="F")
-    end = shell.numbers("TRIAL", "ACTUAL_END_FIELD").ravel(order="F")
+    begin = shell.whole_numbers("TRIAL", "ACTUAL_START_FIELD").ravel(order="F")
+    end = shell.whole_numbers("TRIAL", "ACTUAL_END_FIELD").ravel(order="F")
     if begin.size == 2 and end.size == 2:
         low = int(begin[0]) % 65536 + 65536 * (int(begin[1]) % 65536)
         high = int(end[0]) % 65536 + 65536 * (int(end[1]) % 65536)
@@ -216,6 +221,8 @@ def _value(data: bytes, processor: int, name: str, where: str) -> Any:
     count = 1
     for length in shape:
         count *= length
+    if data[1] > 7:  # the format's limit
+        raise DataError(f"damaged: parameter {name} has {data[1]} dimensions", where=where)
     if kind not in (-1, 1, 2, 4):
         raise DataError(f"damaged: parameter {name} has the unknown type {kind}", where=where)
     body = data[2 + len(shape) : 2 + len(shape) + count * abs(kind)]

@@ -37,7 +37,9 @@ def read_pcs(data: bytes, path: Path, checksum: str) -> tuple[Trial, ...]:
     if not is_pcs(lines[0]):
         raise DataError("not a PCS log", where=where)
     starts = [i for i, line in enumerate(lines) if line.startswith("Step ") and "started" in line]
-    general = _settings(lines[: starts[0]]) if starts else {}
+    if not starts:
+        raise DataError("truncated: there is no step", where=where)
+    general = _settings(lines[: starts[0]])
     done = general.get("Number of steps completed", "")
     if done.isdigit() and int(done) > len(starts):
         raise DataError(

@@ -192,14 +192,16 @@ def unique_names(labels: Sequence[str], kind: str, notes: list[str]) -> list[str
     """Return the labels made unique (``name #2``); unnamed ones are numbered."""
     seen: dict[str, int] = {}
     names: list[str] = []
+    taken: set[str] = set()
     for i, label in enumerate(labels):
         base = label.strip() or f"{kind} {i + 1}"
         seen[base] = seen.get(base, 0) + 1
         name = base if seen[base] == 1 else f"{base} #{seen[base]}"
-        while name in names:
+        while name in taken:
             seen[base] += 1
             name = f"{base} #{seen[base]}"
         names.append(name)
+        taken.add(name)
     repeated = [name for name, count in seen.items() if count > 1]
     if repeated:
         shown = ", ".join(repeated[:5]) + (" ..." if len(repeated) > 5 else "")
