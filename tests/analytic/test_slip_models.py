@@ -1,0 +1,162 @@
+"""Slip models: limits, monotony, population mean against other ways to compute it."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import quad
+from scipy.stats import norm
+
+from underfoot.core import InputError, RangeError, SourcedValue
+from underfoot.slip import (
+    ADULTS_LEVEL_WALKING,
+    MODELS,
+    Beschorner2016,
+    Chang2004,
+    ReportG6,
+    RequiredFriction,
+    SlipModel,
+    slip_model,
+    slip_risk,
+)
+
+LOGISTIC = [ReportG6(), Beschorner2016()]
+
+
+def acof(value, deviation=None):
+    return SourcedValue(value, "1", source="test", uncertainty=deviation)
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_every_model_keeps_the_contract(name):
+    model = slip_model(name)
+    assert isinstance(model, SlipModel)
+    assert model.name == name
+    assert model.source
+    assert model.assumptions
+    grid = np.linspace(0.0, 0.6, 61)
+    single = model(grid, 0.2)
+    people = model.population(grid, 0.2, 0.03)
+    for risk in (single, people):
+        assert ((risk >= 0) & (risk <= 1)).all()
+        assert (np.diff(risk) <= 0).all()
+        assert risk[0] > 0.99
+        assert risk[-1] < 1e-6
+    assert isinstance(model(0.2, 0.2), float)
+    assert model.population(grid, 0.2, 0.0) == pytest.approx(single, rel=1e-12)
+    assert (np.diff(model.population(0.2, grid, 0.03)) >= 0).all()
+
+
+def test_unknown_model_names_the_nearest():
+    with pytest.raises(InputError, match="report_g6"):
+        slip_model("report_g5")
+
+
+@pytest.mark.parametrize("model", LOGISTIC, ids=lambda m: m.name)
+@pytest.mark.parametrize("sd", [0.01, 0.03, 0.1, 0.4])
+def test_population_mean_against_quadrature(model, sd):
+    for a in (0.0, 0.1, 0.2, 0.35):
+
+        def integrand(z, a=a):
+            odds = model.slope * (a - (0.2 + sd * z) + 0.06) * (1 if model.slope < 0 else -1)
+            return norm.pdf(z) / (1 + math.exp(-odds))
+
+        expected = quad(integrand, -10, 10, epsabs=1e-12, limit=400)[0]
+        assert model.population(a, 0.2, sd) == pytest.approx(expected, abs=1e-9)
+
+
+def test_population_mean_against_sampling():
+    rng = np.random.default_rng(5)
+    people = rng.normal(0.2, 0.03, 400_000)
+    people = people[(people >= 0) & (people <= 1)]
+    for model in (*LOGISTIC, Chang2004()):
+        sampled = np.mean(model(0.21, people))
+        assert model.population(0.21, 0.2, 0.03) == pytest.approx(sampled, abs=4e-3)
+
+
+def test_chang_is_the_normal_distribution():
+    model = Chang2004()
+    assert model.population(0.2, 0.2, 0.03) == pytest.approx(0.5)
+    assert model.population(0.23, 0.2, 0.03) == pytest.approx(norm.cdf(-1))
+    assert model.population(0.1, 0.2, 0.0) == 1.0
+    assert model(0.2, np.array([0.19, 0.2, 0.21])) == pytest.approx([0.0, 0.5, 1.0])
+
+
+@settings(deadline=None, max_examples=60)
+@given(
+    a=st.floats(0, 1),
+    more=st.floats(0, 0.3),
+    mean=st.floats(0, 0.6),
+    sd=st.floats(0, 0.2),
+    name=st.sampled_from(sorted(MODELS)),
+)
+def test_more_friction_never_adds_risk(a, more, mean, sd, name):
+    model = slip_model(name)
+    low, high = model.population(a, mean, sd), model.population(a + more, mean, sd)
+    assert 0 <= high <= low + 1e-12 <= 1 + 1e-9
+    assert model.population(a, min(mean + more, 1.0), sd) >= low - 1e-12
+
+
+def test_risk_carries_its_band():
+    found = slip_risk(acof(0.15, 0.02))
+    model, people = ReportG6(), ADULTS_LEVEL_WALKING
+    assert found.probability.value == pytest.approx(model.population(0.15, people.mean, people.sd))
+    assert found.low == pytest.approx(
+        model.population(0.15 + 1.95996 * 0.02, people.mean, people.sd), rel=1e-5
+    )
+    assert found.high == pytest.approx(
+        model.population(0.15 - 1.95996 * 0.02, people.mean, people.sd), rel=1e-5
+    )
+    assert found.low < found.probability.value < found.high
+    rng = np.random.default_rng(11)
+    sampled = model.population(np.maximum(rng.normal(0.15, 0.02, 5000), 0), people.mean, people.sd)
+    assert found.expected == pytest.approx(sampled.mean(), abs=0.006)
+    assert found.probability.uncertainty == pytest.approx(sampled.std(), abs=0.006)
+    assert found.probability.assumed
+    assert any("Required friction 0.2" in text for text in found.assumptions)
+
+
+def test_risk_without_uncertainty_has_no_band():
+    found = slip_risk(acof(0.15), rcof=RequiredFriction(0.19, 0.02, "measured"))
+    assert found.low is None
+    assert found.probability.uncertainty is None
+    assert found.probability.reason
+    assert not found.probability.assumed
+
+
+def test_chang_with_uncertain_acof_adds_the_variances():
+    """P = Phi((mean R - mean A) / sqrt(s_R^2 + s_A^2)) is the mean over the uncertain ACOF."""
+    found = slip_risk(acof(0.24, 0.04), rcof=RequiredFriction(0.2, 0.03), model=Chang2004())
+    assert found.expected == pytest.approx(norm.cdf(-0.04 / 0.05), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "build",
+    [
+        lambda: RequiredFriction(1.2, 0.03),
+        lambda: RequiredFriction(-0.1, 0.03),
+        lambda: RequiredFriction(math.nan, 0.03),
+        lambda: RequiredFriction(0.2, -0.01),
+        lambda: RequiredFriction(0.2, math.nan),
+        lambda: RequiredFriction(0.2, 0.7),
+        lambda: slip_risk(acof(math.nan)),
+        lambda: slip_risk(acof(-0.1)),
+        lambda: slip_risk(acof(None)),
+        lambda: slip_risk(acof(0.2, math.inf)),
+        lambda: ReportG6()(0.2, 1.5),
+        lambda: ReportG6()(math.inf, 0.2),
+        lambda: ReportG6().population(0.2, 0.2, -0.1),
+        lambda: ReportG6(slope=49.2),
+        lambda: Beschorner2016(odds_ratio=0.9),
+    ],
+)
+def test_bad_input(build):
+    with pytest.raises(InputError):
+        build()
+
+
+def test_range_error_names_the_range():
+    with pytest.raises(RangeError, match="0 to 1"):
+        ReportG6()(0.2, 1.5)
