@@ -30,7 +30,7 @@ class MapStyle:
 STYLES = {
     "contact_pressure": MapStyle("contact_pressure", "Contact pressure", 1e-3, "kPa", "viridis"),
     "fluid_pressure": MapStyle("fluid_pressure", "Fluid pressure", 1e-3, "kPa", "viridis"),
-    "film_thickness": MapStyle("film_thickness", "Film thickness", 1e6, "um", "magma_r", True),
+    "film_thickness": MapStyle("film_thickness", "Film thickness", 1e6, "µm", "magma_r", True),
 }
 
 
@@ -56,10 +56,13 @@ def draw_map(
 
     style = STYLES[field]
     low, high = limits or colour_limits([dataset], field)
+    sole = np.where(dataset["inside"].values, 0.93, np.nan)
+    across, along = dataset["y"].values * 1e3, dataset["x"].values * 1e3
+    axes.pcolormesh(across, along, sole, cmap="gray", vmin=0.0, vmax=1.0, shading="nearest")
     norm = LogNorm(low, high) if style.logarithmic else Normalize(low, high)
     image = axes.pcolormesh(
-        dataset["y"].values * 1e3,
-        dataset["x"].values * 1e3,
+        across,
+        along,
         _drawn(dataset, style),
         cmap=style.colours,
         norm=norm,
@@ -77,9 +80,14 @@ def draw_map(
     axes.set_title(style.title)
     axes.set_xlabel("across, y (mm)")
     axes.set_ylabel("from the back of the heel, x (mm)")
-    unit = "µm" if style.unit == "um" else style.unit
     bar = axes.figure.colorbar(image, ax=axes, fraction=0.05, pad=0.03)
-    bar.set_label(unit)
+    bar.ax.set_title(style.unit, fontsize="medium")
+    if style.logarithmic:
+        from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+
+        bar.ax.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        bar.ax.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+        bar.ax.yaxis.set_minor_formatter(NullFormatter())
 
 
 def map_figure(dataset: xarray.Dataset, field: str) -> Figure:
@@ -120,4 +128,6 @@ def _figure(columns: int) -> Figure:
 def _drawn(dataset: xarray.Dataset, style: MapStyle) -> np.ma.MaskedArray:
     values = np.asarray(dataset[style.field].values, dtype=float) * style.factor
     hidden = ~np.asarray(dataset["inside"].values, dtype=bool) | ~np.isfinite(values)
+    if not style.logarithmic:
+        hidden |= values < 1e-3 * np.max(values, initial=0.0, where=~hidden)
     return np.ma.masked_array(values, mask=hidden)

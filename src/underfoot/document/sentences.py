@@ -68,7 +68,12 @@ def value_text(name: str, scalar: SourcedValue) -> str:
             if scalar.uncertainty is None
             else f" ± {display(scalar.uncertainty, scalar.unit, 2)}"
         )
-    return text + spread + (" (assumed)" if scalar.assumed else "")
+    text = _typeset(text + spread)
+    return text + (" (assumed)" if scalar.assumed else "")
+
+
+def _typeset(text: str) -> str:
+    return text.replace("um", "µm").replace("^2", "²").replace("*", "·")
 
 
 def percent(share: float) -> str:
