@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from underfoot.core import InputError, SourcedValue
+from underfoot.fluid import AdhesionBlocking
 from underfoot.friction import (
     AdhesionBlockingLaw,
     BoundaryFriction,
@@ -33,7 +34,7 @@ def laws():
         BoundaryLaw(sourced(0.5, 0.03), sourced(0.1, 0.02), 0.2),
         StribeckLaw(sourced(0.5, 0.03), sourced(0.3, 0.1), sourced(0.1, 0.02), 0.2),
         AdhesionBlockingLaw(
-            sourced(2.5), sourced(0.1), sourced(0.6, 0.05), sourced(0.1, 0.02), viscosity=0.2
+            AdhesionBlocking(2.5, 0.1), sourced(0.6, 0.05), sourced(0.1, 0.02), viscosity=0.2
         ),
     ]
 
@@ -110,9 +111,14 @@ def test_stribeck_deviation_against_sampling():
 
 def test_adhesion_blocking_law_is_eq_26():
     """alpha 2.8 N, beta 0.1, dry adhesion 0.6 at 20.9 N: (2.8 + 0.1 x 12.54) / 20.9."""
-    law = AdhesionBlockingLaw(sourced(2.8), sourced(0.1), sourced(0.6), sourced(0.2, 0.01))
+    blocking = AdhesionBlocking(2.8, 0.1)
+    law = AdhesionBlockingLaw(blocking, sourced(0.6), sourced(0.2, 0.01))
     assert law.cof_parts == pytest.approx(((2.8 + 0.1 * 12.54) / 20.9, 0.2))
-    barely = AdhesionBlockingLaw(sourced(2.8), sourced(0.1), sourced(0.05), sourced(0.2))
+    adhesion = 1.05 * math.sqrt(math.pi / 2) / 20.9  # mean error 1.05 N (G.3.2), normal errors
+    deviation = law.deviation(1.0, 0.01, 1e-5)
+    assert deviation.adhesion == pytest.approx(adhesion)
+    assert deviation.solid == pytest.approx(math.hypot(adhesion, 0.01))
+    barely = AdhesionBlockingLaw(blocking, sourced(0.05), sourced(0.2))
     assert barely.cof_parts[0] == 0.05  # a fluid adds no adhesion
 
 

@@ -1,12 +1,12 @@
 """Friction of sole, floor and fluid together: local laws and Eq. (1) over the whole sole."""
 
+from .adhesion_blocking import AdhesionBlockingLaw
 from .boundary import BoundaryLaw
 from .coefficient import FrictionCoefficients, cof
 from .constant import ConstantLaw
 from .law import FrictionDeviation, FrictionLaw, FrictionParts
 from .measured import BoundaryFriction, boundary_friction_at, friction_left, viscous_decay
 from .moore_2012 import StribeckLaw, stribeck_cof, stribeck_law_at
-from .strobel_2012 import AdhesionBlockingLaw, lubricated_adhesion
 
 __all__ = [
     "AdhesionBlockingLaw",
@@ -21,7 +21,6 @@ __all__ = [
     "boundary_friction_at",
     "cof",
     "friction_left",
-    "lubricated_adhesion",
     "stribeck_cof",
     "stribeck_law_at",
     "viscous_decay",

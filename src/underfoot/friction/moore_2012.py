@@ -22,7 +22,7 @@ from ._shared import (
     viscous_shear,
 )
 from .law import FrictionDeviation, FrictionParts
-from .measured import BoundaryFriction, boundary_friction_at, friction_left, viscous_decay
+from .measured import AT_BOUND, BoundaryFriction, boundary_friction_at, friction_left, viscous_decay
 
 SOURCE = (
     f"Moore, Menezes, Lovell, Beschorner, J. Tribology 134 (2012) 041104; {REPORT}, G.2, Eq. 17"
@@ -90,9 +90,17 @@ class StribeckLaw:
 
     @classmethod
     def measured(
-        cls, friction: BoundaryFriction, *, cof_hysteresis: SourcedValue | None = None
+        cls,
+        friction: BoundaryFriction,
+        *,
+        cof_hysteresis: SourcedValue | None = None,
+        others: tuple[BoundaryFriction, ...] = (),
     ) -> StribeckLaw:
         """Return the law of a fluid that has the fit.
+
+        ``cof_hysteresis`` is the measured hysteresis of the pair. Without it, and when the
+        fluid's own asymptote lies at the bound of its fit, that of ``others`` on the same pair is
+        taken (``friction_left``): it moves friction between the parts, not their sum.
 
         Errors
         ------
@@ -108,6 +116,12 @@ class StribeckLaw:
         notes = [f"Friction was measured on {friction.pair}."] if friction.pair else []
         if friction.cof_boundary.assumed:
             notes.append(friction.cof_boundary.note or f"COF_BL of {friction.fluid} is assumed.")
+        at_bound = (friction.cof_asymptote.value or 0.0) < AT_BOUND
+        if cof_hysteresis is None and at_bound and others:
+            cof_hysteresis = friction_left(others)
+            notes.append(
+                "Hysteresis is the friction that stays at high speed under glycerol, at most COF."
+            )
         return cls(
             friction.cof_boundary,
             friction.tau_hydro,

@@ -1,4 +1,4 @@
-"""How much adhesion a fluid leaves: Strobel et al. (2012), Eq. 26."""
+"""Friction from the dry adhesion of the pair and the share that a fluid leaves (Eq. 26)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError, Range, SourcedValue
+from underfoot.core import Breach, Range, SourcedValue
+from underfoot.fluid import AdhesionBlocking
 
 from ._shared import (
     PIN_PRESSURE,
@@ -20,54 +21,37 @@ from ._shared import (
 )
 from .law import FrictionDeviation, FrictionParts
 
-SOURCE = (
-    "Strobel, Menezes, Lovell, Beschorner, Tribology Letters 47 (2012) 341-347; "
-    f"{REPORT}, G.3, Eq. 26 and Table 5"
-)
-MEAN_ERROR = 1.05
-"""N: mean absolute error of Eq. 26 over all pairs and fluids (G.3.2)."""
+NORMAL_FORCE = 20.9
+"""N, the load of the tests behind Eq. 26 (G.3.1)."""
 RANGES = {
     "contact pressure": Range(0.0, PIN_PRESSURE, "Pa", f"{REPORT}, G.3.1: one load; lower assumed"),
     "sliding speed": Range(0.0, 0.01, "m/s", f"{REPORT}, G.3.1: one speed"),
 }
 
 
-def lubricated_adhesion(dry_adhesion: float, alpha: float, beta: float) -> float:
-    """Return the adhesion force under a fluid, N: F = alpha + beta F_dry (Eq. 26).
-
-    ``alpha`` and ``dry_adhesion`` in N at 20.9 N normal load; R2 = 0.49, mean error 1.05 N.
-    """
-    return alpha + beta * dry_adhesion
-
-
 @dataclass(frozen=True, slots=True)
 class AdhesionBlockingLaw:
     """Adhesion by Eq. 26 from the dry adhesion of the pair, its measured hysteresis, eta V / h.
 
-    mu_adhesion = alpha / N + beta mu_dry at the load N of the tests; not more than mu_dry. The
+    mu_adhesion = alpha / 20.9 N + beta mu_dry, at most mu_dry: a fluid adds no adhesion. The
     report shows dry adhesion and hysteresis of its pairs only in figures: both must be given.
 
     Parameters
     ----------
-    alpha, beta
-        Of the fluid: N and 1.
+    blocking
+        alpha and beta of the fluid.
     dry_adhesion, cof_hysteresis
         Coefficients of the pair: dry adhesion = dry minus oiled friction (Eq. 24), hysteresis =
         oiled friction (Eq. 23), 1.
-    load
-        Normal load at which alpha was measured, N.
     viscosity
         Pa s; None leaves out the viscous part.
     """
 
-    alpha: SourcedValue
-    beta: SourcedValue
+    blocking: AdhesionBlocking
     dry_adhesion: SourcedValue
     cof_hysteresis: SourcedValue
-    load: float = 20.9
     viscosity: float | None = None
     name: str = field(default="adhesion_blocking", init=False)
-    source: str = field(default=SOURCE, init=False)
     assumptions: tuple[str, ...] = field(
         default=(
             "Contact friction is proportional to the contact pressure and the same at all speeds.",
@@ -77,20 +61,21 @@ class AdhesionBlockingLaw:
     )
 
     def __post_init__(self) -> None:
-        for label in ("alpha", "beta", "dry_adhesion", "cof_hysteresis"):
-            coefficient(getattr(self, label), label)
-        if not (math.isfinite(self.load) and self.load > 0):
-            raise InputError(f"{self.load:g} N is not positive", where="load", allowed="above 0")
+        coefficient(self.dry_adhesion, "dry_adhesion")
+        coefficient(self.cof_hysteresis, "cof_hysteresis")
         checked_viscosity(self.viscosity)
+
+    @property
+    def source(self) -> str:
+        """Where alpha and beta come from."""
+        return self.blocking.source
 
     @property
     def cof_parts(self) -> tuple[float, float]:
         """Coefficients of the contact (adhesion, hysteresis)."""
         dry = coefficient(self.dry_adhesion, "dry_adhesion")
-        force = lubricated_adhesion(
-            dry * self.load, coefficient(self.alpha, "alpha"), coefficient(self.beta, "beta")
-        )
-        return min(force / self.load, dry), coefficient(self.cof_hysteresis, "cof_hysteresis")
+        left = float(self.blocking.lubricated_adhesion_cof(dry))
+        return min(left, dry), coefficient(self.cof_hysteresis, "cof_hysteresis")
 
     def __call__(
         self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
@@ -107,16 +92,14 @@ class AdhesionBlockingLaw:
     def deviation(
         self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
     ) -> FrictionDeviation | None:
-        """Return the standard deviations, Pa: the regression's mean error and the hysteresis'.
-
-        A mean absolute error of 1.05 N is a standard deviation of 1.05 sqrt(pi / 2) N for normal
-        errors.
-        """
+        """Return the standard deviations, Pa: that of the regression and the hysteresis'."""
         hysteresis = self.cof_hysteresis.uncertainty
-        if hysteresis is None:
+        dry = coefficient(self.dry_adhesion, "dry_adhesion")
+        force = self.blocking.estimate(dry * NORMAL_FORCE).uncertainty
+        if hysteresis is None or force is None:
             return None
         pressure, _, _ = checked(contact_pressure, speed, film_thickness)
-        adhesion = MEAN_ERROR * math.sqrt(math.pi / 2) / self.load
+        adhesion = force / NORMAL_FORCE
         return FrictionDeviation(
             math.hypot(adhesion, hysteresis) * pressure, adhesion * pressure, hysteresis * pressure
         )
