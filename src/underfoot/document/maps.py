@@ -56,9 +56,7 @@ def draw_map(
 
     style = STYLES[field]
     low, high = limits or colour_limits([dataset], field)
-    sole = np.where(dataset["inside"].values, 0.93, np.nan)
     across, along = dataset["y"].values * 1e3, dataset["x"].values * 1e3
-    axes.pcolormesh(across, along, sole, cmap="gray", vmin=0.0, vmax=1.0, shading="nearest")
     norm = LogNorm(low, high) if style.logarithmic else Normalize(low, high)
     image = axes.pcolormesh(
         across,
@@ -70,12 +68,9 @@ def draw_map(
         rasterized=True,
     )
     if "outline_x" in dataset:
-        axes.plot(
-            dataset["outline_y"].values * 1e3,
-            dataset["outline_x"].values * 1e3,
-            color="0.25",
-            linewidth=1.2,
-        )
+        rim = (dataset["outline_y"].values * 1e3, dataset["outline_x"].values * 1e3)
+        axes.fill(*rim, color="0.93", zorder=0)
+        axes.plot(*rim, color="0.25", linewidth=1.2)
     axes.set_aspect("equal")
     axes.set_title(style.title)
     axes.set_xlabel("across, y (mm)")
