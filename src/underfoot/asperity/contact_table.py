@@ -37,6 +37,7 @@ QUANTITIES = {
 Outside = Literal["error", "extend"]
 Direction = Literal["along", "across", "mean"]
 _FORMAT = 1
+_REFINEMENT = 8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -193,9 +194,13 @@ class ContactTable:
         of the flow factor differ by chance for isotropic textures; ``mean`` averages them.
         Raises RangeError when fewer than three pressures of the grid leave an open gap.
         """
-        v = np.full(self.pressure.shape, abs(float(speed)))
-        gap = self.mean_gap(self.pressure, v, "extend")
-        flow = self.flow_factor(self.pressure, v, direction, "extend")
+        # between the nodes too, so that law and table are one function
+        nodes = np.arange(self.pressure.size)
+        fine = np.linspace(0, nodes[-1], _REFINEMENT * nodes[-1] + 1)
+        pressure = np.exp(np.interp(fine, nodes, np.log(self.pressure)))
+        v = np.full(pressure.shape, abs(float(speed)))
+        gap = self.mean_gap(pressure, v, "extend")
+        flow = self.flow_factor(pressure, v, direction, "extend")
         keep = [0]
         for n in range(1, gap.size):
             if gap[n] < gap[keep[-1]] - 1e-6 * gap[0]:
@@ -211,7 +216,7 @@ class ContactTable:
             name=self.name,
             source=f"{self.description or 'rough contact'}, at {abs(speed):g} m/s",
             gap=gap[order],
-            node_pressure=self.pressure[order],
+            node_pressure=pressure[order],
             node_flow_factor=np.maximum(flow[order], 0.0),
             speed=abs(float(speed)),
             ranges=self.ranges,

@@ -3,62 +3,24 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import InputError, Range, RangeError, breaches
+from underfoot.surface import SpectralMoments, asperities
 
-from .spectral_moments import SpectralMoments
 from .theory_contact import TheoryContact
 
 SOURCE = (
-    "Greenwood and Williamson (1966) Proc. R. Soc. A 295:300-319; summits from the spectrum by "
-    "McCool (1986) Wear 107:37-60"
+    "Greenwood and Williamson (1966) Proc. R. Soc. A 295:300-319; summits from the moments of "
+    "the spectrum as surface.asperities gives them"
 )
 TESTED = {
     "real_contact_fraction": Range(
         0.0, 0.1, "1", "independent summits; beside a half-space solution, see docs"
     ),
-    "spectral breadth": Range(1.5, 50.0, "1", "isotropic Gaussian surfaces have 1.5 or more"),
 }
-
-
-@dataclass(frozen=True, slots=True)
-class Summits:
-    """Gaussian summits of one radius: ``density`` (1/m^2), ``radius`` (m), heights (m).
-
-    ``height_deviation`` is the standard deviation of summit heights, ``mean_height`` the
-    distance of their mean plane above that of the surface.
-    """
-
-    density: float
-    radius: float
-    height_deviation: float
-    mean_height: float
-
-    @classmethod
-    def from_moments(cls, moments: SpectralMoments) -> Summits:
-        """Return the summits of an isotropic Gaussian surface with these moments.
-
-        D = m4/(6 pi sqrt(3) m2), R = (3/8) sqrt(pi/m4), sigma_s^2 = (1 - 0.8968/alpha) m0,
-        z_s = 4 sqrt(m0/(pi alpha)), alpha = m0 m4/m2^2. Source: McCool (1986), Eqs. 4 to 9.
-        """
-        alpha = moments.nayak
-        if alpha <= 0.8968:
-            raise InputError(
-                f"the spectral breadth is {alpha:.3g}",
-                where="Greenwood-Williamson",
-                allowed="1.5 or more for an isotropic random surface",
-                remedy="Use the sliding half-space for regular textures",
-            )
-        return cls(
-            density=moments.m4 / (6.0 * math.pi * math.sqrt(3.0) * moments.m2),
-            radius=0.375 * math.sqrt(math.pi / moments.m4),
-            height_deviation=math.sqrt((1.0 - 0.8968 / alpha) * moments.m0),
-            mean_height=4.0 * math.sqrt(moments.m0 / (math.pi * alpha)),
-        )
 
 
 def greenwood_williamson(
@@ -80,13 +42,13 @@ def greenwood_williamson(
     p = np.atleast_1d(np.asarray(pressure, dtype=float))
     if not np.all((p > 0.0) & np.isfinite(p)):
         raise InputError("pressure must be positive", where="Greenwood-Williamson")
-    summits = Summits.from_moments(moments)
-    deviation = summits.height_deviation
+    summits = asperities(moments)
+    deviation = summits.height_sd
     stiffness = modulus / (1.0 - poisson_ratio**2)
     scale = 4.0 / 3.0 * stiffness * summits.density * math.sqrt(summits.radius) * deviation**1.5
     t = _separation(p / scale)
     area = math.pi * summits.density * summits.radius * deviation * _summit_integral(1.0, t)
-    values = {"real_contact_fraction": area, "spectral breadth": np.array(moments.nayak)}
+    values = {"real_contact_fraction": area}
     return TheoryContact(
         closure="greenwood_williamson_1966",
         source=SOURCE,

@@ -9,7 +9,7 @@ from underfoot.core import Range, breaches
 
 from . import persson_2001, scaraggi_persson_2015, yang_persson_2008
 from .persson_2001 import contact_fractions, direction_means
-from .spectral_moments import checked_spectrum
+from .spectrum_check import checked_spectrum
 from .steady_checks import Modulus, modulus_function
 from .theory_contact import TheoryContact
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import InputError
 
-from .spectral_moments import checked_spectrum
+from .spectrum_check import checked_spectrum
 from .steady_checks import Modulus, modulus_function
 
 SOURCE = "Persson (2001) J. Chem. Phys. 115:3840-3861"

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .persson_2001 import contact_fractions, cumulative, direction_means
-from .spectral_moments import checked_spectrum
+from .spectrum_check import checked_spectrum
 from .steady_checks import Modulus
 
 SOURCE = (

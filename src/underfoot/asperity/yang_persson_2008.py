@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from underfoot.core import InputError
 
 from .persson_2001 import cumulative
-from .spectral_moments import checked_spectrum
+from .spectrum_check import checked_spectrum
 
 SOURCE = "Yang and Persson (2008) J. Phys.: Condens. Matter 20:215214"
 GAMMA = 0.45

@@ -1,0 +1,65 @@
+"""Pictures of one rough contact: heights, pressure, contact patches and gap."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def contact_figure(heights: np.ndarray, spacing: float, contact: Any, title: str = "") -> Figure:
+    """Return four maps of a contact: surface, pressure, patches of contact, gap.
+
+    ``heights`` (m, (nx, ny), axis 0 along sliding), ``spacing`` (m) and a result with ``pressure``
+    (Pa) and ``gap`` (m) on the same grid, as ``steady_sliding`` returns it. Sliding is drawn
+    upwards. The gap's colours end at its 99 % quantile.
+    """
+    from matplotlib.colors import ListedColormap
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9.2, 8.0), layout="constrained")
+    axes = figure.subplots(2, 2)
+    nx, ny = heights.shape
+    extent = (0.0, ny * spacing * 1e6, 0.0, nx * spacing * 1e6)
+    touching = contact.pressure > 0.0
+    open_gap = np.ma.masked_array(contact.gap * 1e6, mask=touching)
+    carried = np.ma.masked_array(contact.pressure * 1e-6, mask=~touching)
+    highest = float(np.quantile(contact.gap, 0.99)) * 1e6
+    panels = (
+        ("Surface", (heights - heights.mean()) * 1e6, "height (µm)", "cividis", (None, None)),
+        ("Contact pressure", carried, "pressure (MPa)", "viridis", (0.0, None)),
+        ("Contact patches", touching, "", ListedColormap(["#f2efe9", "#7a1f1f"]), (0.0, 1.0)),
+        ("Gap", open_gap, "gap (µm)", "magma_r", (0.0, max(highest, 1e-9))),
+    )
+    for ax, (name, field, unit, colours, (low, high)) in zip(axes.flat, panels, strict=True):
+        image = ax.imshow(
+            field,
+            origin="lower",
+            extent=extent,
+            cmap=colours,
+            vmin=low,
+            vmax=high,
+            interpolation="nearest",
+        )
+        ax.set_title(name)
+        ax.set_xlabel("across, y (µm)")
+        ax.set_ylabel("sliding, x (µm)")
+        if unit:
+            figure.colorbar(image, ax=ax, fraction=0.046, pad=0.03).set_label(unit)
+        else:
+            share = float(np.mean(touching))
+            ax.set_title(f"{name}: {100.0 * share:.3g} % of the grid")
+    if title:
+        figure.suptitle(title)
+    return figure
+
+
+def save_contact_figure(
+    path: Path, heights: np.ndarray, spacing: float, contact: Any, title: str = ""
+) -> None:
+    """Write ``contact_figure`` as a picture; the ending of ``path`` chooses the format."""
+    contact_figure(heights, spacing, contact, title).savefig(path, dpi=150)
