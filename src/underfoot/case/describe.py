@@ -100,13 +100,9 @@ def tested_range_breaches(case: Case) -> list[str]:
     return [str(breach) for breach in found]
 
 
-def differences(first: str, second: str) -> list[tuple[str, str, str]]:
-    """Return (path, first, second) of what differs between two complete cases in TOML."""
-    from .case import Case
-
-    left, right = (
-        {path: value for path, value, _ in rows(Case.from_text(text))} for text in (first, second)
-    )
+def differences(first: Case, second: Case) -> list[tuple[str, str, str]]:
+    """Return (path, first, second) of the values in which two cases differ."""
+    left, right = ({path: value for path, value, _ in rows(case)} for case in (first, second))
     paths = [*left, *(path for path in right if path not in left)]
     return [
         (path, left.get(path, "-"), right.get(path, "-"))

@@ -16,6 +16,7 @@ from .guard import guarded
 from .new import new
 from .run import run
 from .schema import schema
+from .trials import trials_app
 from .validate import validate
 
 app = typer.Typer(
@@ -38,6 +39,7 @@ COMMANDS: tuple[Callable[..., None], ...] = (
 )
 for command in COMMANDS:
     app.command()(guarded(command))
+app.add_typer(trials_app)
 
 
 def _version(wanted: bool) -> None:

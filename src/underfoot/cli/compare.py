@@ -23,11 +23,16 @@ def compare(
     catalogue: CatalogueFolders = None,
 ) -> None:
     """Say which of two grips better, how sure that is, and in what their cases differ."""
+    from underfoot.case import Case
     from underfoot.case.describe import differences
     from underfoot.document import comparison
 
+    from .options import catalogue_for
+
     results = [_result(path, quick, catalogue) for path in (first, second)]
-    changed = differences(results[0].case_text, results[1].case_text)
+    known = catalogue_for(None, catalogue)
+    cases = [Case.from_text(result.case_text, catalogue=known) for result in results]
+    changed = differences(cases[0], cases[1])
     side_by_side = comparison(*results)
     if json:
         import json as json_text

@@ -173,7 +173,11 @@ def as_data(
     }
     if scales is not None:
         content["shortest_waves"] = [
-            {"shortest_wave_m": wave, "real_contact_fraction": area, "cof_hysteresis": cof}
+            {
+                "shortest_wave_m": wave,
+                "real_contact_fraction": area if area == area else None,
+                "cof_hysteresis": cof if cof == cof else None,
+            }
             for wave, area, cof in zip(
                 scales.shortest_wave.tolist(),
                 scales.real_contact_fraction.tolist(),
@@ -242,10 +246,10 @@ def _show(content: dict[str, Any], folder: Path | None) -> None:
     if "shortest_waves" in content:
         scales = Table("Shortest wave", "Real contact fraction", "Hysteresis COF", box=None)
         for entry in content["shortest_waves"]:
+            values = (entry["real_contact_fraction"], entry["cof_hysteresis"])
             scales.add_row(
                 display(entry["shortest_wave_m"], "m"),
-                display(entry["real_contact_fraction"], "1"),
-                display(entry["cof_hysteresis"], "1"),
+                *("not converged" if v is None else display(v, "1") for v in values),
             )
         console.print(scales)
     for title, lines in (

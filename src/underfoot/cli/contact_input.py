@@ -155,9 +155,14 @@ def _measured(choice: SurfaceChoice) -> HeightMap:
 
 
 def _from_profile(profile: Any, choice: SurfaceChoice) -> HeightMap:
-    """Return an isotropic random surface with the spectrum of a measured profile."""
+    """Return an isotropic random surface with the spectrum of a measured profile.
+
+    One longest reliable wave makes a side; without --shortest, eight grid points make the
+    shortest wave: what is shorter is left out, and the processing line says which share that is.
+    """
     import numpy as np
 
+    from underfoot.core import to_si
     from underfoot.surface import (
         isotropic_from_profile,
         levelled,
@@ -166,8 +171,15 @@ def _from_profile(profile: Any, choice: SurfaceChoice) -> HeightMap:
     )
 
     spectrum = isotropic_from_profile(profile_spectrum(levelled(profile)))
-    shortest = 2.0 * np.pi / spectrum.reliable[1]
-    return surface_from_spectrum(spectrum, choice.points, shortest / 8.0, choice.seed)
+    low, high = spectrum.reliable
+    if choice.longest is not None:
+        low = max(low, 2.0 * np.pi / to_si(choice.longest, "m", where="--longest"))
+    spacing = 2.0 * np.pi / low / choice.points
+    wanted = 8.0 * spacing
+    if choice.shortest is not None:
+        wanted = to_si(choice.shortest, "m", where="--shortest")
+    part = spectrum.within(low, min(high, 2.0 * np.pi / wanted))
+    return surface_from_spectrum(part, choice.points, spacing, choice.seed)
 
 
 def mirrored(surface: HeightMap) -> HeightMap:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from .guard import say
 from .options import AsJson, CasePath, CatalogueFolders, Overwrite, Settings, loaded
 
 if TYPE_CHECKING:
@@ -65,6 +66,7 @@ def computed(case: Case, *, quick: bool) -> Result:
     from underfoot.core.progress import bar, silent
 
     if not sys.stderr.isatty():
+        say(f"computing: {case.name}")
         return run_case(case, quick=quick, progress=silent)
     with bar(case.name) as progress:
         return run_case(case, quick=quick, progress=progress)
