@@ -33,7 +33,7 @@ def contact_figure(heights: np.ndarray, spacing: float, contact: Any, title: str
         ("Surface", (heights - heights.mean()) * 1e6, "height (µm)", "cividis", (None, None)),
         ("Contact pressure", carried, "pressure (MPa)", "viridis", (0.0, None)),
         ("Contact patches", touching, "", ListedColormap(["#f2efe9", "#7a1f1f"]), (0.0, 1.0)),
-        ("Gap", open_gap, "gap (µm)", "magma_r", (0.0, max(highest, 1e-9))),
+        ("Gap (contact in blue-grey)", open_gap, "gap (µm)", "magma_r", (0.0, max(highest, 1e-9))),
     )
     for ax, (name, field, unit, colours, (low, high)) in zip(axes.flat, panels, strict=True):
         image = ax.imshow(
@@ -46,6 +46,8 @@ def contact_figure(heights: np.ndarray, spacing: float, contact: Any, title: str
             interpolation="nearest",
         )
         ax.set_title(name)
+        if name.startswith("Gap"):
+            ax.set_facecolor("#a9bfd1")  # contact, apart from small gaps
         ax.set_xlabel("across, y (µm)")
         ax.set_ylabel("sliding, x (µm)")
         if unit:
