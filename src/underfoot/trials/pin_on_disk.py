@@ -1,0 +1,204 @@
+"""Pin on disk: mean COF of the steady window, COF against speed, radius of the pin."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from underfoot.core import DataError
+
+from .measurement import Measurement
+from .steady import steady_window
+from .trial import Channel, Trial
+
+NORMAL = ("normal force", "normal", "load", "fz", "fn", "force z")
+SHEAR = ("friction force", "shear force", "shear", "friction", "ff", "fx", "force x", "ft")
+SPEED = ("sliding speed", "speed", "velocity")
+COF = ("cof", "friction coefficient", "traction coeff", "traction coefficient")
+_LIFTED = 0.1  # share of the median load below which the pin has left the disk
+
+
+@dataclass(frozen=True, slots=True)
+class FrictionPoint:
+    """Mean COF of one run, with what a figure needs.
+
+    Parameters
+    ----------
+    cof
+        Mean COF of the window; its uncertainty is the standard error of a correlated signal.
+    speed
+        Mean sliding speed in the window (m/s), or None.
+    normal, shear
+        Mean forces in the window (N); None when the file holds only the COF.
+    time, ratio
+        Shape (n,): the whole run.
+    window
+        (begin, end) in s.
+    """
+
+    trial: str
+    cof: Measurement
+    speed: float | None
+    normal: float | None
+    shear: float | None
+    time: np.ndarray
+    ratio: np.ndarray
+    window: tuple[float, float]
+
+
+def friction_point(
+    trial: Trial, *, window: tuple[float, float] | None = None, speed: float | None = None
+) -> FrictionPoint:
+    """Return the mean COF of a pin-on-disk run.
+
+    COF is the mean over the window of |shear| / |normal|, sample by sample; samples at which the
+    pin has left the disk (below a tenth of the median load) are left out and counted. Without
+    forces the file's own COF column is used, and said.
+
+    Parameters
+    ----------
+    window
+        (begin, end) in s; by default the steady part is found (see ``steady_window``).
+    speed
+        Sliding speed (m/s) when the file has no such column.
+
+    Errors
+    ------
+    DataError
+        Neither forces nor a COF column, no load, or nothing left in the window.
+    """
+    ratio, normal, shear, channel, said, flags = _ratio(trial)
+    time = channel.time
+    finite = np.isfinite(ratio)
+    if window is None:
+        first = np.flatnonzero(finite)
+        if not len(first):
+            raise DataError("the run holds no COF", where=trial.name)
+        found = steady_window(ratio[finite])
+        kept = np.flatnonzero(finite)[found.start : found.stop]
+        said["window"] = found.rule
+        if not found.steady:
+            flags.append(f"not steady: drifts by {found.drift:.1f} times its scatter")
+    else:
+        kept = np.flatnonzero(finite & (time >= window[0]) & (time < window[1]))
+        said["window"] = f"{window[0]:g} to {window[1]:g} s, given"
+    if len(kept) < 2:
+        raise DataError("no samples in the window", where=trial.name)
+    from .steady import correlated_error
+
+    values = ratio[kept]
+    error = correlated_error(values)
+    if values.mean() > 2.0:
+        flags.append("a COF above 2: are the force columns or units right?")
+    said["average"] = "mean of the ratios of the samples"
+    said["uncertainty"] = "standard error of the mean from batch means"
+    measurement = Measurement(
+        "cof",
+        float(values.mean()),
+        uncertainty=error,
+        reason="" if error is not None else "too few samples for a scatter",
+        n=len(values),
+        flags=tuple(flags),
+        conventions=said,
+    )
+    return FrictionPoint(
+        trial.name,
+        measurement,
+        _speed(trial, kept) if speed is None else speed,
+        None if normal is None else float(np.abs(normal[kept]).mean()),
+        None if shear is None else float(np.abs(shear[kept]).mean()),
+        time,
+        ratio,
+        (float(time[kept[0]]), float(time[kept[-1]])),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ProfileRadius:
+    """Reduced radius R' (m) of a pin from its profile, with its standard error."""
+
+    radius: float
+    standard_error: float
+    curvature: float
+    residual_rms: float
+
+
+def reduced_radius(
+    position: Sequence[float] | np.ndarray, height: Sequence[float] | np.ndarray
+) -> ProfileRadius:
+    """Return R' = 1 / (2 B) of h(r) = B r^2 (Eq. 19, 20).
+
+    The vertex and a tilt are fitted too (h = h0 + s x + B x^2): a profile is never recorded
+    exactly from its vertex. B counts positive whichever way the instrument counts heights.
+
+    Parameters
+    ----------
+    position, height
+        Shape (n,), m.
+
+    Errors
+    ------
+    DataError
+        Fewer than ten points, missing values, or no curvature within two standard errors.
+    """
+    x, h = np.asarray(position, dtype=float), np.asarray(height, dtype=float)
+    if x.shape != h.shape or len(x) < 10 or not (np.isfinite(x).all() and np.isfinite(h).all()):
+        raise DataError("a profile needs ten complete points", where="reduced_radius")
+    scale = float(np.ptp(x)) or 1.0
+    u = (x - x.mean()) / scale
+    matrix = np.column_stack((np.ones_like(u), u, u**2))
+    solution, _, rank, _ = np.linalg.lstsq(matrix, h, rcond=None)
+    if rank < 3:
+        raise DataError("the positions do not vary", where="reduced_radius")
+    residual = h - matrix @ solution
+    variance = float(residual @ residual) / (len(x) - 3)
+    error = float(np.sqrt(np.linalg.inv(matrix.T @ matrix)[2, 2] * variance)) / scale**2
+    curvature = abs(float(solution[2])) / scale**2
+    if curvature <= 2.0 * error:
+        raise DataError(
+            "the profile shows no curvature beyond its scatter",
+            where="reduced_radius",
+            remedy="Scan a longer profile, or treat the pin as flat",
+        )
+    radius = 1.0 / (2.0 * curvature)
+    return ProfileRadius(radius, radius * error / curvature, curvature, float(residual.std()))
+
+
+def _ratio(
+    trial: Trial,
+) -> tuple[np.ndarray, np.ndarray | None, np.ndarray | None, Channel, dict[str, str], list[str]]:
+    try:
+        normal, shear = trial.channel(*NORMAL), trial.channel(*SHEAR)
+    except DataError as problem:
+        try:
+            channel = trial.channel(*COF)
+        except DataError:
+            raise problem from None
+        said = {"cof": "column of the file"}
+        return np.abs(channel.values), None, None, channel, said, []
+    if len(normal.values) != len(shear.values):
+        raise DataError("normal and shear force differ in length", where=trial.name)
+    load = np.abs(normal.values)
+    level = float(np.nanmedian(load))
+    if not level > 0:
+        raise DataError("the normal force is zero", where=trial.name)
+    pressed = load > _LIFTED * level
+    ratio = np.where(pressed, np.abs(shear.values) / np.where(pressed, load, 1.0), np.nan)
+    flags = []
+    lifted = int((~pressed).sum())
+    if lifted:
+        flags.append(f"{lifted} samples with hardly any load left out")
+    if normal.unit != shear.unit:
+        flags.append(f'units differ: normal "{normal.unit}", shear "{shear.unit}"')
+    return ratio, normal.values, shear.values, normal, {"cof": "|shear| / |normal|"}, flags
+
+
+def _speed(trial: Trial, kept: np.ndarray) -> float | None:
+    try:
+        channel = trial.channel(*SPEED)
+    except DataError:
+        return None
+    values = channel.values[kept[kept < len(channel.values)]]
+    return float(np.nanmean(np.abs(values))) if channel.unit == "m/s" and len(values) else None

@@ -1,0 +1,300 @@
+"""COF against sliding speed: Eq. 17 fitted, its uncertainty, and when it is not identified."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from underfoot.core import DataError, unknown_name
+
+from ._kernels.decay import best_decay, linear_part
+
+METHODS = {
+    "separable": "separable bounded least squares (grid over tau, linear in the two levels)",
+    "nelder_mead": "bounded Nelder-Mead simplex (the grant report's method)",
+}
+GOOD, MODERATE = 0.8, 0.5  # R^2, the report's rule (G.2.1)
+NOT_IDENTIFIED = "not identified in this speed range"
+
+
+@dataclass(frozen=True, slots=True)
+class FitParameter:
+    """One parameter of Eq. 17.
+
+    Parameters
+    ----------
+    value
+        None where the report's rule gives no value.
+    standard_error
+        From the curvature at the optimum; None on a bound.
+    low, high
+        Profile-likelihood interval; None where the profile does not close.
+    remark
+        ``"not identified in this speed range"`` or empty.
+    """
+
+    name: str
+    value: float | None
+    unit: str = "1"
+    standard_error: float | None = None
+    low: float | None = None
+    high: float | None = None
+    remark: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class StribeckFit:
+    """Eq. 17: COF = asymptote + (boundary - asymptote) exp(-speed / tau).
+
+    ``verdict`` is the report's rule: "good" (R^2 above 0.8), "moderate" (0.5 to 0.8) or "mean"
+    (the fit is dropped, COF_BL is the mean COF, the others have no value).
+    """
+
+    boundary: FitParameter
+    tau: FitParameter
+    asymptote: FitParameter
+    r_squared: float
+    residual_sum: float
+    n: int
+    method: str
+    verdict: str
+    speed: np.ndarray
+    cof: np.ndarray
+    raw: tuple[float, float, float]
+    warnings: tuple[str, ...] = ()
+
+    def curve(self, speed: np.ndarray) -> np.ndarray:
+        """Return the fitted COF at ``speed`` (m/s); the mean where the rule dropped the fit."""
+        if self.verdict == "mean":
+            return np.full(np.shape(speed), float(self.cof.mean()))
+        boundary, tau, asymptote = self.raw
+        return asymptote + (boundary - asymptote) * np.exp(-np.asarray(speed) / tau)
+
+
+def stribeck_fit(
+    speed: Sequence[float] | np.ndarray,
+    cof: Sequence[float] | np.ndarray,
+    *,
+    method: str = "separable",
+    boundary: float | None = None,
+    confidence: float = 0.95,
+) -> StribeckFit:
+    """Return the fit of Eq. 17 to COF against speed.
+
+    Both levels are kept at zero or above, as in the report. Intervals are profile likelihoods:
+    the residual sum rises by the factor 1 + t^2 / (n - p). A parameter is "not identified in this
+    speed range" when its profile does not close, or when tau exceeds the largest speed (the
+    report's own remark for water).
+
+    Parameters
+    ----------
+    speed
+        Shape (n,), m/s, positive; repeats are welcome.
+    cof
+        Shape (n,).
+    method
+        ``"separable"`` (default) or ``"nelder_mead"``.
+    boundary
+        Known COF_BL (for example from a test at 0.01 m/s), then not fitted.
+
+    Errors
+    ------
+    DataError
+        Fewer than one more speed than parameters, missing values, negative speeds.
+
+    Source: grant report G.2.1, Eq. 17. Separable: G. H. Golub, V. Pereyra, SIAM J. Numer. Anal.
+    10 (1973) 413.
+    """
+    v, y = np.asarray(speed, dtype=float), np.asarray(cof, dtype=float)
+    if method not in METHODS:
+        raise unknown_name("method", method, METHODS, where="stribeck_fit")
+    free = 3 if boundary is None else 2
+    if v.shape != y.shape or not (np.isfinite(v).all() and np.isfinite(y).all()):
+        raise DataError("speeds and COF must match and be finite", where="stribeck_fit")
+    if (v < 0).any() or v.max(initial=0.0) <= 0:
+        raise DataError("speeds must be positive", where="stribeck_fit")
+    distinct = np.unique(v)
+    if len(distinct) < free + 1 or np.ptp(y) == 0:
+        raise DataError(
+            f"{len(distinct)} different speeds for {free} parameters",
+            where="stribeck_fit",
+            allowed=f"at least {free + 1} speeds and a COF that varies",
+        )
+    gaps = np.diff(np.concatenate(([0.0], distinct)))
+    low, high = 0.05 * float(gaps[gaps > 0].min()), 1e3 * float(v.max())
+    if method == "separable":
+        asymptote, start, tau, rss = best_decay(v, y, low, high, start=boundary)
+    else:
+        asymptote, start, tau, rss = _nelder_mead(v, y, low, high, boundary)
+    total = float(np.sum((y - y.mean()) ** 2))
+    r_squared = 1.0 - rss / total
+    verdict = "good" if r_squared > GOOD else "moderate" if r_squared >= MODERATE else "mean"
+    warnings = []
+    if tau > 0.99 * high or tau < 1.01 * low:
+        warnings.append("tau lies on the edge of its search range: the data don't bend")
+    if verdict == "mean":
+        warnings.append(f"R^2 {r_squared:.2f} is below {MODERATE}: COF_BL is the mean COF")
+        mean = float(y.mean())
+        error = float(y.std(ddof=1) / np.sqrt(len(y)))
+        dropped = f"R^2 below {MODERATE}"
+        parameters = (
+            FitParameter("cof_bl", mean, "1", error, remark="mean COF"),
+            FitParameter("tau_hydro", None, "m/s", remark=dropped),
+            FitParameter("cof_asymptote", None, "1", remark=dropped),
+        )
+    else:
+        parameters = _parameters(v, y, (asymptote, start, tau, rss), boundary, confidence)
+        if tau > v.max():
+            warnings.append(f"tau {tau:.3g} m/s exceeds the largest speed {v.max():.3g} m/s")
+    return StribeckFit(
+        *parameters,
+        r_squared,
+        rss,
+        len(y),
+        method,
+        verdict,
+        v,
+        y,
+        (start, tau, asymptote),
+        tuple(warnings),
+    )
+
+
+def _parameters(
+    v: np.ndarray,
+    y: np.ndarray,
+    best: tuple[float, float, float, float],
+    boundary: float | None,
+    confidence: float,
+) -> tuple[FitParameter, FitParameter, FitParameter]:
+    from scipy.stats import t as student
+
+    asymptote, start, tau, rss = best
+    free = 3 if boundary is None else 2
+    df = len(y) - free
+    errors = _errors(v, asymptote, start, tau, rss / df, boundary is None)
+    limit = max(rss, 1e-30) * (1.0 + float(student.ppf(0.5 + confidence / 2, df)) ** 2 / df)
+    low, high = 1e-4 * float(v.max()), 1e4 * float(v.max())
+
+    def of_tau(value: float) -> float:
+        return float(linear_part(v, y, np.array([value]), boundary, None)[2][0])
+
+    def of_asymptote(value: float) -> float:
+        return best_decay(v, y, low, high, start=boundary, end=value)[3]
+
+    def of_boundary(value: float) -> float:
+        return best_decay(v, y, low, high, start=value)[3]
+
+    scale = float(np.ptp(y))
+    ends = {
+        "cof_asymptote": _interval(of_asymptote, asymptote, limit, 0.02 * scale, 20 * scale),
+        "tau_hydro": _log_interval(of_tau, tau, limit, low, high),
+        "cof_bl": (None, None)
+        if boundary is not None
+        else _interval(of_boundary, start, limit, 0.02 * scale, 20 * scale),
+    }
+    made = {}
+    for name, value, unit in (
+        ("cof_bl", start, "1"),
+        ("tau_hydro", tau, "m/s"),
+        ("cof_asymptote", asymptote, "1"),
+    ):
+        bottom, top = ends[name]
+        given = name == "cof_bl" and boundary is not None
+        unknown = not given and (bottom is None or top is None)
+        if name == "tau_hydro" and tau > v.max():
+            unknown = True
+        remark = "given" if given else NOT_IDENTIFIED if unknown else ""
+        made[name] = FitParameter(name, value, unit, errors.get(name), bottom, top, remark)
+    return made["cof_bl"], made["tau_hydro"], made["cof_asymptote"]
+
+
+def _errors(
+    v: np.ndarray, asymptote: float, start: float, tau: float, variance: float, fit_start: bool
+) -> dict[str, float]:
+    """Return standard errors from the Jacobian; none for a level on its bound."""
+    e = np.exp(-v / tau)
+    columns = {"cof_asymptote": 1.0 - e, "tau_hydro": (start - asymptote) * e * v / tau**2}
+    if fit_start:
+        columns["cof_bl"] = e
+    if asymptote <= 0.0:
+        columns.pop("cof_asymptote")
+    if fit_start and start <= 0.0:
+        columns.pop("cof_bl")
+    jacobian = np.column_stack(list(columns.values()))
+    normal = jacobian.T @ jacobian
+    if np.linalg.cond(normal) > 1e14:
+        return {}
+    variances = np.diag(np.linalg.inv(normal)) * variance
+    return {name: float(np.sqrt(var)) for name, var in zip(columns, variances, strict=True)}
+
+
+def _interval(
+    function: Callable[[float], float], best: float, limit: float, step: float, reach: float
+) -> tuple[float | None, float | None]:
+    """Return where a residual sum passes ``limit`` on both sides; a bound at zero is no end."""
+    from scipy.optimize import brentq
+
+    ends: list[float | None] = []
+    for direction in (-1.0, 1.0):
+        inner, width, end = best, step, None
+        while abs(inner - best) < reach and not (direction < 0 and inner <= 0.0):
+            outer = max(inner + direction * width, 0.0)
+            if function(outer) > limit:
+                root: Any = brentq(lambda x: function(x) - limit, inner, outer, xtol=1e-8)
+                end = float(root)
+                break
+            inner, width = outer, 1.5 * width
+        ends.append(end)
+    return ends[0], ends[1]
+
+
+def _log_interval(
+    function: Callable[[float], float], best: float, limit: float, low: float, high: float
+) -> tuple[float | None, float | None]:
+    """Return where a residual sum of a logarithm passes ``limit``, within ``low`` to ``high``."""
+    from scipy.optimize import brentq
+
+    ends: list[float | None] = []
+    for factor, stop in ((0.8, low), (1.25, high)):
+        inner, end = best, None
+        while (inner > stop) == (factor < 1) and inner != stop:
+            outer = inner * factor
+            if function(outer) > limit:
+                a, b = np.log(inner), np.log(outer)
+                root: Any = brentq(lambda x: function(float(np.exp(x))) - limit, a, b)
+                end = float(np.exp(root))
+                break
+            inner = outer
+        ends.append(end)
+    return ends[0], ends[1]
+
+
+def _nelder_mead(
+    v: np.ndarray, y: np.ndarray, low: float, high: float, boundary: float | None
+) -> tuple[float, float, float, float]:
+    from scipy.optimize import minimize
+
+    def levels(p: np.ndarray) -> tuple[float, float, float]:
+        return (p[0], boundary, p[1]) if boundary is not None else (p[0], p[2], p[1])
+
+    def residual_sum(p: np.ndarray) -> float:
+        end, start, tau = levels(p)
+        return float(np.sum((end + (start - end) * np.exp(-v / tau) - y) ** 2))
+
+    # Start where a reader would: the slowest and the fastest COF, a third of the speeds.
+    first = [float(y[np.argmax(v)]), float(v.max()) / 3.0, float(y[np.argmin(v)])]
+    bounds = [(0.0, None), (low, high), (0.0, None)]
+    count = 2 if boundary is not None else 3
+    found = minimize(
+        residual_sum,
+        first[:count],
+        method="Nelder-Mead",
+        bounds=bounds[:count],
+        options={"xatol": 1e-8, "fatol": 1e-12, "maxiter": 4000, "maxfev": 8000},
+    )
+    end, start, tau = levels(found.x)
+    return float(end), float(start), float(tau), float(found.fun)
