@@ -190,6 +190,7 @@ def _rest(case: Case, places: Places) -> Iterator[InputError]:
             f"{display(motion.duration, 's')} ends before the force has risen",
             where=places("motion.duration"),
             allowed=f"at least {display(motion.force_rise_time, 's')} (motion.force_rise_time)",
+            remedy=f'Write motion.duration = "{motion.force_rise_time * 1e3 + 90:.0f} ms"',
         )
     if case.models.friction == "constant" and case.interface.constant_cof is None:
         yield InputError(

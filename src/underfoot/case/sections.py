@@ -208,7 +208,9 @@ class Motion(Section):
     start_film: Annotated[float, Quantity("m", 1e-6, 0.01)] = default(
         50 * _um, "50 um", "lowest point above the floor when loading starts", assumed=True
     )
-    steady: bool = default(False, False, "the result is taken at the end of the duration")
+    steady: Annotated[bool, Field(strict=True)] = default(
+        False, False, "the result is taken at the end of the duration"
+    )
 
 
 class Interface(Section):

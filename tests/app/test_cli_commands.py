@@ -1,0 +1,229 @@
+"""The commands within one process: what they print, what they refuse, what they leave alone."""
+
+import json
+import tomllib
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from underfoot.case import Case
+from underfoot.cli.app import app
+from underfoot.cli.terms import TERMS
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLE = EXAMPLES / "work_shoe_untreaded_glycerol.toml"
+
+
+@pytest.fixture
+def underfoot(monkeypatch, tmp_path):
+    monkeypatch.delenv("UNDERFOOT_CATALOGUE", raising=False)
+    monkeypatch.delenv("UNDERFOOT_DEBUG", raising=False)
+    monkeypatch.chdir(tmp_path)
+
+    def call(*arguments):
+        return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+    return call
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_every_example_checks_and_is_named_after_its_entries(underfoot, path):
+    case = Case.load(path)
+    assert path.stem.startswith(case.entries["shoe"])
+    assert path.stem.split("_")[-1] in {*"glycerol detergent dry".split()}
+    shown = underfoot("check", path)
+    assert shown.exit_code == 0
+    assert case.name in shown.stdout
+
+
+def test_the_examples_are_the_six_shoes_in_two_fluids_all_different():
+    cases = [Case.load(path) for path in EXAMPLES.glob("*_shoe_*.toml")]
+    wet = [case for case in cases if case.contaminant is not None]
+    assert len(wet) == 12
+    assert len({case.hash for case in cases}) == len(cases)
+    assert {case.contaminant.viscosity for case in wet} == {0.219, 0.00189}
+
+
+def test_check_prints_composition_assumptions_ranges_and_cost(underfoot):
+    text = underfoot("check", EXAMPLE, "--set", "shoe.material.shore_a=97").stdout
+    assert "viscosity                    219 cP" in text
+    assert "material.shore_a             97                 given" in text
+    assert "Assumed, with no measurement behind it:" in text
+    assert "facet_angle = 10 deg" in text
+    assert "outside the tested range" in text
+    assert "10000 cells" in text
+
+
+def test_check_as_json_is_readable_by_programs(underfoot):
+    content = json.loads(underfoot("check", EXAMPLE, "--json").stdout)
+    assert content["hash"] == Case.load(EXAMPLE).hash
+    values = {row["path"]: row["value"] for row in content["values"]}
+    assert values["contaminant.viscosity"] == "219 cP"
+    assert content["breaches"] == []
+
+
+def test_set_takes_numbers_words_and_quantities(underfoot):
+    found = underfoot(
+        "check", EXAMPLE, "--json",
+        "--set", "sensor.scans=5",
+        "--set", "contaminant.viscosity = 41 cP",
+        "--set", 'motion.speed="0.3 m/s"',
+        "--set", "motion.steady=true",
+        "--set", "models.hardness=ruess",
+    )  # fmt: skip
+    values = {row["path"]: row["value"] for row in json.loads(found.stdout)["values"]}
+    assert values["sensor.scans"] == "5"
+    assert values["contaminant.viscosity"] == "41 cP"
+    assert values["motion.speed"] == "0.3 m/s"
+    assert values["motion.steady"] == "yes"
+    assert values["models.hardness"] == "ruess"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--set", "contaminant.viscosity"), "no setting"),
+        (("--set", "contaminant.viscocity=1 cP"), 'Did you mean "contaminant.viscosity"'),
+        (("--set", "contaminant.viscosity=41"), "41 has no unit"),
+        (("--set", "motion.speed=0 m/s"), "outside the physical range"),
+        (("--set", "shoe=slipper"), 'unknown shoe "slipper"'),
+        (("--set", "contaminant=water_g3"), 'Did you mean "water_g2"'),
+        (("--catalogue", "nowhere"), "catalogue folder nowhere does not exist"),
+    ],
+)
+def test_bad_settings_are_refused_with_exit_code_2(underfoot, arguments, message):
+    found = underfoot("check", EXAMPLE, *arguments)
+    assert found.exit_code == 2
+    assert message in found.stderr
+    assert found.stderr.startswith("error: ")
+    assert "Traceback" not in found.stderr
+
+
+def test_a_missing_file_is_refused(underfoot):
+    found = underfoot("check", "nothing.toml")
+    assert found.exit_code == 2
+    assert "there is no file nothing.toml" in found.stderr
+
+
+def test_debug_shows_the_traceback(underfoot, monkeypatch):
+    monkeypatch.setenv("UNDERFOOT_DEBUG", "1")
+    found = underfoot("check", "nothing.toml")
+    assert found.exception is not None
+    assert "there is no file" in str(found.exception)
+
+
+def test_new_writes_a_case_that_checks_and_refuses_to_overwrite(underfoot, tmp_path):
+    target = tmp_path / "kitchen.toml"
+    made = underfoot("new", target, "--fluid", "canola_oil", "--shoe", "athletic_shoe_half_tread")
+    assert made.exit_code == 0
+    case = Case.load(target)
+    assert case.contaminant.viscosity == 0.0746
+    assert underfoot("check", target).exit_code == 0
+    before = target.read_text()
+    again = underfoot("new", target)
+    assert again.exit_code == 2
+    assert "exists" in again.stderr
+    assert target.read_text() == before
+    assert underfoot("new", target, "--overwrite").exit_code == 0
+    assert Case.load(target).contaminant.viscosity == 0.219
+
+
+def test_every_commented_line_of_a_new_case_can_be_switched_on(underfoot, tmp_path):
+    target = tmp_path / "new.toml"
+    underfoot("new", target, "--fluid", "detergent")
+    case = Case.load(target)
+    lines = []
+    for line in target.read_text().splitlines():
+        setting = line.removeprefix("# ")
+        keep = "=" in setting and "effective_rq" not in setting and not line.startswith("# A ")
+        lines.append(setting if keep else line)
+    switched = Case.from_text("\n".join(lines))
+    assert switched.origins["shoe.tread.depth"].kind == "given"
+    assert switched.model_dump(exclude={"name"}) == case.model_dump(exclude={"name"})
+
+
+def test_new_makes_dry_cases_and_knows_names(underfoot, tmp_path):
+    assert underfoot("new", tmp_path / "dry.toml", "--fluid", "none").exit_code == 0
+    assert Case.load(tmp_path / "dry.toml").contaminant is None
+    found = underfoot("new", tmp_path / "x.toml", "--floor", "vinil_g4")
+    assert found.exit_code == 2
+    assert 'Did you mean "vinyl_g4"?' in found.stderr
+    assert not (tmp_path / "x.toml").exists()
+
+
+def test_the_catalogue_lists_kinds_and_own_entries(underfoot, tmp_path):
+    assert "canola_oil" in underfoot("catalogue", "fluid").stdout
+    assert "work_shoe_untreaded" in underfoot("catalogue", "shoes").stdout
+    everything = underfoot("catalogue").stdout
+    assert "vinyl_g4" in everything
+    assert "en_iso_13287" in everything
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "a.toml").write_text('[fluid.soup]\ntitle = "Soup"\nviscosity = "5 cP"\n')
+    names = json.loads(underfoot("catalogue", "fluid", "--json", "--catalogue", "own").stdout)
+    assert "soup" in names["fluid"]
+    wrong = underfoot("catalogue", "liquids")
+    assert wrong.exit_code == 2
+    assert "Allowed: floor, fluid" in wrong.stderr
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("canola_oil", "74.6 cP"),
+        ("acof", "available coefficient of friction"),
+        ("contaminant.viscosity", "unit Pa*s"),
+        ("motion.force_rise_time", "default 30 ms"),
+        ("shoe.tread", "shoe.tread.depth"),
+        ("youngs_modulus_gent", "0.137505"),
+        ("gent", "youngs_modulus_gent"),
+        ("glycerol_water_viscosity", "Cheng"),
+    ],
+)
+def test_explain_knows_entries_words_keys_and_formulas(underfoot, name, expected):
+    found = underfoot("explain", name)
+    assert found.exit_code == 0, found.stderr
+    assert expected in found.stdout
+
+
+def test_explain_answers_a_misspelt_name_with_the_nearest(underfoot):
+    found = underfoot("explain", "canola_oyl")
+    assert found.exit_code == 2
+    assert 'Did you mean "canola_oil"?' in found.stderr
+
+
+def test_terms_are_sentences():
+    assert all(text.endswith(".") for text in TERMS.values())
+    assert all(name == name.casefold() for name in TERMS)
+
+
+def test_the_schema_goes_to_a_file_or_the_screen(underfoot, tmp_path):
+    printed = json.loads(underfoot("schema").stdout)
+    assert printed["title"] == "Underfoot case"
+    assert underfoot("schema", "--out", "a/s.json").exit_code == 0
+    assert json.loads((tmp_path / "a" / "s.json").read_text()) == printed
+    assert underfoot("schema", "--out", "a/s.json").exit_code == 2
+
+
+def test_doctor_tells_versions_solver_and_cache(underfoot, monkeypatch, tmp_path):
+    monkeypatch.setenv("UNDERFOOT_CACHE", str(tmp_path / "cache"))
+    found = underfoot("doctor")
+    assert found.exit_code == 0
+    for word in ("numpy", "sparse solver", "superlu", "OMP_NUM_THREADS", str(tmp_path / "cache")):
+        assert word in found.stdout
+
+
+def test_the_version_is_that_of_the_package(underfoot):
+    project = tomllib.loads((EXAMPLES.parent / "pyproject.toml").read_text())["project"]
+    assert underfoot("--version").stdout == f"underfoot {project['version']}\n"
+
+
+def test_a_fault_of_the_program_is_told_without_a_traceback(underfoot, monkeypatch):
+    def broken(case):
+        raise RuntimeError("a bug")
+
+    monkeypatch.setattr("underfoot.case.describe.composition", broken)
+    found = underfoot("check", EXAMPLE)
+    assert found.exit_code == 70
+    assert "fault of the program: RuntimeError: a bug" in found.stderr
+    assert "UNDERFOOT_DEBUG=1" in found.stderr

@@ -1,0 +1,86 @@
+"""Any case survives writing and reading with an equal hash; replacing is exact."""
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from underfoot.case import Case
+from underfoot.core.catalogue import Catalogue
+
+BOOK = Catalogue.load()
+SHOES = [name for name in BOOK.names("shoe") if name != "slip_tester_heel"]
+FLOORS = [name for name in BOOK.names("floor") if not name.startswith("ceramic")]
+SETUPS = [n for n in BOOK.names("setup") if BOOK.entry("setup", n).under("motion")]
+
+
+def quantities(low, high, *units):
+    number = st.floats(low, high, allow_nan=False).map(lambda value: f"{value:.6g}")
+    return st.tuples(number, st.sampled_from(units)).map(" ".join)
+
+
+def sourced(values):
+    marks = st.fixed_dictionaries(
+        {},
+        optional={
+            "source": st.text(max_size=8),
+            "note": st.text(max_size=8),
+            "assumed": st.booleans(),
+        },
+    )
+    return st.tuples(values, marks).map(lambda pair: {"value": pair[0], **pair[1]}) | values
+
+
+CHANGES = st.fixed_dictionaries(
+    {},
+    optional={
+        "contaminant.viscosity": sourced(quantities(0.5, 900, "cP", "mPa*s")),
+        "contaminant.pool_depth": quantities(0.1, 3, "mm"),
+        "motion.speed": sourced(quantities(0.01, 5, "m/s")),
+        "motion.normal_force": quantities(10, 900, "N"),
+        "motion.shoe_angle": quantities(-20, 40, "deg"),
+        "shoe.material.shore_a": st.integers(20, 95),
+        "shoe.material.poisson_ratio": st.floats(0.1, 0.5),
+        "shoe.heel.facet_angle": quantities(0, 50, "deg", "degree"),
+        "shoe.sole.outsole_thickness": quantities(6, 40, "mm"),
+        "interface.effective_rq": sourced(quantities(0.1, 90, "um")),
+        "models.hardness": st.sampled_from(["gent", "ruess"]),
+        "models.friction": st.sampled_from(["boundary", "stribeck"]),
+        "sensor.scans": st.integers(1, 20),
+        "motion.steady": st.booleans(),
+    },
+)
+
+
+@st.composite
+def cases(draw):
+    mapping = {
+        "name": draw(st.text(max_size=20)),
+        "shoe": draw(st.sampled_from(SHOES)),
+        "floor": draw(st.sampled_from(FLOORS)),
+        "contaminant": draw(st.sampled_from(BOOK.names("fluid"))),
+        "motion": draw(st.sampled_from(SETUPS)),
+    }
+    return Case.from_mapping(mapping).replace(draw(CHANGES))
+
+
+@settings(deadline=None, max_examples=60)
+@given(cases())
+def test_case_to_toml_to_case_keeps_the_hash(case):
+    assert Case.from_text(case.to_toml()).hash == case.hash
+    complete = Case.from_text(case.to_toml(complete=True))
+    assert complete.hash == case.hash
+    assert complete.name == case.name
+    for path in ("motion.speed", "contaminant.viscosity", "shoe.material.shore_a"):
+        ours, theirs = case.sourced(path), complete.sourced(path)
+        assert ours.value == theirs.value
+        assert ours.assumed == theirs.assumed
+
+
+@settings(deadline=None, max_examples=40)
+@given(cases(), CHANGES)
+def test_replacing_and_taking_back_is_the_case_before(case, changes):
+    changed = case.replace(changes)
+    for path, given_value in changes.items():
+        if isinstance(given_value, int | float):
+            assert changed.value(path) == given_value
+    base = case.replace(dict.fromkeys(changes))
+    assert changed.replace(dict.fromkeys(changes)) == base

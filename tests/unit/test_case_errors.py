@@ -1,0 +1,208 @@
+"""Bad case files: every problem at once, each with its line, what is allowed and a remedy."""
+
+import pytest
+
+from underfoot.case import Case, CaseError
+from underfoot.case.places import Places, key_lines
+from underfoot.core import InputError, RangeError
+
+GOOD = {
+    "shoe": {"from": "work_shoe_half_tread"},
+    "floor": {"from": "vinyl_g4"},
+    "contaminant": {"from": "glycerol_90pct"},
+    "motion": {"from": "slip_tester_g4"},
+}
+
+
+def refused(path, value):
+    tree = {key: dict(item) for key, item in GOOD.items()}
+    *parents, key = path.split(".")
+    table = tree
+    for parent in parents:
+        table = table.setdefault(parent, {})
+    table[key] = value
+    with pytest.raises(CaseError) as caught:
+        Case.from_mapping(tree)
+    return caught.value
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "message"),
+    [
+        (
+            "motion.speed",
+            0.7,
+            "motion.speed: 0.7 has no unit. Allowed: a number with a unit of m/s. "
+            'Write it as text with its unit, for example "0.7 m/s"',
+        ),
+        ("motion.speed", "0.7", "0.7 has no unit"),
+        ("motion.speed", "0.7 m", "is not a value in m/s"),
+        ("motion.speed", "0.7 m/z", "unknown unit"),
+        ("motion.speed", "fast", "is not a number with a unit"),
+        ("motion.speed", "0 m/s", "outside the physical range. Allowed: above 0 m/s to 20 m/s"),
+        ("motion.speed", "-1 m/s", "outside the physical range"),
+        ("motion.normal_force", "0 N", "outside the physical range"),
+        ("motion.normal_force", "-500 N", "outside the physical range"),
+        ("motion.normal_force", "nan N", "is not a number"),
+        ("motion.shoe_angle", "10 mm", 'is not a value in rad. Allowed: for example "10 deg"'),
+        ("motion.steady", "yes", "true or false"),
+        ("shoe.sole.outsole_thickness", "0 mm", "outside the physical range"),
+        ("shoe.sole.outsole_thickness", "-3 mm", "outside the physical range"),
+        ("shoe.from", "work_sho_half_tread", 'Did you mean "work_shoe_half_tread"?'),
+        ("shoe.from", 3, "is no name"),
+        ("contaminant.from", "glycerin_90pct", 'Did you mean "glycerol_90pct"?'),
+        ("floor.from", "lava", "unknown floor"),
+        ("motion.from", "micro_fe_g1", "setup with motion"),
+        ("floor.roughness.rz", "35.1 m", 'Allowed: from 1 nm to 1 mm. Did you mean "35.1 um"?'),
+        ("contaminant.viscosity", "0 cP", "outside the physical range"),
+        ("contaminant.viscocity", "3 cP", 'unknown key "viscocity"'),
+        ("motoin.speed", "1 m/s", 'Did you mean "motion"?'),
+        ("shoe.tread.pattern", "gird", 'unknown choice "gird". Allowed: none, grid'),
+        ("shoe.tread.channel_width", "0.3 mm", "too narrow for the grid of"),
+        ("shoe.tread.lug_width", "0.5 mm", "two cells"),
+        ("shoe.tread.depth", "30 mm", "goes through the outsole"),
+        ("shoe.tread.depth", "0 mm", 'pattern = "none"'),
+        ("shoe.tread.edge_radius", "2.6 mm", "does not fit on the lug"),
+        ("shoe.tread.arc_channel.width", "4 mm", "is missing"),
+        ("shoe.heel.profile", "rocker", 'is missing for the profile "rocker"'),
+        ("shoe.heel.rocker_radius", "80 mm", 'is not used by the profile "facet"'),
+        ("shoe.heel.edge_radius", "40 mm", "does not fit the plan form"),
+        ("shoe.sole.midsole_modulus", "1 MPa", "both its modulus and its thickness"),
+        ("shoe.material.shore_a", 100, "no finite modulus"),
+        ("shoe.material.shore_a", 0, "outside the physical range"),
+        (
+            "shoe.material.relaxation",
+            {
+                "equilibrium_shear_modulus": "1 MPa",
+                "terms": [{"shear_modulus": "-1 MPa", "time": "1 s"}],
+            },
+            "shoe.material.relaxation.terms.0",
+        ),
+        ("contaminant.fraction_basis", "mass", "is not used without glycerol_fraction"),
+        ("contaminant.glycerol_fraction", "85 %", "contaminant.fraction_basis: is missing"),
+        ("motion.duration", "1 ms", "before the force has risen"),
+        ("models.friction", "boundry", 'Did you mean "boundary"?'),
+        ("models.friction", "constant", "interface.constant_cof: is missing"),
+        ("models.friction", "adhesion_blocking", "interface.dry_adhesion_cof: is missing"),
+        ("sensor.scans", 1.5, "a whole number"),
+        ("sensor.scans", 0, "at least 1"),
+        ("numerics.tolerance", 1.0, "outside the physical range"),
+        ("risk.rcof_mean", "high", "is not a number"),
+        ("shoe.material", "neolit", 'Did you mean "neolite"?'),
+        ("shoe.heel", 3, "a section with its own keys"),
+        ("file_version", 99, "Update underfoot"),
+        ("file_version", "one", "is no version"),
+        ("name", 3, "text"),
+    ],
+)
+def test_a_bad_value_is_refused_in_our_words(path, value, message):
+    error = refused(path, value)
+    assert message in str(error)
+    assert isinstance(error, InputError)
+    assert error.exit_code == 2
+    for word in ("pydantic", "errors.", "validation error", "Input should", "type="):
+        assert word not in str(error)
+
+
+def test_what_is_out_of_range_is_a_range_error():
+    (only,) = refused("motion.speed", "0 m/s").errors
+    assert isinstance(only, RangeError)
+    assert only.where == "motion.speed"
+
+
+def test_glycerol_and_viscosity_both_given_are_refused():
+    tree = {
+        **GOOD,
+        "contaminant": {"viscosity": "3 cP", "glycerol_fraction": 0.5, "fraction_basis": "mass"},
+    }
+    with pytest.raises(CaseError, match="the same thing twice"):
+        Case.from_mapping(tree)
+
+
+def test_a_shoe_without_a_catalogue_entry_says_what_is_missing():
+    tree = {**GOOD, "shoe": {"heel": {"length": "60 mm"}}}
+    with pytest.raises(CaseError) as caught:
+        Case.from_mapping(tree)
+    text = str(caught.value)
+    for section in ("shoe.material", "shoe.roughness", "shoe.tread"):
+        assert f"{section}: this section is missing" in text
+    tree = {
+        **GOOD,
+        "shoe": {
+            "material": {"poisson_ratio": 0.49},
+            "tread": {"pattern": "none"},
+            "roughness": {"rz": "30 um"},
+        },
+    }
+    with pytest.raises(CaseError) as caught:
+        Case.from_mapping(tree)
+    assert "neither hardness nor modulus" in str(caught.value)
+    assert "neither Rq nor Ra" in str(caught.value)
+
+
+BAD_FILE = """\
+[shoe]
+from = "work_sho_untreaded"
+heal.length = "3 mm"
+
+[floor]
+from = "vinyl_g4"
+roughness = {ra = "35.1 m"}
+
+[contaminant]
+from = "glycerol_90pct"
+
+[motion]
+speed = 0.7
+normal_force = "-3 N"
+shoe_angle = "10 deg"
+
+[[extra]]
+x = 1
+"""
+
+
+def test_all_problems_of_a_file_come_at_once_with_their_lines(tmp_path):
+    file = tmp_path / "bad.toml"
+    file.write_text(BAD_FILE)
+    with pytest.raises(CaseError) as caught:
+        Case.load(file)
+    where = [error.where for error in caught.value.errors]
+    assert where == [
+        f"shoe.from ({file}, line 2)",
+        f"shoe.heal ({file}, line 3)",
+        f"floor.roughness.ra ({file}, line 7)",
+        f"motion.speed ({file}, line 13)",
+        f"motion.normal_force ({file}, line 14)",
+        f"extra ({file}, line 17)",
+    ]
+    assert str(caught.value).startswith("6 problems:\n  - shoe.from")
+
+
+def test_what_is_no_toml_or_no_file_is_refused(tmp_path):
+    file = tmp_path / "case.toml"
+    file.write_text("speed = 0.7 m/s\n")
+    with pytest.raises(InputError, match=r"is no TOML file.*line 1.*in quotes"):
+        Case.load(file)
+    with pytest.raises(InputError, match=r'there is no file.*Did you mean "case.toml"'):
+        Case.load(tmp_path / "cas.toml")
+    file.write_bytes(b"\xff\xfe")
+    with pytest.raises(InputError, match="can't be read"):
+        Case.load(file)
+
+
+def test_key_lines_read_tables_dotted_keys_and_skip_text_blocks():
+    text = 'a = 1\n[b.c]\nd.e = 2\nt = """\n[x]\ny = 3\n"""\n["q"]\nz = 1\n# k = 1\n'
+    lines = key_lines(text)
+    assert lines == {
+        ("a",): 1,
+        ("b", "c"): 2,
+        ("b", "c", "d"): 3,
+        ("b", "c", "d", "e"): 3,
+        ("b", "c", "t"): 4,
+        ("q",): 8,
+        ("q", "z"): 9,
+    }
+    assert Places("f", text)("b.c.d.e.f") == "b.c.d.e.f (f, line 3)"
+    assert Places("f", text)("nowhere") == "nowhere (f)"
+    assert Places()("a") == "a"
