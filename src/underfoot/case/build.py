@@ -126,8 +126,19 @@ def asperity_law(case: Case, modulus: float) -> PressureGapLaw:
 
 
 def friction_law(case: Case, catalogue: Catalogue) -> FrictionLaw:
-    """Return the local friction law of the pair and fluid that the case chooses."""
-    from underfoot.friction import BoundaryLaw, ConstantLaw, StribeckLaw, stribeck_law_at
+    """Return the local friction law of the pair and fluid that the case chooses.
+
+    "stribeck" takes the measured fall with speed (Eq. 17) where the fluid has the fit, the measured
+    mean over speeds where the report found no fall, and the curve of viscosity times speed for a
+    fluid that was not measured; "boundary" takes COF_BL at every speed.
+    """
+    from underfoot.friction import (
+        BoundaryLaw,
+        ConstantLaw,
+        StribeckLaw,
+        boundary_friction_at,
+        stribeck_law_at,
+    )
 
     fluid = viscosity(case)
     thickness = None if fluid is None else fluid.value
@@ -143,17 +154,14 @@ def friction_law(case: Case, catalogue: Catalogue) -> FrictionLaw:
         return ConstantLaw(whole - left, left, source.source, thickness, source.uncertainty)
     measured = measured_fluids(catalogue)
     own = _measured_friction(case, thickness)
-    if case.models.friction == "stribeck":
-        if own is not None and own.tau_hydro is not None and own.cof_asymptote is not None:
-            return StribeckLaw.measured(own, cof_hysteresis=hysteresis)
-        if thickness is None:
-            raise _no_dry_friction()
-        return stribeck_law_at(thickness, measured, fluid=_fluid_name(case))
     if thickness is None:
         raise _no_dry_friction()
+    fitted = own is not None and own.tau_hydro is not None and own.cof_asymptote is not None
+    if case.models.friction == "stribeck" and own is not None and fitted:
+        return StribeckLaw.measured(own, cof_hysteresis=hysteresis, others=measured)
+    if case.models.friction == "stribeck" and own is None:
+        return stribeck_law_at(thickness, measured, fluid=_fluid_name(case))
     if own is None:
-        from underfoot.friction import boundary_friction_at
-
         own = boundary_friction_at(thickness, measured, fluid=_fluid_name(case))
     return BoundaryLaw.measured(own, cof_hysteresis=hysteresis, others=measured)
 
