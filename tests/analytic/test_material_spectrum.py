@@ -13,6 +13,7 @@ from underfoot.material import (
     plane_strain_modulus,
     poisson_ratio_from_moduli,
     power_law_spectrum,
+    reduced,
     report_elastomer,
     shear_from_young,
     shear_modulus,
@@ -213,3 +214,28 @@ def test_bad_arguments_are_refused():
         power_law_spectrum(1e6, 0.1, shortest_time=1.0, longest_time=0.1)
     with pytest.raises(InputError, match="terms"):
         power_law_spectrum(1e6, 0.1, terms_per_decade=0)
+
+
+def test_a_reduced_spectrum_states_its_error():
+    many = power_law_spectrum(
+        0.44e6, 0.12, shortest_time=1e-10, longest_time=1e4, terms_per_decade=4
+    )
+    errors = []
+    for per_decade, most in ((1, 0.08), (2, 0.01)):
+        few = reduced(many, (1e2, 1e6), terms_per_decade=per_decade)
+        assert len(few.spectrum) <= 5 * per_decade + 1
+        w = np.geomspace(1e2, 1e6, 333)
+        np.testing.assert_allclose(
+            few.spectrum.loss_modulus(w), many.loss_modulus(w), rtol=1.05 * few.loss_error
+        )
+        assert max(few.storage_error, few.loss_error) < most
+        assert "reduced" in few.spectrum.source
+        assert few.spectrum.assumed
+        errors.append(few.loss_error)
+    assert errors[1] < errors[0]
+    with pytest.raises(InputError, match="lowest"):
+        reduced(many, (1e6, 1e2))
+    with pytest.raises(InputError, match="terms"):
+        reduced(many, (1.0, 1e2), terms_per_decade=0)
+    with pytest.raises(InputError, match="no loss"):
+        reduced(RelaxationSpectrum(1e6), (1.0, 1e2))

@@ -26,6 +26,7 @@ from .master_curve import (
 )
 from .power_law import power_law_spectrum
 from .read import read_dynamic, read_prony, read_relaxation
+from .reduce import ReducedSpectrum, reduced
 from .report_rubber import report_elastomer
 from .ruess import ruess_breaches, youngs_modulus_ruess
 from .shift_laws import ArrheniusShift, WlfShift, fit_arrhenius, fit_wlf
@@ -45,6 +46,7 @@ __all__ = [
     "DynamicSweep",
     "Elastomer",
     "ModulusBand",
+    "ReducedSpectrum",
     "RelaxationCurve",
     "RelaxationMasterCurve",
     "RelaxationSpectrum",
@@ -69,6 +71,7 @@ __all__ = [
     "read_dynamic",
     "read_prony",
     "read_relaxation",
+    "reduced",
     "relaxation_master_curve",
     "report_elastomer",
     "ruess_breaches",

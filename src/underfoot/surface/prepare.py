@@ -1,0 +1,88 @@
+"""Fill missing heights and remove form, saying so."""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..core import DataError, InputError
+from .height_map import HeightMap
+from .profile import Profile
+
+Surface = TypeVar("Surface", Profile, HeightMap)
+
+
+def filled(heights: ArrayLike, *, largest_share: float = 0.05) -> tuple[np.ndarray, str]:
+    """Return heights with missing ones filled, and a line that says how many.
+
+    Profiles are interpolated linearly; maps linearly between their neighbours, and by the
+    nearest one at the rim. More than ``largest_share`` missing is refused: the result would be
+    invented.
+
+    Errors
+    ------
+    DataError
+        Too many heights missing.
+    """
+    z = np.array(heights, dtype=float)
+    missing = ~np.isfinite(z)
+    count = int(missing.sum())
+    if count == 0:
+        return z, "no heights were missing"
+    if count > largest_share * z.size:
+        raise DataError(
+            f"{count} of {z.size} heights are missing ({100 * count / z.size:.1f} %)",
+            where="heights",
+            allowed=f"up to {100 * largest_share:g} %",
+            remedy="Measure again, cut the part away, or raise the share knowingly",
+        )
+    if z.ndim == 1:
+        x = np.arange(z.size)
+        z[missing] = np.interp(x[missing], x[~missing], z[~missing])
+    else:
+        from scipy.interpolate import griddata
+
+        known = np.argwhere(~missing)
+        wanted = np.argwhere(missing)
+        values = griddata(known, z[~missing], wanted, method="linear")
+        rim = ~np.isfinite(values)
+        if rim.any():
+            values[rim] = griddata(known, z[~missing], wanted[rim], method="nearest")
+        z[missing] = values
+    return z, f"{count} of {z.size} missing heights interpolated"
+
+
+def levelled(surface: Surface, degree: int = 1) -> Surface:
+    """Return the surface without its least squares polynomial of ``degree`` in x (and y).
+
+    0 removes the mean, 1 the line or plane, 2 and more also a curved form; on a map all terms up
+    to the total degree.
+
+    Errors
+    ------
+    InputError
+        Degree negative, or more coefficients than heights.
+    """
+    if degree < 0:
+        raise InputError(f"degree {degree}", where="degree", allowed="0 or more")
+    z = surface.heights
+    axes = [np.linspace(-1.0, 1.0, n) for n in z.shape]
+    if isinstance(surface, Profile):
+        basis = np.polynomial.legendre.legvander(axes[0], degree)
+    else:
+        x, y = np.meshgrid(axes[0], axes[1], indexing="ij")
+        full = np.polynomial.legendre.legvander2d(x, y, [degree, degree])
+        total = np.add.outer(np.arange(degree + 1), np.arange(degree + 1)).ravel()
+        basis = full.reshape(z.size, -1)[:, total <= degree]
+    if basis.shape[1] >= z.size:
+        raise InputError(
+            f"{basis.shape[1]} coefficients for {z.size} heights", where="degree", allowed="fewer"
+        )
+    coefficients, *_ = np.linalg.lstsq(basis, z.ravel(), rcond=None)
+    form = {0: "mean", 1: "line" if z.ndim == 1 else "plane"}.get(
+        degree, f"polynomial of degree {degree}"
+    )
+    rest = (z.ravel() - basis @ coefficients).reshape(z.shape)
+    return surface.changed(rest, f"least squares {form} removed")

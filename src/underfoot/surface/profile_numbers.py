@@ -1,0 +1,254 @@
+"""Roughness numbers of a profile by ISO 21920-2 and ISO 4287."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..core import DataError, InputError, RangeError
+from ._kernels.numbers import curvature, element_spacing, slope
+from .filter import long_waves, short_waves
+from .height_map import check_heights
+from .profile import Profile
+from .resolution import shortest_reliable_wavelength
+
+STANDARDS = ("ISO 21920-2:2021", "ISO 4287:1997")
+
+
+@dataclass(frozen=True, slots=True)
+class HeightNumbers:
+    """Numbers of a set of heights about their own mean: lengths in m, the others without unit."""
+
+    ra: float
+    rq: float
+    rsk: float
+    rku: float
+    rp: float
+    rv: float
+    rt: float
+
+
+def height_numbers(heights: ArrayLike) -> HeightNumbers:
+    """Return mean and rms deviation, skewness, kurtosis, peak, valley and total height.
+
+    Of heights (m) of any shape as they are: no form removed, no filter. Skewness and kurtosis
+    are NaN for a flat surface.
+    """
+    z = np.asarray(heights, dtype=float)
+    check_heights(np.atleast_1d(z))
+    z = z - z.mean()
+    rq = float(np.sqrt(np.mean(z * z)))
+    flat = rq == 0.0
+    return HeightNumbers(
+        ra=float(np.mean(np.abs(z))),
+        rq=rq,
+        rsk=np.nan if flat else float(np.mean((z / rq) ** 3)),
+        rku=np.nan if flat else float(np.mean((z / rq) ** 4)),
+        rp=float(z.max()),
+        rv=float(-z.min()),
+        rt=float(z.max() - z.min()),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ProfileRoughness:
+    """Roughness numbers of a profile with everything that they depend on.
+
+    Lengths in m. ``rdq`` (rms slope) and ``rms_curvature`` (1/m) need a short cut-off and are
+    None without one; ``rsm`` (mean spacing of profile elements) is None where no element counts;
+    ``not_estimated`` gives the reasons.
+    """
+
+    ra: float
+    rq: float
+    rz: float
+    rp: float
+    rv: float
+    rt: float
+    rsk: float
+    rku: float
+    rsm: float | None
+    rdq: float | None
+    rms_curvature: float | None
+    long_cutoff: float
+    short_cutoff: float | None
+    sections: int
+    section_length: float
+    evaluation_length: float
+    standard: str
+    ends: str
+    processing: tuple[str, ...]
+    not_estimated: dict[str, str] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        def um(value: float | None) -> str:
+            return "not estimated" if value is None else f"{value * 1e6:.4g} um"
+
+        names = ("ra", "rq", "rz", "rp", "rv", "rt", "rsm")
+        lengths = ", ".join(f"{n[0].upper()}{n[1:]} {um(getattr(self, n))}" for n in names)
+        slope_text = "not estimated" if self.rdq is None else f"{self.rdq:.4g}"
+        return (
+            f"{lengths}, Rsk {self.rsk:.3g}, Rku {self.rku:.3g}, Rdq {slope_text}; "
+            f"{self.standard}, cut-off {um(self.long_cutoff)} / {um(self.short_cutoff)}, "
+            f"{self.sections} sections of {um(self.section_length)}, ends: {self.ends}"
+        )
+
+
+def profile_roughness(
+    profile: Profile,
+    long_cutoff: float,
+    short_cutoff: float | None = None,
+    *,
+    sections: int = 5,
+    ends: str = "drop",
+    standard: str = "ISO 21920-2:2021",
+) -> ProfileRoughness:
+    """Return the roughness numbers of a profile after the Gaussian filter of ISO 16610-21.
+
+    The evaluation length is ``sections`` times the long cut-off, from the middle of what the
+    filter leaves. The straight line is removed first.
+
+    Parameters
+    ----------
+    long_cutoff
+        Lambda_c, m: 0.8e-3 for most floors and soles.
+    short_cutoff
+        Lambda_s, m, or None; needed for slope and curvature. Below the resolution of the
+        measurement it is refused.
+    sections
+        Sections (ISO 21920) or sampling lengths (ISO 4287), each one long cut-off; 5 by default.
+    ends
+        See ``long_waves``.
+    standard
+        "ISO 21920-2:2021": Ra, Rq, Rsk, Rku, Rdq over the evaluation length; Rz, Rp, Rv means
+        over the sections. "ISO 4287:1997": all of them means over the sampling lengths. Rt and
+        RSm are of the whole evaluation length in both.
+
+    RSm counts profile elements whose hill and dale both exceed 10 % of Rz, between upward
+    crossings of the mean line.
+
+    Errors
+    ------
+    InputError
+        Unknown standard, fewer than one section, short cut-off not below the long one.
+    RangeError
+        Short cut-off below what the measurement resolves.
+    DataError
+        Profile too short.
+    """
+    _check(profile, long_cutoff, short_cutoff, sections, standard)
+    flat = profile if profile.periodic else _without_line(profile)
+    if short_cutoff is not None:
+        flat = long_waves(flat, short_cutoff, ends)
+    rough = short_waves(flat, long_cutoff, ends)
+    per_section = round(long_cutoff / profile.spacing)
+    wanted = sections * per_section
+    if rough.heights.size < wanted:
+        lost = profile.length - rough.heights.size * profile.spacing
+        raise DataError(
+            f"the profile is {profile.length:.4g} m long, of which the filter uses {lost:.3g} m",
+            where="profile",
+            allowed=f"{sections} sections of {long_cutoff:g} m and what the filter uses",
+            remedy='Take fewer sections, a shorter cut-off, or ends="regression"',
+        )
+    start = (rough.heights.size - wanted) // 2
+    z = rough.heights[start : start + wanted]
+    pieces = z.reshape(sections, per_section)
+    whole = z - z.mean()
+    # Peaks and valleys count from the mean line of the evaluation length, not of each section.
+    high = pieces.max(axis=1) - z.mean()
+    low = z.mean() - pieces.min(axis=1)
+    rp, rv = float(high.mean()), float(low.mean())
+    reasons: dict[str, str] = {}
+    rdq = bend = None
+    if short_cutoff is None:
+        why = "no short cut-off given: it would be set by the spacing and the noise"
+        reasons |= {"rdq": why, "rms_curvature": why}
+    elif per_section < 9:
+        why = "fewer than nine points in a section"
+        reasons |= {"rdq": why, "rms_curvature": why}
+    elif standard.startswith("ISO 4287"):
+        rdq = float(np.mean([_rms(slope(p, profile.spacing)) for p in pieces]))
+        bend = float(np.mean([_rms(curvature(p, profile.spacing)) for p in pieces]))
+    else:
+        rdq = _rms(slope(z, profile.spacing))
+        bend = _rms(curvature(z, profile.spacing))
+    rsm = element_spacing(whole, profile.spacing, 0.1 * (rp + rv))
+    if rsm is None:
+        reasons["rsm"] = "fewer than one whole profile element above 10 % of Rz"
+    parts = [height_numbers(p) for p in pieces]
+    if standard.startswith("ISO 4287"):
+        ra, rq, rsk, rku = (
+            float(np.mean([getattr(p, name) for p in parts])) for name in ("ra", "rq", "rsk", "rku")
+        )
+    else:
+        total = height_numbers(z)
+        ra, rq, rsk, rku = total.ra, total.rq, total.rsk, total.rku
+    return ProfileRoughness(
+        ra=ra,
+        rq=rq,
+        rz=rp + rv,
+        rp=rp,
+        rv=rv,
+        rt=float(whole.max() - whole.min()),
+        rsk=rsk,
+        rku=rku,
+        rsm=rsm,
+        rdq=rdq,
+        rms_curvature=bend,
+        long_cutoff=float(long_cutoff),
+        short_cutoff=short_cutoff,
+        sections=sections,
+        section_length=per_section * profile.spacing,
+        evaluation_length=wanted * profile.spacing,
+        standard=standard,
+        ends=ends,
+        processing=rough.processing,
+        not_estimated=reasons,
+    )
+
+
+def _check(
+    profile: Profile,
+    long_cutoff: float,
+    short_cutoff: float | None,
+    sections: int,
+    standard: str,
+) -> None:
+    if standard not in STANDARDS:
+        raise InputError(f'"{standard}"', where="standard", allowed=", ".join(STANDARDS))
+    if sections < 1:
+        raise InputError(f"{sections} sections", where="sections", allowed="1 or more")
+    limit = shortest_reliable_wavelength(profile)
+    if long_cutoff < 2.0 * limit.wavelength:
+        raise RangeError(
+            f"long cut-off {long_cutoff:g} m",
+            where="long_cutoff",
+            allowed=f"at least twice the resolution of {limit.wavelength:.4g} m ({limit.reason})",
+        )
+    if short_cutoff is None:
+        return
+    if not short_cutoff < long_cutoff:
+        raise InputError(
+            f"short cut-off {short_cutoff:g} m",
+            where="short_cutoff",
+            allowed=f"below {long_cutoff:g} m",
+        )
+    if short_cutoff < limit.wavelength * (1.0 - 1e-9):
+        raise RangeError(
+            f"short cut-off {short_cutoff:g} m is below what was measured",
+            where="short_cutoff",
+            allowed=f"{limit.wavelength:.4g} m or more ({limit.reason})",
+        )
+
+
+def _without_line(profile: Profile) -> Profile:
+    from .prepare import levelled
+
+    return levelled(profile, 1)
+
+
+def _rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(values * values)))

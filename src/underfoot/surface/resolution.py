@@ -1,0 +1,61 @@
+"""Down to which wavelength a measurement can be believed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .height_map import HeightMap
+from .profile import Profile
+
+POINTS_PER_WAVE = 5
+"""ISO 3274:1996 pairs a short cut-off of 2.5 um with a spacing of at most 0.5 um."""
+
+
+@dataclass(frozen=True, slots=True)
+class Resolution:
+    """Shortest wavelength, m, that can be believed, and why not a shorter one."""
+
+    wavelength: float
+    reason: str
+
+
+def shortest_reliable_wavelength(surface: Profile | HeightMap) -> Resolution:
+    """Return the shortest wavelength that can be believed: the largest of three limits.
+
+    - five points to a wave (ISO 3274);
+    - the instrument's own resolution, where the surface knows it;
+    - the tip: the scale below which the sharpest peak met at that scale is sharper than half the
+      curvature of the stylus, where its radius is known (criterion of Sanner et al., Appl. Surf.
+      Sci. Adv. 7 (2022) 100190: largest negative second difference over distance l reaches
+      1 / (2 R)).
+    """
+    limits = [
+        Resolution(
+            POINTS_PER_WAVE * surface.spacing,
+            f"{POINTS_PER_WAVE} points to a wave at a spacing of {surface.spacing:.4g} m",
+        )
+    ]
+    if surface.resolution is not None:
+        limits.append(Resolution(surface.resolution, "resolution of the instrument"))
+    radius = surface.tip_radius if isinstance(surface, Profile) else None
+    if radius is not None:
+        limits.append(
+            Resolution(_tip_limit(surface.heights, surface.spacing, radius), _TIP.format(radius))
+        )
+    return max(limits, key=lambda limit: limit.wavelength)
+
+
+_TIP = "radius of the tip, {:.4g} m: sharper peaks are rounded"
+
+
+def _tip_limit(heights: np.ndarray, spacing: float, radius: float) -> float:
+    longest = heights.size // 3
+    reaches = np.unique(np.geomspace(1, max(longest, 1), 60).astype(int))
+    limit = 0.0
+    for k in reaches:
+        second = (heights[2 * k :] - 2.0 * heights[k:-k] + heights[: -2 * k]) / (k * spacing) ** 2
+        if second.size and float(-second.min()) > 0.5 / radius:
+            limit = 2.0 * float(k) * spacing
+    return limit
