@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,10 +12,13 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, Progress, Status, silent
 
-from ._kernels.active_set import solve_contact
 from ._kernels.area import contact_fractions
+from ._kernels.fourier import transform
+from ._kernels.nested import NestedSolution, solve_nested
+from ._kernels.operators import Body
+from ._kernels.spectra import dissipation, slope_numbers, work_against_slope
 from ._kernels.symbols import odd_wavenumbers, sliding_moduli, unit_compliance, wavenumbers
-from ._kernels.transforms import RealTransform
+from ._kernels.threads import namespace, threads_limited
 from .steady_checks import (
     Modulus,
     checked_contact_input,
@@ -46,6 +51,8 @@ class SteadySliding:
         Energy lost in the material per sliding distance and normal load.
     cof_slope
         Mean of pressure times slope over the mean pressure: the same number on a fine grid.
+    rms_slope
+        Of the surface, over all directions.
     full_contact
         True when the surfaces touch everywhere (closed form, no iteration).
     iterations, operator_applications
@@ -70,6 +77,7 @@ class SteadySliding:
     real_contact_fraction_corrected: float
     cof_hysteresis: float
     cof_slope: float
+    rms_slope: float
     full_contact: bool
     iterations: int
     operator_applications: float
@@ -90,8 +98,9 @@ def steady_sliding(
     *,
     layer_thickness: float | None = None,
     tolerance: float = 1e-6,
-    max_iterations: int = 200,
+    max_iterations: int = 60,
     threads: int = 1,
+    fft: str = "auto",
     progress: Progress = silent,
 ) -> SteadySliding:
     """Return the steady contact of smooth rubber sliding along axis 0 over a rough rigid surface.
@@ -124,7 +133,9 @@ def steady_sliding(
     max_iterations
         Active-set steps on the full grid before the result is marked as not converged.
     threads
-        Of the Fourier transforms.
+        Of the Fourier transforms and matrix products; everything else runs on one.
+    fft
+        "mkl" (Intel's library, used when installed), "scipy", or "auto".
     progress
         Receives the stage, the fraction done and the error; may raise ``Cancelled``.
 
@@ -144,86 +155,138 @@ def steady_sliding(
     h, steps = checked_contact_input(
         height, spacing, speed, pressure, poisson_ratio, layer_thickness
     )
-    qx, qy = wavenumbers(h.shape, steps)
+    shape: tuple[int, int] = h.shape
+    xp = namespace(h)
+    qx, qy = wavenumbers(shape, steps)
     young = modulus_function(modulus, np.unique(np.abs(qx * speed)))
-    rms = float(h.std())
-    notes: list[str] = []
-    moduli = sliding_moduli(young, speed, qx)
-    compliance: Any = unit_compliance(np.hypot(qx, qy), layer_thickness, poisson_ratio) / moduli
-    if speed == 0.0 or not np.any(moduli.imag):
-        compliance = compliance.real
-    compliance[0, 0] = 1.0
-    stiffness = 1.0 / compliance
-    compliance[0, 0] = stiffness[0, 0] = 0.0
-    transform = RealTransform(h.shape, threads)
-    if rms == 0.0:
-        p = np.full(h.shape, float(pressure))
-        notes.append("the surface is flat: full contact, no deformation, no hysteresis")
-        solved = None
-        gap = np.zeros(h.shape)
-    else:
-        unit = float(np.std(transform.apply(stiffness, h)))
-        solved = solve_contact(
-            (h - h.mean()) / rms,
-            compliance * (unit / rms),
-            stiffness * (rms / unit),
-            pressure / unit,
-            transform,
-            tolerance=tolerance,
-            max_iterations=max_iterations,
-            report=lambda error: progress(
-                "rough contact", min(1.0, max(0.0, np.log10(error) / np.log10(tolerance))), error
-            ),
+    odd = xp.asarray(odd_wavenumbers(shape, steps))
+    body = Body(
+        _moduli(young, speed),
+        lambda q: unit_compliance(q, layer_thickness, poisson_ratio),
+        steps,
+        xp=xp,
+        threads=threads,
+        library=fft,
+    )
+    with threads_limited(threads):
+        exact = transform(shape, xp.float64, xp=xp, threads=threads, library=fft)
+        surface = 1.0 * exact.forward(h)
+        slope, short = slope_numbers(
+            surface, xp.asarray(qx**2 + qy**2), shape, 0.5 * math.pi / max(steps)
         )
-        p, gap = solved.pressure * unit, solved.gap * rms
-    full = solved is None or solved.iterations == 0
-    converged = solved is None or solved.converged
-    if full and rms:
+        if slope == 0.0:
+            return _flat(h, float(pressure), float(speed), xp)
+        rms = float(xp.std(h))
+        unit = 0.5 * slope * abs(complex(young(np.asarray([slope / rms * abs(speed)]))[0]))
+        unit /= 1.0 - poisson_ratio**2
+        surface /= rms
+        solved = solve_nested(
+            (h - xp.mean(h)) / rms,
+            surface,
+            replace(body, scale=unit / rms),
+            pressure / unit,
+            exact=exact,
+            tolerance=tolerance,
+            max_steps=max_iterations,
+            report=lambda error: progress("rough contact", _done(error, tolerance), error),
+        )
+        p, gap = _physical(solved, unit, rms, float(pressure), xp)
+        spectrum = exact.forward(p)
+        on_slope = work_against_slope(spectrum, surface, odd, shape) * rms
+        lost = 0.0
+        if np.iscomplexobj(body.moduli(qx)):
+            operators = solved.operators
+            lost = dissipation(spectrum, operators.unit, operators.rows, odd, shape) * rms / unit
+    state = solved.state
+    plain, corrected = contact_fractions(p > 0.0, steps, xp)
+    notes = []
+    if state.full:
         notes.append(
             "the pressure closes the surface everywhere: full contact, solved in closed form"
         )
-    spectrum = transform.forward(p)
-    lost = _dissipation(spectrum, compliance, odd_wavenumbers(h.shape, steps), h.shape)
-    slope = transform.backward(1j * odd_wavenumbers(h.shape, steps) * transform.forward(h))
-    plain, corrected = contact_fractions(p > 0.0, steps)
     if speed == 0.0:
         notes.append("speed 0: elastic contact of the relaxed rubber")
     else:
         notes.extend(loss_reason(young, np.abs(qx * speed)))
-    if not converged:
+    if not state.converged:
         notes.append(
-            f"stopped after {max_iterations} iterations at an error of {solved.error:.1e} "  # type: ignore[union-attr]  # solved is set when not converged
-            f"(asked for {tolerance:.1e})"
+            f"stopped after {state.steps} iterations at an error of {state.error:.1e} "
+            f"(asked for {tolerance:.1e}): the numbers are not a result"
         )
-    found = tuple(resolution_breaches(h, steps, transform))
-    status = Status.CONVERGED if converged else Status.NOT_CONVERGED
-    if converged and found:
-        status = Status.OUT_OF_RANGE
+    found = tuple(resolution_breaches(slope, short))
     return SteadySliding(
         pressure=p,
         gap=gap,
         nominal_pressure=float(pressure),
         speed=float(speed),
-        mean_gap=float(gap.mean()),
+        mean_gap=float(xp.mean(gap)),
         real_contact_fraction=plain,
         real_contact_fraction_corrected=corrected,
         cof_hysteresis=lost / pressure,
-        cof_slope=float((p * slope).mean()) / pressure,
-        full_contact=full,
-        iterations=0 if solved is None else solved.iterations,
-        operator_applications=0 if solved is None else solved.operator_applications,
-        complementarity_error=0.0 if solved is None else solved.error,
-        history=() if solved is None else tuple(solved.history),
-        status=status,
+        cof_slope=on_slope / pressure,
+        rms_slope=slope,
+        full_contact=state.full,
+        iterations=state.steps,
+        operator_applications=solved.applications,
+        complementarity_error=state.error,
+        history=tuple(state.history),
+        status=_status(state.converged, found),
         notes=tuple(notes),
         breaches=found,
     )
 
 
-def _dissipation(spectrum: Any, compliance: Any, qx: Any, shape: tuple[int, int]) -> float:
-    """Return <p du/dx>, the energy lost per area and sliding distance (Pa)."""
-    loss = -qx * np.imag(compliance) * (spectrum.real**2 + spectrum.imag**2)
-    total = 2.0 * float(loss.sum()) - float(loss[:, 0].sum())
-    if shape[1] % 2 == 0:
-        total -= float(loss[:, -1].sum())
-    return total / (shape[0] * shape[1]) ** 2
+def _moduli(young: Callable[[Any], Any], speed: float) -> Callable[[Any], Any]:
+    """Return E*(qx v) of a column of qx, real when there is no loss at all."""
+
+    def rows(qx: Any) -> Any:
+        values = sliding_moduli(young, speed, qx)
+        return values if np.any(values.imag) else values.real
+
+    return rows
+
+
+def _physical(
+    solved: NestedSolution, unit: float, rms: float, mean: float, xp: Any
+) -> tuple[Any, Any]:
+    """Return pressure and gap in SI: both >= 0, one of them 0 everywhere, the mean exact."""
+    p = xp.astype(solved.state.pressure, xp.float64)
+    p = xp.where(p > 0.0, p, xp.zeros_like(p))
+    p *= mean / float(xp.mean(p))
+    gap = xp.astype(solved.state.gap, xp.float64)
+    gap = xp.where((gap > 0.0) & (p == 0.0), gap * rms, xp.zeros_like(gap))
+    return p, gap
+
+
+def _flat(height: Any, pressure: float, speed: float, xp: Any) -> SteadySliding:
+    return SteadySliding(
+        pressure=xp.zeros_like(height) + pressure,
+        gap=xp.zeros_like(height),
+        nominal_pressure=pressure,
+        speed=speed,
+        mean_gap=0.0,
+        real_contact_fraction=1.0,
+        real_contact_fraction_corrected=1.0,
+        cof_hysteresis=0.0,
+        cof_slope=0.0,
+        rms_slope=0.0,
+        full_contact=True,
+        iterations=0,
+        operator_applications=0.0,
+        complementarity_error=0.0,
+        history=(),
+        status=Status.CONVERGED,
+        notes=("the surface is flat: full contact, no deformation, no hysteresis",),
+        breaches=(),
+    )
+
+
+def _status(converged: bool, found: tuple[Breach, ...]) -> Status:
+    if not converged:
+        return Status.NOT_CONVERGED
+    return Status.OUT_OF_RANGE if found else Status.CONVERGED
+
+
+def _done(error: float, tolerance: float) -> float:
+    """Return the fraction done on a logarithmic scale from an error of 1."""
+    return min(1.0, max(0.0, math.log(max(error, 1e-300)) / math.log(tolerance)))

@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, InputError, Range, breaches
 
-from ._kernels.symbols import wavenumbers
-from ._kernels.transforms import RealTransform
+from ._kernels.threads import namespace
 
 Array = Any
 
@@ -45,7 +44,7 @@ def checked_contact_input(
     layer_thickness: float | None,
 ) -> tuple[Array, tuple[float, float]]:
     """Return (heights as floats, (dx, dy)) or raise InputError with the remedy."""
-    h = np.asarray(height, dtype=float)
+    h = _as_floats(height)
     if h.ndim != 2:
         raise InputError(
             f"height has {h.ndim} dimension(s)",
@@ -57,11 +56,13 @@ def checked_contact_input(
         raise InputError(
             f"height has shape {h.shape}", where="height", allowed="at least 8 x 4 nodes"
         )
-    bad = np.flatnonzero(~np.isfinite(h).ravel())
-    if bad.size:
-        first = tuple(int(i) for i in np.unravel_index(bad[0], h.shape))
+    xp = namespace(h)
+    if not bool(xp.all(xp.isfinite(h))):
+        bad = np.argwhere(~np.isfinite(np.asarray(h)))
+        first = tuple(int(i) for i in bad[0])
         raise InputError(
-            f"{bad.size} of {h.size} heights are missing or infinite, the first at {first}",
+            f"{len(bad)} of {h.shape[0] * h.shape[1]} heights are missing or infinite, "
+            f"the first at {first}",
             where="height",
             allowed="a finite height at every node",
             remedy="Fill or cut them away first (surface.fill_missing)",
@@ -138,26 +139,26 @@ def loss_reason(young: Callable[[Array], Array], frequencies: Array) -> list[str
     ]
 
 
-def resolution_breaches(
-    height: Array, spacing: tuple[float, float], transform: RealTransform
-) -> list[Breach]:
+def resolution_breaches(rms_slope: float, short_share: float) -> list[Breach]:
     """Return whether slopes are too steep for the theory or too short for the grid."""
-    qx, qy = wavenumbers(height.shape, spacing)
-    spectrum = transform.forward(height)
-    power = spectrum.real**2 + spectrum.imag**2
-    power[:, 1 : (height.shape[1] + 1) // 2] *= 2.0
-    power *= qx**2 + qy**2
-    total = float(power.sum())
-    limit = 0.5 * math.pi / max(spacing)
-    short = float(power[np.hypot(qx, qy) > limit].sum())
-    values = dict(
-        zip(
-            _RANGES,
-            (math.sqrt(total) / height.size, short / total if total else 0.0),
-            strict=True,
-        )
-    )
+    values = dict(zip(_RANGES, (rms_slope, short_share), strict=True))
     return breaches("steady_sliding", _RANGES, values)
+
+
+def _as_floats(height: Any) -> Any:
+    """Return heights in double precision, left on their device if not NumPy's."""
+    if type(height).__module__.partition(".")[0] in ("torch", "cupy", "array_api_strict"):
+        xp = namespace(height)
+        return xp.astype(height, xp.float64)
+    try:
+        return np.asarray(height, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"height is a {type(height).__name__}",
+            where="height",
+            allowed="an array of heights, m",
+            remedy="Give the heights of a map: map.heights",
+        ) from error
 
 
 def _positive(name: str, value: float, unit: str) -> float:

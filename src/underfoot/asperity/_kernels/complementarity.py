@@ -1,0 +1,136 @@
+"""Primal-dual active set for p >= 0, gap >= 0, p gap = 0, mean p = p0 on one grid."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from .krylov import Workspace, residual_correction
+from .operators import Operators
+from .restriction import Restriction
+
+Array = Any
+
+_SWITCH = 1e-5
+"""Error at which the residual is taken in double precision: ten times the rounding of single."""
+_RENEW = 0.05
+"""Share of changed nodes beyond which the response to a uniform approach is computed again."""
+_PATIENCE = 4
+"""Steps without a new least error after which the inner solves are made ten times more exact."""
+
+
+@dataclass(slots=True)
+class ContactState:
+    """Pressure and gap (scaled fields), steps taken, and the error of every step."""
+
+    pressure: Array
+    gap: Array
+    steps: int
+    inner: int
+    error: float
+    converged: bool
+    history: list[float]
+    full: bool = False
+
+
+def solve_on_grid(
+    operators: Operators,
+    height: Array,
+    pressure: Array,
+    mean_pressure: float,
+    workspace: Workspace,
+    *,
+    tolerance: float,
+    max_steps: int,
+    exact: bool,
+    reduction: float = 0.1,
+    report: Callable[[float], None] = lambda error: None,
+) -> ContactState:
+    """Return the contact of ``height`` from a first guess of the pressure (its support counts).
+
+    Each step solves A p = h - d on the present contact with the load as a side condition, not more
+    exactly than by ``reduction``, then takes nodes with p <= 0 out and nodes that the gap of that
+    solution penetrates in. The gap of the unclipped solution decides, and a first guess with too
+    much contact is better than one with too little: both keep the set from cycling (inverse of an
+    M-matrix: Hintermueller, Ito and Kunisch 2002). The error is the larger of the deepest
+    penetration and the pressure-weighted mean |gap|; it counts only when no pressure is negative.
+    With ``exact`` the last steps take their residual in double precision.
+    """
+    xp = operators.xp
+    points = height.shape[0] * height.shape[1]
+    load = mean_pressure * points
+    single = xp.astype(height, xp.float32)
+    work = xp.zeros(height.shape, dtype=xp.float32)
+    double = False
+    contact = pressure > 0.0
+    p = pressure
+    gap: Array = None
+    history: list[float] = []
+    inner = 0
+    error = float("inf")
+    known: Array = None  # S 1 on a recent contact
+    lowest = -1.0
+    changed = 0
+    best, since = error, 0
+    for step in range(1, max_steps + 1):
+        if bool(xp.all(contact)):
+            closed = operators.exact_pressure(height) if exact else operators.pressure(single)
+            p = closed + mean_pressure
+            contact, gap = p > 0.0, None
+            if bool(xp.all(contact)):
+                state = ContactState(p, xp.zeros_like(p), step, inner, 0.0, True, [*history, 0.0])
+                state.full = True
+                return state
+            p = xp.astype(p, xp.float64 if double else xp.float32)
+        part = Restriction(contact, xp, work)
+        if known is None or changed > _RENEW * part.nodes:
+            known = xp.asarray(operators.pressure(part.spread(part.constant())), copy=True)
+            known = xp.where(known > 0.0, known, xp.zeros_like(known))
+        response = part.take(known)
+        if lowest < 0.0:
+            p = p * contact
+        missing = load - float(xp.sum(p))
+        if abs(missing) > 1e-6 * load:
+            share = missing / float(xp.sum(response))
+            p = p + xp.astype(part.spread(response * share), p.dtype)
+            gap = None
+        if gap is None:
+            gap = _gap(operators, p, height if double else single, double)
+        residual = part.take(gap)
+        mean = float(xp.sum(residual)) / part.nodes
+        residual = xp.astype(-residual, xp.float32)
+        part.shift(residual, mean)
+        correction, count = residual_correction(
+            operators, part, residual, response, reduction, 0.0, workspace
+        )
+        inner += count
+        p = p + part.spread(correction)
+        gap = _gap(operators, p, height if double else single, double)
+        gap -= float(xp.sum(part.take(gap))) / part.nodes
+        lowest = float(xp.min(p))
+        carried = float(xp.sum(xp.abs(gap * p))) / load
+        error = max(-float(xp.min(gap)), carried)
+        history.append(error)
+        report(error)
+        best, since = (error, 0) if error < best else (best, since + 1)
+        if since >= _PATIENCE:
+            reduction, since = max(0.1 * reduction, 1e-4), 0
+        kept = p > 0.0
+        if error <= tolerance and lowest >= 0.0 and (double or not exact):
+            return ContactState(p, gap, step, inner, error, True, history)
+        before, contact = contact, kept | ((gap < 0.0) & ~contact)
+        changed = int(xp.count_nonzero(contact != before))
+        if exact and not double and error <= max(_SWITCH, 3.0 * tolerance):
+            double = True
+            p = xp.astype(p, xp.float64)
+            gap = None
+        elif lowest < 0.0:
+            gap = None
+    return ContactState(p, gap, max_steps, inner, error, False, history)
+
+
+def _gap(operators: Operators, pressure: Array, height: Array, double: bool) -> Array:
+    if double:
+        return operators.exact_displacement(pressure) - height
+    return operators.displacement(pressure) - height

@@ -1,0 +1,94 @@
+"""Minimum-residual correction of the pressure on a given contact."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .operators import Operators
+from .restriction import Restriction
+
+Array = Any
+
+
+class Workspace:
+    """Room for the search directions, allocated once and grown when a contact needs more."""
+
+    def __init__(self, steps: int, xp: Any) -> None:
+        self.steps = steps
+        self._xp = xp
+        self._images: Array = None
+        self._directions: Array = None
+        self._length = 0
+
+    def rows(self, size: int) -> tuple[Array, Array]:
+        """Return two (steps, size) arrays of undefined content."""
+        if self.steps * size > self._length:
+            self._images = self._directions = None
+            self._length = self.steps * size
+            self._images = self._xp.empty(self._length, dtype=self._xp.float32)
+            self._directions = self._xp.empty(self._length, dtype=self._xp.float32)
+        shape, end = (self.steps, size), self.steps * size
+        reshape = self._xp.reshape
+        return reshape(self._images[:end], shape), reshape(self._directions[:end], shape)
+
+
+def residual_correction(
+    operators: Operators,
+    part: Restriction,
+    residual: Array,
+    response: Array,
+    reduction: float,
+    floor: float,
+    workspace: Workspace,
+) -> tuple[Array, int]:
+    """Return the correction c with sum c = 0 and A c = residual up to a constant, and the steps.
+
+    Generalised conjugate residuals in single precision: directions z = S r, brought to zero sum
+    with ``response`` (S 1 on the contact), images A z orthonormal. Stops when the residual's norm
+    has fallen by ``reduction`` or below ``floor``, or after the workspace's steps. ``residual``
+    has zero mean and is overwritten.
+    """
+    xp = operators.xp
+    images, directions = workspace.rows(part.size)
+    triangle = np.zeros((workspace.steps, workspace.steps))
+    weights = np.zeros(workspace.steps)
+    r = residual
+    left = _norm(r)
+    goal = max(reduction * left, floor)
+    total = float(xp.sum(response))
+    step = 0
+    while left > goal and step < workspace.steps:
+        z = part.take(operators.pressure(part.spread(r)))
+        z -= response * _scalar(xp, float(xp.sum(z)) / total)
+        w = part.take(operators.displacement(part.spread(z)))
+        part.shift(w, -float(xp.sum(w)) / part.nodes)
+        if step:
+            overlap = images[:step, :] @ w
+            w -= overlap @ images[:step, :]
+            triangle[:step, step] = np.asarray(overlap)
+        length = _norm(w)
+        if not length > 0.0:
+            break
+        triangle[step, step] = length
+        w *= _scalar(xp, 1.0 / length)
+        images[step, :] = w
+        directions[step, :] = z
+        weights[step] = float(w @ r)
+        w *= _scalar(xp, weights[step])
+        r -= w
+        left = _norm(r)
+        step += 1
+    if step == 0:
+        return xp.zeros_like(r), 0
+    y = np.linalg.solve(triangle[:step, :step], weights[:step]).astype(np.float32)
+    return xp.asarray(y) @ directions[:step, :], step
+
+
+def _norm(vector: Array) -> float:
+    return float(vector @ vector) ** 0.5
+
+
+def _scalar(xp: Any, value: float) -> Array:
+    return xp.asarray(value, dtype=xp.float32)

@@ -1,0 +1,110 @@
+"""The compliance of a sliding body and its inverse on one periodic grid."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .fourier import Transform, transform
+from .symbols import wavenumbers
+
+Array = Any
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """A body whose compliance is scale * unit(|q|) / moduli(qx), and what computes with it.
+
+    ``moduli`` returns E*(qx v) for a column of qx (real when elastic), ``unit`` the compliance for
+    E = 1. ``spacing`` is that of the fine grid. ``library`` names the FFT (see ``transform``).
+    """
+
+    moduli: Callable[[Array], Array]
+    unit: Callable[[Array], Array]
+    spacing: tuple[float, float]
+    scale: float = 1.0
+    xp: Any = np
+    threads: int = 1
+    library: str = "auto"
+
+
+class Operators:
+    """Displacement of a pressure (A p) and pressure of a displacement (S u) on one grid.
+
+    Single precision, in buffers that the next product overwrites; ``exact_displacement`` works in
+    double. The mean of every result is zero. ``count`` counts products.
+    """
+
+    def __init__(
+        self,
+        body: Body,
+        shape: tuple[int, int],
+        coarsening: tuple[int, int] = (1, 1),
+        exact: Transform | None = None,
+    ) -> None:
+        self.shape = shape
+        self.xp = body.xp
+        self.count = 0
+        spacing = (body.spacing[0] * coarsening[0], body.spacing[1] * coarsening[1])
+        qx, qy = wavenumbers(shape, spacing)
+        rows = body.moduli(qx)
+        unit = body.unit(np.hypot(qx, qy))
+        unit *= body.scale
+        unit[0, 0] = 1.0
+        single = np.complex64 if np.iscomplexobj(rows) else np.float32
+        stiffness = rows.astype(single) / unit.astype(np.float32)
+        compliance = 1.0 / stiffness
+        stiffness[0, 0] = compliance[0, 0] = unit[0, 0] = 0.0
+        asarray = self.xp.asarray
+        self.compliance, self.stiffness = asarray(compliance), asarray(stiffness)
+        self.unit, self.rows = asarray(unit), asarray(rows)
+        self._inverse_rows = asarray(1.0 / rows)
+        self._body = body
+        self.fast = self._transform(self.xp.float32)
+        self._exact = exact
+
+    def displacement(self, pressure: Array) -> Array:
+        """Return A p in single precision."""
+        return self._product(self.compliance, pressure)
+
+    def pressure(self, displacement: Array) -> Array:
+        """Return S u in single precision."""
+        return self._product(self.stiffness, displacement)
+
+    def exact_displacement(self, pressure: Array) -> Array:
+        """Return A p in double precision."""
+        self.count += 1
+        spectrum = self.exact.forward(pressure)
+        spectrum *= self.unit
+        spectrum *= self._inverse_rows
+        return self.exact.backward(spectrum)
+
+    def exact_pressure(self, displacement: Array) -> Array:
+        """Return S u in double precision."""
+        self.count += 1
+        spectrum = self.exact.forward(displacement)
+        spectrum *= self.rows
+        safe = self.xp.where(self.unit > 0.0, self.unit, self.xp.ones_like(self.unit))
+        spectrum /= safe
+        spectrum[0, 0] = 0.0
+        return self.exact.backward(spectrum)
+
+    @property
+    def exact(self) -> Transform:
+        """The transform in double precision, planned at first use."""
+        if self._exact is None:
+            self._exact = self._transform(self.xp.float64)
+        return self._exact
+
+    def _product(self, symbol: Array, field: Array) -> Array:
+        self.count += 1
+        spectrum = self.fast.forward(field)
+        spectrum *= symbol
+        return self.fast.backward(spectrum)
+
+    def _transform(self, dtype: Any) -> Transform:
+        body = self._body
+        return transform(self.shape, dtype, xp=body.xp, threads=body.threads, library=body.library)
