@@ -9,6 +9,7 @@ import numpy as np
 
 from .axes import TREADMILL, Axes, axes_of, heel_candidates, walking_direction
 from .baseline import runs
+from .plates import plate_axes
 from .trial import Plate, Trial
 
 CONTACT_FORCE = 20.0  # N
@@ -211,8 +212,10 @@ def _heels_on_plate(
     """Sides whose heel marker stays over the plate, low and slow, for 100 ms of the stance."""
     if plate.corners is None:
         return {}
-    low, high = plate.corners.min(axis=0) - 0.02, plate.corners.max(axis=0) + 0.02
-    flat = np.abs(axes.up) < 0.5
+    # In the plate's own axes: a plate that stands askew in the laboratory is no larger for it.
+    own = plate_axes(plate.corners)[:, :2]
+    middle = plate.corners.mean(axis=0)
+    reach = np.abs((plate.corners - middle) @ own).max(axis=0) + 0.02
     found = {}
     for side, names in heel_candidates(trial, heels).items():
         for name in names[:1]:
@@ -222,7 +225,7 @@ def _heels_on_plate(
             if not np.isfinite(height).any():
                 continue
             inside = (time >= stance.contact) & (time <= stance.toe_off) & ~marker.missing
-            inside &= ((at >= low) & (at <= high))[:, flat].all(axis=1)
+            inside &= (np.abs((at - middle) @ own) <= reach).all(axis=1)
             inside &= height < np.nanmin(height) + 0.06
             speed = np.linalg.norm(np.gradient(at, 1.0 / marker.rate, axis=0), axis=1)
             inside &= np.nan_to_num(speed, nan=9.0) < 0.8
