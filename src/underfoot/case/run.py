@@ -5,6 +5,8 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from underfoot.core import (
     Breach,
     Progress,
@@ -119,7 +121,9 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
         name=case.name,
         scalars=numbers,
         labels=regime(contact),
-        fields=_fields(sole, contact, sensor, parts.total),
+        fields=_fields(
+            sole, contact, sensor, parts.total - np.where(contact.wet, 0.0, parts.viscous)
+        ),
         status=status,
         breaches=_words(found),
         assumptions=(*assumptions(case), *law.assumptions, *risk.assumptions),

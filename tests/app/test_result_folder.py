@@ -1,0 +1,136 @@
+"""What a run leaves behind: files another program can read, a page that opens offline."""
+
+import csv
+import json
+import re
+
+import numpy as np
+import pytest
+import xarray
+
+from underfoot.case.result import Result
+from underfoot.core import DataError, InputError, Status, to_si
+from underfoot.document import comparison, summary_rows, verdict, write_outputs
+
+REQUIRED = (
+    "cof cof_adhesion cof_hysteresis cof_viscous normal_force fluid_load fluid_load_sensor "
+    "peak_fluid_pressure peak_fluid_pressure_sensor contact_area minimum_film_thickness "
+    "slip_probability status"
+).split()
+
+
+@pytest.fixture(scope="module")
+def folder(worn_shoe_result, tmp_path_factory):
+    made = tmp_path_factory.mktemp("run")
+    write_outputs(worn_shoe_result, made)
+    return made
+
+
+def test_json_gives_each_number_its_unit_spread_and_marks(folder):
+    stored = json.loads((folder / "result.json").read_text())
+    for name in REQUIRED:
+        entry = stored[name]
+        assert {"value", "unit", "uncertainty", "assumed"} <= set(entry), name
+        if entry["uncertainty"] is None and name != "status":
+            assert entry["reason"], name
+
+
+def test_the_parts_of_the_cof_and_of_the_load_add_up(worn_shoe_result):
+    value = worn_shoe_result.value
+    parts = value("cof_adhesion") + value("cof_hysteresis") + value("cof_viscous")
+    assert parts == pytest.approx(value("cof"), rel=1e-12)
+    fields = worn_shoe_result.fields
+    area = float(np.diff(fields.x[:2])[0]) ** 2
+    load = float((fields.contact_pressure + fields.fluid_pressure).sum()) * area
+    assert load == pytest.approx(value("normal_force"), rel=1e-3)
+    friction = float(fields.shear_stress.sum())
+    assert friction * area / load == pytest.approx(value("cof"), rel=1e-6)
+
+
+def test_netcdf_is_labelled_with_units(folder):
+    with xarray.open_dataset(folder / "result.nc", engine="h5netcdf") as fields:
+        assert fields.attrs["Conventions"].startswith("CF-")
+        for name, variable in fields.variables.items():
+            assert variable.attrs.get("units"), name
+        assert fields.contact_pressure.dims == ("x", "y")
+
+
+def test_csv_holds_every_scalar(folder, worn_shoe_result):
+    with (folder / "summary.csv").open() as stream:
+        rows = {row["quantity"]: row for row in csv.DictReader(stream)}
+    assert set(worn_shoe_result.scalars) <= set(rows)
+    assert float(rows["cof"]["value"]) == worn_shoe_result.value("cof")
+
+
+def test_a_folder_reads_back_as_the_same_result(folder, worn_shoe_result):
+    again = Result.load(folder)
+    assert again.scalars == worn_shoe_result.scalars
+    assert again.provenance == worn_shoe_result.provenance
+    assert again.status == worn_shoe_result.status
+    xarray.testing.assert_identical(again.fields.drop_attrs(), worn_shoe_result.fields.drop_attrs())
+
+
+def test_a_damaged_folder_is_a_data_error(folder, tmp_path):
+    with pytest.raises(DataError, match="can't be read as a result"):
+        Result.load(tmp_path)
+    (tmp_path / "result.json").write_text("{")
+    (tmp_path / "case.toml").write_text("")
+    (tmp_path / "result.nc").write_bytes((folder / "result.nc").read_bytes())
+    with pytest.raises(DataError, match="can't be read as a result"):
+        Result.load(tmp_path)
+
+
+def test_the_page_is_self_contained(folder):
+    page = (folder / "report.html").read_text()
+    outside = re.findall(r"""(?:src|href)=["'](?!data:|#)([^"']+)""", page)
+    assert outside == []
+    assert "<script" not in page
+    assert page.count("data:image/png;base64,") == 2
+
+
+@pytest.mark.parametrize("name", ["contact_pressure", "fluid_pressure", "film_thickness", "maps"])
+def test_maps_are_pictures_with_something_on_them(folder, name):
+    from matplotlib.image import imread
+
+    picture = imread(folder / f"{name}.png")
+    assert min(picture.shape[:2]) > 400
+    assert len(np.unique(picture.reshape(-1, picture.shape[2]), axis=0)) > 30
+
+
+def test_an_unconverged_result_gives_no_number(worn_shoe_result):
+    failed = Result(
+        **{
+            **{name: getattr(worn_shoe_result, name) for name in Result.__slots__},
+            "status": Status.NOT_CONVERGED,
+        }
+    )
+    assert "No result" in verdict(failed)
+    assert "No comparison" in comparison(worn_shoe_result, failed).verdict
+    with pytest.raises(DataError, match="not converged"):
+        failed.value("cof")
+
+
+def test_the_summary_reads_in_units_people_use(worn_shoe_result):
+    rows = {row.label.strip(): row.value for row in summary_rows(worn_shoe_result)}
+    assert "%" in rows["Probability of a slip"]
+    assert rows["Peak fluid pressure"].endswith("kPa")
+    assert "µm" in rows["Thinnest film"]
+    assert "um" not in rows["Thinnest film"].replace("µm", "")
+
+
+def test_a_result_compared_with_itself_has_no_order(worn_shoe_result):
+    assert "by 0.000" in comparison(worn_shoe_result, worn_shoe_result).verdict
+
+
+def test_saving_refuses_a_folder_that_holds_something(worn_shoe_result, tmp_path):
+    (tmp_path / "mine.txt").write_text("keep")
+    with pytest.raises(InputError, match="not empty"):
+        worn_shoe_result.save(tmp_path)
+    assert (tmp_path / "mine.txt").read_text() == "keep"
+
+
+def test_saved_case_runs_to_the_same_case(worn_shoe_result, worn_shoe_case):
+    from underfoot.case import Case
+
+    assert Case.from_text(worn_shoe_result.case_text) == worn_shoe_case
+    assert to_si("2 mm", "m", where="") == worn_shoe_case.numerics.grid_spacing
