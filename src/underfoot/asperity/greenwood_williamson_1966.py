@@ -18,7 +18,7 @@ SOURCE = (
 )
 TESTED = {
     "real_contact_fraction": Range(
-        0.0, 0.1, "1", "independent summits; beside a half-space solution, see docs"
+        0.0, 0.05, "1", "area and gap 5 to 15 % low against half-space solutions up to here"
     ),
 }
 
@@ -35,8 +35,9 @@ def greenwood_williamson(
     contacts per area D int phi dz; E* = E/(1-nu^2), ``modulus`` = E (Pa) of the elastic body.
     The gap returned is that of the mean planes, d + z_s; negative where the planes cross.
 
-    Valid at light load only: summits neither interact nor merge. At the same pressure it gives
-    a real contact area of about the right size (see the physics page for the comparison).
+    Valid at light load only: summits neither interact nor merge. Beside half-space solutions of a
+    self-affine surface the area is 8 % low at 1 % contact, 14 % at 5 %, 26 % at 20 %; the gap 5 %
+    low at 2 % contact and useless above 10 %, where the mean planes cross.
     Errors: RangeError when no separation down to minus eight deviations carries the pressure.
     """
     p = np.atleast_1d(np.asarray(pressure, dtype=float))
