@@ -8,9 +8,9 @@ from underfoot.core import InputError
 from underfoot.surface import HeightMap
 
 LIMITS = (
-    "composite of two surfaces, exact for elastic bodies at each moment: in a viscoelastic shoe its "
-    "own roughness rests in the rubber and meets the relaxed modulus, while the composite takes it "
-    "to move with the floor; area and gap are then a lower and an upper limit, the hysteresis an "
+    "composite of two surfaces, exact for elastic bodies at each moment: in a viscoelastic shoe "
+    "its own roughness rests in the rubber and meets the relaxed modulus, while the composite "
+    "takes it to move with the floor; area and gap are then a lower and an upper limit, the hysteresis an "
     "upper limit, and the floor's surface alone gives the other limits"
 )
 
@@ -20,9 +20,9 @@ def composite_surface(floor: HeightMap, shoe: HeightMap) -> HeightMap:
 
     Both maps are periodic, of one shape and spacing, each positive away from its own solid; the
     gap of two rough bodies depends on that sum only. Their mean squares add when they are
-    uncorrelated. For a viscoelastic shoe read it beside the floor alone: see ``LIMITS``. In time
-    marches of two checkerboards with a broad spectrum the hysteresis was within 10 % of the floor
-    alone, and the area between both.
+    uncorrelated. For a viscoelastic shoe read it beside the floor alone: see ``LIMITS``. In a
+    time march of two checkerboards with a broad spectrum (not among the tests) the hysteresis was
+    within 10 % of that of the floor alone.
 
     Errors
     ------
