@@ -10,8 +10,8 @@ from underfoot.surface import HeightMap
 LIMITS = (
     "composite of two surfaces, exact for elastic bodies at each moment: in a viscoelastic shoe "
     "its own roughness rests in the rubber and meets the relaxed modulus, while the composite "
-    "takes it to move with the floor; area and gap are then a lower and an upper limit, the hysteresis an "
-    "upper limit, and the floor's surface alone gives the other limits"
+    "takes it to move with the floor; area and gap are then a lower and an upper limit, the "
+    "hysteresis an upper limit, and the floor's surface alone gives the other limits"
 )
 
 
