@@ -238,11 +238,21 @@ def test_spectra_against_surface_topography():
     peer = topography.Topography(surface.heights, surface.size, periodic=True)
     q, density = peer.power_spectrum_from_profile(resampling_method=None, reliable=False)
     ours = profile_spectrum(surface)
-    # Its density is 2 pi times Persson's and folds both signs: the mean square is sum C dq / 2 pi.
+    # Its density is 2 pi times Persson's.
     np.testing.assert_allclose(ours.wavenumber[:62], q[1:63], rtol=1e-12)
-    ratio = density[1:31] / ours.density[:30]
-    np.testing.assert_allclose(ratio, ratio[0], rtol=1e-9)
-    assert min(abs(ratio[0] / (2 * np.pi) - k) for k in (1, 2)) < 1e-9
+    np.testing.assert_allclose(density[1:31], 2 * np.pi * ours.density[:30], rtol=1e-9)
+
+
+def test_tip_limit_against_surface_topography():
+    topography = pytest.importorskip("SurfaceTopography")
+    z = self_affine(512, 0.1 * UM, 0.2 * UM, 0.7, 51.2 * UM, 0.2 * UM, 1).heights[:, 0]
+    peer = topography.UniformLineScan(z, 51.2 * UM)
+    for radius in (3 * UM, 10 * UM):
+        ours = shortest_reliable_wavelength(Profile(z, 0.1 * UM, tip_radius=radius))
+        # Ours takes whole grid steps.
+        assert ours.wavelength == pytest.approx(
+            peer.scanning_probe_reliability_cutoff(radius), rel=0.12
+        )
 
 
 def test_hann_window_keeps_the_level_of_a_broad_spectrum():

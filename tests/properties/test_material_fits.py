@@ -57,6 +57,9 @@ def test_dynamic_fit_is_five_times_better_and_weighs_the_noisier_part_down():
     assert np.sqrt(np.mean(error**2)) < 0.015
     assert np.std(fit.residuals["storage modulus"]) == pytest.approx(0.01, rel=0.35)
     assert np.std(fit.residuals["loss modulus"]) == pytest.approx(0.03, rel=0.35)
+    band, true = fit.band(inner), BROAD.loss_modulus(inner)
+    assert np.mean((band.loss_low <= true) & (true <= band.loss_high)) > 0.8
+    assert np.mean(band.loss_high - band.loss_low) < 0.06 * np.mean(true)
     assert fit.band([1e-5, 1.0, 1e7]).extrapolated.tolist() == [True, False, True]
 
 

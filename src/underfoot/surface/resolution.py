@@ -28,8 +28,8 @@ def shortest_reliable_wavelength(surface: Profile | HeightMap) -> Resolution:
     - the instrument's own resolution, where the surface knows it;
     - the tip: the scale below which the sharpest peak met at that scale is sharper than half the
       curvature of the stylus, where its radius is known (criterion of Sanner et al., Appl. Surf.
-      Sci. Adv. 7 (2022) 100190: largest negative second difference over distance l reaches
-      1 / (2 R)).
+      Sci. Adv. 7 (2022) 100190: shortest stencil from which on the largest negative second
+      difference stays below 1 / (2 R)).
     """
     limits = [
         Resolution(
@@ -54,8 +54,8 @@ def _tip_limit(heights: np.ndarray, spacing: float, radius: float) -> float:
     longest = heights.size // 3
     reaches = np.unique(np.geomspace(1, max(longest, 1), 60).astype(int))
     limit = 0.0
-    for k in reaches:
+    for k, following in zip(reaches, [*reaches[1:], reaches[-1]], strict=True):
         second = (heights[2 * k :] - 2.0 * heights[k:-k] + heights[: -2 * k]) / (k * spacing) ** 2
         if second.size and float(-second.min()) > 0.5 / radius:
-            limit = 2.0 * float(k) * spacing
+            limit = 2.0 * float(following) * spacing
     return limit
