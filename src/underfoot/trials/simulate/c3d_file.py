@@ -1,0 +1,168 @@
+"""A small C3D writer for made-up recordings: markers, analog channels, type-2 force plates."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from underfoot.core import InputError
+
+_INTEL = 84
+
+
+def c3d_bytes(
+    markers: Mapping[str, np.ndarray],
+    marker_rate: float,
+    analog: Mapping[str, tuple[np.ndarray, str]],
+    analog_rate: float,
+    plates: Sequence[tuple[np.ndarray, np.ndarray, Sequence[str]]],
+) -> bytes:
+    """Return a C3D file (Intel, floating point).
+
+    Parameters
+    ----------
+    markers
+        Shape (n, 3) each, m; NaN writes a missing point (zeros, residual -1).
+    analog
+        Values (n * analog_rate / marker_rate,) and the unit to be written.
+    plates
+        Corners (4, 3) in m, origin (3,) in m, and the six channel names, each.
+
+    Errors
+    ------
+    InputError
+        Rates that are no whole multiple, or lengths that do not fit.
+
+    Source: the C3D file format, c3d.org.
+    """
+    per_frame = round(analog_rate / marker_rate)
+    frames = len(next(iter(markers.values())))
+    if abs(per_frame * marker_rate - analog_rate) > 1e-9 or frames > 65535:
+        raise InputError("analog rate must be a multiple of the marker rate", where="c3d")
+    if any(len(values) != frames * per_frame for values, _ in analog.values()):
+        raise InputError("analog channels must cover the frames exactly", where="c3d")
+    names = list(analog)
+    groups: list[tuple[str, list[tuple[str, bytes]]]] = [
+        (
+            "POINT",
+            [
+                ("USED", _integers([len(markers)])),
+                ("FRAMES", _integers([frames])),
+                ("DATA_START", _integers([0])),
+                ("SCALE", _floats([-1.0])),
+                ("RATE", _floats([marker_rate])),
+                ("UNITS", _texts(["mm"], single=True)),
+                ("LABELS", _texts(list(markers))),
+                ("DESCRIPTIONS", _texts(["synthetic"] * len(markers))),
+            ],
+        ),
+        (
+            "ANALOG",
+            [
+                ("USED", _integers([len(names)])),
+                ("GEN_SCALE", _floats([1.0])),
+                ("RATE", _floats([analog_rate])),
+                ("SCALE", _floats([1.0] * len(names), vector=True)),
+                ("OFFSET", _integers([0] * len(names), vector=True)),
+                ("UNITS", _texts([analog[name][1] for name in names])),
+                ("LABELS", _texts(names)),
+                ("DESCRIPTIONS", _texts(["synthetic"] * len(names))),
+            ],
+        ),
+        (
+            "FORCE_PLATFORM",
+            [
+                ("USED", _integers([len(plates)])),
+                ("ZERO", _integers([0, 0], vector=True)),
+                ("TYPE", _integers([2] * len(plates), vector=True)),
+                ("CORNERS", _array(np.array([1e3 * corners for corners, _, _ in plates]))),
+                ("ORIGIN", _array(np.array([1e3 * origin for _, origin, _ in plates]))),
+                (
+                    "CHANNEL",
+                    _integer_table([[names.index(c) + 1 for c in chosen] for *_, chosen in plates]),
+                ),
+            ],
+        ),
+        ("MANUFACTURER", [("SOFTWARE", _texts(["underfoot trials simulate"], single=True))]),
+    ]
+    body = _parameters(groups)
+    blocks = -(-(len(body) + 4) // 512)
+    first_data = 2 + blocks
+    at = body.index(b"DATA_START") + len(b"DATA_START") + 2 + 1 + 1
+    body = body[:at] + struct.pack("<h", first_data) + body[at + 2 :]
+    parameters = (struct.pack("<BBBB", 1, 0x50, blocks, _INTEL) + body).ljust(512 * blocks, b"\0")
+    header = struct.pack(
+        "<BBHHHHHfHHf",
+        2,
+        0x50,
+        len(markers),
+        len(names) * per_frame,
+        1,
+        frames,
+        0,
+        -1.0,
+        first_data,
+        per_frame,
+        marker_rate,
+    ).ljust(512, b"\0")
+    return header + parameters + _data(markers, analog, frames, per_frame)
+
+
+def _data(
+    markers: Mapping[str, np.ndarray],
+    analog: Mapping[str, tuple[np.ndarray, str]],
+    frames: int,
+    per_frame: int,
+) -> bytes:
+    points = np.zeros((frames, len(markers), 4), dtype="<f4")
+    for i, positions in enumerate(markers.values()):
+        lost = np.asarray(~np.isfinite(positions).all(axis=1))
+        points[:, i, :3] = 1e3 * np.where(lost[:, None], 0.0, positions)
+        points[:, i, 3] = np.where(lost, -1.0, 0.0)
+    signals = np.array([values for values, _ in analog.values()], dtype="<f4")
+    signals = signals.reshape(len(analog), frames, per_frame).transpose(1, 2, 0)
+    rows = np.concatenate((points.reshape(frames, -1), signals.reshape(frames, -1)), axis=1)
+    data = np.ascontiguousarray(rows).tobytes()
+    return data + b"\0" * (-len(data) % 512)
+
+
+def _parameters(groups: list[tuple[str, list[tuple[str, bytes]]]]) -> bytes:
+    out = b""
+    for number, (group, parameters) in enumerate(groups, start=1):
+        name = group.encode("ascii")
+        out += struct.pack("<bb", len(name), -number) + name + struct.pack("<hB", 3, 0)
+        for label, content in parameters:
+            text = label.encode("ascii")
+            out += struct.pack("<bb", len(text), number) + text
+            out += struct.pack("<h", len(content) + 3) + content + b"\0"
+    return out + b"\0\0"
+
+
+def _integers(values: Sequence[int], *, vector: bool = False) -> bytes:
+    return _content(2, [len(values)] if vector else [], struct.pack(f"<{len(values)}H", *values))
+
+
+def _integer_table(rows: Sequence[Sequence[int]]) -> bytes:
+    flat = [value for row in rows for value in row]
+    return _content(2, [len(rows[0]), len(rows)], struct.pack(f"<{len(flat)}h", *flat))
+
+
+def _floats(values: Sequence[float], *, vector: bool = False) -> bytes:
+    return _content(4, [len(values)] if vector else [], struct.pack(f"<{len(values)}f", *values))
+
+
+def _array(values: np.ndarray) -> bytes:
+    """C order with the last axis fastest is the format's order with dimensions reversed."""
+    return _content(4, list(values.shape[::-1]), values.astype("<f4").tobytes())
+
+
+def _texts(values: Sequence[str], *, single: bool = False) -> bytes:
+    width = max(len(value) for value in values)
+    content = b"".join(value.ljust(width).encode("ascii") for value in values)
+    return _content(-1, [width] if single else [width, len(values)], content)
+
+
+def _content(kind: int, dimensions: list[int], data: bytes) -> bytes:
+    return struct.pack("<bB", kind, len(dimensions)) + bytes(dimensions) + data
