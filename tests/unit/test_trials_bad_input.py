@@ -22,6 +22,7 @@ from underfoot.trials import (
     described_file,
     file_checksum,
     finished_plate,
+    heel_candidates,
     read_trial,
     required_frictions,
     slip_of,
@@ -303,6 +304,28 @@ def test_describe_says_what_is_wrong(tmp_path):
     log = DATA / "cetr" / "HT-2n-6-4_2_001.csv"
     with pytest.raises(InputError, match="one trial each"):
         described_file(log, companion=WALK)
+
+
+@pytest.mark.parametrize(
+    ("label", "side"),
+    [
+        ("LHEE", "left"),
+        ("Matt:RHEE", "right"),
+        ("L.Heel", "left"),
+        ("r heel", "right"),
+        ("LCAL", "left"),
+        ("RightHeel", "right"),
+        ("Right_TalonInf", "right"),
+        ("lateral heel R", "right"),
+        ("heel", "unknown"),
+        ("LHeelForce", None),
+        ("LKNE", None),
+    ],
+)
+def test_heels_are_recognised_by_the_labels_met_in_laboratories(label, side):
+    trial = Trial("x", markers={label: Marker(np.zeros((5, 3)), 100.0)})
+    found = [key for key, names in heel_candidates(trial).items() if names]
+    assert found == ([side] if side else [])
 
 
 def test_the_vertical_axis_comes_from_what_there_is(walk):

@@ -33,6 +33,7 @@ from .readers import (
     read_trial,
     read_trials,
 )
+from .sensor_array import SensorArrayReading, sensor_array_reading
 from .slips import HeelMotion, Slip, SlipDefinition, contact_from_heel, heel_motion, slip, slip_of
 from .trial import Channel, Edit, Event, Marker, Plate, Trial, file_checksum, joined
 
@@ -59,6 +60,7 @@ __all__ = [
     "PulseDefinition",
     "RcofDefinition",
     "RequiredFriction",
+    "SensorArrayReading",
     "Sheet",
     "Slip",
     "SlipDefinition",
@@ -93,6 +95,7 @@ __all__ = [
     "read_trials",
     "required_friction",
     "required_frictions",
+    "sensor_array_reading",
     "sensor_rows",
     "slip",
     "slip_of",

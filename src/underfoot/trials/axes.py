@@ -19,6 +19,7 @@ TREADMILL = "shear force; the centre of pressure moves backward: a treadmill"
 _NAMES = "xyz"
 _HEEL = re.compile(r"heel|hee$|cal$|calc|talon|ferse|hiel", re.IGNORECASE)
 _NOT_HEEL = re.compile(r"force|moment|angle|power|grf|scale", re.IGNORECASE)
+_NOT_SIDE = re.compile(r"^(lat|lateral|low|lower|rear|med|medial)[ _.\-]|[ _.\-]?(lat|rear)$", re.I)
 _LEFT = re.compile(r"^(l|left|izq|esq|gauche)[ _.\-]?|[ _.\-](l|left|izq)$|izq", re.IGNORECASE)
 _RIGHT = re.compile(r"^(r|right|der|dro|droit)[ _.\-]?|[ _.\-](r|right|der)$|der", re.IGNORECASE)
 
@@ -176,7 +177,8 @@ def heel_candidates(trial: Trial, heels: Mapping[str, str] | None = None) -> dic
         plain = name.rsplit(":", 1)[-1].strip()
         if not _HEEL.search(plain) or _NOT_HEEL.search(plain) or marker.missing.all():
             continue
-        side = "left" if _LEFT.search(plain) else "right" if _RIGHT.search(plain) else "unknown"
+        sided = _NOT_SIDE.sub("", plain)
+        side = "left" if _LEFT.search(sided) else "right" if _RIGHT.search(sided) else "unknown"
         found[side].append(name)
     for names in found.values():
         names.sort(key=lambda name: int(trial.markers[name].missing.sum()))

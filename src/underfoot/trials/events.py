@@ -241,6 +241,9 @@ def _foot(
     if seen:
         side = max(seen, key=lambda key: seen[key][1])
         return side, seen[side][0]
+    landing = _landing_heel(trial, plate, stance, axes, heels)
+    if landing[1]:
+        return landing
     place = plate.centre_of_pressure
     if place is None:
         return "unknown", ""
@@ -258,4 +261,28 @@ def _foot(
                 away = float(np.linalg.norm(gap - (gap @ axes.up) * axes.up))
                 if away < distance:
                     best, distance = (side, name), away
+    return best
+
+
+def _landing_heel(
+    trial: Trial, plate: Plate, stance: Stance, axes: Axes, heels: Mapping[str, str] | None
+) -> tuple[str, str]:
+    """The lower of the heels that are low over the plate at contact: a slipping heel is fast."""
+    if plate.corners is None:
+        return "unknown", ""
+    own = plate_axes(plate.corners)[:, :2]
+    middle = plate.corners.mean(axis=0)
+    reach = np.abs((plate.corners - middle) @ own).max(axis=0) + 0.1
+    best, lowest = ("unknown", ""), 0.06
+    for side, names in heel_candidates(trial, heels).items():
+        for name in names[:1]:
+            marker = trial.marker(name)
+            near = np.abs(marker.time - stance.contact) < max(0.03, 1.0 / marker.rate)
+            near &= ~marker.missing
+            if not near.any():
+                continue
+            place = np.median(marker.positions[near], axis=0)
+            lift = float(place @ axes.up - np.nanmin(marker.positions @ axes.up))
+            if lift < lowest and (np.abs((place - middle) @ own) <= reach).all():
+                best, lowest = (side, name), lift
     return best

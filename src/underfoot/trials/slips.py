@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from underfoot.core import InputError
+from underfoot.core import InputError, unknown_name
 
 from .axes import Axes, axes_of, heel_of, walking_direction
 from .baseline import runs
@@ -21,6 +21,10 @@ from .trial import Marker, Trial
 PLANES = {
     "horizontal": "speed in the plane of the floor",
     "3d": "speed in three dimensions",
+}
+DERIVATIVES = {
+    "differences": "central differences of the filtered path",
+    "savitzky-golay": "Savitzky-Golay derivative, 3rd order, window of the same cutoff",
 }
 SLIP_SPEED = 0.2  # m/s, the grant report's (G.6.1)
 
@@ -36,7 +40,9 @@ class SlipDefinition:
     plane
         A key of ``PLANES``.
     filter
-        Low-pass of the marker's path.
+        Low-pass of the marker's path; its cutoff also sets the window of Savitzky-Golay.
+    derivative
+        A key of ``DERIVATIVES``.
     longest_gap
         Gaps of the marker up to this are bridged (s).
     prominence
@@ -48,13 +54,16 @@ class SlipDefinition:
     threshold: float = SLIP_SPEED
     plane: str = "horizontal"
     filter: LowPass = field(default_factory=lambda: MARKER_FILTER)
+    derivative: str = "differences"
     longest_gap: float = 0.1
     prominence: float = 0.01
     heel_lift: float = 0.03
 
     def __post_init__(self) -> None:
         if self.plane not in PLANES:
-            raise InputError(f'"{self.plane}"', where="slip.plane", allowed=", ".join(PLANES))
+            raise unknown_name("plane", self.plane, PLANES, where="slip.plane")
+        if self.derivative not in DERIVATIVES:
+            raise unknown_name("derivative", self.derivative, DERIVATIVES, where="slip.derivative")
         if (
             not self.threshold > 0
             or self.longest_gap < 0
@@ -69,7 +78,12 @@ class SlipDefinition:
         """Return the choices in words."""
         return {
             "speed": PLANES[self.plane],
-            "marker filter": str(self.filter),
+            "marker filter": (
+                str(self.filter)
+                if self.derivative == "differences"
+                else f"cutoff {self.filter.cutoff:g} Hz"
+            ),
+            "derivative": DERIVATIVES[self.derivative],
             "slip start": "first local minimum of the heel's speed after contact",
             "gaps": f"bridged up to {1e3 * self.longest_gap:g} ms",
             "prominence": f"minima stand out by {self.prominence:g} m/s",
@@ -128,14 +142,16 @@ def heel_motion(
     position = np.full(path.shape, np.nan)
     velocity = np.full(path.shape, np.nan)
     residuals: list[np.ndarray] = []
-    shortest = 30 if definition.filter.kind != "none" else 3
+    half = _half_window(marker.rate, definition.filter.cutoff)
+    shortest = max(30, 2 * half + 1)
+    if definition.filter.kind == "none" and definition.derivative == "differences":
+        shortest = 3
     seen = np.asarray(np.isfinite(path).all(axis=1))
     for start, stop in runs(seen):
         if stop - start < shortest:
             continue
-        smooth = low_passed(path[start:stop], marker.rate, definition.filter)
+        smooth, velocity[start:stop] = _smoothed(path[start:stop], marker.rate, definition)
         position[start:stop] = smooth
-        velocity[start:stop] = np.gradient(smooth, 1.0 / marker.rate, axis=0)
         # Differences of neighbours see the noise and not the motion.
         residuals.append(np.diff(path[start:stop] - smooth, axis=0)[~filled[start + 1 : stop]])
     noise = 0.0
@@ -250,7 +266,7 @@ def slip(
 
     return Slip(
         contact=contact,
-        start=value("slip start", float(motion.time[begin]), "s", frame / math.sqrt(12.0)),
+        start=value("slip start", _instant(motion, begin), "s", frame / math.sqrt(12.0)),
         end=float(motion.time[stop]),
         peak_speed=value("peak slipping speed", peak, "m/s", motion.speed_noise),
         distance=value(
@@ -335,15 +351,45 @@ def _window_end(
     return last, ended
 
 
+def _instant(motion: HeelMotion, i: int) -> float:
+    """Time of a minimum between frames: vertex of the parabola through it and its neighbours."""
+    before, here, after = motion.speed[i - 1 : i + 2]
+    bend = before - 2.0 * here + after
+    share = 0.5 * (before - after) / bend if bend > 0 else 0.0
+    step = motion.time[i + 1] - motion.time[i]
+    return float(motion.time[i] + np.clip(share, -0.5, 0.5) * step)
+
+
 def _minima(speed: np.ndarray, prominence: float) -> np.ndarray:
     from scipy.signal import find_peaks
 
     return find_peaks(-speed, prominence=max(prominence, 1e-9))[0]
 
 
+def _smoothed(
+    path: np.ndarray, rate: float, definition: SlipDefinition
+) -> tuple[np.ndarray, np.ndarray]:
+    if definition.derivative == "differences":
+        smooth = low_passed(path, rate, definition.filter)
+        return smooth, np.asarray(np.gradient(smooth, 1.0 / rate, axis=0))
+    from scipy.signal import savgol_filter
+
+    length = 2 * _half_window(rate, definition.filter.cutoff) + 1
+    smooth = np.asarray(savgol_filter(path, length, 3, axis=0))
+    slope = savgol_filter(path, length, 3, deriv=1, delta=1.0 / rate, axis=0)
+    return smooth, np.asarray(slope)
+
+
+def _half_window(rate: float, cutoff: float) -> int:
+    """Half window of a 3rd-order Savitzky-Golay filter with this -3 dB cutoff.
+
+    Source: Schafer 2011, IEEE Signal Processing Magazine 28(4):111, Eq. 12.
+    """
+    return max(2, round((4.0 * rate / (2.0 * cutoff) + 4.6) / 3.2))
+
+
 def _noise_gain(marker: Marker, definition: SlipDefinition) -> float:
     """Standard deviation of the speed for unit white noise of the marker, per axis (1/s)."""
     impulse = np.zeros(max(201, 4 * round(marker.rate / definition.filter.cutoff) + 1))
     impulse[len(impulse) // 2] = 1.0
-    answer = np.gradient(low_passed(impulse, marker.rate, definition.filter), 1.0 / marker.rate)
-    return float(np.linalg.norm(answer))
+    return float(np.linalg.norm(_smoothed(impulse, marker.rate, definition)[1]))

@@ -1,0 +1,97 @@
+"""A slip over an array of pressure sensors in the floor: each sensor's pulse and passage."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from underfoot.core import DataError
+
+from .measurement import Measurement
+from .pressures import Passage, Pulse, PulseDefinition, heel_track, passages, pressure_pulse
+from .slips import Slip
+from .trial import Trial
+
+
+@dataclass(frozen=True, slots=True)
+class SensorArrayReading:
+    """What the array saw of one slip.
+
+    ``pulses`` and ``passages`` are by sensor name; ``track`` (n, 2) is the heel along and across
+    the walk from the middle of the array (m); ``crossed`` says whether the heel was over the
+    array. ``peak`` is the largest pressure of all sensors (Pa), ``peak_sensor`` its name.
+    """
+
+    pulses: Mapping[str, Pulse]
+    passages: Mapping[str, Passage]
+    track: np.ndarray
+    crossed: bool
+    peak: Measurement
+    peak_sensor: str
+
+
+def sensor_array_reading(
+    trial: Trial,
+    found: Slip,
+    sensors: Mapping[str, tuple[float, float, float]],
+    *,
+    up: np.ndarray,
+    walking: np.ndarray,
+    definition: PulseDefinition | None = None,
+) -> SensorArrayReading:
+    """Return pressures, passages and the heel's track of one slip over a sensor array.
+
+    Parameters
+    ----------
+    found
+        The slip; without a heel path there are pressures only.
+    sensors
+        Place of each sensor in lab axes (m); the names are those of its pressure channel.
+    up, walking
+        Unit vectors (3,).
+
+    Errors
+    ------
+    DataError
+        A sensor without a channel, or no sensors.
+
+    Source: grant report G.5.1.
+    """
+    if not sensors:
+        raise DataError("no sensor is named", where=trial.name, remedy="Add [sensors] to a profile")
+    pulses = {
+        name: pressure_pulse(name, trial.channel(name), found.contact, definition=definition)
+        for name in sensors
+    }
+    estimated = {n: p.peak for n, p in pulses.items() if p.peak.value is not None}
+    if estimated:
+        best = max(estimated, key=lambda name: estimated[name].value or 0.0)
+        peak = estimated[best]
+    else:
+        best = next(iter(pulses))
+        peak = pulses[best].peak
+    passed: dict[str, Passage] = {}
+    track, crossed = np.empty((0, 2)), False
+    if found.motion is not None and found.end > found.contact:
+        said = found.peak_speed.conventions
+        for one in passages(
+            found.motion,
+            sensors,
+            up=up,
+            walking=walking,
+            contact=found.contact,
+            until=found.end,
+            conventions={k: v for k, v in said.items() if k not in ("threshold", "uncertainty")},
+        ):
+            passed[one.sensor] = one
+        track, crossed = heel_track(
+            found.motion,
+            sensors,
+            up=up,
+            walking=walking,
+            contact=found.contact,
+            until=found.end,
+        )
+    return SensorArrayReading(pulses, passed, track, crossed, peak, best)
