@@ -133,6 +133,9 @@ def test_bounds_scaling_and_transpose(seed, level, rows):
     assert turned.along == pytest.approx(factors.across, rel=1e-6, abs=1e-11)
     assert turned.across == pytest.approx(factors.along, rel=1e-6, abs=1e-11)
     assert factors.residual < 1e-9
+    moved = flow_factors(np.roll(gap, (2, 5), (0, 1)))
+    assert moved.along == pytest.approx(factors.along, rel=1e-6, abs=1e-11)
+    assert moved.coupling == pytest.approx(factors.coupling, rel=1e-6, abs=1e-9)
 
 
 def test_bad_gaps_are_refused():

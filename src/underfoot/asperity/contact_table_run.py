@@ -19,6 +19,7 @@ from underfoot.core import (
     content_hash,
     silent,
 )
+from underfoot.core.provenance import version
 
 from ._kernels.monotone import interpolated, pchip_slopes
 from .contact_table import QUANTITIES, ContactTable
@@ -43,10 +44,11 @@ class Part:
 
     @property
     def key(self) -> str:
-        """Return the content key: heights, pressures and the modulus at every frequency met."""
+        """Return the content key: program version, heights, loads, modulus at every frequency."""
         q = 2.0 * np.pi * np.fft.rfftfreq(self.heights.shape[0], self.spacing)
         young = modulus_function(self.modulus, q * self.speed)(q * self.speed)
         return content_hash(
+            version(),
             self.heights,
             self.spacing,
             young,
