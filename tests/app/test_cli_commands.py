@@ -1,5 +1,6 @@
 """The commands within one process: what they print, what they refuse, what they leave alone."""
 
+import functools
 import json
 import tomllib
 from pathlib import Path
@@ -227,3 +228,14 @@ def test_a_fault_of_the_program_is_told_without_a_traceback(underfoot, monkeypat
     assert found.exit_code == 70
     assert "fault of the program: RuntimeError: a bug" in found.stderr
     assert "UNDERFOOT_DEBUG=1" in found.stderr
+
+
+def test_a_case_that_does_not_converge_ends_with_4_and_no_plain_number(underfoot, monkeypatch):
+    from underfoot.outsole import solver
+
+    stunted = functools.partial(solver.SolverSettings, most_time_steps=3)
+    monkeypatch.setattr(solver, "SolverSettings", stunted)
+    found = underfoot("run", EXAMPLE, "--quick", "--set", "numerics.quick_grid_spacing=2 mm")
+    assert found.exit_code == 4
+    assert "not converged" in (found.stdout + found.stderr)
+    assert "Coefficient of friction" not in found.stdout

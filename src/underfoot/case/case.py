@@ -9,16 +9,18 @@ from typing import Any
 
 from pydantic import Field, PrivateAttr, ValidationError
 
-from underfoot.core import InputError, SourcedValue, content_hash, unknown_name
+from underfoot.core import InputError, SourcedValue
 from underfoot.core.catalogue import Catalogue, Leaf, catalogue_folders
 
 from . import toml
 from .checks import mismatches
 from .compose import DEFAULT, DRY, GIVEN, Origin, composed, nested
+from .content import case_hash, spread
 from .errors import CaseError, translated
+from .keys import known_paths, path_kind, unit_of, unknown_path
 from .places import Places
-from .quantity import DOOR, Quantity, default_of
-from .schema import FILE_VERSION, field_at, fields, marks_of, section_of
+from .quantity import DOOR, default_of
+from .schema import FILE_VERSION, fields
 from .sections import (
     Contaminant,
     Floor,
@@ -31,9 +33,6 @@ from .sections import (
     Sensor,
     Shoe,
 )
-from .unused import unused
-
-_NAMES = ("file_version", "name", "description")
 
 
 class Case(Section):
@@ -92,7 +91,7 @@ class Case(Section):
         if catalogue is None:
             catalogue = Catalogue.load(catalogue_folders(path.parent))
         if settings:
-            text = toml.changed(text, settings, _check_path)
+            text = toml.changed(text, settings, _path_kind)
         return cls._from_text(text, catalogue, Places(str(path), text))
 
     @classmethod
@@ -145,7 +144,7 @@ class Case(Section):
         case._entries = parts.entries
         case._text = text
         case._catalogue = catalogue
-        case._hash = case._content()
+        case._hash = case_hash(case)
         return case
 
     def save(self, path: Path | str, *, overwrite: bool = False) -> None:
@@ -163,7 +162,7 @@ class Case(Section):
         catalogue or the default counts again; a section's path takes the name of an entry.
         """
         settings = path if isinstance(path, Mapping) else {path: value}
-        text = toml.changed(self._text, settings, _check_path)
+        text = toml.changed(self._text, settings, _path_kind)
         return type(self)._from_text(text, self._catalogue, Places())
 
     @property
@@ -204,7 +203,7 @@ class Case(Section):
             if found is None:
                 return None
             if not isinstance(found, Section) or part not in type(found).model_fields:
-                raise _unknown_path(path)
+                raise unknown_path(Case, path)
             found = getattr(found, part)
         return found
 
@@ -222,7 +221,7 @@ class Case(Section):
             float(value),
             unit,
             source=source + ("" if leaf.verified else " (from memory, not verified)"),
-            uncertainty=self._spread(path, leaf, unit),
+            uncertainty=spread(self, path),
             assumed=leaf.assumed,
             note=leaf.note,
         )
@@ -243,13 +242,6 @@ class Case(Section):
             note="the stylus' cut-off hides long waves: leakage may ask for several times as much",
         )
 
-    def _spread(self, path: str, leaf: Leaf, unit: str) -> float | None:
-        from underfoot.core import to_si
-
-        if leaf.uncertainty is None:
-            return None
-        return to_si(leaf.uncertainty, unit, where=f"{path}.uncertainty")
-
     def _default_origins(self, known: Mapping[str, Origin]) -> dict[str, Origin]:
         found = {}
         for path, field in fields(type(self)):
@@ -260,55 +252,19 @@ class Case(Section):
             found[path] = Origin(DEFAULT, leaf)
         return found
 
-    def _content(self) -> str:
-        content = _rounded(self.model_dump(exclude=set(_NAMES)))
-        left_aside = unused(self)
-        for path in left_aside:
-            *parents, key = path.split(".")
-            table = content
-            for parent in parents:
-                table = table.get(parent) or {}
-            table.pop(key, None)
-        spreads = {
-            path: _rounded(self._spread(path, origin.leaf, unit_at(path)))
-            for path, origin in self._origins.items()
-            if origin.leaf.uncertainty is not None and path not in left_aside
-        }
-        return content_hash(content, spreads)[:32]
-
 
 def unit_at(path: str) -> str:
     """Return the SI unit of the value at a dotted path of a case, ``"1"`` for words."""
-    field = field_at(Case, path)
-    if field is not None:
-        return next((mark.unit for mark in marks_of(field) if isinstance(mark, Quantity)), "1")
-    raise _unknown_path(path)
+    return unit_of(Case, path)
 
 
 def paths() -> list[str]:
     """Return every dotted path that a case file may set, sections included."""
-    leaf_paths = [path for path, _ in fields(Case)]
-    sections = {path.rsplit(".", depth)[0] for path in leaf_paths for depth in (1, 2, 3)}
-    return sorted({*leaf_paths, *(path for path in sections if path)})
+    return known_paths(Case)
 
 
-def _check_path(path: str) -> str:
-    """Return "section" or "value"; refuse unknown paths."""
-    plain = path.removesuffix(".from")
-    field: Any = None
-    model: Any = Case
-    for part in plain.split("."):
-        if model is None or part not in model.model_fields:
-            raise _unknown_path(path)
-        field = model.model_fields[part]
-        model = section_of(field)
-    if path.endswith(".from"):
-        return "value"
-    return "value" if model is None else "section"
-
-
-def _unknown_path(path: str) -> InputError:
-    return unknown_name("path", path, paths())
+def _path_kind(path: str) -> str:
+    return path_kind(Case, path)
 
 
 def _is_dry(mapping: Mapping[str, Any]) -> bool:
@@ -333,14 +289,3 @@ def _check_version(mapping: Mapping[str, Any], places: Places) -> None:
                 )
             ]
         )
-
-
-def _rounded(value: Any) -> Any:
-    """Return the value with 12 significant digits: "219 cP" and "0.219 Pa*s" are the same."""
-    if isinstance(value, float):
-        return float(f"{value:.12g}")
-    if isinstance(value, dict):
-        return {key: _rounded(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_rounded(item) for item in value]
-    return value

@@ -10,6 +10,7 @@ import typer
 from .catalogue import catalogue
 from .check import check
 from .compare import compare
+from .contact import contact
 from .doctor import doctor
 from .explain import explain
 from .guard import guarded
@@ -26,19 +27,14 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     add_completion=False,
 )
-COMMANDS: tuple[Callable[..., None], ...] = (
-    new,
-    check,
-    run,
-    compare,
-    explain,
-    catalogue,
-    schema,
-    validate,
-    doctor,
-)
-for command in COMMANDS:
-    app.command()(guarded(command))
+
+
+def _add(*commands: Callable[..., None]) -> None:
+    for command in commands:
+        app.command()(guarded(command))
+
+
+_add(new, check, run, compare, contact, explain, catalogue, schema, validate, doctor)
 app.add_typer(trials_app)
 
 

@@ -17,45 +17,13 @@ from pathlib import Path
 from typing import Any
 
 from .errors import InputError, unknown_name
-from .units import si_unit, to_si
+from .leaves import INHERITED, Leaf, leaves
 from .values import SourcedValue
 
 KINDS = ("fluid", "floor", "material", "published", "setup", "shoe")
 BUILT_IN = "built in"
 _NO_SOURCE = "no source given"
-_INHERITED = ("source", "assumed", "verified", "note")
-_LEAF_KEYS = frozenset({"value", "uncertainty", *_INHERITED})
-_ENTRY_KEYS = frozenset({"title", "from", "replaces", *_INHERITED})
-
-
-@dataclass(frozen=True, slots=True)
-class Leaf:
-    """One value as written, with what a reader must know to trust it.
-
-    ``given`` is text with a unit, a plain number, a word, or a list of these. ``verified`` is False
-    for values from memory, not checked against their source.
-    """
-
-    given: Any
-    source: str = ""
-    uncertainty: str | float | None = None
-    assumed: bool = False
-    verified: bool = True
-    note: str = ""
-
-    def sourced(self, unit: str | None = None, *, where: str) -> SourcedValue:
-        """Return the value in SI; ``unit`` None takes the SI unit that fits the text."""
-        if unit is None:
-            unit = si_unit(self.given, where=where) if isinstance(self.given, str) else "1"
-        spread = self.uncertainty
-        return SourcedValue(
-            to_si(self.given, unit, where=where),
-            unit,
-            source=self.source + ("" if self.verified else " (from memory, not verified)"),
-            uncertainty=None if spread is None else to_si(spread, unit, where=where),
-            assumed=self.assumed,
-            note=self.note,
-        )
+_ENTRY_KEYS = frozenset({"title", "from", "replaces", *INHERITED})
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,45 +141,6 @@ def catalogue_folders(
     return list(unique.values())
 
 
-def leaves(
-    table: Mapping[str, Any], *, source: str = "", skip: Iterable[str] = ()
-) -> dict[str, Leaf]:
-    """Return the leaves of nested tables by dotted path; sub-tables inherit source and marks."""
-    found: dict[str, Leaf] = {}
-    _collect(found, table, (), Leaf(None, source=source), frozenset(skip))
-    return found
-
-
-def _collect(
-    found: dict[str, Leaf],
-    table: Mapping[str, Any],
-    path: tuple[str, ...],
-    inherited: Leaf,
-    skip: frozenset[str],
-) -> None:
-    marks = {k: table[k] for k in _INHERITED if k in table and (path or k != "note")}
-    inherited = replace(inherited, **marks)
-    for key, item in table.items():
-        if key in _INHERITED or (not path and key in skip):
-            continue
-        here = (*path, key)
-        where = ".".join(here)
-        if isinstance(item, Mapping) and "value" in item:
-            unknown = set(item) - _LEAF_KEYS
-            if unknown:
-                raise unknown_name("mark", sorted(unknown)[0], _LEAF_KEYS, where=where)
-            marks = {k: item[k] for k in _INHERITED if k in item}
-            if "source" in marks and "assumed" not in marks:
-                marks["assumed"] = False
-            found[where] = replace(
-                inherited, given=item["value"], uncertainty=item.get("uncertainty"), **marks
-            )
-        elif isinstance(item, Mapping):
-            _collect(found, item, here, inherited, skip)
-        else:
-            found[where] = replace(inherited, given=item)
-
-
 @cache
 def _built_in_tables() -> dict[tuple[str, str], tuple[str, dict[str, Any]]]:
     raw: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {}
@@ -304,7 +233,7 @@ def _resolve(
         base = _resolve(kind, parent, raw, done, (*chain, name))
         values.update(base.values)
         parents = (parent, *base.parents)
-    own = leaves(table, skip=_ENTRY_KEYS - set(_INHERITED))
+    own = leaves(table, skip=_ENTRY_KEYS - set(INHERITED))
     values.update(_with_source(path, leaf, origin) for path, leaf in own.items())
     title, note = str(table.get("title", name)), str(table.get("note", ""))
     done[kind, name] = Entry(kind, name, title, origin, values, note, parents)

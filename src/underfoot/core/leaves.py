@@ -1,0 +1,84 @@
+"""One written value with what a reader must know to trust it: source, spread, marks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from .errors import unknown_name
+from .units import si_unit, to_si
+from .values import SourcedValue
+
+INHERITED = ("source", "assumed", "verified", "note")
+"""Marks that a table hands down to the values in it."""
+_LEAF_KEYS = frozenset({"value", "uncertainty", *INHERITED})
+
+
+@dataclass(frozen=True, slots=True)
+class Leaf:
+    """One value as written, with what a reader must know to trust it.
+
+    ``given`` is text with a unit, a plain number, a word, or a list of these. ``verified`` is False
+    for values from memory, not checked against their source.
+    """
+
+    given: Any
+    source: str = ""
+    uncertainty: str | float | None = None
+    assumed: bool = False
+    verified: bool = True
+    note: str = ""
+
+    def sourced(self, unit: str | None = None, *, where: str) -> SourcedValue:
+        """Return the value in SI; ``unit`` None takes the SI unit that fits the text."""
+        if unit is None:
+            unit = si_unit(self.given, where=where) if isinstance(self.given, str) else "1"
+        spread = self.uncertainty
+        return SourcedValue(
+            to_si(self.given, unit, where=where),
+            unit,
+            source=self.source + ("" if self.verified else " (from memory, not verified)"),
+            uncertainty=None if spread is None else to_si(spread, unit, where=where),
+            assumed=self.assumed,
+            note=self.note,
+        )
+
+
+def leaves(
+    table: Mapping[str, Any], *, source: str = "", skip: Iterable[str] = ()
+) -> dict[str, Leaf]:
+    """Return the leaves of nested tables by dotted path; sub-tables inherit source and marks."""
+    found: dict[str, Leaf] = {}
+    _collect(found, table, (), Leaf(None, source=source), frozenset(skip))
+    return found
+
+
+def _collect(
+    found: dict[str, Leaf],
+    table: Mapping[str, Any],
+    path: tuple[str, ...],
+    inherited: Leaf,
+    skip: frozenset[str],
+) -> None:
+    marks = {k: table[k] for k in INHERITED if k in table and (path or k != "note")}
+    inherited = replace(inherited, **marks)
+    for key, item in table.items():
+        if key in INHERITED or (not path and key in skip):
+            continue
+        here = (*path, key)
+        where = ".".join(here)
+        if isinstance(item, Mapping) and "value" in item:
+            unknown = set(item) - _LEAF_KEYS
+            if unknown:
+                raise unknown_name("mark", sorted(unknown)[0], _LEAF_KEYS, where=where)
+            marks = {k: item[k] for k in INHERITED if k in item}
+            if "source" in marks and "assumed" not in marks:
+                marks["assumed"] = False
+            found[where] = replace(
+                inherited, given=item["value"], uncertainty=item.get("uncertainty"), **marks
+            )
+        elif isinstance(item, Mapping):
+            _collect(found, item, here, inherited, skip)
+        else:
+            found[where] = replace(inherited, given=item)
