@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from .complementarity import ContactState, solve_on_grid
+from .complementarity import ContactState, solve_on_grid, solve_with_mattress
 from .fourier import Transform
 from .krylov import Workspace
 from .operators import Body, Operators
@@ -64,17 +64,20 @@ def solve_nested(
             pressure = xp.where(guess > 0.0, guess, xp.zeros_like(guess))
         else:
             pressure = repeated(pressure, (before[0] // factor[0], before[1] // factor[1]), xp)
-        state = solve_on_grid(
-            operators,
-            heights,
-            pressure,
-            mean_pressure,
-            workspace,
-            tolerance=tolerance if last else max(_COARSE_TOLERANCE, tolerance),
-            max_steps=max_steps if last else 12,
-            exact=last,
-            report=report if last else lambda error: None,
-        )
+        for solver in (solve_on_grid, solve_with_mattress):
+            state = solver(
+                operators,
+                heights,
+                pressure,
+                mean_pressure,
+                workspace,
+                tolerance=tolerance if last else max(_COARSE_TOLERANCE, tolerance),
+                max_steps=max_steps,
+                exact=last,
+                report=report if last else lambda error: None,
+            )
+            if state.converged:
+                break
         pressure = state.pressure * (state.pressure > 0.0)
         before = factor
         cost += operators.count * heights.shape[0] * heights.shape[1]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -65,6 +66,28 @@ class Operators:
         self._body = body
         self.fast = self._transform(self.xp.float32)
         self._exact = exact
+
+    @contextmanager
+    def softened(self, softness: float) -> Iterator[None]:
+        """Add a soft mattress, u = softness p at every node, to the body inside the block.
+
+        It acts on the products in single precision only.
+        """
+        kept = self.compliance, self.stiffness
+        softened = self.compliance + self.xp.asarray(softness, dtype=self.compliance.dtype)
+        self.compliance, self.stiffness = softened, 1.0 / softened
+        self.compliance[0, 0] = self.stiffness[0, 0] = 0.0
+        try:
+            yield
+        finally:
+            self.compliance, self.stiffness = kept
+
+    def softness_range(self) -> tuple[float, float]:
+        """Return the least and the largest compliance of a wave."""
+        size = self.xp.abs(self.compliance)
+        largest = float(self.xp.max(size))
+        size[0, 0] = largest
+        return float(self.xp.min(size)), largest
 
     def displacement(self, pressure: Array) -> Array:
         """Return A p in single precision."""
