@@ -86,7 +86,7 @@ def test_set_takes_numbers_words_and_quantities(underfoot):
     [
         (("--set", "contaminant.viscosity"), "no setting"),
         (("--set", "contaminant.viscocity=1 cP"), 'Did you mean "contaminant.viscosity"'),
-        (("--set", "contaminant.viscosity=41"), "41 has no unit"),
+        (("--set", "contaminant.viscosity=41"), "viscosity (set for this run): 41 has no unit"),
         (("--set", "motion.speed=0 m/s"), "outside the physical range"),
         (("--set", "shoe=slipper"), 'unknown shoe "slipper"'),
         (("--set", "contaminant=water_g3"), 'Did you mean "water_g2"'),

@@ -10,7 +10,8 @@ from typing import Any
 from pydantic import Field, PrivateAttr, ValidationError
 
 from underfoot.core import InputError, SourcedValue
-from underfoot.core.catalogue import Catalogue, Leaf, catalogue_folders
+from underfoot.core.catalogue import Catalogue, catalogue_folders
+from underfoot.core.leaves import Leaf
 
 from . import toml
 from .checks import mismatches
@@ -90,9 +91,11 @@ class Case(Section):
         text = toml.read(path)
         if catalogue is None:
             catalogue = Catalogue.load(catalogue_folders(path.parent))
+        places = Places(str(path), text, changed=settings or ())
         if settings:
+            toml.parsed(text, str(path))
             text = toml.changed(text, settings, _path_kind)
-        return cls._from_text(text, catalogue, Places(str(path), text))
+        return cls._from_text(text, catalogue, places)
 
     @classmethod
     def from_text(cls, text: str, *, catalogue: Catalogue | None = None) -> Case:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from underfoot.core import InputError, unknown_name
-from underfoot.core.catalogue import Catalogue, Entry, Leaf, leaves
+from underfoot.core.catalogue import Catalogue, Entry
+from underfoot.core.leaves import Leaf, leaves
 
 from .errors import CaseError
 from .places import Places

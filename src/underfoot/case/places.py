@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 
 class Places:
     """Where the keys of a case stand: ``shoe.tread.depth (file.toml, line 12)``."""
 
-    def __init__(self, file: str | None = None, text: str | None = None) -> None:
+    def __init__(
+        self, file: str | None = None, text: str | None = None, *, changed: Iterable[str] = ()
+    ) -> None:
         self.file = file
         self.lines = {} if text is None else key_lines(text)
+        self.changed = tuple(changed)
 
     def __call__(self, path: str) -> str:
         """Return the dotted path with file and line, when they can be found."""
         if self.file is None:
             return path
+        if any(path == other or path.startswith(other + ".") for other in self.changed):
+            return f"{path} (set for this run)"
         parts = path.split(".")
         while parts:
             line = self.lines.get(tuple(parts))
