@@ -20,7 +20,7 @@ from .errors import InputError, unknown_name
 from .leaves import INHERITED, Leaf, leaves
 from .values import SourcedValue
 
-KINDS = ("fluid", "floor", "material", "published", "setup", "shoe")
+KINDS = ("fluid", "floor", "material", "protocol", "published", "setup", "shoe")
 BUILT_IN = "built in"
 _NO_SOURCE = "no source given"
 _ENTRY_KEYS = frozenset({"title", "from", "replaces", *INHERITED})

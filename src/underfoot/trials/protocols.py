@@ -1,0 +1,185 @@
+"""Protocols as data: how numbers are taken, and which rules every trial has to keep."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from underfoot.core import InputError, content_hash, display, to_si, unknown_name
+from underfoot.core.catalogue import Catalogue, Entry, Leaf
+
+KINDS = {
+    "pin_on_disk": "pin on disk, COF against speed",
+    "boundary": "pin on disk, boundary lubrication",
+    "slip_tester": "slip tester",
+    "human_slip": "human slips",
+    "gait": "walking",
+    "relaxation": "compression relaxation",
+}
+# What rules can be about, with the SI unit.
+QUANTITIES = {
+    "normal_force": "N",
+    "sliding_speed": "m/s",
+    "static_contact_time": "s",
+    "force_rate": "Hz",
+    "marker_rate": "Hz",
+    "duration": "s",
+    "baseline_samples": "1",
+    "hold_time": "s",
+    "compression": "1",
+    "repeats": "1",
+}
+SEVERITIES = ("refuse", "caution")
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """A measured quantity has to lie between ``low`` and ``high`` (SI; None: no limit)."""
+
+    quantity: str
+    low: float | None
+    high: float | None
+    severity: str
+    source: str
+    verified: bool
+    assumed: bool
+    note: str = ""
+
+    def words(self) -> str:
+        """Return the rule in words, with its standing."""
+        unit = QUANTITIES[self.quantity]
+        name = self.quantity.replace("_", " ")
+        if self.low is None:
+            text = f"{name} at most {display(self.high or 0.0, unit)}"
+        elif self.high is None:
+            text = f"{name} at least {display(self.low, unit)}"
+        else:
+            text = f"{name} from {display(self.low, unit)} to {display(self.high, unit)}"
+        marks = [] if self.verified else ["from memory, not verified"]
+        marks += ["tolerance assumed"] if self.assumed else []
+        return text + (f" ({'; '.join(marks)})" if marks else "")
+
+    def broken_by(self, value: float) -> str:
+        """Return why ``value`` breaks the rule, or nothing."""
+        slack = 1e-6 * abs(value)
+        below = self.low is not None and value < self.low - slack
+        above = self.high is not None and value > self.high + slack
+        if not (below or above):
+            return ""
+        unit = QUANTITIES[self.quantity]
+        return f"{self.quantity.replace('_', ' ')} {display(value, unit)}; rule: {self.words()}"
+
+
+@dataclass(frozen=True, slots=True)
+class Protocol:
+    """One protocol; ``method`` holds its settings as written."""
+
+    name: str
+    title: str
+    kind: str
+    source: str
+    note: str
+    method: Mapping[str, Leaf]
+    rules: tuple[Rule, ...]
+
+    def number(self, key: str, unit: str, default: float | None = None) -> float:
+        """Return a setting in SI, or ``default`` when the protocol does not say."""
+        if key not in self.method:
+            if default is None:
+                raise unknown_name("setting", key, self.method, where=f"protocol {self.name}")
+            return default
+        return to_si(self.method[key].given, unit, where=f"protocol.{self.name}.method.{key}")
+
+    def text(self, key: str, default: str = "") -> str:
+        """Return a setting that is a word."""
+        return str(self.method[key].given) if key in self.method else default
+
+    def words(self, key: str) -> tuple[str, ...]:
+        """Return a setting that is a word or a list of words."""
+        if key not in self.method:
+            return ()
+        given = self.method[key].given
+        return tuple(str(item) for item in (given if isinstance(given, list | tuple) else [given]))
+
+    @property
+    def key(self) -> str:
+        """Return a hash of all that decides the numbers."""
+        return content_hash(
+            self.kind,
+            [[name, str(leaf.given)] for name, leaf in sorted(self.method.items())],
+            [[r.quantity, r.low, r.high, r.severity] for r in self.rules],
+        )
+
+    def assumptions(self) -> list[str]:
+        """Return the settings that no source stands behind, in words."""
+        found = []
+        for name, leaf in self.method.items():
+            if leaf.assumed or not leaf.verified:
+                why = leaf.note or ("assumed" if leaf.assumed else "from memory, not verified")
+                found.append(f"{name.replace('_', ' ')} = {leaf.given}: {why}")
+        return found
+
+
+def protocol(name: str, folders: Iterable[Path | str] = ()) -> Protocol:
+    """Return a protocol of the catalogue (built in, or from a user's folders).
+
+    Errors
+    ------
+    InputError
+        Unknown name (with the nearest one), kind, quantity or severity; a limit without unit.
+    """
+    catalogue = Catalogue.load(folders)
+    return _from_entry(catalogue.entry("protocol", name, where="--protocol"))
+
+
+def protocol_names(folders: Iterable[Path | str] = ()) -> dict[str, str]:
+    """Return all protocols as name and title."""
+    catalogue = Catalogue.load(folders)
+    return {name: catalogue.entry("protocol", name).title for name in catalogue.names("protocol")}
+
+
+def _from_entry(entry: Entry) -> Protocol:
+    kind_leaf = entry.leaf("kind")
+    kind = str(kind_leaf.given)
+    if kind not in KINDS:
+        raise unknown_name("kind of protocol", kind, KINDS, where=f"protocol.{entry.name}.kind")
+    grouped: dict[str, dict[str, Leaf]] = {}
+    for path, leaf in entry.under("rules").items():
+        quantity, _, key = path.partition(".")
+        grouped.setdefault(quantity, {})[key] = leaf
+    rules = tuple(_rule(entry.name, quantity, parts) for quantity, parts in grouped.items())
+    return Protocol(
+        entry.name, entry.title, kind, kind_leaf.source, entry.note, entry.under("method"), rules
+    )
+
+
+def _rule(name: str, quantity: str, parts: Mapping[str, Leaf]) -> Rule:
+    where = f"protocol.{name}.rules.{quantity}"
+    if quantity not in QUANTITIES:
+        raise unknown_name("quantity", quantity, QUANTITIES, where=where)
+    for key in parts:
+        if key not in ("low", "high", "severity"):
+            raise unknown_name("key", key, ("low", "high", "severity"), where=where)
+    unit = QUANTITIES[quantity]
+    limits: dict[str, Any] = {
+        key: to_si(parts[key].given, unit, where=f"{where}.{key}") if key in parts else None
+        for key in ("low", "high")
+    }
+    if limits["low"] is None and limits["high"] is None:
+        raise InputError("the rule has no limit", where=where, allowed="low, high or both")
+    severity = str(parts["severity"].given) if "severity" in parts else "caution"
+    if severity not in SEVERITIES:
+        raise unknown_name("severity", severity, SEVERITIES, where=where)
+    some = [parts[key] for key in ("low", "high") if key in parts]
+    return Rule(
+        quantity,
+        limits["low"],
+        limits["high"],
+        severity,
+        some[0].source,
+        all(leaf.verified for leaf in some),
+        any(leaf.assumed for leaf in some),
+        some[0].note,
+    )
