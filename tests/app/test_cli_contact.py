@@ -96,6 +96,7 @@ def test_measured_profile_becomes_a_surface_with_its_spectrum(tmp_path):
     content = json.loads(found.stdout)
     assert content["grid"] == [64, 64]
     assert any("isotropy assumed" in note for note in content["notes"])
+    assert any("the levelled profile has" in note for note in content["notes"])
     assert 0.3e-6 < content["rms_height_m"] < 10e-6
 
 

@@ -71,8 +71,8 @@ def contact(
 ) -> None:
     """Press and slide rubber over a rough surface: real contact, hysteresis, gap, leakage.
 
-    A profile is turned into a random surface with its spectrum; a map whose edges do not meet is
-    mirrored. Nothing wet, no adhesion.
+    A profile is turned into a random surface with its spectrum; a map whose edges do not meet
+    is mirrored. Nothing wet, no adhesion.
     """
     from underfoot.core import to_si
     from underfoot.core.files import check_writable_folder, whole_folder

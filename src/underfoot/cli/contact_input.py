@@ -157,12 +157,14 @@ def _measured(choice: SurfaceChoice) -> HeightMap:
 def _from_profile(profile: Any, choice: SurfaceChoice) -> HeightMap:
     """Return an isotropic random surface with the spectrum of a measured profile.
 
-    One longest reliable wave makes a side; without --shortest, eight grid points make the
-    shortest wave: what is shorter is left out, and the processing line says which share that is.
+    Two longest reliable waves make a side; without --shortest, eight grid points make the
+    shortest wave. What is left out is said.
     """
+    from dataclasses import replace
+
     import numpy as np
 
-    from underfoot.core import to_si
+    from underfoot.core import display, to_si
     from underfoot.surface import (
         isotropic_from_profile,
         levelled,
@@ -170,16 +172,23 @@ def _from_profile(profile: Any, choice: SurfaceChoice) -> HeightMap:
         surface_from_spectrum,
     )
 
-    spectrum = isotropic_from_profile(profile_spectrum(levelled(profile)))
+    flat = levelled(profile)
+    spectrum = isotropic_from_profile(profile_spectrum(flat))
     low, high = spectrum.reliable
     if choice.longest is not None:
         low = max(low, 2.0 * np.pi / to_si(choice.longest, "m", where="--longest"))
-    spacing = 2.0 * np.pi / low / choice.points
+    spacing = 4.0 * np.pi / low / choice.points
     wanted = 8.0 * spacing
     if choice.shortest is not None:
         wanted = to_si(choice.shortest, "m", where="--shortest")
     part = spectrum.within(low, min(high, 2.0 * np.pi / wanted))
-    return surface_from_spectrum(part, choice.points, spacing, choice.seed)
+    surface = surface_from_spectrum(part, choice.points, spacing, choice.seed)
+    note = (
+        f"the levelled profile has an rms height of {display(float(np.std(flat.heights)), 'm')}, "
+        f"this surface {display(surface.rms_height, 'm')}: it keeps waves from "
+        f"{display(2.0 * np.pi / part.reliable[1], 'm')} to {display(2.0 * np.pi / low, 'm')}"
+    )
+    return replace(surface, processing=(*surface.processing, note))
 
 
 def mirrored(surface: HeightMap) -> HeightMap:
