@@ -143,7 +143,17 @@ def _recording(kind: int = 2):
     return points, force, moment, corners
 
 
-GROUPS = {"POINT": {"LABELS": ["LHEE", "RHEE"], "UNITS": ["mm"]}}
+GROUPS = {
+    "POINT": {
+        "LABELS": ["LHEE", "RHEE"],
+        "UNITS": ["mm"],
+        "USED": np.array([2]),
+        "FRAMES": np.array([200]),
+        "RATE": np.array([100.0]),
+        "SCALE": np.array([-0.1]),
+        "DATA_START": np.array([4]),
+    }
+}
 
 
 def _type_2(tmp_path, **storage):
@@ -160,6 +170,8 @@ def _type_2(tmp_path, **storage):
             "SCALE": np.ones(6),
             "GEN_SCALE": np.array([1.0]),
             "OFFSET": np.zeros(6, dtype=int),
+            "USED": np.array([6]),
+            "RATE": np.array([1000.0]),
         },
         "FORCE_PLATFORM": {
             "USED": np.array([1]),
@@ -190,6 +202,22 @@ def test_every_storage_form_gives_the_same(tmp_path, processor, real):
     np.testing.assert_allclose(heel.positions[0], [0.1, 0.2, 0.03], atol=1e-4)
     assert trial.marker("RHEE").missing[:20].all()
     assert not trial.marker("RHEE").missing[20:].any()
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("processor", [84, 85, 86])
+def test_every_processor_agrees_with_py_c3d(tmp_path, processor):
+    c3d = pytest.importorskip("c3d")
+    from underfoot.trials.readers.c3d_bytes import parse
+
+    path = _type_2(tmp_path, processor=processor)
+    raw = parse(path.read_bytes(), path.name)
+    with path.open("rb") as stream:
+        frames = [(p[:, :3], a) for _, p, a in c3d.Reader(stream).read_frames()]
+    points = np.array([p for p, _ in frames])
+    seen = np.isfinite(raw.points)
+    np.testing.assert_array_equal(points[seen], raw.points[seen])
+    np.testing.assert_array_equal(np.concatenate([a.T for _, a in frames]), raw.analog)
 
 
 def test_all_plate_types_give_the_same_force(tmp_path):
