@@ -68,7 +68,8 @@ def march(
     longest_step: Callable[[float], float],
     end_time: float,
     pool_depth: float,
-    settled: Callable[[State, State, float], bool] | None,
+    settled: Callable[[State, State, float, float], bool] | None,
+    fraction: Callable[[float], float],
     most_steps: int,
     progress: Progress,
     stage: str,
@@ -88,8 +89,6 @@ def march(
         counts.cells = max(counts.cells, cells.pattern.size)
         target = time + step
 
-        share = min(target / end_time, 1.0)
-
         attempt = implicit_step(
             problem,
             cells,
@@ -97,7 +96,7 @@ def march(
             load=load_at(target),
             duration=step,
             film=film,
-            tick=partial(progress, stage, share),
+            tick=partial(progress, stage, fraction(target)),
         )
         counts.newton += attempt.newton
         counts.krylov += attempt.krylov
@@ -115,7 +114,7 @@ def march(
         history.fluid_load.append(float(state.fluid.sum()) * area)
         history.approach.append(state.approach)
         history.residual.append(residuals[-1])
-        if settled is not None and settled(previous, state, step):
+        if settled is not None and settled(previous, state, step, time):
             return March(state, film, time, True, history, counts, residuals)
         if attempt.newton < EASY:
             step *= GROWTH
@@ -125,6 +124,7 @@ def march(
 
 def _film_mask(problem: Problem, gap: Array, pool_depth: float) -> Mask:
     film = (gap < pool_depth) & (problem.clearance < 0.5)
+    film[[0, -1]] = film[:, [0, -1]] = False  # the rim of the grid is open to the surroundings
     if not film.any():
         film = problem.clearance < problem.clearance.min() + 2e-5
     return film

@@ -15,21 +15,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from underfoot.asperity.law import PressureGapLaw
 from underfoot.core import ConvergenceError
-from underfoot.film import Pattern, film_flow
+from underfoot.film import Pattern, Upwinding, film_flow, upwinding
 
 from ..compliance import Compliance
 from .gmres import krylov_solution
 from .preconditioner import PoleFit, Preconditioner
 
+if TYPE_CHECKING:
+    from underfoot.asperity.law import PressureGapLaw
+
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 SMALLEST_GAP = 2e-7  # m; the flow sees no thinner film (the pressure law does)
+STALL = 12  # Newton steps without halving the residual after which a shorter time step is tried
 THIN = 2e-4  # m; steps are limited where the film is thinner
 
 
@@ -113,7 +117,7 @@ def implicit_step(
     wet = pattern.gather(film)
     dry = problem.viscosity is None
     old_gap = np.clip(start.gap, SMALLEST_GAP, problem.largest_gap)
-    peclet = None if dry else _peclet(problem, old_gap)
+    lean = None if dry else _lean(problem, old_gap)
     pressure = np.where(cells.mask, start.pressure, 0.0)
     approach = start.approach
     gap = problem.gap(pressure, approach)
@@ -122,6 +126,7 @@ def implicit_step(
     unit = np.zeros((5, size))
     unit[0] = 1.0
     change = np.inf
+    faint = 1e-9 * load / (size * area)
 
     for iteration in range(problem.most_newton + 1):
         local_gap = pattern.gather(gap)
@@ -135,11 +140,12 @@ def implicit_step(
             by_pressure, by_gap = unit, unit * stiffness
             imbalance = 0.0
         else:
-            flow = _film(problem, pattern, gap, old_gap, fluid, duration, peclet)
+            flow = _film(problem, pattern, gap, old_gap, fluid, duration, lean)
             net, by_fluid, by_h, reference = flow
             diagonal = by_fluid[0] * (1 + stiffness * cells.self_compliance)
             diagonal += np.abs(by_h[0]) * cells.self_compliance
-            cavitated = (fluid - net / diagonal <= 0) | ~wet
+            # At rest nothing flows and nothing is pressed: such a cell counts as film.
+            cavitated = (fluid - net / diagonal < -faint) | ~wet
             residual = np.where(cavitated, fluid, net / diagonal)
             imbalance = float(np.abs(net[~cavitated]).sum()) / reference
             by_h = by_h + by_fluid * pattern.neighbours_of(stiffness)
@@ -161,7 +167,7 @@ def implicit_step(
                 imbalance,
             )
             return attempt
-        if iteration == problem.most_newton:
+        if iteration == problem.most_newton or _hopeless(attempt.residuals):
             break
 
         try:
@@ -194,6 +200,15 @@ def implicit_step(
     return attempt
 
 
+def _hopeless(residuals: list[float]) -> bool:
+    """Return whether the iteration runs away or has stalled."""
+    if len(residuals) < 3:
+        return False
+    if residuals[-1] > 1e3 * max(residuals[0], 1.0):
+        return True
+    return len(residuals) > STALL and min(residuals[-STALL:]) > 0.5 * min(residuals[:-STALL])
+
+
 def _film(
     problem: Problem,
     pattern: Pattern,
@@ -201,7 +216,7 @@ def _film(
     old_gap: Array,
     fluid: Array,
     duration: float | None,
-    peclet: Array | None,
+    lean: Upwinding | None,
 ) -> tuple[Array, Array, Array, float]:
     """Return net outflow, its (5, size) derivatives by fluid pressure and gap, and a scale."""
     viscosity = problem.viscosity
@@ -220,7 +235,7 @@ def _film(
         conductance_slope,
         spacing=problem.spacing,
         wall_speed=problem.wall_speed,
-        peclet=peclet,
+        lean=lean,
     )
     net = flow.outflow
     by_gap = pattern.rows_of(flow.by_gap)
@@ -234,14 +249,13 @@ def _film(
     return pattern.gather(net), pattern.rows_of(flow.by_pressure), by_gap, reference + 1e-30
 
 
-def _peclet(problem: Problem, gap: Array) -> Array:
-    """Return the cell Peclet number of the x faces: shear flow by deflection over pressure flow."""
+def _lean(problem: Problem, gap: Array) -> Upwinding:
+    """Return the upwinding that belongs to the gap at the start of the step."""
     viscosity = problem.viscosity
     assert viscosity is not None
     carried = 0.5 * abs(problem.wall_speed) * problem.spacing * problem.compliance.self_compliance
     conductance = problem.law.flow_factor(gap) * gap**3 / (12 * viscosity)
-    ratio = carried / conductance
-    return np.maximum(ratio[1:], ratio[:-1])
+    return upwinding(gap, carried, conductance, from_a=problem.wall_speed < 0)
 
 
 def _step_share(problem: Problem, gap: Array, rise: Array) -> float:

@@ -14,6 +14,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.optimize import minimize, nnls
 
+from underfoot.core import ConvergenceError
 from underfoot.film import Factorization, Pattern, factorization
 
 from ..compliance import Compliance
@@ -132,6 +133,8 @@ class BorderedSolve:
         self._size = size
         self._scale = scale
         self._pivot = float(answer[:size].mean())
+        if self._pivot == 0.0 or not np.isfinite(self._pivot):
+            raise ConvergenceError("the load does not depend on the approach", where="outsole")
 
     def __call__(self, right: Array) -> Array:
         """Return the pressure change of the cells and the change of the approach."""
