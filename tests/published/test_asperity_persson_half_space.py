@@ -7,9 +7,12 @@ al. 2004, Phys. Rev. E 70:026117; Yastrebov et al. 2017, J. Mech. Phys. Solids 1
 import numpy as np
 import pytest
 
-from underfoot.asperity import steady_sliding
+from underfoot.asperity import PressureGapLaw, steady_sliding
 from underfoot.asperity.greenwood_williamson_1966 import greenwood_williamson
 from underfoot.asperity.persson import persson
+from underfoot.asperity.theory_law import persson_law
+from underfoot.asperity.yang_persson_2008 import yang_persson_decay_length
+from underfoot.core import InputError
 from underfoot.material import power_law_spectrum
 from underfoot.surface import isotropic_spectrum, self_affine, spectral_moments
 
@@ -88,3 +91,24 @@ def test_greenwood_williamson_at_light_load(surfaces, spectrum):
     theory = greenwood_williamson([pressure], moments, YOUNG, NU)
     assert theory.real_contact_fraction[0] == pytest.approx(area, rel=0.15)
     assert theory.mean_gap[0] == pytest.approx(gap, rel=0.06)
+
+
+def test_law_of_the_theory_against_solved_contacts(surfaces, spectrum):
+    """p(u) as the film sees it: the theory's pressure at a solved mean gap."""
+    law = persson_law(*spectrum, YOUNG, NU)
+    assert isinstance(law, PressureGapLaw)
+    for ratio, tolerance in ((0.02, 0.06), (0.05, 0.06), (0.2, 0.06)):
+        pressure = ratio * STIFFNESS * gradient(spectrum)
+        _, gap, _ = solved(surfaces, YOUNG, 0.0, pressure)
+        assert law.pressure(gap) == pytest.approx(pressure, rel=tolerance)
+        assert not law.breaches(pressure=pressure, speed=0.3)
+    assert law.breaches(pressure=2 * STIFFNESS * gradient(spectrum), speed=0.3)
+    assert law.flow_factor(1e-6) == pytest.approx(1.0)
+    narrowed = persson_law(*spectrum, YOUNG, NU, lambda gap: gap / (gap + 2e-6))
+    assert 0.0 < narrowed.flow_factor(1e-6) < narrowed.flow_factor(5e-6) < 1.0
+    # Persson (2007) Phys. Rev. Lett. 99:125502: p = p0 exp(-u/u0) at light load
+    decay = yang_persson_decay_length(*spectrum)
+    far = law.gap[-1] + np.array([0.0, 2e-6])
+    assert np.log(np.divide(*law.pressure(far))) == pytest.approx(2e-6 / decay, rel=1e-2)
+    with pytest.raises(InputError, match="modulus"):
+        persson_law(*spectrum, -1.0)
