@@ -15,6 +15,17 @@ from .contact import (
     sliding_checkerboard_cof,
     sliding_sinusoid_cof,
 )
+from .lubrication import (
+    inclined_bearing_load,
+    inclined_bearing_pressure,
+    parabolic_bearing_load,
+    soft_ehl_film,
+    squeeze_disc_gap,
+    squeeze_disc_load,
+    squeeze_disc_pressure,
+    step_bearing_load,
+    tapered_wedge_load,
+)
 
 __all__ = [
     "HertzContact",
@@ -23,6 +34,9 @@ __all__ = [
     "hertz_line",
     "hertz_point",
     "hertz_point_pressure",
+    "inclined_bearing_load",
+    "inclined_bearing_pressure",
+    "parabolic_bearing_load",
     "sinusoid_contact_fraction",
     "sinusoid_full_contact_pressure",
     "sinusoid_gap",
@@ -30,4 +44,10 @@ __all__ = [
     "sinusoid_pressure",
     "sliding_checkerboard_cof",
     "sliding_sinusoid_cof",
+    "soft_ehl_film",
+    "squeeze_disc_gap",
+    "squeeze_disc_load",
+    "squeeze_disc_pressure",
+    "step_bearing_load",
+    "tapered_wedge_load",
 ]
