@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,6 +47,8 @@ class SpectrumFit:
     smoothing: float
     samples: np.ndarray
     """Equilibrium and term moduli of the repeated fits, (repetitions, 1 + terms), Pa."""
+    sample_times: np.ndarray
+    """Their relaxation times, (repetitions, terms), s."""
 
     @property
     def rms_residual(self) -> float:
@@ -67,8 +69,9 @@ class SpectrumFit:
         """Return the band of E' and E'' that holds ``level`` of the repeated fits.
 
         The fit is repeated with the residuals' signs drawn anew (in runs as long as residuals
-        are correlated) and with other strengths of smoothing, so noise and the freedom of the
-        spectrum both enter. Systematic errors of the instrument do not.
+        are correlated), with other strengths of smoothing and with all relaxation times moved by
+        up to half a step, so noise and the freedom of the spectrum both enter. Systematic errors
+        of the instrument do not, and for a few sharp terms the band is too narrow.
         """
         w = np.atleast_1d(np.asarray(angular_frequency, dtype=float))
         if w.ndim != 1 or not np.all(np.isfinite(w) & (w > 0.0)):
@@ -79,9 +82,9 @@ class SpectrumFit:
             )
         if not 0.0 < level < 1.0:
             raise InputError(f"level {level:g}", where="level", allowed="between 0 and 1")
-        times = self.spectrum.relaxation_times
-        storage = self.samples @ maxwell.storage_kernel(w, times).T
-        loss = self.samples @ maxwell.loss_kernel(w, times).T
+        pairs = list(zip(self.samples, self.sample_times, strict=True))
+        storage = np.array([maxwell.storage_kernel(w, times) @ x for x, times in pairs])
+        loss = np.array([maxwell.loss_kernel(w, times) @ x for x, times in pairs])
         tails = [0.5 * (1.0 - level), 0.5 * (1.0 + level)]
         low, high = self.frequency_range
         storage_band = np.quantile(storage, tails, axis=0)
@@ -142,10 +145,14 @@ def fit_relaxation(
     """
     t, values = checked_curve(time, modulus)
     times = _times(t[0], t[-1], terms_per_decade)
-    kernel = maxwell.relaxation_kernel(t, times) / values[:, None]
+
+    def kernels(tau: np.ndarray) -> list[np.ndarray]:
+        return [maxwell.relaxation_kernel(t, tau) / values[:, None]]
+
     scale = np.exp(np.interp(np.log(times), np.log(t), np.log(values)))
     return _fit(
-        [("relaxation modulus", kernel)],
+        ("relaxation modulus",),
+        kernels,
         times,
         scale,
         (1.0 / t[-1], 1.0 / t[0]),
@@ -189,12 +196,16 @@ def fit_dynamic(
     size = np.hypot(storage, loss)
     order = np.argsort(-np.log(w), kind="stable")
     scale = np.exp(np.interp(np.log(times), -np.log(w)[order], np.log(size)[order]))
-    blocks = [
-        ("storage modulus", maxwell.storage_kernel(w, times) / storage[:, None]),
-        ("loss modulus", maxwell.loss_kernel(w, times) / loss[:, None]),
-    ]
+
+    def kernels(tau: np.ndarray) -> list[np.ndarray]:
+        return [
+            maxwell.storage_kernel(w, tau) / storage[:, None],
+            maxwell.loss_kernel(w, tau) / loss[:, None],
+        ]
+
     return _fit(
-        blocks,
+        ("storage modulus", "loss modulus"),
+        kernels,
         times,
         scale,
         (float(w[0]), float(w[-1])),
@@ -214,7 +225,8 @@ def _times(shortest: float, longest: float, per_decade: int) -> np.ndarray:
 
 
 def _fit(
-    blocks: Sequence[tuple[str, np.ndarray]],
+    names: Sequence[str],
+    kernels: Callable[[np.ndarray], list[np.ndarray]],
     times: np.ndarray,
     scale: np.ndarray,
     frequency_range: tuple[float, float],
@@ -222,10 +234,11 @@ def _fit(
     source: str,
     seed: int,
 ) -> SpectrumFit:
-    sizes = [kernel.shape[0] for _, kernel in blocks]
+    blocks = kernels(times)
+    sizes = [block.shape[0] for block in blocks]
     edges = np.cumsum(sizes)[:-1]
     step = float(np.log10(times[-1] / times[0])) / (times.size - 1)
-    stacked = np.vstack([kernel for _, kernel in blocks])
+    stacked = np.vstack(blocks)
     weight = np.ones(stacked.shape[0])
     smallest = SMOOTHINGS[0]
     for _ in range(2 if len(blocks) > 1 else 0):
@@ -238,14 +251,17 @@ def _fit(
     matrix, goal = stacked * weight[:, None], weight
     smoothing, solution = _smoothest(matrix, goal, scale, step, noise)
     residual = stacked @ solution - 1.0
-    samples = _repetitions(matrix, goal, scale, step, smoothing, solution, sizes, seed)
+    samples, sample_times = _repetitions(
+        kernels, weight, times, scale, step, smoothing, solution, seed
+    )
     spectrum = RelaxationSpectrum(solution[0], solution[1:], times, source=source)
     return SpectrumFit(
         spectrum,
-        {name: part for (name, _), part in zip(blocks, np.split(residual, edges), strict=True)},
+        dict(zip(names, np.split(residual, edges), strict=True)),
         frequency_range,
         smoothing,
         samples,
+        sample_times,
     )
 
 
@@ -262,29 +278,32 @@ def _smoothest(
 
 
 def _repetitions(
-    matrix: np.ndarray,
-    goal: np.ndarray,
+    kernels: Callable[[np.ndarray], list[np.ndarray]],
+    weight: np.ndarray,
+    times: np.ndarray,
     scale: np.ndarray,
     step: float,
     smoothing: float,
     solution: np.ndarray,
-    sizes: Sequence[int],
     seed: int,
-) -> np.ndarray:
+) -> tuple[np.ndarray, np.ndarray]:
     generator = np.random.default_rng(seed)
-    fitted = matrix @ solution
-    residual = goal - fitted
-    active = int(np.count_nonzero(solution))
-    residual = residual * np.sqrt(goal.size / max(goal.size - min(active, goal.size // 2), 1))
-    parts = np.split(residual, np.cumsum(list(sizes))[:-1])
-    runs = [maxwell.run_length(part) for part in parts]
-    rows = []
+    blocks = kernels(times)
+    sizes = [block.shape[0] for block in blocks]
+    fitted = weight * (np.vstack(blocks) @ solution)
+    residual = weight - fitted
+    active = min(int(np.count_nonzero(solution)), weight.size // 2)
+    residual = residual * np.sqrt(weight.size / (weight.size - active))
+    runs = [maxwell.run_length(part) for part in np.split(residual, np.cumsum(sizes)[:-1])]
+    rows, moved = [], []
     for _ in range(SAMPLES):
         signs = np.concatenate(
             [maxwell.random_signs(n, run, generator) for n, run in zip(sizes, runs, strict=True)]
         )
         strength = smoothing * 10.0 ** generator.uniform(-1.5, 0.5)
-        rows.append(
-            maxwell.smooth_nonnegative(matrix, fitted + signs * residual, scale, step, strength)
-        )
-    return np.array(rows)
+        tau = times * 10.0 ** (step * generator.uniform(-0.5, 0.5))
+        matrix = np.vstack(kernels(tau)) * weight[:, None]
+        goal = fitted + signs * residual
+        rows.append(maxwell.smooth_nonnegative(matrix, goal, scale, step, strength))
+        moved.append(tau)
+    return np.array(rows), np.array(moved)
