@@ -76,6 +76,43 @@ def test_peak_speed_within_3_percent_and_start_within_25_ms(rate, noise, derivat
         assert found.peak_speed.conventions["search ends"] == "second local minimum"
 
 
+@pytest.mark.parametrize("delay", [0.002, 0.01, 0.06])
+def test_a_heel_that_slips_at_once_or_late(delay):
+    """A stop within 2 ms is the worst that a 10 Hz filter can meet: 34 ms late."""
+    for seed in range(10):
+        marker, start, _ = slipping_heel(200.0, noise=3e-4, seed=seed, start_delay=delay)
+        found = slip(marker, CONTACT, up=UP, walking=WALK)
+        assert found.peak_speed.value == pytest.approx(1.2, rel=0.03)
+        assert found.start.value == pytest.approx(start, abs=0.035)
+        assert found.slipped
+
+
+@pytest.mark.parametrize("start", [-0.004, 0.0, 0.004, 0.01])
+def test_a_minimum_that_smoothing_moves_before_contact_is_not_lost(start):
+    """Soft approach (half cosine of 0.3 s), fast slip (0.1 s): the minimum moves early."""
+    rate = 200.0
+    time = np.arange(0.0, 1.5, 1e-4)
+    begin = CONTACT + start
+    speed = np.where(time < begin, 2.0, 0.02)
+    down = (time > begin - 0.3) & (time <= begin)
+    speed[down] = 1.01 + 0.99 * np.cos(np.pi * (time[down] - begin + 0.3) / 0.3)
+    slide = (time > begin) & (time < begin + 0.3)
+    up = slide & (time < begin + 0.1)
+    speed[slide] = 1.01 + 0.99 * np.cos(np.pi * (time[slide] - begin - 0.1) / 0.2)
+    speed[up] = 1.01 - 0.99 * np.cos(np.pi * (time[up] - begin) / 0.1)
+    speed[time >= begin + 0.3] += 0.1 * (time[time >= begin + 0.3] - begin - 0.3)
+    place = np.cumsum(speed) * 1e-4
+    frames = np.arange(0.0, 1.5, 1.0 / rate)
+    path = np.column_stack(
+        (np.zeros(len(frames)), np.interp(frames, time, place), np.full(len(frames), 0.03))
+    )
+    for seed in range(5):
+        noise = np.random.default_rng(seed).normal(0.0, 3e-4, path.shape)
+        found = slip(Marker(path + noise, rate), CONTACT, up=UP, walking=WALK)
+        assert found.peak_speed.value == pytest.approx(2.0, rel=0.03)
+        assert found.start.value == pytest.approx(begin, abs=0.025)
+
+
 def test_speed_noise_is_what_scatter_shows():
     rate, sd = 250.0, 3e-4
     still = np.zeros((5000, 3))

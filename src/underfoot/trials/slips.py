@@ -237,11 +237,15 @@ def slip(
         ended = f"the marker is lost {when:.0f} ms after contact"
     if len(window) < 5:
         return without("fewer than five frames of the heel after contact", motion)
-    minima = _minima(window, definition.prominence)
+    reach = round(0.5 * marker.rate / definition.filter.cutoff)
+    minima = _minima(motion.speed, first, last, reach, definition.prominence)
+    if len(minima) and minima[0] < first:
+        early = 1e3 * (contact - motion.time[minima[0]])
+        flags += (f"the speed's minimum lies {early:.0f} ms before contact: the filter's blur",)
     if not len(minima):
         return without(f"the heel's speed has no local minimum after contact until {ended}", motion)
-    begin = first + int(minima[0])
-    stop = first + int(minima[1]) if len(minima) > 1 else last
+    begin = int(minima[0])
+    stop = int(minima[1]) if len(minima) > 1 else last
     by = "second local minimum" if len(minima) > 1 else ended
     top = begin + int(np.argmax(motion.speed[begin : stop + 1]))
     peak = float(motion.speed[top])
@@ -360,10 +364,24 @@ def _instant(motion: HeelMotion, i: int) -> float:
     return float(motion.time[i] + np.clip(share, -0.5, 0.5) * step)
 
 
-def _minima(speed: np.ndarray, prominence: float) -> np.ndarray:
+def _minima(speed: np.ndarray, first: int, last: int, reach: int, prominence: float) -> np.ndarray:
+    """Frames of the local minima of the speed after contact, frame ``first``, to ``last``.
+
+    Where a heel slips at once, smoothing can move its minimum before the contact: when the speed
+    already grows at contact, the last minimum at most ``reach`` frames before it comes first.
+    The approach is looked at too, or a minimum right at contact would not stand out.
+    """
     from scipy.signal import find_peaks
 
-    return find_peaks(-speed, prominence=max(prominence, 1e-9))[0]
+    begin = max(0, first - 6 * reach)
+    lost = np.flatnonzero(~np.isfinite(speed[begin:first]))
+    begin += int(lost[-1]) + 1 if len(lost) else 0
+    found = begin + find_peaks(-speed[begin : last + 1], prominence=max(prominence, 1e-9))[0]
+    before = found[(found < first) & (found >= first - reach)]
+    after = found[found >= first]
+    if len(before) and speed[first + 1] > speed[first]:
+        return np.concatenate((before[-1:], after))
+    return after
 
 
 def _smoothed(
