@@ -287,6 +287,13 @@ def test_moments_against_direct_derivatives():
     moments = spectral_moments(isotropic_spectrum(surface), (1.0, 1e9))
     assert moments.m0 == pytest.approx(surface.rms_height**2, rel=1e-9)
     assert 2 * moments.m2 == pytest.approx(rms_slope(surface) ** 2, rel=0.01)
+    # By differences of the same heights: within what seven points give at eight to a wave.
+    assert rms_slope(HeightMap(surface.heights, surface.spacing)) == pytest.approx(
+        rms_slope(surface), rel=0.02
+    )
+    # A generated surface is reliable to its cut-off; the ring that lies across it is left out.
+    default = spectral_moments(isotropic_spectrum(surface))
+    assert default.m4 == pytest.approx(moments.m4, rel=0.05)
     found = asperities(moments)
     assert found.density * found.radius * found.height_sd == pytest.approx(0.05, abs=0.03)
     assert moments.bandwidth > 1.5
@@ -474,3 +481,12 @@ def test_periodised_maps_say_what_was_done():
         periodised(measured, "none")
     with pytest.raises(InputError, match="share"):
         periodised(measured, share=0.7)
+
+
+def test_a_map_from_a_profile_has_the_slopes_of_the_profile():
+    floor = self_affine(512, 1 * UM, 1 * UM, 0.8, 512 * UM, 4 * UM, 7, 128 * UM)
+    spectrum = isotropic_from_profile(profile_spectrum(floor))
+    made = surface_from_spectrum(spectrum, 512, 1 * UM, 11)
+    assert made.rms_height == pytest.approx(floor.rms_height, rel=0.15)
+    assert rms_slope(made) == pytest.approx(rms_slope(floor), rel=0.1)
+    assert "isotropy assumed" in " ".join(made.processing)

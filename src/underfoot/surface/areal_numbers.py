@@ -7,11 +7,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..core import RangeError
+from ._kernels.numbers import slope
 from .filter import long_waves, short_waves
 from .height_map import HeightMap
 from .prepare import levelled
 from .profile_numbers import height_numbers
-from .resolution import shortest_reliable_wavelength
+from .resolution import shortest_derivable_wavelength, shortest_reliable_wavelength
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +53,7 @@ def areal_roughness(
     (m) are given, the Gaussian filters: wavelengths below ``short_cutoff`` (S-filter) and above
     ``long_cutoff`` (L-filter) go.
 
-    Sdq = sqrt(mean(z_x^2 + z_y^2)) with seven-point derivatives.
+    Sdq = sqrt(mean(z_x^2 + z_y^2)), see ``rms_slope``.
 
     Errors
     ------
@@ -61,7 +62,10 @@ def areal_roughness(
     DataError, InputError
         See ``long_waves``.
     """
-    limit = shortest_reliable_wavelength(surface)
+    # The slope of a periodic map is taken in Fourier space, which needs no spare points.
+    limit = (shortest_reliable_wavelength if surface.periodic else shortest_derivable_wavelength)(
+        surface
+    )
     if short_cutoff is not None and short_cutoff < limit.wavelength * (1.0 - 1e-9):
         raise RangeError(
             f"short cut-off {short_cutoff:g} m is below what was measured",
@@ -104,21 +108,17 @@ def areal_roughness(
 
 
 def rms_slope(surface: HeightMap) -> float:
-    """Return sqrt(mean(z_x^2 + z_y^2)) of a map as it is, seven-point derivatives.
+    """Return sqrt(mean(z_x^2 + z_y^2)) of a map as it is.
 
-    Periodic maps are continued; of others the three outer rows are used as neighbours only.
+    Of a periodic map exactly, in Fourier space; of others by seven-point differences, for which
+    the three outer rows serve as neighbours only.
     """
-    from ._kernels.numbers import slope
-
     z = surface.heights
-    mode = "wrap" if surface.periodic else None
-    total = np.zeros(())
-    for axis in (0, 1):
-        moved = np.moveaxis(z, axis, 0)
-        if mode:
-            moved = np.pad(moved, ((3, 3), (0, 0)), mode="wrap")
-        part = np.moveaxis(slope(moved, surface.spacing), 0, axis)
-        if not mode:
-            part = part[:, 3:-3] if axis == 0 else part[3:-3]
-        total = total + part * part
-    return float(np.sqrt(total.mean()))
+    if surface.periodic:
+        qx = 2.0 * np.pi * np.fft.fftfreq(z.shape[0], surface.spacing)[:, None]
+        qy = 2.0 * np.pi * np.fft.fftfreq(z.shape[1], surface.spacing)[None, :]
+        power = np.abs(np.fft.fft2(z)) ** 2
+        return float(np.sqrt(np.sum(power * (qx**2 + qy**2)))) / z.size
+    along = slope(z, surface.spacing)[:, 3:-3]
+    across = slope(z.T, surface.spacing).T[3:-3]
+    return float(np.sqrt(np.mean(along**2 + across**2)))

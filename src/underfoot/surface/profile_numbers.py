@@ -12,7 +12,7 @@ from ._kernels.numbers import curvature, element_spacing, slope
 from .filter import long_waves, short_waves
 from .height_map import check_heights
 from .profile import Profile
-from .resolution import shortest_reliable_wavelength
+from .resolution import shortest_derivable_wavelength
 
 STANDARDS = ("ISO 21920-2:2021", "ISO 4287:1997")
 
@@ -221,7 +221,7 @@ def _check(
         raise InputError(f'"{standard}"', where="standard", allowed=", ".join(STANDARDS))
     if sections < 1:
         raise InputError(f"{sections} sections", where="sections", allowed="1 or more")
-    limit = shortest_reliable_wavelength(profile)
+    limit = shortest_derivable_wavelength(profile)
     if long_cutoff < 2.0 * limit.wavelength:
         raise RangeError(
             f"long cut-off {long_cutoff:g} m",

@@ -24,19 +24,15 @@ class Resolution:
 def shortest_reliable_wavelength(surface: Profile | HeightMap) -> Resolution:
     """Return the shortest wavelength that can be believed: the largest of three limits.
 
-    - five points to a wave (ISO 3274);
+    - five points to a wave (ISO 3274), or two where the resolution is known;
     - the instrument's own resolution, where the surface knows it;
     - the tip: the scale below which the sharpest peak met at that scale is sharper than half the
       curvature of the stylus, where its radius is known (criterion of Sanner et al., Appl. Surf.
       Sci. Adv. 7 (2022) 100190: shortest stencil from which on the largest negative second
       difference stays below 1 / (2 R)).
     """
-    limits = [
-        Resolution(
-            POINTS_PER_WAVE * surface.spacing,
-            f"{POINTS_PER_WAVE} points to a wave at a spacing of {surface.spacing:.4g} m",
-        )
-    ]
+    known = surface.resolution is not None
+    limits = [_sampling(surface, 2 if known else POINTS_PER_WAVE)]
     if surface.resolution is not None:
         limits.append(Resolution(surface.resolution, "resolution of the instrument"))
     radius = surface.tip_radius if isinstance(surface, Profile) else None
@@ -45,6 +41,19 @@ def shortest_reliable_wavelength(surface: Profile | HeightMap) -> Resolution:
             Resolution(_tip_limit(surface.heights, surface.spacing, radius), _TIP.format(radius))
         )
     return max(limits, key=lambda limit: limit.wavelength)
+
+
+def shortest_derivable_wavelength(surface: Profile | HeightMap) -> Resolution:
+    """Return the limit for slopes and curvatures by differences: five points to a wave at least."""
+    limits = (shortest_reliable_wavelength(surface), _sampling(surface, POINTS_PER_WAVE))
+    return max(limits, key=lambda limit: limit.wavelength)
+
+
+def _sampling(surface: Profile | HeightMap, points: int) -> Resolution:
+    return Resolution(
+        points * surface.spacing,
+        f"{points} points to a wave at a spacing of {surface.spacing:.4g} m",
+    )
 
 
 _TIP = "radius of the tip, {:.4g} m: sharper peaks are rounded"
