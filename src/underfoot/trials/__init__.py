@@ -12,6 +12,7 @@ from .gait import (
     required_friction,
     required_frictions,
 )
+from .heel import HeelMotion, SlipDefinition, contact_from_heel, heel_motion
 from .measurement import Measurement, mean_of
 from .plates import finished_plate
 from .pressures import (
@@ -34,7 +35,7 @@ from .readers import (
     read_trials,
 )
 from .sensor_array import SensorArrayReading, sensor_array_reading
-from .slips import HeelMotion, Slip, SlipDefinition, contact_from_heel, heel_motion, slip, slip_of
+from .slips import Slip, slip, slip_of
 from .trial import Channel, Edit, Event, Marker, Plate, Trial, file_checksum, joined
 
 __all__ = [

@@ -11,8 +11,8 @@ import numpy as np
 from underfoot.core import InputError
 
 from .baseline import runs, saturated
+from .heel import HeelMotion
 from .measurement import Measurement
-from .slips import HeelMotion
 from .trial import Channel
 
 BASELINE_SAMPLES = 500  # fewer let noise pass 5 standard deviations in 1 % of empty records

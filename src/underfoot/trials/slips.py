@@ -4,110 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
-from underfoot.core import InputError, unknown_name
-
 from .axes import Axes, axes_of, heel_of, walking_direction
-from .baseline import runs
 from .events import Stance
-from .filters import MARKER_FILTER, LowPass, bridged, low_passed
+from .heel import HeelMotion, SlipDefinition, heel_motion
 from .measurement import Measurement
 from .plates import plate_named
 from .trial import Marker, Trial
-
-PLANES = {
-    "horizontal": "speed in the plane of the floor",
-    "3d": "speed in three dimensions",
-}
-DERIVATIVES = {
-    "differences": "central differences of the filtered path",
-    "savitzky-golay": "Savitzky-Golay derivative, 3rd order, window of the same cutoff",
-}
-SLIP_SPEED = 0.2  # m/s, the grant report's (G.6.1)
-
-
-@dataclass(frozen=True, slots=True)
-class SlipDefinition:
-    """What counts as a slip and how its speed is got.
-
-    Parameters
-    ----------
-    threshold
-        Peak slipping speed above which it is a slip (m/s).
-    plane
-        A key of ``PLANES``.
-    filter
-        Low-pass of the marker's path; its cutoff also sets the window of Savitzky-Golay.
-    derivative
-        A key of ``DERIVATIVES``.
-    longest_gap
-        Gaps of the marker up to this are bridged (s).
-    prominence
-        A local minimum or peak of the speed must stand out by this (m/s), or it is noise.
-    heel_lift
-        Height over its lowest since contact at which the heel has left the floor (m).
-    """
-
-    threshold: float = SLIP_SPEED
-    plane: str = "horizontal"
-    filter: LowPass = field(default_factory=lambda: MARKER_FILTER)
-    derivative: str = "differences"
-    longest_gap: float = 0.1
-    prominence: float = 0.01
-    heel_lift: float = 0.03
-
-    def __post_init__(self) -> None:
-        if self.plane not in PLANES:
-            raise unknown_name("plane", self.plane, PLANES, where="slip.plane")
-        if self.derivative not in DERIVATIVES:
-            raise unknown_name("derivative", self.derivative, DERIVATIVES, where="slip.derivative")
-        if (
-            not self.threshold > 0
-            or self.longest_gap < 0
-            or self.prominence < 0
-            or self.heel_lift <= 0
-        ):
-            raise InputError(
-                "threshold, gap, prominence and heel lift can't be negative", where="slip"
-            )
-
-    def conventions(self) -> dict[str, str]:
-        """Return the choices in words."""
-        return {
-            "speed": PLANES[self.plane],
-            "marker filter": (
-                str(self.filter)
-                if self.derivative == "differences"
-                else f"cutoff {self.filter.cutoff:g} Hz"
-            ),
-            "derivative": DERIVATIVES[self.derivative],
-            "slip start": "first local minimum of the heel's speed after contact",
-            "gaps": f"bridged up to {1e3 * self.longest_gap:g} ms",
-            "prominence": f"minima stand out by {self.prominence:g} m/s",
-            "heel lift": f"search ends when the heel is {1e3 * self.heel_lift:g} mm up",
-            "threshold": f"slip above {self.threshold:g} m/s",
-        }
-
-
-@dataclass(frozen=True, slots=True)
-class HeelMotion:
-    """A heel marker's smoothed path: ``time`` (n,), ``position`` and ``velocity`` (n, 3).
-
-    ``speed`` (n,) is in the plane asked for; ``noise`` is the standard deviation of the raw
-    marker about the smoothed path (m) and ``speed_noise`` what it makes of the speed (m/s).
-    ``filled`` (n,) marks bridged frames; positions in longer gaps are NaN.
-    """
-
-    time: np.ndarray
-    position: np.ndarray
-    velocity: np.ndarray
-    speed: np.ndarray
-    filled: np.ndarray
-    noise: float
-    speed_noise: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,54 +29,6 @@ class Slip:
     slipped: bool | None
     motion: HeelMotion | None = None
     peak_time: float = math.nan
-
-
-def heel_motion(
-    marker: Marker, up: np.ndarray, definition: SlipDefinition | None = None
-) -> HeelMotion:
-    """Return the smoothed path, velocity and speed of a heel marker.
-
-    Errors
-    ------
-    InputError
-        The frames are not equally spaced, or the filter does not fit the rate.
-    """
-    definition = definition or SlipDefinition()
-    if marker.times is not None:
-        raise InputError("frames are not equally spaced", where="marker")
-    path, filled = bridged(marker.positions, round(definition.longest_gap * marker.rate))
-    position = np.full(path.shape, np.nan)
-    velocity = np.full(path.shape, np.nan)
-    residuals: list[np.ndarray] = []
-    half = _half_window(marker.rate, definition.filter.cutoff)
-    shortest = max(30, 2 * half + 1)
-    if definition.filter.kind == "none" and definition.derivative == "differences":
-        shortest = 3
-    seen = np.asarray(np.isfinite(path).all(axis=1))
-    for start, stop in runs(seen):
-        if stop - start < shortest:
-            continue
-        smooth, velocity[start:stop] = _smoothed(path[start:stop], marker.rate, definition)
-        position[start:stop] = smooth
-        # Differences of neighbours see the noise and not the motion.
-        residuals.append(np.diff(path[start:stop] - smooth, axis=0)[~filled[start + 1 : stop]])
-    noise = 0.0
-    if residuals and sum(map(len, residuals)) > 3:
-        jumps = np.abs(np.concatenate(residuals))
-        noise = 1.4826 * float(np.median(jumps)) / math.sqrt(2.0)
-    seen_velocity = velocity
-    if definition.plane == "horizontal":
-        seen_velocity = velocity - np.outer(velocity @ up, up)
-    speed = np.linalg.norm(seen_velocity, axis=1)
-    return HeelMotion(
-        marker.time,
-        position,
-        velocity,
-        speed,
-        filled,
-        noise,
-        noise * _noise_gain(marker, definition),
-    )
 
 
 def slip(
@@ -314,32 +172,6 @@ def slip_of(
     )
 
 
-def contact_from_heel(
-    marker: Marker, up: np.ndarray, definition: SlipDefinition | None = None
-) -> list[float]:
-    """Return the times (s) at which a heel comes down, from its marker alone.
-
-    Local minima of the smoothed height within 8 mm of the lowest, after a fall of 30 mm or more
-    in 0.4 s. For recordings without a force plate: of 18 real steps 17 were found, 8 ms early
-    to 20 ms late, 4 ms late in the middle.
-    """
-    motion = heel_motion(marker, up, definition)
-    height = motion.position @ up
-    if np.isfinite(height).sum() < 5:
-        return []
-    limit = float(np.nanpercentile(height, 1)) + 0.008
-    before = round(0.4 * marker.rate)
-    found: list[float] = []
-    for i in range(1, len(height) - 1):
-        if not (height[i - 1] > height[i] <= height[i + 1] and height[i] < limit):
-            continue
-        fallen = float(np.nanmax(height[max(0, i - before) : i])) - height[i]
-        when = float(motion.time[i])
-        if fallen > 0.03 and (not found or when - found[-1] > 0.3):
-            found.append(when)
-    return found
-
-
 def _window_end(
     motion: HeelMotion, first: int, up: np.ndarray, leaves: float | None, heel_lift: float
 ) -> tuple[int, str]:
@@ -382,32 +214,3 @@ def _minima(speed: np.ndarray, first: int, last: int, reach: int, prominence: fl
     if len(before) and speed[first + 1] > speed[first]:
         return np.concatenate((before[-1:], after))
     return after
-
-
-def _smoothed(
-    path: np.ndarray, rate: float, definition: SlipDefinition
-) -> tuple[np.ndarray, np.ndarray]:
-    if definition.derivative == "differences":
-        smooth = low_passed(path, rate, definition.filter)
-        return smooth, np.asarray(np.gradient(smooth, 1.0 / rate, axis=0))
-    from scipy.signal import savgol_filter
-
-    length = 2 * _half_window(rate, definition.filter.cutoff) + 1
-    smooth = np.asarray(savgol_filter(path, length, 3, axis=0))
-    slope = savgol_filter(path, length, 3, deriv=1, delta=1.0 / rate, axis=0)
-    return smooth, np.asarray(slope)
-
-
-def _half_window(rate: float, cutoff: float) -> int:
-    """Half window of a 3rd-order Savitzky-Golay filter with this -3 dB cutoff.
-
-    Source: Schafer 2011, IEEE Signal Processing Magazine 28(4):111, Eq. 12.
-    """
-    return max(2, round((4.0 * rate / (2.0 * cutoff) + 4.6) / 3.2))
-
-
-def _noise_gain(marker: Marker, definition: SlipDefinition) -> float:
-    """Standard deviation of the speed for unit white noise of the marker, per axis (1/s)."""
-    impulse = np.zeros(max(201, 4 * round(marker.rate / definition.filter.cutoff) + 1))
-    impulse[len(impulse) // 2] = 1.0
-    return float(np.linalg.norm(_smoothed(impulse, marker.rate, definition)[1]))
