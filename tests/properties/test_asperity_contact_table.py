@@ -209,6 +209,31 @@ def test_a_material_without_loss_says_why_there_is_no_hysteresis(tmp_path):
     assert any("loss tangent" in note for note in lossless.notes)
 
 
+def test_rough_shoe_and_rough_floor(tmp_path, table):
+    """Less contact and a wider gap than on the floor alone, but the floor's own hysteresis."""
+    floors = surfaces()
+    shoes = [self_affine(N, 8e-6, 4e-6, 0.8, 384e-6, 48e-6, seed) for seed in (11, 12, 13)]
+    cache = Cache("t", tmp_path)
+    both = ContactTable.from_surfaces(
+        floors, RUBBER, PRESSURE, SPEED, shoe_surfaces=shoes, cache=cache
+    )
+    p, v = PRESSURE[2], SPEED[1]
+    assert both.real_contact_fraction(p, v) < table.real_contact_fraction(p, v)
+    assert both.mean_gap(p, v) > table.mean_gap(p, v)
+    assert both.cof_hysteresis(p, v) == pytest.approx(table.cof_hysteresis(p, v), rel=1e-4)
+    assert any("rest in" in note for note in both.notes)
+    heights = composite_surface(floors[0], shoes[0], RUBBER, v).heights
+    one = ContactTable.from_surfaces(
+        floors[:1], RUBBER, PRESSURE, [v], shoe_surfaces=shoes[:1], cache=cache
+    )
+    solved = steady_sliding(heights, 8e-6, RUBBER, v, p)
+    assert one.mean_gap(p, v) == pytest.approx(solved.mean_gap, rel=1e-4)
+    with pytest.raises(InputError, match="one for each floor"):
+        ContactTable.from_surfaces(
+            floors, RUBBER, PRESSURE, SPEED, shoe_surfaces=shoes[:1], cache=cache
+        )
+
+
 def test_leave_out_errors_fall_with_node_distance(table, tmp_path):
     fine = ContactTable.from_surfaces(
         surfaces(),

@@ -5,7 +5,6 @@ from __future__ import annotations
 import pickle
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,44 +18,14 @@ from underfoot.core import (
     content_hash,
     silent,
 )
-from underfoot.core.provenance import version
 
 from ._kernels.monotone import interpolated, pchip_slopes
+from .composite import RESTING
 from .contact_table import QUANTITIES, ContactTable
-from .flow_factor import flow_factors
-from .steady import steady_sliding
-from .steady_checks import Modulus, modulus_function
+from .contact_table_part import Part, part_column, surface_part
+from .steady_checks import Modulus
 
 ROOM = "contact_table-1"
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Part:
-    """One surface at one speed: the unit of work and of the cache."""
-
-    heights: np.ndarray
-    spacing: float
-    modulus: Any
-    speed: float
-    pressure: np.ndarray
-    poisson_ratio: float
-    layer_thickness: float | None
-
-    @property
-    def key(self) -> str:
-        """Return the content key: program version, heights, loads, modulus at every frequency."""
-        q = 2.0 * np.pi * np.fft.rfftfreq(self.heights.shape[0], self.spacing)
-        young = modulus_function(self.modulus, q * self.speed)(q * self.speed)
-        return content_hash(
-            version(),
-            self.heights,
-            self.spacing,
-            young,
-            self.speed,
-            self.pressure,
-            self.poisson_ratio,
-            self.layer_thickness,
-        )
 
 
 def computed(
@@ -65,6 +34,7 @@ def computed(
     pressure: ArrayLike,
     speed: ArrayLike,
     *,
+    shoe_surfaces: Sequence[Any] | None = None,
     poisson_ratio: float = 0.5,
     layer_thickness: float | None = None,
     processes: int = 1,
@@ -85,6 +55,10 @@ def computed(
         ``cutoff_dependence``.
     modulus
         As in ``steady_sliding``.
+    shoe_surfaces
+        The rubber's own roughness, one periodic map for each of ``surfaces``: contact, gap and
+        flow are those of ``composite_surface`` at each speed, hysteresis that of the floor alone;
+        its limits are noted.
     pressure, speed
         Nodes: Pa and m/s, rising, > 0; at least 4 pressures, 1 speed.
     processes
@@ -104,9 +78,10 @@ def computed(
     p, v = _nodes("pressure", pressure, 4), _nodes("speed", speed, 1)
     _check_surfaces(surfaces)
     store = Cache(ROOM) if cache is None else cache
+    pairs = _pairs(surfaces, shoe_surfaces)
     parts = [
-        Part(np.asarray(s.heights), s.spacing, modulus, float(u), p, poisson_ratio, layer_thickness)
-        for s in surfaces
+        surface_part(floor, shoe, modulus, float(u), p, poisson_ratio, layer_thickness)
+        for floor, shoe in pairs
         for u in v
     ]
     results: dict[int, dict[str, np.ndarray]] = {}
@@ -123,45 +98,8 @@ def computed(
         store.store(keys[n], column)
         results[n] = column
         progress("contact table", len(results) / len(parts))
-    return _table(surfaces, p, v, [results[n] for n in range(len(parts))], keys, description)
-
-
-def part_column(part: Part) -> dict[str, np.ndarray]:
-    """Return the averages of one surface at one speed over all pressures, with their status."""
-    rows: list[list[float]] = []
-    errors: list[float] = []
-    notes: list[str] = []
-    for p in part.pressure:
-        contact = steady_sliding(
-            part.heights,
-            part.spacing,
-            part.modulus,
-            part.speed,
-            float(p),
-            part.poisson_ratio,
-            layer_thickness=part.layer_thickness,
-        )
-        errors.append(contact.complementarity_error)
-        if not contact.status.usable:
-            rows.append([np.nan] * len(QUANTITIES))
-            continue
-        flow = flow_factors(np.where(contact.pressure > 0.0, 0.0, contact.gap), part.spacing)
-        rows.append(
-            [
-                contact.real_contact_fraction_corrected,
-                contact.cof_hysteresis,
-                contact.mean_gap,
-                flow.along,
-                flow.across,
-            ]
-        )
-        notes += [f"breach|{breach}" for breach in contact.breaches]
-        notes += [f"note|{note}" for note in contact.notes if note.startswith("hysteresis")]
-    values = np.array(rows)
-    column = {name: values[:, n] for n, name in enumerate(QUANTITIES)}
-    column["error"] = np.array(errors)
-    column["notes"] = np.array(list(dict.fromkeys(notes)), dtype=np.str_)
-    return column
+    about = [_about(surfaces)] + ([RESTING] if shoe_surfaces is not None else [])
+    return _table(about, p, v, [results[n] for n in range(len(parts))], keys, description)
 
 
 def _columns(
@@ -191,14 +129,14 @@ def _columns(
 
 
 def _table(
-    surfaces: Sequence[Any],
+    about: list[str],
     p: np.ndarray,
     v: np.ndarray,
     columns: list[dict[str, np.ndarray]],
     keys: Iterable[str],
     description: str,
 ) -> ContactTable:
-    shape = (len(surfaces), v.size, p.size)
+    shape = (len(columns) // v.size, v.size, p.size)
     stacked = {
         name: np.array([column[name] for column in columns]).reshape(shape) for name in QUANTITIES
     }
@@ -221,7 +159,7 @@ def _table(
         deviation[name] = np.where(count > 1, spread, np.nan).T
     said = dict.fromkeys(str(text) for column in columns for text in column["notes"])
     notes = [text.removeprefix("note|") for text in said if text.startswith("note|")]
-    notes.insert(0, _about(surfaces))
+    notes = about + notes
     dropped = int((~usable).sum())
     if dropped:
         notes.append(f"{dropped} of {usable.size} solutions did not converge and were left out")
@@ -288,6 +226,19 @@ def _nodes(name: str, given: ArrayLike, least: int) -> np.ndarray:
             remedy="For example numpy.geomspace(low, high, 8)",
         )
     return values
+
+
+def _pairs(floors: Sequence[Any], shoes: Sequence[Any] | None) -> list[tuple[Any, Any]]:
+    if shoes is None:
+        return [(floor, None) for floor in floors]
+    _check_surfaces(shoes)
+    if len(shoes) != len(floors):
+        raise InputError(
+            f"{len(shoes)} shoe surfaces for {len(floors)} floors",
+            where="shoe_surfaces",
+            allowed="one for each floor",
+        )
+    return list(zip(floors, shoes, strict=True))
 
 
 def _check_surfaces(surfaces: Sequence[Any]) -> None:
