@@ -155,7 +155,12 @@ def test_triangle_and_square_waves():
     assert numbers.rku == pytest.approx(1.8, rel=2e-3)
     square = height_numbers(np.sign(np.sin(2 * np.pi * (np.arange(n) + 0.5) / 100)))
     assert (square.ra, square.rq, square.rku) == pytest.approx((1.0, 1.0, 1.0))
-    assert np.isnan(height_numbers(np.ones(5)).rsk)
+    assert height_numbers(np.ones(5)).rsk is None
+    flat = profile_roughness(Profile(np.zeros(10_000), UM), 0.8 * MM)
+    assert (flat.ra, flat.rz, flat.rsk, flat.rsm) == (0.0, 0.0, None, None)
+    assert {"rsk", "rku", "rsm"} <= set(flat.not_estimated)
+    assert "Rsk not estimated" in str(flat)
+    assert "ssk" in areal_roughness(HeightMap(np.zeros((32, 32)), UM)).not_estimated
 
 
 def test_refusals_of_roughness_numbers():

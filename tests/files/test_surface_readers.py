@@ -159,6 +159,8 @@ def test_missing_heights_are_counted_and_filled_on_request(tmp_path):
     ("text", "says"),
     [
         ("x,z\n1,2\n2,3\n3,4", "no unit of length"),
+        ("Length 12.5 mm\nx,z\n1,2\n2,3\n3,4", "no unit of length"),
+        ("x [mm],z\n1,2\n2,3\n3,4", "one unit"),
         ("nothing here", "no rows of numbers"),
         ("x um,z nm\n1,2\n2,3\n3,4\n9,6", "uneven"),
         ("x um,z nm\n1,2\n2,3\n1,4\n5,6", "does not follow"),

@@ -154,6 +154,11 @@ def test_relaxation_superposition():
     np.testing.assert_allclose(master.shifts.log10_shift_factors, expected, atol=0.02)
 
 
+def test_flat_curves_say_that_their_shift_is_unknown():
+    flat = [DynamicSweep([1, 2, 4, 8], [5e6] * 4, [1e5] * 4, t) for t in (290.0, 300.0)]
+    assert dynamic_master_curve(flat).shifts.log10_errors.max() > 10.0
+
+
 def test_what_can_not_be_superposed_is_refused():
     law = WlfShift(8.86, 101.6, 303.15)
     with pytest.raises(DataError, match="do not overlap"):

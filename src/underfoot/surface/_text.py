@@ -28,10 +28,14 @@ class TextNumbers:
     where: str
 
     def units(self) -> list[str]:
-        """Length units named in the last heading line, or in any line above, in order."""
-        for line in reversed(self.header):
+        """Return the length units of the headings, in order; none where headings name none.
+
+        Only the last two lines above the numbers count, and only if they hold no digits: a line
+        such as "Length 12.5 mm" says nothing about the columns.
+        """
+        for line in reversed(self.header[-2:]):
             found = _LENGTH.findall(line)
-            if found:
+            if found and not re.search(r"\d", line):
                 return found
         return []
 

@@ -28,8 +28,8 @@ class ArealRoughness:
     sz: float
     sp: float
     sv: float
-    ssk: float
-    sku: float
+    ssk: float | None
+    sku: float | None
     sdq: float | None
     long_cutoff: float | None
     short_cutoff: float | None
@@ -89,6 +89,8 @@ def areal_roughness(
         reasons["sdq"] = "fewer than nine points along a side"
     else:
         sdq = rms_slope(rough)
+    if numbers.rsk is None:
+        reasons |= {"ssk": "a flat surface has none", "sku": "a flat surface has none"}
     return ArealRoughness(
         sa=numbers.ra,
         sq=numbers.rq,

@@ -23,8 +23,8 @@ class HeightNumbers:
 
     ra: float
     rq: float
-    rsk: float
-    rku: float
+    rsk: float | None
+    rku: float | None
     rp: float
     rv: float
     rt: float
@@ -34,7 +34,7 @@ def height_numbers(heights: ArrayLike) -> HeightNumbers:
     """Return mean and rms deviation, skewness, kurtosis, peak, valley and total height.
 
     Of heights (m) of any shape as they are: no form removed, no filter. Skewness and kurtosis
-    are NaN for a flat surface.
+    are None for a flat surface.
     """
     z = np.asarray(heights, dtype=float)
     check_heights(np.atleast_1d(z))
@@ -44,8 +44,8 @@ def height_numbers(heights: ArrayLike) -> HeightNumbers:
     return HeightNumbers(
         ra=float(np.mean(np.abs(z))),
         rq=rq,
-        rsk=np.nan if flat else float(np.mean((z / rq) ** 3)),
-        rku=np.nan if flat else float(np.mean((z / rq) ** 4)),
+        rsk=None if flat else float(np.mean((z / rq) ** 3)),
+        rku=None if flat else float(np.mean((z / rq) ** 4)),
         rp=float(z.max()),
         rv=float(-z.min()),
         rt=float(z.max() - z.min()),
@@ -57,8 +57,8 @@ class ProfileRoughness:
     """Roughness numbers of a profile with everything that they depend on.
 
     Lengths in m. ``rdq`` (rms slope) and ``rms_curvature`` (1/m) need a short cut-off and are
-    None without one; ``rsm`` (mean spacing of profile elements) is None where no element counts;
-    ``not_estimated`` gives the reasons.
+    None without one; ``rsm`` (mean spacing of profile elements) is None where no element counts,
+    ``rsk`` and ``rku`` where a section is flat; ``not_estimated`` gives the reasons.
     """
 
     ra: float
@@ -67,8 +67,8 @@ class ProfileRoughness:
     rp: float
     rv: float
     rt: float
-    rsk: float
-    rku: float
+    rsk: float | None
+    rku: float | None
     rsm: float | None
     rdq: float | None
     rms_curvature: float | None
@@ -86,11 +86,13 @@ class ProfileRoughness:
         def um(value: float | None) -> str:
             return "not estimated" if value is None else f"{value * 1e6:.4g} um"
 
+        def number(value: float | None) -> str:
+            return "not estimated" if value is None else f"{value:.4g}"
+
         names = ("ra", "rq", "rz", "rp", "rv", "rt", "rsm")
         lengths = ", ".join(f"{n[0].upper()}{n[1:]} {um(getattr(self, n))}" for n in names)
-        slope_text = "not estimated" if self.rdq is None else f"{self.rdq:.4g}"
         return (
-            f"{lengths}, Rsk {self.rsk:.3g}, Rku {self.rku:.3g}, Rdq {slope_text}; "
+            f"{lengths}, Rsk {number(self.rsk)}, Rku {number(self.rku)}, Rdq {number(self.rdq)}; "
             f"{self.standard}, cut-off {um(self.long_cutoff)} / {um(self.short_cutoff)}, "
             f"{self.sections} sections of {um(self.section_length)}, ends: {self.ends}"
         )
@@ -180,15 +182,15 @@ def profile_roughness(
         reasons["rsm"] = "fewer than one whole profile element above 10 % of Rz"
     parts = [height_numbers(p) for p in pieces]
     if standard.startswith("ISO 4287"):
-        ra, rq, rsk, rku = (
-            float(np.mean([getattr(p, name) for p in parts])) for name in ("ra", "rq", "rsk", "rku")
-        )
+        ra, rq, rsk, rku = (_mean(parts, name) for name in ("ra", "rq", "rsk", "rku"))
     else:
         total = height_numbers(z)
         ra, rq, rsk, rku = total.ra, total.rq, total.rsk, total.rku
+    if rsk is None or rku is None:
+        reasons |= {"rsk": "a flat section has none", "rku": "a flat section has none"}
     return ProfileRoughness(
-        ra=ra,
-        rq=rq,
+        ra=ra or 0.0,
+        rq=rq or 0.0,
         rz=rp + rv,
         rp=rp,
         rv=rv,
@@ -248,6 +250,11 @@ def _without_line(profile: Profile) -> Profile:
     from .prepare import levelled
 
     return levelled(profile, 1)
+
+
+def _mean(parts: list[HeightNumbers], name: str) -> float | None:
+    values = [getattr(part, name) for part in parts]
+    return None if any(value is None for value in values) else float(np.mean(values))
 
 
 def _rms(values: np.ndarray) -> float:

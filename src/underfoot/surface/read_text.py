@@ -45,7 +45,8 @@ def read_profile(
             remedy="A map is read with read_map",
         )
     units = data.units()
-    to_height = _factor(height_unit, units[-1:] if columns == len(units) or units else [], data, 0)
+    _refuse_one_for_all(units, columns, position_unit, height_unit, data)
+    to_height = _factor(height_unit, units[-1:], data, 0)
     heights, notes = _complete(data.rows[:, -1] * to_height, fill_missing, data)
     if columns == 1:
         if spacing is None:
@@ -92,6 +93,8 @@ def read_map(
     """
     data = read_numbers(path)
     units = data.units()
+    if data.rows.shape[1] == 3:
+        _refuse_one_for_all(units, 3, length_unit, height_unit, data)
     to_height = _factor(height_unit, units[-1:], data, 0)
     if data.rows.shape[1] == 3 and data.rows.shape[0] > 3:
         to_length = _factor(length_unit, units[:1], data, 1)
@@ -171,6 +174,19 @@ def _complete(
         )
     whole, note = filled(heights)
     return whole, (note,)
+
+
+def _refuse_one_for_all(
+    units: list[str], columns: int, length: str | None, height: str | None, data: TextNumbers
+) -> None:
+    """Refuse to guess which column a lone unit belongs to."""
+    if columns > 1 and len(units) == 1 and (length is None or height is None):
+        raise DataError(
+            f'one unit ("{units[0]}") for {columns} columns',
+            where=data.where,
+            allowed="a unit for positions and one for heights, as in: x [mm]; z [um]",
+            remedy="Give both units",
+        )
 
 
 def _factor(given: str | None, found: list[str], data: TextNumbers, which: int) -> float:

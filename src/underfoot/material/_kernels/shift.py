@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 
 DEGREE = 3
+LEAST_SCATTER = 4e-4
+"""0.1 % in log10: no reading is trusted further."""
 
 
 def common_polynomial_cost(
@@ -41,7 +43,7 @@ def best_shift(
     from scipy.optimize import minimize_scalar
 
     scatter = np.sqrt(0.5 * (own_scatter(x, y) ** 2 + own_scatter(x_other, y_other) ** 2))
-    scatter = np.maximum(scatter, 1e-3 * (np.ptp(y, axis=1) + np.ptp(y_other, axis=1)) + 1e-12)
+    scatter = np.maximum(scatter, LEAST_SCATTER)
     y, y_other = y / scatter[:, None], y_other / scatter[:, None]
 
     low, high = x.min() - x_other.max(), x.max() - x_other.min()
@@ -61,7 +63,8 @@ def best_shift(
     step = 0.02 * (high - low)
     around = [common_polynomial_cost(shift + d, x, y, x_other, y_other)[0] for d in (-step, step)]
     curvature = (around[0] + around[1] - 2.0 * cost) / step**2
-    error = np.sqrt(2.0 * variance / curvature) if curvature > 0.0 else np.inf
+    # Flat curves fit at any shift: the error must say so, however smooth they are.
+    error = np.sqrt(2.0 * max(variance, 1.0) / curvature) if curvature > 0.0 else np.inf
     return shift, float(error), float(np.sqrt(variance * np.mean(scatter**2)))
 
 
