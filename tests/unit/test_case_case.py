@@ -48,7 +48,8 @@ def test_every_value_knows_where_it_comes_from(case):
     speed = case.sourced("motion.speed")
     assert (speed.uncertainty, speed.source) == (0.005, "encoder")
     assert case.sourced("shoe.heel.facet_angle").assumed
-    assert case.sourced("contaminant.boundary.cof_bl").uncertainty == 0.05
+    oil = case.replace("contaminant", "canola_oil")
+    assert oil.sourced("contaminant.boundary.cof_bl").uncertainty == 0.02
     assert case.sourced("shoe.material.modulus").value is None
     assert case.entries["shoe"] == "work_shoe_half_tread"
 
@@ -76,8 +77,10 @@ def test_what_was_assumed_is_listed_and_what_is_unused_is_not(case):
 
 
 def test_the_effective_roughness_is_the_composite_of_both(case):
-    expected = math.hypot(math.sqrt(math.pi / 2) * 5.74e-6, 0.45e-6)
-    assert case.effective_rq.value == pytest.approx(expected)
+    stylus = math.hypot(math.sqrt(math.pi / 2) * 5.74e-6, 0.45e-6)
+    assert case.effective_rq.value == pytest.approx(2.0 * stylus)
+    plain = case.replace("interface.roughness_beyond_cutoff", 1.0)
+    assert plain.effective_rq.value == pytest.approx(stylus)
     assert case.effective_rq.assumed
 
 

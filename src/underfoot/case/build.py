@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
-from underfoot.core import Breach, InputError, SourcedValue
+import numpy as np
+
+from underfoot.core import Breach, Cache, InputError, Progress, SourcedValue, silent
 
 if TYPE_CHECKING:
     from underfoot.asperity.law import PressureGapLaw
     from underfoot.core.catalogue import Catalogue
     from underfoot.friction import BoundaryFriction, FrictionLaw
+    from underfoot.material import Elastomer
     from underfoot.outsole import SoleMap
     from underfoot.outsole.compliance import Compliance
 
@@ -17,6 +21,10 @@ if TYPE_CHECKING:
 
 HARDNESS_SPREAD = 0.3
 """Relative standard deviation of a modulus from hardness (assumed: tens of percent)."""
+TABLE_CELLS, TABLE_SURFACES, TABLE_WAVES = 128, 4, 4
+"""Contact table: cells along a side, surfaces, longest waves along a side."""
+TABLE_PRESSURES = (1e3, 2e6)
+"""Contact table: lowest and highest nominal pressure, Pa."""
 
 
 def youngs_modulus(case: Case) -> tuple[SourcedValue, list[Breach]]:
@@ -116,13 +124,61 @@ def compliance(case: Case, sole: SoleMap, modulus: float) -> Compliance:
     )
 
 
-def asperity_law(case: Case, modulus: float) -> PressureGapLaw:
-    """Return how the rough interface carries load and lets fluid through."""
-    from underfoot.asperity.exponential import ExponentialLaw
+def asperity_law(case: Case, modulus: float, progress: Progress = silent) -> PressureGapLaw:
+    """Return how the rough interface carries load and lets fluid through.
 
+    "exponential": one formula, no flow factor. "contact_table": self-affine surfaces of the
+    interface's effective Rq in sliding contact with the outsole's rubber, with the flow factors of
+    their own gaps; computed once and cached.
+    """
     rq = case.effective_rq.value
     assert rq is not None  # effective_rq raises when it is not known
-    return ExponentialLaw(modulus, case.shoe.material.poisson_ratio, rq)
+    poisson_ratio = case.shoe.material.poisson_ratio
+    if case.models.asperity == "exponential":
+        from underfoot.asperity import ExponentialLaw
+
+        return ExponentialLaw(modulus, poisson_ratio, rq)
+    from underfoot.asperity.contact_table import ContactTable
+    from underfoot.surface import self_affine
+
+    waves = case.interface
+    side = TABLE_WAVES * waves.longest_wave
+    spacing = min(side / TABLE_CELLS, waves.shortest_wave / 2)
+    cells = 2 * math.ceil(side / spacing / 2)
+    surfaces = [
+        self_affine(
+            cells, side / cells, rq, waves.hurst, waves.longest_wave, waves.shortest_wave, seed
+        )
+        for seed in range(TABLE_SURFACES)
+    ]
+    speed = case.motion.speed
+    table = ContactTable.from_surfaces(
+        surfaces,
+        outsole_rubber(case, modulus),
+        np.geomspace(*TABLE_PRESSURES, 14),
+        np.array([0.5 * speed, speed, 2.0 * speed]),
+        poisson_ratio=poisson_ratio,
+        cache=Cache("contact_table"),
+        description=f"self-affine interface, Rq {rq * 1e6:.3g} um",
+        progress=progress,
+    )
+    return table.law(speed)
+
+
+def outsole_rubber(case: Case, modulus: float) -> Elastomer:
+    """Return the outsole's compound: its relaxation spectrum where given, else elastic."""
+    from underfoot import material
+
+    relaxation = case.shoe.material.relaxation
+    poisson_ratio = case.shoe.material.poisson_ratio
+    if relaxation is None:
+        return material.Elastomer(modulus, poisson_ratio)
+    shear = material.RelaxationSpectrum(
+        relaxation.equilibrium_shear_modulus,
+        np.array([term.shear_modulus for term in relaxation.terms]),
+        np.array([term.time for term in relaxation.terms]),
+    )
+    return material.Elastomer(material.young_from_shear(shear, poisson_ratio), poisson_ratio)
 
 
 def friction_law(case: Case, catalogue: Catalogue) -> FrictionLaw:
@@ -133,6 +189,7 @@ def friction_law(case: Case, catalogue: Catalogue) -> FrictionLaw:
     fluid that was not measured; "boundary" takes COF_BL at every speed.
     """
     from underfoot.friction import (
+        AdhesionBlockingLaw,
         BoundaryLaw,
         ConstantLaw,
         StribeckLaw,
@@ -154,11 +211,24 @@ def friction_law(case: Case, catalogue: Catalogue) -> FrictionLaw:
         return ConstantLaw(whole - left, left, source.source, thickness, source.uncertainty)
     measured = measured_fluids(catalogue)
     own = _measured_friction(case, thickness)
-    if thickness is None:
+    if case.contaminant is None or thickness is None:
         raise _no_dry_friction()
     fitted = own is not None and own.tau_hydro is not None and own.cof_asymptote is not None
     if case.models.friction == "stribeck" and own is not None and fitted:
         return StribeckLaw.measured(own, cof_hysteresis=hysteresis, others=measured)
+    if case.models.friction == "adhesion_blocking":
+        from underfoot.fluid import AdhesionBlocking
+
+        boundary = case.contaminant.boundary
+        assert boundary.alpha is not None  # checked with the case, like beta
+        assert boundary.beta is not None
+        source = case.sourced("contaminant.boundary.alpha").source
+        return AdhesionBlockingLaw(
+            AdhesionBlocking(boundary.alpha, boundary.beta, source),
+            case.sourced("interface.dry_adhesion_cof"),
+            case.sourced("interface.hysteresis_cof"),
+            thickness,
+        )
     if case.models.friction == "stribeck" and own is None:
         return stribeck_law_at(thickness, measured, fluid=_fluid_name(case))
     if own is None:

@@ -231,18 +231,22 @@ class Case(Section):
 
     @property
     def effective_rq(self) -> SourcedValue:
-        """Rq of the interface, m: as given, else sqrt(Rq_shoe^2 + Rq_floor^2) of the stylus."""
+        """Rq of the interface, m: as given, else f sqrt(Rq_shoe^2 + Rq_floor^2) of the stylus.
+
+        f is ``interface.roughness_beyond_cutoff``.
+        """
         if self.interface.effective_rq is not None:
             return self.sourced("interface.effective_rq")
         shoe, floor = self.shoe.roughness.rq_or_estimate, self.floor.roughness.rq_or_estimate
         if shoe is None or floor is None:
             raise InputError("no roughness is given", where="interface.effective_rq")
         return SourcedValue(
-            math.hypot(shoe, floor),
+            self.interface.roughness_beyond_cutoff * math.hypot(shoe, floor),
             "m",
-            source="composite of the stylus Rq of shoe and floor",
+            source=f"composite of the stylus Rq of shoe and floor, "
+            f"times {self.interface.roughness_beyond_cutoff:g}",
             assumed=True,
-            note="the stylus' cut-off hides long waves: leakage may ask for several times as much",
+            note="the stylus' cut-off hides long waves, through which fluid leaks",
         )
 
     def _default_origins(self, known: Mapping[str, Origin]) -> dict[str, Origin]:

@@ -192,10 +192,11 @@ def _rest(case: Case, places: Places) -> Iterator[InputError]:
             allowed=f"at least {display(motion.force_rise_time, 's')} (motion.force_rise_time)",
             remedy=f'Write motion.duration = "{motion.force_rise_time * 1e3 + 90:.0f} ms"',
         )
-    if case.models.friction == "constant" and case.interface.constant_cof is None:
-        yield InputError(
-            'is missing for models.friction = "constant"',
-            where=places("interface.constant_cof"),
+    if case.interface.shortest_wave >= case.interface.longest_wave:
+        yield RangeError(
+            "the shortest wave of the interface is not shorter than the longest",
+            where=places("interface.shortest_wave"),
+            allowed=f"below {display(case.interface.longest_wave, 'm')} (interface.longest_wave)",
         )
     yield from _friction(case, places)
 

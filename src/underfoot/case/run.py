@@ -60,7 +60,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
     fluid = build.viscosity(case)
     assert modulus.value is not None
     sole = build.sole_map(case, spacing)
-    asperities = build.asperity_law(case, modulus.value)
+    asperities = build.asperity_law(case, modulus.value, progress)
     motion = case.motion
     settings = SolverSettings(
         pool_depth=case.contaminant.pool_depth if case.contaminant else 0.6e-3,

@@ -219,7 +219,30 @@ class Interface(Section):
     effective_rq: Roughness_ | None = Field(
         default=None,
         description="roughness that lets fluid leak and asperities touch; default: composite of "
-        "the stylus Rq of shoe and floor, which may be several times too small",
+        "the stylus Rq of shoe and floor times roughness_beyond_cutoff",
+    )
+    roughness_beyond_cutoff: Annotated[float, Quantity("1", 1.0, 10.0)] = default(
+        2.0,
+        2.0,
+        "chosen on one reading of the report (G.4, untreaded work shoe in glycerol, 201 N); "
+        "the stylus sees no waves beyond its cut-off of 0.8 mm, the leaking fluid does",
+        assumed=True,
+    )
+    hurst: Annotated[float, Quantity("1", 0.1, 1.0)] = default(
+        0.8, 0.8, "common for worn and abraded surfaces", assumed=True
+    )
+    longest_wave: Length = default(
+        2 * _mm,
+        "2 mm",
+        "where a roughness that grows as the length to the power 0.8 has doubled "
+        "since the stylus' cut-off of 0.8 mm",
+        assumed=True,
+    )
+    shortest_wave: Annotated[float, Quantity("m", 1e-6, 1e-2)] = default(
+        125 * _um,
+        "0.125 mm",
+        "what a grid of 128 cells holds; sets contact area, hardly the gap",
+        assumed=True,
     )
     constant_cof: Friction | None = Field(
         default=None, description="for models.friction = 'constant'"
@@ -239,12 +262,11 @@ class Models(Section):
     asperity: Literal["exponential", "contact_table"] = default(
         "exponential", "exponential", "Persson 2007, low-load form"
     )
-    flow_factor: Literal["law", "smooth"] = default("law", "law", "that of the asperity law")
     compliance: Literal["layered", "half_space"] = default(
         "layered", "layered", "outsole layer with free edges"
     )
     friction: Literal["boundary", "stribeck", "adhesion_blocking", "constant"] = default(
-        "boundary", "boundary", "boundary friction of the pair and fluid"
+        "stribeck", "stribeck", "friction of the pair and fluid as measured at the speed"
     )
 
 

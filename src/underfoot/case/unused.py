@@ -39,4 +39,8 @@ def unused(case: Case) -> frozenset[str]:
         found.append("contaminant.boundary.cof_bl")
     if case.models.friction != "stribeck":
         found += ["contaminant.boundary.tau_hydro", "contaminant.boundary.cof_asymptote"]
+    if case.models.asperity != "contact_table":
+        found += [f"interface.{name}" for name in ("hurst", "longest_wave", "shortest_wave")]
+    if case.interface.effective_rq is not None:
+        found.append("interface.roughness_beyond_cutoff")
     return frozenset(found)
