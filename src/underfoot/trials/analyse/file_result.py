@@ -1,0 +1,143 @@
+"""What one file gave: numbers, rules kept or broken, a verdict, and curves for the figures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..measurement import Measurement
+from ..protocols import Protocol
+
+ACCEPTED, CAUTION, REFUSED = "accepted", "caution", "refused"
+_POINTS = 400
+
+
+@dataclass(frozen=True, slots=True)
+class FileResult:
+    """Outcome of one file.
+
+    Parameters
+    ----------
+    file, checksum
+        Name and SHA-256.
+    verdict
+        "accepted", "caution" (read the reasons before using the numbers) or "refused".
+    reasons
+        Why, in words.
+    measurements
+        One entry per number: item (trial, step, sensor), then as ``Measurement.as_dict``.
+    main
+        The numbers that stand for the file in tables: name to SI value.
+    facts
+        What the rules were checked against.
+    curves
+        Series for figures, thinned.
+    conditions
+        What the laboratory noted about the file.
+    """
+
+    file: str
+    checksum: str = ""
+    verdict: str = ACCEPTED
+    reasons: tuple[str, ...] = ()
+    measurements: tuple[Mapping[str, Any], ...] = ()
+    main: Mapping[str, float] = field(default_factory=dict)
+    facts: Mapping[str, float] = field(default_factory=dict)
+    curves: Mapping[str, Any] = field(default_factory=dict)
+    conditions: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def usable(self) -> bool:
+        """True when the numbers may enter the tables of the study."""
+        return self.verdict != REFUSED
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data for JSON."""
+        return asdict(self)
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> FileResult:
+        """Return the result written by ``as_dict``."""
+        plain: dict[str, Any] = dict(data)
+        plain["reasons"] = tuple(plain["reasons"])
+        plain["measurements"] = tuple(plain["measurements"])
+        return cls(**plain)
+
+
+class Draft:
+    """Collects what one file gives while it is analysed."""
+
+    def __init__(self, file: str, conditions: Mapping[str, Any]) -> None:
+        self.file = file
+        self.checksum = ""
+        self.conditions = dict(conditions)
+        self.measurements: list[dict[str, Any]] = []
+        self.main: dict[str, float] = {}
+        self.facts: dict[str, float] = {}
+        self.curves: dict[str, Any] = {}
+        self.cautions: list[str] = []
+        self.refusals: list[str] = []
+
+    def add(self, item: str, measurement: Measurement, *, main: str = "") -> None:
+        """Keep a number; ``main`` names it as the file's own number of that kind."""
+        self.measurements.append({"item": item, **measurement.as_dict()})
+        if main and measurement.value is not None:
+            self.main[main] = measurement.value
+
+    def curve(self, name: str, **series: Any) -> None:
+        """Keep curves for a figure, all thinned to at most 400 points in the same way."""
+        out: dict[str, Any] = {}
+        for key, values in series.items():
+            if isinstance(values, np.ndarray):
+                step = max(1, math.ceil(len(values) / _POINTS))
+                out[key] = [_rounded(v) for v in np.asarray(values, dtype=float)[::step].tolist()]
+            elif isinstance(values, float):
+                out[key] = _rounded(values)
+            else:
+                out[key] = values
+        self.curves.setdefault(name, []).append(out)
+
+    def finished(self, protocol: Protocol) -> FileResult:
+        """Check the rules and return the result with its verdict."""
+        for rule in protocol.rules:
+            if rule.quantity not in self.facts:
+                continue
+            broken = rule.broken_by(self.facts[rule.quantity])
+            if broken:
+                (self.refusals if rule.severity == "refuse" else self.cautions).append(broken)
+        for entry in self.measurements:
+            if entry["name"] in protocol_flags(protocol):
+                self.cautions += [f"{entry['item']}: {flag}" for flag in entry["flags"]]
+        verdict = REFUSED if self.refusals else CAUTION if self.cautions else ACCEPTED
+        return FileResult(
+            self.file,
+            self.checksum,
+            verdict,
+            tuple(dict.fromkeys([*self.refusals, *self.cautions])),
+            tuple(self.measurements),
+            self.main,
+            self.facts,
+            self.curves,
+            self.conditions,
+        )
+
+
+def protocol_flags(protocol: Protocol) -> tuple[str, ...]:
+    """Return the measurements whose flags make a file a caution."""
+    return {
+        "human_slip": ("peak slipping speed",),
+        "gait": (),
+        "pin_on_disk": ("cof",),
+        "boundary": ("cof",),
+        "slip_tester": ("cof",),
+        "relaxation": ("final force",),
+    }[protocol.kind]
+
+
+def _rounded(value: float) -> float | None:
+    """Seven digits are more than any instrument gives; NaN is not JSON."""
+    return float(f"{value:.7g}") if math.isfinite(value) else None

@@ -1,0 +1,66 @@
+"""The methods paragraph, written from what was done."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+from ..protocols import KINDS, Protocol
+from .file_result import CAUTION, REFUSED, FileResult
+from .study import Study
+
+
+def methods_paragraphs(
+    files: Sequence[FileResult], protocol: Protocol, study: Study, version: str
+) -> list[str]:
+    """Return paragraphs that say which files were used, how numbers were taken, which tests."""
+    counts = Counter(one.verdict for one in files)
+    n = len(files)
+    first = (
+        f"{n} {'file was' if n == 1 else 'files were'} analysed with underfoot {version} by the "
+        f"protocol “{protocol.title}” ({KINDS[protocol.kind]}; {protocol.source}). "
+        f"{n - counts[REFUSED]} gave usable numbers, {counts[CAUTION]} of them with cautions; "
+        f"{counts[REFUSED]} {'was' if counts[REFUSED] == 1 else 'were'} refused."
+    )
+    paragraphs = [first]
+    conventions = _conventions(files)
+    if conventions:
+        paragraphs.append(" ".join(conventions))
+    if protocol.rules:
+        words = "; ".join(rule.words() for rule in protocol.rules)
+        paragraphs.append(f"Rules checked on every trial: {words}.")
+    if study.findings:
+        titles = "; ".join(dict.fromkeys(finding.title for finding in study.findings))
+        paragraphs.append(
+            f"Statistics: {titles}. Alpha is 0.05; intervals cover 95 %. Factors were coded to "
+            "sum to zero."
+        )
+    assumed = protocol.assumptions()
+    if assumed:
+        paragraphs.append("Set here and not by the source: " + "; ".join(assumed) + ".")
+    return paragraphs
+
+
+def _conventions(files: Sequence[FileResult]) -> list[str]:
+    """Return one sentence for each quantity: the conventions that all or most files share."""
+    seen: dict[str, Counter[tuple[tuple[str, str], ...]]] = {}
+    # Per-file values (baselines, events) are in the table of measurements, not in the methods.
+    private = {"baseline", "walking direction", "search ends", "direction", "sign"}
+    for one in files:
+        for m in one.measurements:
+            shared = tuple((k, v) for k, v in m["conventions"].items() if k not in private)
+            if shared and m["value"] is not None:
+                seen.setdefault(m["name"], Counter())[shared] += 1
+    sentences, told = [], set()
+    for name, kinds in seen.items():
+        most, count = kinds.most_common(1)[0]
+        if most in told:
+            continue
+        told.add(most)
+        words = "; ".join(f"{key}: {value}" for key, value in most)
+        rest = sum(kinds.values()) - count
+        sentences.append(
+            f"{name.capitalize() if name != 'rcof' else 'RCOF'} ({words})."
+            + (f" {rest} numbers of it were made otherwise." if rest else "")
+        )
+    return sentences

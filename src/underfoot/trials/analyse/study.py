@@ -1,0 +1,346 @@
+"""What a whole folder says: fits, maps, means and tests over its usable files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from underfoot.core import UnderfootError
+
+from ..boundary import alpha_beta, friction_split
+from ..master_curve import master_curve
+from ..protocols import Protocol
+from ..slip_tester import PressureScan, pressure_map
+from ..stribeck_fit import METHODS as FIT_METHODS
+from ..stribeck_fit import StribeckFit, stribeck_fit
+from .file_result import FileResult
+from .study_tests import Finding, anova_finding, slip_findings
+from .tables import Table, group_table
+
+
+@dataclass(frozen=True, slots=True)
+class Study:
+    """Results over the folder: ``tables``, ``findings`` (tests), and ``curves`` for figures."""
+
+    tables: tuple[Table, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    curves: Mapping[str, Any] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+
+def study_of(files: Sequence[FileResult], protocol: Protocol) -> Study:
+    """Return what the usable files say together, by the kind of the protocol.
+
+    A fit, map or test that can't be done is a note with its reason, never an end.
+    """
+    usable = [one for one in files if one.usable]
+    makers: dict[str, Callable[[list[FileResult], Protocol], Study]] = {
+        "pin_on_disk": _pin_on_disk,
+        "boundary": _boundary,
+        "slip_tester": _slip_tester,
+        "human_slip": _human_slip,
+        "gait": _gait,
+        "relaxation": _relaxation,
+    }
+    return makers[protocol.kind](usable, protocol) if usable else Study(notes=("no usable file",))
+
+
+def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
+    keys = [key for key in protocol.words("group") if any(key in f.conditions for f in files)]
+    groups = _grouped(files, keys)
+    rows, notes, fits = [], [], []
+    parameters: dict[str, list[Any]] = {"cof_bl": [], "tau_hydro": [], "cof_asymptote": []}
+    for group, members in groups.items():
+        points = [
+            (f.main["speed"], f.main["cof"]) for f in members if {"speed", "cof"} <= {*f.main}
+        ]
+        label = ", ".join(group) or "all files"
+        try:
+            speed, cof = (np.array(c) for c in zip(*points, strict=True)) if points else ([], [])
+            fit = stribeck_fit(speed, cof)
+            simplex = stribeck_fit(speed, cof, method="nelder_mead")
+        except UnderfootError as error:
+            notes.append(f"{label}: not fitted ({error.what})")
+            continue
+        rows.append((*group, *_fit_cells(fit, simplex)))
+        fits.append(
+            {
+                "label": label,
+                "group": group[0] if group else "",
+                "speed": [float(v) for v in speed],
+                "cof": [float(v) for v in cof],
+                "raw": list(fit.raw),
+                "mean": float(np.mean(cof)),
+                "verdict": fit.verdict,
+                "r_squared": fit.r_squared,
+            }
+        )
+        for parameter in (fit.boundary, fit.tau, fit.asymptote):
+            keep = parameter.value is not None and not parameter.remark.startswith("not identified")
+            value = parameter.value if keep else np.nan
+            parameters[parameter.name].append((group[0] if group else "", value))
+    columns = (
+        *keys, "n", "R^2", "verdict",
+        "COF_BL", "95 % low", "95 % high", "remark",
+        "tau_hydro (m/s)", "95 % low", "95 % high", "remark",
+        "COF_asymptote", "95 % low", "95 % high", "remark",
+        "COF_BL by Nelder-Mead", "tau by Nelder-Mead", "asymptote by Nelder-Mead",
+    )  # fmt: skip
+    tables = [
+        Table(
+            "stribeck",
+            "COF = asymptote + (COF_BL - asymptote) exp(-speed / tau), Eq. 17",
+            columns,
+            tuple(rows),
+            (
+                f"Fitted by {FIT_METHODS['separable']}; beside it {FIT_METHODS['nelder_mead']}.",
+                "Intervals are profile likelihoods; a dash means that the profile does not close.",
+                "Verdict: good above R^2 0.8, moderate above 0.5, else COF_BL is the mean COF.",
+            ),
+        )
+    ]
+    findings = []
+    for name, values in parameters.items():
+        kept = [(g, v) for g, v in values if np.isfinite(v)]
+        if len({g for g, _ in kept}) > 1:
+            factor = protocol.text("compare", keys[0] if keys else "group")
+            findings += anova_finding(name, [v for _, v in kept], {factor: [g for g, _ in kept]})
+    curves: dict[str, Any] = {"fits": fits}
+    wanted = [
+        f for f in files if {"viscosity"} <= {*f.conditions} and {"speed", "cof"} <= {*f.main}
+    ]
+    if len(wanted) >= 6:
+        viscosity = [float(f.conditions["viscosity"]) for f in wanted]
+        speed = [f.main["speed"] for f in wanted]
+        cof = [f.main["cof"] for f in wanted]
+        try:
+            curve = master_curve(viscosity, speed, cof)
+            curves["master"] = {
+                "product": [float(p) for p in np.multiply(viscosity, speed)],
+                "cof": cof,
+                "label": [str(f.conditions.get("fluid", "")) for f in wanted],
+                "grid": curve.product.tolist(),
+                "fitted": curve.fitted.tolist(),
+                "residual_sd": curve.residual_sd,
+                "r_squared": curve.r_squared,
+            }
+            tables.append(
+                Table(
+                    "master_curve",
+                    "One curve of COF against viscosity times speed",
+                    ("R^2", "residual sd", "points"),
+                    ((curve.r_squared, curve.residual_sd, len(cof)),),
+                    ("Isotonic regression: nothing is assumed but the fall.",),
+                )
+            )
+        except UnderfootError as error:
+            notes.append(f"no master curve: {error.what}")
+    return Study(tuple(tables), tuple(findings), curves, tuple(notes))
+
+
+def _fit_cells(fit: StribeckFit, simplex: StribeckFit) -> list[Any]:
+    cells: list[Any] = [fit.n, fit.r_squared, fit.verdict]
+    for parameter in (fit.boundary, fit.tau, fit.asymptote):
+        cells += [parameter.value, parameter.low, parameter.high, parameter.remark]
+    return cells + [p.value for p in (simplex.boundary, simplex.tau, simplex.asymptote)]
+
+
+def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
+    dry, blocked = protocol.text("dry", "dry"), protocol.text("blocked", "sae_75w140")
+    keys = protocol.words("pair")
+    rows, notes, fluids, dry_adhesions, wet = [], [], [], [], []
+    for pair, members in _grouped(files, keys).items():
+        by_fluid: dict[str, list[float]] = {}
+        for f in members:
+            if "friction_force" in f.main:
+                by_fluid.setdefault(str(f.conditions.get("fluid", "")), []).append(
+                    f.main["friction_force"]
+                )
+        label = " on ".join(pair)
+        if dry not in by_fluid or blocked not in by_fluid:
+            notes.append(f"{label}: needs fluid {dry} and fluid {blocked}")
+            continue
+        others = {k: v for k, v in by_fluid.items() if k not in (dry, blocked)}
+        split = friction_split(by_fluid[dry], by_fluid[blocked], others)
+        for name, m in (
+            ("dry", split.dry),
+            ("hysteresis", split.hysteresis),
+            ("adhesion", split.adhesion),
+            *((f"adhesion with {k}", m) for k, m in split.lubricated_adhesion.items()),
+        ):
+            rows.append((*pair, name, m.value, m.uncertainty, m.n, "; ".join(m.flags)))
+        for fluid, m in split.lubricated_adhesion.items():
+            fluids.append(fluid)
+            dry_adhesions.append(split.adhesion.value or 0.0)
+            wet.append(m.value or 0.0)
+    tables = [
+        Table(
+            "friction_split",
+            "Adhesion and hysteresis, Eq. 22 to 25",
+            (*keys, "part", "force (N)", "standard error (N)", "n", "flags"),
+            tuple(rows),
+            (f"Hysteresis is the friction with {blocked}: all adhesion is taken as blocked.",),
+        )
+    ]
+    findings: list[Finding] = []
+    curves: dict[str, Any] = {}
+    try:
+        fit = alpha_beta(fluids, dry_adhesions, wet)
+        tables.append(
+            Table(
+                "alpha_beta",
+                "Adhesion a fluid leaves, Eq. 26",
+                ("fluid", "alpha (N)", "SE", "beta", "SE", "n"),
+                tuple(
+                    (r.fluid, r.alpha, r.alpha_error, r.beta, r.beta_error, r.n) for r in fit.fluids
+                ),
+                (
+                    f"R^2 {fit.model.r_squared:.3f}, adjusted {fit.model.adjusted_r_squared:.3f}; "
+                    f"mean absolute residual {fit.mean_absolute_residual:.3g} N.",
+                ),
+            )
+        )
+        findings += [Finding.of_anova(fit.type_two), Finding.of_anova(fit.type_three)]
+        curves["alpha_beta"] = {
+            "fluid": fluids,
+            "dry": dry_adhesions,
+            "wet": wet,
+            "lines": [(r.fluid, r.alpha, r.beta) for r in fit.fluids],
+        }
+    except (UnderfootError, ValueError) as error:
+        notes.append(f"Eq. 26 was not fitted: {getattr(error, 'what', error)}")
+    return Study(tuple(tables), tuple(findings), curves, tuple(notes))
+
+
+def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
+    keys = [key for key in protocol.words("group") if any(key in f.conditions for f in files)]
+    tables, notes, maps = [], [], []
+    table = group_table(files, tuple(keys), ("cof",))
+    if table:
+        tables.append(table)
+    rows = []
+    wanted = next((r for r in protocol.rules if r.quantity == "repeats"), None)
+    for group, members in _grouped(files, keys).items():
+        label = ", ".join(group) or "all files"
+        if wanted is not None and wanted.broken_by(float(len(members))):
+            notes.append(f"{label}: {wanted.broken_by(float(len(members)))}")
+        scans = [_scan(f) for f in members if "scan" in f.curves]
+        if len(scans) < 2:
+            continue
+        spacing = protocol.number("scan_spacing", "m", 0.0) or None
+        inlet = protocol.number("inlet_diameter", "m", 0.0) or None
+        try:
+            found = pressure_map(scans, spacing=spacing, inlet_diameter=inlet)
+        except UnderfootError as error:
+            notes.append(f"{label}: no map ({error.what})")
+            continue
+        rows.append(
+            (
+                label, len(scans), found.load.value, found.load.uncertainty, found.peak.value,
+                found.peak_along.value, found.peak_lateral.value, found.outer_share,
+                found.half_spacing_change, "; ".join(found.load.flags),
+                found.load.conventions.get("inlet", ""),
+            )
+        )  # fmt: skip
+        thin = max(1, len(found.along) // 200)
+        maps.append(
+            {
+                "label": label,
+                "lateral": found.lateral.tolist(),
+                "along": found.along[::thin].tolist(),
+                "pressure": np.where(np.isnan(found.pressure), 0.0, found.pressure)[
+                    :, ::thin
+                ].tolist(),
+                "load": found.load.value,
+                "peak": found.peak.value,
+                "peak_along": found.peak_along.value,
+                "peak_lateral": found.peak_lateral.value,
+            }
+        )
+    if rows:
+        tables.append(
+            Table(
+                "maps",
+                "Load carried by the fluid, Eq. 27",
+                (
+                    "map", "scans", "fluid load (N)", "from sensor noise (N)", "peak (Pa)",
+                    "peak from heel's back (m)", "peak left of middle (m)", "outer scans' share",
+                    "change at double spacing", "flags", "sensor inlet",
+                ),
+                tuple(rows),
+                ("The load is what the scans cover; pressure beyond them is not in it.",),
+            )
+        )  # fmt: skip
+    findings: list[Finding] = []
+    labelled = [f for f in files if "cof" in f.main and all(k in f.conditions for k in keys)]
+    if keys and len({str(f.conditions[keys[0]]) for f in labelled}) > 1:
+        factors = {
+            k: [str(f.conditions[k]) for f in labelled]
+            for k in keys
+            if len({str(f.conditions[k]) for f in labelled}) > 1
+        }
+        findings += anova_finding("cof", [f.main["cof"] for f in labelled], factors)
+    return Study(tuple(tables), tuple(findings), {"maps": maps}, tuple(notes))
+
+
+def _human_slip(files: list[FileResult], protocol: Protocol) -> Study:
+    keys = tuple(k for k in protocol.words("compare") if any(k in f.conditions for f in files))
+    numbers = ("rcof", "acof", "peak_slipping_speed", "slip", "peak_pressure")
+    present = tuple(n for n in numbers if any(n in f.main for f in files))
+    tables = []
+    for key in keys:
+        table = group_table(files, (key,), present)
+        if table:
+            title = f"Means by {key}"
+            tables.append(Table(f"groups_{key}", title, table.columns, table.rows, table.notes))
+    findings, curves, notes = slip_findings(files, protocol, keys)
+    return Study(tuple(tables), tuple(findings), curves, tuple(notes))
+
+
+def _gait(files: list[FileResult], protocol: Protocol) -> Study:
+    compare = protocol.words("compare") or tuple(
+        dict.fromkeys(k for f in files for k, v in f.conditions.items() if isinstance(v, str))
+    )
+    with_rcof = [f for f in files if "rcof" in f.main]
+    factors = {
+        key: [str(f.conditions[key]) for f in with_rcof]
+        for key in compare
+        if all(key in f.conditions for f in with_rcof)
+        and 1 < len({str(f.conditions[key]) for f in with_rcof}) < len(with_rcof)
+    }
+    table = group_table(files, tuple(factors), ("rcof",))
+    findings = anova_finding("rcof", [f.main["rcof"] for f in with_rcof], factors)
+    return Study((table,) if table else (), tuple(findings))
+
+
+def _relaxation(files: list[FileResult], protocol: Protocol) -> Study:
+    key = protocol.text("compare", "material")
+    table = group_table(files, (key,), ("force_2_percent", "peak_force", "final_force"))
+    return Study((table,) if table else ())
+
+
+def _grouped(
+    files: Sequence[FileResult], keys: Sequence[str]
+) -> dict[tuple[str, ...], list[FileResult]]:
+    groups: dict[tuple[str, ...], list[FileResult]] = {}
+    for one in files:
+        if all(key in one.conditions for key in keys):
+            groups.setdefault(tuple(str(one.conditions[k]) for k in keys), []).append(one)
+    return groups
+
+
+def _scan(one: FileResult) -> PressureScan:
+    c = one.curves["scan"]
+    return PressureScan(
+        one.file,
+        np.array(c["along"]),
+        np.array(c["pressure"]),
+        c["lateral"],
+        c["speed"],
+        c["speed_change"],
+        c["baseline_sd"],
+        c["sample_load"],
+    )

@@ -1,0 +1,155 @@
+"""COF of a slip tester in the window of its protocol, and what its rules are checked against."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from underfoot.core import DataError, unknown_name
+
+from .available import available_friction, mean_friction
+from .axes import Axes, axes_of
+from .filters import LowPass, low_passed
+from .gait import SHEARS
+from .measurement import Measurement
+from .plates import baseline_words
+from .protocols import Protocol
+from .trial import Channel, Plate, Trial
+
+SPEED = ("sliding speed", "speed", "velocity")
+_MOVING = 0.05  # share of the top speed above which the shoe slides
+_TOUCHING = 50.0  # N
+_ONSET = 0.5  # share of the later friction at which sliding is taken to begin
+
+
+@dataclass(frozen=True, slots=True)
+class SlideFriction:
+    """COF of one slide with its curves.
+
+    ``time`` (s), ``normal``, ``shear`` (N) and ``ratio`` have shape (n,); ``window`` is
+    (begin, end) in s; ``facts`` maps rule quantities to what was measured (SI).
+    """
+
+    cof: Measurement
+    time: np.ndarray
+    normal: np.ndarray
+    shear: np.ndarray
+    ratio: np.ndarray
+    window: tuple[float, float]
+    facts: Mapping[str, float]
+
+
+def slide_friction(trial: Trial, protocol: Protocol, axes: Axes | None = None) -> SlideFriction:
+    """Return the mean COF of a slide in the window its protocol sets.
+
+    ``window_from = "force"``: from the first sample at the target force (grant report G.6);
+    ``"sliding"``: from the start of sliding, seen in a speed channel, else in a marker's path,
+    else in the rise of the shear force (half of its later level).
+
+    Errors
+    ------
+    DataError
+        No usable force plate, no load, or no sliding.
+    """
+    plate = next((plate for plate in trial.plates if plate.usable), None)
+    if plate is None:
+        reasons = "; ".join(p.problem for p in trial.plates) or "the file holds no force plate"
+        raise DataError(reasons, where=trial.name, remedy="Name the force columns in a profile")
+    up = (axes or axes_of(trial)).up
+    normal = plate.force @ up
+    shear = np.linalg.norm(plate.force - np.outer(normal, up), axis=1)
+    if not np.nanmax(normal, initial=0.0) > _TOUCHING:
+        raise DataError("the shoe is never pressed on the plate", where=trial.name)
+    ratio = np.where(normal > 20.0, shear / np.maximum(normal, 20.0), np.nan)
+    facts: dict[str, float] = {}
+    begin_after = protocol.number("window_begin", "s")
+    length = protocol.number("window_end", "s") - begin_after
+    onset, how, speed = _sliding(trial, plate, normal, shear)
+    kind = protocol.text("window_from", "sliding")
+    if kind == "force":
+        target = protocol.number("target_force", "N")
+        cof = available_friction(plate, target=target, window=length, up=up)
+        reached = np.flatnonzero(normal >= target)
+        begin = plate.start + (int(reached[0]) if len(reached) else 0) / plate.rate
+        cof = replace(cof, name="cof")
+    elif kind == "sliding":
+        if onset is None:
+            raise DataError("the start of sliding is not found", where=trial.name)
+        begin = onset + begin_after
+        first = max(round((begin - plate.start) * plate.rate), 0)
+        part = slice(first, first + max(1, round(length * plate.rate)) + 1)
+        level = float(np.nanmedian(normal[part])) if len(normal[part]) else 0.0
+        if level < _TOUCHING:
+            cof = Measurement.not_estimated("cof", "the shoe is not loaded in the window")
+        else:
+            cof = mean_friction(
+                normal[part], shear[part], plate.rate, target=0.5 * level, window=length, name="cof"
+            )
+        words = f"{1e3 * begin_after:g} to {1e3 * (begin_after + length):g} ms after sliding starts"
+        said = {
+            **cof.conventions,
+            "window": words,
+            "sliding start": how,
+            "shear": SHEARS["resultant"],
+            "filter": "no filter",
+            "baseline": baseline_words(plate),
+        }
+        cof = replace(cof, conventions=said)
+    else:
+        raise unknown_name("window", kind, ("force", "sliding"), where="method.window_from")
+    end = begin + length
+    inside = (plate.time >= begin) & (plate.time <= end)
+    if inside.any():
+        facts["normal_force"] = float(np.nanmean(normal[inside]))
+    if speed is not None:
+        near = (speed.time >= begin) & (speed.time <= end) & np.isfinite(speed.values)
+        if near.any():
+            facts["sliding_speed"] = float(np.abs(speed.values[near]).mean())
+    touched = np.flatnonzero(normal > _TOUCHING)
+    if onset is not None and len(touched):
+        contact = plate.start + int(touched[0]) / plate.rate
+        facts["static_contact_time"] = max(onset - contact, 0.0)
+    return SlideFriction(cof, plate.time, normal, shear, ratio, (begin, end), facts)
+
+
+def _sliding(
+    trial: Trial, plate: Plate, normal: np.ndarray, shear: np.ndarray
+) -> tuple[float | None, str, Channel | None]:
+    """Return the start of sliding (s), how it was found, and the sliding speed if known."""
+    speed, how = _speed(trial)
+    if speed is not None:
+        size = np.abs(np.nan_to_num(speed.values))
+        top = float(np.percentile(size, 95))
+        moving = np.flatnonzero(size > _MOVING * top) if top > 0.01 else np.empty(0, dtype=int)
+        loaded = np.interp(speed.time, plate.time, np.nan_to_num(normal)) > _TOUCHING
+        moving = moving[loaded[moving]]
+        if len(moving):
+            return float(speed.time[moving[0]]), how, speed
+    ratio = np.where(normal > _TOUCHING, shear / np.maximum(normal, _TOUCHING), 0.0)
+    loaded = normal > 0.9 * float(np.nanpercentile(normal, 95))
+    if loaded.sum() < 10:
+        return None, "", speed
+    level = float(np.median(ratio[loaded]))
+    rising = np.flatnonzero(ratio > _ONSET * level)
+    if not len(rising) or level <= 0:
+        return None, "", speed
+    return plate.start + int(rising[0]) / plate.rate, "shear at half of its later level", speed
+
+
+def _speed(trial: Trial) -> tuple[Channel | None, str]:
+    try:
+        channel = trial.channel(*SPEED)
+        if channel.unit == "m/s":
+            return channel, f"speed channel above {100 * _MOVING:g} % of its top"
+    except DataError:
+        pass
+    for name, marker in trial.markers.items():
+        if marker.missing.any() or marker.times is not None or len(marker.positions) < 40:
+            continue
+        smooth = low_passed(marker.positions, marker.rate, LowPass(cutoff=20.0))
+        velocity = np.linalg.norm(np.gradient(smooth, 1.0 / marker.rate, axis=0), axis=1)
+        words = f"marker {name} (20 Hz) above {100 * _MOVING:g} % of its top speed"
+        return Channel(velocity, "m/s", marker.rate, marker.start), words
+    return None, ""
