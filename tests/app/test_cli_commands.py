@@ -137,7 +137,7 @@ def test_every_commented_line_of_a_new_case_can_be_switched_on(underfoot, tmp_pa
     lines = []
     for line in target.read_text().splitlines():
         setting = line.removeprefix("# ")
-        keep = "=" in setting and "effective_rq" not in setting and not line.startswith("# A ")
+        keep = "=" in setting and not line.startswith("# A ")
         lines.append(setting if keep else line)
     switched = Case.from_text("\n".join(lines))
     assert switched.origins["shoe.tread.depth"].kind == "given"

@@ -68,8 +68,8 @@ def template(
         lines += ["constant_cof = 0.8  # measured on this shoe and floor, dry: set your own", ""]
     else:
         lines += ["[interface]"]
-        about = "# roughness that lets fluid leak; default from both Rq. Uncertain: vary it"
-        lines += [_commented('# effective_rq = "6 um"', about), ""]
+        about = "# interface against both stylus Rq together; assumed, uncertain: vary it"
+        lines += [_commented("# roughness_beyond_cutoff = 2.0", about), ""]
     lines += ["[risk]"]
     lines += ["# rcof_mean = 0.20  # friction that the people who walk there need, and its"]
     lines += ["# rcof_sd = 0.03    # standard deviation between them"]
