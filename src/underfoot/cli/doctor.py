@@ -56,7 +56,7 @@ def _installed(name: str) -> str:
 
 
 def _solver() -> str:
-    from underfoot.film.factorization import available_backends
+    from underfoot.film import available_backends
 
     names = available_backends()
     return f"{names[0]}" + ("" if len(names) == 1 else f" (also {', '.join(names[1:])})")
