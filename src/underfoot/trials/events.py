@@ -17,6 +17,7 @@ _SHORTEST, _LONGEST = 0.35, 1.5  # s; runners are below, standing and two feet a
 _TOGETHER = 0.1  # s; two contacts of a walk begin half a second apart
 _FOOT_LENGTH, _FOOT_WIDTH = 0.36, 0.14  # m, the most that the centre of pressure of one foot moves
 _GRAVITY = 9.80665
+_OUTSIDE = 0.05  # m; the marker sits behind the shoe, so a heel at the edge is a little outside
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,6 +160,9 @@ def _reason(
     two = _two_feet(trial, plate, stance, axes, heels)
     if two:
         return two
+    outside = _heel_outside(trial, plate, stance, axes, heels)
+    if outside > _OUTSIDE:
+        return f"the heel stands {1e3 * outside:.0f} mm outside the plate: a partial hit"
     if stance.walking is None:
         return f"no walking direction: {stance.walking_from}"
     along = part @ stance.walking
@@ -262,6 +266,44 @@ def _foot(
                 if away < distance:
                     best, distance = (side, name), away
     return best
+
+
+def _heel_outside(
+    trial: Trial, plate: Plate, stance: Stance, axes: Axes, heels: Mapping[str, str] | None
+) -> float:
+    """How far outside the plate (m) a heel stands within a foot's length of the first pressure.
+
+    Zero when a heel stands on the plate, or when nothing is known. Standing: low and slow for
+    40 ms from contact.
+    """
+    place = plate.centre_of_pressure
+    if plate.corners is None or place is None or _heels_on_plate(trial, plate, stance, axes, heels):
+        return 0.0
+    early = place[stance.start : stance.start + max(5, round(0.05 * plate.rate))]
+    early = early[np.isfinite(early).all(axis=1)]
+    if not len(early):
+        return 0.0
+    own = plate_axes(plate.corners)[:, :2]
+    middle = plate.corners.mean(axis=0)
+    half = np.abs((plate.corners - middle) @ own).max(axis=0)
+    found = 0.0
+    for names in heel_candidates(trial, heels).values():
+        for name in names[:1]:
+            marker = trial.marker(name)
+            at = marker.positions
+            inside = (marker.time >= stance.contact) & (marker.time <= stance.contact + 0.04)
+            inside &= ~marker.missing
+            if inside.sum() < 2:
+                continue
+            stand = np.median(at[inside], axis=0)
+            speed = float(np.linalg.norm(np.ptp(at[inside], axis=0))) / 0.04
+            low = float(stand @ axes.up - np.nanmin(at @ axes.up)) < 0.06
+            gap = stand - np.median(early, axis=0)
+            near = float(np.linalg.norm(gap - (gap @ axes.up) * axes.up)) < _FOOT_LENGTH
+            if speed < 0.8 and low and near:
+                beyond = np.abs((stand - middle) @ own) - half
+                found = max(found, float(np.linalg.norm(np.maximum(beyond, 0.0))))
+    return found
 
 
 def _landing_heel(

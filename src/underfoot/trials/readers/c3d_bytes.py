@@ -17,6 +17,7 @@ from underfoot.core import DataError
 BLOCK = 512
 _ENDIAN = {84: "<", 85: "<", 86: ">"}
 _VAX = 85
+_POSSIBLE = 1e30  # no sample of any instrument in any unit is larger
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,7 +160,7 @@ def _points(raw: np.ndarray, scale: float, real: bool) -> np.ndarray:
         positions *= scale
     lost = raw[:, :, 3] < 0
     lost |= (positions == 0.0).all(axis=2)
-    lost |= ~np.isfinite(positions).all(axis=2)
+    lost |= ~(np.abs(positions) < _POSSIBLE).all(axis=2)
     positions[lost] = np.nan
     return positions
 
@@ -174,7 +175,8 @@ def _scaled_analog(raw: np.ndarray, shell: C3DFile, real: bool) -> np.ndarray:
         offset = np.where(offset < 0, offset + 65536, offset)
     general = shell.number("ANALOG", "GEN_SCALE", 1.0)
     scale = shell.numbers("ANALOG", "SCALE").ravel(order="F")
-    return (raw - _padded(offset, n, 0.0)) * (_padded(scale, n, 1.0) * general)
+    samples = (raw - _padded(offset, n, 0.0)) * (_padded(scale, n, 1.0) * general)
+    return np.where(np.abs(samples) < _POSSIBLE, samples, np.nan)
 
 
 def _padded(values: np.ndarray, n: int, fill: float) -> np.ndarray:

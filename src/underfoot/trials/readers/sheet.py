@@ -17,6 +17,7 @@ from .text import (
     delimiter_of,
     is_number,
     lines_of,
+    measurable,
     name_and_unit,
     split,
     unique_names,
@@ -148,14 +149,14 @@ def _sheet(
     for i, name in enumerate(unique_names([name for name, _ in pairs], "column", notes)):
         units[name] = pairs[i][1] or (written[i] if i < len(written) else "")
         if values is not None:
-            numbers[name] = values[:, i]
+            numbers[name] = measurable(values[:, i], notes)
             continue
         cells = [row[i] if i < len(row) else "" for row in body]
         column = _numeric(cells)
         if column is None:
             texts[name] = tuple(cells)
         else:
-            numbers[name] = column
+            numbers[name] = measurable(column, notes)
     above = rows[: table.head if table.head is not None else table.first]
     header = tuple(" ".join(cell for cell in row if cell) for row in above)
     return Sheet(where, numbers, texts, units, header, tuple(notes))

@@ -112,9 +112,19 @@ def table(
     values = _fast(rows, delimiter, columns)
     if values is None:
         values = _slow(rows, delimiter, columns, where, first_line, notes, ignored)
+    values = measurable(values, notes)
     if not np.isfinite(values).any():
         raise DataError("the table holds no number", where=where)
     return values, notes
+
+
+def measurable(values: np.ndarray, notes: list[str]) -> np.ndarray:
+    """Return the values with infinite and impossibly large ones (above 1e30) as NaN, and say so."""
+    absurd = ~(np.abs(values) < 1e30) & ~np.isnan(values)
+    if absurd.any():
+        notes.append(f"{int(absurd.sum())} infinite or impossibly large numbers are left out")
+        values = np.where(absurd, np.nan, values)
+    return values
 
 
 def _fast(rows: Sequence[str], delimiter: str, columns: int) -> np.ndarray | None:
