@@ -13,7 +13,7 @@ from underfoot.core import DataError, UnderfootError
 from ..axes import axes_of
 from ..events import Stance, stances
 from ..filters import LowPass
-from ..gait import RcofDefinition, required_friction
+from ..gait import RcofDefinition, plate_named, required_friction
 from ..measurement import Measurement, mean_of
 from ..pin_on_disk import friction_point
 from ..protocols import Protocol
@@ -254,12 +254,16 @@ def _required(
         if one.measurement.value is None:
             continue
         values.append(one.measurement)
+        force = plate_named(trial, stance.plate).force[stance.start : stance.stop]
+        assert stance.walking is not None
         draft.curve(
             "steps",
             step=f"step {number} on {stance.plate}",
             time=one.time - stance.contact,
             ratio=one.ratio,
             normal=one.normal,
+            along=force @ stance.walking,
+            across=force @ np.cross(axes.up, stance.walking),
             gate=one.gate_time - stance.contact,
             peak_time=one.peak_time - stance.contact,
             peak=one.measurement.value,

@@ -41,15 +41,26 @@ def methods_paragraphs(
     return paragraphs
 
 
+_TOLD = {
+    "rcof": "Required friction (RCOF)",
+    "cof": "Coefficient of friction (COF)",
+    "peak slipping speed": "Peak slipping speed",
+    "peak pressure": "Peak pressure of a sensor",
+    "pressure duration": "Pressure duration",
+    "peak force": "Forces of the relaxation test",
+    "final force": "Force at the end of the hold",
+}
+
+
 def _conventions(files: Sequence[FileResult]) -> list[str]:
     """Return one sentence for each quantity: the conventions that all or most files share."""
     seen: dict[str, Counter[tuple[tuple[str, str], ...]]] = {}
     # Per-file values (baselines, events) are in the table of measurements, not in the methods.
-    private = {"baseline", "walking direction", "search ends", "direction", "sign"}
+    private = {"baseline", "walking direction", "search ends", "direction", "sign", "uncertainty"}
     for one in files:
         for m in one.measurements:
             shared = tuple((k, v) for k, v in m["conventions"].items() if k not in private)
-            if shared and m["value"] is not None:
+            if shared and m["value"] is not None and m["name"] in _TOLD:
                 seen.setdefault(m["name"], Counter())[shared] += 1
     sentences, told = [], set()
     for name, kinds in seen.items():
@@ -60,7 +71,7 @@ def _conventions(files: Sequence[FileResult]) -> list[str]:
         words = "; ".join(f"{key}: {value}" for key, value in most)
         rest = sum(kinds.values()) - count
         sentences.append(
-            f"{name.capitalize() if name != 'rcof' else 'RCOF'} ({words})."
+            f"{_TOLD[name]} ({words})."
             + (f" {rest} numbers of it were made otherwise." if rest else "")
         )
     return sentences

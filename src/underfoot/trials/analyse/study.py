@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -102,13 +102,20 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
             ),
         )
     ]
-    findings = []
+    findings: list[Finding] = []
+    shown: dict[str, Any] = {}
     for name, values in parameters.items():
         kept = [(g, v) for g, v in values if np.isfinite(v)]
+        shown[name] = kept
         if len({g for g, _ in kept}) > 1:
             factor = protocol.text("compare", keys[0] if keys else "group")
-            findings += anova_finding(name, [v for _, v in kept], {factor: [g for g, _ in kept]})
-    curves: dict[str, Any] = {"fits": fits}
+            made = anova_finding(name, [v for _, v in kept], {factor: [g for g, _ in kept]})
+            lost = len(values) - len(kept)
+            if lost and made:
+                text = f"{lost} of {len(values)} series left out: not identified, or no good fit"
+                made[0] = replace(made[0], cautions=(*made[0].cautions, text))
+            findings += made
+    curves: dict[str, Any] = {"fits": fits, "parameters": shown}
     wanted = [
         f for f in files if {"viscosity"} <= {*f.conditions} and {"speed", "cof"} <= {*f.main}
     ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -31,12 +31,18 @@ from .tables import Cell, Table
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One test: what was asked, the table, and cautions."""
+    """One test: what was asked, the table, and cautions.
+
+    Comparisons after Tukey name ``response`` and ``factor``; ``marks`` are the letters by level.
+    """
 
     name: str
     title: str
     table: Table
     cautions: tuple[str, ...] = ()
+    response: str = ""
+    factor: str = ""
+    marks: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
     def of_anova(cls, found: AnovaTable) -> Finding:
@@ -78,7 +84,8 @@ def anova_finding(
         columns = ("first", "second", "difference", "SE", "95 % low", "95 % high", "p adjusted")
         shown = ", ".join(f"{level} {mark}" for level, mark in marks.items())
         note = f"Levels that share a letter do not differ at 0.05: {shown}."
-        results.append(Finding(name, title, Table(name, title, columns, rows, (note,))))
+        table = Table(name, title, columns, rows, (note,))
+        results.append(Finding(name, title, table, (), response, factor, marks))
     return results
 
 

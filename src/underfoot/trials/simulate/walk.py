@@ -182,9 +182,9 @@ def _slipping_heel(time: np.ndarray, landing: np.ndarray, truth: SlipTruth) -> n
             (start, 0.02),
             (peak, truth.peak_speed),
             (end, 0.03),
-            (end + 0.1, 0.035),
-            (end + 0.35, 1.5),
-            (end + 0.7, 0.0),
+            (end + 0.2, 0.035),
+            (end + 0.45, 1.5),
+            (end + 0.8, 0.0),
         ],
     )
     turn = np.where(time < start, 0.0, truth.angle)
@@ -193,7 +193,7 @@ def _slipping_heel(time: np.ndarray, landing: np.ndarray, truth: SlipTruth) -> n
     at = int(np.searchsorted(time, SLIP_CONTACT))
     x += landing[0] - x[at]
     y += landing[1] - y[at]
-    lift = end + 0.15
+    lift = end + 0.12
     z = 0.02 + _cosine(
         time,
         [

@@ -156,8 +156,8 @@ def logistic_regression(
                 name,
                 float(beta[j]),
                 float(errors[j]),
-                None if low is None else low / scale[j],
-                None if high is None else high / scale[j],
+                None if low is None else float(low / scale[j]),
+                None if high is None else float(high / scale[j]),
                 p,
             )
         )

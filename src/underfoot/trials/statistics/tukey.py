@@ -82,7 +82,8 @@ def tukey_hsd(model: LinearModel, factor: str, *, confidence: float = 0.95) -> l
         error = float(np.sqrt(contrast @ model.covariance @ contrast))
         t = difference / error
         p = float(np.clip(studentized_range.sf(np.sqrt(2.0) * abs(t), k, df), 0.0, 1.0))
-        low, high = difference - critical * error, difference + critical * error
+        reach = float(critical * error)
+        low, high = difference - reach, difference + reach
         found.append(Comparison(levels[i], levels[j], difference, error, t, p, low, high))
     return found
 
