@@ -2,7 +2,7 @@
 
 from ._kernels.flux import Flow, Stencil, Upwinding, film_flow, upwinding
 from ._kernels.pattern import Pattern
-from .factorization import Factorization, available_backends, factorization
+from .linear import Factorization, available_backends, factorization
 from .reynolds import FilmPressure, film_pressure
 
 __all__ = [

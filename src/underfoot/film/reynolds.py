@@ -12,10 +12,11 @@ from underfoot.core import ConvergenceError, InputError
 
 from ._kernels.flux import film_flow
 from ._kernels.pattern import Pattern
-from .factorization import factorization
+from .linear import factorization
 
 Array = NDArray[np.float64]
 MOST_SETS = 60
+OPEN = 100.0  # gap of the open surroundings over the largest gap of the film
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,8 +64,9 @@ def film_pressure(
     opening_speed
         dh/dt, m/s; negative when the walls approach. Scalar or (nx, ny).
     film
-        (nx, ny) True where there is film; elsewhere p = 0, at the cell centre. None: all cells but
-        the outermost, which are the surroundings.
+        (nx, ny) True where there is film; elsewhere p = 0 (at the cell's centre, or at its face
+        where its gap is inf: open surroundings). None: all cells but the outermost. Nothing flows
+        through the edges of the array.
     flow_factor
         phi, scalar or (nx, ny).
 
@@ -80,7 +82,7 @@ def film_pressure(
     h = np.asarray(gap, dtype=float)
     mask = _film_mask(h, film)
     _check(h, mask, spacing, viscosity, speed, opening_speed, flow_factor)
-    safe = np.where(mask | np.isfinite(h), h, h[mask].max())
+    safe = np.where(np.isfinite(h), h, OPEN * h[mask].max())
     safe = np.maximum(safe, h[mask].min())
     conductance = np.asarray(flow_factor, dtype=float) * safe**3 / (12 * viscosity)
     blank = np.zeros_like(safe)
@@ -97,7 +99,9 @@ def film_pressure(
     cavitated = np.zeros(pattern.size, dtype=bool)
     pressure = np.zeros(pattern.size)
     factors = None
-    for iteration in range(1, MOST_SETS + 1):
+    iterations = 0
+    while True:
+        iterations += 1
         rows = pattern.matrix(np.where(cavitated, unit, coefficients / diagonal))
         if factors is None:
             factors = factorization(rows, backend)
@@ -109,13 +113,13 @@ def film_pressure(
         updated = pressure - np.where(cavitated, net, 0.0) / diagonal < -scale
         if (updated == cavitated).all():
             break
+        if iterations == MOST_SETS:
+            raise ConvergenceError(
+                f"the cavitated cells did not settle in {MOST_SETS} iterations",
+                where="film.film_pressure",
+                remedy="Refine the grid or smooth the gap.",
+            )
         cavitated = updated
-    else:
-        raise ConvergenceError(
-            f"the cavitated cells did not settle in {MOST_SETS} iterations",
-            where="film.film_pressure",
-            remedy="Refine the grid or smooth the gap.",
-        )
     pressure = np.where(cavitated, 0.0, pressure)
     net = matrix @ pressure + source
     field = pattern.scatter(pressure)
@@ -127,7 +131,7 @@ def film_pressure(
         void_rate=void,
         rim_outflow=float(pattern.gather(total.outflow).sum()),
         load=float(pressure.sum()) * spacing**2,
-        iterations=iteration,
+        iterations=iterations,
     )
 
 

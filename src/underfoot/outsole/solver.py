@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from underfoot.core import ConvergenceError, InputError, Progress, Status, silent
+from underfoot.core import ConvergenceError, InputError, Progress, Status, silent, unknown_name
+from underfoot.film import available_backends
 
 from .compliance import Compliance
 from .contact.march import Counts, History, March, march
@@ -26,8 +27,8 @@ Mask = NDArray[np.bool_]
 FAR = 1.0  # m, clearance that stands for "outside the plan form"
 FIRST_STEP = 1 / 150  # of the rise time
 LONGEST_TIME = 1e5  # s, when a film that still moves is given up as not steady
-STEADY_STEP = 0.2  # share of the elapsed time over which a steady state must not move
-STEADY_CHANGE = 1e-3  # share of the load by which the pressures may change over such a step
+STEADY_STEP = 0.25  # share of the elapsed time over which a steady state must not move
+STEADY_CHANGE = 3e-4  # share of the load by which the pressures may change over such a step
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +136,7 @@ def solve_sliding(
     law
         Asperity pressure and flow factor against the mean gap.
     viscosity
-        Pa s; None for a dry floor.
+        Pa s; None for a dry floor, which is solved as the load rises, without time.
     speed
         Sliding speed of the shoe along +x, m/s; negative slides backward, 0 only squeezes.
     normal_force
@@ -153,7 +154,7 @@ def solve_sliding(
         Not even the first instant could be solved.
     """
     settings = settings or SolverSettings()
-    _check(sole, viscosity, speed, normal_force, settings)
+    _check(sole, compliance.self_compliance, viscosity, speed, normal_force, settings)
     clearance = np.where(np.isfinite(sole.clearance), sole.clearance, FAR)
     clearance = np.minimum(clearance, FAR)
     clearance = clearance - clearance.min()
@@ -183,6 +184,8 @@ def solve_sliding(
         return normal_force * min(time / rise, 1.0)
 
     end_time = LONGEST_TIME if settings.steady else settings.end_time
+    if viscosity is None:
+        end_time = rise  # a dry contact has no memory: it is done when the load is there
 
     def longest_step(time: float) -> float:
         if time < rise * (1 - 1e-9):
@@ -212,7 +215,7 @@ def solve_sliding(
         longest_step=longest_step,
         end_time=end_time,
         pool_depth=settings.pool_depth,
-        settled=settled if settings.steady else None,
+        settled=settled if settings.steady and viscosity is not None else None,
         fraction=fraction,
         most_steps=settings.most_time_steps,
         progress=progress,
@@ -267,6 +270,7 @@ def _result(
 
 def _check(
     sole: SoleMap,
+    self_compliance: Array,
     viscosity: float | None,
     speed: float,
     normal_force: float,
@@ -288,6 +292,22 @@ def _check(
             raise InputError(
                 f"{value} is not positive", where=where, allowed="a finite value above 0"
             )
+    for where, count in (
+        ("settings.most_newton", settings.most_newton),
+        ("settings.most_time_steps", settings.most_time_steps),
+    ):
+        if count < 1:
+            raise InputError(f"{count} allows no step", where=where, allowed="1 or more")
+    if settings.end_time < settings.rise_time and not settings.steady:
+        raise InputError(
+            f"the run ends at {settings.end_time} s, before the load is up",
+            where="settings.end_time",
+            allowed=f"at least settings.rise_time, {settings.rise_time} s",
+        )
+    if settings.backend is not None and settings.backend not in available_backends():
+        raise unknown_name(
+            "sparse back end", settings.backend, available_backends(), where="settings.backend"
+        )
     if not math.isfinite(speed):
         raise InputError(f"{speed} is not finite", where="speed", allowed="a finite speed, m/s")
     clearance = np.asarray(sole.clearance)
@@ -296,6 +316,18 @@ def _check(
             "the clearance holds NaN or no finite height",
             where="sole.clearance",
             allowed="heights in m, inf outside the plan form",
+        )
+    if np.shape(self_compliance) != clearance.shape:
+        raise InputError(
+            f"the compliance has shape {np.shape(self_compliance)}",
+            where="compliance",
+            allowed=f"the shape of the sole, {clearance.shape}",
+        )
+    if not (np.isfinite(self_compliance).all() and (self_compliance > 0).all()):
+        raise InputError(
+            "a cell doesn't give way under pressure",
+            where="compliance",
+            allowed="a positive self compliance everywhere",
         )
     if (clearance < 0).any():
         raise InputError(

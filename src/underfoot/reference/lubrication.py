@@ -66,8 +66,8 @@ def parabolic_bearing_load(
 ) -> float:
     """Return the load per width (N/m) of a pad with h = h0 + (h1 - h0) (x / l)^2.
 
-    x runs from the trailing edge, where the parabola has its vertex. Integrates Reynolds' equation
-    in closed form by quadrature of dp/dx = 6 eta u (h - h*) / h^3, p = 0 at both ends.
+    x runs from the trailing edge, where the parabola has its vertex. dp/dx = 6 eta u (h - h*) / h^3
+    with p = 0 at both ends, integrated by Gauss quadrature.
     """
     h0, rise = trailing_gap, leading_gap - trailing_gap
     nodes, weights = np.polynomial.legendre.leggauss(200)
@@ -155,7 +155,10 @@ def squeeze_disc_load(
 def squeeze_disc_pressure(
     radius_at: ArrayLike, *, viscosity: float, radius: float, gap: float, closing_speed: float
 ) -> Array:
-    """Return the pressure (Pa) under the disc, p = 3 eta v (R^2 - r^2) / h^3. Source as the load."""
+    """Return the pressure (Pa) under the disc, p = 3 eta v (R^2 - r^2) / h^3.
+
+    Source as the load.
+    """
     r = np.asarray(radius_at, dtype=float)
     return 3 * viscosity * closing_speed * (radius**2 - r**2) / gap**3
 

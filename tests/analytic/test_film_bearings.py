@@ -1,0 +1,217 @@
+"""The film solver against closed forms (sources in ``reference.lubrication``)."""
+
+import numpy as np
+import pytest
+
+from underfoot.core import InputError, MissingExtraError
+from underfoot.film import available_backends, factorization, film_pressure
+from underfoot.reference import lubrication
+
+OIL = {"viscosity": 0.1, "speed": 0.5}
+LENGTH = 0.01
+H0 = 20e-6
+
+
+def wide(profile):
+    """A pad of infinite width: the grid's y edges let nothing through. x = 0 trails."""
+    gap = np.repeat(np.asarray(profile)[:, None], 3, axis=1)
+    film = np.ones(gap.shape, bool)
+    film[[0, -1]] = False
+    return gap, film
+
+
+def wide_load(profile, spacing, **more):
+    gap, film = wide(profile)
+    solved = film_pressure(gap, spacing=spacing, film=film, **(OIL | more))
+    return solved.load / (3 * spacing)
+
+
+def taper(cells, m):
+    return H0 * (1 + m * np.linspace(0, 1, cells + 1))
+
+
+def test_inclined_bearing_load_and_pressure():
+    m = lubrication.BEST_TAPER
+    exact = lubrication.inclined_bearing_load(
+        **OIL, length=LENGTH, leading_gap=H0 * (1 + m), trailing_gap=H0
+    )
+    assert wide_load(taper(200, m), LENGTH / 200) == pytest.approx(exact, rel=5e-4)
+    gap, film = wide(taper(200, m))
+    solved = film_pressure(gap, spacing=LENGTH / 200, film=film, **OIL)
+    expected = lubrication.inclined_bearing_pressure(
+        LENGTH * np.linspace(1, 0, 201),
+        **OIL,
+        length=LENGTH,
+        leading_gap=H0 * (1 + m),
+        trailing_gap=H0,
+    )
+    assert solved.pressure[:, 1] == pytest.approx(expected, abs=1e-3 * expected.max())
+
+
+def test_best_taper_is_the_best():
+    def load(m):
+        return lubrication.inclined_bearing_load(
+            **OIL, length=LENGTH, leading_gap=H0 * (1 + m), trailing_gap=H0
+        )
+
+    best = lubrication.BEST_TAPER
+    assert load(best) > max(load(best * 1.01), load(best * 0.99))
+    # classical value of the load coefficient 6 K
+    unit = OIL["viscosity"] * OIL["speed"] * LENGTH**2 / H0**2
+    assert load(best) / unit == pytest.approx(0.1602, abs=2e-4)
+
+
+def test_parabolic_bearing():
+    profile = H0 * (1 + 1.5 * np.linspace(0, 1, 201) ** 2)
+    exact = lubrication.parabolic_bearing_load(
+        **OIL, length=LENGTH, leading_gap=2.5 * H0, trailing_gap=H0
+    )
+    assert wide_load(profile, LENGTH / 200) == pytest.approx(exact, rel=3e-4)
+
+
+def test_step_bearing_is_exact_on_any_grid():
+    cells, behind = 25, 7
+    spacing = LENGTH / cells
+    profile = np.where(np.arange(cells + 1) < behind, H0, 1.866 * H0)
+    share = 1 - (behind - 0.5) / cells
+    exact = lubrication.step_bearing_load(
+        **OIL, length=LENGTH, leading_share=share, leading_gap=1.866 * H0, trailing_gap=H0
+    )
+    gap, film = wide(profile)
+    solved = film_pressure(gap, spacing=spacing, film=film, **OIL)
+    # the peak sits on the face between two nodes: compare the slope, exact on both sides
+    peak = 2 * exact / LENGTH
+    slope = (solved.pressure[-2, 1] - solved.pressure[-1, 1]) / spacing
+    assert slope == pytest.approx(peak / (share * LENGTH), rel=1e-10)
+
+
+@pytest.mark.parametrize("ratio", sorted(lubrication.SIDE_LEAKAGE))
+@pytest.mark.parametrize("m", [1.0, 1.189, 2.0])
+def test_tapered_wedge_with_side_leakage(ratio, m):
+    def load(cells):
+        across = round(cells / ratio)
+        gap = np.repeat(taper(cells, m)[:, None], across + 1, axis=1)
+        return film_pressure(gap, spacing=LENGTH / cells, **OIL).load
+
+    coarse, fine = load(32), load(64)
+    exact = lubrication.tapered_wedge_load(
+        **OIL,
+        length=LENGTH,
+        width=LENGTH / ratio,
+        leading_gap=H0 * (1 + m),
+        trailing_gap=H0,
+        leakage=lubrication.SIDE_LEAKAGE[ratio][m],
+    )
+    # three digits in the table: half a unit of the last one is 0.9 % of the smallest factor
+    assert (4 * fine - coarse) / 3 == pytest.approx(exact, rel=0.01)
+
+
+def disc(cells):
+    radius = 0.01
+    spacing = 2 * radius / cells
+    place = (np.arange(cells + 4) - (cells + 3) / 2) * spacing
+    distance = np.hypot(place[:, None], place[None, :])
+    return radius, spacing, distance
+
+
+def test_squeeze_disc():
+    radius, spacing, distance = disc(128)
+    given = {"viscosity": 0.2, "radius": radius, "gap": 1e-4, "closing_speed": 1e-3}
+    solved = film_pressure(
+        np.where(distance < radius, 1e-4, np.inf),
+        spacing=spacing,
+        viscosity=0.2,
+        speed=0.0,
+        opening_speed=-1e-3,
+        film=distance < radius,
+    )
+    assert solved.load == pytest.approx(lubrication.squeeze_disc_load(**given), rel=0.01)
+    exact = lubrication.squeeze_disc_pressure(distance, **given)
+    inner = distance < 0.9 * radius
+    assert solved.pressure[inner] == pytest.approx(exact[inner], abs=0.02 * exact.max())
+
+
+def test_parting_walls_and_diverging_wedges_cavitate():
+    gap = np.repeat(taper(20, 1.0)[:, None], 20, axis=1)
+    backward = film_pressure(gap, spacing=5e-4, viscosity=0.1, speed=-0.5)
+    assert backward.load == 0.0
+    assert backward.cavitated[1:-1, 1:-1].all()
+    parting = film_pressure(gap, spacing=5e-4, viscosity=0.1, speed=0.0, opening_speed=1e-3)
+    assert parting.load == 0.0
+    assert parting.void_rate[1:-1, 1:-1] == pytest.approx(1e-3)
+
+
+def test_volume_is_conserved():
+    rng = np.random.default_rng(3)
+    rough = H0 * (2 + rng.random((30, 40)))
+    opening = rng.normal(size=rough.shape) * 1e-4
+    spacing = 3e-4
+    solved = film_pressure(rough, spacing=spacing, opening_speed=opening, **OIL)
+    assert solved.cavitated.any()
+    assert (solved.pressure > 0).any()
+    opened = opening[1:-1, 1:-1].sum() * spacing**2
+    void = solved.void_rate.sum() * spacing**2
+    assert solved.rim_outflow + opened == pytest.approx(void, rel=1e-9)
+    assert (solved.void_rate >= -1e-12).all()
+    assert (solved.pressure * solved.void_rate).max() == 0.0
+
+
+def test_mirror_and_scaling():
+    rng = np.random.default_rng(4)
+    rough = H0 * (2 + rng.random((16, 12)))
+    plain = film_pressure(rough, spacing=3e-4, **OIL).pressure
+    mirrored = film_pressure(rough[::-1], spacing=3e-4, viscosity=0.1, speed=-0.5).pressure
+    assert mirrored[::-1] == pytest.approx(plain, rel=1e-9, abs=1e-9 * plain.max())
+    thicker = film_pressure(rough, spacing=3e-4, viscosity=0.3, speed=0.5).pressure
+    assert thicker == pytest.approx(3 * plain, rel=1e-9)
+    leakier = film_pressure(rough, spacing=3e-4, flow_factor=2.0, **OIL).pressure
+    assert leakier == pytest.approx(plain / 2, rel=1e-9)
+
+
+def test_both_back_ends_agree():
+    rng = np.random.default_rng(5)
+    rough = H0 * (2 + rng.random((30, 30)))
+    found = [
+        film_pressure(rough, spacing=3e-4, backend=name, **OIL).pressure
+        for name in available_backends()
+    ]
+    for other in found[1:]:
+        assert other == pytest.approx(found[0], rel=1e-8, abs=1e-8 * found[0].max())
+
+
+@pytest.mark.parametrize(
+    ("change", "where"),
+    [
+        ({"viscosity": 0.0}, "viscosity"),
+        ({"viscosity": float("nan")}, "viscosity"),
+        ({"speed": float("inf")}, "speed"),
+        ({"spacing": -1.0}, "spacing"),
+        ({"gap": np.zeros((5, 5))}, "gap"),
+        ({"gap": np.full((5, 5), np.nan)}, "gap"),
+        ({"flow_factor": 0.0}, "flow_factor"),
+        ({"opening_speed": float("nan")}, "opening_speed"),
+        ({"film": np.zeros((5, 5), bool)}, "film"),
+    ],
+)
+def test_bad_input_is_refused(change, where):
+    given = {"gap": np.full((5, 5), 1e-5), "spacing": 1e-3, **OIL} | change
+    with pytest.raises(InputError) as caught:
+        film_pressure(given.pop("gap"), **given)
+    assert caught.value.where == where
+
+
+def test_unknown_back_end_names_the_nearest():
+    import scipy.sparse as sp
+
+    with pytest.raises(InputError, match="superlu"):
+        factorization(sp.identity(3, format="csr"), "super_lu")
+
+
+def test_missing_back_end_is_named(monkeypatch):
+    import scipy.sparse as sp
+
+    from underfoot.film import linear
+
+    monkeypatch.setattr(linear, "available_backends", lambda: ("superlu",))
+    with pytest.raises(MissingExtraError, match="mkl"):
+        linear.factorization(sp.identity(3, format="csr"), "pardiso")
