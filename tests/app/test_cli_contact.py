@@ -1,6 +1,7 @@
 """The command ``contact``: what a user types, reads and gets told."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from typer.testing import CliRunner
 
 from underfoot.cli.contact import contact
 from underfoot.cli.guard import guarded
+from underfoot.core import Status
 from underfoot.surface import self_affine
 
 APP = typer.Typer(pretty_exceptions_enable=False)
@@ -128,3 +130,22 @@ def test_a_file_that_is_no_spectrum(tmp_path):
     found = run(*RANDOM, "--spectrum", str(wrong))
     assert found.exit_code == 3
     assert "neither" in found.stderr
+
+
+def test_what_did_not_converge_is_no_number(monkeypatch, tmp_path):
+    import underfoot.cli.contact as command
+
+    honest = command.solved
+
+    def failing(*arguments):
+        found, flow = honest(*arguments)
+        return replace(found, status=Status.NOT_CONVERGED), flow
+
+    monkeypatch.setattr(command, "solved", failing)
+    out = tmp_path / "result"
+    found = run(*RANDOM, "--modulus", "5 MPa", "--json", "--out", str(out))
+    assert found.exit_code == 4
+    content = json.loads(found.stdout)
+    assert content["real_contact_fraction"] is None
+    assert content["status"] == "not converged"
+    assert [path.name for path in out.iterdir()] == ["contact.json"]
