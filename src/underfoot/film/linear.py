@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from underfoot.core import ConvergenceError, MissingExtraError, unknown_name
 
 from ._kernels.mkl import Pardiso, PardisoError, library
+
+if TYPE_CHECKING:
+    import scipy.sparse as sp
 
 Array = NDArray[np.float64]
 BACKENDS = ("pardiso", "superlu")

@@ -6,10 +6,13 @@ import ctypes
 import importlib.metadata
 from ctypes.util import find_library
 from functools import cache
+from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import scipy.sparse as sp
 
 ANALYSE, FACTORISE, SOLVE, RELEASE = 11, 22, 33, -1
 REAL_UNSYMMETRIC = 11

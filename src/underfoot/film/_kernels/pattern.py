@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from .flux import Stencil
+
+if TYPE_CHECKING:
+    import scipy.sparse as sp
 
 Array = NDArray[np.float64]
 
@@ -64,6 +66,8 @@ class Pattern:
 
     def matrix(self, coefficients: Array) -> sp.csr_matrix:
         """Return the sparse matrix of (5, size) coefficients."""
-        return sp.csr_matrix(
+        from scipy.sparse import csr_matrix
+
+        return csr_matrix(
             (self.data(coefficients), self.indices, self.indptr), shape=(self.size, self.size)
         )

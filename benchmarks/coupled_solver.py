@@ -1,0 +1,109 @@
+"""Coupled solver: cost, iterations and memory against grid size, and both sparse back ends.
+
+    python -m benchmarks coupled_solver
+
+A 60 mm x 60 mm heel with a worn facet (10 deg, 30 mm), plain and with 5 mm lugs, 500 N, 0.7 m/s,
+219 mPa s, to 0.12 s. CPU seconds of one thread; each run in a process of its own, so that the peak
+memory is its own.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import subprocess
+import sys
+import time
+
+SPACINGS = (1.0e-3, 0.7e-3, 0.5e-3, 0.35e-3)
+THREADS = {name: "1" for name in ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
+
+
+def measured(spacing: float, treaded: bool, backend: str | None) -> dict[str, float]:
+    """Return what one run took, in this process."""
+    import resource
+
+    from underfoot.asperity.exponential import ExponentialLaw
+    from underfoot.outsole import Facet, Heel, Tread, heel_map
+    from underfoot.outsole.compliance import layered_compliance
+    from underfoot.outsole.solver import SolverSettings, solve_sliding
+
+    tread = Tread("grid", lug_width=5e-3, channel_width=2.4e-3, depth=1.5e-3)
+    heel = Heel(
+        length=0.06,
+        width=0.06,
+        rear_radius=0.028,
+        outsole_thickness=0.025,
+        profile=Facet(math.radians(10), 0.03),
+        edge_radius=0.002,
+        tread=tread if treaded else None,
+    )
+    began = time.process_time()
+    sole = heel_map(heel, shoe_angle=math.radians(10), spacing=spacing)
+    body = layered_compliance(sole, modulus=5e6, poisson_ratio=0.49, thickness=0.025)
+    solved = solve_sliding(
+        sole,
+        body,
+        ExponentialLaw(5e6, 0.5, 5.5e-6),
+        viscosity=0.219,
+        speed=0.7,
+        normal_force=500.0,
+        settings=SolverSettings(backend=backend),
+    )
+    counts = solved.counts
+    return {
+        "cells": counts.cells,
+        "newton": counts.newton,
+        "krylov": counts.krylov / counts.newton,
+        "cpu": time.process_time() - began,
+        "peak": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
+        "fluid_load": solved.fluid_load,
+    }
+
+
+def separate(spacing: float, treaded: bool, backend: str | None) -> dict[str, float]:
+    """Return what one run took, in a process of its own."""
+    code = (
+        "import json; from benchmarks.coupled_solver import measured; "
+        f"print(json.dumps(measured({spacing!r}, {treaded!r}, {backend!r})))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        env=os.environ | THREADS,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def main() -> None:
+    """Print the tables."""
+    head = f"{'mm':>5} {'cells':>6} {'Newton':>6} {'GMRES/N':>8} {'CPU s':>6} {'MB':>5} {'N':>6}"
+    for label, treaded in (("plain heel", False), ("treaded heel", True)):
+        print(f"{label}\n{head}")
+        rows = []
+        for spacing in SPACINGS:
+            row = separate(spacing, treaded, None)
+            rows.append(row)
+            print(_line(spacing, row), flush=True)
+        first, last = rows[0], rows[-1]
+        order = math.log(
+            (last["cpu"] / last["newton"]) / (first["cpu"] / first["newton"])
+        ) / math.log(last["cells"] / first["cells"])
+        print(f"CPU per Newton step grows as cells^{order:.2f} (N log N: about 1.1)")
+    print(f"plain heel, SuperLU instead of PARDISO\n{head}")
+    for spacing in SPACINGS[:3]:
+        print(_line(spacing, separate(spacing, False, "superlu")), flush=True)
+
+
+def _line(spacing: float, row: dict[str, float]) -> str:
+    return (
+        f"{spacing * 1e3:5.2f} {row['cells']:6.0f} {row['newton']:6.0f} {row['krylov']:8.1f} "
+        f"{row['cpu']:6.1f} {row['peak']:5.0f} {row['fluid_load']:6.1f}"
+    )
+
+
+if __name__ == "__main__":
+    main()
