@@ -126,7 +126,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
         ),
         status=status,
         breaches=_words(found),
-        assumptions=(*assumptions(case), *law.assumptions, *risk.assumptions),
+        assumptions=tuple(dict.fromkeys((*assumptions(case), *law.assumptions, *risk.assumptions))),
         provenance=Provenance.now(
             case.hash,
             closures=_closures(case, law.name, asperities.name, modulus, risk.model, spacing),
@@ -140,7 +140,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
                 "evaluation_s": time.perf_counter() - solved,
             },
         ),
-        case_text=case.to_toml(),
+        case_text=case.to_toml(complete=True),
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,13 +33,13 @@ def scalars(
     from underfoot.slip import RequiredFriction, slip_model, slip_risk
 
     mean, spread = case.sourced("risk.rcof_mean"), case.sourced("risk.rcof_sd")
+    # the case itself lists an assumed required friction, so the risk need not do so again
     risk = slip_risk(
         friction.cof,
-        rcof=RequiredFriction(
-            case.risk.rcof_mean, case.risk.rcof_sd, mean.source, mean.assumed or spread.assumed
-        ),
+        rcof=RequiredFriction(case.risk.rcof_mean, case.risk.rcof_sd, mean.source),
         model=slip_model(case.risk.model),
     )
+    assumed = risk.probability.assumed or mean.assumed or spread.assumed
 
     def computed(value: float, unit: str, note: str = "") -> SourcedValue:
         return SourcedValue(
@@ -66,7 +67,7 @@ def scalars(
         "minimum_film_thickness": computed(thinnest, "m")
         if thinnest is not None
         else SourcedValue(None, "m", reason="dry floor: no film"),
-        "slip_probability": risk.probability,
+        "slip_probability": replace(risk.probability, assumed=assumed),
     }
     return numbers, risk
 
