@@ -9,6 +9,7 @@ import typer
 
 from .guard import guarded
 from .options import AsJson
+from .trials_analyse import analyse, simulate
 
 trials_app = typer.Typer(
     name="trials",
@@ -76,3 +77,5 @@ def describe(
 
 
 trials_app.command()(guarded(describe))
+trials_app.command()(guarded(analyse))
+trials_app.command()(guarded(simulate))

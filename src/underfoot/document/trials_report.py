@@ -100,7 +100,14 @@ def trials_page(analysis: FolderAnalysis, pictures: list[tuple[TrialFigure, byte
     chapters: dict[str, list[dict[str, str]]] = {"study": [], "trials": [], "sheets": []}
     for one, png in pictures:
         source = "data:image/png;base64," + base64.b64encode(png).decode("ascii")
-        chapters[one.chapter].append({"caption": one.caption, "source": source, "name": one.name})
+        chapters[one.chapter].append(
+            {
+                "caption": one.caption,
+                "source": source,
+                "name": one.name,
+                "width": f"{5.6 * one.figure.get_figwidth():.1f}",
+            }
+        )
     return (
         environment()
         .get_template("trials.html")
@@ -179,7 +186,7 @@ def _shown(value: Any, column: str) -> str:
         return "< 0.0001" if value < 1e-4 else f"{value:.4f}"
     if isinstance(value, int):
         return str(value)
-    if column in ("slip", "crossed array"):
+    if column in ("slip", "heel crossed the array"):
         return "yes" if value else "no"
     if value == int(value) and abs(value) < 1e6:
         return str(int(value))

@@ -218,7 +218,7 @@ def _groups(analysis: FolderAnalysis) -> list[tuple[str, str, Figure]]:
         values = _values(analysis, response, factor)
         if len(values) < 2:
             continue
-        figure = _new(max(3.2, 1.0 * len(values) + 1.4), 3.1)
+        figure = _new(max(3.2, 1.05 * len(values) + 1.3), 3.1)
         axes = figure.add_subplot()
         names = list(values)
         for i, name in enumerate(names):
@@ -237,13 +237,9 @@ def _groups(analysis: FolderAnalysis) -> list[tuple[str, str, Figure]]:
                 ha="center",
                 weight="bold",
             )
-        turned = max(map(len, names)) > 11
-        axes.set_xticks(
-            range(len(names)),
-            names,
-            rotation=25 if turned else 0,
-            ha="right" if turned else "center",
-        )
+        axes.set_xticks(range(len(names)), [name.replace(", ", "\n") for name in names])
+        longest = max(len(part) for name in names for part in name.split(", "))
+        axes.tick_params(axis="x", labelsize=9 if longest < 14 else 7)
         axes.set_ylabel(_NAMES.get(response, response.replace("_", " ")))
         axes.margins(y=0.14)
         axes.set_ylim(bottom=0)

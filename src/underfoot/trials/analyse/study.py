@@ -18,7 +18,7 @@ from ..stribeck_fit import METHODS as FIT_METHODS
 from ..stribeck_fit import StribeckFit, stribeck_fit
 from .file_result import FileResult
 from .study_tests import Finding, anova_finding, slip_findings
-from .tables import Table, group_table
+from .tables import Table, group_table, scaled
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,12 +246,19 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
             continue
         rows.append(
             (
-                label, len(scans), found.load.value, found.load.uncertainty, found.peak.value,
-                found.peak_along.value, found.peak_lateral.value, found.outer_share,
-                found.half_spacing_change, "; ".join(found.load.flags),
+                label,
+                len(scans),
+                found.load.value,
+                found.load.uncertainty,
+                scaled("peak_pressure", found.peak.value),
+                1e3 * (found.peak_along.value or 0.0),
+                1e3 * (found.peak_lateral.value or 0.0),
+                100 * found.outer_share,
+                None if found.half_spacing_change is None else 100 * found.half_spacing_change,
+                "; ".join(found.load.flags),
                 found.load.conventions.get("inlet", ""),
             )
-        )  # fmt: skip
+        )
         thin = max(1, len(found.along) // 200)
         maps.append(
             {
@@ -273,9 +280,10 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
                 "maps",
                 "Load carried by the fluid, Eq. 27",
                 (
-                    "map", "scans", "fluid load (N)", "from sensor noise (N)", "peak (Pa)",
-                    "peak from heel's back (m)", "peak left of middle (m)", "outer scans' share",
-                    "change at double spacing", "flags", "sensor inlet",
+                    "map", "scans", "fluid load (N)", "of it sensor noise (N)", "peak (kPa)",
+                    "peak from heel's back (mm)", "peak left of middle (mm)",
+                    "share of outer scans (%)", "change at double spacing (%)", "flags",
+                    "sensor inlet",
                 ),
                 tuple(rows),
                 ("The load is what the scans cover; pressure beyond them is not in it.",),

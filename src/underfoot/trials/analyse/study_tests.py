@@ -26,7 +26,7 @@ from ..statistics import (
 from ..statistics.anova import AnovaTable
 from ..statistics.logistic import METHODS
 from .file_result import FileResult
-from .tables import Cell, Table
+from .tables import Cell, Table, words
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,8 @@ class Finding:
     def of_anova(cls, found: AnovaTable) -> Finding:
         """Return an analysis of variance as a finding."""
         rows = tuple((r.term, r.sum_of_squares, r.df, r.f, r.p) for r in found.rows)
-        name = f"anova_{found.model.response_name.replace(' ', '_')}_type_{found.ss_type}"
+        plain = "".join(c if c.isalnum() else "_" for c in found.model.response_name.casefold())
+        name = f"anova_{plain}_type_{found.ss_type}"
         columns = ("term", "sum of squares", "df", "F", "p")
         return cls(name, found.title, Table(name, found.title, columns, rows), found.warnings)
 
@@ -60,14 +61,16 @@ def anova_finding(
     if not factors:
         return []
     try:
-        found = analysis_of_variance(values, dict(factors), ss_type=3, name=response)
+        found = analysis_of_variance(values, dict(factors), ss_type=3, name=words(response))
     except UnderfootError as first:
         try:
             found = analysis_of_variance(
-                values, dict(factors), tuple(factors), ss_type=3, name=response
+                values, dict(factors), tuple(factors), ss_type=3, name=words(response)
             )
         except UnderfootError:
-            return [_not_done(f"anova_{response}", f"Analysis of variance of {response}", first)]
+            return [
+                _not_done(f"anova_{response}", f"Analysis of variance of {words(response)}", first)
+            ]
     results = [Finding.of_anova(found)]
     empty = any("empty cells" in text for text in found.warnings)
     for factor, levels in factors.items():
@@ -75,7 +78,7 @@ def anova_finding(
             continue
         comparisons = tukey_hsd(found.model, factor)
         marks = letters(comparisons)
-        title = f"Tukey's comparisons of {response} by {factor} (least-squares means)"
+        title = f"Tukey's comparisons of {words(response)} by {factor} (least-squares means)"
         name = f"tukey_{response}_{factor}".replace(" ", "_")
         rows = tuple(
             (c.first, c.second, c.difference, c.standard_error, c.low, c.high, c.p)
@@ -168,7 +171,7 @@ def _t_tests(files: Sequence[FileResult], key: str, levels: list[str]) -> list[F
                 t = t_test(samples[0], samples[1], kind=kind)
             except UnderfootError:
                 continue
-            rows.append((name.replace("_", " "), t.title, t.difference, t.t, t.df, t.p))
+            rows.append((words(name), t.title, t.difference, t.t, t.df, t.p))
     if not rows:
         return []
     title = f"t tests of {levels[0]} against {levels[1]} ({key})"
@@ -186,7 +189,7 @@ def _logistic(
             continue
         y = [int(f.main["slip"]) for f in having]
         x = [f.main[name] for f in having]
-        title = f"Logistic regression of slip on {name.replace('_', ' ')}"
+        title = f"Logistic regression of slip on {words(name)}"
         rows: list[tuple[Cell, ...]] = []
         cautions: list[str] = []
         best = None

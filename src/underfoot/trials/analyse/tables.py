@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-
-from underfoot.core import display
 
 from .file_result import FileResult
 
@@ -26,31 +23,44 @@ class Table:
     notes: tuple[str, ...] = ()
 
 
-UNITS = {
-    "rcof": "1",
-    "acof": "1",
-    "acof_minus_rcof": "1",
-    "cof": "1",
-    "slip": "1",
-    "crossed_array": "1",
-    "peak_slipping_speed": "m/s",
-    "slip_distance": "m",
-    "slip_margin": "m/s",
-    "peak_pressure": "Pa",
-    "scan_peak_pressure": "Pa",
-    "friction_force": "N",
-    "speed": "m/s",
-    "force_2_percent": "N",
-    "peak_force": "N",
-    "final_force": "N",
+# Name in words, unit shown, and what an SI value is multiplied by for it.
+_WORDS: dict[str, tuple[str, str, float]] = {
+    "rcof": ("RCOF", "", 1.0),
+    "acof": ("ACOF", "", 1.0),
+    "acof_minus_rcof": ("ACOF - RCOF", "", 1.0),
+    "cof": ("COF", "", 1.0),
+    "cof_bl": ("COF_BL", "", 1.0),
+    "tau_hydro": ("tau_hydro", "m/s", 1.0),
+    "cof_asymptote": ("COF_asymptote", "", 1.0),
+    "slip": ("slip", "", 1.0),
+    "crossed_array": ("heel crossed the array", "", 1.0),
+    "peak_slipping_speed": ("peak slipping speed", "m/s", 1.0),
+    "slip_distance": ("slip distance", "mm", 1e3),
+    "slip_margin": ("slip margin", "m/s", 1.0),
+    "peak_pressure": ("peak pressure", "kPa", 1e-3),
+    "scan_peak_pressure": ("peak pressure of the scan", "kPa", 1e-3),
+    "friction_force": ("friction force", "N", 1.0),
+    "speed": ("speed", "m/s", 1.0),
+    "force_2_percent": ("force at 2 %", "N", 1.0),
+    "peak_force": ("peak force", "N", 1.0),
+    "final_force": ("final force", "N", 1.0),
 }
+
+
+def words(name: str) -> str:
+    """Return a quantity's name as people write it."""
+    return _WORDS.get(name, (name.replace("_", " "), "", 1.0))[0]
 
 
 def heading(name: str) -> str:
     """Return a column heading with its unit."""
-    unit = UNITS.get(name, "1")
-    words = name.replace("_", " ")
-    return words if unit == "1" else f"{words} ({unit})"
+    text, unit, _ = _WORDS.get(name, (name.replace("_", " "), "", 1.0))
+    return f"{text} ({unit})" if unit else text
+
+
+def scaled(name: str, value: float | None) -> float | None:
+    """Return an SI value in the unit of its heading."""
+    return None if value is None else value * _WORDS.get(name, ("", "", 1.0))[2]
 
 
 def file_table(files: Iterable[FileResult]) -> Table:
@@ -64,7 +74,7 @@ def file_table(files: Iterable[FileResult]) -> Table:
         (
             one.file,
             one.verdict,
-            *(one.main.get(name) for name in numbers),
+            *(scaled(name, one.main.get(name)) for name in numbers),
             *(one.conditions.get(name) for name in noted),
             "; ".join(one.reasons),
         )
@@ -121,18 +131,16 @@ def group_table(
         return None
     rows = []
     for group, members in groups.items():
-        cells: list[Cell] = [*group]
+        cells: list[Cell] = [*group, len(members)]
         for name in numbers:
-            values = np.array([m.main[name] for m in members if name in m.main])
-            cells += [
-                len(values),
-                float(values.mean()) if len(values) else None,
-                float(values.std(ddof=1)) if len(values) > 1 else None,
-            ]
+            values = np.array([scaled(name, m.main[name]) for m in members if name in m.main])
+            cells.append(float(values.mean()) if len(values) else None)
+            if name != "slip":
+                cells.append(float(values.std(ddof=1)) if len(values) > 1 else None)
         rows.append(tuple(cells))
-    columns = [*keys]
+    columns = [*keys, "files"]
     for name in numbers:
-        columns += [f"n {name}".replace("_", " "), f"mean {heading(name)}", f"sd {heading(name)}"]
+        columns += ["share of slips"] if name == "slip" else [heading(name), f"sd {words(name)}"]
     return Table(
         "groups",
         "Means by " + ", ".join(keys),
@@ -140,12 +148,3 @@ def group_table(
         tuple(rows),
         ("Refused files are left out; sd is the standard deviation between files.",),
     )
-
-
-def shown(value: Any) -> str:
-    """Return a cell as text for a page."""
-    if value is None:
-        return "–"
-    if isinstance(value, float):
-        return display(value, "1", 4)
-    return str(value)

@@ -221,6 +221,7 @@ def _pin_on_disk(out: Path, count: int, rng: np.random.Generator, progress: Prog
             level = 1.0 + 0.04 * rng.standard_normal()
             for speed in _SPEEDS:
                 cof = level * (asymptote + (boundary - asymptote) * math.exp(-speed / tau))
+                cof = max(cof + 0.012 * rng.standard_normal(), 0.02)
                 path = out / f"{fluid}_{repeat}_{1e3 * speed:04.0f}.csv"
                 _write_columns(path, disk_run(cof, speed, rng))
                 paths.append(path)

@@ -288,11 +288,13 @@ def _pressures(
 ) -> dict[str, np.ndarray]:
     """A Gaussian pressure under the moving heel, fading from row to row as the film thins."""
     loaded = (time >= SLIP_CONTACT) & (heel[:, 2] < 0.025)
+    # The load comes on in 40 ms, and the pressure with it.
+    onset = 0.5 * (1 - np.cos(np.pi * np.clip((time - SLIP_CONTACT) / 0.04, 0, 1)))
     found = {}
     for name, (x, y, _) in sensors.items():
         away = (x - heel[:, 0] - _HEEL_TO_PRESSURE) ** 2 + (y - heel[:, 1]) ** 2
         height = truth.pressure * truth.row_decay ** (int(name[1]) - 1)
-        found[name] = np.where(loaded, height * np.exp(-away / (2 * truth.width**2)), 0.0)
+        found[name] = np.where(loaded, onset * height * np.exp(-away / (2 * truth.width**2)), 0.0)
     return found
 
 

@@ -1,0 +1,123 @@
+"""``underfoot trials analyse`` and ``underfoot trials simulate``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .guard import say
+from .options import CatalogueFolders, Overwrite
+
+
+def analyse(
+    folder: Annotated[
+        Path | None, typer.Argument(help="Folder of trial files.", show_default=False)
+    ] = None,
+    protocol: Annotated[
+        str | None,
+        typer.Option(
+            help="How numbers are taken and judged; --list shows all.", show_default=False
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for report, tables and figures.", show_default=False)
+    ] = None,
+    profile: Annotated[
+        Path | None,
+        typer.Option(
+            help="What columns, axes and markers are called; else profile.toml in the folder.",
+            show_default=False,
+        ),
+    ] = None,
+    conditions: Annotated[
+        Path | None,
+        typer.Option(
+            help='Table (CSV, XLSX) with a column "file"; by default conditions.csv in the folder.',
+            show_default=False,
+        ),
+    ] = None,
+    details: Annotated[int, typer.Option(help="Number of single trials drawn in detail.")] = 4,
+    processes: Annotated[
+        int | None, typer.Option(help="Files analysed at once.", show_default="all processors")
+    ] = None,
+    folders: CatalogueFolders = None,
+    overwrite: Overwrite = False,
+    listed: Annotated[bool, typer.Option("--list", help="Show the protocols and stop.")] = False,
+) -> None:
+    """Analyse a folder of trials: a verdict for each file, tables, figures and one report.
+
+    An interrupted analysis goes on where it stopped; one bad file never stops the rest.
+    """
+    from underfoot.core import InputError
+    from underfoot.core.catalogue import catalogue_folders
+    from underfoot.trials.protocols import protocol as protocol_named
+    from underfoot.trials.protocols import protocol_names
+
+    known = catalogue_folders(Path.cwd(), folders or ())
+    if listed:
+        for name, title in protocol_names(known).items():
+            print(f"{name:<22} {title}")
+        return
+    for given, option in ((folder, "FOLDER"), (protocol, "--protocol"), (out, "--out")):
+        if given is None:
+            raise InputError(
+                "is missing", where=option, remedy="See underfoot trials analyse --help"
+            )
+    assert folder is not None
+    assert protocol is not None
+    assert out is not None
+    chosen = protocol_named(protocol, known)
+    if details < 0 or (processes is not None and processes < 1):
+        raise InputError("must not be negative", where="--details, --processes")
+    if out.resolve() == folder.resolve():
+        raise InputError("the folder of the trials can't take the results", where="--out")
+    from underfoot.core.progress import bar
+    from underfoot.document.trials_report import STORE, check_report_folder, write_trials_report
+    from underfoot.trials.analyse import CAUTION, REFUSED, analyse_folder
+
+    check_report_folder(out, overwrite=overwrite)
+    with bar("analysing trials") as progress:
+        analysis = analyse_folder(
+            folder,
+            chosen,
+            profile=profile,
+            conditions=conditions,
+            store=out / STORE,
+            processes=processes,
+            progress=progress,
+        )
+        write_trials_report(analysis, out, details=details, progress=progress)
+    for one in analysis.files:
+        reasons = f": {'; '.join(one.reasons)}" if one.reasons else ""
+        print(f"{one.verdict:<9} {one.file}{reasons}")
+    for note in (*analysis.notes, *analysis.study.notes):
+        say(f"note: {note}")
+    verdicts = [one.verdict for one in analysis.files]
+    usable = len(verdicts) - verdicts.count(REFUSED)
+    say(
+        f"{usable} of {len(verdicts)} files usable, {verdicts.count(CAUTION)} with cautions; "
+        f"read {out / 'report.html'}"
+    )
+    if not usable:
+        raise typer.Exit(3)
+
+
+def simulate(
+    kind: Annotated[str, typer.Argument(help="slips, tester, pin_on_disk or relaxation.")],
+    out: Annotated[Path, typer.Option(help="Folder to be made.", show_default=False)],
+    count: Annotated[int, typer.Option(help="Number of trials, scans or repeats.")] = 12,
+    seed: Annotated[int, typer.Option(help="Another seed gives other trials.")] = 1,
+    overwrite: Overwrite = False,
+) -> None:
+    """Write made-up measurements with known truth, to try the analysis out; clearly synthetic."""
+    from underfoot.core.files import whole_folder
+    from underfoot.core.progress import bar
+    from underfoot.trials.simulate import simulated_folder
+
+    with bar("writing made-up trials") as progress, whole_folder(out, overwrite=overwrite) as made:
+        paths = simulated_folder(kind, made, count=count, seed=seed, progress=progress)
+    say(
+        f"{len(paths)} made-up files in {out}: nothing in them was measured; the truth is truth.csv"
+    )
