@@ -17,7 +17,7 @@ import sys
 import time
 
 SPACINGS = (1.0e-3, 0.7e-3, 0.5e-3, 0.35e-3)
-THREADS = {name: "1" for name in ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
+THREADS = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
 
 
 def measured(spacing: float, treaded: bool, backend: str | None) -> dict[str, float]:
