@@ -59,7 +59,8 @@ class SteadySliding:
         Active-set steps, and FFT products (forward and back; a product on a coarser grid counts by
         its share of the points).
     complementarity_error
-        Larger of the deepest penetration and the pressure-weighted mean |gap|, over rms height.
+        Largest of the deepest penetration and the pressure-weighted mean |gap|, both over the rms
+        height, and the relative error of the load, before the last projection onto p, gap >= 0.
     history
         That error after each iteration on the full grid.
     status, notes

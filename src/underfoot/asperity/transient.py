@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -141,7 +141,7 @@ def transient_sliding(
     tolerance
         On the contact of each step (penetration over rms height).
     threads, fft, progress
-        As in ``steady_sliding``; a ``Cancelled`` raised by progress ends the run with what there is.
+        As in ``steady_sliding``; ``Cancelled`` raised by progress ends the run early.
 
     Errors
     ------
@@ -229,7 +229,8 @@ class _March:
         self.floor = ShiftedMap(floor / self.rms, spacing[0])
         self.shoe = shoe / self.rms
         self.unit = self.instantaneous * self.rms / (spacing[0] * min(floor.shape))
-        self._body = dict(
+        self._body = Body(
+            moduli=lambda qx: np.ones(qx.shape),
             unit=lambda q: unit_compliance(q, layer_thickness, poisson_ratio),
             spacing=spacing,
             scale=self.unit / self.rms,
@@ -320,7 +321,7 @@ class _March:
         return state
 
     def _operators(self, modulus: float) -> Operators:
-        body = Body(moduli=lambda qx: np.full(qx.shape, modulus), **self._body)  # type: ignore[arg-type]  # the dict holds Body's own fields
+        body = replace(self._body, moduli=lambda qx: np.full(qx.shape, modulus))
         return Operators(body, self.shape)
 
 

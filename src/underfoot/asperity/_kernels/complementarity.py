@@ -49,7 +49,8 @@ def solve_on_grid(
     tolerance: float,
     max_steps: int,
     exact: bool,
-    reduction: float = 0.1,
+    settle: bool = True,
+    reduction: float = 0.15,
     report: Callable[[float], None] = lambda error: None,
 ) -> ContactState:
     """Return the contact of ``height`` from a first guess of the pressure (its support counts).
@@ -58,9 +59,11 @@ def solve_on_grid(
     exactly than by ``reduction``, then takes nodes with p <= 0 out and nodes that the gap of that
     solution penetrates in. The gap of the unclipped solution decides, and a first guess with too
     much contact is better than one with too little: both keep the set from cycling (inverse of an
-    M-matrix: Hintermueller, Ito and Kunisch 2002). The error is the larger of the deepest
-    penetration and the pressure-weighted mean |gap|; it counts only when no pressure is negative.
-    With ``exact`` the last steps take their residual in double precision.
+    M-matrix: Hintermueller, Ito and Kunisch 2002). The error is the largest of the deepest
+    penetration, the pressure-weighted mean |gap| and the relative error of the load; it counts only
+    when no pressure is negative.
+    With ``exact`` the last steps take their residual in double precision; without ``settle`` a
+    solution with some negative pressures will do, as a start for a finer grid.
     """
     xp = operators.xp
     points = height.shape[0] * height.shape[1]
@@ -97,7 +100,8 @@ def solve_on_grid(
         if lowest < 0.0:
             p = p * contact
         missing = load - float(xp.sum(p))
-        if abs(missing) > 1e-6 * load:
+        negligible = 0.3 * tolerance if double else max(0.3 * tolerance, 1e-7)
+        if abs(missing) > negligible * load:
             share = missing / float(xp.sum(response))
             p = p + xp.astype(part.spread(response * share), p.dtype)
             gap = None
@@ -116,7 +120,8 @@ def solve_on_grid(
         gap -= float(xp.sum(part.take(gap))) / part.nodes
         lowest = float(xp.min(p))
         carried = float(xp.sum(xp.abs(gap * p))) / load
-        error = max(-float(xp.min(gap)), carried)
+        unbalanced = abs(float(xp.sum(p)) / load - 1.0)
+        error = max(-float(xp.min(gap)), carried, unbalanced)
         history.append(error)
         report(error)
         best, since = (error, 0) if error < best else (best, since + 1)
@@ -125,8 +130,15 @@ def solve_on_grid(
         if rounds >= _HOPELESS or not error < 1e6:
             break
         kept = p > 0.0
-        if error <= tolerance and lowest >= 0.0 and (double or not exact):
+        settled = lowest >= 0.0 or not settle
+        if error <= tolerance and settled and (double or not exact):
             return ContactState(p, gap, step, inner, error, True, history)
+        if error <= tolerance and double:
+            # a node on the very edge may change sides for ever: see whether it matters
+            trial, its_gap, its_error = _clipped(operators, p, height, load, double)
+            if its_error <= tolerance:
+                history[-1] = its_error
+                return ContactState(trial, its_gap, step, inner, its_error, True, history)
         before, contact = contact, kept | ((gap < 0.0) & ~contact)
         changed = int(xp.count_nonzero(contact != before))
         if exact and not double and error <= max(_SWITCH, 3.0 * tolerance):
@@ -135,11 +147,7 @@ def solve_on_grid(
             gap = None
         elif lowest < 0.0:
             gap = None
-    p = xp.where(p > 0.0, p, xp.zeros_like(p))
-    p = p * xp.asarray(load / max(float(xp.sum(p)), 1e-300), dtype=p.dtype)
-    gap = _gap(operators, p, height if double else single, double)
-    gap -= float(xp.sum(gap * p)) / load
-    error = max(-float(xp.min(gap)), float(xp.sum(xp.abs(gap) * p)) / load)
+    p, gap, error = _clipped(operators, p, height if double else single, load, double)
     return ContactState(p, gap, step, inner, error, False, history)
 
 
@@ -153,6 +161,7 @@ def solve_with_mattress(
     tolerance: float,
     max_steps: int,
     exact: bool,
+    settle: bool = True,
     report: Callable[[float], None] = lambda error: None,
 ) -> ContactState:
     """Return the contact of ``solve_on_grid`` by way of ever thinner mattresses on the body.
@@ -190,12 +199,26 @@ def solve_with_mattress(
         tolerance=tolerance,
         max_steps=max_steps,
         exact=exact,
+        settle=settle,
         reduction=0.03,
         report=report,
     )
     state.inner += inner
     state.steps += steps
     return state
+
+
+def _clipped(
+    operators: Operators, p: Array, height: Array, load: float, double: bool
+) -> tuple[Array, Array, float]:
+    """Return (pressure, gap, error) with the negative pressures of ``p`` taken out."""
+    xp = operators.xp
+    p = xp.where(p > 0.0, p, xp.zeros_like(p))
+    p = p * xp.asarray(load / max(float(xp.sum(p)), 1e-300), dtype=p.dtype)
+    gap = _gap(operators, p, height, double)
+    gap -= float(xp.sum(gap * p)) / load
+    error = max(-float(xp.min(gap)), float(xp.sum(xp.abs(gap) * p)) / load)
+    return p, gap, error
 
 
 def _gap(operators: Operators, pressure: Array, height: Array, double: bool) -> Array:

@@ -12,6 +12,10 @@ from .restriction import Restriction
 Array = Any
 
 
+_DEPENDENT = 1e-5
+"""Share of an image left after orthogonalisation below which it is rounding."""
+
+
 class Workspace:
     """Room for the search directions, allocated once and grown when a contact needs more."""
 
@@ -64,21 +68,22 @@ def residual_correction(
         z -= response * _scalar(xp, float(xp.sum(z)) / total)
         w = part.take(operators.displacement(part.spread(z)))
         part.shift(w, -float(xp.sum(w)) / part.nodes)
+        raw = _norm(w)
         if step:
             overlap = images[:step, :] @ w
             w -= overlap @ images[:step, :]
             triangle[:step, step] = np.asarray(overlap)
         length = _norm(w)
-        if not length > 0.0:
+        if not length > _DEPENDENT * raw:
             break
         triangle[step, step] = length
-        w *= _scalar(xp, 1.0 / length)
-        images[step, :] = w
+        weight = float(w @ r) / length
+        images[step, :] = w * _scalar(xp, 1.0 / length)
         directions[step, :] = z
-        weights[step] = float(w @ r)
-        w *= _scalar(xp, weights[step])
+        weights[step] = weight
+        w *= _scalar(xp, weight / length)
         r -= w
-        left = _norm(r)
+        left = max(left**2 - weight**2, 0.0) ** 0.5  # the images are orthonormal
         step += 1
     if step == 0:
         return xp.zeros_like(r), 0

@@ -16,7 +16,7 @@ Array = Any
 _COARSEST = 4096
 """Points at which coarsening stops: below, a grid costs no less than its overhead."""
 _COARSE_TOLERANCE = 5e-2
-_STEPS = 10
+_STEPS = 12
 """Search directions kept by the inner solver."""
 
 
@@ -74,6 +74,7 @@ def solve_nested(
                 tolerance=tolerance if last else max(_COARSE_TOLERANCE, tolerance),
                 max_steps=max_steps,
                 exact=last,
+                settle=last,
                 report=report if last else lambda error: None,
             )
             if state.converged:

@@ -6,7 +6,7 @@ from typing import Any
 
 Array = Any
 
-_GATHER_BELOW = 0.4
+_GATHER_BELOW = 0.7
 """Share of the grid below which gathering costs less than working on masked fields (measured)."""
 
 

@@ -32,5 +32,5 @@ class ShiftedMap:
         phase = np.exp(1j * self._qx * distance)
         if self._shape[0] % 2 == 0:
             middle = self._shape[0] // 2
-            phase[middle] = phase[middle].real
+            phase[middle] = np.real(phase[middle])
         return phase

@@ -1,0 +1,79 @@
+"""Other rough-contact solvers, run in an environment of their own.
+
+tamaas (AGPL) and aspher (BSD, builds from source) are peers to compare with, never dependencies:
+``python -m venv peers && peers/bin/pip install tamaas==2.9 aspher``, then give that environment's
+python to rough_contact.py with --peers. This file runs there and needs NumPy alone.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import time
+
+os.environ["OMP_NUM_THREADS"] = "1"
+
+import numpy as np
+
+try:
+    import tamaas
+except ImportError:
+    tamaas = None
+try:
+    import aspher
+except ImportError:
+    aspher = None
+
+
+def tamaas_elastic(height, pressure, tolerance):
+    n = height.shape[0]
+    model = tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, [1.0, 1.0], [n, n])
+    model.E, model.nu = 1.0, 0.0
+    solver = tamaas.PolonskyKeerRey(model, height, tolerance)
+    solver.max_iter = 10000
+    solver.solve(pressure)
+    return np.array(model.traction)
+
+
+def aspher_elastic(height, pressure, tolerance):
+    # the fastest of its ways here: coarse to fine, single precision polished in double
+    result = aspher.solve_nested(
+        grid_size=height.shape[0],
+        gap=-height.ravel(),
+        p_nominal=pressure,
+        domain_size=1.0,
+        E_star=1.0,
+        backend="periodic",
+        tol=tolerance,
+        precision="float_then_double",
+    )
+    return np.array(result.pressure).reshape(height.shape)
+
+
+def main() -> None:
+    task = json.loads(sys.argv[1])
+    solvers = {
+        "tamaas": (tamaas, tamaas_elastic),
+        "aspher": (aspher, aspher_elastic),
+    }
+    module, solve = solvers[task["peer"]]
+    if module is None:
+        print(json.dumps({"missing": True}))
+        return
+    if task["peer"] == "tamaas":
+        tamaas.set_log_level(tamaas.LogLevel.error)
+        tamaas.initialize(1)
+    height = np.load(task["height"])
+    solve(height[:64, :64].copy(), task["pressure"], 1e-3)
+    best = float("inf")
+    for _ in range(task["repeats"]):
+        start = time.process_time()
+        pressure = solve(height, task["pressure"], task["tolerance"])
+        best = min(best, time.process_time() - start)
+    np.save(task["out"], pressure)
+    print(json.dumps({"seconds": best}))
+
+
+if __name__ == "__main__":
+    main()

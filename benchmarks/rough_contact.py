@@ -1,0 +1,248 @@
+"""Rough contact: our elastic and sliding solves beside tamaas and aspher, one thread each.
+
+    python benchmarks/rough_contact.py --sizes 256 512 --peers peers/bin/python
+
+Self-affine surfaces (Hurst 0.8, waves from L/4 to 8 spacings, so that finer grids carry more
+scales), plane-strain modulus 1, rms slope 1; the sliding rubber has the relaxed modulus 1 and 30
+relaxation times over nine decades (E' rises about twelvefold, tan delta about 0.2). Times are
+process CPU seconds of the best of a few runs; every pressure field is judged in one norm, computed
+here: the larger of the deepest penetration and the pressure-weighted mean |gap|, over rms height.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+os.environ["OMP_NUM_THREADS"] = "1"
+os.environ["MKL_NUM_THREADS"] = "1"
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
+
+import numpy as np
+
+from underfoot.asperity import SteadySliding, steady_sliding
+from underfoot.material import RelaxationSpectrum
+
+TIMES = np.logspace(-9.0, 0.0, 30)
+RUBBER = RelaxationSpectrum(1.0, 0.025 * TIMES**-0.25, TIMES)
+SPEEDS = (0.01, 0.1, 1.0)
+LENGTH = 1e-3
+"""m, side of the patch in the sliding runs; only speed over length matters."""
+
+
+def self_affine(n: int, seed: int = 1, shortest: float | None = None) -> np.ndarray:
+    """Return heights over a unit square with rms slope 1, down to n/8 waves or ``shortest``."""
+    q = np.hypot(np.fft.fftfreq(n, 1 / n)[:, None], np.fft.rfftfreq(n, 1 / n)[None, :])
+    band = (q >= 4) & (q <= (shortest or n / 8))
+    amplitude = np.where(band, np.where(band, q, 1.0) ** -1.8, 0.0)
+    spectrum = np.fft.rfft2(np.random.default_rng(seed).standard_normal((n, n))) * amplitude
+    weights = np.full(q.shape, 2.0)
+    weights[:, 0] = weights[:, -1] = 1.0
+    slope = np.sqrt(np.sum(weights * (2 * np.pi * q * np.abs(spectrum)) ** 2)) / n**2
+    return np.fft.irfft2(spectrum, s=(n, n)) / slope
+
+
+def elastic_error(pressure: np.ndarray, height: np.ndarray) -> float:
+    """Return the complementarity error of an elastic pressure field (E* = 1, unit square)."""
+    n = height.shape[0]
+    q = 2 * np.pi * np.hypot(np.fft.fftfreq(n, 1 / n)[:, None], np.fft.rfftfreq(n, 1 / n))
+    q[0, 0] = np.inf
+    p = np.maximum(pressure, 0.0)
+    gap = np.fft.irfft2(2.0 / q * np.fft.rfft2(p), s=height.shape) - height
+    gap -= gap[p > 0.0].mean()
+    return max(-gap.min(), np.sum(np.abs(gap) * p) / p.sum()) / height.std()
+
+
+def ours(height: np.ndarray, pressure: float, speed: float, fft: str) -> SteadySliding:
+    modulus = 1.0 if speed == 0.0 else RUBBER
+    return steady_sliding(
+        height, 1.0 / height.shape[0], modulus, speed / LENGTH, pressure, 0.0, fft=fft
+    )
+
+
+def timed(height: np.ndarray, pressure: float, speed: float, fft: str, repeats: int):
+    best = float("inf")
+    for _ in range(repeats):
+        start = time.process_time()
+        result = ours(height, pressure, speed, fft)
+        best = min(best, time.process_time() - start)
+    return best, result
+
+
+def peer(python: str | None, name: str, task: dict) -> tuple[float | None, np.ndarray | None]:
+    if python is None:
+        return None, None
+    script = str(Path(__file__).with_name("peers.py"))
+    task = {**task, "peer": name}
+    answer = subprocess.run(
+        [python, script, json.dumps(task)], capture_output=True, text=True, check=False
+    )
+    if answer.returncode:
+        print(answer.stderr[-500:], file=sys.stderr)
+        return None, None
+    reply = json.loads(answer.stdout.strip().splitlines()[-1])
+    if "missing" in reply:
+        return None, None
+    return reply["seconds"], np.load(task["out"])
+
+
+def memory_in_arrays(n: int, pressure: float, speed: float, fft: str) -> float:
+    """Return the peak memory of one solve beyond its start, in double arrays of the grid."""
+    code = (
+        "import resource, sys; sys.path.insert(0, sys.argv[1]); import rough_contact as r\n"
+        "h = r.self_affine(64); r.ours(h, 0.1, 1.0, sys.argv[5])\n"
+        "n = int(sys.argv[2]); h = r.np.load(sys.argv[6])\n"
+        "base = r.resident()\n"
+        "r.ours(h, float(sys.argv[3]), float(sys.argv[4]), sys.argv[5])\n"
+        "print((r.peak() - base) / (8 * n * n))"
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "height.npy"
+        np.save(path, self_affine(n))
+        here = str(Path(__file__).parent)
+        arguments = [here, str(n), str(pressure), str(speed), fft, str(path)]
+        answer = subprocess.run(
+            [sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=True
+        )
+    return float(answer.stdout)
+
+
+def resident() -> float:
+    """Return the resident memory of this process now, bytes (Linux)."""
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return float(pages * resource.getpagesize())
+
+
+def peak() -> float:
+    """Return the largest resident memory of this process so far, bytes (Linux)."""
+    for line in Path("/proc/self/status").read_text().splitlines():
+        if line.startswith("VmHWM"):
+            return float(line.split()[1]) * 1024.0
+    raise RuntimeError("no VmHWM in /proc/self/status")
+
+
+def cell(seconds: float | None) -> str:
+    return f"{'missing':>8}" if seconds is None else f"{seconds:8.3f}"
+
+
+def ratio(reference: float | None, seconds: float) -> str:
+    return "     -" if reference is None else f"{reference / seconds:6.1f}"
+
+
+def row(n: int, pressure: float, options: argparse.Namespace, folder: Path) -> dict:
+    height = self_affine(n)
+    path, out = folder / f"{n}.npy", folder / "pressure.npy"
+    np.save(path, height)
+    repeats = 5 if n <= 512 else 2 if n <= 1024 else 1
+    elastic, result = timed(height, pressure, 0.0, options.fft, repeats)
+    sliding = [timed(height, pressure, v, options.fft, repeats) for v in SPEEDS]
+    task = {
+        "height": str(path),
+        "out": str(out),
+        "pressure": pressure,
+        "tolerance": 1e-6,
+        "repeats": repeats if n <= 512 else 1,
+    }
+    largest = options.tamaas_up_to
+    tamaas, tamaas_field = peer(options.peers if n <= largest else None, "tamaas", task)
+    aspher, aspher_field = peer(options.peers, "aspher", task)
+    fields = [result.pressure, tamaas_field, aspher_field]
+    areas = [None if f is None else float((f > 0).mean()) for f in fields]
+    errors = [None if f is None else elastic_error(f, height) for f in fields]
+    worst = max(seconds for seconds, _ in sliding)
+    print(
+        f"{n:5d} {pressure:5.2f} {cell(elastic)} "
+        + " ".join(cell(seconds) for seconds, _ in sliding)
+        + f" {cell(tamaas)} {cell(aspher)} {ratio(tamaas, worst)} {ratio(aspher, elastic)}  "
+        + " ".join("   -    " if e is None else f"{e:8.1e}" for e in errors)
+        + f" {max(r.complementarity_error for _, r in sliding):8.1e}  "
+        + " ".join("   -   " if a is None else f"{a:7.5f}" for a in areas)
+        + " "
+        + " ".join(f"{r.operator_applications:5.0f}" for r in [result, *(r for _, r in sliding)]),
+        flush=True,
+    )
+    return {
+        "size": n,
+        "pressure": pressure,
+        "elastic": elastic,
+        "sliding": [seconds for seconds, _ in sliding],
+        "tamaas": tamaas,
+        "aspher": aspher,
+        "areas": areas,
+        "errors": errors,
+        "sliding_errors": [r.complementarity_error for _, r in sliding],
+        "applications": [result.operator_applications]
+        + [r.operator_applications for _, r in sliding],
+    }
+
+
+def growth(rows: list[dict]) -> str:
+    """Return the exponents of the FFT products over the number of nodes."""
+    nodes = np.log([float(r["size"]) ** 2 for r in rows])
+    counts = np.log([r["applications"] for r in rows])
+    return " ".join(f"{np.polyfit(nodes, column, 1)[0]:5.2f}" for column in counts.T)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--sizes", type=int, nargs="+", default=[256, 512])
+    parser.add_argument("--pressures", type=float, nargs="+", default=[0.02, 0.1, 0.3, 1.0])
+    parser.add_argument("--peers", help="python of an environment with tamaas and aspher")
+    parser.add_argument("--tamaas-up-to", type=int, default=1024, help="largest size for tamaas")
+    parser.add_argument("--fft", choices=["auto", "mkl", "scipy"], default="auto")
+    parser.add_argument("--out", type=Path, help="JSON file for the numbers")
+    options = parser.parse_args()
+    print(
+        "CPU seconds, one thread; p in E* h'; sliding at 0.01, 0.1 and 1 m/s; x: tamaas over our "
+        "slowest sliding, aspher over our elastic"
+    )
+    print(
+        " size     p  elastic    0.01      0.1      1.0   tamaas   aspher x tamaas x asph "
+        "  err ours  tamaas   aspher  sliding  areas (ours, tamaas, aspher)  FFT products"
+    )
+    ours(self_affine(64), 0.1, 1.0, options.fft)
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for n in options.sizes:
+            for pressure in options.pressures:
+                rows.append(row(n, pressure, options, Path(folder)))
+    n = max(512, min(options.sizes[-1], 1024))
+    memory = {
+        str((p, v)): memory_in_arrays(n, p, v, options.fft)
+        for p, v in ((0.02, 0.1), (1.0, 0.0), (1.0, 1.0))
+    }
+    for case, arrays in memory.items():
+        print(f"peak memory at {n}^2, (p, speed) {case}: {arrays:.1f} arrays of the grid")
+    if len(options.sizes) > 1:
+        print("FFT products grow as nodes^x (side^2x), x for elastic, " + "0.01, 0.1, 1 m/s")
+        for p in options.pressures:
+            picked = [r for r in rows if r["pressure"] == p]
+            print(f"  more roughness with each grid, p {p}: {growth(picked)}")
+        for p in options.pressures:
+            picked = [
+                {
+                    "size": n,
+                    "applications": [
+                        ours(
+                            self_affine(n, shortest=options.sizes[0] / 8), p, v, options.fft
+                        ).operator_applications
+                        for v in (0.0, *SPEEDS)
+                    ],
+                }
+                for n in options.sizes
+                if n <= 1024
+            ]
+            print(f"  the same surface on each grid, p {p}: {growth(picked)}")
+    if options.out:
+        options.out.write_text(json.dumps({"rows": rows, "memory": memory}, indent=1))
+
+
+if __name__ == "__main__":
+    main()
