@@ -137,7 +137,7 @@ def display_unit(value: float, unit: str) -> tuple[float, str]:
     if scales is None:
         return 1.0, unit
     if value == 0.0:
-        return scales[min(1, len(scales) - 1)]
+        return next((scale for scale in scales if scale[0] == 1.0), scales[-1])
     for factor, name in scales:
         if abs(value) >= factor * 0.9995:
             return factor, name

@@ -37,6 +37,8 @@ class Breach:
         if self.high != self.low:
             given += f" to {display(self.high, unit)}"
         tested = f"{display(self.range.low, unit)} to {display(self.range.high, unit)}"
+        if self.range.high == float("inf"):
+            tested = f"{display(self.range.low, unit)} or more"
         source = f" ({self.range.source})" if self.range.source else ""
         return (
             f"{self.closure}: {self.quantity} {given} is outside the tested range {tested}{source}"

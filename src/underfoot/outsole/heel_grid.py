@@ -147,7 +147,7 @@ def _resolution(heel: Heel, spacing: float) -> list[Breach]:
     if heel.arc_channel is not None and heel.arc_channel.depth > 0:
         features.append(("arc_channel.width", "arc channel", heel.arc_channel.width))
     found: list[Breach] = []
-    tested = Range(CELLS_WANTED, math.floor(1e6), "1", "grid refinement of the tread")
+    tested = Range(CELLS_WANTED, math.inf, "1", "grid refinement of the tread")
     for where, name, width in features:
         cells = width / spacing
         if cells < CELLS_REFUSED * (1 - 1e-9):
