@@ -11,7 +11,7 @@ import numpy as np
 from underfoot.core import Progress, silent, unknown_name
 
 from .c3d_file import c3d_bytes
-from .tester import SENSOR, TesterTruth, scan_columns
+from .tester import SENSOR, ScanTruth, scan_columns
 from .tribometer import disk_run, relaxation
 from .walk import DURATION, MARKER_RATE, RATE, Defects, SlipTruth, WalkRecording, walk_with_slip
 
@@ -38,11 +38,11 @@ _FLUIDS = {
 _SPEEDS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 # Slip-tester truths: the report's loads (N) and peaks (kPa), G.4.
 _SHOES = {
-    ("work_none", "glycerol_90pct"): TesterTruth(pressure=234e3, widths=(0.0125, 0.0109)),
-    ("athletic_none", "glycerol_90pct"): TesterTruth(
+    ("work_none", "glycerol_90pct"): ScanTruth(pressure=234e3, widths=(0.0125, 0.0109)),
+    ("athletic_none", "glycerol_90pct"): ScanTruth(
         pressure=214e3, widths=(0.0088, 0.007), middle=(0.025, -0.008)
     ),
-    ("work_full", "glycerol_90pct"): TesterTruth(cof=0.12, pressure=2e3, normal_force=250.0),
+    ("work_full", "glycerol_90pct"): ScanTruth(cof=0.12, pressure=2e3, normal_force=250.0),
 }
 # Outsoles of G.6: mean ACOF, chosen so that the report's risk model gives distinct risks.
 _OUTSOLES = {"hard": 0.150, "medium": 0.158, "soft": 0.182}

@@ -11,7 +11,7 @@ SENSOR = (0.3, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
-class TesterTruth:
+class ScanTruth:
     """A shoe on the tester.
 
     Parameters
@@ -51,7 +51,7 @@ class TesterTruth:
 
 
 def scan_columns(
-    truth: TesterTruth, lateral: float, rng: np.random.Generator, *, noise: float = 1.0
+    truth: ScanTruth, lateral: float, rng: np.random.Generator, *, noise: float = 1.0
 ) -> dict[str, np.ndarray]:
     """Return one slip as columns in the units of a laboratory: s, N, mm, kPa.
 

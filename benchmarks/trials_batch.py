@@ -1,0 +1,82 @@
+"""A folder of 500 slip trials (5 s, 1000 Hz, nine sensors, two plates): time, memory, limits."""
+
+import os
+import resource
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+import psutil
+
+from underfoot.document.trials_report import STORE, write_trials_report
+from underfoot.trials.analyse import analyse_folder
+from underfoot.trials.protocols import protocol
+from underfoot.trials.simulate import simulated_folder
+
+TRIALS = 500
+TIME_LIMIT, MEMORY_LIMIT = 60.0, 1e9  # s on two cores, bytes over all processes
+
+
+def main() -> None:
+    with tempfile.TemporaryDirectory() as place:
+        folder, out = Path(place) / "trials", Path(place) / "out"
+        simulated_folder("slips", folder, count=TRIALS)
+        size = sum(path.stat().st_size for path in folder.iterdir()) / 1e6
+        print(f"{TRIALS} made-up trials, {size:.0f} MB; {os.cpu_count()} processors")
+        with _Memory() as memory:
+            begin, before = time.perf_counter(), _cpu()
+            analysis = analyse_folder(folder, protocol("report_g6"), store=out / STORE, processes=2)
+            analysed, middle = time.perf_counter() - begin, _cpu()
+            write_trials_report(analysis, out)
+            total, after = time.perf_counter() - begin, _cpu()
+        begin = time.perf_counter()
+        analyse_folder(folder, protocol("report_g6"), store=out / STORE, processes=2)
+        again = time.perf_counter() - begin
+    usable = sum(one.usable for one in analysis.files)
+    print(f"usable {usable}")
+    print(f"{'':<28}{'wall s':>8}{'CPU s':>8}")
+    print(f"{'files, two processes':<28}{analysed:>8.1f}{middle - before:>8.1f}")
+    print(f"{'report, tables, figures':<28}{total - analysed:>8.1f}{after - middle:>8.1f}")
+    print(f"{'both (limit 60)':<28}{total:>8.1f}{after - before:>8.1f}")
+    print(f"{'again, from stored results':<28}{again:>8.1f}")
+    print(f"largest memory of all processes {memory.largest / 1e6:.0f} MB (limit 1000 MB)")
+    print(
+        "within the limits" if total < TIME_LIMIT and memory.largest < MEMORY_LIMIT else "TOO MUCH"
+    )
+
+
+class _Memory:
+    """Largest unique memory of this process and its children, sampled ten times a second."""
+
+    def __enter__(self) -> "_Memory":
+        self.largest = 0
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._watch)
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stop.set()
+        self._thread.join()
+
+    def _watch(self) -> None:
+        me = psutil.Process()
+        while not self._stop.wait(0.1):
+            total = 0
+            for process in [me, *me.children(recursive=True)]:
+                try:
+                    total += process.memory_info().rss
+                except psutil.Error:
+                    continue
+            self.largest = max(self.largest, total)
+
+
+def _cpu() -> float:
+    """CPU time of this process and its finished children."""
+    children = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.process_time() + children.ru_utime + children.ru_stime
+
+
+if __name__ == "__main__":
+    main()
