@@ -52,6 +52,13 @@ def test_breaches_name_the_quantity_and_the_tested_range():
     assert "law: speed 0.5 m/s to 3 m/s is outside the tested range 0.01 m/s" in str(found)
 
 
+def test_an_open_range_is_left_at_its_closed_end_only():
+    cells = {"cells": Range(4.0, float("inf"))}
+    assert breaches("grid", cells, {"cells": 1e9}) == []
+    (found,) = breaches("grid", cells, {"cells": 2.4})
+    assert "4 or more" in str(found)
+
+
 def test_the_hash_follows_content_not_identity():
     array = np.arange(6.0).reshape(2, 3)
     assert content_hash({"a": 1, "b": array}) == content_hash({"b": array.copy(), "a": 1})

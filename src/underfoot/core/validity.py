@@ -57,7 +57,8 @@ def breaches(
         if array.size == 0:
             continue
         low, high = float(array.min()), float(array.max())
-        slack = 1e-9 * max(abs(allowed.low), abs(allowed.high))
+        ends = [abs(end) for end in (allowed.low, allowed.high) if np.isfinite(end)]
+        slack = 1e-9 * max(ends, default=0.0)
         if low < allowed.low - slack or high > allowed.high + slack:
             found.append(Breach(closure, quantity, low, high, allowed))
     return found
