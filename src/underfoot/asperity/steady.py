@@ -18,7 +18,7 @@ from ._kernels.nested import NestedSolution, solve_nested
 from ._kernels.operators import Body
 from ._kernels.spectra import dissipation, slope_numbers, work_against_slope
 from ._kernels.symbols import odd_wavenumbers, sliding_moduli, unit_compliance, wavenumbers
-from ._kernels.threads import namespace, threads_limited
+from ._kernels.threads import converter, namespace, threads_limited
 from .steady_checks import (
     Modulus,
     checked_contact_input,
@@ -160,12 +160,14 @@ def steady_sliding(
     xp = namespace(h)
     qx, qy = wavenumbers(shape, steps)
     young = modulus_function(modulus, np.unique(np.abs(qx * speed)))
-    odd = xp.asarray(odd_wavenumbers(shape, steps))
+    asarray = converter(h)
+    odd = asarray(odd_wavenumbers(shape, steps))
     body = Body(
         _moduli(young, speed),
         lambda q: unit_compliance(q, layer_thickness, poisson_ratio),
         steps,
         xp=xp,
+        asarray=asarray,
         threads=threads,
         library=fft,
     )
@@ -173,7 +175,7 @@ def steady_sliding(
         exact = transform(shape, xp.float64, xp=xp, threads=threads, library=fft)
         surface = 1.0 * exact.forward(h)
         slope, short = slope_numbers(
-            surface, xp.asarray(qx**2 + qy**2), shape, 0.5 * math.pi / max(steps)
+            surface, asarray(qx**2 + qy**2), shape, 0.5 * math.pi / max(steps)
         )
         if slope == 0.0:
             return _flat(h, float(pressure), float(speed), xp)

@@ -69,7 +69,7 @@ def solve_on_grid(
     points = height.shape[0] * height.shape[1]
     load = mean_pressure * points
     single = xp.astype(height, xp.float32)
-    work = xp.zeros(height.shape, dtype=xp.float32)
+    work = xp.zeros_like(single)
     double = False
     contact = pressure > 0.0
     p = pressure
@@ -98,7 +98,7 @@ def solve_on_grid(
             known = xp.where(known > 0.0, known, xp.zeros_like(known))
         response = part.take(known)
         if lowest < 0.0:
-            p = p * contact
+            p = xp.where(contact, p, xp.zeros_like(p))
         missing = load - float(xp.sum(p))
         negligible = 0.3 * tolerance if double else max(0.3 * tolerance, 1e-7)
         if abs(missing) > negligible * load:
@@ -171,7 +171,7 @@ def solve_with_mattress(
     for strong loss over a narrow band of speeds, where the direct way cycles.
     """
     least, softness = operators.softness_range()
-    workspace = Workspace(_HARD_STEPS, operators.xp)
+    workspace = Workspace(_HARD_STEPS, operators.xp, height)
     inner = steps = 0
     while softness > 0.1 * least:
         with operators.softened(softness):
@@ -190,19 +190,20 @@ def solve_with_mattress(
         if state.converged:
             pressure = state.pressure
         softness *= _THINNER
-    state = solve_on_grid(
-        operators,
-        height,
-        pressure,
-        mean_pressure,
-        workspace,
-        tolerance=tolerance,
-        max_steps=max_steps,
-        exact=exact,
-        settle=settle,
-        reduction=0.03,
-        report=report,
-    )
+    with operators.softened(0.0):
+        state = solve_on_grid(
+            operators,
+            height,
+            pressure,
+            mean_pressure,
+            workspace,
+            tolerance=tolerance,
+            max_steps=max_steps,
+            exact=exact,
+            settle=settle,
+            reduction=0.03,
+            report=report,
+        )
     state.inner += inner
     state.steps += steps
     return state

@@ -19,9 +19,11 @@ _DEPENDENT = 1e-5
 class Workspace:
     """Room for the search directions, allocated once and grown when a contact needs more."""
 
-    def __init__(self, steps: int, xp: Any) -> None:
+    def __init__(self, steps: int, xp: Any, like: Array = None) -> None:
         self.steps = steps
         self._xp = xp
+        device = {} if xp is np else {"device": like.device}
+        self._kind: dict[str, Any] = {"dtype": xp.float32, **device}
         self._images: Array = None
         self._directions: Array = None
         self._length = 0
@@ -31,8 +33,8 @@ class Workspace:
         if self.steps * size > self._length:
             self._images = self._directions = None
             self._length = self.steps * size
-            self._images = self._xp.empty(self._length, dtype=self._xp.float32)
-            self._directions = self._xp.empty(self._length, dtype=self._xp.float32)
+            self._images = self._xp.empty(self._length, **self._kind)
+            self._directions = self._xp.empty(self._length, **self._kind)
         shape, end = (self.steps, size), self.steps * size
         reshape = self._xp.reshape
         return reshape(self._images[:end], shape), reshape(self._directions[:end], shape)
@@ -72,7 +74,7 @@ def residual_correction(
         if step:
             overlap = images[:step, :] @ w
             w -= overlap @ images[:step, :]
-            triangle[:step, step] = np.asarray(overlap)
+            triangle[:step, step] = overlap if xp is np else [float(o) for o in overlap]
         length = _norm(w)
         if not length > _DEPENDENT * raw:
             break
@@ -88,7 +90,7 @@ def residual_correction(
     if step == 0:
         return xp.zeros_like(r), 0
     y = np.linalg.solve(triangle[:step, :step], weights[:step]).astype(np.float32)
-    return xp.asarray(y) @ directions[:step, :], step
+    return operators.asarray(y) @ directions[:step, :], step
 
 
 def _norm(vector: Array) -> float:

@@ -46,7 +46,7 @@ def solve_nested(
     ``spectrum`` is the half spectrum of ``height``, ``exact`` the double-precision transform.
     """
     xp = body.xp
-    workspace = Workspace(_STEPS, xp)
+    workspace = Workspace(_STEPS, xp, height)
     fine = Operators(body, height.shape, exact=exact)
     coarsenings = _coarsenings(height.shape)
     levels = [(factor, low_pass(spectrum, height.shape, factor, xp)) for factor in coarsenings[:-1]]
@@ -79,7 +79,8 @@ def solve_nested(
             )
             if state.converged:
                 break
-        pressure = state.pressure * (state.pressure > 0.0)
+        found = state.pressure
+        pressure = xp.where(found > 0.0, found, xp.zeros_like(found))
         before = factor
         cost += operators.count * heights.shape[0] * heights.shape[1]
     assert state is not None

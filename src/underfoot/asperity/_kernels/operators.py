@@ -20,7 +20,8 @@ class Body:
     """A body whose compliance is scale * unit(|q|) / moduli(qx), and what computes with it.
 
     ``moduli`` returns E*(qx v) for a column of qx (real when elastic), ``unit`` the compliance for
-    E = 1. ``spacing`` is that of the fine grid. ``library`` names the FFT (see ``transform``).
+    E = 1. ``spacing`` is that of the fine grid. ``asarray`` brings a NumPy array to the namespace
+    ``xp`` and its device. ``library`` names the FFT (see ``transform``).
     """
 
     moduli: Callable[[Array], Array]
@@ -28,6 +29,7 @@ class Body:
     spacing: tuple[float, float]
     scale: float = 1.0
     xp: Any = np
+    asarray: Callable[..., Array] = np.asarray
     threads: int = 1
     library: str = "auto"
 
@@ -59,11 +61,12 @@ class Operators:
         stiffness = rows.astype(single) / unit.astype(np.float32)
         compliance = 1.0 / stiffness
         stiffness[0, 0] = compliance[0, 0] = unit[0, 0] = 0.0
-        asarray = self.xp.asarray
+        self.asarray = asarray = body.asarray
         self.compliance, self.stiffness = asarray(compliance), asarray(stiffness)
         self.unit, self.rows = asarray(unit), asarray(rows)
         self._inverse_rows = asarray(1.0 / rows)
         self._body = body
+        self._lossy = np.iscomplexobj(rows)
         self.fast = self._transform(self.xp.float32)
         self._exact = exact
 
@@ -71,11 +74,15 @@ class Operators:
     def softened(self, softness: float) -> Iterator[None]:
         """Add a soft mattress, u = softness p at every node, to the body inside the block.
 
-        It acts on the products in single precision only.
+        It acts on the products in single precision only. ``pressure`` becomes the inverse of the
+        compliance in phase: less close to the inverse, but symmetric, so that the minimum-residual
+        iteration can't stagnate (the operator is positive in that inner product).
         """
         kept = self.compliance, self.stiffness
         softened = self.compliance + self.xp.asarray(softness, dtype=self.compliance.dtype)
-        self.compliance, self.stiffness = softened, 1.0 / softened
+        in_phase = self.xp.real(softened) if self._lossy else softened
+        in_phase[0, 0] = 1.0
+        self.compliance, self.stiffness = softened, 1.0 / in_phase
         self.compliance[0, 0] = self.stiffness[0, 0] = 0.0
         try:
             yield

@@ -4,23 +4,26 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 Array = Any
 
 _GATHER_BELOW = 0.7
-"""Share of the grid below which gathering costs less than working on masked fields (measured)."""
+"""Share of the grid below which gathering costs less than masked fields (measured, NumPy)."""
 
 
 class Restriction:
     """Single-precision vectors on the nodes where ``inside`` is true.
 
-    Gathered: a vector holds those nodes. Masked: it is the whole field, zero elsewhere.
+    Gathered: a vector holds those nodes. Masked: it is the whole field, zero elsewhere. Arrays that
+    are not NumPy's are always masked: assignment by index is no part of the array API.
     """
 
     def __init__(self, inside: Array, xp: Any, work: Array) -> None:
         self.xp = xp
         self._flat = xp.reshape(inside, (-1,))
         self.nodes = int(xp.count_nonzero(self._flat))
-        self.gathered = self.nodes < _GATHER_BELOW * self._flat.shape[0]
+        self.gathered = xp is np and self.nodes < _GATHER_BELOW * self._flat.shape[0]
         self._shape = inside.shape
         if self.gathered:
             self._index = xp.nonzero(self._flat)[0]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from .threads import namespace
+
 Array = Any
 
 
@@ -12,9 +14,10 @@ def half_sum(terms: Array, columns: int) -> float:
 
     ``columns`` is the length of axis 1 in real space: inner columns stand for two waves.
     """
-    total = 2.0 * float(terms.sum()) - float(terms[:, 0].sum())
+    xp = namespace(terms)
+    total = 2.0 * float(xp.sum(terms)) - float(xp.sum(terms[:, 0]))
     if columns % 2 == 0:
-        total -= float(terms[:, -1].sum())
+        total -= float(xp.sum(terms[:, -1]))
     return total
 
 
@@ -22,15 +25,18 @@ def slope_numbers(
     spectrum: Array, q_squared: Array, shape: tuple[int, int], limit: float
 ) -> tuple[float, float]:
     """Return (rms slope, share of its square in waves beyond the wavenumber ``limit``)."""
-    power = (spectrum.real**2 + spectrum.imag**2) * q_squared
+    xp = namespace(spectrum)
+    power = _squared(spectrum) * q_squared
     total = half_sum(power, shape[1])
-    short = half_sum(power * (q_squared > limit**2), shape[1])
+    short = half_sum(xp.where(q_squared > limit**2, power, xp.zeros_like(power)), shape[1])
     return total**0.5 / (shape[0] * shape[1]), short / total if total > 0.0 else 0.0
 
 
 def work_against_slope(pressure: Array, height: Array, qx: Array, shape: tuple[int, int]) -> float:
     """Return <p dh/dx> from the half spectra of p and h; qx is 0 on the Nyquist row."""
-    terms = (pressure.imag * height.real - pressure.real * height.imag) * qx
+    xp = namespace(pressure)
+    turned = xp.imag(pressure) * xp.real(height) - xp.real(pressure) * xp.imag(height)
+    terms = turned * qx
     return half_sum(terms, shape[1]) / (shape[0] * shape[1]) ** 2
 
 
@@ -41,7 +47,12 @@ def dissipation(
 
     u = unit p / moduli; the work of a wave is qx unit |p|^2 E''/|E*|^2. ``unit`` is in m/1.
     """
-    loss = moduli.imag / (moduli.real**2 + moduli.imag**2) * qx
-    terms = (pressure.real**2 + pressure.imag**2) * unit
+    loss = namespace(moduli).imag(moduli) / _squared(moduli) * qx
+    terms = _squared(pressure) * unit
     terms *= loss
     return half_sum(terms, shape[1]) / (shape[0] * shape[1]) ** 2
+
+
+def _squared(values: Array) -> Array:
+    xp = namespace(values)
+    return xp.real(values) ** 2 + xp.imag(values) ** 2

@@ -34,3 +34,11 @@ def namespace(array: Any) -> Any:
     from array_api_compat import array_namespace
 
     return array_namespace(array)
+
+
+def converter(like: Any) -> Any:
+    """Return the function that brings a NumPy array to the namespace and device of ``like``."""
+    if isinstance(like, np.ndarray):
+        return np.asarray
+    xp = namespace(like)
+    return lambda array: xp.asarray(array, device=like.device)
