@@ -225,3 +225,43 @@ def test_simulated_folders_are_labelled_and_repeatable(tmp_path):
     assert slip_truth(3, 1) != slip_truth(3, 2)
     with pytest.raises(InputError, match="pin_on_disk"):
         simulated_folder("pin_on_disc", tmp_path / "c")
+
+
+def test_boundary_folder(tmp_path):
+    """Forces built from known adhesion and hysteresis: Eq. 22 to 26 must give them back."""
+    from underfoot.trials.simulate.tribometer import disk_run
+
+    rng = np.random.default_rng(9)
+    pairs = {
+        ("pu", "vinyl"): (5.0, 3.0),
+        ("soft", "vinyl"): (9.0, 2.0),
+        ("hard", "marble"): (13.0, 1.0),
+    }
+    fluids = {"water": (2.0, 0.1), "gly50": (1.0, 0.3)}
+    lines = ["file,shoe,floor,fluid,speed (m/s)"]
+    for (shoe, floor), (adhesion, hysteresis) in pairs.items():
+        forces = {"dry": adhesion + hysteresis, "sae_75w140": hysteresis}
+        forces |= {f: hysteresis + a + b * adhesion for f, (a, b) in fluids.items()}
+        for fluid, force in forces.items():
+            for repeat in range(3):
+                name = f"{shoe}_{fluid}_{repeat}.csv"
+                columns = disk_run(force / 20.9, 0.01, rng)
+                data = np.column_stack(list(columns.values()))
+                np.savetxt(
+                    tmp_path / name, data, delimiter=",", header=",".join(columns), comments=""
+                )
+                lines.append(f"{name},{shoe},{floor},{fluid},0.01")
+    (tmp_path / "conditions.csv").write_text("\n".join(lines) + "\n")
+    analysis = analyse_folder(tmp_path, protocol("report_g3"), processes=1)
+    assert all(one.usable for one in analysis.files)
+    split = {row[:3]: row[3] for row in analysis.study.tables[0].rows}
+    for pair, (adhesion, hysteresis) in pairs.items():
+        assert split[*pair, "adhesion"] == pytest.approx(adhesion, abs=0.15)
+        assert split[*pair, "hysteresis"] == pytest.approx(hysteresis, abs=0.1)
+    rows = {row[0]: row for row in analysis.study.tables[1].rows}
+    for fluid, (alpha, beta) in fluids.items():
+        assert rows[fluid][1] == pytest.approx(alpha, abs=0.3)
+        assert rows[fluid][3] == pytest.approx(beta, abs=0.03)
+    titles = [finding.title for finding in analysis.study.findings]
+    assert any("type II " in title for title in titles)
+    assert any("type III " in title for title in titles)

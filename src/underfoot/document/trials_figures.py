@@ -100,7 +100,7 @@ def array(values: Sequence[float | None]) -> np.ndarray:
 
 def _steps(one: FileResult) -> Figure:
     steps = one.curves["steps"]
-    figure = new_figure(3.6 * min(len(steps), 3) + 1.2, 4.4)
+    figure = new_figure(3.3 * min(len(steps), 3) + 2.2, 4.4)
     grid: Any = figure.subplots(2, min(len(steps), 3), squeeze=False, sharex="col", sharey="row")
     for column, step in enumerate(steps[:3]):
         time = 1e3 * array(step["time"])
@@ -129,8 +129,8 @@ def _steps(one: FileResult) -> Figure:
             plain(axes)
     grid[0][0].set_ylabel("force on the foot (N)")
     grid[1][0].set_ylabel("shear / normal")
-    grid[0][-1].legend(frameon=False, fontsize=8)
-    grid[1][-1].legend(frameon=False, fontsize=8)
+    for row in grid:
+        row[-1].legend(frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
     return figure
 
 

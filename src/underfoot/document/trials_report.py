@@ -105,7 +105,7 @@ def trials_page(analysis: FolderAnalysis, pictures: list[tuple[TrialFigure, byte
                 "caption": one.caption,
                 "source": source,
                 "name": one.name,
-                "width": f"{5.6 * one.figure.get_figwidth():.1f}",
+                "width": f"{5.3 * one.figure.get_figwidth():.1f}",
             }
         )
     return (

@@ -24,7 +24,15 @@ from .methods import methods_paragraphs
 from .study import Study, study_of
 from .tables import Table, file_table, measurement_table
 
-NOT_TRIALS = ("conditions.csv", "conditions.xlsx", "truth.csv", "synthetic.txt", "readme.txt")
+NOT_TRIALS = (
+    "conditions.csv",
+    "conditions.xlsx",
+    "truth.csv",
+    "synthetic.txt",
+    "readme.txt",
+    "license.txt",
+    "licence.txt",
+)
 _FORCES = (".forces", ".mot", ".sto")
 _STEP = "#"
 

@@ -328,7 +328,25 @@ def _gait(files: list[FileResult], protocol: Protocol) -> Study:
     }
     table = group_table(files, tuple(factors), ("rcof",))
     findings = anova_finding("rcof", [f.main["rcof"] for f in with_rcof], factors)
-    return Study((table,) if table else (), tuple(findings))
+    steps = tuple(
+        (
+            f.file,
+            m["item"],
+            m["value"],
+            m["reason"] if m["value"] is None else "",
+            "; ".join(m["flags"]),
+        )
+        for f in files
+        for m in f.measurements
+        if m["item"].startswith("step ")
+    )
+    listed = Table(
+        "steps",
+        "Required friction of every step, rejected ones with the reason",
+        ("file", "step", "RCOF", "rejected because", "flags"),
+        steps,
+    )
+    return Study((table, listed) if table else (listed,), tuple(findings))
 
 
 def _relaxation(files: list[FileResult], protocol: Protocol) -> Study:
