@@ -92,7 +92,7 @@ def test_fixed_height_gives_the_load_that_fixed_load_needs():
         height, LENGTH / 32, MATERIAL, 0.1, separation=steady.mean_gap, max_periods=6
     )
     assert march.steady
-    assert march.pressure[-32:].mean() == pytest.approx(3e4, rel=3e-2)
+    assert march.pressure[-64:].mean() == pytest.approx(3e4, rel=3e-2)
     # pressed on at rest, the relaxed rubber carries less at the same height
     assert march.pressure[0] < 0.9 * march.pressure[-1]
 
@@ -138,7 +138,7 @@ def test_cancelled_run_keeps_its_history():
         rough(32, 6, 4e-6), LENGTH / 32, MATERIAL, 0.1, pressure=3e4, max_periods=2, progress=stop
     )
     assert march.status is Status.CANCELLED
-    assert march.time.size == 19
+    assert march.time.size == 38
     assert np.isfinite(march.shear).all()
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -159,11 +159,14 @@ def steady_sliding(
     shape: tuple[int, int] = h.shape
     xp = namespace(h)
     qx, qy = wavenumbers(shape, steps)
-    young = modulus_function(modulus, np.unique(np.abs(qx * speed)))
+    length = shape[0] * steps[0]
+    frequencies = 2.0 * math.pi / length * abs(speed) * np.arange(shape[0] // 2 + 1)
+    young = modulus_function(modulus, frequencies)
+    table = young(frequencies)
     asarray = converter(h)
     odd = asarray(odd_wavenumbers(shape, steps))
     body = Body(
-        _moduli(young, speed),
+        partial(sliding_moduli, table, length, speed > 0.0),
         lambda q: unit_compliance(q, layer_thickness, poisson_ratio),
         steps,
         xp=xp,
@@ -197,7 +200,7 @@ def steady_sliding(
         spectrum = exact.forward(p)
         on_slope = work_against_slope(spectrum, surface, odd, shape) * rms
         lost = 0.0
-        if np.iscomplexobj(body.moduli(qx)):
+        if np.any(table.imag):
             operators = solved.operators
             lost = dissipation(spectrum, operators.unit, operators.rows, odd, shape) * rms / unit
     state = solved.state
@@ -210,7 +213,7 @@ def steady_sliding(
     if speed == 0.0:
         notes.append("speed 0: elastic contact of the relaxed rubber")
     else:
-        notes.extend(loss_reason(young, np.abs(qx * speed)))
+        notes.extend(loss_reason(table, frequencies))
     if not state.converged:
         notes.append(
             f"stopped after {state.steps} iterations at an error of {state.error:.1e} "
@@ -237,16 +240,6 @@ def steady_sliding(
         notes=tuple(notes),
         breaches=found,
     )
-
-
-def _moduli(young: Callable[[Any], Any], speed: float) -> Callable[[Any], Any]:
-    """Return E*(qx v) of a column of qx, real when there is no loss at all."""
-
-    def rows(qx: Any) -> Any:
-        values = sliding_moduli(young, speed, qx)
-        return values if np.any(values.imag) else values.real
-
-    return rows
 
 
 def _physical(

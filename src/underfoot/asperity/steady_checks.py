@@ -123,12 +123,14 @@ def modulus_function(modulus: Modulus, frequencies: Array) -> Callable[[Array], 
     return young
 
 
-def loss_reason(young: Callable[[Array], Array], frequencies: Array) -> list[str]:
-    """Return why the hysteresis is (nearly) zero, if it is for want of loss in the material."""
-    w = frequencies[frequencies > 0.0]
+def loss_reason(moduli: Array, frequencies: Array) -> list[str]:
+    """Return why the hysteresis is (nearly) zero, if it is for want of loss in the material.
+
+    ``moduli`` are E* (Pa) at ``frequencies`` (rad/s).
+    """
+    w, values = frequencies[frequencies > 0.0], moduli[frequencies > 0.0]
     if w.size == 0:
         return []
-    values = young(w)
     tangent = float(np.max(values.imag / values.real))
     if tangent >= _NEGLIGIBLE_LOSS_TANGENT:
         return []

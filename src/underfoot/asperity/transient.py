@@ -99,7 +99,7 @@ def transient_sliding(
     poisson_ratio: float = 0.5,
     layer_thickness: float | None = None,
     start: str = "relaxed",
-    steps_per_spacing: int = 1,
+    steps_per_spacing: int = 2,
     max_periods: int = 8,
     steady_tolerance: float = 5e-3,
     tolerance: float = 1e-5,
@@ -133,7 +133,8 @@ def transient_sliding(
     start
         "relaxed" (long rest before sliding) or "fresh" (pressed on at the instant sliding starts).
     steps_per_spacing
-        Time steps while the floor moves by one spacing.
+        Time steps while the floor moves by one spacing; with 8 nodes to the shortest wave, 2 keep
+        the COF within 2 %, 1 within 5 % (second order).
     max_periods
         Passages of the whole floor map at most.
     steady_tolerance

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -26,18 +25,21 @@ def odd_wavenumbers(shape: tuple[int, int], spacing: tuple[float, float]) -> Arr
     return qx
 
 
-def sliding_moduli(modulus: Callable[[Array], Array], speed: float, qx: Array) -> Array:
-    """Return E*(qx v) (nx, 1), complex: the conjugate where qx v < 0, real on the Nyquist row.
+def sliding_moduli(table: Array, length: float, forward: bool, qx: Array) -> Array:
+    """Return E*(qx v) (nx, 1): the conjugate for waves met backwards, real on the Nyquist row.
 
-    The callable is asked only for the distinct frequencies |qx v|.
+    ``table`` holds E* of the waves 0, 1, 2, ... to the cell of ``length``; coarser grids hold the
+    same waves. Real when nothing is lost.
     """
-    frequency, inverse = np.unique(np.abs(qx * speed), return_inverse=True)
-    values = np.asarray(modulus(frequency), dtype=complex)[inverse].reshape(qx.shape)
-    rows = np.where(qx * speed < 0.0, np.conj(values), values)
+    if not np.any(table.imag):
+        table = table.real
+    wave = np.rint(np.abs(qx) * (length / (2.0 * np.pi))).astype(int)
+    values = table[wave]
+    rows = np.where((qx < 0.0) == forward, np.conj(values), values)
     if qx.shape[0] % 2 == 0:
         # the Nyquist wave is its own mirror image: only the in-phase compliance acts
         row = qx.shape[0] // 2
-        rows[row] = 1.0 / (1.0 / rows[row]).real
+        rows[row] = 1.0 / np.real(1.0 / rows[row])
     return rows
 
 
