@@ -1,7 +1,10 @@
 """Whole folders: verdicts, bad files, resuming, the same bytes, the commands."""
 
 import hashlib
+import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -9,6 +12,7 @@ from typer.testing import CliRunner
 
 from underfoot.core import InputError
 from underfoot.document.trials_report import STORE, write_trials_report
+from underfoot.trials import Profile
 from underfoot.trials.analyse import analyse_folder
 from underfoot.trials.analyse import folder as folder_module
 from underfoot.trials.analyse.conditions import conditions_of
@@ -96,6 +100,41 @@ def test_one_bad_file_never_stops_the_rest(tester, tmp_path):
         assert verdicts[name].reasons[0]
         assert "Traceback" not in verdicts[name].reasons[0]
     assert any("photo.jpg" in note for note in analysis.notes)
+
+
+class _Deadly:
+    """Ends the process that unpickles it, as a crash in a native library would."""
+
+    def __reduce__(self):
+        return os._exit, (1,)
+
+
+def test_a_file_that_kills_its_process_is_refused_alone(tester):
+    files = sorted(tester.glob("work_none*.csv"))
+    jobs = [((str(path),), {}, Profile(), protocol("report_g4"), "base", None) for path in files]
+    jobs.insert(1, ((str(tester / "deadly.csv"),), _Deadly(), Profile(), None, "base", None))
+    jobs.append(jobs[0])
+    seen = []
+    results = folder_module._run(
+        jobs, 2, lambda stage, fraction, residual=None: seen.append(fraction)
+    )
+    verdicts = [result[0].verdict for result in results]
+    assert verdicts == ["accepted", "refused", "accepted", "accepted", "accepted"]
+    assert "ended without an answer" in results[1][0].reasons[0]
+    assert seen[-1] == 1.0
+
+
+def test_scripts_without_a_guard_work_too(tester, tmp_path):
+    script = tmp_path / "plain.py"
+    script.write_text(
+        "from pathlib import Path\n"
+        "from underfoot.trials.analyse import analyse_folder\n"
+        "from underfoot.trials.protocols import protocol\n"
+        f"found = analyse_folder(Path({str(tester)!r}), protocol('report_g4'), processes=2)\n"
+        "print(sum(one.usable for one in found.files))\n"
+    )
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "9"
 
 
 def test_rules_refuse_and_caution(tester):

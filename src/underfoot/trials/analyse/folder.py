@@ -7,6 +7,7 @@ import os
 import tempfile
 from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -121,20 +122,61 @@ def _run(jobs: list[tuple[Any, ...]], processes: int, progress: Progress) -> lis
             done.append(_job(job))
             progress("analysing files", len(done) / len(jobs))
         return done
+    size = max(1, min(16, len(jobs) // (4 * processes)))
+    try:
+        with _pool(processes) as pool:
+            try:
+                for result in pool.map(_job, jobs, chunksize=size):
+                    done.append(result)
+                    progress("analysing files", len(done) / len(jobs))
+            except BaseException:
+                pool.shutdown(cancel_futures=True)
+                raise
+    except BrokenProcessPool:
+        return _one_by_one(jobs, done, progress)
+    return done
+
+
+def _one_by_one(
+    jobs: list[tuple[Any, ...]], done: list[list[FileResult]], progress: Progress
+) -> list[list[FileResult]]:
+    """Go on after a process died: find the file that kills it, and refuse that one alone."""
+    if not _processes_work():
+        # A script without its "if __name__" guard can't start processes: do the work here.
+        for job in jobs[len(done) :]:
+            done.append(_job(job))
+            progress("analysing files", len(done) / len(jobs))
+        return done
+    pool = _pool(1)
+    try:
+        for job in jobs[len(done) :]:
+            try:
+                done.append(pool.submit(_job, job).result())
+            except BrokenProcessPool:
+                pool = _pool(1)
+                name = Path(job[0][0]).name
+                reason = "the process that analysed it ended without an answer"
+                done.append([FileResult(name, "", REFUSED, (reason,))])
+            progress("analysing files", len(done) / len(jobs))
+    finally:
+        pool.shutdown(cancel_futures=True)
+    return done
+
+
+def _pool(processes: int) -> ProcessPoolExecutor:
     import multiprocessing
 
     # Fresh processes: a forked one can inherit locks of numerical libraries' threads.
     context = multiprocessing.get_context("spawn")
-    size = max(1, min(16, len(jobs) // (4 * processes)))
-    with ProcessPoolExecutor(processes, mp_context=context, initializer=_quiet) as pool:
-        try:
-            for result in pool.map(_job, jobs, chunksize=size):
-                done.append(result)
-                progress("analysing files", len(done) / len(jobs))
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
-    return done
+    return ProcessPoolExecutor(processes, mp_context=context, initializer=_quiet)
+
+
+def _processes_work() -> bool:
+    try:
+        with _pool(1) as pool:
+            return pool.submit(os.getpid).result() > 0
+    except BrokenProcessPool:
+        return False
 
 
 def _quiet() -> None:
