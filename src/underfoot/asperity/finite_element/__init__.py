@@ -8,14 +8,18 @@ from .inputs import (
     MicroMaterial,
     MicroResult,
 )
+from .model import explicit_sliding
+from .settings import ExplicitSettings
 from .surface import MicroSurface
 
 __all__ = [
     "EnergyLedger",
+    "ExplicitSettings",
     "MicroAverages",
     "MicroBlock",
     "MicroLoading",
     "MicroMaterial",
     "MicroResult",
     "MicroSurface",
+    "explicit_sliding",
 ]

@@ -47,11 +47,12 @@ def _wave(turns):
             )
         )
     )
-    odd = quarter * quarter == 1.0
-    half = quarter * quarter == 4.0
-    cosine = -quarter * s if odd else (-c if half else c)
-    sine = quarter * c if odd else (-s if half else s)
-    return cosine, sine
+    # quarter is -2 to 2; "odd" is 1 for a quarter turn, "turned" is -1 for half a turn.
+    square = quarter * quarter
+    odd = square * (4.0 - square) / 3.0
+    turned = 1.0 - square * (square - 1.0) / 6.0
+    even = (1.0 - odd) * turned
+    return even * c - odd * quarter * s, even * s + odd * quarter * c
 
 
 @njit(cache=True, inline="always")
@@ -98,16 +99,23 @@ def _spline(x, y, coefficients):
 
 
 @njit(cache=True, inline="always")
+def cosine_floor(x, y, numbers):
+    """Return height and slopes of the checkerboard of two cosines."""
+    a, rate = numbers[0], numbers[1]
+    cx, sx = _wave((x - numbers[2]) * rate)
+    cy, sy = _wave((y - numbers[3]) * rate)
+    k = 2.0 * np.pi * rate
+    return a * cx * cy, -a * k * sx * cy, -a * k * cx * sy
+
+
+@njit(cache=True, inline="always")
 def floor_height(x, y, form, numbers, coefficients):
     """Return height and both slopes at (x, y); forms as in ``surface.FORMS``."""
+    if form == 1:
+        return cosine_floor(x, y, numbers)
     a, rate = numbers[0], numbers[1]
     x = x - numbers[2]
     y = y - numbers[3]
-    if form == 1:
-        cx, sx = _wave(x * rate)
-        cy, sy = _wave(y * rate)
-        k = 2.0 * np.pi * rate
-        return a * cx * cy, -a * k * sx * cy, -a * k * cx * sy
     if form == 2:
         tx, dx = _triangle(x * rate)
         ty, dy = _triangle(y * rate)

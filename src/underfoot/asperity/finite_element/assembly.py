@@ -1,0 +1,300 @@
+"""Arrays of a march: element constants in chunks, nodes, contact, control and state."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from underfoot.core import InputError
+
+from ._kernels import generate, names
+from .inputs import MicroBlock, MicroLoading, MicroMaterial
+from .mesh import Mesh, block_mesh, check_pattern, layer_heights
+from .settings import ExplicitSettings, largest_mass_scaling
+from .surface import MicroSurface
+
+LANES = generate.LANES
+SINKING = 0.003
+"""Share of the roughness that the mean pressure may press into the contact's springs."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Assembly:
+    """Everything that ``advance`` takes; ``nodes``, ``history`` and ``state`` change.
+
+    Parameters
+    ----------
+    mesh
+        The block's mesh.
+    nodes
+        Displacement, velocity, internal force: each (3 * stride,), axis by axis.
+    arrays, floor
+        As the kernels take them.
+    constants, history, parameters, work
+        Element constants and history by chunks, numbers of the material, scratch.
+    state, control, terms
+        As ``_kernels.names`` names them; G_i and b_i of each term.
+    time_step, critical_time_step
+        s.
+    density
+        kg/m^3, scaled.
+    penalty
+        Pa/m.
+    hourglass_modulus
+        Pa.
+    mass_scaling
+        Factor.
+    kind, viscous
+        Which kernel.
+    """
+
+    mesh: Mesh
+    nodes: tuple[np.ndarray, np.ndarray, np.ndarray]
+    arrays: tuple[np.ndarray, ...]
+    floor: tuple[int, np.ndarray, np.ndarray, float]
+    constants: np.ndarray
+    history: np.ndarray
+    parameters: np.ndarray
+    work: np.ndarray
+    state: np.ndarray
+    control: np.ndarray
+    terms: np.ndarray
+    time_step: float
+    critical_time_step: float
+    density: float
+    penalty: float
+    hourglass_modulus: float
+    mass_scaling: float
+    kind: str
+    viscous: bool
+
+    @property
+    def displacement(self) -> np.ndarray:
+        """Displacement of the mesh's nodes, m, (3, n)."""
+        return self.nodes[0].reshape(3, -1)[:, : self.mesh.nodes.shape[1]]
+
+    @property
+    def velocity(self) -> np.ndarray:
+        """Velocity of the mesh's nodes, m/s, (3, n)."""
+        return self.nodes[1].reshape(3, -1)[:, : self.mesh.nodes.shape[1]]
+
+    def advance(self, count: int) -> None:
+        """March ``count`` steps."""
+        from ._kernels import hexahedron
+
+        name = generate.kernel_name(self.kind, self.viscous).replace("element_forces", "advance")
+        getattr(hexahedron, name)(
+            count,
+            self.nodes,
+            self.arrays,
+            self.constants,
+            self.history,
+            self.parameters,
+            self.work,
+            self.floor,
+            self.state,
+            self.control,
+            self.terms,
+        )
+
+
+def assembled(
+    block: MicroBlock,
+    floor: MicroSurface,
+    material: MicroMaterial,
+    loading: MicroLoading,
+    settings: ExplicitSettings,
+) -> Assembly:
+    """Return the arrays of a march at rest, the block's lowest point touching the floor.
+
+    Errors
+    ------
+    InputError
+        A mesh that can't carry a roughness, a time step above the critical one, a contact stiffer
+        than the step allows.
+    """
+    mesh = block_mesh(block)
+    check_pattern(block, floor, "floor")
+    spectrum = material.shear
+    g0, bulk = spectrum.instantaneous_modulus, material.bulk_modulus
+    shear_speed = material.wave_speeds[1]
+    scaling = settings.mass_scaling
+    if isinstance(scaling, str):
+        scaling = largest_mass_scaling(loading.speed, shear_speed)
+    density = material.density * scaling
+    confined = bulk + 4.0 / 3.0 * g0
+    critical = critical_time_step(mesh.largest_gradient_square, confined, density)
+    dt = settings.cfl * critical if settings.time_step is None else settings.time_step
+    if dt >= critical:
+        raise InputError(
+            f"a time step of {dt:.4g} s",
+            where="ExplicitSettings.time_step",
+            allowed=f"below the critical {critical:.4g} s of this mesh and material",
+            remedy=f"Use {0.6 * critical:.3g} s, or leave it out",
+        )
+    frequency = 2.0 * math.pi * loading.speed / floor.wavelength
+    modulus = settings.hourglass_modulus or float(spectrum.storage_modulus(frequency))
+    dtype = np.float64 if settings.precision == "double" else np.float32
+    viscous = settings.hourglass == "viscous" or settings.bulk_viscosity > 0.0
+    constants, real = _element_constants(
+        mesh, settings, modulus, density, math.sqrt(confined / density), dt, dtype
+    )
+
+    stride = constants.shape[0] * LANES + int(mesh.offsets.max()) + 1
+    stride = max(stride, mesh.nodes.shape[1])
+    rates = 1.0 / spectrum.relaxation_times
+    terms = np.stack([spectrum.term_moduli, rates], axis=1)
+    terms = np.ascontiguousarray(terms[terms[:, 0] > 0.0])
+    kind = {0: "none", 1: "one"}.get(len(terms), "many")
+    rows = 6 * len(terms) + (generate.VISCOUS_ROWS if viscous else 0)
+    share = terms[:, 0] / g0
+    numbers = [0.5, 1.0 / 3.0, 1.0, 4.0, 0.125, g0, bulk]
+    for g, b in zip(share, terms[:, 1], strict=True):
+        numbers += [math.exp(-b * dt), -g * math.expm1(-b * dt)]
+
+    mass = _lumped_mass(mesh, density, stride, block.sides == "periodic")
+    unit = confined / float(layer_heights(block)[1])
+    penalty = settings.penalty_stiffness
+    if penalty is None:
+        factor = settings.penalty_factor
+        if factor is None:
+            rough = [s.peak_to_valley for s in (block.roughness, floor) if s.peak_to_valley > 0.0]
+            wanted = loading.mean_pressure / (SINKING * min(rough)) / unit if rough else 0.0
+            factor = min(max(0.5, wanted), 1.5)
+        penalty = factor * unit
+    arrays, floor_arrays = _contact_arrays(mesh, floor, penalty, mass, real)
+    worst = float(np.max(arrays[5] * mass[1][: arrays[5].size])) * dt**2
+    if worst > 1.5:
+        raise InputError(
+            f"a contact stiffness of {penalty:.3g} Pa/m",
+            where="ExplicitSettings.penalty_stiffness",
+            allowed=f"at most {1.5 / worst * penalty:.3g} Pa/m at this time step",
+        )
+    control = np.zeros(names.CONTROL_SIZE)
+    weight = density * block.nominal_area * block.size[2]
+    spring = 3.0 * g0 * block.nominal_area / block.size[2]
+    control[names.DT] = dt
+    control[names.PLATE_MASS] = weight
+    control[names.PLATE_DAMPING] = 1.4 * math.sqrt(2.0 * weight * spring)
+    control[names.SPEED] = loading.speed
+    control[names.SLIDE_START] = math.inf
+    control[names.ZETA] = settings.contact_damping
+    control[[names.COLUMNS, names.ROWS, names.LAYERS]] = mesh.shape
+    control[names.PERIODIC] = float(block.sides == "periodic")
+    control[names.G0], control[names.BULK] = g0, bulk
+    return Assembly(
+        mesh=mesh,
+        nodes=(np.zeros(3 * stride), np.zeros(3 * stride), np.zeros(3 * stride)),
+        arrays=arrays,
+        floor=floor_arrays,
+        constants=constants,
+        history=np.zeros((constants.shape[0], rows * LANES), dtype),
+        parameters=np.array(numbers, dtype),
+        work=np.zeros(generate.WORK_ROWS * LANES, dtype),
+        state=np.zeros(names.STATE_SIZE),
+        control=control,
+        terms=terms,
+        time_step=dt,
+        critical_time_step=critical,
+        density=density,
+        penalty=penalty,
+        hourglass_modulus=modulus,
+        mass_scaling=float(scaling),
+        kind=kind,
+        viscous=viscous,
+    )
+
+
+def critical_time_step(gradient_square: np.ndarray, modulus: float, density: float) -> float:
+    """Return 2 / omega_max with omega^2 = 8 (K + 4 G / 3) / rho * largest eigenvalue of B B^T."""
+    return 2.0 / math.sqrt(8.0 * modulus / density * float(gradient_square.max()))
+
+
+def _element_constants(
+    mesh: Mesh,
+    settings: ExplicitSettings,
+    modulus: float,
+    density: float,
+    sound: float,
+    dt: float,
+    dtype: Any,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return constants by chunks; elements past the end of a row are all zero."""
+    count = mesh.elements.size
+    rows = np.zeros((count, generate.ELEMENT_ROWS))
+    rows[:, :21] = mesh.gradient.reshape(count, 21)
+    rows[:, 21:33] = mesh.hourglass_shape.reshape(count, 12)
+    rows[:, 33] = mesh.volume
+    length = np.cbrt(mesh.volume)
+    if settings.hourglass == "stiffness":
+        coefficient = settings.hourglass_coefficient or 2.0
+        square = 8.0 * np.sum(mesh.gradient**2, axis=(1, 2))
+        rows[:, 34] = coefficient * modulus * mesh.volume * square
+    else:
+        coefficient = settings.hourglass_coefficient or 0.1
+        rows[:, 35] = 16.0 * coefficient * density * length**2 * sound / dt
+    rows[:, 36] = settings.bulk_viscosity * density * sound * length / dt
+    chunks = int(mesh.elements.max()) // LANES + 1
+    constants = np.zeros((chunks, generate.ELEMENT_ROWS, LANES), dtype)
+    constants[mesh.elements // LANES, :, mesh.elements % LANES] = rows
+    return constants.reshape(chunks, -1), mesh.elements.astype(np.int64)
+
+
+def _lumped_mass(
+    mesh: Mesh, density: float, stride: int, periodic: bool
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    """Return mass, its inverse, mass counted once (stride,), and the mass of the top."""
+    mass = np.zeros(stride)
+    for offset in mesh.offsets:
+        mass[mesh.elements + offset] += density * mesh.volume / 8.0
+    nx, ny, nz = mesh.shape
+    count = nx * ny * nz
+    top = float(mass[count - nx * ny : count].sum())
+    once = mass.copy()
+    if periodic:
+        grid = mass[:count].reshape(nz, ny, nx)
+        grid[:, :, 0] += grid[:, :, -1]
+        grid[:, :, -1] = grid[:, :, 0]
+        grid[:, 0, :] += grid[:, -1, :]
+        grid[:, -1, :] = grid[:, 0, :]
+        once = mass.copy()
+        single = once[:count].reshape(nz, ny, nx)
+        single[:, :, -1] = 0.0
+        single[:, -1, :] = 0.0
+    inverse = np.divide(1.0, mass, out=np.zeros_like(mass), where=mass > 0.0)
+    return mass, inverse, once, top
+
+
+def _contact_arrays(
+    mesh: Mesh,
+    floor: MicroSurface,
+    penalty: float,
+    mass: tuple[np.ndarray, np.ndarray, np.ndarray, float],
+    real: np.ndarray,
+) -> tuple[tuple[np.ndarray, ...], tuple[int, np.ndarray, np.ndarray, float]]:
+    plane = mesh.shape[0] * mesh.shape[1]
+    x, y, z = (np.ascontiguousarray(axis[:plane]) for axis in mesh.nodes)
+    form, numbers, coefficients = floor.kernel_arrays()
+    gap = z - floor.height(x, y)
+    z = z - float(gap[mesh.lower_area > 0.0].min())
+    highest = float(np.abs(coefficients).max()) if floor.form == "map" else float(numbers[0])
+    stiffness = penalty * mesh.lower_area
+    root = np.sqrt(stiffness * mass[0][:plane])
+    arrays = (
+        mesh.offsets.astype(np.int64),
+        x,
+        y,
+        z,
+        mesh.lower_area,
+        stiffness,
+        root,
+        mass[1],
+        mass[2],
+        np.array([mass[3]]),
+        real,
+        np.ones((3, plane)),
+    )
+    return arrays, (form, numbers, coefficients, highest)

@@ -1,0 +1,222 @@
+"""Press, hold, slide: the stages of a march, watched for NaN, inversion and instability."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from underfoot.core import ConvergenceError, Progress
+from underfoot.core.cache import default_folder
+
+from ._kernels import names
+from .assembly import Assembly, critical_time_step
+from .files import collection, saved_state, snapshot
+from .inputs import MicroLoading
+from .record import new_row
+
+SETTLED = 0.01
+"""Largest relative difference of contact force and load before sliding."""
+HOLDS = 12
+"""Most times that the hold is repeated."""
+WATCH = 50
+"""Samples between two copies of the state and checks of the step."""
+
+
+@dataclass(slots=True, eq=False)
+class March:
+    """A run in progress.
+
+    ``stage``: 0 press, 1 hold, 2 slide, 3 done; ``holds`` counts holds.
+    """
+
+    assembly: Assembly
+    loading: MicroLoading
+    area: float
+    wavelength: float
+    samples_per_wavelength: int
+    confined_modulus: float
+    key: str
+    progress: Progress
+    output: Path | None = None
+    snapshots: int = 0
+    rows: list[np.ndarray] = field(default_factory=list)
+    stage: int = 0
+    holds: int = 0
+    steps: int = 0
+    settled: bool = True
+    _rate: float = 0.0
+    _good: dict[str, np.ndarray] = field(default_factory=dict)
+    _since: int = 0
+    _shown: list[tuple[float, str]] = field(default_factory=list)
+
+    @property
+    def periods(self) -> tuple[float, float, float]:
+        """Press, hold and ramp, s: as asked for, but no shorter than the block's shear wave needs.
+
+        Its lowest shear mode lasts 4 H / c_s, longer when the mass is scaled.
+        """
+        slowest = self.shear_period
+        load = self.loading
+        return (
+            max(load.press_time, 2.0 * slowest),
+            max(load.hold_time, slowest),
+            max(load.ramp_time, slowest) if self.assembly.mass_scaling > 1.0 else load.ramp_time,
+        )
+
+    @property
+    def shear_period(self) -> float:
+        """4 H / c_s, s."""
+        g0 = self.assembly.control[names.G0]
+        speed = math.sqrt(g0 / self.assembly.density)
+        return 4.0 * float(self.assembly.mesh.nodes[2].max()) / speed
+
+    def run(self) -> None:
+        """March to the end; ``stage`` and ``holds`` tell where a restart goes on."""
+        c, s = self.assembly.control, self.assembly.state
+        press, hold, ramp = self.periods
+        c[names.FREE] = 1.0
+        c[names.LOAD] = self.loading.mean_pressure * self.area
+        c[names.LOAD_TIME] = press
+        c[names.RAMP] = ramp
+        if self.stage < 2:
+            c[names.ALPHA] = 2.0 * math.pi / self.shear_period
+        if self.stage == 0:
+            self._until_time("press", press, press / 100.0, press)
+            self.stage = 1
+        while self.stage == 1:
+            end = press + hold * (self.holds + 1)
+            self._until_time("hold", end, hold / 20.0, end)
+            self.holds += 1
+            recent = float(np.mean([row[2] for row in self.rows[-10:]]))
+            self.settled = abs(recent / c[names.LOAD] - 1.0) < SETTLED
+            if self.settled or self.holds >= HOLDS:
+                self.stage = 2
+        if self.stage == 2 and self.loading.speed > 0.0:
+            c[names.ALPHA] = 0.0
+            if not math.isfinite(c[names.SLIDE_START]):
+                c[names.SLIDE_START] = s[names.TIME]
+                if self.loading.control == "displacement":
+                    s[names.TOP_SPEED] = 0.0
+            c[names.FREE] = float(self.loading.control == "load")
+            self._slide()
+        self.stage = 3
+
+    def _until_time(self, name: str, end: float, sample: float, whole: float) -> None:
+        s = self.assembly.state
+        count = max(1, round(sample / self.assembly.time_step))
+        while s[names.TIME] < end - 0.5 * self.assembly.time_step:
+            left = max(1, round((end - s[names.TIME]) / self.assembly.time_step))
+            self._sample(min(count, left))
+            self.progress(name, min(s[names.TIME] / whole, 1.0))
+
+    def _slide(self) -> None:
+        s, goal = self.assembly.state, self.loading.slide_distance
+        sample = self.wavelength / self.loading.speed / self.samples_per_wavelength
+        count = max(1, round(sample / self.assembly.time_step))
+        while s[names.SLID] < goal:
+            step = self.loading.speed * self.assembly.time_step
+            ahead = math.ceil((goal - s[names.SLID]) / step) + 1
+            self._sample(max(1, min(count, ahead)))
+            self.progress("slide", min(s[names.SLID] / goal, 1.0))
+            wanted = self.snapshots * s[names.SLID] / goal
+            if self.output is not None and len(self._shown) < math.floor(wanted):
+                self._show()
+
+    def _sample(self, count: int) -> None:
+        assembly = self.assembly
+        if self._since % WATCH == 0:
+            self._watch()
+        self._since += 1
+        assembly.advance(count)
+        self.steps += count
+        row = new_row(assembly, self.rows[-1] if self.rows else None, self._rate)
+        self._rate = float(assembly.state[names.LOSS_RATE])
+        self._check(row)
+        self.rows.append(row)
+
+    def state(self) -> dict[str, np.ndarray]:
+        """Return copies of all that a restart needs."""
+        u, v, _ = self.assembly.nodes
+        rows = np.array(self.rows) if self.rows else np.empty((0, 19))
+        return {
+            "key": np.array(self.key),
+            "displacement": u.copy(),
+            "velocity": v.copy(),
+            "history": self.assembly.history.copy(),
+            "state": self.assembly.state.copy(),
+            "control": self.assembly.control.copy(),
+            "rows": rows,
+            "counts": np.array([self.stage, self.holds, self.steps, int(self.settled)]),
+            "rate": np.array(self._rate),
+        }
+
+    def restore(self, arrays: dict[str, np.ndarray]) -> None:
+        """Go on from the state of a restart file."""
+        u, v, _ = self.assembly.nodes
+        u[:], v[:] = arrays["displacement"], arrays["velocity"]
+        self.assembly.history[:] = arrays["history"]
+        self.assembly.state[:] = arrays["state"]
+        self.assembly.control[:] = arrays["control"]
+        self.rows = list(arrays["rows"])
+        self.stage, self.holds, self.steps = (int(n) for n in arrays["counts"][:3])
+        self.settled = bool(arrays["counts"][3])
+        self._rate = float(arrays["rate"])
+
+    def _watch(self) -> None:
+        """Keep a copy of a state known to be sound; stop when squeezed elements ask for less."""
+        assembly = self.assembly
+        square = assembly.mesh.deformed_gradient_square(assembly.displacement)
+        critical = critical_time_step(square, self.confined_modulus, assembly.density)
+        if assembly.time_step > critical:
+            self._stop(
+                f"squeezed elements ask for a step below {critical:.3g} s, and this one is "
+                f"{assembly.time_step:.3g} s",
+                "Lower cfl, or spread the roughness over more layers",
+            )
+        self._good = self.state()
+        if self.output is not None:
+            saved_state(self.output / "restart.npz", self._good)
+
+    def _check(self, row: np.ndarray) -> None:
+        if not np.all(np.isfinite(row)):
+            self._stop("the numbers became NaN or infinite: the march is unstable", "Lower cfl")
+        least = float(self.assembly.state[names.LEAST_J])
+        if not least > 0.0:
+            self._stop(
+                "an element turned inside out",
+                "Refine the lower layers, lower the pressure or the roughness, or lower cfl",
+            )
+        kept = float(row[11] + row[12] + row[13] + row[14])
+        supplied = abs(float(row[9])) + abs(float(row[10]))
+        peak = max([float(r[10]) for r in self.rows[-1:]], default=0.0)
+        if kept > 2.0 * max(supplied, abs(peak)) + 1e-18:
+            self._stop(
+                f"the block holds {kept:.3g} J after work of {supplied:.3g} J: the march makes "
+                "energy",
+                "Lower cfl or penalty_factor",
+            )
+
+    def _stop(self, what: str, remedy: str) -> None:
+        s = self.assembly.state
+        folder = default_folder() / "finite_element" if self.output is None else self.output
+        kept = ""
+        if self._good:
+            path = saved_state(folder / "last_good_state.npz", self._good)
+            kept = f"; the last good state, step {int(self._good['counts'][2])}, is in {path}"
+        raise ConvergenceError(
+            f"{what} (step {self.steps}, {s[names.TIME]:.4g} s, slid {s[names.SLID]:.4g} m){kept}",
+            where="explicit_sliding",
+            history=[float(row[2]) for row in self.rows[-20:]],
+            remedy=remedy,
+        )
+
+    def _show(self) -> None:
+        assert self.output is not None
+        name = f"block_{len(self._shown) + 1:04d}.vtu"
+        snapshot(self.output / name, self.assembly)
+        self._shown.append((float(self.assembly.state[names.TIME]), name))
+        times, files = zip(*self._shown, strict=True)
+        collection(self.output / "block.pvd", list(times), list(files))
