@@ -143,6 +143,12 @@ def test_steady_state_forgets_the_start():
     assert found[1] == pytest.approx(found[0], rel=0.005)
 
 
+def test_steady_state_with_cells_at_the_brink_of_the_pool():
+    solved = solve(sole(1e-3), viscosity=0.219, speed=0.7, force=500.0, rq=5.6e-6, steady=True)
+    assert solved.status is Status.CONVERGED
+    assert solved.history.fluid_load[-1] == pytest.approx(solved.history.fluid_load[-2], rel=1e-3)
+
+
 def test_result_does_not_depend_on_padding():
     narrow = solve(sole(padding=4e-3), rq=8e-6)
     wide = solve(sole(padding=16e-3), rq=8e-6)

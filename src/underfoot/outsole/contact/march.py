@@ -20,6 +20,7 @@ Mask = NDArray[np.bool_]
 EASY = 7  # Newton steps below which the time step grows
 GROWTH = 1.5
 CUT = 2.5
+LETS_GO = 1.05  # times the pool depth; without it a cell at the brink flips at every step
 MARGIN = 3  # cells around the pool that may come into contact within a step
 
 
@@ -81,10 +82,10 @@ def march(
     counts, history = Counts(), History()
     residuals: list[float] = []
     area = problem.spacing**2
-    film = _film_mask(problem, state.gap, pool_depth)
+    film = _film_mask(problem, state.gap, pool_depth, None)
     while counts.time_steps + counts.rejected < most_steps and time < end_time * (1 - 1e-12):
         step = min(step, longest_step(time), end_time - time)
-        film = _film_mask(problem, state.gap, pool_depth)
+        film = _film_mask(problem, state.gap, pool_depth, film)
         cells = _cells(problem, fit, cells, film)
         counts.cells = max(counts.cells, cells.pattern.size)
         target = time + step
@@ -122,8 +123,12 @@ def march(
     return March(state, film, time, finished, history, counts, residuals)
 
 
-def _film_mask(problem: Problem, gap: Array, pool_depth: float) -> Mask:
-    film = (gap < pool_depth) & (problem.clearance < 0.5)
+def _film_mask(problem: Problem, gap: Array, pool_depth: float, before: Mask | None) -> Mask:
+    """Return the cells that the pool reaches; one that held film lets go a little later."""
+    film = gap < pool_depth
+    if before is not None:
+        film |= before & (gap < LETS_GO * pool_depth)
+    film &= problem.clearance < 0.5
     film[[0, -1]] = film[:, [0, -1]] = False  # the rim of the grid is open to the surroundings
     if not film.any():
         film = problem.clearance < problem.clearance.min() + 2e-5
