@@ -1,0 +1,14 @@
+"""A rubber block reduced to its rough lower face: a contact problem a time step, no inertia."""
+
+from .area import edge_corrected_contact_area, nodal_contact_area
+from .compliance import CondensedBlock, condensed_block
+from .march import condensed_poisson_ratio, condensed_sliding
+
+__all__ = [
+    "CondensedBlock",
+    "condensed_block",
+    "condensed_poisson_ratio",
+    "condensed_sliding",
+    "edge_corrected_contact_area",
+    "nodal_contact_area",
+]

@@ -1,0 +1,284 @@
+"""Pressing and sliding of a condensed block over a rough rigid floor, marched in time."""
+
+from __future__ import annotations
+
+import time as clock
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from underfoot.asperity._kernels.prony_march import (
+    PronyStep,
+    advance_memory,
+    known_displacement,
+    prony_step,
+)
+from underfoot.asperity._kernels.threads import threads_limited
+from underfoot.asperity.finite_element import (
+    MicroBlock,
+    MicroLoading,
+    MicroMaterial,
+    MicroResult,
+    MicroSurface,
+)
+from underfoot.asperity.finite_element.averages import whole_wavelength_averages
+from underfoot.asperity.finite_element.mesh import check_pattern
+from underfoot.core import Cancelled, InputError, Progress, Status, silent
+
+from ._kernels.active_set import NodalContact, contact_at_height, contact_under_load
+from .area import edge_corrected_contact_area, nodal_contact_area
+from .compliance import CondensedBlock, condensed_block
+
+PRESS_STEPS = 16
+HOLD_STEPS = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """One time of the march: how long the step before it took, where the floor is, what holds."""
+
+    step: float
+    distance: float
+    load: float | None
+
+
+def condensed_sliding(
+    block: MicroBlock | CondensedBlock,
+    material: MicroMaterial,
+    floor: MicroSurface,
+    loading: MicroLoading,
+    *,
+    steps_per_wavelength: int = 64,
+    edge_correction: bool = False,
+    progress: Progress = silent,
+) -> MicroResult:
+    """Return the history of a block pressed on a rough rigid floor and slid along +x.
+
+    Small strains, no inertia, no friction between the faces. With G(t) = G0 [1 - sum g_i
+    (1 - exp(-b_i t))] and displacements u linear within a step, each step is an elastic contact
+    of modulus m G0 with a known displacement U: gap = height + z + U + C f - h_floor >= 0,
+    f >= 0, f gap = 0 at every lower node; exact for any number of terms. Bulk and shear relax
+    together (nu constant): right for nearly incompressible rubber. Shear force is
+    sum f dh/dx, the horizontal part of forces normal to the floor.
+
+    Parameters
+    ----------
+    block
+        A block, or one condensed before (``condensed_block``) to use its compliance again.
+    material
+        Shear spectrum; Poisson's ratio follows from K and the relaxed shear modulus
+        (``condensed_poisson_ratio``).
+    floor
+        Heights of the rigid floor.
+    loading
+        Pressed under a load that grows linearly for ``press_time``, held for ``hold_time``, then
+        slid at the height reached (control "displacement") or under the load.
+    steps_per_wavelength
+        Time steps while the floor moves by one wavelength.
+    edge_correction
+        False: the real contact area is that of all nodes that carry force, as finite elements
+        count it (26 % too much at 13 elements a wavelength and 36 % contact); True: less its
+        edges (``edge_corrected_contact_area``).
+    progress
+        A ``Cancelled`` that it raises ends the run with what there is.
+
+    Errors
+    ------
+    InputError
+        A floor whose wavelength the block can't hold or its elements can't follow; Poisson's
+        ratio of 0.5; fewer than 16 steps a wavelength; a speed of 0 with a distance to slide.
+    """
+    nu = condensed_poisson_ratio(material)
+    outline = block.block if isinstance(block, CondensedBlock) else block
+    check_pattern(outline, floor, "floor")
+    if steps_per_wavelength < 16:
+        raise InputError(
+            f"{steps_per_wavelength}", where="steps_per_wavelength", allowed="16 or more"
+        )
+    if loading.slide_distance > 0.0 and not loading.speed > 0.0:
+        raise InputError(
+            f"{loading.speed:g} m/s with {loading.slide_distance:g} m to slide",
+            where="MicroLoading.speed",
+            allowed="above 0",
+            remedy="Choose slide_distance = 0 to press only",
+        )
+    started = clock.process_time()
+    with threads_limited(1):
+        if isinstance(block, MicroBlock):
+            block = condensed_block(block, nu, progress=progress)
+        elif abs(block.poisson_ratio - nu) > 1e-6:
+            raise InputError(
+                f"condensed for Poisson's ratio {block.poisson_ratio:.6g}, the material has "
+                f"{nu:.6g}",
+                where="block",
+                remedy="Condense the block for this material",
+            )
+        moments = _schedule(loading, floor, outline, steps_per_wavelength)
+        return _March(block, material, floor, edge_correction).run(
+            moments, loading, started, progress
+        )
+
+
+def condensed_poisson_ratio(material: MicroMaterial) -> float:
+    """Return nu = (3 K - 2 G) / (2 (3 K + G)) with the relaxed shear modulus.
+
+    Where the rubber relaxes to nothing, the instantaneous one is taken. Between both, the contact
+    compliance changes by 2 (1 - nu): 2 % from 0.499 to 0.49.
+    """
+    k, g = material.bulk_modulus, material.shear.equilibrium_modulus
+    g = g if g > 0.0 else material.shear.instantaneous_modulus
+    return (3.0 * k - 2.0 * g) / (2.0 * (3.0 * k + g))
+
+
+def _schedule(
+    loading: MicroLoading, floor: MicroSurface, block: MicroBlock, per_wavelength: int
+) -> list[Moment]:
+    full = loading.mean_pressure * block.nominal_area
+    moments = [
+        Moment(loading.press_time / PRESS_STEPS, 0.0, full * n / PRESS_STEPS)
+        for n in range(1, PRESS_STEPS + 1)
+    ]
+    if loading.hold_time > 0.0:
+        moments += [Moment(loading.hold_time / HOLD_STEPS, 0.0, full)] * HOLD_STEPS
+    if loading.slide_distance == 0.0:
+        return moments
+    length = floor.wavelength if floor.rough else loading.slide_distance
+    pixel = length / per_wavelength
+    load = full if loading.control == "load" else None
+    # from rest to the speed at constant acceleration, in steps of one pixel or less
+    ramp_length = 0.5 * loading.speed * loading.ramp_time
+    distance = 0.0
+    while distance < loading.slide_distance * (1.0 - 1e-9):
+        following = min(distance + pixel, loading.slide_distance)
+        step = _time_at(following, loading, ramp_length) - _time_at(distance, loading, ramp_length)
+        moments.append(Moment(step, following, load))
+        distance = following
+    return moments
+
+
+def _time_at(distance: float, loading: MicroLoading, ramp_length: float) -> float:
+    """Return the time since sliding began at which ``distance`` is reached."""
+    if distance >= ramp_length:
+        return loading.ramp_time + (distance - ramp_length) / loading.speed
+    return float(np.sqrt(2.0 * distance * loading.ramp_time / loading.speed))
+
+
+class _March:
+    """Displacement of the lower face, its memory and the contact, step by step."""
+
+    def __init__(
+        self,
+        condensed: CondensedBlock,
+        material: MicroMaterial,
+        floor: MicroSurface,
+        edge_correction: bool,
+    ) -> None:
+        self.area = edge_corrected_contact_area if edge_correction else nodal_contact_area
+        self.condensed, self.floor = condensed, floor
+        self.instantaneous = material.shear.instantaneous_modulus
+        self.fractions = material.shear.term_moduli / self.instantaneous
+        self.rates = 1.0 / material.shear.relaxation_times
+        count = condensed.areas.size
+        self.displacement = np.zeros(count)
+        self.memory = np.zeros((self.fractions.size, count))
+        self.active = np.zeros(count, dtype=bool)
+        self.height = 0.0
+        self.wrong = 0
+        self._coefficients: dict[float, tuple[PronyStep, np.ndarray]] = {}
+
+    def run(
+        self, moments: list[Moment], loading: MicroLoading, started: float, progress: Progress
+    ) -> MicroResult:
+        rows: list[tuple[float, ...]] = []
+        status, notes, now = Status.CONVERGED, [], 0.0
+        try:
+            for n, moment in enumerate(moments, start=1):
+                progress("condensed block", n / len(moments), None)
+                now += moment.step
+                rows.append((now, moment.distance, *self.step(moment)))
+        except Cancelled:
+            status = Status.CANCELLED
+            notes.append(f"cancelled after {len(rows)} of {len(moments)} steps")
+        if self.wrong:
+            status = Status.NOT_CONVERGED
+            notes.append(f"{self.wrong} steps left nodes that press and gape at once")
+        if rows and rows[-1][2] == 0.0:
+            notes.append("the faces do not touch at the end")
+        table = np.array(rows).reshape(-1, 8)
+        averages = self._averages(table) if status is Status.CONVERGED else None
+        if averages is not None and averages.wavelengths and self.fractions.size == 0:
+            notes.append("elastic material: no hysteresis friction")
+        return MicroResult(
+            time=table[:, 0],
+            distance=table[:, 1],
+            normal_force=table[:, 2],
+            shear_force=table[:, 3],
+            lateral_force=table[:, 4],
+            real_contact_area=table[:, 5],
+            height=table[:, 6],
+            nominal_area=self.condensed.block.nominal_area,
+            averages=averages,
+            energy=None,
+            status=status,
+            notes=tuple(notes),
+            steps=len(rows),
+            time_step=moments[-1].step,
+            process_seconds=clock.process_time() - started,
+        )
+
+    def step(self, moment: Moment) -> tuple[float, ...]:
+        """Advance to ``moment``; return forces, area, height and the number of solutions."""
+        coefficients, compliance = self._at_step(moment.step)
+        known: Any = known_displacement(self.memory, self.displacement, coefficients)
+        points = self.condensed.points
+        h, slope, across = self.floor.height_and_slope(points[:, 0] + moment.distance, points[:, 1])
+        clearance = points[:, 2] + known - h
+        contact: NodalContact
+        if moment.load is None:
+            contact = contact_at_height(compliance, clearance, self.height, self.active)
+        else:
+            contact = contact_under_load(compliance, clearance, moment.load, self.active)
+        force = contact.force
+        self.wrong += contact.wrong > 0
+        self.active, self.height = force > 0.0, contact.height
+        new = known + compliance @ force
+        advance_memory(self.memory, self.displacement, new, coefficients)
+        self.displacement = new
+        return (
+            float(force.sum()),
+            float(force @ slope),
+            -float(force @ across),
+            self.area(self.condensed, self.active),
+            contact.height,
+            float(contact.steps),
+        )
+
+    def _at_step(self, step: float) -> tuple[PronyStep, np.ndarray]:
+        key = float(f"{step:.9e}")
+        if key not in self._coefficients:
+            if len(self._coefficients) > 4:  # each holds a matrix; the ramp's steps all differ
+                self._coefficients.clear()
+            coefficients = prony_step(self.fractions, self.rates, step)
+            modulus = self.instantaneous * coefficients.stiffening
+            self._coefficients[key] = coefficients, self.condensed.unit_compliance / modulus
+        return self._coefficients[key]
+
+    def _averages(self, table: np.ndarray):
+        sliding = np.flatnonzero(table[:, 1] > 0.0)
+        if sliding.size < 4 or not self.floor.rough:
+            return None
+        first = sliding[0]
+        ends = table[first - 1 :]
+        middle = 0.5 * (ends[1:] + ends[:-1])
+        normal, shear, lateral, area = middle[:, 2:6].T
+        return whole_wavelength_averages(
+            table[sliding, 1],
+            normal,
+            shear,
+            np.abs(shear),
+            np.hypot(shear, lateral),
+            area,
+            wavelength=self.floor.wavelength,
+            nominal_area=self.condensed.block.nominal_area,
+        )
