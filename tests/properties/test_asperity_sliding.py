@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from underfoot.asperity import steady_sliding
@@ -67,6 +67,8 @@ def test_contact_conditions_hold_or_it_says_that_it_failed(height, speed, pressu
 
 @settings(deadline=None, max_examples=25)
 @given(surfaces, speeds, pressures, st.floats(0.1, 10.0), st.floats(0.1, 10.0))
+@example(surface(258804, (8, 8), 0.375, 0.1), 0.0, 1235.0, 1.0, 5.9)  # two nodes in contact
+@example(surface(272, (8, 8), 0.0, 0.1), 1e-3, 1000.0, 1.0, 1.0)  # an empty active set
 def test_scaling_of_height_pressure_and_modulus(height, speed, pressure, tall, stiff):
     one = steady_sliding(height, SPACING, MATERIAL, speed, pressure, tolerance=1e-8)
     stiffer = MATERIAL.scaled(stiff)

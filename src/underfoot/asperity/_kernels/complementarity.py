@@ -92,11 +92,15 @@ def solve_on_grid(
                 state.full = True
                 return state
             p = xp.astype(p, xp.float64 if double else xp.float32)
+        if not bool(xp.any(contact)):
+            contact = single == xp.max(single)
         part = Restriction(contact, xp, work)
         if known is None or changed > _RENEW * part.nodes:
-            known = xp.asarray(operators.pressure(part.spread(part.constant())), copy=True)
+            known = operators.pressure(part.spread(part.constant()))
             known = xp.where(known > 0.0, known, xp.zeros_like(known))
         response = part.take(known)
+        if not float(xp.sum(response)) > 0.0:
+            response, known = part.constant(), None
         if lowest < 0.0:
             p = xp.where(contact, p, xp.zeros_like(p))
         missing = load - float(xp.sum(p))
@@ -162,6 +166,7 @@ def solve_with_mattress(
     max_steps: int,
     exact: bool,
     settle: bool = True,
+    reduction: float = 0.03,
     report: Callable[[float], None] = lambda error: None,
 ) -> ContactState:
     """Return the contact of ``solve_on_grid`` by way of ever thinner mattresses on the body.
@@ -184,7 +189,7 @@ def solve_with_mattress(
                 tolerance=max(_MATTRESS_TOLERANCE, tolerance),
                 max_steps=12,
                 exact=False,
-                reduction=0.03,
+                reduction=min(reduction, 0.03),
             )
         inner, steps = inner + state.inner, steps + state.steps
         if state.converged:
@@ -201,7 +206,7 @@ def solve_with_mattress(
             max_steps=max_steps,
             exact=exact,
             settle=settle,
-            reduction=0.03,
+            reduction=min(reduction, 0.03),
             report=report,
         )
     state.inner += inner

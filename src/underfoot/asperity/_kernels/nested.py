@@ -15,9 +15,11 @@ Array = Any
 
 _COARSEST = 4096
 """Points at which coarsening stops: below, a grid costs no less than its overhead."""
-_COARSE_TOLERANCE = 5e-2
+_COARSE_TOLERANCE = 0.1
 _STEPS = 12
 """Search directions kept by the inner solver."""
+_REDUCTION, _COARSE_REDUCTION = 0.15, 0.3
+"""Share of the residual that an inner solve leaves; insensitive between 0.1 and 0.3."""
 
 
 @dataclass(slots=True)
@@ -75,6 +77,7 @@ def solve_nested(
                 max_steps=max_steps,
                 exact=last,
                 settle=last,
+                reduction=_REDUCTION if last else _COARSE_REDUCTION,
                 report=report if last else lambda error: None,
             )
             if state.converged:
