@@ -111,8 +111,10 @@ class _Deadly:
 
 def test_a_file_that_kills_its_process_is_refused_alone(tester):
     files = sorted(tester.glob("work_none*.csv"))
-    jobs = [((str(path),), {}, Profile(), protocol("report_g4"), "base", None) for path in files]
-    jobs.insert(1, ((str(tester / "deadly.csv"),), _Deadly(), Profile(), None, "base", None))
+    jobs = [
+        ((str(path),), {}, [], Profile(), protocol("report_g4"), "base", None) for path in files
+    ]
+    jobs.insert(1, ((str(tester / "deadly.csv"),), _Deadly(), [], Profile(), None, "base", None))
     jobs.append(jobs[0])
     seen = []
     results = folder_module._run(
@@ -158,6 +160,27 @@ def test_markers_and_forces_of_one_name_are_one_trial(tmp_path):
     assert len(analysis.files) == 1
     # README of the data: three clean stances, RCOF 0.21, 0.18, 0.18.
     assert analysis.files[0].main["rcof"] == pytest.approx(0.19, abs=0.02)
+
+
+def test_events_set_by_hand_are_used_and_logged(tmp_path):
+    simulated_folder("slips", tmp_path, count=3)
+    before = analyse_folder(tmp_path, protocol("report_g6"), processes=1)
+    (tmp_path / "edits.csv").write_text(
+        "file,event,time (ms),why\nslip_003.c3d,heel contact,2500,marker lost at contact\n"
+    )
+    after = analyse_folder(tmp_path, protocol("report_g6"), processes=1)
+    assert after.files[0] == before.files[0]
+    changed = after.files[2]
+    assert changed.main["peak_slipping_speed"] != before.files[2].main["peak_slipping_speed"]
+    assert changed.edits[0]["why"] == "marker lost at contact"
+    assert changed.edits[0]["after"] == "2.500000 s"
+    assert any(table.name == "edits" for table in after.tables)
+    (tmp_path / "edits.csv").write_text("file,event,time (s),why\nslip_003.c3d,heel contact,2.5,\n")
+    with pytest.raises(InputError, match="needs its reason"):
+        analyse_folder(tmp_path, protocol("report_g6"), processes=1)
+    (tmp_path / "edits.csv").write_text("file,event,time (s),why\nslip_003.c3d,landing,2.5,x\n")
+    with pytest.raises(InputError, match="heel contact"):
+        analyse_folder(tmp_path, protocol("report_g6"), processes=1)
 
 
 def test_conditions_table(tmp_path):

@@ -116,6 +116,7 @@ def trials_page(analysis: FolderAnalysis, pictures: list[tuple[TrialFigure, byte
             counts=counts,
             lead=_lead(analysis),
             files=_page_table(tables["files"], limit=10_000),
+            edits=_page_table(tables["edits"]) if "edits" in tables else None,
             study=[_page_table(table) for table in analysis.study.tables],
             findings=findings,
             figures=chapters,
@@ -202,5 +203,7 @@ def _png(figure: Figure, dpi: int) -> bytes:
 def _svg(figure: Figure, path: Path) -> None:
     import matplotlib as mpl
 
+    # The layout was worked out for the PNG and takes most of the drawing time.
+    figure.set_layout_engine("none")
     with mpl.rc_context({"svg.hashsalt": "underfoot"}):
         figure.savefig(path, format="svg", metadata={"Date": None, "Creator": None})

@@ -8,7 +8,7 @@ import warnings
 from pathlib import Path
 from typing import Any
 
-from underfoot.core import DataError, InputError, MissingExtraError, units
+from underfoot.core import DataError, InputError, MissingExtraError, units, unknown_name
 
 from ..readers.text import decoded, is_number, name_and_unit
 from ..readers.unit_factors import si_unit
@@ -60,6 +60,46 @@ def conditions_of(folder: Path, given: Path | None = None) -> dict[str, dict[str
         if file in found:
             raise InputError(f'"{file}" is named twice', where=path.name)
         found[file] = {n: c[number] for n, c in columns.items() if c[number] not in ("", None)}
+    return found
+
+
+EVENTS = ("heel contact", "toe off")
+
+
+def edits_of(folder: Path) -> dict[str, list[tuple[str, float, str]]]:
+    """Return the events to be set by hand, by file: (event, time in s, why).
+
+    Read from ``edits.csv`` (or ``.xlsx``) with the columns file, event, time (s), why. Every edit
+    needs its reason: it goes to the edit log of the report.
+
+    Errors
+    ------
+    InputError
+        A column missing, an unknown event, a time that is no number, or no reason.
+    """
+    path = next((folder / n for n in ("edits.csv", "edits.xlsx") if (folder / n).is_file()), None)
+    if path is None:
+        return {}
+    rows = [row for row in _rows(path) if any(row)]
+    heads = [name_and_unit(cell) for cell in rows[0]] if rows else []
+    names = [name.casefold() for name, _ in heads]
+    for needed in ("file", "event", "time", "why"):
+        if needed not in names:
+            raise InputError(f'the edits have no column "{needed}"', where=path.name)
+    at = {name: names.index(name) for name in ("file", "event", "time", "why")}
+    factor, _ = _to_si(heads[at["time"]][1], f"{path.name}, column time")
+    found: dict[str, list[tuple[str, float, str]]] = {}
+    for number, row in enumerate(rows[1:], start=2):
+        cells = {name: row[i] if i < len(row) else "" for name, i in at.items()}
+        where = f"{path.name}, line {number}"
+        event, time = cells["event"].casefold(), cells["time"].replace(",", ".")
+        if event not in EVENTS:
+            raise unknown_name("event", cells["event"], EVENTS, where=where)
+        if not is_number(time):
+            raise InputError(f'the time "{cells["time"]}" is no number', where=where)
+        if not cells["why"]:
+            raise InputError("an event set by hand needs its reason", where=where)
+        found.setdefault(cells["file"], []).append((event, float(time) * factor, cells["why"]))
     return found
 
 

@@ -38,6 +38,8 @@ class FileResult:
         Series for figures, thinned.
     conditions
         What the laboratory noted about the file.
+    edits
+        Events set by hand: what, before, after, why.
     """
 
     file: str
@@ -49,6 +51,7 @@ class FileResult:
     facts: Mapping[str, float] = field(default_factory=dict)
     curves: Mapping[str, Any] = field(default_factory=dict)
     conditions: Mapping[str, Any] = field(default_factory=dict)
+    edits: tuple[Mapping[str, str], ...] = ()
 
     @property
     def usable(self) -> bool:
@@ -65,6 +68,7 @@ class FileResult:
         plain: dict[str, Any] = dict(data)
         plain["reasons"] = tuple(plain["reasons"])
         plain["measurements"] = tuple(plain["measurements"])
+        plain["edits"] = tuple(plain["edits"])
         return cls(**plain)
 
 
@@ -81,6 +85,7 @@ class Draft:
         self.curves: dict[str, Any] = {}
         self.cautions: list[str] = []
         self.refusals: list[str] = []
+        self.edits: list[dict[str, str]] = []
 
     def add(self, item: str, measurement: Measurement, *, main: str = "") -> None:
         """Keep a number; ``main`` names it as the file's own number of that kind."""
@@ -123,6 +128,7 @@ class Draft:
             self.facts,
             self.curves,
             self.conditions,
+            tuple(self.edits),
         )
 
 

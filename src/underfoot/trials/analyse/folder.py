@@ -17,17 +17,19 @@ from underfoot.core.provenance import version
 
 from ..protocols import Protocol
 from ..readers import SUFFIXES, Profile, read_profile, read_trials
-from ..trial import Trial, file_checksum, joined
-from .conditions import conditions_of
+from ..trial import Event, Trial, file_checksum, joined
+from .conditions import conditions_of, edits_of
 from .file_result import REFUSED, Draft, FileResult
 from .kinds import analysed_trial
 from .methods import methods_paragraphs
 from .study import Study, study_of
-from .tables import Table, file_table, measurement_table
+from .tables import Table, edit_table, file_table, measurement_table
 
 NOT_TRIALS = (
     "conditions.csv",
     "conditions.xlsx",
+    "edits.csv",
+    "edits.xlsx",
     "truth.csv",
     "synthetic.txt",
     "readme.txt",
@@ -56,7 +58,10 @@ class FolderAnalysis:
     def tables(self) -> tuple[Table, ...]:
         """All tables: files, study, tests, measurements."""
         tests = (finding.table for finding in self.study.findings)
-        return (file_table(self.files), *self.study.tables, *tests, measurement_table(self.files))
+        edits = edit_table(self.files)
+        log = () if edits is None else (edits,)
+        files = file_table(self.files)
+        return (files, *self.study.tables, *tests, *log, measurement_table(self.files))
 
 
 def analyse_folder(
@@ -98,6 +103,7 @@ def analyse_folder(
     )
     read = read_profile(profile_path) if profile_path else Profile()
     noted = conditions_of(folder, conditions)
+    edits = edits_of(folder)
     names = {path.name for group in groups for path in group}
     notes = [f"{name}: noted in the conditions, but there is no such file" for name in noted
              if name not in names]  # fmt: skip
@@ -106,7 +112,9 @@ def analyse_folder(
     jobs = []
     for group in groups:
         own = next((noted[path.name] for path in group if path.name in noted), {})
-        jobs.append((tuple(map(str, group)), own, read, protocol, base, store and str(store)))
+        by_hand = [edit for path in group for edit in edits.get(path.name, [])]
+        place = None if store is None else str(store)
+        jobs.append((tuple(map(str, group)), own, by_hand, read, protocol, base, place))
     results = _run(jobs, processes or os.cpu_count() or 1, progress)
     files = tuple(sorted((one for part in results for one in part), key=lambda one: one.file))
     study = study_of(files, protocol)
@@ -187,7 +195,7 @@ def _quiet() -> None:
 
 
 def _job(job: tuple[Any, ...]) -> list[FileResult]:
-    paths, noted, profile, protocol, base, store = job
+    paths, noted, edits, profile, protocol, base, store = job
     files = [Path(path) for path in paths]
     name = files[0].name
     try:
@@ -195,11 +203,11 @@ def _job(job: tuple[Any, ...]) -> list[FileResult]:
     except OSError as error:
         reason = f"can't be read: {error.strerror or error}"
         return [FileResult(name, "", REFUSED, (reason,), conditions=noted)]
-    key = content_hash(base, checksums, [path.name for path in files], noted)
+    key = content_hash(base, checksums, [path.name for path in files], noted, edits)
     kept = _load(store, key)
     if kept is not None:
         return kept
-    results = _analysed(files, checksums[0], noted, profile, protocol)
+    results = _analysed(files, checksums[0], noted, edits, profile, protocol)
     _keep(store, key, results)
     return results
 
@@ -208,6 +216,7 @@ def _analysed(
     files: list[Path],
     checksum: str,
     noted: Mapping[str, Any],
+    edits: list[tuple[str, float, str]],
     profile: Profile,
     protocol: Protocol,
 ) -> list[FileResult]:
@@ -220,6 +229,8 @@ def _analysed(
         return [FileResult(name, checksum, REFUSED, (str(error),), conditions=noted)]
     results = []
     for number, trial in enumerate(trials, start=1):
+        for event, time, why in edits:
+            trial = trial.with_event(Event(event, time), why=why)
         label = name if len(trials) == 1 else f"{name} {_STEP}{number}"
         results.append(_one(trial, label, checksum, noted, profile, protocol))
     return results
@@ -239,7 +250,7 @@ def _one(
         analysed_trial(trial, draft, protocol, profile)
     except UnderfootError as error:
         draft.refusals.append(_plain(error))
-    except (ValueError, IndexError, KeyError, TypeError, ArithmeticError, MemoryError) as error:
+    except Exception as error:
         # One odd file must not end the work on hundreds of others; the cause is kept.
         draft.refusals.append(f"the analysis failed ({type(error).__name__}: {error})")
     return draft.finished(protocol)

@@ -36,6 +36,9 @@ def analysed_trial(trial: Trial, draft: Draft, protocol: Protocol, profile: Prof
         What makes the whole file useless; single numbers that can't be had are kept as
         "not estimated".
     """
+    draft.edits = [
+        {"what": e.what, "before": e.before, "after": e.after, "why": e.why} for e in trial.edits
+    ]
     _KINDS[protocol.kind](trial, draft, protocol, profile)
 
 
@@ -64,7 +67,7 @@ def _human_slip(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile
         threshold=protocol.number("slip_threshold", "m/s", 0.2),
         filter=LowPass(cutoff=protocol.number("marker_cutoff", "Hz", 10.0)),
     )
-    stance = _with_side(slipping[0], draft.conditions)
+    stance = _by_hand(_with_side(slipping[0], draft.conditions), trial)
     one = slip_of(trial, stance, axes=axes, definition=definition, heels=profile.heels)
     item = f"slip on {stance.plate}"
     draft.add(item, one.start)
@@ -284,6 +287,18 @@ def _rates(trial: Trial, draft: Draft) -> None:
 def _with_side(stance: Stance, conditions: Mapping[str, Any]) -> Stance:
     side = str(conditions.get("side", "")).casefold()
     return replace(stance, side=side, heel="") if side in ("left", "right") else stance
+
+
+def _by_hand(stance: Stance, trial: Trial) -> Stance:
+    """Return the stance with the instants that were set by hand near it."""
+    for event in trial.events:
+        if event.source != "set by hand":
+            continue
+        if event.name == "heel contact" and abs(event.time - stance.contact) < 0.3:
+            stance = replace(stance, contact=event.time)
+        elif event.name == "toe off" and event.time > stance.contact:
+            stance = replace(stance, toe_off=event.time)
+    return stance
 
 
 def _why(found: list[Stance]) -> list[str]:

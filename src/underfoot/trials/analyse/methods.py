@@ -52,15 +52,55 @@ _TOLD = {
 }
 
 
+_SENTENCES = {
+    "rcof": (
+        "Required friction (RCOF) was taken as the {peak} of shear ({shear}) over normal force in "
+        "the {searched}, {direction}, once the {gate}; forces were low-passed with: {filter}; "
+        "baseline: {baseline}."
+    ),
+    "peak slipping speed": (
+        "Heel speed ({speed}) came from the heel marker, low-passed with: {marker filter}; gaps "
+        "were {gaps}. The slip starts at the {slip start}; the peak slipping speed is the largest "
+        "speed until the second local minimum, until the foot leaves the plate or until the heel "
+        "lifts, and counts as a {threshold}."
+    ),
+    "peak pressure": (
+        "Fluid pressures count above {threshold} (baseline: {baseline}; {run}); pressure duration "
+        "is the time {duration}."
+    ),
+    "final force": "The force at the end of the hold is the {final force}; {zero}.",
+}
+
+
+def _general(key: str, value: str) -> str:
+    """Leave the numbers of a single file out of a convention."""
+    if key == "baseline" and "unloaded samples" in value:
+        return "mean force of the unloaded plate subtracted"
+    return value
+
+
+def _sentence(name: str, said: dict[str, str]) -> str:
+    """Return a sentence for a paper, or nothing when a convention it needs was not recorded."""
+    try:
+        return _SENTENCES[name].format_map(said)
+    except KeyError:
+        return ""
+
+
 def _conventions(files: Sequence[FileResult]) -> list[str]:
     """Return one sentence for each quantity: the conventions that all or most files share."""
     seen: dict[str, Counter[tuple[tuple[str, str], ...]]] = {}
     # Per-file values (baselines, events) are in the table of measurements, not in the methods.
-    private = {"baseline", "walking direction", "search ends", "direction", "sign", "uncertainty"}
+    private = {"walking direction", "search ends", "sign", "uncertainty"}
     for one in files:
         for m in one.measurements:
-            shared = tuple((k, v) for k, v in m["conventions"].items() if k not in private)
-            if shared and m["value"] is not None and m["name"] in _TOLD:
+            shared = tuple(
+                (key, _general(key, value))
+                for key, value in m["conventions"].items()
+                if key not in private
+            )
+            average = m["item"] == "mean of the steps"
+            if shared and m["value"] is not None and m["name"] in _TOLD and not average:
                 seen.setdefault(m["name"], Counter())[shared] += 1
     sentences, told = [], set()
     for name, kinds in seen.items():
@@ -69,9 +109,7 @@ def _conventions(files: Sequence[FileResult]) -> list[str]:
             continue
         told.add(most)
         words = "; ".join(f"{key}: {value}" for key, value in most)
+        sentence = _sentence(name, dict(most)) or f"{_TOLD[name]}: {words}."
         rest = sum(kinds.values()) - count
-        sentences.append(
-            f"{_TOLD[name]} ({words})."
-            + (f" {rest} numbers of it were made otherwise." if rest else "")
-        )
+        sentences.append(sentence + (f" {rest} numbers of it were made otherwise." if rest else ""))
     return sentences

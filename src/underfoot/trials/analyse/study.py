@@ -45,7 +45,16 @@ def study_of(files: Sequence[FileResult], protocol: Protocol) -> Study:
         "gait": _gait,
         "relaxation": _relaxation,
     }
-    return makers[protocol.kind](usable, protocol) if usable else Study(notes=("no usable file",))
+    if not usable:
+        return Study(notes=("no usable file",))
+    try:
+        return makers[protocol.kind](usable, protocol)
+    except Exception as error:
+        # The numbers of the files are worth having even when they don't fit together.
+        reason = (
+            error.what if isinstance(error, UnderfootError) else f"{type(error).__name__}: {error}"
+        )
+        return Study(notes=(f"nothing could be said over all files: {reason}",))
 
 
 def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:

@@ -119,6 +119,16 @@ def measurement_table(files: Iterable[FileResult]) -> Table:
     return Table("measurements", "Every number with its conventions", columns, tuple(rows))
 
 
+def edit_table(files: Iterable[FileResult]) -> Table | None:
+    """Return the edit log: every event that was set by hand, or None."""
+    rows = tuple(
+        (one.file, e["what"], e["before"], e["after"], e["why"]) for one in files for e in one.edits
+    )
+    if not rows:
+        return None
+    return Table("edits", "Events set by hand", ("file", "what", "before", "after", "why"), rows)
+
+
 def group_table(
     files: Iterable[FileResult], keys: tuple[str, ...], numbers: tuple[str, ...]
 ) -> Table | None:
