@@ -1,0 +1,35 @@
+"""The studies there are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from underfoot.core import unknown_name
+
+
+@dataclass(frozen=True, slots=True)
+class Study:
+    """One publication that can be run again; ``module`` under this room holds ``run``."""
+
+    name: str
+    title: str
+    source: str
+    module: str
+
+
+STUDIES: tuple[Study, ...] = (
+    Study(
+        "g1",
+        "Micro-model of shoe-floor friction: hysteresis and real contact area of a rough block",
+        "Beschorner, final progress report R01OH008986, G.1",
+        "underfoot.studies.g1",
+    ),
+)
+
+
+def study(name: str) -> Study:
+    """Return a study by its name; an unknown name is answered with the nearest one."""
+    for one in STUDIES:
+        if one.name == name.strip().lower():
+            return one
+    raise unknown_name("study", name, [one.name for one in STUDIES])
