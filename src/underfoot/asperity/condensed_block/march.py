@@ -45,8 +45,8 @@ class Moment:
 
 def condensed_sliding(
     block: MicroBlock | CondensedBlock,
-    material: MicroMaterial,
     floor: MicroSurface,
+    material: MicroMaterial,
     loading: MicroLoading,
     *,
     steps_per_wavelength: int = 64,
@@ -66,11 +66,11 @@ def condensed_sliding(
     ----------
     block
         A block, or one condensed before (``condensed_block``) to use its compliance again.
+    floor
+        Heights of the rigid floor.
     material
         Shear spectrum; Poisson's ratio follows from K and the relaxed shear modulus
         (``condensed_poisson_ratio``).
-    floor
-        Heights of the rigid floor.
     loading
         Pressed under a load that grows linearly for ``press_time``, held for ``hold_time``, then
         slid at the height reached (control "displacement") or under the load.
