@@ -58,10 +58,11 @@ class Cache:
     def store(self, key: str, arrays: Mapping[str, Any]) -> None:
         """Store arrays under ``key``; readers never see a half-written entry."""
         self.folder.mkdir(parents=True, exist_ok=True)
+        plain: dict[str, Any] = {key: np.asarray(value) for key, value in arrays.items()}
         handle, name = tempfile.mkstemp(dir=self.folder, suffix=".part")
         try:
             with os.fdopen(handle, "wb") as stream:
-                np.savez_compressed(stream, **{k: np.asarray(v) for k, v in arrays.items()})
+                np.savez_compressed(stream, **plain)
             os.replace(name, self.folder / f"{key}.npz")
         except BaseException:
             Path(name).unlink(missing_ok=True)
