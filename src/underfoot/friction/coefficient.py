@@ -112,7 +112,7 @@ def cof(
             source=source,
             uncertainty=uncertainty,
             reason=reason if uncertainty is None else "",
-            note="" if uncertainty is None else f"from the friction law alone; {film}",
+            note="" if uncertainty is None else "spread of the friction law alone",
         )
 
     return FrictionCoefficients(

@@ -125,7 +125,7 @@ def floor_sensor_reading(
     top = np.unravel_index(int(central.argmax()), central.shape)
     outer = scan_loads[:, [0, -1]].sum() if scans > 1 else scan_loads.sum()
     total = float(loads.sum())
-    spread = "standard deviation over where the tracks lie across the shoe"
+    spread = "spread over where the tracks lie"
     return SensorReading(
         load=SourcedValue(
             float(loads.mean()), "N", source=_SOURCE, uncertainty=float(loads.std()), note=spread

@@ -94,7 +94,7 @@ def slip_risk(
             uncertainty=spread,
             reason="" if spread is not None else "the available friction came without one",
             assumed=acof.assumed or rcof.assumed,
-            note="uncertainty of the available friction alone",
+            note="spread of the available friction alone",
         ),
         low=low,
         high=high,
