@@ -1,0 +1,40 @@
+"""The report's slip tester (G.4): six shoes, two fluids, our run beside the sensor readings.
+
+Run: python examples/slip_tester_g4.py [--quick]
+"""
+
+import sys
+from pathlib import Path
+
+from underfoot import Case, run
+from underfoot.core.catalogue import Catalogue
+
+SHOES = ("work_shoe_untreaded", "work_shoe_half_tread", "work_shoe_full_tread")
+SHOES += ("athletic_shoe_untreaded", "athletic_shoe_half_tread", "athletic_shoe_full_tread")
+
+
+def main(quick: bool = False) -> None:
+    """Print one line for each condition."""
+    entry = Catalogue.load().entry("published", "slip_tester_g4")
+    print("| shoe | fluid | report N | sensor N | under the sole N | peak by sensor kPa | COF |")
+    print("|---|---|---|---|---|---|---|")
+    for shoe in SHOES:
+        for fluid in ("glycerol", "detergent"):
+            case = Case.load(Path(__file__).with_name(f"{shoe}_{fluid}.toml"))
+            result = run(case, quick=quick)
+            printed = entry.values.get(f"fluid_load_{shoe}_{fluid}")
+            report = "< 5" if printed is None else str(printed.given).removesuffix(" N")
+            sensor, load = result.value("fluid_load_sensor"), result.value("fluid_load")
+            peak = result.value("peak_fluid_pressure_sensor") / 1e3
+            cof = result.scalars["cof"]
+            print(
+                f"| {shoe.replace('_', ' ')} | {fluid} | {report} | {sensor:.1f} | {load:.0f} "
+                f"| {peak:.0f} | {cof.value:.3f} ± {cof.uncertainty:.3f} |",
+                flush=True,
+            )
+            if printed is None and "untreaded" not in shoe:
+                assert sensor < 5.0
+
+
+if __name__ == "__main__":
+    main("--quick" in sys.argv[1:])
