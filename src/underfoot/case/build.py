@@ -186,7 +186,8 @@ def friction_law(case: Case, catalogue: Catalogue) -> FrictionLaw:
 
     "stribeck" takes the measured fall with speed (Eq. 17) where the fluid has the fit, the measured
     mean over speeds where the report found no fall, and the curve of viscosity times speed for a
-    fluid that was not measured; "boundary" takes COF_BL at every speed.
+    fluid that was not measured; "boundary" takes COF_BL at every speed. "asperity_ehl" and its
+    rivals: ``build_speed``.
     """
     from underfoot.friction import (
         AdhesionBlockingLaw,
@@ -209,10 +210,18 @@ def friction_law(case: Case, catalogue: Catalogue) -> FrictionLaw:
         left = min(given.hysteresis_cof or 0.0, whole)
         source = case.sourced("interface.constant_cof")
         return ConstantLaw(whole - left, left, source.source, thickness, source.uncertainty)
+    if case.models.friction == "bowden_tabor":
+        from .build_speed import area_friction
+
+        return area_friction(case, thickness)
     measured = measured_fluids(catalogue)
-    own = _measured_friction(case, thickness)
+    own = measured_friction(case, thickness)
     if case.contaminant is None or thickness is None:
         raise _no_dry_friction()
+    if case.models.friction in ("asperity_ehl", "mean_film_sharing", "viscoelastic_area"):
+        from .build_speed import speed_friction
+
+        return speed_friction(case, thickness, own, hysteresis)
     fitted = own is not None and own.tau_hydro is not None and own.cof_asymptote is not None
     if case.models.friction == "stribeck" and own is not None and fitted:
         return StribeckLaw.measured(own, cof_hysteresis=hysteresis, others=measured)
@@ -268,7 +277,7 @@ def measured_fluids(catalogue: Catalogue) -> tuple[BoundaryFriction, ...]:
     return tuple(found)
 
 
-def _measured_friction(case: Case, thickness: float | None) -> BoundaryFriction | None:
+def measured_friction(case: Case, thickness: float | None) -> BoundaryFriction | None:
     """Return the friction that the case itself holds for its fluid, if any."""
     from underfoot.friction import BoundaryFriction
 

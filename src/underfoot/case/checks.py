@@ -203,11 +203,25 @@ def _rest(case: Case, places: Places) -> Iterator[InputError]:
 
 def _friction(case: Case, places: Places) -> Iterator[InputError]:
     model, interface = case.models.friction, case.interface
-    if case.contaminant is None and model != "constant":
+    if case.contaminant is None and model not in ("constant", "bowden_tabor"):
         yield InputError(
             "a dry case needs a measured coefficient of friction",
             where=places("models.friction"),
             remedy='Write models.friction = "constant" and interface.constant_cof = 0.8',
+        )
+    if model == "bowden_tabor" and interface.shear_strength is None:
+        yield InputError(
+            'is missing for models.friction = "bowden_tabor"',
+            where=places("interface.shear_strength"),
+            remedy="Take it from a measured adhesion: COF times pressure over the share of real "
+            'contact, as shear_strength = "0.3 MPa"',
+        )
+    if model == "viscoelastic_area" and case.shoe.material.relaxation is None:
+        yield InputError(
+            "a relaxation spectrum is missing: without it the contact area has no speed",
+            where=places("shoe.material.relaxation"),
+            remedy='Give the spectrum of the compound, or choose models.friction = "asperity_ehl" '
+            'or "stribeck"',
         )
     if model == "constant" and interface.constant_cof is None:
         yield InputError(

@@ -253,6 +253,15 @@ class Interface(Section):
     dry_adhesion_cof: Friction | None = Field(
         default=None, description="adhesion part dry, if measured"
     )
+    fine_roughness: Annotated[float, Quantity("m", 1e-10, 1e-4)] | None = Field(
+        default=None,
+        description="roughness finer than a stylus sees, for models.friction = 'asperity_ehl'; "
+        "default: the one calibrated on the report's fluids",
+    )
+    shear_strength: Annotated[float, Quantity("Pa", 0.0, 1e9)] | None = Field(
+        default=None,
+        description="of the real contact, for models.friction = 'bowden_tabor'",
+    )
 
 
 class Models(Section):
@@ -265,9 +274,16 @@ class Models(Section):
     compliance: Literal["layered", "half_space"] = default(
         "layered", "layered", "outsole layer with free edges"
     )
-    friction: Literal["boundary", "stribeck", "adhesion_blocking", "constant"] = default(
-        "stribeck", "stribeck", "friction of the pair and fluid as measured at the speed"
-    )
+    friction: Literal[
+        "boundary",
+        "stribeck",
+        "adhesion_blocking",
+        "constant",
+        "asperity_ehl",
+        "mean_film_sharing",
+        "viscoelastic_area",
+        "bowden_tabor",
+    ] = default("stribeck", "stribeck", "friction of the pair and fluid as measured at the speed")
 
 
 class Numerics(Section):

@@ -35,12 +35,23 @@ def unused(case: Case) -> frozenset[str]:
     if case.models.friction != "adhesion_blocking":
         found += ["interface.dry_adhesion_cof", "contaminant.boundary.load"]
         found += ["contaminant.boundary.alpha", "contaminant.boundary.beta"]
-    if case.models.friction not in ("boundary", "stribeck"):
+    friction = case.models.friction
+    mechanisms = ("asperity_ehl", "mean_film_sharing", "viscoelastic_area")
+    if friction not in ("boundary", "stribeck", *mechanisms):
         found.append("contaminant.boundary.cof_bl")
-    if case.models.friction != "stribeck":
-        found += ["contaminant.boundary.tau_hydro", "contaminant.boundary.cof_asymptote"]
+    if friction not in ("stribeck", *mechanisms):
+        found.append("contaminant.boundary.tau_hydro")
+    if friction != "stribeck":
+        found.append("contaminant.boundary.cof_asymptote")
+    if friction != "asperity_ehl":
+        found.append("interface.fine_roughness")
+    if friction != "bowden_tabor":
+        found.append("interface.shear_strength")
     if case.models.asperity != "contact_table":
-        found += [f"interface.{name}" for name in ("hurst", "longest_wave", "shortest_wave")]
+        spectral = friction in ("asperity_ehl", "bowden_tabor")
+        found += [] if spectral else ["interface.hurst", "interface.longest_wave"]
+        if friction not in ("bowden_tabor", "viscoelastic_area"):
+            found.append("interface.shortest_wave")
     if case.interface.effective_rq is not None:
         found.append("interface.roughness_beyond_cutoff")
     return frozenset(found)

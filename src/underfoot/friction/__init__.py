@@ -1,26 +1,53 @@
 """Friction of sole, floor and fluid together: local laws and Eq. (1) over the whole sole."""
 
 from .adhesion_blocking import AdhesionBlockingLaw
+from .asperity_ehl import AsperityEHL
+from .asperity_ehl_law import ONE_CURVE, OWN_BOUNDARY, CalibratedLevels, asperity_ehl_law
+from .asperity_scale import AsperityScale, self_affine_scale, spectrum_scale
 from .boundary import BoundaryLaw
+from .bowden_tabor import BowdenTaborLaw, ShearStrength, shear_strength_from_cof
 from .coefficient import FrictionCoefficients, cof
 from .constant import ConstantLaw
 from .law import FrictionDeviation, FrictionLaw, FrictionParts
+from .mean_film_sharing import MeanFilmSharing
 from .measured import BoundaryFriction, boundary_friction_at, friction_left, viscous_decay
 from .moore_2012 import StribeckLaw, stribeck_cof, stribeck_law_at
+from .propagation import Propagated, propagated
+from .speed_effect import SpeedEffect, SpeedEffectLaw, cof_with_speed
+from .viscoelastic_area import ViscoelasticArea, modulus_exponent
 
 __all__ = [
+    "ONE_CURVE",
+    "OWN_BOUNDARY",
     "AdhesionBlockingLaw",
+    "AsperityEHL",
+    "AsperityScale",
     "BoundaryFriction",
     "BoundaryLaw",
+    "BowdenTaborLaw",
+    "CalibratedLevels",
     "ConstantLaw",
     "FrictionCoefficients",
     "FrictionDeviation",
     "FrictionLaw",
     "FrictionParts",
+    "MeanFilmSharing",
+    "Propagated",
+    "ShearStrength",
+    "SpeedEffect",
+    "SpeedEffectLaw",
     "StribeckLaw",
+    "ViscoelasticArea",
+    "asperity_ehl_law",
     "boundary_friction_at",
     "cof",
+    "cof_with_speed",
     "friction_left",
+    "modulus_exponent",
+    "propagated",
+    "self_affine_scale",
+    "shear_strength_from_cof",
+    "spectrum_scale",
     "stribeck_cof",
     "stribeck_law_at",
     "viscous_decay",

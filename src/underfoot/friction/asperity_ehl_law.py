@@ -1,0 +1,111 @@
+"""The law of films at single asperities with the numbers calibrated on the report's fluids."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from underfoot.core import SourcedValue
+
+from .asperity_ehl import AsperityEHL
+from .asperity_scale import AsperityScale
+from .measured import BoundaryFriction
+from .speed_effect import SpeedEffectLaw
+
+_PAIR = "polyurethane on vinyl (G.2.2)"
+
+
+@dataclass(frozen=True, slots=True)
+class CalibratedLevels:
+    """Numbers that belong together: they come from one least-squares fit.
+
+    ``deviation`` is the root mean square error of COF: blind where it says so in the docs.
+    """
+
+    fine_roughness: SourcedValue
+    cof_boundary: SourcedValue | None
+    cof_hysteresis: SourcedValue
+    deviation: float
+
+
+def _level(value: float, deviation: float, unit: str, fluids: str) -> SourcedValue:
+    return SourcedValue(
+        value,
+        unit,
+        source=f"calibrated on {fluids}, {_PAIR}",
+        uncertainty=deviation,
+        assumed=True,
+        note=f"Calibrated on {fluids}, {_PAIR}; taken to hold for this pair",
+    )
+
+
+_FITTED, _ALL = "the four fluids with a fit of Eq. 17", "all six fluids"
+OWN_BOUNDARY = CalibratedLevels(
+    fine_roughness=_level(15.65e-9, 0.58e-9, "m", _FITTED),
+    cof_boundary=None,
+    cof_hysteresis=_level(0.0952, 0.0110, "1", _FITTED),
+    deviation=0.030,
+)
+"""For fluids whose COF_BL was measured as a limit at low speed; deviation: the five fluids that a
+calibration on 50 % glycerol predicts blind."""
+
+ONE_CURVE = CalibratedLevels(
+    fine_roughness=_level(11.94e-9, 0.47e-9, "m", _ALL),
+    cof_boundary=_level(0.7311, 0.0161, "1", _ALL),
+    cof_hysteresis=_level(0.1243, 0.0061, "1", _ALL),
+    deviation=0.046,
+)
+"""For fluids of which only the viscosity is known: one curve of viscosity x speed for all;
+deviation: each of the six fluids predicted by a calibration on the other five."""
+
+
+def asperity_ehl_law(
+    scale: AsperityScale,
+    *,
+    modulus: float,
+    poisson_ratio: float = 0.5,
+    viscosity: float | None,
+    friction: BoundaryFriction | None = None,
+    cof_hysteresis: SourcedValue | None = None,
+    fine_roughness: float | None = None,
+) -> SpeedEffectLaw:
+    """Return the law of films at asperities for a fluid, from what is known of it.
+
+    With a measured limit COF_BL (a fluid with a fit of Eq. 17) that is the friction at rest
+    (``OWN_BOUNDARY``); otherwise the viscosity alone decides (``ONE_CURVE``). A COF_BL that is a
+    mean over speeds counts as none: it is no limit at low speed.
+
+    Parameters
+    ----------
+    scale
+        Asperities of sole and floor together.
+    modulus, poisson_ratio, viscosity
+        Of the sole, Pa and 1; of the fluid, Pa s, None for a dry floor.
+    friction
+        What was measured with this fluid.
+    cof_hysteresis
+        Measured hysteresis of the pair, in place of the calibrated one.
+    fine_roughness
+        m, in place of the calibrated one.
+    """
+    limit = friction is not None and friction.tau_hydro is not None
+    levels = OWN_BOUNDARY if limit else ONE_CURVE
+    notes = []
+    if limit:
+        assert friction is not None
+        boundary = friction.cof_boundary
+        if friction.pair:
+            notes.append(f"Friction at rest was measured on {friction.pair}.")
+    else:
+        assert levels.cof_boundary is not None
+        boundary = levels.cof_boundary
+        notes.append("Only the viscosity of the fluid enters: friction at rest is one for all.")
+    return SpeedEffectLaw(
+        effect=AsperityEHL(
+            scale, modulus, poisson_ratio, fine_roughness or levels.fine_roughness.value
+        ),
+        cof_boundary=boundary,
+        cof_hysteresis=cof_hysteresis or levels.cof_hysteresis,
+        viscosity=viscosity,
+        model_deviation=levels.deviation,
+        assumed=tuple(notes),
+    )

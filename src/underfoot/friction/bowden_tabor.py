@@ -1,0 +1,164 @@
+"""Adhesion as shear strength times real contact area: Bowden and Tabor (1950)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from underfoot.core import Breach, InputError
+
+from ._shared import checked, checked_viscosity, law_breaches, viscous_shear
+from .law import FrictionDeviation, FrictionParts
+
+ContactFraction = Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike]
+"""Real over nominal area at (contact pressure Pa, speed m/s)."""
+
+
+@dataclass(frozen=True, slots=True)
+class ShearStrength:
+    """Shear strength of the real contact, s(V) = s0 exp(-c log10(V / V0)^2), Pa.
+
+    Parameters
+    ----------
+    strength
+        s0, Pa: the largest.
+    source
+        Where it comes from.
+    width
+        c, 1; 0 (default) is one strength at every speed. For tread rubber on dry roads Persson
+        and co-workers find a bell of the logarithm of the speed, many decades wide (Lorenz et al.,
+        J. Chem. Phys. 142 (2015) 194701); no value for shoe compounds under a fluid is known.
+    peak_speed
+        V0, m/s.
+    deviation
+        Standard deviation of s0, Pa; None when not known.
+    """
+
+    strength: float
+    source: str
+    width: float = 0.0
+    peak_speed: float = 0.01
+    deviation: float | None = None
+
+    def __post_init__(self) -> None:
+        for name, value in (("strength", self.strength), ("width", self.width)):
+            if not (math.isfinite(value) and value >= 0):
+                raise InputError(f"{value:g}", where=name, allowed="a finite number, 0 or more")
+        if not (math.isfinite(self.peak_speed) and self.peak_speed > 0):
+            raise InputError(f"{self.peak_speed:g} m/s", where="peak_speed", allowed="above 0")
+        if not self.source.strip():
+            raise InputError("no source", where="source", remedy="Say where the strength is from")
+
+    def __call__(self, speed: ArrayLike) -> NDArray[np.float64]:
+        """Return the shear strength at ``speed`` (m/s), Pa; at rest that of 1 um/s."""
+        moving = np.maximum(np.abs(np.asarray(speed, dtype=float)), 1e-6)
+        return self.strength * np.exp(-self.width * np.log10(moving / self.peak_speed) ** 2)
+
+
+def shear_strength_from_cof(
+    cof_adhesion: float, contact_pressure: float, real_contact_fraction: float, source: str
+) -> ShearStrength:
+    """Return the strength behind a measured adhesion: s = COF_adhesion p / (A_real / A).
+
+    At the pressure (Pa) and real contact fraction (1) of the measurement; constant with speed.
+    It holds for that pair and fluid, and only as well as the contact fraction is known.
+    """
+    if not 0 < real_contact_fraction <= 1:
+        raise InputError(
+            f"{real_contact_fraction:g}", where="real_contact_fraction", allowed="above 0 to 1"
+        )
+    if not (contact_pressure > 0 and cof_adhesion >= 0):
+        raise InputError(
+            f"COF {cof_adhesion:g} at {contact_pressure:g} Pa",
+            where="shear_strength_from_cof",
+            allowed="a pressure above 0 and a coefficient of 0 or more",
+        )
+    return ShearStrength(cof_adhesion * contact_pressure / real_contact_fraction, source)
+
+
+@dataclass(frozen=True, slots=True)
+class BowdenTaborLaw:
+    """tau = s(V) A_real/A(p, V) + mu_hysteresis(p, V) p + eta V / h.
+
+    Parameters
+    ----------
+    shear_strength
+        Of the real contact with whatever film lies in it.
+    real_contact_fraction
+        Callable of (pressure Pa, speed m/s): ``ContactTable.real_contact_fraction`` with
+        ``outside="extend"``, or ``AsperityScale.contact_fraction`` of p / E*.
+    cof_hysteresis
+        Callable of the same arguments (``ContactTable.cof_hysteresis``), or a number.
+    viscosity
+        Pa s; None for a dry floor.
+    contact_source
+        Where area and hysteresis come from, for reports.
+    """
+
+    shear_strength: ShearStrength
+    real_contact_fraction: ContactFraction
+    cof_hysteresis: float | ContactFraction = 0.0
+    viscosity: float | None = None
+    contact_source: str = ""
+    name: str = field(default="bowden_tabor", init=False)
+
+    def __post_init__(self) -> None:
+        checked_viscosity(self.viscosity)
+        if not callable(self.cof_hysteresis) and not (
+            math.isfinite(self.cof_hysteresis) and self.cof_hysteresis >= 0
+        ):
+            raise InputError(
+                f"{self.cof_hysteresis:g}", where="cof_hysteresis", allowed="0 or more"
+            )
+
+    @property
+    def source(self) -> str:
+        """Of the law, the strength and the contact."""
+        parts = (
+            "Bowden and Tabor 1950, The Friction and Lubrication of Solids",
+            self.shear_strength.source,
+            self.contact_source,
+        )
+        return "; ".join(dict.fromkeys(part for part in parts if part))
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What no measurement stands behind."""
+        return ("Adhesion is one shear strength times the real contact area.",)
+
+    def __call__(
+        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+    ) -> FrictionParts:
+        """Return the shear stresses in Pa, with the real contact fraction."""
+        pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
+        area = np.clip(np.asarray(self.real_contact_fraction(pressure, velocity)), 0.0, 1.0)
+        given: Any = self.cof_hysteresis
+        loss = given(pressure, velocity) if callable(given) else np.full(pressure.shape, given)
+        return FrictionParts(
+            self.shear_strength(velocity) * area,
+            np.asarray(loss) * pressure,
+            viscous_shear(self.viscosity, velocity, film),
+            real_contact_fraction=area,
+        )
+
+    def deviation(
+        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+    ) -> FrictionDeviation | None:
+        """Return the standard deviations from that of the strength alone, Pa; None without it."""
+        if self.shear_strength.deviation is None or self.shear_strength.strength == 0:
+            return None
+        parts = self(contact_pressure, speed, film_thickness)
+        share = self.shear_strength.deviation / self.shear_strength.strength
+        solid = share * parts.adhesion
+        return FrictionDeviation(solid, solid, np.zeros_like(solid))
+
+    def breaches(
+        self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+    ) -> list[Breach]:
+        """Return films below the bound of the viscous part; area and loss carry their own."""
+        return law_breaches(self.name, {}, self.viscosity, contact_pressure, speed, film_thickness)

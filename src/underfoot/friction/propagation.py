@@ -1,0 +1,142 @@
+"""Uncertainty of a computed number from those of its inputs and of the model, by sampling."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core import InputError, SourcedValue
+
+LOGNORMAL_ABOVE = 1.0 / 3.0
+"""Relative spread from which a positive quantity is drawn from a log-normal: a normal one would
+put more than 0.1 % of its draws below zero."""
+
+
+@dataclass(frozen=True, slots=True)
+class Propagated:
+    """Outcome of sampling; arrays have the shape of what the function returns.
+
+    Parameters
+    ----------
+    value
+        The function at the values given.
+    deviation
+        Standard deviation of the draws.
+    low, high
+        Bounds of the central interval that holds ``confidence``.
+    share
+        Variance due to each input alone over the sum of these variances, averaged over the
+        result, 1; "model" is the model's own. First order: interactions count with none.
+    left_out
+        Inputs without a known spread, taken as exact.
+    """
+
+    value: NDArray[np.float64]
+    deviation: NDArray[np.float64]
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+    confidence: float
+    samples: int
+    seed: int
+    share: Mapping[str, float]
+    left_out: tuple[str, ...]
+
+
+def propagated(
+    function: Callable[[Mapping[str, float]], object],
+    inputs: Mapping[str, SourcedValue],
+    *,
+    model_deviation: float | None = None,
+    confidence: float = 0.95,
+    samples: int = 1000,
+    seed: int = 0,
+) -> Propagated:
+    """Return the spread of ``function`` of ``inputs`` with that of the model on top.
+
+    Inputs are drawn independently: normal, or log-normal with the same mean and spread where a
+    positive value spreads by more than a third of itself. The model's own error is one normal
+    draw for the whole result (a model is off in one direction), ``model_deviation`` in the unit
+    of the result. The same ``seed`` gives the same numbers.
+
+    Parameters
+    ----------
+    function
+        Of a mapping name -> number; returns a number or an array, always of one shape.
+    inputs
+        Values with their standard deviations; one without is taken as exact and listed.
+    model_deviation
+        From residuals of a calibration or of blind predictions; None counts none.
+
+    Errors
+    ------
+    InputError
+        An input without a value, fewer than 100 samples, a result that is not finite.
+    """
+    if samples < 100:
+        raise InputError(f"{samples}", where="samples", allowed="100 or more")
+    if not 0 < confidence < 1:
+        raise InputError(f"{confidence:g}", where="confidence", allowed="above 0, below 1")
+    centre: dict[str, float] = {}
+    for name, given in inputs.items():
+        if given.value is None or not math.isfinite(given.value):
+            raise InputError(f"has no value: {given.reason}", where=name)
+        centre[name] = given.value
+    generator = np.random.default_rng(seed)
+    drawn = {
+        name: _draws(given.value or 0.0, given.uncertainty, samples, generator)
+        for name, given in inputs.items()
+        if given.uncertainty
+    }
+    value = _result(function, centre)
+    points = ({k: float(draws[i]) for k, draws in drawn.items()} for i in range(samples))
+    whole = np.array([_result(function, {**centre, **point}) for point in points])
+    variance = {}
+    for name, draws in drawn.items():
+        few = draws[: max(100, samples // 5)]
+        alone = np.array([_result(function, {**centre, name: x}) for x in few])
+        variance[name] = float(np.mean(np.var(alone, axis=0, ddof=1)))
+    if model_deviation:
+        shift = generator.normal(0.0, model_deviation, samples)
+        whole = whole + shift.reshape(-1, *([1] * value.ndim))
+        variance["model"] = model_deviation**2
+    total = sum(variance.values())
+    tail = 0.5 * (1 - confidence)
+    low, high = np.quantile(whole, [tail, 1 - tail], axis=0)
+    return Propagated(
+        value=value,
+        deviation=np.std(whole, axis=0, ddof=1),
+        low=low,
+        high=high,
+        confidence=confidence,
+        samples=samples,
+        seed=seed,
+        share={name: (part / total if total > 0 else 0.0) for name, part in variance.items()},
+        left_out=tuple(name for name in inputs if name not in drawn),
+    )
+
+
+def _draws(
+    value: float, deviation: float | None, samples: int, generator: np.random.Generator
+) -> NDArray[np.float64]:
+    spread = deviation or 0.0
+    if value > 0 and spread > LOGNORMAL_ABOVE * value:
+        width = math.sqrt(math.log1p((spread / value) ** 2))
+        return value * np.exp(generator.normal(-0.5 * width**2, width, samples))
+    return generator.normal(value, spread, samples)
+
+
+def _result(
+    function: Callable[[Mapping[str, float]], object], values: Mapping[str, float]
+) -> NDArray[np.float64]:
+    found = np.asarray(function(values), dtype=float)
+    if not np.isfinite(found).all():
+        raise InputError(
+            "the result is not finite for a draw of the inputs",
+            where="propagated",
+            remedy="Check the spreads: " + ", ".join(f"{k} = {v:.3g}" for k, v in values.items()),
+        )
+    return found
