@@ -176,7 +176,9 @@ def _parameters(
     free = 3 if boundary is None else 2
     df = len(y) - free
     errors = _errors(v, asymptote, start, tau, rss / df, boundary is None)
-    limit = max(rss, 1e-30) * (1.0 + float(student.ppf(0.5 + confidence / 2, df)) ** 2 / df)
+    # Rounding leaves a residual even in exact data; profiles can't be narrower than that.
+    least = len(y) * (1e-8 * float(np.ptp(y))) ** 2
+    limit = max(rss, least) * (1.0 + float(student.ppf(0.5 + confidence / 2, df)) ** 2 / df)
     low, high = 1e-4 * float(v.max()), 1e4 * float(v.max())
 
     def of_tau(value: float) -> float:
@@ -239,6 +241,8 @@ def _interval(
     from scipy.optimize import brentq
 
     ends: list[float | None] = []
+    if function(best) >= limit:
+        return None, None
     for direction in (-1.0, 1.0):
         inner, width, end = best, step, None
         while abs(inner - best) < reach and not (direction < 0 and inner <= 0.0):
@@ -259,6 +263,8 @@ def _log_interval(
     from scipy.optimize import brentq
 
     ends: list[float | None] = []
+    if function(best) >= limit:
+        return None, None
     for factor, stop in ((0.8, low), (1.25, high)):
         inner, end = best, None
         while (inner > stop) == (factor < 1) and inner != stop:

@@ -24,6 +24,7 @@ def methods_paragraphs(
     )
     paragraphs = [first]
     conventions = _conventions(files)
+    conventions += [_DONE[table.name] for table in study.tables if table.name in _DONE]
     if conventions:
         paragraphs.append(" ".join(conventions))
     if protocol.rules:
@@ -55,7 +56,7 @@ _TOLD = {
 _SENTENCES = {
     "rcof": (
         "Required friction (RCOF) was taken as the {peak} of shear ({shear}) over normal force in "
-        "the {searched}, {direction}, once the {gate}; forces were low-passed with: {filter}; "
+        "the {searched}, {direction}, with the {gate}; forces were low-passed with: {filter}; "
         "baseline: {baseline}."
     ),
     "peak slipping speed": (
@@ -69,6 +70,15 @@ _SENTENCES = {
         "is the time {duration}."
     ),
     "final force": "The force at the end of the hold is the {final force}; {zero}.",
+    "cof": (
+        "COF is the {average} from {window} (sliding start: {sliding start}); shear: {shear}; "
+        "{filter}; baseline: {baseline}."
+    ),
+    "cof from force": (
+        "COF is the {average} in a window of {window}; shear: {shear}; {filter}; baseline: "
+        "{baseline}."
+    ),
+    "cof of a disk": "COF is {cof}, the {average} ({window}).",
 }
 
 
@@ -81,10 +91,32 @@ def _general(key: str, value: str) -> str:
 
 def _sentence(name: str, said: dict[str, str]) -> str:
     """Return a sentence for a paper, or nothing when a convention it needs was not recorded."""
-    try:
-        return _SENTENCES[name].format_map(said)
-    except KeyError:
-        return ""
+    for key, sentence in _SENTENCES.items():
+        if key == name or key.startswith(f"{name} "):
+            try:
+                return sentence.format_map(said)
+            except KeyError:
+                continue
+    return ""
+
+
+_DONE = {
+    "stribeck": (
+        "COF against speed was fitted with COF = asymptote + (COF_BL - asymptote) exp(-v / tau) by "
+        "separable bounded least squares with profile-likelihood intervals; fits with R^2 above "
+        "0.8 count as good, above 0.5 as moderate, below the mean COF stands for COF_BL."
+    ),
+    "master_curve": "All COF were brought on one curve against viscosity times speed by isotonic "
+    "regression.",
+    "maps": (
+        "Pressure scans were joined by the marker's position; the load on the fluid is the sum of "
+        "pressure, distance between scans and displacement per sample."
+    ),
+    "friction_split": (
+        "Hysteresis is the friction with the blocking oil, adhesion what exceeds it; standard "
+        "errors were added in squares."
+    ),
+}
 
 
 def _conventions(files: Sequence[FileResult]) -> list[str]:
@@ -105,7 +137,9 @@ def _conventions(files: Sequence[FileResult]) -> list[str]:
     sentences, told = [], set()
     for name, kinds in seen.items():
         most, count = kinds.most_common(1)[0]
-        if most in told:
+        if most in told or (name == "pressure duration" and "peak pressure" in seen):
+            continue
+        if name == "peak force" and "final force" in seen:
             continue
         told.add(most)
         words = "; ".join(f"{key}: {value}" for key, value in most)

@@ -129,11 +129,15 @@ def _completions(
 def _spend(budget: list[int], tables: int) -> None:
     budget[0] -= tables
     if budget[0] < 0:
-        raise InputError(
-            "the table is too large for an exact test",
-            where="table",
-            remedy="Merge categories, or use a chi-square or Monte Carlo test",
-        )
+        raise _too_large()
+
+
+def _too_large() -> InputError:
+    return InputError(
+        "the table is too large for an exact test",
+        where="table",
+        remedy="Merge categories, or use a chi-square or Monte Carlo test",
+    )
 
 
 def _fillings(total: int, room: tuple[int, ...]) -> np.ndarray:
@@ -144,6 +148,8 @@ def _fillings(total: int, room: tuple[int, ...]) -> np.ndarray:
         later = sum(room[i + 1 :])
         low = np.maximum(0, open_total - later)
         count = np.maximum(np.minimum(open_total, space) - low + 1, 0)
+        if int(count.sum()) > _LIMIT // 10:
+            raise _too_large()
         which = np.repeat(np.arange(len(count)), count)
         first = np.cumsum(count) - count
         cell = low[which] + np.arange(len(which)) - first[which]

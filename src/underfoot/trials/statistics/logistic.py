@@ -195,12 +195,16 @@ def _profile(
     free = np.ones(len(best_beta), dtype=bool)
     free[j] = False
     limit = 0.5 * float(chi2.ppf(confidence, 1))
+    # The others follow the fixed coefficient along the tangent: without that, an intercept far
+    # from the data throws all probabilities to 0 or 1 before the first step.
+    spread = np.linalg.inv(information(matrix, matrix @ best_beta))
+    tangent = spread[:, j] / spread[j, j]
     last = {0: best_beta.copy()}
 
     def drop(value: float) -> float:
-        start = last[0].copy()
+        start = last[0] + tangent * (value - last[0][j])
         start[j] = value
-        beta, reached, converged = maximised(matrix, y, start, free, firth, tolerance=1e-8)
+        beta, reached, converged = maximised(matrix, y, start, free, firth, tolerance=1e-12)
         if not converged:
             raise ConvergenceError("a profile did not settle", where="logistic regression")
         last[0] = beta
