@@ -95,7 +95,9 @@ class MicroMaterial:
                 where="shear",
                 remedy='Use at="instantaneous"',
             )
-        return cls(shear, float(bulk_modulus(g, poisson_ratio)), density, name, shear.source)
+        young = 2.0 * g * (1.0 + poisson_ratio)
+        k = float(bulk_modulus(young, poisson_ratio))
+        return cls(shear, k, density, name, shear.source)
 
     @classmethod
     def from_elastomer(
@@ -249,7 +251,8 @@ class MicroLoading:
 class EnergyLedger:
     """Energies of the block in J against ``time`` (n,); in the frame of the block's top.
 
-    ``residual`` is what came in less what is stored, moving or lost: the error of the march.
+    ``residual`` is what came in less what is stored, moving or lost: the error of the march, and
+    with relaxation terms that of ``strain`` and ``material_loss``, which hold for small strains.
 
     Parameters
     ----------
