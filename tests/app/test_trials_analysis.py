@@ -50,6 +50,22 @@ def test_the_same_folder_gives_the_same_bytes(tester, tmp_path):
     assert _hashes(tmp_path / "a") == first
 
 
+def test_spreadsheet_holds_the_numbers_and_no_formulas(tmp_path):
+    import openpyxl
+
+    from underfoot.document.trials_tables import csv_text, write_spreadsheet
+    from underfoot.trials.analyse import Table
+
+    rows = (("=1+1", 1.5, None, ""), ("plain", float("nan"), 3, "-x"))
+    table = Table("odd: name/1", "A title", ("text", "number", "count", "more"), rows, ("note",))
+    write_spreadsheet([table, table], ["How it was done."], tmp_path / "a.xlsx")
+    book = openpyxl.load_workbook(tmp_path / "a.xlsx")
+    assert len(book.sheetnames) == 3
+    cells = list(book.worksheets[1].iter_rows(min_row=3, max_row=4, values_only=True))
+    assert cells == [("'=1+1", 1.5, None, None), ("plain", None, 3, "-x")]
+    assert csv_text(table).splitlines()[1] == "=1+1,1.5,,"
+
+
 def test_an_interrupted_analysis_goes_on(tester, tmp_path, monkeypatch):
     store = tmp_path / STORE
     count = 0

@@ -127,9 +127,7 @@ def _page(
     axes.add_collection(LineCollection(curves, colors=colours, linewidths=0.9))
     page = "" if number == "1 of 1" else f" ({number})"
     figure.text(0.02, 0.995, title + page, fontsize=10, va="top", weight="bold")
-    scale = (
-        f"each tile: {x_range[0]:g} to {x_range[1]:g} s across, {y_range[0]:g} to {y_range[1]:g} up"
-    )
+    scale = f"each tile: {x_range[0]:g} to {x_range[1]:.3g} s across, {y_range[0]:g} to {y_range[1]:.3g} up"
     key = "blue accepted, orange caution, red refused"
     dashed = f"; dashed {line_label}" if line is not None else ""
     height = figure.get_figheight()

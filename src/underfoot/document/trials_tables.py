@@ -108,7 +108,7 @@ def _number_or_text(value: Any) -> Any:
 def _safe(text: str) -> str:
     """Text that a spreadsheet would run as a formula is kept as text."""
     cleaned = "".join(letter for letter in text if letter.isprintable() or letter in "\n\t")
-    return "'" + cleaned if cleaned[:1] in "=+@" else cleaned
+    return "'" + cleaned if cleaned.startswith(("=", "+", "@")) else cleaned
 
 
 def _sheet_name(name: str, used: set[str]) -> str:
