@@ -14,9 +14,11 @@ from .contact import contact
 from .doctor import doctor
 from .explain import explain
 from .guard import guarded
+from .micro import micro
 from .new import new
 from .run import run
 from .schema import schema
+from .studies import studies_app
 from .trials import trials_app
 from .validate import validate
 
@@ -34,8 +36,9 @@ def _add(*commands: Callable[..., None]) -> None:
         app.command()(guarded(command))
 
 
-_add(new, check, run, compare, contact, explain, catalogue, schema, validate, doctor)
+_add(new, check, run, compare, contact, micro, explain, catalogue, schema, validate, doctor)
 app.add_typer(trials_app)
+app.add_typer(studies_app)
 
 
 def _version(wanted: bool) -> None:

@@ -205,6 +205,11 @@ def _stage(case: G1Case) -> str:
 
 def _notes(rows: Sequence[G1Row], settings: G1Settings) -> tuple[str, ...]:
     notes = [f"{name}: {series_notes(name)}" for name in settings.series]
+    notes.append(
+        "rougher shoe: Rz 12.1 to 35.1 um; rougher floor: 16.6 to 35.1 um, both at "
+        f"{settings.speeds[0]:g} m/s; own shoes and experiment: neolite with 12.1 um, rubber with "
+        "35.1 um; ranges run over all other conditions"
+    )
     pressures = np.array([row.mean_pressure for row in rows]) * 1e-3
     if np.isfinite(pressures).any():
         notes.append(

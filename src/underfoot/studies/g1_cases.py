@@ -183,7 +183,7 @@ def material_of(case: G1Case, bulk: str = "corrected") -> MicroMaterial:
         assert isinstance(young, RelaxationSpectrum)
         shear = shear_from_young(young, POISSON_RATIO)
     else:
-        shear = power_law_spectrum(*BROAD[case.material], terms_per_decade=1)
+        shear = power_law_spectrum(*BROAD[case.material], terms_per_decade=2)
     if bulk == "printed":
         k = PRINTED_BULK_MODULUS[case.material]
     else:

@@ -13,12 +13,8 @@ from .verdict import ComparedLine, Verdict, compared_range, compared_sign, perce
 
 LEAST_COF = 1e-4
 """Hysteresis COF that sliding without loss gives by rounding and sampling; smaller is none."""
-HYSTERESIS, AREA = "hysteresis COF", "real contact area / normal force"
-ALONG = {
-    "shoe_rz": "shoe roughness 12.1 to 35.1 um",
-    "floor_rz": "floor roughness 16.6 to 35.1 um",
-    "speed": "speed",
-}
+HYSTERESIS, AREA = "hysteresis COF", "contact area over force"
+ALONG = {"shoe_rz": "rougher shoe", "floor_rz": "rougher floor", "speed": "faster"}
 
 _GEOMETRY = (
     "an effect of elastic contact geometry: it needs no loss, and depends on the wavelengths, "
@@ -104,10 +100,7 @@ def _line(
     ours: tuple[float, ...],
     source: str,
 ) -> ComparedLine:
-    ends = [row.speed for row in rows]
-    condition = f"{material}, {ALONG[along]}"
-    condition += f" {min(ends):g} to {max(ends):g} m/s" if along == "speed" else ""
-    condition += "" if along == "speed" else f", at {min(ends):g} m/s"
+    condition = f"{material}, {ALONG[along]}" if along != "speed" else _speeds(material, rows)
     if quantity == HYSTERESIS and not _has_loss(rows):
         ours, verdict, reason = (), Verdict.NOT_AVAILABLE, _no_loss(rows, along)
     else:
@@ -116,6 +109,11 @@ def _line(
     return ComparedLine(
         series, quantity, condition, source, printed, percent_range(printed), ours, verdict, reason
     )
+
+
+def _speeds(who: str, rows: Sequence[G1Row]) -> str:
+    speeds = [row.speed for row in rows]
+    return f"{who}, {min(speeds):g} to {max(speeds):g} m/s"
 
 
 def _speed_lines(rows: Sequence[G1Row], series: str, entry) -> list[ComparedLine]:
@@ -133,7 +131,7 @@ def _speed_lines(rows: Sequence[G1Row], series: str, entry) -> list[ComparedLine
     one = entry.sourced("hysteresis_cof_change.speed_up_rough_neolite_on_low_floor").value or 0.0
     for chosen, printed, who in (
         (rest, (most[0], most[1]), "most pairs"),
-        (odd, (one, one), "rough neolite on the low floor"),
+        (odd, (one, one), "rough neolite, low floor"),
     ):
         ours = tuple(
             value
@@ -183,8 +181,8 @@ def _worded_lines(rows: Sequence[G1Row], series: str, slow: float, entry) -> lis
     shoes = _ratios(own, slow)
     add(
         HYSTERESIS,
-        "rough rubber against smooth neolite, each floor",
-        "rubber higher (Fig. 9)",
+        "rubber to neolite, own shoes",
+        "higher",
         shoes,
         compared_sign(1, shoes),
         "the soft rubber follows more of the floor, and its loss tangent is assumed to be larger",
@@ -196,8 +194,8 @@ def _worded_lines(rows: Sequence[G1Row], series: str, slow: float, entry) -> lis
     )
     add(
         HYSTERESIS,
-        "neolite against rubber, same roughness",
-        "higher with shear modulus (G.1.3)",
+        "neolite to rubber, same shoe",
+        "higher",
         stiff,
         compared_sign(1, stiff),
         "a stiffer material touches the peaks only, and the exponents assumed give it less loss; "
@@ -243,7 +241,7 @@ def _worded_lines(rows: Sequence[G1Row], series: str, slow: float, entry) -> lis
                 speed=None if along == "speed" else slow,
             )
         )
-        condition = f"experiment (pin-on-disk), own roughness, {ALONG[along]} up"
+        condition = f"experiment, {ALONG[along]}"
         if path:
             low, high = entry.numbers(path)
             verdict = compared_range((low, high), ours)
@@ -253,7 +251,7 @@ def _worded_lines(rows: Sequence[G1Row], series: str, slow: float, entry) -> lis
     add(
         "values of Fig. 3 and 5 to 11",
         "every pair",
-        "drawn, no numbers",
+        "no numbers",
         (),
         Verdict.NOT_AVAILABLE,
         "the figures print no numbers, and none are read off them; ours are in the table of cases",

@@ -1,0 +1,176 @@
+"""``underfoot micro``: a rough rubber block pressed on a rough floor and slid."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from .micro_input import TEMPLATE, MicroCase, micro_case
+from .options import AsJson, Overwrite
+
+if TYPE_CHECKING:
+    from underfoot.asperity.finite_element import MicroResult
+
+
+def micro(
+    case: Annotated[
+        Path | None, typer.Argument(help="Case of the block (TOML).", show_default=False)
+    ] = None,
+    solver: Annotated[
+        str | None,
+        typer.Option(
+            "--solver",
+            help="condensed (seconds) or explicit (finite elements, minutes); the case's own "
+            "by default.",
+            show_default=False,
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", help="Folder for histories and the picture.", show_default=False),
+    ] = None,
+    template: Annotated[
+        bool, typer.Option("--template", help="Print a commented case to start from.")
+    ] = False,
+    json: AsJson = False,
+    overwrite: Overwrite = False,
+) -> None:
+    """Press a rough block on a rough floor and slide it: contact area, hysteresis, history.
+
+    With --out: micro.json, history_SPEED.csv for each speed, history.png.
+    """
+    from underfoot.core import InputError
+    from underfoot.core.files import check_writable_folder, whole_folder
+    from underfoot.core.progress import bar
+
+    if template:
+        print(TEMPLATE, end="")
+        return
+    if case is None:
+        raise InputError(
+            "no case",
+            where="underfoot micro",
+            remedy="underfoot micro --template > block.toml writes one to start from",
+        )
+    chosen = micro_case(case, solver=solver)
+    if out is not None:
+        check_writable_folder(out, overwrite=overwrite)
+    with bar("micro model") as progress:
+        results = [chosen.result(speed, progress) for speed in chosen.speeds]
+    content = as_data(chosen, results)
+    if out is not None:
+        with whole_folder(out, overwrite=overwrite) as staging:
+            _write(staging, chosen, results, content)
+    if json:
+        import json as json_text
+
+        print(json_text.dumps(content, indent=2, ensure_ascii=False))
+    else:
+        _show(content, out)
+    if not all(result.status.usable for result in results):
+        raise typer.Exit(4)
+
+
+def as_data(chosen: MicroCase, results: list[MicroResult]) -> dict[str, Any]:
+    """Return case and averages as plain data in SI; what is missing is None."""
+    from dataclasses import asdict
+
+    rows = []
+    for speed, result in zip(chosen.speeds, results, strict=True):
+        averages = result.averages if result.status.usable else None
+        row: dict[str, Any] = {"speed_m_per_s": speed}
+        if averages is not None:
+            row |= {
+                key: None if value != value else value for key, value in asdict(averages).items()
+            }
+        row |= {
+            "status": str(result.status),
+            "steps": result.steps,
+            "process_seconds": result.process_seconds,
+            "notes": list(result.notes),
+            "breaches": [str(breach) for breach in result.breaches],
+        }
+        rows.append(row)
+    return {
+        "name": chosen.name,
+        "solver": chosen.solver,
+        "block": chosen.described(),
+        "assumed": list(chosen.assumed),
+        "results": rows,
+    }
+
+
+def _write(
+    folder: Path, chosen: MicroCase, results: list[MicroResult], content: dict[str, Any]
+) -> None:
+    import csv
+    import json as json_text
+    from types import SimpleNamespace
+
+    from underfoot.document.g1_figures import history_figure
+
+    (folder / "micro.json").write_text(
+        json_text.dumps(content, indent=2, ensure_ascii=False), encoding="utf-8"
+    )
+    columns = ("time", "distance", "normal_force", "shear_force", "lateral_force")
+    for speed, result in zip(chosen.speeds, results, strict=True):
+        with (folder / f"history_{speed:g}.csv").open("w", newline="") as stream:
+            writer = csv.writer(stream)
+            writer.writerow(
+                ["time_s", "sliding_m", "normal_N", "shear_N", "lateral_N", "area_m2", "height_m"]
+            )
+            arrays = [getattr(result, name) for name in columns]
+            writer.writerows(zip(*arrays, result.real_contact_area, result.height, strict=True))
+    shown = [
+        SimpleNamespace(
+            series=chosen.name,
+            speed=speed,
+            time=result.time,
+            distance=result.distance,
+            normal_force=result.normal_force,
+            shear_force=result.shear_force,
+            real_contact_area=result.real_contact_area,
+        )
+        for speed, result in zip(chosen.speeds, results, strict=True)
+    ]
+    history_figure(shown, title="").savefig(folder / "history.png", dpi=150)
+
+
+def _show(content: dict[str, Any], out: Path | None) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(highlight=False)
+    console.print(f"\n{content['name']}", style="bold", markup=False)
+    for line in content["block"]:
+        console.print(line, markup=False)
+    table = Table(box=None, pad_edge=False)
+    for heading in ("speed", "COF", "mean |shear|", "A_c/F_N", "A_c/A_0", "pressure", "status"):
+        table.add_column(heading, no_wrap=heading != "status")
+    notes: list[str] = list(content["assumed"])
+    for row in content["results"]:
+        cells = ["-"] * 5
+        if "cof_hysteresis" in row:
+            cells = [
+                f"{row['cof_hysteresis']:.5f}",
+                f"{row['cof_absolute']:.4f}",
+                f"{row['area_per_force'] * 1e6:.4g} mm²/N",
+                f"{row['real_contact_fraction']:.4f}",
+                f"{row['mean_pressure'] * 1e-3:.4g} kPa",
+            ]
+        table.add_row(f"{row['speed_m_per_s']:g} m/s", *cells, row["status"])
+        notes += [n for n in (*row["notes"], *row["breaches"]) if n not in notes]
+    console.print(table)
+    console.print(
+        "COF is the signed mean of shear over whole floor wavelengths; mean |shear| (over normal "
+        "force) is no friction.",
+        style="dim",
+    )
+    if notes:
+        console.print("\nNotes:", markup=False)
+        for note in notes:
+            console.print(f"  - {note}", markup=False)
+    if out is not None:
+        console.print(f"\nFiles in {out}; open {out / 'history.png'}", markup=False)
