@@ -127,7 +127,8 @@ def _page(
     axes.add_collection(LineCollection(curves, colors=colours, linewidths=0.9))
     page = "" if number == "1 of 1" else f" ({number})"
     figure.text(0.02, 0.995, title + page, fontsize=10, va="top", weight="bold")
-    scale = f"each tile: {x_range[0]:g} to {x_range[1]:.3g} s across, {y_range[0]:g} to {y_range[1]:.3g} up"
+    left, right, low, high = (f"{value:.3g}" for value in (*x_range, *y_range))
+    scale = f"each tile: {left} to {right} s across, {low} to {high} up"
     key = "blue accepted, orange caution, red refused"
     dashed = f"; dashed {line_label}" if line is not None else ""
     height = figure.get_figheight()
