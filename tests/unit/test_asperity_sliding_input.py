@@ -7,9 +7,10 @@ import pytest
 from underfoot.asperity import steady_sliding, transient_sliding
 from underfoot.asperity._kernels.area import boundary_length, contact_fractions
 from underfoot.asperity._kernels.fourier import ScipyTransform, transform
-from underfoot.asperity._kernels.mkl import MklTransform, library_handle
+from underfoot.asperity._kernels.mkl import MklTransform
 from underfoot.asperity._kernels.nested import low_pass, repeated
 from underfoot.core import Cancelled, InputError, Status
+from underfoot.core.mkl import mkl_library
 from underfoot.material import RelaxationSpectrum
 
 MATERIAL = RelaxationSpectrum(1e6, [6e5, 6e5], [1e-3, 1e-4])
@@ -161,7 +162,7 @@ def test_libraries_and_threads_give_the_same_contact():
         assert other.cof_hysteresis == pytest.approx(one.cof_hysteresis, rel=1e-5)
 
 
-@pytest.mark.skipif(library_handle() is None, reason="Intel's library is not installed")
+@pytest.mark.skipif(mkl_library() is None, reason="Intel's library is not installed")
 @pytest.mark.parametrize("shape", [(8, 8), (33, 20), (16, 27), (5, 7)])
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_both_fourier_libraries_agree(shape, dtype):

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core import ConvergenceError, MissingExtraError, unknown_name
+from underfoot.core.mkl import mkl_library
 
-from ._kernels.mkl import Pardiso, PardisoError, library
+from ._kernels.mkl import Pardiso, PardisoError
 
 if TYPE_CHECKING:
     import scipy.sparse as sp
@@ -34,7 +35,7 @@ class Factorization(Protocol):
 @cache
 def available_backends() -> tuple[str, ...]:
     """Return the names of the usable sparse back ends, the fastest first."""
-    return BACKENDS if library() is not None else ("superlu",)
+    return BACKENDS if mkl_library() is not None else ("superlu",)
 
 
 def factorization(matrix: sp.csr_matrix, backend: str | None = None) -> Factorization:

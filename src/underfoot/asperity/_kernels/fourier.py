@@ -70,9 +70,11 @@ def transform(
     if xp is not np:
         return NamespaceTransform(shape, xp)
     if library != "scipy":
-        from .mkl import MklTransform, library_handle
+        from underfoot.core.mkl import mkl_library
 
-        if library_handle() is not None:
+        from .mkl import MklTransform
+
+        if mkl_library() is not None:
             return MklTransform(shape, dtype, threads)
         if library == "mkl":
             raise OSError("libmkl_rt was not found")

@@ -7,12 +7,11 @@ nothing else of it is used here.
 from __future__ import annotations
 
 import ctypes
-import sys
-from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from underfoot.core.mkl import mkl_library
 
 Array = Any
 
@@ -23,23 +22,6 @@ _INPUT_STRIDES, _OUTPUT_STRIDES, _THREAD_LIMIT = 12, 13, 27
 _COMPLEX_COMPLEX, _NOT_INPLACE = 39, 44
 
 
-@cache
-def library_handle() -> Any:
-    """Return the loaded library, or None where it is not installed."""
-    folders = (Path(sys.prefix) / "lib", Path(sys.prefix) / "Library" / "bin")
-    for folder in folders:
-        for pattern in ("libmkl_rt.so*", "libmkl_rt*.dylib", "mkl_rt*.dll"):
-            for path in sorted(folder.glob(pattern)):
-                try:
-                    handle = ctypes.CDLL(str(path))
-                    _ = handle.DftiCreateDescriptor, handle.DftiComputeBackward
-                except (OSError, AttributeError):
-                    continue
-                handle.DftiErrorMessage.restype = ctypes.c_char_p
-                return handle
-    return None
-
-
 class MklTransform:
     """Real FFT of C-ordered NumPy arrays of one shape and precision, into its own buffers."""
 
@@ -48,7 +30,7 @@ class MklTransform:
         self.dtype = np.dtype(dtype)
         single = self.dtype == np.float32
         half = shape[1] // 2 + 1
-        self._library = library_handle()
+        self._library: Any = mkl_library()
         self._spectrum = np.empty((shape[0], half), np.complex64 if single else np.complex128)
         self._field = np.empty(shape, self.dtype)
         self._spectrum_at, self._field_at = _at(self._spectrum), _at(self._field)

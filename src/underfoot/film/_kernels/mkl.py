@@ -3,39 +3,18 @@
 from __future__ import annotations
 
 import ctypes
-import importlib.metadata
-from ctypes.util import find_library
-from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+from underfoot.core.mkl import mkl_library
 
 if TYPE_CHECKING:
     import scipy.sparse as sp
 
 ANALYSE, FACTORISE, SOLVE, RELEASE = 11, 22, 33, -1
 REAL_UNSYMMETRIC = 11
-
-
-@cache
-def library() -> ctypes.CDLL | None:
-    """Return MKL's run-time library, or None where it is not installed."""
-    candidates: list[str] = []
-    try:
-        files = importlib.metadata.files("mkl") or []
-        candidates += [str(file.locate()) for file in files if "mkl_rt" in file.name]
-    except importlib.metadata.PackageNotFoundError:
-        pass
-    system = find_library("mkl_rt") if not candidates else None
-    for path in (*candidates, *([system] if system else [])):
-        try:
-            loaded = ctypes.CDLL(path)
-            loaded.pardiso.restype = None
-        except (OSError, AttributeError):
-            continue
-        return loaded
-    return None
 
 
 class PardisoError(RuntimeError):
@@ -50,7 +29,7 @@ class Pardiso:
     """
 
     def __init__(self, matrix: sp.csr_matrix) -> None:
-        loaded = library()
+        loaded = mkl_library()
         if loaded is None:
             raise PardisoError("MKL is not installed")
         self._call_library = loaded.pardiso
