@@ -3,6 +3,7 @@
 from .blind import BlindTest, Prediction, blind_test, leave_one_out, stribeck_left_out
 from .least_squares import Calibration, Parameter, calibrated
 from .speed_effects import Mechanism, calibrated_mechanism, mechanism, mechanisms, predicted
+from .stribeck_curve import StribeckCurve, stribeck_curve
 from .stribeck_points import CofPoints, Pin, fluid_points, pin_on_disk, roughness_series
 
 __all__ = [
@@ -13,6 +14,7 @@ __all__ = [
     "Parameter",
     "Pin",
     "Prediction",
+    "StribeckCurve",
     "blind_test",
     "calibrated",
     "calibrated_mechanism",
@@ -23,5 +25,6 @@ __all__ = [
     "pin_on_disk",
     "predicted",
     "roughness_series",
+    "stribeck_curve",
     "stribeck_left_out",
 ]

@@ -106,7 +106,6 @@ def mechanisms() -> dict[str, Mechanism]:
     fine = Parameter(20e-9, 0.1e-9, 1e-5, "m", logarithmic=True)
     film = "Rq with its cut-off, modulus, viscosity"
     pin = "radius, load and modulus of the pin, Rq, viscosity"
-    given = "the report's film"
     rough = Parameter(1e-6, 1e-8, 1e-4, "m", logarithmic=True)
     power = Parameter(0.2, 1e-4, 5.0, "1", logarithmic=True)
     scale = Parameter(1e-3, 1e-6, 1.0, "Pa*m", logarithmic=True)
@@ -114,11 +113,25 @@ def mechanisms() -> dict[str, Mechanism]:
     whole = "film of the pin"
     found = (
         Mechanism("asperity_ehl", f"{asperities}, bearing area", asperity("bearing"), fine, film),
-        Mechanism("asperity_ehl_sharing", f"{asperities}, load", asperity("sharing"), fine, film),
+        Mechanism(
+            "asperity_ehl_sharing", f"{asperities}, load shared", asperity("sharing"), fine, film
+        ),
         Mechanism("mean_film_both", f"{whole}, Rq of both", mean_film(both), None, pin),
-        Mechanism("mean_film_both_printed", f"same, {given}", mean_film(both, True), None, pin),
+        Mechanism(
+            "mean_film_both_printed",
+            f"{whole} as printed, Rq of both",
+            mean_film(both, True),
+            None,
+            pin,
+        ),
         Mechanism("mean_film_floor", f"{whole}, Rq of the floor", mean_film(floor), None, pin),
-        Mechanism("mean_film_floor_printed", f"same, {given}", mean_film(floor, True), None, pin),
+        Mechanism(
+            "mean_film_floor_printed",
+            f"{whole} as printed, of the floor",
+            mean_film(floor, True),
+            None,
+            pin,
+        ),
         Mechanism("mean_film_free", f"{whole}, Rq calibrated", mean_film(free), rough, pin),
         Mechanism("viscoelastic_area", "area lost to stiffening rubber", area, power, "no fluid"),
         Mechanism("one_constant", "no mechanism: one constant", constant, scale, "viscosity"),

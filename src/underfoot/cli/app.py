@@ -18,6 +18,7 @@ from .micro import micro
 from .new import new
 from .run import run
 from .schema import schema
+from .stribeck import stribeck
 from .studies import studies_app
 from .trials import trials_app
 from .validate import validate
@@ -36,7 +37,9 @@ def _add(*commands: Callable[..., None]) -> None:
         app.command()(guarded(command))
 
 
-_add(new, check, run, compare, contact, micro, explain, catalogue, schema, validate, doctor)
+_add(
+    new, check, run, compare, stribeck, contact, micro, explain, catalogue, schema, validate, doctor
+)
 app.add_typer(trials_app)
 app.add_typer(studies_app)
 

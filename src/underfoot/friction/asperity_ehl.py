@@ -83,7 +83,7 @@ class AsperityEHL:
         """What no measurement stands behind."""
         return (
             "Films at single asperities block adhesion; the fine roughness they must cover "
-            f"({self._fine * 1e9:.3g} nm) is calibrated on 50 % glycerol, polyurethane on vinyl.",
+            f"({self._fine * 1e9:.3g} nm) is calibrated on friction, not measured.",
             "The film formula of soft contacts (Eq. 18) holds at asperities, beyond the range "
             "it was fitted in.",
         )

@@ -1,0 +1,154 @@
+"""COF of one pair and fluid over speed, in parts, from the friction law of a case."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from underfoot.core import InputError
+
+from .stribeck_points import SPEEDS, fluid_points
+
+if TYPE_CHECKING:
+    from underfoot.case import Case
+
+COUNT = 61
+REGIMES = {
+    "boundary": "at least 90 % of the adhesion at rest is left",
+    "blocked in part": "10 to 90 % of it is left",
+    "adhesion blocked": "less than 10 % of it is left",
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StribeckCurve:
+    """COF over ``speed`` (m/s) with its parts and, where published, points.
+
+    ``points``: speed and COF of the fit of Eq. 17, or of the mean, on ``pair``; ``regime`` as in
+    ``REGIMES``; ``notes``: assumptions and breaches.
+    """
+
+    label: str
+    law: str
+    viscosity: float
+    speed: np.ndarray
+    parts: dict[str, np.ndarray]
+    deviation: np.ndarray | None
+    regime: tuple[str, ...]
+    points: tuple[np.ndarray, np.ndarray] | None
+    pair: str
+    notes: tuple[str, ...]
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Return one row for each speed, SI units."""
+        known = {} if self.points is None else dict(zip(*self.points, strict=True))
+        found = []
+        for i, speed in enumerate(self.speed):
+            found.append(
+                {
+                    "fluid": self.label,
+                    "viscosity_Pa_s": self.viscosity,
+                    "speed_m_per_s": float(speed),
+                    "viscosity_times_speed_Pa_m": self.viscosity * float(speed),
+                    "cof": float(sum(part[i] for part in self.parts.values())),
+                    "cof_sd": None if self.deviation is None else float(self.deviation[i]),
+                    **{name: float(part[i]) for name, part in self.parts.items()},
+                    "regime": self.regime[i],
+                    "published_cof": None if speed not in known else float(known[speed]),
+                }
+            )
+        return found
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data for JSON."""
+        return {
+            "fluid": self.label,
+            "law": self.law,
+            "pair_of_published": self.pair,
+            "notes": list(self.notes),
+            "rows": self.rows(),
+        }
+
+
+def stribeck_curve(
+    case: Case, label: str, *, pressure: float, slowest: float, fastest: float
+) -> StribeckCurve:
+    """Return COF over speed of the case's friction law at one contact pressure (Pa).
+
+    The viscous part takes the mean gap that the case's rough interface has at that pressure. The
+    published speeds (0.05 to 1 m/s) within the range are among those computed.
+
+    Errors
+    ------
+    InputError
+        A dry case, a pressure that is not positive, or what the law itself misses.
+    """
+    from underfoot.case import build
+
+    if not pressure > 0:
+        raise InputError(f"{pressure:g} Pa", where="--pressure", allowed="above 0")
+    fluid = build.viscosity(case)
+    if fluid is None or fluid.value is None:
+        raise InputError(
+            "a dry floor has no viscosity",
+            where="contaminant",
+            remedy='Choose a fluid, as --fluid water or contaminant = "canola_oil"',
+        )
+    law = build.friction_law(case, case.catalogue)
+    within = SPEEDS[(slowest <= SPEEDS) & (fastest >= SPEEDS)]
+    speed = np.unique(np.concatenate([np.geomspace(slowest, fastest, COUNT), within]))
+    gap = _gap(case, pressure)
+    at: dict[str, Any] = {
+        "contact_pressure": np.full(speed.shape, pressure),
+        "speed": speed,
+        "film_thickness": np.full(speed.shape, gap),
+    }
+    found = law(**at)
+    rest = float(law(pressure, 1e-9, gap).adhesion)
+    left = found.adhesion / rest if rest > 0 else np.zeros(speed.shape)
+    spread = law.deviation(**at)
+    own = build.measured_friction(case, fluid.value)
+    measured = None
+    if own is not None and own.pair and not own.cof_boundary.assumed:
+        measured = fluid_points(own, rq=0.0, speed=within)
+    names = tuple(REGIMES)
+    return StribeckCurve(
+        label=label,
+        law=law.name,
+        viscosity=fluid.value,
+        speed=speed,
+        parts={
+            "adhesion": found.adhesion / pressure,
+            "hysteresis": found.hysteresis / pressure,
+            "viscous": found.viscous / pressure,
+        },
+        deviation=None if spread is None else spread.solid / pressure,
+        regime=tuple(names[0] if x >= 0.9 else names[1] if x >= 0.1 else names[2] for x in left),
+        points=None if measured is None else (measured.speed, measured.cof),
+        pair="" if own is None else own.pair,
+        notes=tuple(dict.fromkeys((*law.assumptions, *(str(one) for one in law.breaches(**at))))),
+    )
+
+
+def _gap(case: Case, pressure: float) -> float:
+    """Return the mean gap (m) at which the rough interface carries the pressure."""
+    from scipy.optimize import brentq
+
+    from underfoot.case import build
+
+    modulus = build.youngs_modulus(case)[0].value
+    rq = case.effective_rq.value
+    assert modulus is not None
+    assert rq is not None  # effective_rq raises when it is not known
+    interface = build.asperity_law(case, modulus)
+
+    def excess(gap: float) -> float:
+        return float(interface.pressure(gap)) - pressure
+
+    highest = 20 * rq
+    if excess(0.0) <= 0 or excess(highest) >= 0:
+        return 0.0 if excess(0.0) <= 0 else highest
+    found: Any = brentq(excess, 0.0, highest, xtol=1e-12)
+    return float(found)
