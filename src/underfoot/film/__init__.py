@@ -1,4 +1,4 @@
-"""Fluid film between sole and floor: Reynolds equation with cavitation, wedge and squeeze."""
+"""Fluid film between sole and floor: Reynolds with cavitation, wedge, squeeze, soft EHL, regimes."""
 
 from ._kernels.flux import Flow, Stencil, Upwinding, film_flow, upwinding
 from ._kernels.pattern import Pattern
@@ -8,21 +8,88 @@ from .mass_conserving import (
     mass_conserving_film,
     mass_conserving_history,
 )
+from .patir_cheng_1978 import (
+    patir_cheng_breaches,
+    patir_cheng_mean_gap,
+    patir_cheng_pressure_factors,
+)
+from .patir_cheng_1979 import patir_cheng_shear_factor, patir_cheng_shear_flow
+from .regimes import (
+    Lubrication,
+    RegimeComparison,
+    RegimeMap,
+    compare_regimes,
+    fluid_load_share,
+    lubrication_by_lambda,
+    lubrication_by_load_share,
+    regime_map,
+)
 from .reynolds import FilmPressure, film_pressure
+from .soft_ehl import (
+    FilmRegime,
+    SoftEhlFilm,
+    effective_modulus,
+    film_regime,
+    lambda_ratio,
+    radius_of_parabola,
+    soft_ehl,
+)
+from .squeeze_times import (
+    rectangle_torsion_constant,
+    squeeze_gap,
+    squeeze_time_disc,
+    squeeze_time_rectangle,
+)
+from .tapered_wedge import (
+    TaperedWedge,
+    side_leakage,
+    tapered_wedge,
+    wedge_film,
+    wedge_load_factor,
+)
 
 __all__ = [
     "Factorization",
     "FilmPressure",
+    "FilmRegime",
     "Flow",
+    "Lubrication",
     "MassConservingFilm",
     "Pattern",
+    "RegimeComparison",
+    "RegimeMap",
+    "SoftEhlFilm",
     "Stencil",
+    "TaperedWedge",
     "Upwinding",
     "available_backends",
+    "compare_regimes",
+    "effective_modulus",
     "factorization",
     "film_flow",
     "film_pressure",
+    "film_regime",
+    "fluid_load_share",
+    "lambda_ratio",
+    "lubrication_by_lambda",
+    "lubrication_by_load_share",
     "mass_conserving_film",
     "mass_conserving_history",
+    "patir_cheng_breaches",
+    "patir_cheng_mean_gap",
+    "patir_cheng_pressure_factors",
+    "patir_cheng_shear_factor",
+    "patir_cheng_shear_flow",
+    "radius_of_parabola",
+    "rectangle_torsion_constant",
+    "regime_map",
+    "side_leakage",
+    "soft_ehl",
+    "squeeze_gap",
+    "squeeze_time_disc",
+    "squeeze_time_rectangle",
+    "tapered_wedge",
     "upwinding",
+    "wedge_film",
+    "wedge_load_factor",
 ]
