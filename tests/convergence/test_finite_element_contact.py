@@ -1,0 +1,102 @@
+"""Contact of the block against exact and half-space solutions, with refinement."""
+
+import math
+
+import numpy as np
+import pytest
+
+from underfoot.asperity import steady_sliding
+from underfoot.asperity.finite_element import (
+    ExplicitSettings,
+    MicroBlock,
+    MicroLoading,
+    MicroMaterial,
+    MicroSurface,
+)
+from underfoot.asperity.finite_element.assembly import Assembly, assembled
+from underfoot.asperity.finite_element.march import March
+from underfoot.core import silent
+from underfoot.material import RelaxationSpectrum
+
+G, NU, LENGTH = 1.0e6, 0.45, 0.4e-3
+MATERIAL = MicroMaterial.from_poisson(RelaxationSpectrum(G), NU)
+
+
+def pressed(
+    floor: MicroSurface, n: int, pressure: float, settings: ExplicitSettings
+) -> tuple[Assembly, np.ndarray]:
+    """Return the march at rest under a pressure, and the gap at the nodes, (n, n)."""
+    block = MicroBlock(
+        size=(LENGTH, LENGTH, LENGTH),
+        elements=(n, n, max(4, n // 2)),
+        bottom_layer=0.6 * LENGTH / n,
+        roughness_layers=1,
+        sides="periodic",
+    )
+    loading = MicroLoading(
+        mean_pressure=pressure, speed=0.0, press_time=1e-4, hold_time=5e-5, slide_distance=0.0
+    )
+    assembly = assembled(block, floor, MATERIAL, loading, settings)
+    confined = MATERIAL.bulk_modulus + 4.0 / 3.0 * G
+    March(assembly, loading, LENGTH**2, LENGTH, 100, confined, "", silent).run()
+    plane = (n + 1) ** 2
+    x, y, z = assembly.mesh.nodes[:, :plane] + assembly.displacement[:, :plane]
+    z = assembly.arrays[3] + assembly.displacement[2, :plane]
+    gap = (z - floor.height(x, y)).reshape(n + 1, n + 1)[:-1, :-1]
+    return assembly, gap
+
+
+def test_full_contact_stiffness_of_a_wave_is_that_of_the_half_space():
+    """p = |q| E* u / 2 (Johnson 1985, 13.2): second order in the element size."""
+    wave = 2.0 * math.pi * math.sqrt(2.0) / LENGTH
+    stiffness = wave * G / (1.0 - NU)
+    floor = MicroSurface.checkerboard(1e-8, LENGTH)
+    errors = []
+    for n in (8, 16):
+        assembly, gap = pressed(
+            floor, n, 1.5 * stiffness * 5e-9, ExplicitSettings(penalty_factor=1.0)
+        )
+        shape = np.cos(2.0 * math.pi * np.arange(n) / n)
+        form = np.outer(shape, shape)
+        z = assembly.displacement[2, : (n + 1) ** 2].reshape(n + 1, n + 1)[:-1, :-1]
+        ratio = -assembly.penalty * np.sum(gap * form) / np.sum(z * form)
+        errors.append(abs(ratio / stiffness - 1.0))
+    assert errors[1] < 0.04
+    assert errors[0] / errors[1] > 3.0
+
+
+def test_hertz_indentation_and_partial_contact():
+    """Mean gap and area against the FFT solver's layer of the same height, same paraboloid."""
+    radius, spot = 2e-3, 0.08e-3
+    young = 2.0 * G * (1.0 + NU)
+    load = 4.0 / 3.0 * young / (1.0 - NU**2) * spot**3 / radius
+    floor = MicroSurface("paraboloid", radius=radius, offset=(0.5 * LENGTH, 0.5 * LENGTH))
+    x = LENGTH * np.arange(128) / 128
+    exact = steady_sliding(
+        floor.height(x[:, None], x[None, :]),
+        LENGTH / 128,
+        young,
+        0.0,
+        load / LENGTH**2,
+        NU,
+        layer_thickness=LENGTH,
+    )
+    # Hertz: the spot's radius (the neighbours at five radii and the layer change it by 0.3 %).
+    share = math.pi * spot**2 / LENGTH**2
+    assert exact.real_contact_fraction_corrected == pytest.approx(share, rel=0.02)
+    _, gap = pressed(floor, 16, load / LENGTH**2, ExplicitSettings(penalty_factor=4.0, cfl=0.3))
+    assert np.clip(gap, 0.0, None).mean() == pytest.approx(exact.mean_gap, rel=0.01)
+    # Closed nodes count their whole cells: too much by about half a cell all round.
+    assert 1.0 < np.mean(gap < 0.0) / share < 1.2
+
+
+def test_gap_converges_with_the_penalty():
+    """Sinking into the contact's springs is inversely proportional to their stiffness."""
+    floor = MicroSurface.checkerboard(4e-6, LENGTH)
+    gaps = [
+        np.clip(pressed(floor, 12, 15e3, ExplicitSettings(penalty_factor=k, cfl=c))[1], 0, None)
+        for k, c in ((0.3, 0.6), (1.5, 0.5), (7.5, 0.25))
+    ]
+    first, second, third = (float(gap.mean()) for gap in gaps)
+    # 1/5 - 1/25 of an error that is 1 - 1/25.
+    assert (third - second) / (third - first) == pytest.approx(1.0 / 6.0, rel=0.3)
