@@ -134,7 +134,9 @@ def alpha_beta(
         values = contrasts @ model.coefficients
         errors = np.sqrt(np.einsum("ij,jk,ik->i", contrasts, model.covariance, contrasts))
         count = names.count(name)
-        rows.append(FluidCoefficients(name, *map(float, values), *map(float, errors), count))
+        alpha, beta = (float(v) for v in values)
+        alpha_error, beta_error = (float(e) for e in errors)
+        rows.append(FluidCoefficients(name, alpha, beta, alpha_error, beta_error, count))
     return AlphaBeta(
         tuple(rows),
         model,

@@ -133,7 +133,7 @@ def pressure_scan(
         raise DataError(f'the pressure is in "{sensor.unit}"', where=where, allowed="Pa")
     up = (axes or axes_of(trial)).up
     path, filled = bridged(marker.positions, round(0.1 * marker.rate))
-    seen = np.isfinite(path).all(axis=1)
+    seen = np.asarray(np.isfinite(path).all(axis=1))
     if seen.sum() < 30 or not seen[np.flatnonzero(seen)[0] : np.flatnonzero(seen)[-1] + 1].all():
         raise DataError("the shoe's marker is lost during the slip", where=where)
     path = low_passed(path[seen], marker.rate, low_pass)
@@ -144,6 +144,7 @@ def pressure_scan(
         if np.linalg.norm(step) < 0.02:
             raise DataError("the shoe's marker hardly moves", where=where)
         sliding = step / np.linalg.norm(step)
+    assert sliding is not None
     left = np.cross(up, sliding)
     place = np.asarray(position, dtype=float)
     ahead = (place - path) @ sliding - heel_back
