@@ -58,9 +58,10 @@ def main() -> None:
                 )
                 if cells == 512:
                     slowest = max(slowest, took)
-            error = np.abs(np.array(loads[:-1]) / loads[-1] - 1)
-            order = -np.polyfit(np.log(CELLS[: error.size]), np.log(error), 1)[0]
-            print(f"   order of the load: {order:.2f}")
+            if len(loads) == len(CELLS):
+                error = np.abs(np.array(loads[:-1]) / loads[-1] - 1)
+                order = -np.polyfit(np.log(CELLS[:-1]), np.log(error), 1)[0]
+                print(f"   order of the load: {order:.2f}")
     print(f"largest mass residual {leakiest:.1e} of the largest flow of a face")
     if slowest:
         verdict = "holds" if slowest < LIMIT else "BROKEN"

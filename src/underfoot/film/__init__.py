@@ -1,4 +1,4 @@
-"""Fluid film between sole and floor: Reynolds with cavitation, wedge, squeeze, soft EHL, regimes."""
+"""Fluid film between sole and floor: Reynolds and cavitation, wedge, squeeze, soft EHL, regimes."""
 
 from ._kernels.flux import Flow, Stencil, Upwinding, film_flow, upwinding
 from ._kernels.pattern import Pattern

@@ -57,10 +57,11 @@ def tapered_wedge(
     h1 = float(positive(leading_gap, "leading_gap"))
     h0 = float(positive(trailing_gap, "trailing_gap"))
     m = float(positive(h1 / h0 - 1, "leading_gap"))
-    l, b = float(positive(length, "length")), float(positive(width, "width"))
-    unit = 6 * float(positive(viscosity, "viscosity")) * float(positive(speed, "speed")) * l / h0**2
+    along, across = float(positive(length, "length")), float(positive(width, "width"))
+    unit = 6 * float(positive(viscosity, "viscosity")) * float(positive(speed, "speed"))
+    unit *= along / h0**2
     modes = _modes(m)
-    slenderness = l / b
+    slenderness = along / across
     half = 0.5 * modes.rates / slenderness
     held = 1 - np.tanh(half) / half  # share of a mode that the sides leave
     shares = modes.weights * modes.means
@@ -74,10 +75,10 @@ def tapered_wedge(
     load = float((shares * held).sum())
     moment = float((modes.weights * modes.moments * held).sum())
     return TaperedWedge(
-        load=unit * l * b * load,
+        load=unit * along * across * load,
         leakage=load / float(shares.sum()),
         peak_pressure=unit * float(curve(fine).max()),
-        pressure_centre=l * moment / load,
+        pressure_centre=along * moment / load,
     )
 
 
@@ -103,10 +104,14 @@ def wedge_film(
     Source as ``tapered_wedge``.
     """
     m = float(positive(taper, "taper"))
-    l, b = float(positive(length, "length")), float(positive(width, "width"))
-    carried = float(positive(viscosity, "viscosity")) * float(positive(speed, "speed")) * b
-    return l * math.sqrt(
-        6 * carried * wedge_load_factor(m) * side_leakage(l / b, m) / float(positive(load, "load"))
+    along, across = float(positive(length, "length")), float(positive(width, "width"))
+    carried = float(positive(viscosity, "viscosity")) * float(positive(speed, "speed")) * across
+    return along * math.sqrt(
+        6
+        * carried
+        * wedge_load_factor(m)
+        * side_leakage(along / across, m)
+        / float(positive(load, "load"))
     )
 
 
