@@ -19,6 +19,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 os.environ["OMP_NUM_THREADS"] = "1"
@@ -79,7 +80,7 @@ def timed(height: np.ndarray, pressure: float, speed: float, fft: str, repeats: 
 def peer(python: str | None, name: str, task: dict) -> tuple[float | None, np.ndarray | None]:
     if python is None:
         return None, None
-    script = str(Path(__file__).with_name("peers.py"))
+    script = str(Path(__file__).with_name("_rough_contact_peers.py"))
     task = {**task, "peer": name}
     answer = subprocess.run(
         [python, script, json.dumps(task)], capture_output=True, text=True, check=False
@@ -190,15 +191,15 @@ def growth(rows: list[dict]) -> str:
     return " ".join(f"{np.polyfit(nodes, column, 1)[0]:5.2f}" for column in counts.T)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+def main(arguments: Sequence[str] = ()) -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--sizes", type=int, nargs="+", default=[256, 512])
     parser.add_argument("--pressures", type=float, nargs="+", default=[0.02, 0.1, 0.3, 1.0])
     parser.add_argument("--peers", help="python of an environment with tamaas and aspher")
     parser.add_argument("--tamaas-up-to", type=int, default=1024, help="largest size for tamaas")
     parser.add_argument("--fft", choices=["auto", "mkl", "scipy"], default="auto")
     parser.add_argument("--out", type=Path, help="JSON file for the numbers")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     print(
         "CPU seconds, one thread; p in E* h'; sliding at 0.01, 0.1 and 1 m/s; x: tamaas over our "
         "slowest sliding, aspher over our elastic"
@@ -245,4 +246,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])
