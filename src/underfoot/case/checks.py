@@ -163,7 +163,9 @@ def _contaminant(case: Case, given: Collection[str], places: Places) -> Iterator
         yield InputError(
             "neither a viscosity nor a share of glycerol is given",
             where=places("contaminant"),
-            remedy='Write viscosity = "219 cP", or glycerol_fraction = "90 %" with its basis',
+            remedy='Write viscosity = "219 cP", or glycerol_fraction = "90 %" with its basis. '
+            'Without one only a measured friction applies: contaminant = "none" with '
+            'models.friction = "constant", and no film',
         )
     if fluid.viscosity is not None and fluid.glycerol_fraction is not None:
         yield InputError(
@@ -247,4 +249,9 @@ def _friction(case: Case, places: Places) -> Iterator[InputError]:
         }
         for path, value in needed.items():
             if value is None:
-                yield InputError(f'is missing for models.friction = "{model}"', where=places(path))
+                yield InputError(
+                    f'is missing for models.friction = "{model}"',
+                    where=places(path),
+                    remedy="Without it choose asperity_ehl or stribeck, which need the fluid's "
+                    "viscosity alone, or constant with a measured friction",
+                )

@@ -90,6 +90,12 @@ def run_study(
     from underfoot.studies.g1 import run
 
     chosen = study(name)
+    if chosen.name in ("g2", "g3"):
+        from .studies_pin import refuse_options, run_pin_study
+
+        refuse_options(chosen.name, {"--quick": quick, "--explicit": explicit, "--series": series})
+        run_pin_study(chosen, out=out, json=json, overwrite=overwrite)
+        return
     settings = _settings(
         series or ("report" if explicit else "both"),
         control,

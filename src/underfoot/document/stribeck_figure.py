@@ -91,7 +91,8 @@ def stribeck_figure(curves: Sequence[FluidCurve], title: str = "") -> Figure:
             ax.set_ylabel("COF")
     for ax in small[count:]:
         ax.set_visible(False)
-    small[0].legend(frameon=False, fontsize=8, loc="upper right")
+    handles, names = small[0].get_legend_handles_labels()
+    below.legend(handles, names, frameon=False, fontsize=8, loc="outside lower center", ncols=3)
     if title:
         figure.suptitle(title)
     return figure

@@ -30,7 +30,8 @@ class Propagated:
         Bounds of the central interval that holds ``confidence``.
     share
         Variance due to each input alone over the sum of these variances, averaged over the
-        result, 1; "model" is the model's own. First order: interactions count with none.
+        result, 1; "model" is the model's own. First order: interactions count with none. Empty
+        when not asked for.
     left_out
         Inputs without a known spread, taken as exact.
     """
@@ -54,6 +55,7 @@ def propagated(
     confidence: float = 0.95,
     samples: int = 1000,
     seed: int = 0,
+    shares: bool = True,
 ) -> Propagated:
     """Return the spread of ``function`` of ``inputs`` with that of the model on top.
 
@@ -70,6 +72,9 @@ def propagated(
         Values with their standard deviations; one without is taken as exact and listed.
     model_deviation
         From residuals of a calibration or of blind predictions; None counts none.
+
+    shares
+        False leaves out which input causes how much: it takes draws of each input alone.
 
     Errors
     ------
@@ -95,14 +100,15 @@ def propagated(
     points = ({k: float(draws[i]) for k, draws in drawn.items()} for i in range(samples))
     whole = np.array([_result(function, {**centre, **point}) for point in points])
     variance = {}
-    for name, draws in drawn.items():
+    for name, draws in drawn.items() if shares else ():
         few = draws[: max(100, samples // 5)]
         alone = np.array([_result(function, {**centre, name: x}) for x in few])
         variance[name] = float(np.mean(np.var(alone, axis=0, ddof=1)))
     if model_deviation:
         shift = generator.normal(0.0, model_deviation, samples)
         whole = whole + shift.reshape(-1, *([1] * value.ndim))
-        variance["model"] = model_deviation**2
+        if shares:
+            variance["model"] = model_deviation**2
     total = sum(variance.values())
     tail = 0.5 * (1 - confidence)
     low, high = np.quantile(whole, [tail, 1 - tail], axis=0)

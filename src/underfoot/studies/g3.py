@@ -97,7 +97,7 @@ def _contact_area(catalogue: Catalogue) -> dict[tuple[str, str], float]:
             other = catalogue.entry("floor", floor_name)
             ra = [e.sourced("roughness.ra", "m").value or 0.0 for e in (entry, other)]
             scale = self_affine_scale(
-                STYLUS_RESOLUTION, rq=float(RQ_PER_RA * np.hypot(*ra)), longest_wave=0.8e-3
+                STYLUS_RESOLUTION, rq=float(RQ_PER_RA * np.hypot(ra[0], ra[1])), longest_wave=0.8e-3
             )
             found[sole, floor] = float(scale.contact_fraction(266.1e3 / modulus))
     return found

@@ -24,6 +24,18 @@ STUDIES: tuple[Study, ...] = (
         "Beschorner, final progress report R01OH008986, G.1",
         "underfoot.studies.g1",
     ),
+    Study(
+        "g2",
+        "Friction falling with speed under fluids: which mechanism predicts the others blind",
+        "Beschorner, final progress report R01OH008986, G.2",
+        "underfoot.studies.g2",
+    ),
+    Study(
+        "g3",
+        "Adhesion left under fluids in boundary lubrication: Eq. 26 and its order of soles",
+        "Beschorner, final progress report R01OH008986, G.3",
+        "underfoot.studies.g3",
+    ),
 )
 
 
