@@ -119,7 +119,7 @@ def wedge_load_factor(taper: float) -> float:
     """Return K(m) = [ln(1 + m) - 2 m / (2 + m)] / m^2, at most 0.02671 (m = 1.189)."""
     m = float(positive(taper, "taper"))
     if m < 1e-2:  # series: the bracket loses its digits
-        return m / 12 * (1 - 1.5 * m + 1.8 * m**2 - 2 * m**3)
+        return m / 12 * (1 - 1.5 * m + 1.65 * m**2 - 1.625 * m**3)
     return (math.log1p(m) - 2 * m / (2 + m)) / m**2
 
 

@@ -1,0 +1,147 @@
+"""Picture of lubrication regimes: lambda against speed for fluids, and a map over viscosity."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from underfoot.film import RegimeMap
+
+BANDS = ("#e9d8c4", "#f3efe6", "#d5e4ec")
+INK = ("#7a1f1f", "#b5651d", "#c9a227", "#4f7942", "#1f5c7a", "#3b2a6b", "#666666", "#111111")
+
+
+def regime_figure(
+    regimes: RegimeMap, fluids: Mapping[str, float] | None = None, title: str = ""
+) -> Figure:
+    """Return two panels: lambda against speed for each fluid, and the regimes over viscosity.
+
+    ``regimes`` is what ``film.regime_map`` gives, over at least two viscosities and two speeds
+    above 0; ``fluids`` names viscosities (Pa s) to draw, between the map's ends. Where the map
+    holds the fluid's load share, its limits are drawn over those of lambda. Bands and limits are
+    those of ``film.LAMBDA_LIMITS`` and ``film.SHARE_LIMITS``; assumptions and breaches stand below.
+    """
+    from matplotlib.figure import Figure
+
+    from underfoot.core import InputError
+
+    if regimes.lambda_ratio.shape < (2, 2) or min(regimes.lambda_ratio.shape) < 2:
+        raise InputError(
+            "a map needs two viscosities and two speeds", where="regimes", allowed="2 x 2 or more"
+        )
+    if regimes.speed.min() <= 0:
+        raise InputError("a logarithmic axis has no 0", where="regimes.speed", allowed="above 0")
+    fluids = dict(fluids or {})
+    low, high = float(regimes.viscosity.min()), float(regimes.viscosity.max())
+    for name, viscosity in fluids.items():
+        if not low <= viscosity <= high:
+            raise InputError(
+                f"{name} ({viscosity * 1e3:.3g} mPa s) is not on the map",
+                where="fluids",
+                allowed=f"{low * 1e3:.3g} to {high * 1e3:.3g} mPa s",
+                remedy="Draw the map over more viscosities.",
+            )
+    figure = Figure(figsize=(10.5, 5.2), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    _by_speed(left, regimes, fluids)
+    _map(right, regimes, fluids)
+    if title:
+        figure.suptitle(title)
+    notes = [*regimes.assumptions, *(str(breach) for breach in regimes.breaches)]
+    figure.supxlabel("\n".join(notes), fontsize=7, color="#555555")
+    return figure
+
+
+def save_regime_figure(
+    path: Path, regimes: RegimeMap, fluids: Mapping[str, float] | None = None, title: str = ""
+) -> None:
+    """Write ``regime_figure`` as a picture; the ending of ``path`` chooses the format."""
+    regime_figure(regimes, fluids, title).savefig(path, dpi=150)
+
+
+def _by_speed(ax: Axes, regimes: RegimeMap, fluids: Mapping[str, float]) -> None:
+    from underfoot.film.regimes import LAMBDA_LIMITS
+
+    curves = {name: _interpolated(regimes, fluids[name]) for name in fluids}
+    shown = np.concatenate(list(curves.values())) if curves else regimes.lambda_ratio.ravel()
+    floor = min(float(shown.min()) / 1.5, LAMBDA_LIMITS[0] / 2)
+    ceiling = max(float(shown.max()) * 1.5, LAMBDA_LIMITS[1] * 2)
+    edges = (floor, *LAMBDA_LIMITS, ceiling)
+    names = ("boundary", "mixed", "full film")
+    for start, end, colour, name in zip(edges[:-1], edges[1:], BANDS, names, strict=True):
+        ax.axhspan(start, end, color=colour, zorder=0)
+        ax.text(0.02, (start * end) ** 0.5, name, transform=ax.get_yaxis_transform(), va="center")
+    for (name, curve), colour in zip(curves.items(), _colours(len(curves)), strict=True):
+        ax.loglog(regimes.speed, curve, color=colour, label=name)
+    ax.set_xscale("log")
+    ax.set_yscale("log")
+    ax.set_ylim(floor, ceiling)
+    ax.set_xlim(regimes.speed.min(), regimes.speed.max())
+    ax.set_xlabel("sliding speed (m/s)")
+    ax.set_ylabel("film over roughness, λ")
+    ax.set_title("λ against speed")
+    if curves:
+        ax.legend(fontsize=8, loc="lower right")
+
+
+def _map(ax: Axes, regimes: RegimeMap, fluids: Mapping[str, float]) -> None:
+    from matplotlib.colors import ListedColormap
+    from matplotlib.lines import Line2D
+
+    from underfoot.film.regimes import LAMBDA_LIMITS, SHARE_LIMITS
+
+    speed, viscosity = regimes.speed, regimes.viscosity * 1e3
+    level = np.digitize(regimes.lambda_ratio, LAMBDA_LIMITS).astype(float)
+    ax.pcolormesh(
+        speed, viscosity, level, cmap=ListedColormap(BANDS), vmin=-0.5, vmax=2.5, shading="nearest"
+    )
+    lines = _limits(ax, speed, viscosity, regimes.lambda_ratio, LAMBDA_LIMITS, "solid")
+    keys = [
+        Line2D([], [], color="#333333", label=f"λ = {LAMBDA_LIMITS[0]:g} and {LAMBDA_LIMITS[1]:g}")
+    ]
+    if regimes.fluid_share is not None:
+        lines |= _limits(ax, speed, viscosity, regimes.fluid_share, SHARE_LIMITS, "dashed")
+        text = f"fluid carries {SHARE_LIMITS[0]:.0%} and {SHARE_LIMITS[1]:.0%}"
+        keys.append(Line2D([], [], color="#333333", linestyle="dashed", label=text))
+    for (name, value), colour in zip(fluids.items(), _colours(len(fluids)), strict=True):
+        ax.axhline(value * 1e3, color=colour, linewidth=0.8)
+        ax.text(speed.min() * 1.05, value * 1e3 * 1.04, name, color=colour, fontsize=7)
+    ax.set_xscale("log")
+    ax.set_yscale("log")
+    ax.set_xlim(speed.min(), speed.max())
+    ax.set_ylim(viscosity.min(), viscosity.max())
+    ax.set_xlabel("sliding speed (m/s)")
+    ax.set_ylabel("viscosity (mPa s)")
+    ax.set_title("boundary, mixed and full film")
+    if lines:
+        ax.legend(handles=keys, fontsize=8, loc="lower left")
+
+
+def _limits(
+    ax: Axes, x: ArrayLike, y: ArrayLike, field: np.ndarray, limits: tuple[float, ...], style: str
+) -> bool:
+    """Draw the limits that the map crosses and return whether there is one."""
+    crossed = [limit for limit in limits if field.min() < limit < field.max()]
+    if crossed:
+        ax.contour(x, y, field, levels=crossed, colors="#333333", linestyles=style)
+    return bool(crossed)
+
+
+def _interpolated(regimes: RegimeMap, viscosity: float) -> np.ndarray:
+    """Return lambda over speed at one viscosity: a power law between the map's rows."""
+    rows = np.log(regimes.viscosity)
+    order = np.argsort(rows)
+    table = np.log(regimes.lambda_ratio)[order]
+    return np.exp([np.interp(np.log(viscosity), rows[order], column) for column in table.T])
+
+
+def _colours(count: int) -> list[str]:
+    return [INK[index % len(INK)] for index in range(count)]
