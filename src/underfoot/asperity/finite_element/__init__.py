@@ -9,6 +9,7 @@ from .inputs import (
     MicroResult,
 )
 from .model import explicit_sliding
+from .report_g1 import report_block, report_floor, report_loading, report_material
 from .settings import ExplicitSettings
 from .surface import MicroSurface
 
@@ -22,4 +23,8 @@ __all__ = [
     "MicroResult",
     "MicroSurface",
     "explicit_sliding",
+    "report_block",
+    "report_floor",
+    "report_loading",
+    "report_material",
 ]
