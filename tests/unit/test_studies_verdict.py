@@ -39,6 +39,7 @@ def test_signs():
 def test_words():
     assert percent_range((-0.294, -0.16)) == "-29 to -16 %"
     assert percent_range((0.101, 0.1)) == "+10 %"
+    assert percent_range((float("nan"), 0.1)) == percent_range(()) == "-"
     with pytest.raises(InputError, match="lowest first"):
         compared_range((0.2, 0.1), (0.15,))
 

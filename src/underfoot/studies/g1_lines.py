@@ -20,6 +20,7 @@ _GEOMETRY = (
     "an effect of elastic contact geometry: it needs no loss, and depends on the wavelengths, "
     "which are assumed"
 )
+NO_RESULT = "a case of this line has no result; the table of cases says why"
 _NOT_RUBBER = (
     "one term that relaxes in 40 or 77 s loses next to nothing: what is left is inertia, ringing "
     "or hourglass control, and no property of the rubber"
@@ -105,7 +106,8 @@ def _line(
         ours, verdict, reason = (), Verdict.NOT_AVAILABLE, _no_loss(rows, along)
     else:
         verdict = compared_range(printed, ours)
-        reason = REASONS[series, quantity, along]
+        missing = verdict is Verdict.NOT_AVAILABLE
+        reason = NO_RESULT if missing else REASONS[series, quantity, along]
     return ComparedLine(
         series, quantity, condition, source, printed, percent_range(printed), ours, verdict, reason
     )
@@ -164,6 +166,8 @@ def _worded_lines(rows: Sequence[G1Row], series: str, slow: float, entry) -> lis
     def add(quantity, condition, text, ours, verdict, reason, printed=None) -> None:
         if quantity == HYSTERESIS and not lossy:
             ours, verdict, reason = (), Verdict.NOT_AVAILABLE, _no_loss(rows, "")
+        elif verdict is Verdict.NOT_AVAILABLE and ours:
+            ours, reason = (), NO_RESULT
         lines.append(
             ComparedLine(
                 series,
@@ -285,7 +289,7 @@ def _largest(rows: Sequence[G1Row]) -> float:
 def _no_loss(rows: Sequence[G1Row], along: str) -> str:
     largest = _largest(rows)
     if largest != largest:
-        return "a case of this line has no result; the table of cases says why"
+        return NO_RESULT
     reason = (
         f"there is no hysteresis to compare: |COF| is at most {largest:.0e} (below {LEAST_COF:g}). "
         "One term that relaxes in 40 or 77 s has a loss tangent of 4e-6 or less at the frequency "

@@ -78,7 +78,7 @@ class ComparedLine:
     @property
     def ours_text(self) -> str:
         """Our range as a reader sees it."""
-        return percent_range(self.ours) if self.ours else "-"
+        return percent_range(self.ours)
 
     def as_dict(self) -> dict[str, object]:
         """Return plain data for JSON and CSV."""
@@ -95,8 +95,11 @@ class ComparedLine:
 
 
 def percent_range(values: Iterable[float]) -> str:
-    """Return "-29 to -16 %" for fractions, rounded to whole percentages."""
-    each = [round(100.0 * value) for value in values]
+    """Return "-29 to -16 %" for fractions, rounded to whole percentages; "-" where one is NaN."""
+    given = list(values)
+    if not given or any(value != value for value in given):
+        return "-"
+    each = [round(100.0 * value) for value in given]
     low, high = min(each), max(each)
     return f"{low:+d} %" if low == high else f"{low:+d} to {high:+d} %"
 
