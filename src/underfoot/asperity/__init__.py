@@ -12,6 +12,7 @@ from .steady import SteadySliding, steady_sliding
 from .table_error import leave_out_errors
 from .tabulated_law import TabulatedLaw
 from .theory_contact import TheoryContact
+from .theory_law import persson_law
 from .transient import TransientSliding, transient_sliding
 
 __all__ = [
@@ -30,6 +31,7 @@ __all__ = [
     "greenwood_williamson",
     "leave_out_errors",
     "persson",
+    "persson_law",
     "steady_sliding",
     "transient_sliding",
 ]

@@ -138,7 +138,7 @@ def asperity_law(case: Case, modulus: float, progress: Progress = silent) -> Pre
         from underfoot.asperity import ExponentialLaw
 
         return ExponentialLaw(modulus, poisson_ratio, rq)
-    from underfoot.asperity.contact_table import ContactTable
+    from underfoot.asperity import ContactTable
     from underfoot.surface import self_affine
 
     waves = case.interface
