@@ -99,4 +99,23 @@ def _documented(name: str, item: Any) -> str:
         signature = str(inspect.signature(item))
     except (TypeError, ValueError):
         signature = ""
-    return f"{item.__module__}.{name}{signature}\n\n{inspect.getdoc(item) or 'not documented'}"
+    text = f"{item.__module__}.{name}{signature}\n\n{inspect.getdoc(item) or 'not documented'}"
+    return "\n\n".join([text, *_origin(item)])
+
+
+def _origin(item: Any) -> Iterator[str]:
+    """Yield source and tested ranges of a closure that is a class, as its module holds them."""
+    import sys
+    from dataclasses import fields, is_dataclass
+
+    from underfoot.core import display
+
+    if not (inspect.isclass(item) and is_dataclass(item)):
+        return
+    source = next((field.default for field in fields(item) if field.name == "source"), None)
+    if isinstance(source, str):
+        yield f"Source: {source}"
+    ranges = getattr(sys.modules[item.__module__], "RANGES", {})
+    for quantity, tested in ranges.items():
+        low, high = display(tested.low, tested.unit), display(tested.high, tested.unit)
+        yield f"Tested: {quantity} {low} to {high} ({tested.source})"

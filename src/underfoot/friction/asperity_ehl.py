@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from underfoot.core import InputError, unknown_name
 
+from . import speed_effect
 from ._load_sharing import fluid_share
 from .asperity_scale import AsperityScale
 
@@ -19,6 +20,8 @@ STYLUS_RESOLUTION = 2.5e-6
 Blocking = Literal["bearing", "sharing"]
 BLOCKINGS = ("bearing", "sharing")
 _U0, _P0 = 0.5, 0.375  # Persson 2007: p = 0.375 E* exp(-h / (0.5 Rq)), as in ExponentialLaw
+
+RANGES = speed_effect.RANGES
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,10 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from underfoot.core import InputError
 
+from . import speed_effect
 from ._load_sharing import fluid_share
 from ._shared import PIN_PRESSURE
 
 _U0, _P0 = 0.5, 0.375  # Persson 2007: p = 0.375 E* exp(-h / (0.5 Rq)), as in ExponentialLaw
+
+RANGES = speed_effect.RANGES
 
 
 @dataclass(frozen=True, slots=True)

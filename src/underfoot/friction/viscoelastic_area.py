@@ -12,6 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from underfoot.core import InputError
 
+from . import speed_effect
+
+RANGES = speed_effect.RANGES
 REST_SPEED = 0.01
 """m/s: speed of the report's boundary tests (G.3.1), below which area counts as that at rest."""
 
