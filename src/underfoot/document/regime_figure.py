@@ -24,21 +24,19 @@ def regime_figure(
 ) -> Figure:
     """Return two panels: lambda against speed for each fluid, and the regimes over viscosity.
 
-    ``regimes`` is what ``film.regime_map`` gives, over at least two viscosities and two speeds
-    above 0; ``fluids`` names viscosities (Pa s) to draw, between the map's ends. Where the map
+    ``regimes`` is what ``film.regime_map`` gives, over at least two viscosities and two
+    speeds; ``fluids`` names viscosities (Pa s) to draw, between the map's ends. Where the map
     holds the fluid's load share, its limits are drawn over those of lambda. Bands and limits are
-    those of ``film.LAMBDA_LIMITS`` and ``film.SHARE_LIMITS``; assumptions and breaches stand below.
+    those of ``film.regimes`` (``LAMBDA_LIMITS``, ``SHARE_LIMITS``); assumptions and breaches stand below.
     """
     from matplotlib.figure import Figure
 
     from underfoot.core import InputError
 
-    if regimes.lambda_ratio.shape < (2, 2) or min(regimes.lambda_ratio.shape) < 2:
+    if min(regimes.lambda_ratio.shape) < 2:
         raise InputError(
             "a map needs two viscosities and two speeds", where="regimes", allowed="2 x 2 or more"
         )
-    if regimes.speed.min() <= 0:
-        raise InputError("a logarithmic axis has no 0", where="regimes.speed", allowed="above 0")
     fluids = dict(fluids or {})
     low, high = float(regimes.viscosity.min()), float(regimes.viscosity.max())
     for name, viscosity in fluids.items():
@@ -78,7 +76,7 @@ def _by_speed(ax: Axes, regimes: RegimeMap, fluids: Mapping[str, float]) -> None
     names = ("boundary", "mixed", "full film")
     for start, end, colour, name in zip(edges[:-1], edges[1:], BANDS, names, strict=True):
         ax.axhspan(start, end, color=colour, zorder=0)
-        ax.text(0.02, (start * end) ** 0.5, name, transform=ax.get_yaxis_transform(), va="center")
+        ax.text(0.02, end / 1.12, name, transform=ax.get_yaxis_transform(), va="top")
     for (name, curve), colour in zip(curves.items(), _colours(len(curves)), strict=True):
         ax.loglog(regimes.speed, curve, color=colour, label=name)
     ax.set_xscale("log")
@@ -111,9 +109,22 @@ def _map(ax: Axes, regimes: RegimeMap, fluids: Mapping[str, float]) -> None:
         lines |= _limits(ax, speed, viscosity, regimes.fluid_share, SHARE_LIMITS, "dashed")
         text = f"fluid carries {SHARE_LIMITS[0]:.0%} and {SHARE_LIMITS[1]:.0%}"
         keys.append(Line2D([], [], color="#333333", linestyle="dashed", label=text))
-    for (name, value), colour in zip(fluids.items(), _colours(len(fluids)), strict=True):
+    box = {"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 1.0}
+    for index, (name, value) in enumerate(sorted(fluids.items(), key=lambda item: item[1])):
+        colour = _colours(len(fluids))[list(fluids).index(name)]
         ax.axhline(value * 1e3, color=colour, linewidth=0.8)
-        ax.text(speed.min() * 1.05, value * 1e3 * 1.04, name, color=colour, fontsize=7)
+        place, side = ((0.02, "left"), (0.98, "right"))[index % 2]  # neighbours do not overlap
+        ax.text(
+            place,
+            value * 1e3,
+            name,
+            color=colour,
+            fontsize=7,
+            ha=side,
+            va="center",
+            bbox=box,
+            transform=ax.get_yaxis_transform(),
+        )
     ax.set_xscale("log")
     ax.set_yscale("log")
     ax.set_xlim(speed.min(), speed.max())
@@ -122,7 +133,7 @@ def _map(ax: Axes, regimes: RegimeMap, fluids: Mapping[str, float]) -> None:
     ax.set_ylabel("viscosity (mPa s)")
     ax.set_title("boundary, mixed and full film")
     if lines:
-        ax.legend(handles=keys, fontsize=8, loc="lower left")
+        ax.legend(handles=keys, fontsize=8, loc="lower right")
 
 
 def _limits(

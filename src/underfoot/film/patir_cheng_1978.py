@@ -24,7 +24,7 @@ TABLE = {
     9.0: (0.870, 1.5),
 }
 """C and r by gamma: 1 - C exp(-r H) up to gamma = 1, 1 + C H^-r above. From memory; a published
-fit of C and r (log-linear, in a public bearing code) agrees within 4 %."""
+fit of C and r (log-linear, in a public bearing code) agrees within 5 %."""
 
 RANGES = {
     "gap over roughness H": Range(0.5, math.inf, "1", f"{SOURCE}; isotropic"),
