@@ -178,7 +178,8 @@ def speed_figure(rows: Sequence[Row], quantity: str, *, own: bool = False) -> Fi
                 )
         axes.set_xlabel("sliding speed (m/s)")
         axes.set_xlim(left=0.0)
-        axes.set_ylim(bottom=0.0)
+        highest = max(getattr(row, quantity) for row in some) * _factor(quantity)
+        axes.set_ylim(0.0, 1.08 * highest if highest > 0.0 else 1.0)
 
     number = {"cof_hysteresis": "6", "area_per_force": "10" if own else "7"}[quantity]
     return _panels(rows, quantity, own, lines, number, "", shared=True)
