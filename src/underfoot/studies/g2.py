@@ -60,7 +60,7 @@ NOTES = (
     "glycerol and canola oil are none, these two are predicted from their viscosity",
     "viscosity only: friction at rest is that calibrated on 50 % glycerol",
     "the form of the blocking (bearing area) was chosen for the smallest error on the calibration "
-    "fluid among the films at asperities (0.0005 against 0.0045), not on the predicted fluids",
+    "fluid among the films at asperities (0.0005 against 0.0045); all forms are listed",
 )
 
 
