@@ -127,7 +127,8 @@ def assembled(
     density = material.density * scaling
     confined = bulk + 4.0 / 3.0 * g0
     critical = critical_time_step(mesh.largest_gradient_square, confined, density)
-    dt = settings.cfl * critical if settings.time_step is None else settings.time_step
+    cfl = settings.cfl or (0.4 if settings.viscous else 0.6)
+    dt = cfl * critical if settings.time_step is None else settings.time_step
     if dt >= critical:
         raise InputError(
             f"a time step of {dt:.4g} s",
@@ -138,7 +139,7 @@ def assembled(
     frequency = 2.0 * math.pi * loading.speed / floor.wavelength
     modulus = settings.hourglass_modulus or float(spectrum.storage_modulus(frequency))
     dtype = np.float64 if settings.precision == "double" else np.float32
-    viscous = settings.hourglass == "viscous" or settings.bulk_viscosity > 0.0
+    viscous = settings.viscous
     constants, real = _element_constants(
         mesh, settings, modulus, density, math.sqrt(confined / density), dt, dtype
     )
