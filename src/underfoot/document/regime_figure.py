@@ -27,7 +27,8 @@ def regime_figure(
     ``regimes`` is what ``film.regime_map`` gives, over at least two viscosities and two
     speeds; ``fluids`` names viscosities (Pa s) to draw, between the map's ends. Where the map
     holds the fluid's load share, its limits are drawn over those of lambda. Bands and limits are
-    those of ``film.regimes`` (``LAMBDA_LIMITS``, ``SHARE_LIMITS``); assumptions and breaches stand below.
+    those of ``film.regimes`` (``LAMBDA_LIMITS``, ``SHARE_LIMITS``); assumptions and breaches stand
+    below.
     """
     from matplotlib.figure import Figure
 

@@ -47,6 +47,7 @@ from .tapered_wedge import (
     wedge_film,
     wedge_load_factor,
 )
+from .wall_shear import wall_shear
 
 __all__ = [
     "Factorization",
@@ -90,6 +91,7 @@ __all__ = [
     "squeeze_time_rectangle",
     "tapered_wedge",
     "upwinding",
+    "wall_shear",
     "wedge_film",
     "wedge_load_factor",
 ]
