@@ -5,6 +5,7 @@ from .least_squares import Calibration, Parameter, calibrated
 from .speed_effects import Mechanism, calibrated_mechanism, mechanism, mechanisms, predicted
 from .stribeck_curve import StribeckCurve, stribeck_curve
 from .stribeck_points import CofPoints, Pin, fluid_points, pin_on_disk, roughness_series
+from .trial_laws import stribeck_law_from_fit
 
 __all__ = [
     "BlindTest",
@@ -26,5 +27,6 @@ __all__ = [
     "predicted",
     "roughness_series",
     "stribeck_curve",
+    "stribeck_law_from_fit",
     "stribeck_left_out",
 ]

@@ -14,6 +14,7 @@ from .measured import BoundaryFriction, boundary_friction_at, friction_left, vis
 from .moore_2012 import StribeckLaw, stribeck_cof, stribeck_law_at
 from .propagation import Propagated, propagated
 from .speed_effect import SpeedEffect, SpeedEffectLaw, cof_with_speed
+from .speed_table import SpeedTableLaw
 from .viscoelastic_area import ViscoelasticArea, modulus_exponent
 
 __all__ = [
@@ -36,6 +37,7 @@ __all__ = [
     "ShearStrength",
     "SpeedEffect",
     "SpeedEffectLaw",
+    "SpeedTableLaw",
     "StribeckLaw",
     "ViscoelasticArea",
     "asperity_ehl_law",

@@ -1,0 +1,63 @@
+"""Friction laws from measured trials: what a tribometer read becomes a law of cases."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from underfoot.core import InputError, SourcedValue
+
+if TYPE_CHECKING:
+    from underfoot.friction import StribeckLaw
+    from underfoot.trials.stribeck_fit import FitParameter, StribeckFit
+
+
+def stribeck_law_from_fit(
+    fit: StribeckFit, *, source: str, viscosity: float | None = None, fluid: str = "the fluid"
+) -> StribeckLaw:
+    """Return Eq. 17 as a friction law from a fit of trials (``trials.stribeck_fit``).
+
+    Standard errors become the law's uncertainties; what the fit did not identify in its range of
+    speeds is kept with a note.
+
+    Parameters
+    ----------
+    fit
+        Of COF against speed.
+    source
+        Who measured it, and on what pair.
+    viscosity
+        Pa s; None leaves out the viscous part.
+
+    Errors
+    ------
+    InputError
+        A fit that the report's rule dropped (R^2 below 0.5): friction did not fall with speed.
+    """
+    from underfoot.friction import StribeckLaw
+
+    if fit.tau.value is None or fit.asymptote.value is None:
+        raise InputError(
+            f"Eq. 17 was dropped for {fluid} (R^2 {fit.r_squared:.2f}): COF is the mean of its "
+            "readings",
+            where="stribeck_fit",
+            remedy="Use SpeedTableLaw with the readings, or BoundaryLaw with their mean",
+        )
+
+    def sourced(one: FitParameter) -> SourcedValue:
+        return SourcedValue(
+            one.value,
+            one.unit,
+            source=source,
+            uncertainty=one.standard_error,
+            reason="" if one.standard_error is not None else "on the bound of the fit",
+            note=one.remark,
+        )
+
+    notes = [f"{p.name}: {p.remark}." for p in (fit.boundary, fit.tau, fit.asymptote) if p.remark]
+    return StribeckLaw(
+        sourced(fit.boundary),
+        sourced(fit.tau),
+        sourced(fit.asymptote),
+        viscosity,
+        assumed=tuple(notes),
+    )

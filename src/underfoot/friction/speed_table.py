@@ -1,0 +1,125 @@
+"""Friction from a table of a user's own readings: COF against sliding speed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from underfoot.core import Breach, InputError, Range
+
+from ._shared import checked, checked_viscosity, law_breaches, viscous_shear
+from .law import FrictionDeviation, FrictionParts
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SpeedTableLaw:
+    """tau = COF(V) p_c from a table, linear in the logarithm of the speed; plus eta V / h.
+
+    Beyond its lowest and highest speed the table keeps its end values, and says so.
+
+    Parameters
+    ----------
+    speed
+        (n,), m/s, rising, above 0.
+    cof
+        (n,), COF of the contact at these speeds, 1.
+    source
+        Where the readings come from.
+    cof_hysteresis
+        Friction left when adhesion is blocked, 1, at most COF; 0 counts all as adhesion.
+    viscosity
+        Pa s; None leaves out the viscous part (or when the readings hold it already).
+    cof_deviation
+        (n,) standard deviations; None when not known.
+    pressure
+        Lowest and highest contact pressure of the readings, Pa.
+
+    Errors
+    ------
+    InputError
+        Arrays that differ in length, speeds that do not rise, values that are negative or missing.
+    """
+
+    speed: NDArray[np.float64]
+    cof: NDArray[np.float64]
+    source: str
+    cof_hysteresis: float = 0.0
+    viscosity: float | None = None
+    cof_deviation: NDArray[np.float64] | None = None
+    pressure: tuple[float, float] | None = None
+    name: str = field(default="speed_table", init=False)
+    assumptions: tuple[str, ...] = field(
+        default=("Contact friction is proportional to the contact pressure.",), init=False
+    )
+
+    def __post_init__(self) -> None:
+        for label in ("speed", "cof", "cof_deviation"):
+            given = getattr(self, label)
+            if given is not None:
+                object.__setattr__(self, label, np.asarray(given, dtype=float))
+        speed, spread = self.speed, self.cof_deviation
+        if speed.ndim != 1 or speed.size < 2 or self.cof.shape != speed.shape:
+            raise InputError(
+                f"{self.cof.shape} values at {speed.shape} speeds",
+                where="cof",
+                allowed="one value at each of two or more speeds",
+            )
+        if not (np.isfinite(speed).all() and speed[0] > 0 and (np.diff(speed) > 0).all()):
+            raise InputError("the speeds do not rise", where="speed", allowed="above 0, rising")
+        if not (np.isfinite(self.cof).all() and (self.cof >= 0).all()):
+            raise InputError("a value is negative or missing", where="cof", allowed="0 or more")
+        if spread is not None and not (
+            spread.shape == speed.shape and np.isfinite(spread).all() and (spread >= 0).all()
+        ):
+            raise InputError(
+                "a value is negative or missing", where="cof_deviation", allowed="0 or more"
+            )
+        if not self.cof_hysteresis >= 0:
+            raise InputError(
+                f"{self.cof_hysteresis:g}", where="cof_hysteresis", allowed="0 or more"
+            )
+        if not self.source.strip():
+            raise InputError("no source", where="source", remedy="Say who measured it, and on what")
+        checked_viscosity(self.viscosity)
+
+    def __call__(
+        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+    ) -> FrictionParts:
+        """Return the shear stresses in Pa."""
+        pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
+        whole = self._at(velocity, self.cof)
+        floor = np.minimum(self.cof_hysteresis, whole)
+        return FrictionParts(
+            (whole - floor) * pressure,
+            floor * pressure,
+            viscous_shear(self.viscosity, velocity, film),
+        )
+
+    def deviation(
+        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+    ) -> FrictionDeviation | None:
+        """Return the standard deviations of the readings, Pa; the split has none of its own."""
+        if self.cof_deviation is None:
+            return None
+        pressure, velocity, _ = checked(contact_pressure, speed, film_thickness)
+        solid = self._at(velocity, self.cof_deviation) * pressure
+        return FrictionDeviation(solid, solid, np.zeros_like(solid))
+
+    def breaches(
+        self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+    ) -> list[Breach]:
+        """Return what leaves the speeds and, where given, the pressures of the readings."""
+        ranges = {
+            "sliding speed": Range(float(self.speed[0]), float(self.speed[-1]), "m/s", self.source)
+        }
+        if self.pressure is not None:
+            ranges["contact pressure"] = Range(*self.pressure, "Pa", self.source)
+        return law_breaches(
+            self.name, ranges, self.viscosity, contact_pressure, speed, film_thickness
+        )
+
+    def _at(self, speed: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
+        place = np.log(np.maximum(speed, self.speed[0]))
+        return np.interp(place, np.log(self.speed), values)
