@@ -176,7 +176,11 @@ def assembled(
         )
     control = np.zeros(names.CONTROL_SIZE)
     weight = density * block.nominal_area * block.size[2]
+    # The softer of the block and of its rough contact: with more drag a hard block only creeps.
     spring = 3.0 * g0 * block.nominal_area / block.size[2]
+    deepest = max(s.peak_to_valley for s in (block.roughness, floor))
+    if deepest > 0.0:
+        spring = min(spring, loading.mean_pressure * block.nominal_area / (0.5 * deepest))
     control[names.DT] = dt
     control[names.PLATE_MASS] = weight
     control[names.PLATE_DAMPING] = 1.4 * math.sqrt(2.0 * weight * spring)
