@@ -122,6 +122,7 @@ def test_wave_in_full_contact_has_the_exact_hysteresis():
     assert found.averages.cof_hysteresis == pytest.approx(exact, rel=0.01)
 
 
+@pytest.mark.slow
 def test_periodic_cell_agrees_with_the_half_space():
     # loss without slow terms, so that the march reaches the steady state
     shear = power_law_spectrum(0.4e6, 0.12, longest_time=1e-4, terms_per_decade=1)
@@ -165,6 +166,30 @@ def test_both_factorisations_give_one_symmetric_compliance(monkeypatch):
     assert max(fast.asymmetry, plain.asymmetry) < 1e-11
     assert np.abs(fast.unit_compliance - plain.unit_compliance).max() < 1e-11 * scale
     assert np.linalg.eigvalsh(plain.unit_compliance)[0] > 0.0
+
+
+@pytest.mark.slow
+def test_sideways_motion_lowers_the_swing_of_shear_and_makes_no_friction():
+    # explicit finite elements at this roughness: mean |shear| 15 % below the vertical block's
+    material = rubber(RelaxationSpectrum(0.59e6))
+    ratio = {}
+    for part in (0.1, 1.0):
+        block = MicroBlock(
+            elements=(14, 9, 6), roughness=MicroSurface.checkerboard(35.1e-6 * part, 0.5e-3)
+        )
+        floor = MicroSurface.checkerboard(35.1e-6 * part, 0.4e-3)
+        pressed = MicroLoading(slide_distance=0.4e-3, mean_pressure=160e3 * part)
+        found = [
+            condensed_sliding(condensed_block(block, 0.499, sideways=s), floor, material, pressed)
+            for s in (False, True)
+        ]
+        vertical, free = (result.averages for result in found)
+        assert vertical is not None
+        assert free is not None
+        assert abs(free.cof_hysteresis) < 1e-4
+        ratio[part] = free.cof_absolute / vertical.cof_absolute
+    assert ratio[0.1] == pytest.approx(1.0, abs=0.03)  # an effect of second order
+    assert 0.75 < ratio[1.0] < 0.9
 
 
 @pytest.mark.slow

@@ -39,6 +39,8 @@ class CondensedBlock:
     asymmetry
         Largest difference of the solved compliance from its transpose over its largest entry,
         before it was made symmetric: the error of the factorisation (reciprocity).
+    unit_vector_compliance
+        1/m, (3, n, 3, n): the same for displacement and force along x, y, z, or None.
     """
 
     block: MicroBlock
@@ -48,16 +50,19 @@ class CondensedBlock:
     grid: tuple[int, int]
     unit_compliance: np.ndarray
     asymmetry: float
+    unit_vector_compliance: np.ndarray | None = None
 
 
 def condensed_block(
-    block: MicroBlock, poisson_ratio: float, *, progress: Progress = silent
+    block: MicroBlock, poisson_ratio: float, *, sideways: bool = False, progress: Progress = silent
 ) -> CondensedBlock:
     """Return the block with the vertical compliance of its lower face.
 
     Small strains, isotropic, eight-node hexahedra with one mean volume strain each; forces act
     on the lower nodes vertically (no friction), the sides are free or periodic. One sparse
     Cholesky factorisation (PARDISO through pypardiso where it is installed, else SuperLU).
+    ``sideways`` keeps the lower nodes' motion along x and y too (three times the cost): sliding
+    then follows where each node goes and the direction of the floor's normal there.
 
     Errors
     ------
@@ -89,7 +94,9 @@ def condensed_block(
     plane = mesh.shape[0] * mesh.shape[1]
     stiffness, number = _assembled(same[corners], matrices, same[: top * plane])
     bottom = kept[kept < plane]
-    found = _inverse_block(stiffness, number[3 * bottom + 2], progress)
+    axes = (0, 1, 2) if sideways else (2,)
+    loaded = np.concatenate([number[3 * bottom + axis] for axis in axes])
+    found = _inverse_block(stiffness, loaded, progress)
     largest = float(np.abs(found).max())
     asymmetry = float(np.abs(found - found.T).max()) / largest
     if not asymmetry < 1e-6:
@@ -98,6 +105,8 @@ def condensed_block(
             where="condensed_block",
             remedy="Lower Poisson's ratio (0.499) or use less graded layers",
         )
+    found = 0.5 * (found + found.T)
+    count = bottom.size
     cut = 1 if block.sides == "periodic" else 0
     return CondensedBlock(
         block,
@@ -105,8 +114,9 @@ def condensed_block(
         mesh.nodes.T[bottom],
         mesh.lower_area[bottom],
         (mesh.shape[0] - cut, mesh.shape[1] - cut),
-        0.5 * (found + found.T),
+        found[-count:, -count:],
         asymmetry,
+        found.reshape(3, count, 3, count) if sideways else None,
     )
 
 

@@ -32,6 +32,8 @@ from .compliance import CondensedBlock, condensed_block
 
 PRESS_STEPS = 16
 HOLD_STEPS = 8
+SIDEWAYS_STEPS, SIDEWAYS_TOLERANCE, SIDEWAYS_LIMIT = 12, 1e-5, 3e-3
+"""Newton steps, change of displacement over roughness that ends them, and that marks a failure."""
 LEAST_LOSS_TANGENT = 1e-3
 """Below it hysteresis COF is less than 1e-4 on surfaces as rough as the report's."""
 
@@ -67,7 +69,8 @@ def condensed_sliding(
     Parameters
     ----------
     block
-        A block, or one condensed before (``condensed_block``) to use its compliance again.
+        A block, or one condensed before (``condensed_block``) to use its compliance again; with
+        its ``sideways`` motion, contact is where the nodes have gone and normal to the floor there.
     floor
         Heights of the rigid floor.
     material
@@ -183,12 +186,18 @@ class _March:
         self.fractions = material.shear.term_moduli / self.instantaneous
         self.rates = 1.0 / material.shear.relaxation_times
         count = condensed.areas.size
-        self.displacement = np.zeros(count)
-        self.memory = np.zeros((self.fractions.size, count))
+        vector = condensed.unit_vector_compliance
+        self.sideways = vector is not None
+        self.compliance = condensed.unit_compliance if vector is None else vector
+        axes = 3 if self.sideways else 1
+        self.displacement = np.zeros((axes, count))  # the last axis is z
+        self.memory = np.zeros((self.fractions.size, axes, count))
         self.active = np.zeros(count, dtype=bool)
         self.height = 0.0
         self.wrong = 0
-        self._coefficients: dict[float, tuple[PronyStep, np.ndarray]] = {}
+        self.unsettled = 0.0
+        self._coefficients: dict[float, tuple[PronyStep, float]] = {}
+        self._scaled: tuple[float, np.ndarray] | None = None
 
     def run(
         self, moments: list[Moment], loading: MicroLoading, started: float, progress: Progress
@@ -206,6 +215,9 @@ class _March:
         if self.wrong:
             status = Status.NOT_CONVERGED
             notes.append(f"{self.wrong} steps left nodes that press and gape at once")
+        if self.unsettled > SIDEWAYS_LIMIT:
+            status = Status.NOT_CONVERGED
+            notes.append(f"sideways motion settled to {self.unsettled:.1g} of the roughness only")
         if rows and rows[-1][2] == 0.0:
             notes.append("the faces do not touch at the end")
         table = np.array(rows).reshape(-1, 8)
@@ -232,20 +244,13 @@ class _March:
 
     def step(self, moment: Moment) -> tuple[float, ...]:
         """Advance to ``moment``; return forces, area, height and the number of solutions."""
-        coefficients, compliance = self._at_step(moment.step)
+        coefficients, modulus = self._at_step(moment.step)
         known: Any = known_displacement(self.memory, self.displacement, coefficients)
-        points = self.condensed.points
-        h, slope, across = self.floor.height_and_slope(points[:, 0] + moment.distance, points[:, 1])
-        clearance = points[:, 2] + known - h
-        contact: NodalContact
-        if moment.load is None:
-            contact = contact_at_height(compliance, clearance, self.height, self.active)
-        else:
-            contact = contact_under_load(compliance, clearance, moment.load, self.active)
+        solved = self._sideways if self.sideways else self._vertical
+        contact, new, slope, across = solved(moment, known, modulus)
         force = contact.force
         self.wrong += contact.wrong > 0
         self.active, self.height = force > 0.0, contact.height
-        new = known + compliance @ force
         advance_memory(self.memory, self.displacement, new, coefficients)
         self.displacement = new
         return (
@@ -257,14 +262,51 @@ class _March:
             float(contact.steps),
         )
 
-    def _at_step(self, step: float) -> tuple[PronyStep, np.ndarray]:
+    def _vertical(self, moment: Moment, known: np.ndarray, modulus: float):
+        """Return contact, displacement and the floor's slopes; nodes move up and down only."""
+        points = self.condensed.points
+        h, slope, across = self.floor.height_and_slope(points[:, 0] + moment.distance, points[:, 1])
+        if self._scaled is None or self._scaled[0] != modulus:
+            self._scaled = modulus, self.compliance / modulus
+        compliance = self._scaled[1]
+        contact = self._contact(compliance, points[:, 2] + known[0] - h, moment)
+        return contact, known + compliance @ contact.force, slope, across
+
+    def _sideways(self, moment: Moment, known: np.ndarray, modulus: float):
+        """Return the same with nodes that move sideways: Newton on place and normal."""
+        points, new = self.condensed.points, self.displacement
+        largest = float(np.ptp(points[:, 2]) + self.floor.peak_to_valley)
+        steps = 0
+        while True:
+            steps += 1
+            x, y = points[:, 0] + moment.distance + new[0], points[:, 1] + new[1]
+            h, slope, across = self.floor.height_and_slope(x, y)
+            normal = np.stack([-slope, -across, np.ones(slope.size)])
+            along = np.einsum("in,injm,jm->nm", normal, self.compliance, normal, optimize=True)
+            clearance = points[:, 2] - h + slope * new[0] + across * new[1]
+            clearance = clearance + (normal * known).sum(axis=0)
+            contact = self._contact(along / modulus, clearance, moment)
+            self.active = contact.force > 0.0
+            pushed = np.einsum("injm,jm->in", self.compliance, normal * contact.force)
+            before, new = new, known + pushed / modulus
+            change = float(np.abs(new - before).max())
+            if change <= SIDEWAYS_TOLERANCE * largest or steps == SIDEWAYS_STEPS:
+                self.unsettled = max(self.unsettled, change / largest if largest > 0.0 else 0.0)
+                return contact, new, slope, across
+
+    def _contact(
+        self, compliance: np.ndarray, clearance: np.ndarray, moment: Moment
+    ) -> NodalContact:
+        if moment.load is None:
+            return contact_at_height(compliance, clearance, self.height, self.active)
+        return contact_under_load(compliance, clearance, moment.load, self.active)
+
+    def _at_step(self, step: float) -> tuple[PronyStep, float]:
         key = float(f"{step:.9e}")
         if key not in self._coefficients:
-            if len(self._coefficients) > 4:  # each holds a matrix; the ramp's steps all differ
-                self._coefficients.clear()
             coefficients = prony_step(self.fractions, self.rates, step)
             modulus = self.instantaneous * coefficients.stiffening
-            self._coefficients[key] = coefficients, self.condensed.unit_compliance / modulus
+            self._coefficients[key] = coefficients, modulus
         return self._coefficients[key]
 
     def _loss_note(self, loading: MicroLoading) -> list[str]:
