@@ -1,4 +1,4 @@
-"""Friction laws with the report's numbers (Beschorner, final progress report R01OH008986)."""
+"""Friction laws with the report's numbers (final progress report on shoe-floor friction)."""
 
 import numpy as np
 import pytest

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from .quantity import Quantity, default
 
-_REPORT = "Beschorner, final progress report R01OH008986"
+_REPORT = "final progress report on shoe-floor friction"
 _HEEL = "assumption"
 _TESTER = f"{_REPORT}, G.4.1"
 _STRICT = ConfigDict(frozen=True, extra="forbid", ser_json_inf_nan="constants")

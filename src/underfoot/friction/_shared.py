@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 SMALLEST_FILM = 2e-7
 """m: the viscous part counts no film thinner than this; mean gaps of rough soles are micrometres
 (Rq of the report's soles 4 to 9 um), so the bound acts on no converged result of theirs."""
-REPORT = "Beschorner, final progress report R01OH008986"
+REPORT = "final progress report on shoe-floor friction"
 PIN_PRESSURE = 266.1e3
 """Pa: 20.9 N on a pin of 10 mm, the one load of the report's pin-on-disk studies (G.2.1, G.3.1)."""
 

@@ -80,8 +80,9 @@ def floor_sensor_reading(
 
     Notes
     -----
-    Quasi-static: the pocket does not change the film. Source of Eq. (27): Beschorner, final
-    progress report R01OH008986, G.4.1; the pocket model is assumed, not tested by measurement.
+    Quasi-static: the pocket does not change the film. Source of Eq. (27): final
+    progress report on shoe-floor friction, G.4.1; the pocket model is assumed, not tested by
+    measurement.
 
     Errors
     ------

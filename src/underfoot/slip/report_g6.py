@@ -14,7 +14,7 @@ from underfoot.core import Breach, InputError, Range, breaches
 from ._checks import available, deviation, required
 from ._logistic import logistic, normal_mean_of_logistic
 
-SOURCE = "Beschorner, final progress report R01OH008986, G.6.2 and G.6.3"
+SOURCE = "final progress report on shoe-floor friction, G.6.2 and G.6.3"
 SLOPE = -49.2
 FIFTY_PERCENT_AT = -0.06
 TESTED = Range(-0.111, 0.044, "1", f"{SOURCE}: predicted risks of 92.5 % and 0.6 %")

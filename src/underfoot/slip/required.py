@@ -9,7 +9,7 @@ from underfoot.core import RangeError
 from ._checks import deviation, required
 
 _SOURCE = (
-    "derived from Beschorner, final progress report R01OH008986, G.6: median ACOF - RCOF of "
+    "derived from final progress report on shoe-floor friction, G.6: median ACOF - RCOF of "
     "-0.033 (risk 21 %) at a mean ACOF of 0.167; extreme risks of 0.6 % and 92.5 %"
 )
 
