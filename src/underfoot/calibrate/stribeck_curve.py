@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 COUNT = 61
 REGIMES = {
     "boundary": "at least 90 % of the adhesion at rest is left",
-    "blocked in part": "10 to 90 % of it is left",
-    "adhesion blocked": "less than 10 % of it is left",
+    "part blocked": "10 to 90 % of it is left",
+    "blocked": "less than 10 % of it is left",
 }
 
 

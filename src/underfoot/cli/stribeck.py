@@ -119,12 +119,14 @@ def _show(curves: list[StribeckCurve], pressure: str, out: Path | None) -> None:
     console.print(f"COF at {pressure}, {curves[0].law} law", style="bold", markup=False)
     for curve in curves:
         console.print(f"\n{curve.label}, {display(curve.viscosity, 'Pa*s')}", markup=False)
-        table = Table(box=None, pad_edge=False)
+        table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0))
         for heading in (
-            "speed", "viscosity x speed", "COF", "adhesion", "hysteresis", "viscous", "regime",
-            "published",
+            "speed\nm/s", "viscosity\nx speed\nmPa m", "COF", "sd", "adhesion", "hysteresis",
+            "viscous", "regime",
         ):  # fmt: skip
-            table.add_column(heading, justify="right")
+            table.add_column(heading, justify="left" if heading == "regime" else "right")
+        if curve.points is not None:
+            table.add_column("published", justify="right")
         chosen = np.flatnonzero(np.isin(curve.speed, SPEEDS))
         if chosen.size < 5:
             chosen = np.unique(np.linspace(0, curve.speed.size - 1, 9).round().astype(int))
@@ -133,9 +135,10 @@ def _show(curves: list[StribeckCurve], pressure: str, out: Path | None) -> None:
             spread = row["cof_sd"]
             published = row["published_cof"]
             table.add_row(
-                display(row["speed_m_per_s"], "m/s"),
-                f"{1e3 * row['viscosity_times_speed_Pa_m']:.3g} mPa m",
-                f"{row['cof']:.3f}" + ("" if spread is None else f" ± {spread:.3f}"),
+                f"{row['speed_m_per_s']:.3g}",
+                f"{1e3 * row['viscosity_times_speed_Pa_m']:.3g}",
+                f"{row['cof']:.3f}",
+                "-" if spread is None else f"{spread:.3f}",
                 f"{row['adhesion']:.3f}",
                 f"{row['hysteresis']:.3f}",
                 f"{row['viscous']:.3f}",

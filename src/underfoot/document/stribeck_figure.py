@@ -31,6 +31,8 @@ class FluidCurve(Protocol):
     def deviation(self) -> np.ndarray | None: ...  # noqa: D102 - of COF, one standard deviation
     @property
     def points(self) -> tuple[np.ndarray, np.ndarray] | None: ...  # noqa: D102 - speed, COF
+    @property
+    def pair(self) -> str: ...  # noqa: D102 - on which the points were measured
 
 
 def stribeck_figure(curves: Sequence[FluidCurve], title: str = "") -> Figure:
@@ -73,11 +75,12 @@ def stribeck_figure(curves: Sequence[FluidCurve], title: str = "") -> Figure:
     axes[0].set_ylabel("COF")
     axes[0].set_ylim(bottom=0.0)
     notes = []
-    if any(curve.points is not None for curve in curves):
-        notes.append("points: published")
+    pairs = dict.fromkeys(curve.pair for curve in curves if curve.points is not None)
+    if pairs:
+        notes.append(f"points: published, {', '.join(pairs)}")
     if any(curve.deviation is not None for curve in curves):
         notes.append("bands: one standard deviation")
-    axes[1].legend(frameon=False, fontsize=8, title="; ".join(notes), title_fontsize=8)
+    axes[1].legend(frameon=False, fontsize=8, title="\n".join(notes), title_fontsize=8)
     small = np.atleast_1d(below.subplots(rows, columns, sharey=True, squeeze=False)).ravel()
     for index, (ax, curve) in enumerate(zip(small, curves, strict=False)):
         values = [curve.parts[name] for name in PART_COLOURS]
