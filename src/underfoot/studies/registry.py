@@ -21,19 +21,19 @@ STUDIES: tuple[Study, ...] = (
     Study(
         "g1",
         "Micro-model of shoe-floor friction: hysteresis and real contact area of a rough block",
-        "Beschorner, final progress report R01OH008986, G.1",
+        "final progress report on shoe-floor friction, G.1",
         "underfoot.studies.g1",
     ),
     Study(
         "g2",
         "Friction falling with speed under fluids: which mechanism predicts the others blind",
-        "Beschorner, final progress report R01OH008986, G.2",
+        "final progress report on shoe-floor friction, G.2",
         "underfoot.studies.g2",
     ),
     Study(
         "g3",
         "Adhesion left under fluids in boundary lubrication: Eq. 26 and its order of soles",
-        "Beschorner, final progress report R01OH008986, G.3",
+        "final progress report on shoe-floor friction, G.3",
         "underfoot.studies.g3",
     ),
 )
