@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 FLOOR_COLOURS = ("#7fb3d5", "#2e75b6", "#12355b")
 SHOE_STYLES = (("o", "-"), ("s", "--"))
 SERIES_NAMES = {"report": "Report's parameters", "broad": "Assumed broad spectrum"}
-NO_LOSS = 1e-4
+NO_LOSS = 1e-3
 
 
 class Row(Protocol):

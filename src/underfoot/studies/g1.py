@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, astuple, dataclass
 from typing import Any
 
 import numpy as np
@@ -158,6 +158,8 @@ def run(settings: G1Settings | None = None, *, progress: Progress = silent) -> G
                     result.real_contact_area,
                 )
             )
+    order = {astuple(case): number for number, case in enumerate(cases)}
+    rows.sort(key=lambda row: order[row.series, row.material, row.shoe_rz, row.floor_rz, row.speed])
     lines = [line for name in settings.series for line in printed_lines(rows, name)]
     return G1Study(
         settings,

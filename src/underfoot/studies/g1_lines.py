@@ -11,8 +11,9 @@ from underfoot.core.catalogue import Catalogue
 from .g1_cases import BROAD, FLOOR_RZ, MATERIALS, OWN_SHOE_RZ, G1Row, changes
 from .verdict import ComparedLine, Verdict, compared_range, compared_sign, percent_range
 
-LEAST_COF = 1e-4
-"""Hysteresis COF that sliding without loss gives by rounding and sampling; smaller is none."""
+LEAST_COF = 1e-3
+"""Smaller hysteresis COF is none: without loss the condensed block leaves 2e-5 by sampling, the
+explicit elements up to 9e-4 by inertia, ringing and mass scaling."""
 HYSTERESIS, AREA = "hysteresis COF", "contact area over force"
 ALONG = {"shoe_rz": "rougher shoe", "floor_rz": "rougher floor", "speed": "faster"}
 
