@@ -20,4 +20,5 @@ def write_outputs(result: Result, folder: Path) -> None:
     """
     result.write_files(folder)
     save_maps(result.fields, folder)
-    (folder / "report.html").write_text(result_page(result), encoding="utf-8")
+    page = result_page(result, (folder / "maps.png").read_bytes())
+    (folder / "report.html").write_text(page, encoding="utf-8")

@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     from underfoot.case.result import Result
 
 
-def result_page(result: Result) -> str:
-    """Return the page of one result as HTML text."""
+def result_page(result: Result, maps: bytes | None = None) -> str:
+    """Return the page of one result as HTML text; ``maps`` is the overview as PNG, if drawn."""
     template = environment().get_template("result.html")
     return template.render(
         result=result,
         verdict=verdict(result),
         rows=summary_rows(result),
-        maps=embedded_png(overview_figure(result.fields)),
-        history=embedded_png(history_figure(result)) if "time" in result.fields.dims else None,
+        maps=embedded(maps or png(overview_figure(result.fields))),
+        history=embedded(png(history_figure(result))) if "time" in result.fields.dims else None,
         provenance=result.provenance.as_dict(),
     )
 
@@ -51,11 +51,16 @@ def history_figure(result: Result) -> Figure:
     return figure
 
 
-def embedded_png(figure: Figure, dpi: int = 130) -> str:
-    """Return a figure as a data address for an ``img`` element."""
+def png(figure: Figure, dpi: int = 130) -> bytes:
+    """Return a figure as a PNG file."""
     buffer = io.BytesIO()
     figure.savefig(buffer, dpi=dpi, format="png")
-    return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")
+    return buffer.getvalue()
+
+
+def embedded(picture: bytes) -> str:
+    """Return a PNG file as a data address for an ``img`` element."""
+    return "data:image/png;base64," + base64.b64encode(picture).decode("ascii")
 
 
 def environment() -> Environment:
