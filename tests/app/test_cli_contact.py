@@ -47,7 +47,11 @@ def test_table_and_files(tmp_path):
     assert found.exit_code == 0, found.output
     assert "Real contact fraction" in found.output
     assert "0.3 m/s" in found.output
-    assert {path.name for path in out.iterdir()} == {"contact.json", "contact.npz", "contact.png"}
+    assert {path.name for path in out.glob("[!.]*")} == {
+        "contact.json",
+        "contact.npz",
+        "contact.png",
+    }
     assert (out / "contact.png").read_bytes().startswith(b"\x89PNG")
     content = json.loads((out / "contact.json").read_text(encoding="utf-8"))
     assert content["cof_hysteresis"] > 1e-3
@@ -148,4 +152,4 @@ def test_what_did_not_converge_is_no_number(monkeypatch, tmp_path):
     content = json.loads(found.stdout)
     assert content["real_contact_fraction"] is None
     assert content["status"] == "not converged"
-    assert [path.name for path in out.iterdir()] == ["contact.json"]
+    assert [path.name for path in out.glob("[!.]*")] == ["contact.json"]

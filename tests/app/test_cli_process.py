@@ -135,6 +135,7 @@ def test_a_bad_case_ends_with_its_exit_code_and_no_files(tmp_path):
 
 def test_ctrl_c_in_the_middle_ends_with_130_and_leaves_nothing(tmp_path):
     (tmp_path / "kept").mkdir()
+    (tmp_path / "kept" / ".underfoot").write_text("earlier results")
     (tmp_path / "kept" / "old.txt").write_text("mine")
     process = subprocess.Popen(
         [*COMMAND, "run", str(WET), "--out", "kept", "--overwrite", "--set",
@@ -155,7 +156,8 @@ def test_ctrl_c_in_the_middle_ends_with_130_and_leaves_nothing(tmp_path):
     assert "Traceback" not in err
     assert out == ""
     assert [path.name for path in tmp_path.iterdir()] == ["kept"]
-    assert [path.name for path in (tmp_path / "kept").iterdir()] == ["old.txt"]
+    names = sorted(path.name for path in (tmp_path / "kept").iterdir())
+    assert names == [".underfoot", "old.txt"]
 
 
 def test_a_closed_pipe_is_no_error(tmp_path):

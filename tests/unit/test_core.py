@@ -102,5 +102,28 @@ def test_a_folder_is_whole_or_absent(tmp_path):
     assert (target / "a").read_text() == "1"
     with whole_folder(target, overwrite=True) as folder:
         (folder / "b").write_text("2")
-    assert [path.name for path in target.iterdir()] == ["b"]
+    assert sorted(path.name for path in target.iterdir()) == [".underfoot", "b"]
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+def test_a_folder_of_others_is_never_replaced(tmp_path):
+    target = tmp_path / "mine"
+    target.mkdir()
+    (target / "keep.txt").write_text("keep")
+    with pytest.raises(InputError, match="not made by underfoot and holds keep"):
+        with_content(target)
+    assert (target / "keep.txt").read_text() == "keep"
+
+
+def with_content(target):
+    with whole_folder(target, overwrite=True) as folder:
+        (folder / "a").write_text("1")
+
+
+def test_a_link_to_a_folder_is_followed(tmp_path):
+    real, link = tmp_path / "real", tmp_path / "link"
+    with_content(real)
+    link.symlink_to(real)
+    with_content(link)
+    assert link.is_symlink()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["link", "real"]

@@ -19,7 +19,7 @@ from underfoot.core import (
 from . import build
 from .describe import assumptions
 from .result import Result
-from .scalars import regime, scalars
+from .scalars import regime, scalars, undetermined
 
 if TYPE_CHECKING:
     import xarray
@@ -106,13 +106,18 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
         scan_spacing=case.sensor.scan_spacing,
         scans=case.sensor.scans,
     )
-    numbers, risk = scalars(case, contact, friction, sensor)
+    usable = contact.status.usable
+    numbers, risk = (
+        scalars(case, contact, friction, sensor)
+        if usable
+        else (undetermined(case, contact.status), None)
+    )
     found = [
         *found,
         *sole.breaches,
         *asperities.breaches(pressure=contact.contact_pressure.max(), speed=motion.speed),
         *law.breaches(**local),
-        *risk.breaches,
+        *(risk.breaches if risk else ()),
     ]
     status = contact.status
     if status is Status.CONVERGED and found:
@@ -120,16 +125,20 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
     return Result(
         name=case.name,
         scalars=numbers,
-        labels=regime(contact),
+        labels=regime(contact) if usable else {},
         fields=_fields(
             sole, contact, sensor, parts.total - np.where(contact.wet, 0.0, parts.viscous)
         ),
         status=status,
         breaches=_words(found),
-        assumptions=tuple(dict.fromkeys((*assumptions(case), *law.assumptions, *risk.assumptions))),
+        assumptions=tuple(
+            dict.fromkeys(
+                (*assumptions(case), *law.assumptions, *(risk.assumptions if risk else ()))
+            )
+        ),
         provenance=Provenance.now(
             case.hash,
-            closures=_closures(case, law.name, asperities.name, modulus, risk.model, spacing),
+            closures=_closures(case, law.name, asperities.name, modulus, case.risk.model, spacing),
             citations=tuple(
                 dict.fromkeys((law.source, asperities.source, modulus.source, _source(numbers)))
             ),

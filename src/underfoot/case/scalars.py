@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from underfoot.core import SourcedValue
+from underfoot.core import SourcedValue, Status
 
 if TYPE_CHECKING:
     from underfoot.friction import FrictionCoefficients
@@ -70,6 +70,21 @@ def scalars(
         "slip_probability": replace(risk.probability, assumed=assumed),
     }
     return numbers, risk
+
+
+def undetermined(case: Case, status: Status) -> dict[str, SourcedValue]:
+    """Return the same names without numbers: what a computation that failed may show."""
+    units = {
+        "fluid_load": "N",
+        "fluid_load_sensor": "N",
+        "peak_fluid_pressure": "Pa",
+        "peak_fluid_pressure_sensor": "Pa",
+        "contact_area": "m^2",
+        "minimum_film_thickness": "m",
+    }
+    names = ("cof", "cof_adhesion", "cof_hysteresis", "cof_viscous", *units, "slip_probability")
+    found = {name: SourcedValue(None, units.get(name, "1"), reason=str(status)) for name in names}
+    return {**found, "normal_force": case.sourced("motion.normal_force")}
 
 
 def regime(contact: SoleContact) -> dict[str, str]:

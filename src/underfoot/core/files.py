@@ -10,6 +10,10 @@ from pathlib import Path
 
 from .errors import InputError
 
+MARKER = ".underfoot"
+"""File that says a folder may be replaced."""
+_OWN = (MARKER, "result.json", ".files", "restart.npz")
+
 
 @contextmanager
 def whole_folder(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
@@ -18,17 +22,22 @@ def whole_folder(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
     An existing, non-empty ``path`` is refused unless ``overwrite``; then it is replaced as a
     whole, and kept as it was if the block fails.
     """
-    path = Path(path)
+    path = Path(path).resolve()
     check_writable_folder(path, overwrite=overwrite)
     path.parent.mkdir(parents=True, exist_ok=True)
     staging = Path(tempfile.mkdtemp(prefix=f".{path.name}-", dir=path.parent))
     staging.chmod(0o755)
     try:
         yield staging
+        (staging / MARKER).write_text("made by underfoot; --overwrite may replace this folder\n")
         if path.exists():
             aside = staging.with_name(staging.name + "-old")
             path.rename(aside)
-            staging.rename(path)
+            try:
+                staging.rename(path)
+            except BaseException:
+                aside.rename(path)
+                raise
             shutil.rmtree(aside)
         else:
             staging.rename(path)
@@ -46,4 +55,13 @@ def check_writable_folder(path: Path, *, overwrite: bool = False) -> None:
             f"the folder {path} exists and is not empty",
             where="--out",
             remedy="Choose another folder, or add --overwrite to replace it as a whole",
+        )
+    if path.is_dir() and any(path.iterdir()) and not any((path / own).exists() for own in _OWN):
+        names = sorted(entry.name for entry in path.iterdir())
+        raise InputError(
+            f"the folder {path} was not made by underfoot and holds {', '.join(names[:3])}"
+            + (" and more" if len(names) > 3 else ""),
+            where="--out",
+            allowed="with --overwrite: a folder of earlier results",
+            remedy="Choose another folder, or empty this one yourself",
         )

@@ -9,6 +9,7 @@ from __future__ import annotations
 import base64
 import io
 import math
+import re
 from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -207,3 +208,10 @@ def _svg(figure: Figure, path: Path) -> None:
     figure.set_layout_engine("none")
     with mpl.rc_context({"svg.hashsalt": "underfoot"}):
         figure.savefig(path, format="svg", metadata={"Date": None, "Creator": None})
+    # matplotlib names clip paths after memory addresses; in order of appearance they repeat
+    text = path.read_text(encoding="utf-8")
+    seen: dict[str, str] = {}
+    text = re.sub(
+        r"\bp[0-9a-f]{10}\b", lambda found: seen.setdefault(found[0], f"clip{len(seen)}"), text
+    )
+    path.write_text(text, encoding="utf-8")
