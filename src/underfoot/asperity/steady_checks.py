@@ -65,7 +65,7 @@ def checked_contact_input(
             f"the first at {first}",
             where="height",
             allowed="a finite height at every node",
-            remedy="Fill or cut them away first (surface.fill_missing)",
+            remedy="Fill or cut them away first (underfoot.surface.filled)",
         )
     steps: Any = (spacing, spacing) if np.ndim(spacing) == 0 else spacing
     if len(steps) != 2:

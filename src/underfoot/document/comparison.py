@@ -49,6 +49,8 @@ def _order(first: Result, second: Result) -> str:
     for result in (first, second):
         if not result.status.usable:
             return f"No comparison: {result.name} is {result.status}. {result.status.remedy}"
+    if first.provenance.case_hash == second.provenance.case_hash:
+        return "Both are the same case; what differs is the grid."
     a, b = first.scalars["cof"], second.scalars["cof"]
     difference = second.value("cof") - first.value("cof")
     better = second.name if difference > 0 else first.name
@@ -59,4 +61,5 @@ def _order(first: Result, second: Result) -> str:
     if spread == 0.0:
         return text + "."
     chance = 0.5 * (1.0 + erf(abs(difference) / spread / sqrt(2.0)))
-    return text + f" (chance that the order is right: {100.0 * chance:.0f} %)."
+    shown = "above 99 %" if chance > 0.99 else f"{100.0 * chance:.0f} %"
+    return text + f" (chance that the order is right, by the friction law's spread: {shown})."

@@ -138,6 +138,9 @@ def _lead(analysis: FolderAnalysis) -> str:
         text = f"{slips} slips in {len(judged)} trials"
         if judged:
             text += f" ({100 * slips / len(judged):.0f} %)"
+        doubtful = sum(one.verdict == "caution" for one in usable if "slip" in one.main)
+        if doubtful:
+            text += f", {doubtful} of them with a caution (read the reasons)"
         if rcof:
             text += f"; required friction {min(rcof):.2f} to {max(rcof):.2f}"
         return text + "."

@@ -92,7 +92,7 @@ def check_heights(heights: np.ndarray) -> None:
             f"the first at {first}",
             where="heights",
             allowed="a finite height at every point",
-            remedy="Fill them (fill_missing) or cut them away; the result then says so",
+            remedy="Fill them (underfoot.surface.filled) or cut them away; the result then says so",
         )
 
 
