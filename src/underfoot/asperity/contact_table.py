@@ -226,8 +226,9 @@ class ContactTable:
 
     def save(self, path: str | Path) -> None:
         """Write the table as one compressed NumPy archive (.npz)."""
+        arrays: dict[str, Any] = dict(self._arrays())
         with Path(path).open("wb") as stream:
-            np.savez_compressed(stream, **self._arrays())  # type: ignore[arg-type]  # arrays only
+            np.savez_compressed(stream, **arrays)
 
     @classmethod
     def load(cls, path: str | Path) -> ContactTable:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from underfoot.core import InputError
 
 if TYPE_CHECKING:
-    from underfoot.core.catalogue import Catalogue
+    from underfoot.core.catalogue import Catalogue, Entry
     from underfoot.friction import BoundaryFriction
 
 SPEEDS = np.array([0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0])
@@ -61,8 +61,8 @@ def pin_on_disk(catalogue: Catalogue) -> Pin:
     floor = catalogue.entry("floor", "vinyl_g2")
     method = catalogue.entry("setup", "pin_on_disk_g2")
 
-    def number(entry: object, path: str, unit: str) -> float:
-        value = entry.sourced(path, unit).value  # type: ignore[attr-defined]  # an Entry
+    def number(entry: Entry, path: str, unit: str) -> float:
+        value = entry.sourced(path, unit).value
         assert value is not None  # entries of the package hold numbers
         return float(value)
 

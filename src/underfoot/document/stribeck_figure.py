@@ -20,19 +20,39 @@ class FluidCurve(Protocol):
     """COF of one fluid over speed (m/s), in its parts, with what was measured."""
 
     @property
-    def label(self) -> str: ...  # noqa: D102 - named by the class
+    def label(self) -> str:
+        """Name of the fluid."""
+        ...
+
     @property
-    def viscosity(self) -> float: ...  # noqa: D102 - Pa s
+    def viscosity(self) -> float:
+        """Pa s."""
+        ...
+
     @property
-    def speed(self) -> np.ndarray: ...  # noqa: D102 - m/s
+    def speed(self) -> np.ndarray:
+        """m/s."""
+        ...
+
     @property
-    def parts(self) -> dict[str, np.ndarray]: ...  # noqa: D102 - adhesion, hysteresis, viscous
+    def parts(self) -> dict[str, np.ndarray]:
+        """Adhesion, hysteresis and viscous part of COF."""
+        ...
+
     @property
-    def deviation(self) -> np.ndarray | None: ...  # noqa: D102 - of COF, one standard deviation
+    def deviation(self) -> np.ndarray | None:
+        """One standard deviation of COF, if known."""
+        ...
+
     @property
-    def points(self) -> tuple[np.ndarray, np.ndarray] | None: ...  # noqa: D102 - speed, COF
+    def points(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Measured speeds and COF, if any."""
+        ...
+
     @property
-    def pair(self) -> str: ...  # noqa: D102 - on which the points were measured
+    def pair(self) -> str:
+        """Sole and floor the points were measured on."""
+        ...
 
 
 def stribeck_figure(curves: Sequence[FluidCurve], title: str = "") -> Figure:

@@ -104,8 +104,8 @@ class AsperityEHL:
         moving, load = np.broadcast_arrays(np.abs(np.asarray(speed, dtype=float)), load)
         _, least = soft_ehl_film(
             viscosity=viscosity,
-            entrainment_speed=0.5 * moving,  # type: ignore[arg-type]  # works on arrays alike
-            load=load,  # type: ignore[arg-type]
+            entrainment_speed=0.5 * moving,
+            load=load,
             radius=radius,
             effective_modulus=2 * stiffness,
         )

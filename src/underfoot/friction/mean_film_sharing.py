@@ -86,7 +86,7 @@ class MeanFilmSharing:
         moving = np.abs(np.asarray(speed, dtype=float))
         _, least = soft_ehl_film(
             viscosity=viscosity,
-            entrainment_speed=self.entrainment * moving,  # type: ignore[arg-type]  # arrays alike
+            entrainment_speed=self.entrainment * moving,
             load=self.normal_force,
             radius=self.radius,
             effective_modulus=self.effective_modulus,

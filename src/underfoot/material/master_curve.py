@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -62,14 +62,14 @@ class DynamicMasterCurve:
     temperature: np.ndarray
     shifts: ShiftTable
 
-    def spectrum(self, **settings: object) -> SpectrumFit:
+    def spectrum(self, **settings: Any) -> SpectrumFit:
         """Return ``fit_dynamic`` of the master curve."""
         name = f"DMA master curve at {self.shifts.reference_temperature:.2f} K"
         return fit_dynamic(
             self.angular_frequency,
             self.storage_modulus,
             self.loss_modulus,
-            **{"source": name, **settings},  # type: ignore[arg-type]  # passed on unchanged
+            **{"source": name, **settings},
         )
 
 
@@ -82,13 +82,13 @@ class RelaxationMasterCurve:
     temperature: np.ndarray
     shifts: ShiftTable
 
-    def spectrum(self, **settings: object) -> SpectrumFit:
+    def spectrum(self, **settings: Any) -> SpectrumFit:
         """Return ``fit_relaxation`` of the master curve."""
         name = f"relaxation master curve at {self.shifts.reference_temperature:.2f} K"
         return fit_relaxation(
             self.time,
             self.modulus,
-            **{"source": name, **settings},  # type: ignore[arg-type]  # passed on unchanged
+            **{"source": name, **settings},
         )
 
 

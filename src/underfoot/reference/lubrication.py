@@ -7,6 +7,7 @@ other. SI throughout.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -177,12 +178,12 @@ def squeeze_disc_gap(
 def soft_ehl_film(
     *,
     viscosity: float,
-    entrainment_speed: float,
-    load: float,
+    entrainment_speed: Array | float,
+    load: Array | float,
     radius: float,
     effective_modulus: float,
     ellipticity: float = 1.0,
-) -> tuple[float, float]:
+) -> tuple[Any, Any]:
     """Return the central and the minimum film (m) of a soft (isoviscous-elastic) point contact.
 
     H_c = 7.32 (1 - 0.72 exp(-0.28 k)) U^0.64 W^-0.22
