@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 from .geometry import SoleMap
 from .heel import Heel
 from .heel_grid import heel_map
+from .heel_surface import heel_surface
 from .profile import Facet, Flat, Profile, Rocker
 from .reading import SensorReading, floor_sensor_reading
+from .sole_surface import SoleSurface, surface_map
 from .tread import ArcChannel, Tread
 from .wear import WearPlane
 
@@ -45,14 +47,17 @@ __all__ = [
     "SensorReading",
     "SoleContact",
     "SoleMap",
+    "SoleSurface",
     "SolverSettings",
     "Tread",
     "WearPlane",
     "floor_sensor_reading",
     "half_space_compliance",
     "heel_map",
+    "heel_surface",
     "layered_compliance",
     "solve_sliding",
+    "surface_map",
 ]
 
 

@@ -68,11 +68,12 @@ def heel_map(heel: Heel, *, shoe_angle: float, spacing: float, padding: float = 
     else:
         x = _solved(along, target, y_map, -2 * margin * spacing - heel.length, 3 * heel.length)
     inside = heel.inward_distance(x, y_map) > 0
-    height, land, tread_depth = _with_channels(heel, x, y_map)
+    height, land, tread_depth = cut_heel(heel, x, y_map)
     land &= inside
     clearance = np.where(inside, x * sine + height * cosine, np.inf)
     if inside.any():
         clearance -= clearance.min()
+    rim = plan_outline(heel)
     return SoleMap(
         x=x_floor,
         y=y,
@@ -81,7 +82,7 @@ def heel_map(heel: Heel, *, shoe_angle: float, spacing: float, padding: float = 
         land=land,
         tread_depth=np.where(land, tread_depth, 0.0),
         spacing=float(spacing),
-        outline=_outline(heel, along, rear),
+        outline=np.column_stack([along(rim[:, 0], rim[:, 1]) - rear, rim[:, 1]]),
         breaches=tuple(found),
     )
 
@@ -99,7 +100,7 @@ def _solved(
     return 0.5 * (below + above)
 
 
-def _with_channels(heel: Heel, x: Array, y: Array) -> tuple[Array, NDArray[np.bool_], Array]:
+def cut_heel(heel: Heel, x: Array, y: Array) -> tuple[Array, NDArray[np.bool_], Array]:
     """Return height over the sole plane, land and lug height, all in the frame of the sole."""
     unworn = heel.unworn_height(x, y)
     base = heel.land_height(x, y)
@@ -163,10 +164,8 @@ def _resolution(heel: Heel, spacing: float) -> list[Breach]:
     return found
 
 
-def _outline(
-    heel: Heel, along: Callable[[Array, Array], Array], rear: float, nodes: int = 24
-) -> Array:
-    """Return the closed polygon of the plan form, projected on the floor."""
+def plan_outline(heel: Heel, nodes: int = 24) -> Array:
+    """Return the closed polygon (n, 2) of the plan form in its own plane, m; anticlockwise."""
     half = heel.width / 2
     corners = (  # centre of the corner's circle, its radius, first angle; anticlockwise
         (heel.length - heel.front_radius, half - heel.front_radius, heel.front_radius, 0.0),
@@ -179,5 +178,4 @@ def _outline(
         angle = math.pi * (first + np.linspace(0.0, 0.5, nodes if radius > 0 else 1))
         points.append(np.column_stack([x + radius * np.cos(angle), y + radius * np.sin(angle)]))
     rim = np.concatenate(points)
-    rim = np.column_stack([along(rim[:, 0], rim[:, 1]) - rear, rim[:, 1]])
     return np.concatenate([rim, rim[:1]])
