@@ -21,8 +21,8 @@ def heel_surface(heel: Heel, *, spacing: float) -> SoleSurface:
     positive(spacing, "spacing")
     count_x = math.ceil(heel.length / spacing - 1e-9)
     count_y = math.ceil(heel.width / spacing - 1e-9)
-    x = (np.arange(count_x) + 0.5) * spacing
-    y = (np.arange(count_y) - (count_y - 1) / 2) * spacing
+    x = (np.arange(count_x, dtype=np.float64) + 0.5) * spacing
+    y = (np.arange(count_y, dtype=np.float64) - (count_y - 1) / 2) * spacing
     grid_x, grid_y = np.meshgrid(x, y, indexing="ij")
     inside = heel.inward_distance(grid_x, grid_y) > 0
     height, land, tread_depth = cut_heel(heel, grid_x, grid_y)

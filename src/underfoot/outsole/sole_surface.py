@@ -166,8 +166,8 @@ def surface_map(
     count_x = math.ceil(float(outline[:, 0].max()) / spacing - 1e-9) + 2 * margin
     low, high = float(outline[:, 1].min()), float(outline[:, 1].max())
     count_y = math.ceil((high - low) / spacing - 1e-9) + 2 * margin
-    x = (np.arange(count_x) + 0.5 - margin) * spacing
-    y = (low + high) / 2 + (np.arange(count_y) - (count_y - 1) / 2) * spacing
+    x = (np.arange(count_x, dtype=np.float64) + 0.5 - margin) * spacing
+    y = (low + high) / 2 + (np.arange(count_y, dtype=np.float64) - (count_y - 1) / 2) * spacing
     clearance, origin = tilted_rows(
         (surface.x, surface.y), base, inside, (x + rear, y), cosine, sine
     )
