@@ -22,16 +22,21 @@ if TYPE_CHECKING:
         half_space_compliance,
         layered_compliance,
     )
-    from .solver import SoleContact, SolverSettings, solve_sliding
+    from .sole_state import SoleState, SolverSettings
+    from .solver import SoleContact, solve_sliding
+    from .stepping import SlidingSole, rolled_clearance
 
 # the solver loads sparse linear algebra, which geometry and reading do not need
 _LATER = {
     "Compliance": "compliance",
     "ConvolutionCompliance": "compliance",
+    "SlidingSole": "stepping",
     "SoleContact": "solver",
-    "SolverSettings": "solver",
+    "SoleState": "sole_state",
+    "SolverSettings": "sole_state",
     "half_space_compliance": "compliance",
     "layered_compliance": "compliance",
+    "rolled_clearance": "stepping",
     "solve_sliding": "solver",
 }
 
@@ -45,8 +50,10 @@ __all__ = [
     "Profile",
     "Rocker",
     "SensorReading",
+    "SlidingSole",
     "SoleContact",
     "SoleMap",
+    "SoleState",
     "SoleSurface",
     "SolverSettings",
     "Tread",
@@ -56,6 +63,7 @@ __all__ = [
     "heel_map",
     "heel_surface",
     "layered_compliance",
+    "rolled_clearance",
     "solve_sliding",
     "surface_map",
 ]

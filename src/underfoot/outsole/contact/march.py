@@ -1,16 +1,13 @@
-"""Implicit time stepping of the contact: the load rises, the sole slides, the film drains."""
+"""One accepted time step of the contact after the other: the wet cells follow, failures shorten."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from functools import partial
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
-
-from underfoot.core import Progress
 
 from .newton import Cells, Problem, State, implicit_step
 from .preconditioner import PoleFit
@@ -20,6 +17,7 @@ Mask = NDArray[np.bool_]
 EASY = 7  # Newton steps below which the time step grows
 GROWTH = 1.5
 CUT = 2.5
+SHORTEST = 1e-4  # of the first step, below which the march gives up
 LETS_GO = 1.05  # times the pool depth; without it a cell at the brink flips at every step
 MARGIN = 3  # cells around the pool that may come into contact within a step
 
@@ -33,6 +31,12 @@ class History:
     fluid_load: list[float] = field(default_factory=list)
     approach: list[float] = field(default_factory=list)
     residual: list[float] = field(default_factory=list)
+    speed: list[float] = field(default_factory=list)
+    shoe_angle: list[float] = field(default_factory=list)
+
+    def shortened(self, length: int) -> History:
+        """Return the first ``length`` entries."""
+        return History(*(getattr(self, name)[:length] for name in self.__slots__))
 
 
 @dataclass(slots=True)
@@ -46,81 +50,78 @@ class Counts:
     cells: int = 0
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """What holds at the end of a step: load N, floor speed m/s and clearance of the sole m."""
+
+    load: float
+    wall_speed: float
+    clearance: Array
+
+
 class March:
-    """End of a run."""
+    """The state in time. ``step`` is the length (s) that the next step tries."""
 
-    state: State
-    film: Mask
-    time: float
-    finished: bool
-    history: History
-    counts: Counts
-    residuals: list[float]
+    def __init__(
+        self, problem: Problem, fit: PoleFit, start: State, *, pool_depth: float, first_step: float
+    ) -> None:
+        self.problem = problem
+        self.state = start
+        self.film: Mask = _film_mask(problem, start.gap, pool_depth, None)
+        self.step = first_step
+        self.counts = Counts()
+        self.residuals: list[float] = []
+        self._fit = fit
+        self._pool_depth = pool_depth
+        self._shortest = first_step * SHORTEST
+        self._cells: Cells | None = None
 
+    def advance(
+        self, most: float, demand_after: Callable[[float], Demand], tick: Callable[[float], None]
+    ) -> float:
+        """Take one step of at most ``most`` seconds; return what it took, 0 where none holds.
 
-def march(
-    problem: Problem,
-    fit: PoleFit,
-    start: State,
-    *,
-    load_at: Callable[[float], float],
-    first_step: float,
-    longest_step: Callable[[float], float],
-    end_time: float,
-    pool_depth: float,
-    settled: Callable[[State, State, float, float], bool] | None,
-    fraction: Callable[[float], float],
-    most_steps: int,
-    progress: Progress,
-    stage: str,
-) -> March:
-    """Return the state at ``end_time``, or earlier when ``settled`` says that nothing moves."""
-    state, time, step = start, 0.0, first_step
-    shortest = first_step * 1e-4
-    cells: Cells | None = None
-    counts, history = Counts(), History()
-    residuals: list[float] = []
-    area = problem.spacing**2
-    film = _film_mask(problem, state.gap, pool_depth, None)
-    while counts.time_steps + counts.rejected < most_steps and time < end_time * (1 - 1e-12):
-        step = min(step, longest_step(time), end_time - time)
-        film = _film_mask(problem, state.gap, pool_depth, film)
-        cells = _cells(problem, fit, cells, film)
-        counts.cells = max(counts.cells, cells.pattern.size)
-        target = time + step
-
-        attempt = implicit_step(
-            problem,
-            cells,
-            state,
-            load=load_at(target),
-            duration=step,
-            film=film,
-            tick=partial(progress, stage, fraction(target)),
-        )
-        counts.newton += attempt.newton
-        counts.krylov += attempt.krylov
-        residuals = attempt.residuals
-        if attempt.state is None or _escaped(problem, cells, attempt.state.gap):
-            counts.rejected += 1
-            step /= CUT
-            if step < shortest:
-                return March(state, film, time, False, history, counts, residuals)
-            continue
-        previous, state, time = state, attempt.state, target
-        counts.time_steps += 1
-        history.time.append(time)
-        history.load.append(load_at(time))
-        history.fluid_load.append(float(state.fluid.sum()) * area)
-        history.approach.append(state.approach)
-        history.residual.append(residuals[-1])
-        if settled is not None and settled(previous, state, step, time):
-            return March(state, film, time, True, history, counts, residuals)
-        if attempt.newton < EASY:
-            step *= GROWTH
-    finished = time >= end_time * (1 - 1e-12) and settled is None
-    return March(state, film, time, finished, history, counts, residuals)
+        ``demand_after`` gives what holds after so many seconds; ``tick`` receives the residual of
+        each Newton step.
+        """
+        limited = self.step > most
+        duration = min(self.step, most)
+        while True:
+            demand = demand_after(duration)
+            problem = replace(
+                self.problem, clearance=demand.clearance, wall_speed=demand.wall_speed
+            )
+            # the film follows a sole that rolls: where it will be, not where it was
+            gap = self.state.gap
+            if demand.clearance is not self.problem.clearance:
+                gap = gap + (demand.clearance - self.problem.clearance)
+            film = _film_mask(problem, gap, self._pool_depth, self.film)
+            self._cells = _cells(problem, self._fit, self._cells, film)
+            self.counts.cells = max(self.counts.cells, self._cells.pattern.size)
+            attempt = implicit_step(
+                problem,
+                self._cells,
+                self.state,
+                load=demand.load,
+                duration=duration,
+                film=film,
+                tick=tick,
+            )
+            self.counts.newton += attempt.newton
+            self.counts.krylov += attempt.krylov
+            self.residuals = attempt.residuals
+            if attempt.state is not None and not _escaped(problem, self._cells, attempt.state.gap):
+                self.problem, self.state, self.film = problem, attempt.state, film
+                self.counts.time_steps += 1
+                grown = duration * GROWTH if attempt.newton < EASY else duration
+                # a step cut short by the end of a stage says nothing against longer ones
+                self.step = max(grown, self.step) if limited else grown
+                return duration
+            self.counts.rejected += 1
+            duration /= CUT
+            limited = False
+            if duration < self._shortest:
+                return 0.0
 
 
 def _film_mask(problem: Problem, gap: Array, pool_depth: float, before: Mask | None) -> Mask:
