@@ -18,6 +18,7 @@ from .micro import micro
 from .new import new
 from .run import run
 from .schema import schema
+from .sensitivity import sensitivity
 from .stribeck import stribeck
 from .studies import studies_app
 from .trials import trials_app
@@ -38,7 +39,19 @@ def _add(*commands: Callable[..., None]) -> None:
 
 
 _add(
-    new, check, run, compare, stribeck, contact, micro, explain, catalogue, schema, validate, doctor
+    new,
+    check,
+    run,
+    compare,
+    sensitivity,
+    stribeck,
+    contact,
+    micro,
+    explain,
+    catalogue,
+    schema,
+    validate,
+    doctor,
 )
 app.add_typer(trials_app)
 app.add_typer(studies_app)

@@ -1,0 +1,1 @@
+"""Questions answered by running a case several times."""
