@@ -5,7 +5,13 @@ import pytest
 
 from underfoot.calibrate import stribeck_law_from_fit
 from underfoot.core import InputError
-from underfoot.friction import FrictionLaw, SpeedTableLaw, StribeckLaw, stribeck_cof
+from underfoot.friction import (
+    FrictionLaw,
+    SpeedTableLaw,
+    StribeckLaw,
+    sampled_cof,
+    stribeck_cof,
+)
 from underfoot.trials.stribeck_fit import stribeck_fit
 
 SPEED = np.array([0.1, 0.2, 0.4, 0.8])
@@ -32,8 +38,9 @@ def test_ends_are_kept_and_marked():
     assert law(1.0, np.array([0.0, -5.0]), 1e-4).total == pytest.approx([0.6, 0.08])
     found = law.breaches(contact_pressure=5e5, speed=2.0, film_thickness=1e-5)
     assert {one.quantity for one in found} == {"sliding speed", "contact pressure"}
-    assert law.deviation(1e5, 0.2, 1e-4).solid == pytest.approx(2e3)
-    assert table().deviation(1e5, 0.2, 1e-4) is None
+    sampled = sampled_cof(law, [[1e5]], [[0.0]], [[1e-4]], speed=0.2)
+    assert sampled.cof.std() == pytest.approx(0.02, rel=0.02)
+    assert sampled_cof(table(), [[1e5]], [[0.0]], [[1e-4]], speed=0.2) is None
 
 
 @pytest.mark.parametrize(
@@ -61,7 +68,8 @@ def test_a_fit_of_trials_becomes_the_law_it_was_made_from():
     solid = law(1.0, np.array([0.05, 0.5]), 1.0)
     expected = stribeck_cof(np.array([0.05, 0.5]), 0.6, 0.25, 0.12)
     assert solid.adhesion + solid.hysteresis == pytest.approx(expected, abs=0.01)
-    assert law.deviation(1e5, 0.3, 1e-4) is not None
+    spread = sampled_cof(law, [[1e5]], [[0.0]], [[1.0]], speed=0.3).cof.std()
+    assert 0.005 < spread < 0.02  # the readings' own noise and that of the fitted numbers
 
 
 def test_a_flat_fit_is_no_law_of_speed():

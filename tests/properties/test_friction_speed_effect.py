@@ -16,6 +16,7 @@ from underfoot.friction import (
     ViscoelasticArea,
     asperity_ehl_law,
     cof_with_speed,
+    sampled_cof,
     self_affine_scale,
 )
 
@@ -147,10 +148,11 @@ def test_breaches_and_deviation_are_carried():
     made = law(FLUID["bearing"])
     at = {"contact_pressure": 5e5, "speed": 2.0, "film_thickness": 1e-5}
     assert {b.quantity for b in made.breaches(**at)} == {"contact pressure", "sliding speed"}
-    rest = made.deviation(1e5, 0.0, 1e-4)
-    assert float(rest.solid) == pytest.approx(np.hypot(0.03, 0.03) * 1e5)
-    fast = made.deviation(1e5, 1e6, 1e-4)
-    assert float(fast.solid) == pytest.approx(np.hypot(0.02, 0.03) * 1e5)
+    rest = sampled_cof(made, [[1e5]], [[0.0]], [[1.0]], speed=0.0)
+    assert rest.cof.std() == pytest.approx(np.hypot(0.03, 0.03), rel=0.03)
+    assert rest.share["model"] == pytest.approx(0.5, abs=0.05)
+    fast = sampled_cof(made, [[1e5]], [[0.0]], [[1e9]], speed=1e6)
+    assert fast.hysteresis.std() + fast.adhesion.std() > 0.02
 
 
 def test_bowden_tabor_with_area_proportional_to_load_is_a_coefficient():

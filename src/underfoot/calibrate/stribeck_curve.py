@@ -9,13 +9,14 @@ import numpy as np
 
 from underfoot.core import InputError
 
+from .pin_regimes import PinRegimes, pin_regimes
 from .stribeck_points import SPEEDS, fluid_points
 
 if TYPE_CHECKING:
     from underfoot.case import Case
 
 COUNT = 61
-REGIMES = {
+ADHESION_STATES = {
     "boundary": "at least 90 % of the adhesion at rest is left",
     "part blocked": "10 to 90 % of it is left",
     "blocked": "less than 10 % of it is left",
@@ -24,10 +25,11 @@ REGIMES = {
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StribeckCurve:
-    """COF over ``speed`` (m/s) with its parts and, where published, points.
+    """COF over ``speed`` (m/s) with its parts and, where published, points; arrays (n,).
 
-    ``points``: speed and COF of the fit of Eq. 17, or of the mean, on ``pair``; ``regime`` as in
-    ``REGIMES``; ``notes``: assumptions and breaches.
+    ``interval``: bounds of the central 95 % of COF, None when an input has no standard deviation.
+    ``points``: speed and COF of the fit of Eq. 17, or of the mean, on ``pair``; ``adhesion_left``:
+    over that at rest; ``regimes`` as on the report's pin; ``notes``: assumptions and breaches.
     """
 
     label: str
@@ -35,11 +37,21 @@ class StribeckCurve:
     viscosity: float
     speed: np.ndarray
     parts: dict[str, np.ndarray]
+    interval: tuple[np.ndarray, np.ndarray] | None
     deviation: np.ndarray | None
-    regime: tuple[str, ...]
+    adhesion_left: np.ndarray
+    regimes: PinRegimes | None
     points: tuple[np.ndarray, np.ndarray] | None
     pair: str
     notes: tuple[str, ...]
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Name of each speed's share of adhesion, of ``ADHESION_STATES``."""
+        names = tuple(ADHESION_STATES)
+        return tuple(
+            names[0] if x >= 0.9 else names[1] if x >= 0.1 else names[2] for x in self.adhesion_left
+        )
 
     def rows(self) -> list[dict[str, Any]]:
         """Return one row for each speed, SI units."""
@@ -54,12 +66,20 @@ class StribeckCurve:
                     "viscosity_times_speed_Pa_m": self.viscosity * float(speed),
                     "cof": float(sum(part[i] for part in self.parts.values())),
                     "cof_sd": None if self.deviation is None else float(self.deviation[i]),
+                    **dict(zip(("cof_low_95", "cof_high_95"), self._bounds(i), strict=True)),
                     **{name: float(part[i]) for name, part in self.parts.items()},
-                    "regime": self.regime[i],
+                    "adhesion_left": float(self.adhesion_left[i]),
+                    "adhesion_state": self.states[i],
+                    **({} if self.regimes is None else self.regimes.row(i)),
                     "published_cof": None if speed not in known else float(known[speed]),
                 }
             )
         return found
+
+    def _bounds(self, i: int) -> tuple[float | None, float | None]:
+        if self.interval is None:
+            return None, None
+        return float(self.interval[0][i]), float(self.interval[1][i])
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
@@ -86,6 +106,7 @@ def stribeck_curve(
         A dry case, a pressure that is not positive, or what the law itself misses.
     """
     from underfoot.case import build
+    from underfoot.friction import sampled_points
 
     if not pressure > 0:
         raise InputError(f"{pressure:g} Pa", where="--pressure", allowed="above 0")
@@ -108,12 +129,11 @@ def stribeck_curve(
     found = law(**at)
     rest = float(law(pressure, 1e-9, gap).adhesion)
     left = found.adhesion / rest if rest > 0 else np.zeros(speed.shape)
-    spread = law.deviation(**at)
+    spread = sampled_points(law, **at, fluid_inputs={"viscosity": fluid}, seed=case.numerics.seed)
     own = build.measured_friction(case, fluid.value)
     measured = None
     if own is not None and own.pair and not own.cof_boundary.assumed:
         measured = fluid_points(own, rq=0.0, speed=within)
-    names = tuple(REGIMES)
     return StribeckCurve(
         label=label,
         law=law.name,
@@ -124,8 +144,10 @@ def stribeck_curve(
             "hysteresis": found.hysteresis / pressure,
             "viscous": found.viscous / pressure,
         },
-        deviation=None if spread is None else spread.solid / pressure,
-        regime=tuple(names[0] if x >= 0.9 else names[1] if x >= 0.1 else names[2] for x in left),
+        interval=None if spread is None else (spread.low, spread.high),
+        deviation=None if spread is None else spread.deviation,
+        adhesion_left=left,
+        regimes=pin_regimes(case, fluid.value, speed, pressure),
         points=None if measured is None else (measured.speed, measured.cof),
         pair="" if own is None else own.pair,
         notes=tuple(dict.fromkeys((*law.assumptions, *(str(one) for one in law.breaches(**at))))),

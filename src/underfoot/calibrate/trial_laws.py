@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from underfoot.core import InputError, SourcedValue
@@ -16,7 +17,7 @@ def stribeck_law_from_fit(
 ) -> StribeckLaw:
     """Return Eq. 17 as a friction law from a fit of trials (``trials.stribeck_fit``).
 
-    Standard errors become the law's uncertainties; what the fit did not identify in its range of
+    Standard errors become the law's uncertainties, the residuals of the fit its own error; what the fit did not identify in its range of
     speeds is kept with a note.
 
     Parameters
@@ -60,4 +61,5 @@ def stribeck_law_from_fit(
         sourced(fit.asymptote),
         viscosity,
         assumed=tuple(notes),
+        model_deviation=math.sqrt(fit.residual_sum / max(fit.n - 3, 1)),
     )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from underfoot.core import InputError, SourcedValue
 
 from . import build
+from .sections import RQ_PER_RA
 
 if TYPE_CHECKING:
     from underfoot.friction import AsperityScale, BoundaryFriction, FrictionLaw
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
     from .case import Case
 
 PIN = ("setup", "pin_on_disk_g2")
+RIVAL_DEVIATION = {"mean_film_sharing": 0.095, "viscoelastic_area": 0.241}
+"""Root mean square error of COF of five fluids predicted blind from 50 % glycerol with their COF_BL
+(docs/studies/g2.md); what stands behind ``asperity_ehl`` is in ``friction.asperity_ehl_law``."""
 
 
 def asperity_scale(case: Case) -> AsperityScale:
@@ -32,6 +36,22 @@ def asperity_scale(case: Case) -> AsperityScale:
         longest_wave=case.interface.longest_wave,
         hurst=min(case.interface.hurst, 0.99),
     )
+
+
+def roughness_deviation(case: Case) -> float | None:
+    """Return the standard deviation of the interface's Rq over itself; None when not given."""
+    whole = case.effective_rq
+    if case.interface.effective_rq is not None:
+        return None if whole.uncertainty is None else whole.uncertainty / (whole.value or 1.0)
+    squares, found = 0.0, []
+    for path in ("shoe.roughness", "floor.roughness"):
+        name = "rq" if case.value(f"{path}.rq") is not None else "ra"
+        one = case.sourced(f"{path}.{name}")
+        scale = 1.0 if name == "rq" else RQ_PER_RA
+        squares += (scale * (one.value or 0.0)) ** 2
+        if one.uncertainty is not None:
+            found.append(scale**2 * (one.value or 0.0) * one.uncertainty)
+    return math.hypot(*found) / squares if found and squares > 0 else None
 
 
 def speed_friction(
@@ -55,9 +75,13 @@ def speed_friction(
         modulus_exponent,
     )
 
-    modulus = build.youngs_modulus(case)[0].value
+    stiff = build.youngs_modulus(case)[0]
+    modulus = stiff.value
     assert modulus is not None
     poisson_ratio = case.shoe.material.poisson_ratio
+    fine = None
+    if case.interface.fine_roughness is not None:
+        fine = case.sourced("interface.fine_roughness")
     law = asperity_ehl_law(
         asperity_scale(case),
         modulus=modulus,
@@ -65,7 +89,9 @@ def speed_friction(
         viscosity=viscosity,
         friction=own,
         cof_hysteresis=hysteresis,
-        fine_roughness=case.interface.fine_roughness,
+        fine_roughness=fine,
+        modulus_deviation=stiff.uncertainty,
+        roughness_deviation=roughness_deviation(case),
     )
     if case.models.friction == "asperity_ehl":
         return law
@@ -96,7 +122,12 @@ def speed_friction(
         )
         effect = ViscoelasticArea(exponent)
     return SpeedEffectLaw(
-        effect, law.cof_boundary, law.cof_hysteresis, viscosity, None, law.assumed
+        effect,
+        law.cof_boundary,
+        law.cof_hysteresis,
+        viscosity,
+        RIVAL_DEVIATION[case.models.friction],
+        law.assumed,
     )
 
 

@@ -112,8 +112,8 @@ class Result:
         dataset.to_netcdf(folder / "result.nc", engine="h5netcdf", encoding=encoding)
         with (folder / "summary.csv").open("w", newline="", encoding="utf-8") as stream:
             table = csv.writer(stream)
-            table.writerow(["quantity", "value", "unit", "uncertainty", "assumed", "remark"])
-            table.writerow(["status", str(self.status), "", "", "", self.status.remedy])
+            table.writerow("quantity value unit uncertainty low_95 high_95 assumed remark".split())
+            table.writerow(["status", str(self.status), *[""] * 5, self.status.remedy])
             for name, scalar in self.scalars.items():
                 remark = scalar.note or (scalar.reason if scalar.uncertainty is None else "")
                 table.writerow(
@@ -122,6 +122,7 @@ class Result:
                         "" if scalar.value is None else repr(scalar.value),
                         scalar.unit,
                         "" if scalar.uncertainty is None else repr(scalar.uncertainty),
+                        *(("", "") if scalar.interval is None else map(repr, scalar.interval)),
                         "yes" if scalar.assumed else "no",
                         remark,
                     ]

@@ -19,7 +19,7 @@ from underfoot.core import (
 from . import build
 from .describe import assumptions
 from .result import Result
-from .scalars import regime, scalars, undetermined
+from .scalars import regime, scalars, spread_origin, undetermined
 
 if TYPE_CHECKING:
     import xarray
@@ -49,7 +49,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
     ConvergenceError
         Not even the first contact could be solved.
     """
-    from underfoot.friction import cof
+    from underfoot.friction import cof, sampled_cof
     from underfoot.outsole import floor_sensor_reading
     from underfoot.outsole.solver import SolverSettings, solve_sliding
 
@@ -88,13 +88,23 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
         "film_thickness": contact.film_thickness,
     }
     parts = law(**local)
+    sampled = sampled_cof(
+        law,
+        contact.contact_pressure,
+        contact.fluid_pressure,
+        contact.film_thickness,
+        speed=motion.speed,
+        wet=contact.wet,
+        fluid_inputs={} if fluid is None else {"viscosity": fluid},
+        seed=case.numerics.seed,
+    )
     friction = cof(
         parts,
         contact.contact_pressure,
         contact.fluid_pressure,
         spacing=sole.spacing,
         wet=contact.wet,
-        deviation=law.deviation(**local),
+        sampled=sampled,
         source=f"{law.name} law: {law.source}",
     )
     sensor = floor_sensor_reading(
@@ -108,7 +118,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
     )
     usable = contact.status.usable
     numbers, risk = (
-        scalars(case, contact, friction, sensor)
+        scalars(case, contact, friction, sensor, sampled)
         if usable
         else (undetermined(case, contact.status), None)
     )
@@ -125,7 +135,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
     return Result(
         name=case.name,
         scalars=numbers,
-        labels=regime(contact) if usable else {},
+        labels={**regime(contact), **spread_origin(sampled)} if usable else {},
         fields=_fields(
             sole, contact, sensor, parts.total - np.where(contact.wet, 0.0, parts.viscous)
         ),

@@ -10,7 +10,7 @@ import numpy as np
 from underfoot.core import SourcedValue, Status
 
 if TYPE_CHECKING:
-    from underfoot.friction import FrictionCoefficients
+    from underfoot.friction import FrictionCoefficients, SampledCof
     from underfoot.outsole import SensorReading
     from underfoot.outsole.solver import SoleContact
     from underfoot.slip import SlipRisk
@@ -20,6 +20,18 @@ if TYPE_CHECKING:
 _NOT_ESTIMATED = "heel shape and interface roughness dominate; their spread is not propagated yet"
 CONTACT_SHARE = 1e-3
 """Contact pressure below this share of the mean pressure doesn't count as contact."""
+_INPUTS = {
+    "cof_boundary": "friction at rest",
+    "cof_hysteresis": "hysteresis",
+    "cof_asymptote": "friction at high speed",
+    "cof_adhesion": "adhesion",
+    "dry_adhesion": "dry adhesion",
+    "tau_hydro": "decay speed",
+    "fine_roughness": "fine roughness",
+    "roughness_factor": "roughness",
+    "shear_strength": "shear strength",
+    "model": "the law itself",
+}
 REGIMES = ((0.05, "boundary lubrication"), (0.95, "mixed lubrication"), (np.inf, "full film"))
 
 
@@ -28,6 +40,7 @@ def scalars(
     contact: SoleContact,
     friction: FrictionCoefficients,
     sensor: SensorReading,
+    sampled: SampledCof | None = None,
 ) -> tuple[dict[str, SourcedValue], SlipRisk]:
     """Return the numbers of a result by name, and the slip risk behind one of them."""
     from underfoot.slip import RequiredFriction, slip_model, slip_risk
@@ -38,6 +51,7 @@ def scalars(
         friction.cof,
         rcof=RequiredFriction(case.risk.rcof_mean, case.risk.rcof_sd, mean.source),
         model=slip_model(case.risk.model),
+        samples=None if sampled is None else sampled.cof,
     )
     assumed = risk.probability.assumed or mean.assumed or spread.assumed
 
@@ -95,6 +109,19 @@ def regime(contact: SoleContact) -> dict[str, str]:
         "regime": name,
         "regime_rule": "by load share: below 5 % boundary, above 95 % full film",
     }
+
+
+def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
+    """Return in words which inputs the spread of COF comes from, and how it was sampled."""
+    if sampled is None:
+        return {}
+    words = sorted(sampled.share.items(), key=lambda one: -one[1])
+    parts = [f"{_INPUTS.get(name, name)} {share:.0%}" for name, share in words if share >= 0.005]
+    if sampled.left_out:
+        names = ", ".join(_INPUTS.get(name, name) for name in sampled.left_out)
+        parts.append(f"taken as exact: {names}")
+    drawn = f"{sampled.cof.size} draws, seed {sampled.seed}; contact and film as computed"
+    return {"cof_spread_from": ", ".join(parts), "cof_spread_how": drawn}
 
 
 def _mean_pressure(contact: SoleContact) -> float:

@@ -295,6 +295,9 @@ class Numerics(Section):
     quick_grid_spacing: Annotated[float, Quantity("m", 5e-5, 0.005)] = default(
         1.0 * _mm, "1 mm", "for a first look"
     )
+    seed: Annotated[int, Field(ge=0, le=2**31, strict=True)] = default(
+        0, 0, "of the draws behind the intervals; the same seed gives the same numbers"
+    )
     tolerance: Tolerance = default(1e-4, 1e-4, "relative imbalance of volume and load")
 
 

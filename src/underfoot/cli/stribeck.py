@@ -121,31 +121,36 @@ def _show(curves: list[StribeckCurve], pressure: str, out: Path | None) -> None:
         console.print(f"\n{curve.label}, {display(curve.viscosity, 'Pa*s')}", markup=False)
         table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0))
         for heading in (
-            "speed\nm/s", "viscosity\nx speed\nmPa m", "COF", "sd", "adhesion", "hysteresis",
-            "viscous", "regime",
+            "speed\nm/s", "viscosity\nx speed\nmPa m", "COF", "95 %", "adhe-\nsion",
+            "hyste-\nresis", "vis-\ncous", "lambda", "load on\nfluid",
         ):  # fmt: skip
-            table.add_column(heading, justify="left" if heading == "regime" else "right")
+            table.add_column(heading, justify="right", no_wrap=True)
         if curve.points is not None:
-            table.add_column("published", justify="right")
+            table.add_column("pub-\nlished", justify="right")
         chosen = np.flatnonzero(np.isin(curve.speed, SPEEDS))
         if chosen.size < 5:
             chosen = np.unique(np.linspace(0, curve.speed.size - 1, 9).round().astype(int))
         chosen = np.union1d(chosen, [0, curve.speed.size - 1])
         for row in (curve.rows()[i] for i in chosen):
-            spread = row["cof_sd"]
-            published = row["published_cof"]
+            low, published = row["cof_low_95"], row["published_cof"]
+            ratio, share = row.get("lambda_ratio"), row.get("fluid_load_share")
             table.add_row(
                 f"{row['speed_m_per_s']:.3g}",
                 f"{1e3 * row['viscosity_times_speed_Pa_m']:.3g}",
                 f"{row['cof']:.3f}",
-                "-" if spread is None else f"{spread:.3f}",
+                "-" if low is None else f"{low:.2f}-{row['cof_high_95']:.2f}",
                 f"{row['adhesion']:.3f}",
                 f"{row['hysteresis']:.3f}",
                 f"{row['viscous']:.3f}",
-                row["regime"],
+                "-" if ratio is None else f"{ratio:.2g}",
+                "-" if share is None else f"{share:.0%}",
                 "" if published is None else f"{published:.3f}",
             )
         console.print(table)
+        if curve.regimes is not None:
+            for text in (*curve.regimes.sentences(), curve.regimes.why):
+                if text:
+                    console.print(f"  {text}", markup=False)
         for text in curve.notes:
             console.print(f"  {text}", markup=False, style="dim")
     if out is not None:

@@ -28,6 +28,9 @@ class SourcedValue:
         True when no measurement or publication stands behind it.
     note
         Erratum, convention or caution that belongs to the value.
+    interval
+        Bounds of the central interval that holds 95 % of the sampled values, in ``unit``; None when
+        it was not sampled.
     """
 
     value: float | None
@@ -37,10 +40,13 @@ class SourcedValue:
     reason: str = ""
     assumed: bool = False
     note: str = ""
+    interval: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         if self.uncertainty is None and not self.reason:
             object.__setattr__(self, "reason", "uncertainty not estimated")
+        if self.interval is not None:
+            object.__setattr__(self, "interval", tuple(self.interval))  # JSON gives a list
         if self.uncertainty is not None and self.uncertainty < 0:
             raise ValueError(f"uncertainty {self.uncertainty} is negative")
 

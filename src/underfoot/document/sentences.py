@@ -20,6 +20,9 @@ class Row:
     remark: str
 
 
+SKEWED = 0.25
+"""Difference of an interval's two sides over its width, from which it is given in place of one
+standard deviation."""
 _ROWS = (
     ("cof", "Coefficient of friction", "available between this shoe and floor"),
     ("cof_adhesion", "  from adhesion", ""),
@@ -37,7 +40,7 @@ _ROWS = (
 
 def summary_rows(result: Result) -> list[Row]:
     """Return the summary table's lines: label, value with spread, remark."""
-    rows = []
+    rows: list[Row] = []
     for name, label, remark in _ROWS:
         scalar = result.scalars.get(name)
         if scalar is None:
@@ -45,9 +48,14 @@ def summary_rows(result: Result) -> list[Row]:
         text = value_text(name, scalar)
         share = _share(result, name)
         remark = f"{share} of the load" if share else remark
-        rows.append(Row(label, text, scalar.note or remark))
+        rows.append(Row(label, text, _likely(name, scalar) or scalar.note or remark))
     if "regime" in result.labels:
         rows.insert(4, Row("Regime", result.labels["regime"], result.labels.get("regime_rule", "")))
+    if "cof_spread_from" in result.labels:
+        place = next((i for i, row in enumerate(rows) if row.label == "Regime"), len(rows))
+        origin = result.labels["cof_spread_from"]
+        how = result.labels.get("cof_spread_how", "")
+        rows.insert(place, Row("  its spread comes from", origin, how))
     return rows
 
 
@@ -55,12 +63,12 @@ def value_text(name: str, scalar: SourcedValue) -> str:
     """Return a scalar as people read it: COF with two decimals, probability in percent."""
     if scalar.value is None:
         return f"not determined: {scalar.reason}"
-    if name.startswith("cof"):
-        text = f"{scalar.value:.3f}"
-        spread = "" if scalar.uncertainty is None else f" ± {scalar.uncertainty:.3f}"
-    elif name == "slip_probability":
-        text = percent(scalar.value)
-        spread = "" if scalar.uncertainty is None else f" ± {percent(scalar.uncertainty)}"
+    if name.startswith("cof") or name == "slip_probability":
+        text = _number(name, scalar.value)
+        spread = "" if scalar.uncertainty is None else f" ± {_number(name, scalar.uncertainty)}"
+        if scalar.interval is not None and _skewed(scalar.value, scalar.interval):
+            low, high = (_number(name, end) for end in scalar.interval)
+            spread = f" ({low} to {high})" if low != high else spread
     else:
         text = display(scalar.value, scalar.unit)
         spread = (
@@ -70,6 +78,26 @@ def value_text(name: str, scalar: SourcedValue) -> str:
         )
     text = _typeset(text + spread)
     return text + (" (assumed)" if scalar.assumed else "")
+
+
+def _number(name: str, value: float) -> str:
+    return percent(value) if name == "slip_probability" else f"{value:.3f}"
+
+
+def _skewed(value: float, interval: tuple[float, float]) -> bool:
+    """Return True where a single standard deviation would tell the interval wrongly."""
+    below, above = value - interval[0], interval[1] - value
+    return abs(above - below) > SKEWED * (interval[1] - interval[0])
+
+
+def _likely(name: str, scalar: SourcedValue) -> str:
+    """Return the 95 % interval of a sampled number as a remark."""
+    if scalar.interval is None:
+        return ""
+    low, high = (_number(name, end) for end in scalar.interval)
+    if low == high:
+        return ""
+    return f"95 %: {low} to {high}"
 
 
 def _typeset(text: str) -> str:

@@ -40,8 +40,8 @@ class FluidCurve(Protocol):
         ...
 
     @property
-    def deviation(self) -> np.ndarray | None:
-        """One standard deviation of COF, if known."""
+    def interval(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Bounds of the central 95 % of COF, if known."""
         ...
 
     @property
@@ -58,7 +58,7 @@ class FluidCurve(Protocol):
 def stribeck_figure(curves: Sequence[FluidCurve], title: str = "") -> Figure:
     """Return COF over speed, over viscosity x speed, and the parts of every fluid.
 
-    Bands are one standard deviation; points what was published for the fluid on its own pair.
+    Bands hold 95 %; points what was published for the fluid on its own pair.
     """
     from matplotlib.figure import Figure
 
@@ -76,15 +76,8 @@ def stribeck_figure(curves: Sequence[FluidCurve], title: str = "") -> Figure:
         for ax, scale in ((axes[0], 1.0), (axes[1], curve.viscosity * 1e3)):
             place = curve.speed * scale
             ax.plot(place, whole, color=colour, label=curve.label, lw=1.8)
-            if curve.deviation is not None:
-                ax.fill_between(
-                    place,
-                    np.maximum(whole - curve.deviation, 0.0),
-                    whole + curve.deviation,
-                    color=colour,
-                    alpha=0.12,
-                    lw=0,
-                )
+            if curve.interval is not None:
+                ax.fill_between(place, *curve.interval, color=colour, alpha=0.10, lw=0)
             if curve.points is not None:
                 speed, cof = curve.points
                 ax.plot(
@@ -98,8 +91,8 @@ def stribeck_figure(curves: Sequence[FluidCurve], title: str = "") -> Figure:
     pairs = dict.fromkeys(curve.pair for curve in curves if curve.points is not None)
     if pairs:
         notes.append(f"points: published, {', '.join(pairs)}")
-    if any(curve.deviation is not None for curve in curves):
-        notes.append("bands: one standard deviation")
+    if any(curve.interval is not None for curve in curves):
+        notes.append("bands: 95 % intervals")
     axes[1].legend(frameon=False, fontsize=8, title="\n".join(notes), title_fontsize=8)
     small = np.atleast_1d(below.subplots(rows, columns, sharey=True, squeeze=False)).ravel()
     for index, (ax, curve) in enumerate(zip(small, curves, strict=False)):

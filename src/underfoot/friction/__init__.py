@@ -8,13 +8,15 @@ from .boundary import BoundaryLaw
 from .bowden_tabor import BowdenTaborLaw, ShearStrength, shear_strength_from_cof
 from .coefficient import FrictionCoefficients, cof
 from .constant import ConstantLaw
-from .law import FrictionDeviation, FrictionLaw, FrictionParts
+from .law import FrictionLaw, FrictionParts
 from .mean_film_sharing import MeanFilmSharing
 from .measured import BoundaryFriction, boundary_friction_at, friction_left, viscous_decay
 from .moore_2012 import StribeckLaw, stribeck_cof, stribeck_law_at
 from .propagation import Propagated, propagated
+from .sampled_cof import SampledCof, sampled_cof, sampled_points
 from .speed_effect import SpeedEffect, SpeedEffectLaw, cof_with_speed
 from .speed_table import SpeedTableLaw
+from .uncertain_inputs import UncertainInputs
 from .viscoelastic_area import ViscoelasticArea, modulus_exponent
 
 __all__ = [
@@ -29,16 +31,17 @@ __all__ = [
     "CalibratedLevels",
     "ConstantLaw",
     "FrictionCoefficients",
-    "FrictionDeviation",
     "FrictionLaw",
     "FrictionParts",
     "MeanFilmSharing",
     "Propagated",
+    "SampledCof",
     "ShearStrength",
     "SpeedEffect",
     "SpeedEffectLaw",
     "SpeedTableLaw",
     "StribeckLaw",
+    "UncertainInputs",
     "ViscoelasticArea",
     "asperity_ehl_law",
     "boundary_friction_at",
@@ -47,6 +50,8 @@ __all__ = [
     "friction_left",
     "modulus_exponent",
     "propagated",
+    "sampled_cof",
+    "sampled_points",
     "self_affine_scale",
     "shear_strength_from_cof",
     "spectrum_scale",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 
 from numpy.typing import ArrayLike
@@ -19,7 +18,8 @@ from ._shared import (
     law_breaches,
     viscous_shear,
 )
-from .law import FrictionDeviation, FrictionParts
+from .law import FrictionParts
+from .uncertain_inputs import UncertainInputs
 
 NORMAL_FORCE = 20.9
 """N, the load of the tests behind Eq. 26 (G.3.1)."""
@@ -30,7 +30,7 @@ RANGES = {
 
 
 @dataclass(frozen=True, slots=True)
-class AdhesionBlockingLaw:
+class AdhesionBlockingLaw(UncertainInputs):
     """Adhesion by Eq. 26 from the dry adhesion of the pair, its measured hysteresis, eta V / h.
 
     mu_adhesion = alpha / 20.9 N + beta mu_dry, at most mu_dry: a fluid adds no adhesion. The
@@ -77,6 +77,13 @@ class AdhesionBlockingLaw:
         left = float(self.blocking.lubricated_adhesion_cof(dry))
         return min(left, dry), coefficient(self.cof_hysteresis, "cof_hysteresis")
 
+    @property
+    def error_of_model(self) -> float | None:
+        """Spread of Eq. 26 about its own tests (mean error 1.05 N) over their load, 1."""
+        dry = coefficient(self.dry_adhesion, "dry_adhesion")
+        force = self.blocking.estimate(dry * NORMAL_FORCE).uncertainty
+        return None if force is None else force / NORMAL_FORCE
+
     def __call__(
         self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
     ) -> FrictionParts:
@@ -87,21 +94,6 @@ class AdhesionBlockingLaw:
             adhesion * pressure,
             hysteresis * pressure,
             viscous_shear(self.viscosity, velocity, film),
-        )
-
-    def deviation(
-        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> FrictionDeviation | None:
-        """Return the standard deviations, Pa: that of the regression and the hysteresis'."""
-        hysteresis = self.cof_hysteresis.uncertainty
-        dry = coefficient(self.dry_adhesion, "dry_adhesion")
-        force = self.blocking.estimate(dry * NORMAL_FORCE).uncertainty
-        if hysteresis is None or force is None:
-            return None
-        pressure, _, _ = checked(contact_pressure, speed, film_thickness)
-        adhesion = force / NORMAL_FORCE
-        return FrictionDeviation(
-            math.hypot(adhesion, hysteresis) * pressure, adhesion * pressure, hysteresis * pressure
         )
 
     def breaches(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -14,6 +15,7 @@ from underfoot.core import InputError, unknown_name
 from . import speed_effect
 from ._load_sharing import fluid_share
 from .asperity_scale import AsperityScale
+from .uncertain_inputs import with_values
 
 STYLUS_RESOLUTION = 2.5e-6
 """m: shortest wave in a profile with a cut-off of 0.8 mm (ISO 3274:1996, Table 1: lambda_s)."""
@@ -90,6 +92,14 @@ class AsperityEHL:
             "The film formula of soft contacts (Eq. 18) holds at asperities, beyond the range "
             "it was fitted in.",
         )
+
+    def at(self, values: Mapping[str, float]) -> AsperityEHL:
+        """Return the mechanism with other numbers; "roughness_factor" multiplies all roughness."""
+        others = {k: v for k, v in values.items() if k != "roughness_factor"}
+        found = with_values(self, others)
+        if "roughness_factor" in values:
+            found = replace(found, scale=self.scale.rougher(values["roughness_factor"]))
+        return found
 
     def film_thickness(
         self, *, viscosity: float, speed: ArrayLike, contact_pressure: ArrayLike

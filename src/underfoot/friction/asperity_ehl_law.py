@@ -66,7 +66,9 @@ def asperity_ehl_law(
     viscosity: float | None,
     friction: BoundaryFriction | None = None,
     cof_hysteresis: SourcedValue | None = None,
-    fine_roughness: float | None = None,
+    fine_roughness: SourcedValue | None = None,
+    modulus_deviation: float | None = None,
+    roughness_deviation: float | None = None,
 ) -> SpeedEffectLaw:
     """Return the law of films at asperities for a fluid, from what is known of it.
 
@@ -86,6 +88,9 @@ def asperity_ehl_law(
         Measured hysteresis of the pair, in place of the calibrated one.
     fine_roughness
         m, in place of the calibrated one.
+    modulus_deviation, roughness_deviation
+        Standard deviations of the modulus (Pa) and of the roughness behind ``scale`` relative to
+        itself (1); None when not known: then they count as exact.
     """
     limit = friction is not None and friction.tau_hydro is not None
     levels = OWN_BOUNDARY if limit else ONE_CURVE
@@ -99,13 +104,18 @@ def asperity_ehl_law(
         assert levels.cof_boundary is not None
         boundary = levels.cof_boundary
         notes.append("Only the viscosity of the fluid enters: friction at rest is one for all.")
+    fine = fine_roughness or levels.fine_roughness
+    spreads = {
+        "fine_roughness": fine,
+        "modulus": SourcedValue(modulus, "Pa", "outsole", modulus_deviation),
+        "roughness_factor": SourcedValue(1.0, "1", "interface", roughness_deviation),
+    }
     return SpeedEffectLaw(
-        effect=AsperityEHL(
-            scale, modulus, poisson_ratio, fine_roughness or levels.fine_roughness.value
-        ),
+        effect=AsperityEHL(scale, modulus, poisson_ratio, fine.value),
         cof_boundary=boundary,
         cof_hysteresis=cof_hysteresis or levels.cof_hysteresis,
         viscosity=viscosity,
         model_deviation=levels.deviation,
         assumed=tuple(notes),
+        effect_inputs={k: v for k, v in spreads.items() if v.uncertainty is not None},
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -41,6 +41,17 @@ class AsperityScale:
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0):
                 raise InputError(f"{value:g}", where=name, allowed="a finite number above 0")
+
+    def rougher(self, factor: float) -> AsperityScale:
+        """Return the same surface with all heights times ``factor``."""
+        if not (math.isfinite(factor) and factor > 0):
+            raise InputError(f"{factor:g}", where="factor", allowed="a finite number above 0")
+        return replace(
+            self,
+            radius=self.radius / factor,
+            slope=self.slope * factor,
+            fine_roughness=self.fine_roughness * factor,
+        )
 
     def contact_fraction(self, relative_pressure: ArrayLike) -> NDArray[np.float64]:
         """Return the share of the area on which asperities touch, fine roughness unresolved.

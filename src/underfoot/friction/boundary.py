@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 
 from numpy.typing import ArrayLike
@@ -18,8 +17,9 @@ from ._shared import (
     law_breaches,
     viscous_shear,
 )
-from .law import FrictionDeviation, FrictionParts
+from .law import FrictionParts
 from .measured import BoundaryFriction, friction_left
+from .uncertain_inputs import UncertainInputs
 
 RANGES = {
     "contact pressure": Range(0.0, PIN_PRESSURE, "Pa", f"{REPORT}, G.2.1: one load; lower assumed"),
@@ -28,7 +28,7 @@ RANGES = {
 
 
 @dataclass(frozen=True, slots=True)
-class BoundaryLaw:
+class BoundaryLaw(UncertainInputs):
     """tau = COF_BL p_c, split into hysteresis and adhesion, plus eta V / h.
 
     COF_BL is the friction of the pair with this fluid between the asperities and no film that
@@ -137,18 +137,6 @@ class BoundaryLaw:
             adhesion * pressure,
             hysteresis * pressure,
             viscous_shear(self.viscosity, velocity, film),
-        )
-
-    def deviation(
-        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> FrictionDeviation | None:
-        """Return the standard deviations of the shear stresses, Pa."""
-        whole, hysteresis = self.cof_boundary.uncertainty, self.cof_hysteresis.uncertainty
-        if whole is None or hysteresis is None:
-            return None
-        pressure, _, _ = checked(contact_pressure, speed, film_thickness)
-        return FrictionDeviation(
-            whole * pressure, math.hypot(whole, hysteresis) * pressure, hysteresis * pressure
         )
 
     def breaches(

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from underfoot.core import Breach, InputError
+from underfoot.core import Breach, InputError, SourcedValue
 
 from ._shared import checked, checked_viscosity, law_breaches, viscous_shear
-from .law import FrictionDeviation, FrictionParts
+from .law import FrictionParts
+from .uncertain_inputs import UncertainInputs, not_negative, with_values
 
 ContactFraction = Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike]
 """Real over nominal area at (contact pressure Pa, speed m/s)."""
@@ -82,7 +83,7 @@ def shear_strength_from_cof(
 
 
 @dataclass(frozen=True, slots=True)
-class BowdenTaborLaw:
+class BowdenTaborLaw(UncertainInputs):
     """tau = s(V) A_real/A(p, V) + mu_hysteresis(p, V) p + eta V / h.
 
     Parameters
@@ -146,16 +147,19 @@ class BowdenTaborLaw:
             real_contact_fraction=area,
         )
 
-    def deviation(
-        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> FrictionDeviation | None:
-        """Return the standard deviations from that of the strength alone, Pa; None without it."""
-        if self.shear_strength.deviation is None or self.shear_strength.strength == 0:
-            return None
-        parts = self(contact_pressure, speed, film_thickness)
-        share = self.shear_strength.deviation / self.shear_strength.strength
-        solid = share * parts.adhesion
-        return FrictionDeviation(solid, solid, np.zeros_like(solid))
+    @property
+    def inputs(self) -> dict[str, SourcedValue]:
+        """The shear strength."""
+        given = self.shear_strength
+        return {"shear_strength": SourcedValue(given.strength, "Pa", given.source, given.deviation)}
+
+    def at(self, values: Mapping[str, float]) -> BowdenTaborLaw:
+        """Return the law at another shear strength."""
+        law = with_values(self, {k: v for k, v in values.items() if k != "shear_strength"})
+        if "shear_strength" not in values:
+            return law
+        strength = not_negative(values["shear_strength"], self.shear_strength.strength)
+        return replace(law, shear_strength=replace(self.shear_strength, strength=strength))
 
     def breaches(
         self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike

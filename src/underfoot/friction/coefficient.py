@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from underfoot.core import InputError, SourcedValue
 
-from .law import FrictionDeviation, FrictionParts
+from .law import FrictionParts
+from .sampled_cof import SampledCof
 
 Array = NDArray[np.float64]
+NO_SPREAD = "an input of the friction law came without a standard deviation"
+HELD = "spread of the friction law and its inputs, contact and film held"
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +40,7 @@ def cof(
     *,
     spacing: float,
     wet: ArrayLike | None = None,
-    deviation: FrictionDeviation | None = None,
+    sampled: SampledCof | None = None,
     source: str = "",
 ) -> FrictionCoefficients:
     """Return the coefficient of friction of the whole sole and its parts (Eq. 1).
@@ -56,9 +59,9 @@ def cof(
         Side of a cell, m.
     wet
         Where a film is: the viscous part counts only there. None counts it everywhere.
-    deviation
-        Standard deviations from the same law, fully correlated over the sole; None leaves the
-        uncertainties out, with the reason.
+    sampled
+        Draws of the same law (``sampled_cof``): they give standard deviations and intervals; None
+        leaves these out, with the reason.
     source
         Name and origin of the law, for the result.
 
@@ -99,27 +102,18 @@ def cof(
         )
     coefficients = {name: float(array.sum()) * area / normal for name, array in shears.items()}
     whole = sum(coefficients.values())
-    spread: dict[str, float | None] = dict.fromkeys(("solid", "adhesion", "hysteresis"))
-    if deviation is not None:
-        spread = {name: float(np.sum(getattr(deviation, name))) * area / normal for name in spread}
-    film = "the film's own uncertainty is not estimated"
-    none = "the law gives no uncertainty"
 
-    def value(number: float, uncertainty: float | None, reason: str) -> SourcedValue:
-        return SourcedValue(
-            number,
-            "1",
-            source=source,
-            uncertainty=uncertainty,
-            reason=reason if uncertainty is None else "",
-            note="" if uncertainty is None else "spread of the friction law alone",
-        )
+    def value(name: str, number: float) -> SourcedValue:
+        plain = SourcedValue(number, "1", source=source, reason=NO_SPREAD)
+        if sampled is None:
+            return plain
+        return replace(sampled.sourced(name, plain), note=HELD if name == "cof" else "")
 
     return FrictionCoefficients(
-        cof=value(whole, spread["solid"], none),
-        cof_adhesion=value(coefficients["adhesion"], spread["adhesion"], none),
-        cof_hysteresis=value(coefficients["hysteresis"], spread["hysteresis"], none),
-        cof_viscous=value(coefficients["viscous"], None, film),
+        cof=value("cof", whole),
+        cof_adhesion=value("adhesion", coefficients["adhesion"]),
+        cof_hysteresis=value("hysteresis", coefficients["hysteresis"]),
+        cof_viscous=value("viscous", coefficients["viscous"]),
         friction_force=whole * normal,
         normal_force=normal,
         fluid_load=fluid_load,

@@ -7,14 +7,15 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError
+from underfoot.core import Breach, InputError, SourcedValue
 
 from ._shared import checked, checked_viscosity, law_breaches, viscous_shear
-from .law import FrictionDeviation, FrictionParts
+from .law import FrictionParts
+from .uncertain_inputs import UncertainInputs
 
 
 @dataclass(frozen=True, slots=True)
-class ConstantLaw:
+class ConstantLaw(UncertainInputs):
     """Adhesion and hysteresis in proportion to the contact pressure: tau = mu p_c; plus eta V / h.
 
     Parameters
@@ -63,19 +64,18 @@ class ConstantLaw:
             viscous_shear(self.viscosity, velocity, film),
         )
 
-    def deviation(
-        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> FrictionDeviation | None:
-        """Return the standard deviations of the shear stresses, Pa."""
-        if self.adhesion_deviation is None or self.hysteresis_deviation is None:
-            return None
-        pressure, _, _ = checked(contact_pressure, speed, film_thickness)
-        both = float(np.hypot(self.adhesion_deviation, self.hysteresis_deviation))
-        return FrictionDeviation(
-            both * pressure,
-            self.adhesion_deviation * pressure,
-            self.hysteresis_deviation * pressure,
+    @property
+    def inputs(self) -> dict[str, SourcedValue]:
+        """The two coefficients."""
+        pairs = (
+            ("cof_adhesion", self.cof_adhesion, self.adhesion_deviation),
+            ("cof_hysteresis", self.cof_hysteresis, self.hysteresis_deviation),
         )
+        return {
+            name: SourcedValue(value, "1", self.source, deviation)
+            for name, value, deviation in pairs
+            if value > 0 or deviation is not None
+        }
 
     def breaches(
         self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike

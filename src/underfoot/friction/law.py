@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from underfoot.core import Breach
+from underfoot.core import Breach, SourcedValue
 
 Array = NDArray[np.float64]
 
@@ -30,19 +31,6 @@ class FrictionParts:
     def total(self) -> Array:
         """Sum of the parts, Pa."""
         return self.adhesion + self.hysteresis + self.viscous
-
-
-@dataclass(frozen=True, slots=True)
-class FrictionDeviation:
-    """Standard deviation of the shear stress, Pa; one unknown factor for the whole sole.
-
-    ``solid`` is that of adhesion and hysteresis together, which is less than its parts' when only
-    their sum was measured. The viscous part has none: it follows from the film.
-    """
-
-    solid: Array
-    adhesion: Array
-    hysteresis: Array
 
 
 @runtime_checkable
@@ -70,10 +58,18 @@ class FrictionLaw(Protocol):
         """Return the shear stresses at contact pressure (Pa), speed (m/s) and film (m)."""
         ...
 
-    def deviation(
-        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> FrictionDeviation | None:
-        """Return the standard deviations of the shear stresses; None when not estimated."""
+    @property
+    def inputs(self) -> Mapping[str, SourcedValue]:
+        """What the law was given, by name, with standard deviations where known."""
+        ...
+
+    @property
+    def error_of_model(self) -> float | None:
+        """Standard deviation of COF left with exact inputs, one for the sole; None if unknown."""
+        ...
+
+    def at(self, values: Mapping[str, float]) -> FrictionLaw:
+        """Return the law with other values (SI) of its inputs: what sampling draws."""
         ...
 
     def breaches(

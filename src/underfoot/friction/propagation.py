@@ -34,6 +34,8 @@ class Propagated:
         when not asked for.
     left_out
         Inputs without a known spread, taken as exact.
+    draws, drawn
+        (samples, ...) the results, and (samples,) what was drawn of each input.
     """
 
     value: NDArray[np.float64]
@@ -45,6 +47,8 @@ class Propagated:
     seed: int
     share: Mapping[str, float]
     left_out: tuple[str, ...]
+    draws: NDArray[np.float64]
+    drawn: Mapping[str, NDArray[np.float64]]
 
 
 def propagated(
@@ -59,10 +63,11 @@ def propagated(
 ) -> Propagated:
     """Return the spread of ``function`` of ``inputs`` with that of the model on top.
 
-    Inputs are drawn independently: normal, or log-normal with the same mean and spread where a
-    positive value spreads by more than a third of itself. The model's own error is one normal
-    draw for the whole result (a model is off in one direction), ``model_deviation`` in the unit
-    of the result. The same ``seed`` gives the same numbers.
+    Inputs are drawn independently, each once from every of ``samples`` equally likely strata
+    (Latin hypercube; McKay, Beckman and Conover 1979): normal, or log-normal with the same mean and
+    spread where a positive value spreads by more than a third of itself. The model's own error is
+    one normal draw for the whole result (a model is off in one direction), ``model_deviation`` in
+    the unit of the result. The same ``seed`` gives the same numbers.
 
     Parameters
     ----------
@@ -122,17 +127,23 @@ def propagated(
         seed=seed,
         share={name: (part / total if total > 0 else 0.0) for name, part in variance.items()},
         left_out=tuple(name for name in inputs if name not in drawn),
+        draws=whole,
+        drawn=drawn,
     )
 
 
 def _draws(
     value: float, deviation: float | None, samples: int, generator: np.random.Generator
 ) -> NDArray[np.float64]:
+    from scipy.special import ndtri
+
     spread = deviation or 0.0
+    strata = (generator.permutation(samples) + generator.random(samples)) / samples
+    normal = ndtri(np.clip(strata, 1e-12, 1 - 1e-12))
     if value > 0 and spread > LOGNORMAL_ABOVE * value:
         width = math.sqrt(math.log1p((spread / value) ** 2))
-        return value * np.exp(generator.normal(-0.5 * width**2, width, samples))
-    return generator.normal(value, spread, samples)
+        return value * np.exp(width * (normal - 0.5 * width))
+    return value + spread * normal
 
 
 def _result(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -19,7 +20,8 @@ from ._shared import (
     law_breaches,
     viscous_shear,
 )
-from .law import FrictionDeviation, FrictionParts
+from .law import FrictionParts
+from .uncertain_inputs import UncertainInputs, sourced_fields, with_values
 
 RANGES = {
     "contact pressure": Range(0.0, PIN_PRESSURE, "Pa", f"{REPORT}, G.2.1: one load; lower assumed"),
@@ -75,7 +77,7 @@ def cof_with_speed(
 
 
 @dataclass(frozen=True, slots=True)
-class SpeedEffectLaw:
+class SpeedEffectLaw(UncertainInputs):
     """tau = (COF_hysteresis + (COF_BL - COF_hysteresis) a) p_c + eta V / h.
 
     a is the share of adhesion that the mechanism ``effect`` leaves at the local speed and contact
@@ -94,6 +96,8 @@ class SpeedEffectLaw:
         Standard deviation of the mechanism's blind predictions of COF, 1; None when not estimated.
     assumed
         Further assumptions behind the numbers, in words.
+    effect_inputs
+        Numbers of ``effect`` by field name, with their standard deviations.
 
     Errors
     ------
@@ -107,6 +111,7 @@ class SpeedEffectLaw:
     viscosity: float | None = None
     model_deviation: float | None = None
     assumed: tuple[str, ...] = ()
+    effect_inputs: Mapping[str, SourcedValue] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         coefficient(self.cof_boundary, "cof_boundary")
@@ -142,6 +147,26 @@ class SpeedEffectLaw:
             *self.assumed,
         )
 
+    @property
+    def error_of_model(self) -> float | None:
+        """Of the mechanism's blind predictions."""
+        return self.model_deviation
+
+    @property
+    def inputs(self) -> dict[str, SourcedValue]:
+        """Levels of friction and the numbers of the mechanism."""
+        return {**sourced_fields(self), **self.effect_inputs}
+
+    def at(self, values: Mapping[str, float]) -> SpeedEffectLaw:
+        """Return the law at other levels and numbers of the mechanism."""
+        law = with_values(self, {k: v for k, v in values.items() if k not in self.effect_inputs})
+        own = {k: values[k] for k in self.effect_inputs if k in values}
+        if not own:
+            return law
+        given: Any = self.effect
+        changed = given.at(own) if hasattr(given, "at") else with_values(given, own)
+        return replace(law, effect=changed)
+
     def __call__(
         self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
     ) -> FrictionParts:
@@ -154,22 +179,6 @@ class SpeedEffectLaw:
             (boundary - floor) * left * pressure,
             floor * pressure,
             viscous_shear(self.viscosity, velocity, film),
-        )
-
-    def deviation(
-        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> FrictionDeviation | None:
-        """Return the standard deviations, Pa: both coefficients and the model, independent."""
-        boundary, floor = self.cof_boundary.uncertainty, self.cof_hysteresis.uncertainty
-        if boundary is None or floor is None or self.model_deviation is None:
-            return None
-        pressure, velocity, _ = checked(contact_pressure, speed, film_thickness)
-        left = self._left(pressure, velocity)
-        solid = np.sqrt(
-            (left * boundary) ** 2 + ((1 - left) * floor) ** 2 + self.model_deviation**2
-        )
-        return FrictionDeviation(
-            solid * pressure, np.hypot(solid, floor) * pressure, floor * pressure
         )
 
     def breaches(

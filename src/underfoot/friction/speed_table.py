@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from underfoot.core import Breach, InputError, Range
+from underfoot.core import Breach, InputError, Range, SourcedValue
 
 from ._shared import checked, checked_viscosity, law_breaches, viscous_shear
-from .law import FrictionDeviation, FrictionParts
+from .law import FrictionParts
+from .uncertain_inputs import UncertainInputs, with_values
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SpeedTableLaw:
+class SpeedTableLaw(UncertainInputs):
     """tau = COF(V) p_c from a table, linear in the logarithm of the speed; plus eta V / h.
 
     Beyond its lowest and highest speed the table keeps its end values, and says so.
@@ -97,15 +99,19 @@ class SpeedTableLaw:
             viscous_shear(self.viscosity, velocity, film),
         )
 
-    def deviation(
-        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> FrictionDeviation | None:
-        """Return the standard deviations of the readings, Pa; the split has none of its own."""
-        if self.cof_deviation is None:
-            return None
-        pressure, velocity, _ = checked(contact_pressure, speed, film_thickness)
-        solid = self._at(velocity, self.cof_deviation) * pressure
-        return FrictionDeviation(solid, solid, np.zeros_like(solid))
+    @property
+    def inputs(self) -> dict[str, SourcedValue]:
+        """One draw for the whole table: readings of one device are off together."""
+        deviation = None if self.cof_deviation is None else 1.0
+        return {"readings": SourcedValue(0.0, "1", self.source, deviation)}
+
+    def at(self, values: Mapping[str, float]) -> SpeedTableLaw:
+        """Return the law with all readings moved by so many of their standard deviations."""
+        law = with_values(self, {k: v for k, v in values.items() if k != "readings"})
+        if "readings" not in values or self.cof_deviation is None:
+            return law
+        moved = np.maximum(self.cof + values["readings"] * self.cof_deviation, 0.0)
+        return replace(law, cof=moved)
 
     def breaches(
         self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike

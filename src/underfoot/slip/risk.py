@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, InputError, SourcedValue
 
@@ -41,6 +42,7 @@ def slip_risk(
     *,
     rcof: RequiredFriction = ADULTS_LEVEL_WALKING,
     model: SlipModel | None = None,
+    samples: ArrayLike | None = None,
 ) -> SlipRisk:
     """Return how likely a step slips: the mean of P(ACOF, RCOF) over the population's RCOF.
 
@@ -52,10 +54,12 @@ def slip_risk(
         Normally distributed required friction of the population.
     model
         A published model; None takes ``ReportG6``.
+    samples
+        (n,) draws of ACOF, as ``friction.sampled_cof`` gives them; None takes it as normal.
 
     Notes
     -----
-    The band holds the uncertainty of ACOF (normal, cut at 0) alone: not that of the model, whose
+    The band holds the uncertainty of ACOF (cut at 0) alone: not that of the model, whose
     standard errors the report does not print, nor that of the population.
 
     Errors
@@ -68,7 +72,12 @@ def slip_risk(
         raise InputError(f"the available friction was not determined: {acof.reason}", where="acof")
     middle = float(chosen.population(acof.value, rcof.mean, rcof.sd))
     low = high = expected = spread = None
-    if acof.uncertainty is not None:
+    if samples is not None:
+        drawn = np.maximum(np.asarray(samples, dtype=float), 0.0)
+        values = chosen.population(drawn, rcof.mean, rcof.sd)
+        low, high = (float(p) for p in np.quantile(values, [0.025, 0.975]))
+        expected, spread = float(np.mean(values)), float(np.std(values, ddof=1))
+    elif acof.uncertainty is not None:
         if not math.isfinite(acof.uncertainty):
             raise InputError("the uncertainty is not finite", where="acof")
         ends = np.maximum(acof.value + _Z95 * acof.uncertainty * np.array([1.0, -1.0]), 0.0)
@@ -95,6 +104,7 @@ def slip_risk(
             reason="" if spread is not None else "the available friction came without one",
             assumed=acof.assumed or rcof.assumed,
             note="spread of the available friction alone",
+            interval=None if low is None or high is None else (low, high),
         ),
         low=low,
         high=high,

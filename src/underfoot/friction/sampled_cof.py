@@ -1,0 +1,202 @@
+"""Coefficient of friction of a sole with its uncertainty, by sampling the law's inputs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from underfoot.core import SourcedValue
+
+from ._shared import SMALLEST_FILM
+from .law import FrictionLaw, FrictionParts
+from .propagation import Propagated, propagated
+
+Array = NDArray[np.float64]
+PARTS = ("adhesion", "hysteresis", "viscous")
+CLASSES = 64
+"""Classes of contact pressure that stand for the cells under the sole in the draws."""
+SAMPLES = 500
+MODEL = "model"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SampledCof:
+    """Draws of COF and of its parts, each (samples,), and what they rest on.
+
+    ``share``: part of the variance of COF that goes with each input ("model": the law's own error),
+    squared correlations over their sum, 1. ``left_out``: inputs taken as exact because their spread
+    is not known.
+    """
+
+    cof: Array
+    adhesion: Array
+    hysteresis: Array
+    viscous: Array
+    share: Mapping[str, float]
+    left_out: tuple[str, ...]
+    confidence: float
+    seed: int
+
+    def sourced(self, name: str, value: SourcedValue) -> SourcedValue:
+        """Return ``value`` with the standard deviation and the interval of the draws ``name``."""
+        draws = getattr(self, name)
+        if np.std(draws) <= 1e-9 * np.abs(draws).max(initial=0.0):
+            exact = ", ".join(self.left_out) or "what it depends on"
+            return replace(value, reason=f"{exact} came without a standard deviation")
+        tail = 0.5 * (1 - self.confidence)
+        low, high = np.quantile(draws, [tail, 1 - tail])
+        return replace(
+            value,
+            uncertainty=float(np.std(draws, ddof=1)),
+            interval=(float(low), float(high)),
+            reason="",
+        )
+
+
+def sampled_cof(
+    law: FrictionLaw,
+    contact_pressure: ArrayLike,
+    fluid_pressure: ArrayLike,
+    film_thickness: ArrayLike,
+    *,
+    speed: float,
+    wet: ArrayLike | None = None,
+    fluid_inputs: Mapping[str, SourcedValue] | None = None,
+    confidence: float = 0.95,
+    samples: int = SAMPLES,
+    seed: int = 0,
+) -> SampledCof | None:
+    """Return draws of Eq. (1): the inputs of the law within their spreads, and the law's own error.
+
+    Contact, film and fluid pressure stay as they were computed. The model's error is one normal
+    draw for the whole sole, in proportion to the load on the contact; contact friction is not
+    drawn below 0. Cells are put into classes of equal pressure (with their film); what the classes
+    miss of each part is made up for by a factor.
+
+    Parameters
+    ----------
+    contact_pressure, fluid_pressure, film_thickness, wet
+        (nx, ny) Pa, Pa, m and where the film is, as ``cof`` takes them.
+    speed
+        m/s.
+    fluid_inputs
+        "viscosity" (Pa s) with its standard deviation; where it has none it counts as exact.
+
+    Returns None when one of the law's own inputs has no standard deviation, or when nothing has
+    one: an interval of the rest alone would be too narrow.
+    """
+    inputs = _inputs(law, fluid_inputs)
+    if inputs is None:
+        return None
+    contact = np.asarray(contact_pressure, dtype=float)
+    film = np.broadcast_to(np.asarray(film_thickness, dtype=float), contact.shape)
+    mask = np.ones(contact.shape, bool) if wet is None else np.asarray(wet, dtype=bool)
+    load = float(contact.sum() + np.sum(fluid_pressure))
+    carried = float(contact.sum()) / load
+    pressure, gap, counts, wet_counts = _classes(contact, film, mask)
+
+    def sums(found: FrictionParts, solid: Any, fluid: Any) -> Array:
+        weighted = ((found.adhesion, solid), (found.hysteresis, solid), (found.viscous, fluid))
+        return np.array([float(np.sum(part * weight)) for part, weight in weighted]) / load
+
+    exact = sums(law(contact, speed, film), 1.0, mask)
+    coarse = sums(law(pressure, speed, gap), counts, wet_counts)
+    factor = np.where(coarse > 0, exact / np.where(coarse > 0, coarse, 1.0), 1.0)
+
+    def parts(values: Mapping[str, float]) -> Array:
+        drawn = law.at({k: v for k, v in values.items() if k != MODEL})
+        adhesion, hysteresis, viscous = factor * sums(
+            drawn(pressure, speed, gap), counts, wet_counts
+        )
+        solid = max(adhesion + hysteresis + values.get(MODEL, 0.0) * carried, 0.0)
+        hysteresis = min(hysteresis, solid)
+        return np.array([solid + viscous, solid - hysteresis, hysteresis, viscous])
+
+    found = propagated(
+        parts, inputs, confidence=confidence, samples=samples, seed=seed, shares=False
+    )
+    return SampledCof(
+        *found.draws.T,
+        share=_shares(found),
+        left_out=found.left_out,
+        confidence=confidence,
+        seed=seed,
+    )
+
+
+def sampled_points(
+    law: FrictionLaw,
+    *,
+    contact_pressure: ArrayLike,
+    speed: ArrayLike,
+    film_thickness: ArrayLike,
+    fluid_inputs: Mapping[str, SourcedValue] | None = None,
+    samples: int = SAMPLES,
+    seed: int = 0,
+) -> Propagated | None:
+    """Return COF at operating points that carry all their load on the contact, with its spread.
+
+    Pressure (Pa), speed (m/s) and film (m) broadcast; otherwise as ``sampled_cof``: one draw holds
+    for all points.
+    """
+    inputs = _inputs(law, fluid_inputs)
+    if inputs is None:
+        return None
+    pressure = np.asarray(contact_pressure, dtype=float)
+
+    def points(values: Mapping[str, float]) -> Array:
+        drawn = law.at({k: v for k, v in values.items() if k != MODEL})
+        found = drawn(pressure, speed, film_thickness)
+        solid = (found.adhesion + found.hysteresis) / pressure + values.get(MODEL, 0.0)
+        return np.maximum(solid, 0.0) + found.viscous / pressure
+
+    return propagated(points, inputs, samples=samples, seed=seed, shares=False)
+
+
+def _inputs(
+    law: FrictionLaw, fluid_inputs: Mapping[str, SourcedValue] | None
+) -> dict[str, SourcedValue] | None:
+    """Return what is drawn: inputs of law and fluid and the law's error; None without spreads."""
+    if any(one.uncertainty is None for one in law.inputs.values()):
+        return None
+    inputs = {**law.inputs, **(fluid_inputs or {})}
+    if law.error_of_model:
+        inputs[MODEL] = SourcedValue(0.0, "1", law.source, law.error_of_model)
+    return inputs if any(one.uncertainty for one in inputs.values()) else None
+
+
+def _shares(found: Propagated) -> dict[str, float]:
+    cof = found.draws[:, 0]
+    if np.std(cof) <= 1e-9 * np.abs(cof).max(initial=0.0):
+        return {}
+    squares = {
+        name: float(np.corrcoef(draws, cof)[0, 1]) ** 2
+        for name, draws in found.drawn.items()
+        if np.std(draws) > 0
+    }
+    total = sum(squares.values())
+    return {name: square / total for name, square in squares.items()} if total > 0 else {}
+
+
+def _classes(contact: Array, film: Array, wet: NDArray[np.bool_]) -> tuple[Array, ...]:
+    """Return pressure, film, number of cells and of wet cells of each class.
+
+    Pressure is the mean of a class; the film is such that eta V / h has the class's mean over its
+    wet cells.
+    """
+    order = np.lexsort((film.ravel(), contact.ravel()))
+    groups = np.array_split(order, min(CLASSES, order.size))
+    counts = np.array([group.size for group in groups], dtype=float)
+    starts = np.concatenate([[0], np.cumsum(counts[:-1])]).astype(int)
+
+    def per_class(values: Array) -> Array:
+        return np.add.reduceat(values.ravel()[order], starts)
+
+    wet_counts = per_class(wet.astype(float))
+    thin = per_class(np.where(wet, 1.0 / np.maximum(film, SMALLEST_FILM), 0.0))
+    gap = np.where(thin > 0, wet_counts / np.where(thin > 0, thin, 1.0), 1.0)
+    return per_class(contact) / counts, gap, counts, wet_counts
