@@ -77,14 +77,14 @@ def test_outcome_survives_its_text(case) -> None:
 
 def test_what_did_not_converge_is_no_number() -> None:
     value = SourcedValue(0.2, uncertainty=0.01)
-    outcome = Outcome("a", "h", {"cof": value}, {}, Status.NOT_CONVERGED, "", (), 0.1)
+    outcome = Outcome("a", "h", {"cof": value}, {}, Status.NOT_CONVERGED, "", (), (), 0.1)
     assert math.isnan(outcome.number("cof"))
     assert math.isnan(outcome.spread("cof"))
 
 
 def _outcome(value: float, spread: float = 0.0) -> Outcome:
     scalar = SourcedValue(value, uncertainty=spread)
-    return Outcome("a", "h", {"cof": scalar}, {}, Status.CONVERGED, "", (), 0.1)
+    return Outcome("a", "h", {"cof": scalar}, {}, Status.CONVERGED, "", (), (), 0.1)
 
 
 def test_band_adds_independent_spreads_in_quadrature() -> None:
@@ -101,7 +101,9 @@ def test_band_adds_independent_spreads_in_quadrature() -> None:
 
 
 def test_an_input_that_can_not_be_computed_is_named() -> None:
-    failed = Outcome("a", "h", {"cof": SourcedValue(None)}, {}, Status.NOT_CONVERGED, "", (), 0.1)
+    failed = Outcome(
+        "a", "h", {"cof": SourcedValue(None)}, {}, Status.NOT_CONVERGED, "", (), (), 0.1
+    )
     found = Sensitivity(_outcome(0.2), (Effect("p", "r", 0, 1, "1", failed, _outcome(0.3)),))
     assert found.band("cof").not_computed == ("p",)
 

@@ -33,6 +33,7 @@ class Outcome:
     status: Status
     remedy: str
     breaches: tuple[str, ...]
+    assumptions: tuple[str, ...]
     seconds: float
 
     @property
@@ -61,6 +62,7 @@ class Outcome:
             result.status,
             result.status.remedy,
             result.breaches,
+            result.assumptions,
             float(sum(result.provenance.timings.values())),
         )
 
@@ -74,6 +76,7 @@ class Outcome:
             "status": str(self.status),
             "remedy": self.remedy,
             "breaches": list(self.breaches),
+            "assumptions": list(self.assumptions),
             "seconds": self.seconds,
         }
         return json.dumps(plain)
@@ -84,7 +87,8 @@ class Outcome:
         plain = json.loads(text)
         plain["scalars"] = {name: SourcedValue(**v) for name, v in plain["scalars"].items()}
         plain["status"] = Status(plain["status"])
-        plain["breaches"] = tuple(plain["breaches"])
+        for name in ("breaches", "assumptions"):
+            plain[name] = tuple(plain[name])
         return cls(**plain)
 
 

@@ -14,6 +14,7 @@ from .contact import contact
 from .doctor import doctor
 from .explain import explain
 from .guard import guarded
+from .method import by_method
 from .micro import micro
 from .new import new
 from .run import run
@@ -53,6 +54,7 @@ _add(
     validate,
     doctor,
 )
+app.command("test")(guarded(by_method))
 app.add_typer(trials_app)
 app.add_typer(studies_app)
 
