@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .guard import guarded
+from .guard import guarded, say
 from .options import AsJson, Overwrite
 
 if TYPE_CHECKING:
     from underfoot.studies.g1 import G1Study
+    from underfoot.studies.g1_cases import G1Settings
 
 studies_app = typer.Typer(
     name="studies",
@@ -54,7 +55,11 @@ def run_study(
     ] = False,
     explicit: Annotated[
         bool,
-        typer.Option("--explicit", help="Explicit finite elements (an hour) in place of seconds."),
+        typer.Option(
+            "--explicit",
+            help="Explicit finite elements (15 min and more) in place of seconds; goes on where "
+            "it was stopped.",
+        ),
     ] = False,
     series: Annotated[
         str,
@@ -106,8 +111,14 @@ def run_study(
     )
     if out is not None:
         check_writable_folder(out, overwrite=overwrite)
-    with bar(chosen.title.partition(":")[0]) as progress:
-        found = run(settings.quick if quick else settings, progress=progress)
+    if quick:
+        settings = settings.quick
+    try:
+        with bar(chosen.title.partition(":")[0]) as progress:
+            found = run(settings, progress=progress)
+    except KeyboardInterrupt:
+        _say_what_is_kept(settings)
+        raise
     if out is not None:
         with whole_folder(out, overwrite=overwrite) as staging:
             write_study(found, staging)
@@ -119,6 +130,18 @@ def run_study(
         _show(found, chosen.source, out, quick)
     if any(row.cof_hysteresis != row.cof_hysteresis for row in found.rows):
         raise typer.Exit(4)
+
+
+def _say_what_is_kept(settings: G1Settings) -> None:
+    from underfoot.studies.g1_cases import matrix
+    from underfoot.studies.g1_kept import kept_cases
+
+    if settings.solver == "explicit":
+        cases = list(matrix(settings))
+        say(
+            f"{kept_cases(settings, cases)} of {len(cases)} cases are finished and kept: the same "
+            "command goes on from there"
+        )
 
 
 def write_study(found: G1Study, folder: Path) -> None:
@@ -165,7 +188,7 @@ def _settings(
     wavelengths: tuple[str, str],
     explicit: bool,
     processes: int,
-) -> Any:
+) -> G1Settings:
     from underfoot.core import to_si, unknown_name
     from underfoot.studies.g1_cases import G1Settings
 

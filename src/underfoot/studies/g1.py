@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, astuple, dataclass
 from typing import Any
 
@@ -15,12 +15,13 @@ from .g1_cases import (
     SERIES,
     CondensedRuns,
     G1Case,
+    G1Outcome,
     G1Row,
     G1Settings,
-    explicit_result,
     matrix,
-    row_of,
+    outcome_of,
 )
+from .g1_kept import explicit_outcomes, kept_cases
 from .g1_lines import printed_lines, series_notes
 from .verdict import ComparedLine, Erratum
 
@@ -95,7 +96,7 @@ class G1Study:
     notes
         What a reader must know.
     seconds, process_seconds
-        Wall clock and process time.
+        Wall clock, and process time of all cases, kept ones with what they took.
     """
 
     settings: G1Settings
@@ -129,6 +130,8 @@ class G1Study:
 def run(settings: G1Settings | None = None, *, progress: Progress = silent) -> G1Study:
     """Return the whole matrix: materials x shoe roughness x floors x speeds for each series.
 
+    Explicit cases are kept in the user's cache as they end: a run stopped early goes on from there.
+
     Percent changes are taken as the report words them: roughness at the lowest speed (Fig. 5 and
     8), speed from the lowest to the highest (Fig. 6 and 7); ranges run over the other conditions.
 
@@ -142,22 +145,14 @@ def run(settings: G1Settings | None = None, *, progress: Progress = silent) -> G
     cases = list(matrix(settings))
     rows: list[G1Row] = []
     histories: list[G1History] = []
-    for case, result in _results(cases, settings):
-        rows.append(row_of(case, result))
-        progress(_stage(case), len(rows) / len(cases), None)
-        which = (case.material, case.shoe_rz, case.floor_rz)
-        if which == FIGURE_3 and case.speed == max(settings.speeds):
-            histories.append(
-                G1History(
-                    case.series,
-                    case.speed,
-                    result.time,
-                    result.distance,
-                    result.normal_force,
-                    result.shear_force,
-                    result.real_contact_area,
-                )
-            )
+    before = kept_cases(settings, cases) if settings.solver == "explicit" else 0
+    for outcome in _outcomes(cases, settings):
+        row = outcome.row
+        rows.append(row)
+        progress(_stage(row), len(rows) / len(cases), None)
+        which = (row.material, row.shoe_rz, row.floor_rz)
+        if which == FIGURE_3 and row.speed == max(settings.speeds):
+            histories.append(G1History(row.series, row.speed, **outcome.history))
     order = {astuple(case): number for number, case in enumerate(cases)}
     rows.sort(key=lambda row: order[row.series, row.material, row.shoe_rz, row.floor_rz, row.speed])
     lines = [line for name in settings.series for line in printed_lines(rows, name)]
@@ -167,7 +162,7 @@ def run(settings: G1Settings | None = None, *, progress: Progress = silent) -> G
         tuple(lines),
         tuple(histories),
         ERRATA,
-        _notes(rows, settings),
+        _notes(rows, settings, before),
         time.perf_counter() - begun,
         time.process_time() - process
         if settings.solver == "condensed"
@@ -175,37 +170,24 @@ def run(settings: G1Settings | None = None, *, progress: Progress = silent) -> G
     )
 
 
-def _results(cases: Sequence[G1Case], settings: G1Settings):
-    """Yield (case, result), in order with one process, else as they end."""
-    if settings.solver == "condensed":
-        runs = CondensedRuns(settings)
-        for case in cases:
-            yield case, runs(case)
+def _outcomes(cases: Sequence[G1Case], settings: G1Settings) -> Iterator[G1Outcome]:
+    """Yield the outcomes; explicit ones as they end."""
+    if settings.solver == "explicit":
+        yield from explicit_outcomes(cases, settings)
         return
-    if settings.processes == 1:
-        for case in cases:
-            yield case, explicit_result(case, settings)
-        return
-    from concurrent.futures import ProcessPoolExecutor, as_completed
-    from multiprocessing import get_context
-
-    pool = ProcessPoolExecutor(settings.processes, mp_context=get_context("spawn"))
-    try:
-        waiting = {pool.submit(explicit_result, case, settings): case for case in cases}
-        for done in as_completed(waiting):
-            yield waiting[done], done.result()
-    finally:
-        pool.shutdown(wait=False, cancel_futures=True)
+    runs = CondensedRuns(settings)
+    for case in cases:
+        yield outcome_of(case, runs(case))
 
 
-def _stage(case: G1Case) -> str:
+def _stage(case: G1Row) -> str:
     return (
         f"{case.series}: {case.material} {case.shoe_rz * 1e6:g} um on {case.floor_rz * 1e6:g} um, "
         f"{case.speed:g} m/s"
     )
 
 
-def _notes(rows: Sequence[G1Row], settings: G1Settings) -> tuple[str, ...]:
+def _notes(rows: Sequence[G1Row], settings: G1Settings, before: int) -> tuple[str, ...]:
     notes = [f"{name}: {series_notes(name)}" for name in settings.series]
     notes.append(
         "rougher shoe: Rz 12.1 to 35.1 um; rougher floor: 16.6 to 35.1 um, both at "
@@ -223,11 +205,14 @@ def _notes(rows: Sequence[G1Row], settings: G1Settings) -> tuple[str, ...]:
                 else ""
             )
         )
+    if before:
+        notes.append(f"{before} of {len(rows)} cases were kept from an earlier run")
     lost = [row for row in rows if row.cof_hysteresis != row.cof_hysteresis]
     if lost:
         notes.append(f"{len(lost)} of {len(rows)} cases gave no result")
     notes.append(
         "area per force counts every node that carries force, as finite elements do: 26 % too "
-        "much at 13 elements a wavelength and 36 % contact, more for smaller spots (neolite)"
+        "much at 13 elements a wavelength and 36 % contact, more for smaller spots (neolite); "
+        "cases.csv has it without the edges of the spots too"
     )
     return tuple(notes)

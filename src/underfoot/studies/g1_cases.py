@@ -42,6 +42,7 @@ SERIES = {
 }
 HOLD_TIME = {"condensed": 0.3e-3, "explicit": 1.0e-3}
 """s; stiff neolite with scaled mass settles to 1 % of the load in the longer one."""
+HISTORY = ("time", "distance", "normal_force", "shear_force", "real_contact_area")
 FINE = (26, 16, 9)
 COARSE = (20, 13, 7)
 
@@ -151,11 +152,20 @@ class G1Row:
     cof_absolute: float
     cof_resultant: float
     area_per_force: float
+    area_per_force_corrected: float
     real_contact_fraction: float
     mean_pressure: float
     status: str
     note: str
     seconds: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class G1Outcome:
+    """A row with its history: ``HISTORY``, arrays (n,) in SI."""
+
+    row: G1Row
+    history: dict[str, np.ndarray]
 
 
 def matrix(settings: G1Settings) -> Iterator[G1Case]:
@@ -244,12 +254,20 @@ class CondensedRuns:
         )
 
 
-def explicit_result(case: G1Case, settings: G1Settings) -> MicroResult:
-    """Return the history of one case by explicit finite elements, mass scaled to a 1 % error."""
+def explicit_outcome(case: G1Case, settings: G1Settings) -> G1Outcome:
+    """Return one case by explicit finite elements, mass scaled within its error bounds."""
     from underfoot.asperity.finite_element import ExplicitSettings, explicit_sliding
 
     block, floor, material, loading = parts_of(case, settings)
-    return explicit_sliding(block, floor, material, loading, ExplicitSettings(mass_scaling="auto"))
+    return outcome_of(
+        case,
+        explicit_sliding(block, floor, material, loading, ExplicitSettings(mass_scaling="auto")),
+    )
+
+
+def outcome_of(case: G1Case, result: MicroResult) -> G1Outcome:
+    """Return a case's row and the history that Fig. 3 shows."""
+    return G1Outcome(row_of(case, result), {name: getattr(result, name) for name in HISTORY})
 
 
 def row_of(case: G1Case, result: MicroResult) -> G1Row:
@@ -262,6 +280,7 @@ def row_of(case: G1Case, result: MicroResult) -> G1Row:
             "cof_absolute",
             "cof_resultant",
             "area_per_force",
+            "area_per_force_corrected",
             "real_contact_fraction",
             "mean_pressure",
         )

@@ -54,7 +54,6 @@ def condensed_sliding(
     loading: MicroLoading,
     *,
     steps_per_wavelength: int = 64,
-    edge_correction: bool = False,
     progress: Progress = silent,
 ) -> MicroResult:
     """Return the history of a block pressed on a rough rigid floor and slid along +x.
@@ -81,10 +80,6 @@ def condensed_sliding(
         slid at the height reached (control "displacement") or under the load.
     steps_per_wavelength
         Time steps while the floor moves by one wavelength.
-    edge_correction
-        False: the real contact area is that of all nodes that carry force, as finite elements
-        count it (26 % too much at 13 elements a wavelength and 36 % contact); True: less its
-        edges (``edge_corrected_contact_area``).
     progress
         A ``Cancelled`` that it raises ends the run with what there is.
 
@@ -120,9 +115,7 @@ def condensed_sliding(
                 remedy="Condense the block for this material",
             )
         moments = _schedule(loading, floor, outline, steps_per_wavelength)
-        return _March(block, material, floor, edge_correction).run(
-            moments, loading, started, progress
-        )
+        return _March(block, material, floor).run(moments, loading, started, progress)
 
 
 def condensed_poisson_ratio(material: MicroMaterial) -> float:
@@ -177,9 +170,7 @@ class _March:
         condensed: CondensedBlock,
         material: MicroMaterial,
         floor: MicroSurface,
-        edge_correction: bool,
     ) -> None:
-        self.area = edge_corrected_contact_area if edge_correction else nodal_contact_area
         self.condensed, self.floor = condensed, floor
         self.shear = material.shear
         self.instantaneous = material.shear.instantaneous_modulus
@@ -220,7 +211,7 @@ class _March:
             notes.append(f"sideways motion settled to {self.unsettled:.1g} of the roughness only")
         if rows and rows[-1][2] == 0.0:
             notes.append("the faces do not touch at the end")
-        table = np.array(rows).reshape(-1, 8)
+        table = np.array(rows).reshape(-1, 9)
         averages = self._averages(table) if status is Status.CONVERGED else None
         if averages is not None:
             notes += self._loss_note(loading)
@@ -231,7 +222,8 @@ class _March:
             shear_force=table[:, 3],
             lateral_force=table[:, 4],
             real_contact_area=table[:, 5],
-            height=table[:, 6],
+            corrected_contact_area=table[:, 6],
+            height=table[:, 7],
             nominal_area=self.condensed.block.nominal_area,
             averages=averages,
             energy=None,
@@ -257,7 +249,8 @@ class _March:
             float(force.sum()),
             float(force @ slope),
             -float(force @ across),
-            self.area(self.condensed, self.active),
+            nodal_contact_area(self.condensed, self.active),
+            edge_corrected_contact_area(self.condensed, self.active),
             contact.height,
             float(contact.steps),
         )
@@ -327,7 +320,7 @@ class _March:
         first = sliding[0]
         ends = table[first - 1 :]
         middle = 0.5 * (ends[1:] + ends[:-1])
-        normal, shear, lateral, area = middle[:, 2:6].T
+        normal, shear, lateral, area, corrected = middle[:, 2:7].T
         return whole_wavelength_averages(
             table[sliding, 1],
             normal,
@@ -335,6 +328,7 @@ class _March:
             np.abs(shear),
             np.hypot(shear, lateral),
             area,
+            corrected,
             wavelength=self.floor.wavelength,
             nominal_area=self.condensed.block.nominal_area,
         )

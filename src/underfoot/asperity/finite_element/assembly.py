@@ -13,7 +13,7 @@ from underfoot.core import InputError
 from ._kernels import generate, names
 from .inputs import MicroBlock, MicroLoading, MicroMaterial
 from .mesh import Mesh, block_mesh, check_pattern, layer_heights
-from .settings import ExplicitSettings, largest_mass_scaling
+from .settings import ExplicitSettings, impact_friction, largest_mass_scaling
 from .surface import MicroSurface
 
 LANES = generate.LANES
@@ -47,6 +47,8 @@ class Assembly:
         Pa.
     mass_scaling
         Factor.
+    impact_friction
+        Bound on the COF that lower nodes meeting the floor add.
     kind, viscous
         Which kernel.
     """
@@ -68,6 +70,7 @@ class Assembly:
     penalty: float
     hourglass_modulus: float
     mass_scaling: float
+    impact_friction: float
     kind: str
     viscous: bool
 
@@ -122,8 +125,9 @@ def assembled(
     g0, bulk = spectrum.instantaneous_modulus, material.bulk_modulus
     shear_speed = material.wave_speeds[1]
     scaling = settings.mass_scaling
+    unscaled = _impact(block, floor, material.density, loading)
     if isinstance(scaling, str):
-        scaling = largest_mass_scaling(loading.speed, shear_speed)
+        scaling = largest_mass_scaling(loading.speed, shear_speed, unscaled)
     density = material.density * scaling
     confined = bulk + 4.0 / 3.0 * g0
     critical = critical_time_step(mesh.largest_gradient_square, confined, density)
@@ -208,8 +212,25 @@ def assembled(
         penalty=penalty,
         hourglass_modulus=modulus,
         mass_scaling=float(scaling),
+        impact_friction=float(scaling) * unscaled,
         kind=kind,
         viscous=viscous,
+    )
+
+
+def _impact(block: MicroBlock, floor: MicroSurface, density: float, loading: MicroLoading) -> float:
+    """Return ``impact_friction`` of a block with its own density; 0 on a floor without waves."""
+    if not floor.rough or floor.form == "paraboloid":
+        return 0.0
+    x, y = (size * (np.arange(128) + 0.5) / 128 for size in block.size[:2])
+    slope = floor.height_and_slope(x[:, None], y[None, :])[1]
+    return impact_friction(
+        loading.speed,
+        density,
+        float(layer_heights(block)[1]),
+        4.0 * float(np.mean(slope**2)),
+        loading.mean_pressure,
+        floor.wavelength,
     )
 
 

@@ -16,6 +16,7 @@ def whole_wavelength_averages(
     absolute_shear: np.ndarray,
     resultant: np.ndarray,
     real_contact_area: np.ndarray,
+    corrected_area: np.ndarray,
     *,
     wavelength: float,
     nominal_area: float,
@@ -49,6 +50,7 @@ def whole_wavelength_averages(
     cof = float(shear.mean() / normal.mean())
     mean_normal = float(normal.mean())
     area = float(between(real_contact_area).mean())
+    corrected = float(between(corrected_area).mean())
     return MicroAverages(
         cof_hysteresis=cof,
         cof_absolute=float(between(absolute_shear).mean()) / mean_normal,
@@ -58,4 +60,6 @@ def whole_wavelength_averages(
         mean_pressure=mean_normal / nominal_area,
         wavelengths=whole - first,
         scatter=float(np.abs(each - cof).max()) if each.size > 1 else math.nan,
+        area_per_force_corrected=corrected / mean_normal,
+        real_contact_fraction_corrected=corrected / nominal_area,
     )

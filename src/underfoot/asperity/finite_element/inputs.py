@@ -301,7 +301,7 @@ class MicroAverages:
         The same with the mean of |shear|, and of the resultant of shear and lateral force: not
         friction, but what unsigned averages give.
     area_per_force
-        A_c / F_N, m^2/N (Eq. 12).
+        A_c / F_N, m^2/N (Eq. 12), with the cells of all nodes in contact, as finite elements do.
     real_contact_fraction
         A_c over the nominal area.
     mean_pressure
@@ -310,6 +310,9 @@ class MicroAverages:
         How many were averaged.
     scatter
         Largest difference of one wavelength's signed COF from their mean (NaN with only one).
+    area_per_force_corrected, real_contact_fraction_corrected
+        The same area less what the edges of contact spots count too much (``edge_excess_area``):
+        the better estimate.
     """
 
     cof_hysteresis: float
@@ -320,6 +323,8 @@ class MicroAverages:
     mean_pressure: float
     wavelengths: int
     scatter: float
+    area_per_force_corrected: float
+    real_contact_fraction_corrected: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -333,7 +338,9 @@ class MicroResult:
     normal_force, shear_force, lateral_force
         N at the rough interface: on the block, upwards; against sliding (-x); along y.
     real_contact_area
-        m^2.
+        m^2: cells of the nodes in contact.
+    corrected_contact_area
+        m^2: the same less its edges (``edge_excess_area``).
     height
         m, displacement of the block's top.
     nominal_area
@@ -354,6 +361,7 @@ class MicroResult:
     shear_force: np.ndarray
     lateral_force: np.ndarray
     real_contact_area: np.ndarray
+    corrected_contact_area: np.ndarray
     height: np.ndarray
     nominal_area: float
     averages: MicroAverages | None

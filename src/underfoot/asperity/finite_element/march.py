@@ -15,7 +15,7 @@ from ._kernels import names
 from .assembly import Assembly, critical_time_step
 from .files import collection, saved_state, snapshot
 from .inputs import MicroLoading
-from .record import new_row
+from .record import COLUMNS, new_row
 
 SETTLED = 0.01
 """Largest relative difference of contact force and load before sliding."""
@@ -140,7 +140,7 @@ class March:
     def state(self) -> dict[str, np.ndarray]:
         """Return copies of all that a restart needs."""
         u, v, _ = self.assembly.nodes
-        rows = np.array(self.rows) if self.rows else np.empty((0, 19))
+        rows = np.array(self.rows) if self.rows else np.empty((0, len(COLUMNS)))
         return {
             "key": np.array(self.key),
             "displacement": u.copy(),

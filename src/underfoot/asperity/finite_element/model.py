@@ -24,11 +24,16 @@ from .assembly import Assembly, assembled
 from .files import loaded_state, saved_state
 from .inputs import MicroBlock, MicroLoading, MicroMaterial, MicroResult
 from .march import March
-from .record import averages, ledger
-from .settings import MASS_SCALING_ALLOWED, ExplicitSettings, mass_scaling_error
+from .record import COLUMNS, averages, ledger
+from .settings import (
+    IMPACT_ALLOWED,
+    MASS_SCALING_ALLOWED,
+    ExplicitSettings,
+    mass_scaling_error,
+)
 from .surface import MicroSurface
 
-STATE_VERSION = 1
+STATE_VERSION = 2
 """Of restart files; raised when their content changes."""
 LEDGER_TOLERANCE = 1e-3
 """Largest drift of the energy ledger while sliding, in units of load times distance."""
@@ -133,7 +138,7 @@ def _result(
     notes: list[str],
     seconds: float,
 ) -> MicroResult:
-    rows = np.array(march.rows).reshape(-1, 19)
+    rows = np.array(march.rows).reshape(-1, len(COLUMNS))
     area = block.nominal_area
     loading = march.loading
     if not march.settled:
@@ -148,7 +153,7 @@ def _result(
         )
         notes.append(
             f"density times {march.assembly.mass_scaling:.3g}: at most {bound:.1%} on area "
-            "over force"
+            f"over force and {march.assembly.impact_friction:.1g} on the COF"
         )
     if settings.hourglass == "viscous":
         notes.append(
@@ -178,6 +183,7 @@ def _result(
         shear_force=rows[:, 3],
         lateral_force=rows[:, 4],
         real_contact_area=rows[:, 5],
+        corrected_contact_area=np.maximum(rows[:, 5] - rows[:, 19], 0.0),
         height=rows[:, 8],
         nominal_area=area,
         averages=means,
@@ -224,4 +230,6 @@ def _breaches(
     error = mass_scaling_error(loading.speed, material.wave_speeds[1], assembly.mass_scaling)
     if assembly.mass_scaling > 1.0:
         test("mass scaling error", error, 0.0, MASS_SCALING_ALLOWED * (1 + 1e-9), "density scan")
+        impact = assembly.impact_friction
+        test("COF of scaled inertia", impact, 0.0, IMPACT_ALLOWED * (1 + 1e-9), "energy ledger")
     return found

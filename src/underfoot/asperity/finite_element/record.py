@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ._kernels import names
+from .area import edge_excess_area
 from .assembly import Assembly
 from .averages import whole_wavelength_averages
 from .inputs import EnergyLedger, MicroAverages
@@ -29,8 +30,10 @@ COLUMNS = (
     "hourglass_loss",
     "contact_loss",
     "damping_loss",
+    "edges",
 )
-"""Of a row; forces and area are means over the steps since the row before."""
+"""Of a row; forces and area are means over the steps since the row before, ``edges`` is the area
+that the edges of contact spots count too much at the row's end."""
 
 
 def new_row(assembly: Assembly, before: np.ndarray | None, rate: float) -> np.ndarray:
@@ -62,10 +65,25 @@ def new_row(assembly: Assembly, before: np.ndarray | None, rate: float) -> np.nd
             s[names.HOURGLASS_LOSS],
             s[names.CONTACT_LOSS],
             s[names.DAMPING_LOSS],
+            _edges(assembly),
         ]
     )
     s[names.NORMAL : names.COUNT + 1] = 0.0
     return row
+
+
+def _edges(assembly: Assembly) -> float:
+    """Return the edge excess of the nodes that touch now, m^2."""
+    nx, ny, _ = assembly.mesh.shape
+    periodic = assembly.control[names.PERIODIC] != 0.0
+    touching = (assembly.arrays[11][0] < 0.0).reshape(ny, nx)
+    if periodic:
+        touching = touching[:-1, :-1]
+    dx, dy = (
+        float(axis[-1]) / (count - 1)
+        for axis, count in ((assembly.arrays[1], nx), (assembly.arrays[2], ny))
+    )
+    return edge_excess_area(touching, dx, dy, periodic=periodic)
 
 
 def ledger(rows: np.ndarray) -> EnergyLedger:
@@ -96,6 +114,7 @@ def averages(rows: np.ndarray, wavelength: float, area: float) -> MicroAverages 
         c["absolute"],
         c["resultant"],
         c["area"],
+        np.maximum(c["area"] - c["edges"], 0.0),
         wavelength=wavelength,
         nominal_area=area,
     )

@@ -10,6 +10,9 @@ from underfoot.core import InputError, unknown_name
 MASS_SCALING_FACTOR = 5.0
 """Relative error of area over force per (speed / shear wave speed)^2; measured, see the page."""
 MASS_SCALING_ALLOWED = 0.01
+IMPACT_ALLOWED = 1e-4
+"""Friction that the meeting of lower nodes and floor may add, over normal force."""
+LARGEST_MASS_SCALING = 1000.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,11 +40,14 @@ class ExplicitSettings:
     penalty_stiffness
         Pa/m, in place of ``penalty_factor``.
     contact_damping
-        Share of critical damping at the contact nodes.
+        Share of critical damping at the contact nodes, only while they press. Without it nodes
+        chatter as they meet the floor, and 2 % of the real contact area is lost; it takes no
+        energy to speak of (the ledger has it).
     bulk_viscosity
         Linear coefficient, in compression only (0.06 in common codes; makes friction of its own).
     mass_scaling
-        Factor on the density; "auto" takes the largest one whose error bound is 1 %.
+        Factor on the density; "auto" takes the largest one (up to 1000) with an error bound of 1 %
+        on area over force and of 1e-4 on the COF (``impact_friction``).
     precision
         "double" or "single" (element arithmetic and history only).
     samples_per_wavelength
@@ -55,7 +61,7 @@ class ExplicitSettings:
     hourglass_modulus: float | None = None
     penalty_factor: float | None = None
     penalty_stiffness: float | None = None
-    contact_damping: float = 0.0
+    contact_damping: float = 0.3
     bulk_viscosity: float = 0.0
     mass_scaling: float | str = 1.0
     precision: str = "double"
@@ -111,7 +117,27 @@ def mass_scaling_error(speed: float, shear_wave_speed: float, factor: float) -> 
     return MASS_SCALING_FACTOR * factor * (speed / shear_wave_speed) ** 2
 
 
-def largest_mass_scaling(speed: float, shear_wave_speed: float) -> float:
-    """Return the largest factor with an error bound of 1 %, at least 1 and at most 1000."""
+def impact_friction(
+    speed: float, density: float, layer: float, square_slope: float, pressure: float, length: float
+) -> float:
+    """Return a bound on the COF that scaled inertia adds: rho h (v s)^2 / (p w).
+
+    Every wavelength w each lower node meets the floor once, with the floor's slope s times the
+    speed; what it and the lowest layer (thickness h) then have of kinetic energy goes to waves in
+    the block, which nothing brings back. ``square_slope`` is the mean of s^2 times 4 (the square of
+    the largest slope of a checkerboard), ``pressure`` the mean one. SI units, result without.
+    Measured in loss-free neolite: 0.07 to 0.6 of the bound, see the page.
+    """
+    return density * layer * square_slope * speed**2 / (pressure * length)
+
+
+def largest_mass_scaling(speed: float, shear_wave_speed: float, impact: float = 0.0) -> float:
+    """Return the largest factor within both bounds, at least 1 and at most 1000.
+
+    1 % on area over force, and 1e-4 on the COF; ``impact`` is ``impact_friction`` unscaled.
+    """
     error = mass_scaling_error(speed, shear_wave_speed, 1.0)
-    return 1000.0 if error == 0.0 else min(max(MASS_SCALING_ALLOWED / error, 1.0), 1000.0)
+    allowed = [LARGEST_MASS_SCALING]
+    allowed += [MASS_SCALING_ALLOWED / error] if error > 0.0 else []
+    allowed += [IMPACT_ALLOWED / impact] if impact > 0.0 else []
+    return max(min(allowed), 1.0)
