@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import functools
 import os
 import sys
@@ -38,7 +39,7 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             raise typer.Exit(0) from None
         except OSError as error:
-            say(f"error: {error.strerror or error}: {error.filename or ''}".rstrip(": "))
+            say(f"error: {file_trouble(error)}")
             raise typer.Exit(1) from None
         except MemoryError:
             say("error: not enough memory. Choose a coarser numerics.grid_spacing.")
@@ -51,6 +52,25 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
             raise typer.Exit(FAULT) from None
 
     return told
+
+
+def file_trouble(error: OSError) -> str:
+    """Return what went wrong with a file, in words and with its name."""
+    name = str(error.filename or "")
+    words = {
+        errno.ENOENT: "there is no {}",
+        errno.EISDIR: "{} is a folder; a file is needed",
+        errno.ENOTDIR: "a part of {} is a file, not a folder",
+        errno.EACCES: "no permission to use {}",
+        errno.EPERM: "no permission to use {}",
+        errno.EROFS: "{} can't be written: the disk is read-only",
+        errno.ENOSPC: "no space left on the disk for {}",
+        errno.EEXIST: "{} exists already",
+        errno.ENAMETOOLONG: "the name {} is too long",
+    }.get(error.errno or 0)
+    if words is None:
+        return f"{error.strerror or error}: {name}".rstrip(": ") + "."
+    return words.format(name or "the file") + "."
 
 
 def say(text: str) -> None:

@@ -44,6 +44,16 @@ def catalogue_for(case: Path | None, folders: list[Path] | None) -> Catalogue:
 def loaded(path: Path, folders: list[Path] | None, settings: list[str] | None) -> Case:
     """Return the case of a file with the changes of ``--set``."""
     from underfoot.case import Case
+    from underfoot.core import InputError
+
+    if path.is_dir():
+        own = path / "case.toml"
+        raise InputError(
+            f"{path} is a folder",
+            where="case",
+            allowed="a case file (TOML)",
+            nearest=str(own) if own.is_file() else None,
+        )
 
     changes = dict(_setting(text) for text in settings or ())
     return Case.load(path, catalogue=catalogue_for(path, folders), settings=changes)

@@ -2,38 +2,82 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from underfoot.case.result import Result
+
+_MOST_ASSUMPTIONS = 3
+_WEIGHTY = ("interface", "shoe.heel", "shoe.tread", "shoe.sole", "motion")
+"""Sections named first: the roughness of the interface and the shape of the sole decide the film."""
 
 
 def show_result(result: Result, folder: Path | None) -> None:
-    """Print the verdict, the table, what was assumed, what is out of range, where the files are."""
+    """Print the verdict, the table, the weightiest assumptions, breaches, where the files are."""
     from rich.console import Console
-    from rich.table import Table
 
     from underfoot.document import summary_rows, verdict
 
     console = Console(highlight=False)
-    console.print(f"\n[bold]{result.name}[/bold]", markup=True)
+    console.print(f"\n[bold]{_plain(result.name)}[/bold]", markup=True)
     console.print(verdict(result), markup=False)
     if result.status.usable:
-        table = Table(show_header=False, box=None, pad_edge=False)
+        rows, last = [], ""
         for row in summary_rows(result):
-            table.add_row(row.label, row.value, f"[dim]{_plain(row.remark)}[/dim]")
-        console.print(table)
-    for title, lines in (
-        ("Assumed, with no measurement behind it", result.assumptions),
-        ("Outside a tested range", result.breaches),
-    ):
-        if lines:
-            console.print(f"\n{title}:", markup=False)
-            for line in lines:
-                console.print(f"  - {line}", markup=False)
+            remark = "" if row.remark == last else row.remark
+            last = row.remark
+            rows.append((row.label, row.value, remark))
+        console.print(table((), rows, remarks=True))
+    if result.assumptions:
+        count = len(result.assumptions)
+        shown = weightiest(result.assumptions)
+        many = f"{count} values or rules, all in the report"
+        console.print(
+            f"\nAssumed, with no measurement behind it: {many if count > 1 else '1 value'}. "
+            + ("Measure first:" if count > len(shown) else ""),
+            markup=False,
+        )
+        for line in shown:
+            console.print(f"  - {line}", markup=False)
+    if result.breaches:
+        console.print("\nOutside a tested range:", markup=False)
+        for line in result.breaches:
+            console.print(f"  - {line}", markup=False)
     if folder is not None:
         console.print(f"\nFiles in {folder}; open {folder / 'report.html'}", markup=False)
+
+
+def weightiest(assumptions: Sequence[str], most: int = _MOST_ASSUMPTIONS) -> list[str]:
+    """Return the assumptions to look at first, one a section, without their reasons."""
+    sections = [line.partition(":")[0] for line in assumptions]
+    order = {name: number for number, name in enumerate(_WEIGHTY)}
+    ranked = sorted(range(len(assumptions)), key=lambda k: (order.get(sections[k], len(order)), k))
+    chosen: dict[str, str] = {}
+    for k in ranked:
+        chosen.setdefault(sections[k], assumptions[k].partition(" (")[0])
+    return list(chosen.values())[:most]
+
+
+def table(heads: Sequence[str], rows: Sequence[Sequence[str]], *, remarks: bool = False) -> Table:
+    """Return a plain table; with ``remarks`` the last column is dim and alone may wrap."""
+    from rich.table import Table
+
+    made = Table(box=None, pad_edge=False, show_header=bool(heads))
+    width = len(heads) or max(map(len, rows))
+    for number in range(width):
+        last = remarks and number == width - 1
+        made.add_column(
+            heads[number] if heads else "",
+            no_wrap=remarks and number == 0,
+            style="dim" if last else None,
+        )
+    for row in rows:
+        made.add_row(*(_plain(cell) for cell in row))
+    return made
 
 
 def _plain(text: str) -> str:

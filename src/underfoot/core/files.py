@@ -47,7 +47,7 @@ def whole_folder(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
 
 
 def check_writable_folder(path: Path, *, overwrite: bool = False) -> None:
-    """Refuse an output folder that holds something, before any work is done."""
+    """Refuse an output folder that holds something or can't be made, before any work is done."""
     if path.is_file():
         raise InputError(f"{path} is a file", where="--out", allowed="a folder to be made")
     if path.is_dir() and any(path.iterdir()) and not overwrite:
@@ -65,3 +65,21 @@ def check_writable_folder(path: Path, *, overwrite: bool = False) -> None:
             allowed="with --overwrite: a folder of earlier results",
             remedy="Choose another folder, or empty this one yourself",
         )
+    _check_place(path.resolve())
+
+
+def _check_place(path: Path) -> None:
+    """Refuse a folder beside which nothing can be written."""
+    place = path.parent
+    while not place.exists():
+        place = place.parent
+    try:
+        with tempfile.TemporaryDirectory(prefix=".underfoot-", dir=place):
+            pass
+    except OSError as error:
+        reason = "it is a file" if place.is_file() else (error.strerror or str(error)).lower()
+        raise InputError(
+            f"{path} can't be made: nothing can be written in {place} ({reason})",
+            where="--out",
+            remedy="Choose another folder",
+        ) from error

@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 def write_outputs(result: Result, folder: Path) -> None:
     """Write a result's data files, maps and page into an existing folder.
 
-    Files: case.toml, result.nc, summary.csv, result.json, contact_pressure.png,
-    fluid_pressure.png, film_thickness.png, maps.png and report.html (self-contained).
+    Files: case.toml, result.nc, summary.csv, result.json, a PNG for each quantity on the sole
+    (contact_pressure.png ...), maps.png with all, and report.html (self-contained, with the sole
+    in three dimensions).
     """
     result.write_files(folder)
-    save_maps(result.fields, folder)
-    page = result_page(result, (folder / "maps.png").read_bytes())
-    (folder / "report.html").write_text(page, encoding="utf-8")
+    maps = {path.stem: path.read_bytes() for path in save_maps(result.fields, folder)}
+    (folder / "report.html").write_text(result_page(result, maps), encoding="utf-8")

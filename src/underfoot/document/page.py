@@ -6,8 +6,10 @@ import base64
 import io
 from typing import TYPE_CHECKING, Any
 
-from .maps import overview_figure
+from .maps import map_figure
+from .quantities import quantities
 from .sentences import summary_rows, verdict
+from .viewer import viewer_script, viewer_section
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -16,14 +18,19 @@ if TYPE_CHECKING:
     from underfoot.case.result import Result
 
 
-def result_page(result: Result, maps: bytes | None = None) -> str:
-    """Return the page of one result as HTML text; ``maps`` is the overview as PNG, if drawn."""
+def result_page(result: Result, maps: dict[str, bytes] | None = None) -> str:
+    """Return the page of one result as HTML text; ``maps`` are PNG by quantity, if drawn."""
+    found = quantities([result.fields])
+    if maps is None:
+        maps = {quantity.name: png(map_figure(result.fields, quantity)) for quantity in found}
     template = environment().get_template("result.html")
     return template.render(
         result=result,
         verdict=verdict(result),
         rows=summary_rows(result),
-        maps=embedded(maps or png(overview_figure(result.fields))),
+        viewer=viewer_section([result]),
+        script=viewer_script(),
+        maps=[(quantity.title, embedded(maps[quantity.name])) for quantity in found],
         history=embedded(png(history_figure(result))) if "time" in result.fields.dims else None,
         provenance=result.provenance.as_dict(),
     )

@@ -1,0 +1,178 @@
+"""What of a result can be drawn on the sole: found in the data set by its labels, not by a list."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core.units import display_unit
+
+if TYPE_CHECKING:
+    import xarray
+
+SHARE = "fluid_share"
+HEIGHT_NAMES = ("clearance", "height")
+_PARTS = ("contact_pressure", "fluid_pressure")
+_FIRST = (*_PARTS, "film_thickness", SHARE, "shear_stress")
+_TITLES = {
+    "contact_pressure": "Contact pressure",
+    "fluid_pressure": "Fluid pressure",
+    "film_thickness": "Film thickness",
+    SHARE: "Load carried by fluid",
+    "shear_stress": "Local shear",
+    "clearance": "Height above the floor",
+}
+_COLOURS = {
+    "film_thickness": "YlGnBu_r",
+    SHARE: "cividis",
+    **dict.fromkeys(HEIGHT_NAMES, "cividis"),
+}
+_LOGARITHMIC = ("film_thickness",)
+_UNLOADED = 1e-3
+"""Stress below this share of its peak is drawn as none."""
+_PEAK_RATIO = 1.5
+"""A scale ends at the 99.5 % quantile when the peak, often one cell at an edge, is this far off."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """One field on the sole and how it is drawn: ``shown = SI value / factor`` in ``unit``."""
+
+    name: str
+    title: str
+    factor: float
+    unit: str
+    colours: str = "viridis"
+    logarithmic: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """A colour scale in shown units; ``peak`` is the highest value, above ``high`` if cut."""
+
+    low: float
+    high: float
+    peak: float
+
+    @property
+    def cut(self) -> bool:
+        """Whether some values lie above the scale."""
+        return self.peak > 1.001 * self.high
+
+
+def quantities(datasets: Sequence[xarray.Dataset]) -> tuple[Quantity, ...]:
+    """Return what all of the data sets hold on (x, y), the usual five first, heights last.
+
+    Titles come from ``long_name``, units from ``units``: a field of a later version is drawn
+    without being known here. Truth values (inside, land, wet) are no quantities.
+    """
+    common = [name for name in _names(datasets[0]) if all(name in _names(d) for d in datasets[1:])]
+    order = {name: number for number, name in enumerate(_FIRST)}
+    common.sort(key=lambda name: (name in HEIGHT_NAMES, order.get(name, len(order))))
+    return tuple(_quantity(name, datasets) for name in common)
+
+
+def drawn(dataset: xarray.Dataset, quantity: Quantity) -> NDArray[np.float64]:
+    """Return a quantity in its shown unit, (nx, ny), nan outside the sole or where there is none.
+
+    A stress below 1e-3 of its peak counts as none, the share of the fluid where nothing carries.
+    """
+    values = np.where(inside(dataset), raw(dataset, quantity.name), np.nan) / quantity.factor
+    values[~np.isfinite(values)] = np.nan
+    if _is_stress(dataset, quantity.name) and np.nanmin(values, initial=0.0) >= 0.0:
+        values[values <= _UNLOADED * np.nanmax(values, initial=0.0)] = np.nan
+    return values
+
+
+def raw(dataset: xarray.Dataset, name: str) -> NDArray[np.float64]:
+    """Return a field in SI as (nx, ny); the share of the fluid is made from the pressures."""
+    if name != SHARE:
+        return np.array(dataset[name].transpose("x", "y").values, dtype=float)
+    contact, fluid = (raw(dataset, part) for part in _PARTS)
+    total = contact + fluid
+    carried = total > _UNLOADED * np.nanmax(total, initial=0.0)
+    return np.divide(fluid, total, out=np.full_like(total, np.nan), where=carried)
+
+
+def inside(dataset: xarray.Dataset) -> NDArray[np.bool_]:
+    """Return where the sole is, (nx, ny)."""
+    if "inside" in dataset:
+        return np.asarray(dataset["inside"].transpose("x", "y").values, dtype=bool)
+    height = next((name for name in HEIGHT_NAMES if name in dataset), None)
+    if height is None:
+        return np.ones((dataset.sizes["x"], dataset.sizes["y"]), dtype=bool)
+    return np.isfinite(raw(dataset, height))
+
+
+def spacing(dataset: xarray.Dataset) -> float:
+    """Return the side of a cell in m."""
+    return float(np.median(np.diff(dataset["x"].values)))
+
+
+def scale(fields: Sequence[NDArray[np.float64]], quantity: Quantity) -> Scale:
+    """Return one colour scale for the drawn values of several results."""
+    values = np.concatenate([field[np.isfinite(field)] for field in fields])
+    if values.size == 0:
+        return Scale(0.0, 1.0, 0.0)
+    peak = float(values.max())
+    if quantity.name == SHARE:
+        return Scale(0.0, 100.0, peak)
+    if quantity.logarithmic:
+        positive = values[values > 0.0]
+        low = float(positive.min()) if positive.size else 1.0
+        return Scale(low, max(peak, 1.01 * low), peak)
+    low = min(float(values.min()), 0.0)
+    if low < 0.0:
+        reach = max(-low, peak)
+        return Scale(-reach, reach, peak)
+    usual = float(np.quantile(values, 0.995))
+    high = usual if peak > _PEAK_RATIO * usual > 0.0 else peak
+    return Scale(0.0, max(high, 1e-12), peak)
+
+
+def _names(dataset: xarray.Dataset) -> list[str]:
+    found = [
+        str(name)
+        for name, field in dataset.data_vars.items()
+        if set(field.dims) == {"x", "y"} and field.dtype.kind in "fiu"
+    ]
+    if all(part in found for part in _PARTS):
+        found.append(SHARE)
+    return found
+
+
+def _quantity(name: str, datasets: Sequence[xarray.Dataset]) -> Quantity:
+    if name == SHARE:
+        return Quantity(name, _TITLES[name], 0.01, "%", _COLOURS[name])
+    attributes = datasets[0][name].attrs
+    largest = 0.0
+    lowest = 0.0
+    for dataset in datasets:
+        values = np.where(inside(dataset), raw(dataset, name), np.nan)
+        values = values[np.isfinite(values)]
+        if values.size:
+            usual = np.quantile(np.abs(values), 0.5 if name in _LOGARITHMIC else 0.995)
+            largest = max(largest, float(usual) or float(np.abs(values).max()))
+            lowest = min(lowest, float(values.min()))
+    factor, unit = display_unit(largest, str(attributes.get("units", "1")))
+    title = _TITLES.get(name) or _title(str(attributes.get("long_name", name)))
+    colours = "RdBu_r" if lowest < 0.0 else _COLOURS.get(name, "viridis")
+    return Quantity(name, title, factor, _typeset(unit), colours, name in _LOGARITHMIC)
+
+
+def _is_stress(dataset: xarray.Dataset, name: str) -> bool:
+    return name != SHARE and dataset[name].attrs.get("units") == "Pa"
+
+
+def _title(text: str) -> str:
+    text = text.replace("_", " ")
+    return text[:1].upper() + text[1:]
+
+
+def _typeset(unit: str) -> str:
+    unit = unit.replace("um", "µm").replace("^2", "²").replace("^3", "³").replace("*", "·")
+    return "" if unit == "1" else unit
