@@ -17,6 +17,7 @@ from .guard import guarded
 from .method import by_method
 from .micro import micro
 from .new import new
+from .risk import risk
 from .run import run
 from .schema import schema
 from .sensitivity import sensitivity
@@ -45,6 +46,7 @@ _add(
     run,
     compare,
     sensitivity,
+    risk,
     stribeck,
     contact,
     micro,

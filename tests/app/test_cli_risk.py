@@ -1,0 +1,146 @@
+"""The chance of a slip and what would help: arithmetic, and the command as a person uses it."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.stats import norm
+
+from underfoot.assess.changes import Change, possible_changes
+from underfoot.assess.risk import limit, risk_report
+from underfoot.case import Case
+from underfoot.core import InputError
+from underfoot.document.risk_sentences import chance_words, change_lines, percent, risk_sentences
+from underfoot.slip import MODELS, Chang2004, RequiredFriction, needed_acof, slip_model
+
+TEXT = """
+name = "Worn work shoe"
+shoe = "work_shoe_untreaded"
+floor = "vinyl_g4"
+contaminant = "glycerol_90pct"
+motion = "slip_tester_g4"
+numerics.quick_grid_spacing = "2.5 mm"
+"""
+
+
+@pytest.fixture(autouse=True)
+def _own_cache(tmp_path_factory, monkeypatch):
+    monkeypatch.setenv("UNDERFOOT_CACHE", str(tmp_path_factory.mktemp("cache")))
+
+
+@given(
+    risk=st.floats(0.001, 0.5),
+    mean=st.floats(0.15, 0.35),
+    sd=st.floats(0.01, 0.05),
+    name=st.sampled_from(sorted(MODELS)),
+)
+def test_needed_friction_gives_back_the_risk(risk, mean, sd, name) -> None:
+    rcof, model = RequiredFriction(mean, sd), slip_model(name)
+    acof = needed_acof(risk, rcof=rcof, model=model)
+    assert model.population(acof, mean, sd) == pytest.approx(risk, rel=1e-6)
+
+
+def test_needed_friction_of_two_normals_in_closed_form() -> None:
+    rcof = RequiredFriction(0.2, 0.03)
+    expected = 0.2 + norm.isf(0.05) * 0.03  # ACOF taken as certain
+    assert needed_acof(0.05, rcof=rcof, model=Chang2004()) == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize("risk", [0.0, 1.0, -0.1, 1.5])
+def test_impossible_risks_are_refused(risk) -> None:
+    with pytest.raises(InputError, match="above 0 and below 1"):
+        needed_acof(risk)
+    with pytest.raises(InputError, match="above 0 and below 1"):
+        risk_report(Case.from_text(TEXT), wanted=risk)
+
+
+def test_changes_fit_the_case() -> None:
+    worn = Case.from_text(TEXT.replace("2.5 mm", "1 mm"))
+    names = {change.name for change in possible_changes(worn)}
+    assert "new_tread" in names
+    assert "wider_channels" not in names
+    treaded = worn.replace({"shoe": "work_shoe_full_tread", "contaminant": "water"})
+    names = {change.name for change in possible_changes(treaded)}
+    assert "wider_channels" in names
+    assert not names & {"new_tread", "rinse", "dilute"}
+    for case in (worn, treaded):
+        for change in possible_changes(case):
+            assert case.replace(change.values) != case
+
+
+def test_changes_are_computed_and_ranked_by_the_chance_they_leave() -> None:
+    case = Case.from_text(TEXT)
+    rougher = Change("rougher", "rougher", "shoe", {"interface.roughness_beyond_cutoff": 4})
+    slower = Change("slower", "slower", "walking", {"risk.rcof_mean": 0.15})
+    wrong = Change("wrong", "wrong", "shoe", {"shoe.material.shore_a": 1000})
+    found = risk_report(case, changes=[rougher, wrong, slower])
+    assert [one.change.name for one in found.changes] == ["rougher", "wrong", "slower"]
+    assert not found.changes[1].computed
+    assert "100" in found.changes[1].reason
+    chances = [one.number("slip_probability") for one in found.best]
+    assert chances == sorted(chances)
+    assert all(each < found.outcome.number("slip_probability") for each in chances)
+    assert found.changes[2].number("cof") == found.outcome.number("cof")
+    assert found.limit.kind == "film"
+    share = found.limit.film_share
+    solid = found.outcome.number("cof") - found.outcome.number("cof_viscous")
+    assert found.limit.drained * (1 - share) == pytest.approx(solid)
+    assert found.more_friction is not None
+    needed = needed_acof(0.05, rcof=RequiredFriction(case.risk.rcof_mean, case.risk.rcof_sd))
+    assert found.more_friction + found.outcome.number("cof") == pytest.approx(needed)
+    assert f"{100 * share:.0f} % of the load" in " ".join(risk_sentences(found))
+    assert len(change_lines(found)) == len(found.best[:3])
+
+
+def test_without_a_film_the_fluid_limits() -> None:
+    found = risk_report(Case.from_text(TEXT).replace("contaminant", "detergent"), changes=[])
+    if found.limit.film_share < 0.05:
+        assert found.limit.kind == "fluid"
+    assert limit(found.outcome).cof == found.outcome.number("cof")
+
+
+@pytest.mark.parametrize(
+    ("chance", "words"),
+    [(1e-5, "fewer than 1 in 1000"), (0.01, "1 in 100"), (0.05, "1 in 20"), (0.54, "54 %")],
+)
+def test_chances_in_words(chance, words) -> None:
+    assert chance_words(chance) == words
+
+
+def test_percent_has_no_false_digits() -> None:
+    assert [percent(p) for p in (1e-6, 0.0234, 0.54, 0.9999)] == [
+        "below 0.1 %",
+        "2.3 %",
+        "54 %",
+        "above 99.9 %",
+    ]
+
+
+def test_command(tmp_path) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(TEXT, encoding="utf-8")
+    command = [str(Path(sys.executable).with_name("underfoot")), "risk", str(path)]
+    done = subprocess.run(
+        [*command, "--out", str(tmp_path / "out")],
+        capture_output=True,
+        text=True,
+        env=os.environ.copy(),
+    )
+    assert done.returncode == 0, done.stderr
+    assert "of steps" in done.stdout
+    stored = json.loads((tmp_path / "out" / "risk.json").read_text(encoding="utf-8"))
+    assert {one["name"] for one in stored["models"]} >= set(MODELS)
+    with (tmp_path / "out" / "changes.csv").open(encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    assert len(rows) == len(stored["changes"]) > 4
+    wrong = subprocess.run([*command, "--wanted", "150 %"], capture_output=True, text=True)
+    assert wrong.returncode != 0
+    assert "above 0 and below 1" in wrong.stderr
