@@ -66,40 +66,15 @@ def viscosity(case: Case) -> SourcedValue | None:
     ).viscosity
 
 
-def sole_map(case: Case, spacing: float) -> SoleMap:
+def sole_map(case: Case, spacing: float, progress: Progress = silent) -> SoleMap:
     """Return the tilted heel of the case on a grid of ``spacing`` (m)."""
     from underfoot import outsole
 
-    shape, tread, wear = case.shoe.heel, case.shoe.tread, case.shoe.wear
-    profile: outsole.Profile = outsole.Flat()
-    if shape.profile == "facet" and shape.facet_angle and shape.facet_length:
-        profile = outsole.Facet(shape.facet_angle, shape.facet_length)
-    elif shape.profile == "rocker" and shape.rocker_radius and shape.rocker_start:
-        profile = outsole.Rocker(shape.rocker_radius, shape.rocker_start)
-    lugs = None
-    if tread.pattern != "none" and tread.lug_width and tread.channel_width:
-        lugs = outsole.Tread(
-            tread.pattern,
-            tread.lug_width,
-            tread.channel_width,
-            tread.depth or 0.0,
-            tread.edge_radius,
-        )
-    arc = tread.arc_channel
-    heel = outsole.Heel(
-        length=shape.length,
-        width=shape.width,
-        rear_radius=shape.rear_radius,
-        front_radius=shape.front_radius,
-        outsole_thickness=case.shoe.sole.outsole_thickness,
-        profile=profile,
-        edge_radius=shape.edge_radius,
-        crown_radius=shape.crown_radius,
-        tread=lugs,
-        arc_channel=arc and outsole.ArcChannel(arc.position, arc.radius, arc.width, arc.depth),
-        wear=outsole.WearPlane(wear.depth, wear.angle) if wear.depth > 0 else None,
+    from .build_sole import sole_shape
+
+    return outsole.heel_map(
+        sole_shape(case, progress), shoe_angle=case.motion.shoe_angle, spacing=spacing
     )
-    return outsole.heel_map(heel, shoe_angle=case.motion.shoe_angle, spacing=spacing)
 
 
 def compliance(case: Case, sole: SoleMap, modulus: float) -> Compliance:
@@ -210,6 +185,10 @@ def friction_law(case: Case, catalogue: Catalogue) -> FrictionLaw:
         left = min(given.hysteresis_cof or 0.0, whole)
         source = case.sourced("interface.constant_cof")
         return ConstantLaw(whole - left, left, source.source, thickness, source.uncertainty)
+    if case.models.friction == "table":
+        from .friction_table import table_law
+
+        return table_law(case, thickness)
     if case.models.friction == "bowden_tabor":
         from .build_speed import area_friction
 

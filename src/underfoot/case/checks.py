@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Iterator
 from typing import TYPE_CHECKING
 
 from underfoot.core import InputError, RangeError, display
 
+from .checks_sole import sole_mismatches
+
 if TYPE_CHECKING:
     from .case import Case
     from .places import Places
-
-_CELLS = 2.0  # across a channel or lug: fewer and its width is wrong by half or more
 
 
 def mismatches(case: Case, given: Collection[str], places: Places) -> Iterator[InputError]:
@@ -20,7 +19,7 @@ def mismatches(case: Case, given: Collection[str], places: Places) -> Iterator[I
     yield from _material(case, places)
     yield from _roughness(case, places)
     yield from _heel(case, given, places)
-    yield from _tread(case, places)
+    yield from sole_mismatches(case, given, places)
     yield from _contaminant(case, given, places)
     yield from _rest(case, places)
 
@@ -92,66 +91,12 @@ def _heel(case: Case, given: Collection[str], places: Places) -> Iterator[InputE
             allowed=f"below {display(heel.rocker_radius, 'm')} (rocker_radius)",
         )
     limit = min(heel.width, heel.length) / 2
-    for name in ("rear_radius", "front_radius", "edge_radius"):
+    for name in ("rear_radius", "front_radius", "edge_radius") if heel.plan == "heel" else ():
         if getattr(heel, name) > limit:
             yield RangeError(
                 f"{display(getattr(heel, name), 'm')} does not fit the plan form",
                 where=places(f"shoe.heel.{name}"),
                 allowed=f"at most {display(limit, 'm')} (half of the smaller of length and width)",
-            )
-
-
-def _tread(case: Case, places: Places) -> Iterator[InputError]:
-    tread, thickness = case.shoe.tread, case.shoe.sole.outsole_thickness
-    parts: list[tuple[str, float]] = [("shoe.wear.depth", case.shoe.wear.depth)]
-    if tread.pattern != "none":
-        for name in ("depth", "lug_width", "channel_width"):
-            if getattr(tread, name) is None:
-                yield InputError(
-                    f'is missing for the pattern "{tread.pattern}"',
-                    where=places(f"shoe.tread.{name}"),
-                )
-        if tread.depth == 0.0:
-            yield RangeError(
-                "0 mm is no tread",
-                where=places("shoe.tread.depth"),
-                allowed="above 0 mm",
-                remedy='Write pattern = "none" for a sole without tread',
-            )
-        if tread.depth is not None:
-            parts.append(("shoe.tread.depth", tread.depth))
-        for name in ("lug_width", "channel_width"):
-            yield from _resolved(case, f"shoe.tread.{name}", getattr(tread, name), places)
-        rounding = min(tread.depth or math.inf, (tread.lug_width or math.inf) / 2)
-        if tread.edge_radius > rounding:
-            yield RangeError(
-                f"{display(tread.edge_radius, 'm')} does not fit on the lug",
-                where=places("shoe.tread.edge_radius"),
-                allowed=f"at most {display(rounding, 'm')} (the depth and half the lug width)",
-            )
-    if tread.arc_channel is not None:
-        parts.append(("shoe.tread.arc_channel.depth", tread.arc_channel.depth))
-        yield from _resolved(case, "shoe.tread.arc_channel.width", tread.arc_channel.width, places)
-    for path, depth in parts:
-        if depth >= thickness:
-            yield RangeError(
-                f"{display(depth, 'm')} goes through the outsole",
-                where=places(path),
-                allowed=f"below {display(thickness, 'm')} (shoe.sole.outsole_thickness)",
-            )
-
-
-def _resolved(case: Case, path: str, width: float | None, places: Places) -> Iterator[InputError]:
-    if width is None:
-        return
-    for name in ("grid_spacing", "quick_grid_spacing"):
-        spacing = getattr(case.numerics, name)
-        if width < _CELLS * spacing * (1 - 1e-9):
-            yield InputError(
-                f"{display(width, 'm')} is too narrow for the grid of {display(spacing, 'm')}",
-                where=places(path),
-                allowed=f"at least {display(_CELLS * spacing, 'm')} (two cells)",
-                remedy=f'Write numerics.{name} = "{width / 4 * 1e3:.3g} mm" (four cells)',
             )
 
 
@@ -205,7 +150,7 @@ def _rest(case: Case, places: Places) -> Iterator[InputError]:
 
 def _friction(case: Case, places: Places) -> Iterator[InputError]:
     model, interface = case.models.friction, case.interface
-    if case.contaminant is None and model not in ("constant", "bowden_tabor"):
+    if case.contaminant is None and model not in ("constant", "bowden_tabor", "table"):
         yield InputError(
             "a dry case needs a measured coefficient of friction",
             where=places("models.friction"),
@@ -225,6 +170,16 @@ def _friction(case: Case, places: Places) -> Iterator[InputError]:
             remedy='Give the spectrum of the compound, or choose models.friction = "asperity_ehl" '
             'or "stribeck"',
         )
+    if model == "table":
+        speeds = {one.speed for one in interface.friction_readings or ()}
+        if len(speeds) < 2:
+            yield InputError(
+                'are missing for models.friction = "table"' if not speeds else "of one speed only",
+                where=places("interface.friction_readings"),
+                allowed="readings at two or more speeds",
+                remedy='Write interface.friction_table = "law.csv" (columns speed, cof, and sd '
+                'where known), or choose "constant"',
+            )
     if model == "constant" and interface.constant_cof is None:
         yield InputError(
             'is missing for models.friction = "constant"', where=places("interface.constant_cof")

@@ -5,31 +5,26 @@ from __future__ import annotations
 import math
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from .quantity import Quantity, default
+from .sections_base import Force, Length, Section
+from .sections_sole import HeelShape
+from .sections_tread import Tread, Wear
 
 _REPORT = "final progress report on shoe-floor friction"
 _HEEL = "assumption"
 _TESTER = f"{_REPORT}, G.4.1"
-_STRICT = ConfigDict(frozen=True, extra="forbid", ser_json_inf_nan="constants")
 
 _mm, _um = 1e-3, 1e-6
-Length = Annotated[float, Quantity("m", 0.0, 0.5, open_low=True)]
-Depth = Annotated[float, Quantity("m", 0.0, 0.05)]
-Rounding = Annotated[float, Quantity("m", 0.0, 0.1)]
 Roughness_ = Annotated[float, Quantity("m", 1e-9, 1e-3)]
 Cutoff = Annotated[float, Quantity("m", 1e-6, 0.1)]
-LargeRadius = Annotated[float, Quantity("m", 1e-3, 10.0)]
 Modulus = Annotated[float, Quantity("Pa", 1e4, 1e12)]
 TermModulus = Annotated[float, Quantity("Pa", 0.0, 1e12, open_low=True)]
 Hardness = Annotated[float, Quantity("1", 0.0, 100.0, open_low=True)]
 Poisson = Annotated[float, Quantity("1", 0.0, 0.5)]
-Angle = Annotated[float, Quantity("rad", 0.0, math.radians(60))]
 ShoeAngle = Annotated[float, Quantity("rad", math.radians(-30), math.radians(60))]
-WearAngle = Annotated[float, Quantity("rad", 0.0, math.radians(45))]
 Speed = Annotated[float, Quantity("m/s", 0.0, 20.0, open_low=True)]
-Force = Annotated[float, Quantity("N", 0.0, 1e4, open_low=True)]
 Time = Annotated[float, Quantity("s", 0.0, 60.0, open_low=True)]
 RelaxationTime = Annotated[float, Quantity("s", 0.0, 1e12, open_low=True)]
 Viscosity = Annotated[float, Quantity("Pa*s", 1e-5, 1e3)]
@@ -38,12 +33,6 @@ Density = Annotated[float, Quantity("kg/m^3", 10.0, 3e4)]
 Fraction = Annotated[float, Quantity("1", 0.0, 1.0)]
 Friction = Annotated[float, Quantity("1", 0.0, 5.0)]
 Tolerance = Annotated[float, Quantity("1", 1e-10, 0.1)]
-
-
-class Section(BaseModel):
-    """Base of all sections."""
-
-    model_config = _STRICT
 
 
 class RelaxationTerm(Section):
@@ -90,53 +79,6 @@ class SurfaceRoughness(Section):
 
 
 RQ_PER_RA = math.sqrt(math.pi / 2)
-
-
-class HeelShape(Section):
-    """Heel in its own frame: x from the rear end towards the toe."""
-
-    length: Length = default(60 * _mm, "60 mm", _HEEL, assumed=True)
-    width: Length = default(60 * _mm, "60 mm", _HEEL, assumed=True)
-    rear_radius: Rounding = default(28 * _mm, "28 mm", _HEEL, assumed=True)
-    front_radius: Rounding = default(0.0, "0 mm", "the heel goes on into the shoe")
-    profile: Literal["flat", "facet", "rocker"] = default("facet", "facet", _HEEL, assumed=True)
-    facet_angle: Angle | None = Field(default=None, description="facet: between facet and sole")
-    facet_length: Length | None = Field(
-        default=None, description="facet: along the sole, from the rear"
-    )
-    rocker_radius: LargeRadius | None = Field(default=None, description="rocker: radius along x")
-    rocker_start: Length | None = Field(default=None, description="rocker: from the rear end")
-    edge_radius: Rounding = default(2 * _mm, "2 mm", _HEEL, assumed=True)
-    crown_radius: LargeRadius | None = Field(
-        default=None, description="radius of a sole bulged across"
-    )
-
-
-class ArcChannel(Section):
-    """One channel that follows the rounded rear of the heel."""
-
-    width: Length
-    depth: Depth
-    position: Length = Field(description="from the rear end, on the centre line")
-    radius: Length = Field(description="of the channel's middle line")
-
-
-class Tread(Section):
-    """Straight lugs between straight channels; an arc channel may be added."""
-
-    pattern: Literal["none", "grid", "transverse", "longitudinal"]
-    depth: Depth | None = None
-    lug_width: Length | None = None
-    channel_width: Length | None = None
-    edge_radius: Rounding = default(0.0, "0 mm", "sharp lug edges", assumed=True)
-    arc_channel: ArcChannel | None = None
-
-
-class Wear(Section):
-    """Wear as a plane cut at a shoe angle."""
-
-    depth: Depth = default(0.0, "0 mm", "unworn beyond the heel shape given")
-    angle: WearAngle = default(0.0, "0 deg", "even wear")
 
 
 class Sole(Section):
@@ -213,6 +155,16 @@ class Motion(Section):
     )
 
 
+class FrictionReading(Section):
+    """One reading of a user's own friction table."""
+
+    speed: Speed
+    cof: Friction
+    sd: Friction | None = None
+    pressure: Annotated[float, Quantity("Pa", 0.0, 1e8, open_low=True)] | None = None
+    viscosity: Viscosity | None = None
+
+
 class Interface(Section):
     """What sole and floor make together; the least known part of a case."""
 
@@ -258,6 +210,15 @@ class Interface(Section):
         description="roughness finer than a stylus sees, for models.friction = 'asperity_ehl'; "
         "default: the one calibrated on the report's fluids",
     )
+    friction_table: str | None = Field(
+        default=None,
+        description="for models.friction = 'table': file (CSV, XLSX) with columns speed, cof and, "
+        "where known, sd, pressure, viscosity; the path counts from the case file's folder",
+    )
+    friction_readings: tuple[FrictionReading, ...] | None = Field(
+        default=None, description="the same readings written in the case"
+    )
+    friction_source: str | None = Field(default=None, description="who read them, and on what")
     shear_strength: Annotated[float, Quantity("Pa", 0.0, 1e9)] | None = Field(
         default=None,
         description="of the real contact, for models.friction = 'bowden_tabor'",
@@ -283,6 +244,7 @@ class Models(Section):
         "mean_film_sharing",
         "viscoelastic_area",
         "bowden_tabor",
+        "table",
     ] = default("stribeck", "stribeck", "friction of the pair and fluid as measured at the speed")
 
 

@@ -16,11 +16,7 @@ def unused(case: Case) -> frozenset[str]:
         found += ["shoe.heel.facet_angle", "shoe.heel.facet_length"]
     if shoe.heel.profile != "rocker":
         found += ["shoe.heel.rocker_radius", "shoe.heel.rocker_start"]
-    if shoe.tread.pattern == "none":
-        names = ("depth", "lug_width", "channel_width", "edge_radius")
-        found += [f"shoe.tread.{name}" for name in names]
-    if shoe.wear.depth == 0.0:
-        found.append("shoe.wear.angle")
+    found += [*_sole(case), *_tread(case), *_wear(case)]
     if shoe.sole.midsole_modulus is None:
         found.append("shoe.sole.midsole_poisson_ratio")
     if shoe.material.modulus is not None:
@@ -47,6 +43,9 @@ def unused(case: Case) -> frozenset[str]:
         found.append("interface.fine_roughness")
     if friction != "bowden_tabor":
         found.append("interface.shear_strength")
+    found.append("interface.friction_table")  # its readings are part of the case
+    if friction != "table":
+        found += ["interface.friction_readings", "interface.friction_source"]
     if case.models.asperity != "contact_table":
         spectral = friction in ("asperity_ehl", "bowden_tabor")
         found += [] if spectral else ["interface.hurst", "interface.longest_wave"]
@@ -54,4 +53,49 @@ def unused(case: Case) -> frozenset[str]:
             found.append("interface.shortest_wave")
     if case.interface.effective_rq is not None:
         found.append("interface.roughness_beyond_cutoff")
+    # who slips is asked by ``underfoot slip`` alone, which keys its own results
+    found += ["slip", *(f"slip.{name}" for name in type(case.slip).model_fields)]
     return frozenset(found)
+
+
+def _sole(case: Case) -> list[str]:
+    """Return what a heel, or a whole sole, has no use for."""
+    if case.shoe.heel.plan == "heel":
+        names = ("plan", "side", "waist_width", "ball_width", "toe_spring", "toe_start")
+    else:
+        names = ("rear_radius", "front_radius")
+    return [f"shoe.heel.{name}" for name in names]
+
+
+def _tread(case: Case) -> list[str]:
+    tread = case.shoe.tread
+    names: list[str] = []
+    if tread.pattern == "none":
+        names += ["depth", "lug_width", "channel_width", "edge_radius", "sipes"]
+    if tread.pattern == "none" or tread.angle == 0.0:
+        names.append("angle")
+    if tread.pattern != "blocks":
+        names.append("lug_length")
+    if tread.pattern != "chevrons":
+        names.append("arm_length")
+    if tread.sipes is None and "sipes" not in names:
+        names.append("sipes")
+    return [f"shoe.tread.{name}" for name in names]
+
+
+def _wear(case: Case) -> list[str]:
+    wear = case.shoe.wear
+    archard = ["angle_range", "normal_force", "wear_rate"]
+    patch = [
+        f"patch_{name}" for name in ("form", "length", "width", "position", "lateral", "taper")
+    ]
+    names: list[str] = []
+    if wear.depth == 0.0:
+        names = ["mode", "angle", *archard, *patch]
+    elif wear.mode == "plane":
+        names = ["mode", *archard, *patch]
+    elif wear.mode == "patch":
+        names = ["angle", *archard]
+    else:
+        names = patch
+    return [f"shoe.wear.{name}" for name in names]

@@ -12,15 +12,14 @@ from underfoot.core import InputError
 
 from ._checks import not_negative, positive
 from .profile import Flat, Profile
+from .shape import SoleShape, SoleWear, check_depths
 from .tread import ArcChannel, Tread
-from .wear import WearPlane
 
 Array = NDArray[np.float64]
-_CENTRE_LINE_NODES = 4001
 
 
 @dataclass(frozen=True, slots=True)
-class Heel:
+class Heel(SoleShape):
     """A heel in its own frame: x from its rear end towards the toe, y across, z up into the shoe.
 
     Parameters
@@ -41,7 +40,7 @@ class Heel:
     tread, arc_channel
         Channels in the sole; a depth of 0 is none.
     wear
-        Plane cut; None for a new sole.
+        What was removed, as a plane, a patch or a map; None for a new sole.
     """
 
     length: float
@@ -54,7 +53,7 @@ class Heel:
     crown_radius: float | None = None
     tread: Tread | None = None
     arc_channel: ArcChannel | None = None
-    wear: WearPlane | None = None
+    wear: SoleWear | None = None
 
     def __post_init__(self) -> None:
         for name in ("length", "width", "outsole_thickness"):
@@ -71,15 +70,7 @@ class Heel:
                 )
         if self.crown_radius is not None:
             positive(self.crown_radius, "heel.crown_radius")
-        for name in ("tread", "arc_channel", "wear"):
-            part = getattr(self, name)
-            if part is not None and part.depth >= self.outsole_thickness:
-                raise InputError(
-                    f"depth {part.depth * 1e3:g} mm goes through the outsole of "
-                    f"{self.outsole_thickness * 1e3:g} mm",
-                    where=f"{name}.depth",
-                    allowed="less than heel.outsole_thickness",
-                )
+        check_depths(self)
 
     @property
     def plan_area(self) -> float:
@@ -96,24 +87,24 @@ class Heel:
         corner = np.hypot(np.maximum(along, 0.0), np.maximum(across, 0.0))
         return radius - corner - np.minimum(np.maximum(along, across), 0.0)
 
-    def land_height(self, x: Array, y: Array) -> Array:
-        """Return the height (m) of the worn sole over its plane, as if there were no channels."""
-        unworn = self.unworn_height(x, y)
-        if self.wear is None or self.wear.depth == 0:
-            return unworn
-        return np.maximum(unworn, self._wear_height(x))
-
-    def unworn_height(self, x: Array, y: Array) -> Array:
-        """Return the height (m) of the new sole over its plane, as if there were no channels."""
-        height = self.profile.height(x)
-        if self.crown_radius is not None:
-            height = height + y**2 / (2 * self.crown_radius)
-        if self.edge_radius > 0:
-            into = np.clip(self.edge_radius - self.inward_distance(x, y), 0.0, self.edge_radius)
-            height = height + self.edge_radius - np.sqrt(self.edge_radius**2 - into**2)
-        return height
-
-    def _wear_height(self, x: Array) -> Array:
-        assert self.wear is not None
-        line = np.linspace(0.0, self.length, _CENTRE_LINE_NODES)
-        return self.wear.height(x, line, self.unworn_height(line, np.zeros_like(line)))
+    def rim_arcs(self) -> Array:
+        """Return the rim as arcs (n, 7), anticlockwise; see ``_kernels.arcs``."""
+        half, far = self.width / 2, self.length
+        corners = (  # of the plan form and the direction along which the rim leaves them
+            (np.array([far, half]), self.front_radius, np.array([-1.0, 0.0])),
+            (np.array([0.0, half]), self.rear_radius, np.array([0.0, -1.0])),
+            (np.array([0.0, -half]), self.rear_radius, np.array([1.0, 0.0])),
+            (np.array([far, -half]), self.front_radius, np.array([0.0, 1.0])),
+        )
+        arcs = []
+        for index, (corner, radius, leaving) in enumerate(corners):
+            arriving = corners[index - 1][2]
+            begin, end = corner - radius * arriving, corner + radius * leaving
+            if radius > 0:
+                centre = begin + radius * leaving
+                arcs.append([*begin, *end, *centre, radius])
+            following, next_radius, _ = corners[(index + 1) % 4]
+            straight = following - next_radius * leaving
+            if float(np.hypot(*(straight - end))) > 1e-9:
+                arcs.append([*end, *straight, 0.0, 0.0, math.inf])
+        return np.array(arcs)

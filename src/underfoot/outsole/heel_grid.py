@@ -13,6 +13,7 @@ from underfoot.core import Breach, InputError, Range, breaches
 from ._checks import between, not_negative, positive
 from .geometry import SoleMap
 from .heel import Heel
+from .shape import SoleShape
 
 Array = NDArray[np.float64]
 CELLS_REFUSED = 2.0
@@ -22,7 +23,9 @@ CELLS_WANTED = 4.0
 _BISECTIONS = 48
 
 
-def heel_map(heel: Heel, *, shoe_angle: float, spacing: float, padding: float = 0.004) -> SoleMap:
+def heel_map(
+    heel: SoleShape, *, shoe_angle: float, spacing: float, padding: float = 0.004
+) -> SoleMap:
     """Return the heel, tilted by the shoe angle, on a grid of square cells in the floor's frame.
 
     A point (x, z) of the heel goes to x' = x cos a - z sin a, z' = x sin a + z cos a. The map
@@ -68,7 +71,7 @@ def heel_map(heel: Heel, *, shoe_angle: float, spacing: float, padding: float = 
     else:
         x = _solved(along, target, y_map, -2 * margin * spacing - heel.length, 3 * heel.length)
     inside = heel.inward_distance(x, y_map) > 0
-    height, land, tread_depth = cut_heel(heel, x, y_map)
+    height, land, tread_depth = cut_heel(heel, x, y_map, spacing)
     land &= inside
     clearance = np.where(inside, x * sine + height * cosine, np.inf)
     if inside.any():
@@ -100,8 +103,13 @@ def _solved(
     return 0.5 * (below + above)
 
 
-def cut_heel(heel: Heel, x: Array, y: Array) -> tuple[Array, NDArray[np.bool_], Array]:
-    """Return height over the sole plane, land and lug height, all in the frame of the sole."""
+def cut_heel(
+    heel: SoleShape, x: Array, y: Array, spacing: float = 0.0
+) -> tuple[Array, NDArray[np.bool_], Array]:
+    """Return height over the sole plane, land and lug height, all in the frame of the sole.
+
+    Sipes narrower than two cells of ``spacing`` are left out: closed slits.
+    """
     unworn = heel.unworn_height(x, y)
     base = heel.land_height(x, y)
     height = base.copy()
@@ -115,7 +123,12 @@ def cut_heel(heel: Heel, x: Array, y: Array) -> tuple[Array, NDArray[np.bool_], 
             rounding = tread.edge_radius - np.sqrt(tread.edge_radius**2 - edge**2)
             height = np.maximum(unworn + rounding, base)
         lug = np.maximum(tread.depth - (base - unworn), 0.0)
-        height, land = _cut(height, land, into > 0, unworn + tread.depth, base)
+        channel = into > 0
+        height, land = _cut(height, land, channel, unworn + tread.depth, base)
+        sipes = tread.sipes
+        if sipes is not None and spacing <= sipes.width / CELLS_REFUSED * (1 + 1e-9):
+            slit = ~channel & (sipes.channel_distance(x, y) > 0)
+            height, land = _cut(height, land, slit, unworn + sipes.depth, base)
     arc = heel.arc_channel
     if arc is not None and arc.depth > 0:
         into = arc.channel_distance(x, y)
@@ -132,7 +145,7 @@ def _cut(
     return np.where(open_channel, np.maximum(height, bottom), height), land & ~open_channel
 
 
-def _resolution(heel: Heel, spacing: float) -> list[Breach]:
+def _resolution(heel: SoleShape, spacing: float) -> list[Breach]:
     """Return what the grid resolves with too few cells; refuse what it can't show at all."""
     smallest = min(heel.length, heel.width)
     if smallest < CELLS_WANTED * spacing:
@@ -144,11 +157,15 @@ def _resolution(heel: Heel, spacing: float) -> list[Breach]:
     features: list[tuple[str, str, float]] = []
     if heel.tread is not None and heel.tread.depth > 0:
         features.append(("tread.channel_width", "channel", heel.tread.channel_width))
-        features.append(("tread.lug_width", "lug", heel.tread.lug_width))
+        features.append(("tread.lug_width", "lug", heel.tread.smallest_lug))
     if heel.arc_channel is not None and heel.arc_channel.depth > 0:
         features.append(("arc_channel.width", "arc channel", heel.arc_channel.width))
     found: list[Breach] = []
     tested = Range(CELLS_WANTED, math.inf, "1", "grid refinement of the tread")
+    sipes = heel.tread.sipes if heel.tread is not None and heel.tread.depth > 0 else None
+    if sipes is not None:
+        quantity = "cells across a sipe (below 2 it is taken as closed)"
+        found += breaches("grid", {quantity: tested}, {quantity: sipes.width / spacing})
     for where, name, width in features:
         cells = width / spacing
         if cells < CELLS_REFUSED * (1 - 1e-9):
@@ -164,8 +181,12 @@ def _resolution(heel: Heel, spacing: float) -> list[Breach]:
     return found
 
 
-def plan_outline(heel: Heel, nodes: int = 24) -> Array:
+def plan_outline(heel: SoleShape, nodes: int = 24) -> Array:
     """Return the closed polygon (n, 2) of the plan form in its own plane, m; anticlockwise."""
+    if not isinstance(heel, Heel):
+        from ._kernels.arcs import points_on
+
+        return points_on(heel.rim_arcs(), 2e-3)
     half = heel.width / 2
     corners = (  # centre of the corner's circle, its radius, first angle; anticlockwise
         (heel.length - heel.front_radius, half - heel.front_radius, heel.front_radius, 0.0),

@@ -7,12 +7,12 @@ import math
 import numpy as np
 
 from ._checks import positive
-from .heel import Heel
 from .heel_grid import cut_heel, plan_outline
+from .shape import SoleShape
 from .sole_surface import SoleSurface
 
 
-def heel_surface(heel: Heel, *, spacing: float) -> SoleSurface:
+def heel_surface(heel: SoleShape, *, spacing: float) -> SoleSurface:
     """Return the heel in its own frame on square cells of ``spacing`` (m).
 
     The cells begin at the rear end and are symmetric about the centre line. What ``heel_map`` makes
@@ -25,7 +25,7 @@ def heel_surface(heel: Heel, *, spacing: float) -> SoleSurface:
     y = (np.arange(count_y, dtype=np.float64) - (count_y - 1) / 2) * spacing
     grid_x, grid_y = np.meshgrid(x, y, indexing="ij")
     inside = heel.inward_distance(grid_x, grid_y) > 0
-    height, land, tread_depth = cut_heel(heel, grid_x, grid_y)
+    height, land, tread_depth = cut_heel(heel, grid_x, grid_y, spacing)
     land &= inside
     return SoleSurface(
         x=x,

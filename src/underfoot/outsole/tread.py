@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,31 +10,60 @@ from numpy.typing import NDArray
 
 from underfoot.core import InputError, unknown_name
 
-from ._checks import not_negative, positive
+from ._checks import between, not_negative, positive
+from ._kernels.tread_pattern import (
+    bar_distance,
+    block_distance,
+    chevron_distance,
+    circle_distance,
+    hexagon_distance,
+    rotated,
+)
+from .sipes import Sipes
 
 Array = NDArray[np.float64]
-PATTERNS = ("grid", "transverse", "longitudinal")
-_ROUNDING = 1e-12  # m: keeps a cell centre on an edge from falling on either side by rounding
+PATTERNS = (
+    "grid",
+    "transverse",
+    "longitudinal",
+    "blocks",
+    "bars",
+    "chevrons",
+    "circles",
+    "hexagons",
+)
+LATTICES = ("circles", "hexagons")
 
 
 @dataclass(frozen=True, slots=True)
 class Tread:
-    """Straight lugs of one width between straight channels of one width.
+    """Lugs of one kind between channels of one width.
 
     Parameters
     ----------
     pattern
-        "grid" (square lugs), "transverse" (channels across the shoe) or "longitudinal" (channels
-        along it).
+        "grid" (square lugs), "blocks" (rectangular lugs), "transverse" (channels across the shoe),
+        "longitudinal" (channels along it), "bars" (straight channels, across the shoe at angle 0),
+        "chevrons" (zigzag bars, tips forward), "circles" and "hexagons" (triangular lattices).
     lug_width, channel_width
-        Along the repeating direction, m.
+        m; of bars and chevrons normal to their walls, the diameter of circles, the width across
+        flats of hexagons; the channel where it is narrowest.
     depth
         Height of the lugs, m; 0 is an untreaded sole.
     edge_radius
-        Rounding of the upper edges of the lugs, m.
+        Rounding of the lower edges of the lugs, m.
     offset
         Shift (x, y) of the pattern, m. At (0, 0) the first lug begins at the rear end of the sole
         and a lug is centred on the centre line.
+    angle
+        Turns the pattern as a whole, rad, anticlockwise seen from above; for chevrons it is the
+        angle of the arms against the transverse direction instead.
+    lug_length
+        Of "blocks" along the shoe, m.
+    arm_length
+        Of "chevrons": extent of one arm across the shoe, m.
+    sipes
+        Fine slits in the lugs.
     """
 
     pattern: str
@@ -42,6 +72,10 @@ class Tread:
     depth: float
     edge_radius: float = 0.0
     offset: tuple[float, float] = (0.0, 0.0)
+    angle: float = 0.0
+    lug_length: float | None = None
+    arm_length: float | None = None
+    sipes: Sipes | None = None
 
     def __post_init__(self) -> None:
         if self.pattern not in PATTERNS:
@@ -50,40 +84,71 @@ class Tread:
         positive(self.channel_width, "tread.channel_width")
         not_negative(self.depth, "tread.depth")
         not_negative(self.edge_radius, "tread.edge_radius")
-        if self.depth > 0 and self.edge_radius > min(self.depth, self.lug_width / 2):
+        for name, pattern in (("lug_length", "blocks"), ("arm_length", "chevrons")):
+            value = getattr(self, name)
+            if (value is None) == (self.pattern == pattern):
+                raise InputError(
+                    f"is {'missing' if value is None else 'not used'} for {self.pattern}",
+                    where=f"tread.{name}",
+                )
+            if value is not None:
+                positive(value, f"tread.{name}")
+        most = math.radians(75 if self.pattern == "chevrons" else 180)
+        between(self.angle, -most, most, "tread.angle", f"at most {math.degrees(most):g} deg")
+        rounding = min(self.depth, self.smallest_lug / 2)
+        if self.depth > 0 and self.edge_radius > rounding:
             raise InputError(
                 f"edge radius {self.edge_radius * 1e3:g} mm doesn't fit on the lug",
                 where="tread.edge_radius",
-                allowed=f"at most {min(self.depth, self.lug_width / 2) * 1e3:g} mm "
-                "(the depth and half the lug width)",
+                allowed=f"at most {rounding * 1e3:g} mm (the depth and half the lug width)",
             )
+        if self.sipes is not None and self.depth > 0:
+            self.sipes.check_within(self.depth)
+
+    @property
+    def smallest_lug(self) -> float:
+        """Smaller side of a lug, m."""
+        return min(self.lug_width, self.lug_length or self.lug_width)
 
     @property
     def land_ratio(self) -> float:
-        """Share of an endless tread that is lug: w / (w + c), squared for a grid."""
+        """Share of an endless tread that is lug, sipes left aside.
+
+        w / (w + c) = s for bars, s^2 for a grid and hexagons, the product of both directions for
+        blocks, pi / (2 sqrt 3) s^2 for circles.
+        """
         share = self.lug_width / (self.lug_width + self.channel_width)
-        return share**2 if self.pattern == "grid" else share
+        if self.pattern == "blocks" and self.lug_length is not None:
+            return share * self.lug_length / (self.lug_length + self.channel_width)
+        if self.pattern == "circles":
+            return math.pi / (2 * math.sqrt(3.0)) * share**2
+        return share**2 if self.pattern in ("grid", "hexagons") else share
 
     def channel_distance(self, x: Array, y: Array) -> Array:
         """Return the distance (m) into the channels: positive in a channel, negative on a lug.
 
         On a lug the value is minus the distance to its nearest edge.
         """
+        lug, channel = self.lug_width, self.channel_width
+        x, y = x - self.offset[0], y - self.offset[1]
+        if self.pattern == "chevrons" and self.arm_length is not None:
+            return chevron_distance(x, y, lug, channel, self.arm_length, self.angle)
+        x, y = rotated(x, y, self.angle)
+        if self.pattern == "blocks" and self.lug_length is not None:
+            lugs = (self.lug_length, lug)
+            return block_distance(x, y + lug / 2, lugs, (channel, channel))
+        if self.pattern == "circles":
+            return circle_distance(x - lug / 2, y, lug, channel)
+        if self.pattern == "hexagons":
+            return hexagon_distance(x - lug / 2, y, lug, channel)
         distances = []
-        if self.pattern in ("grid", "transverse"):
-            distances.append(self._across(x - self.offset[0]))
+        if self.pattern in ("grid", "transverse", "bars"):
+            distances.append(bar_distance(x, lug, channel))
         if self.pattern in ("grid", "longitudinal"):
-            shifted = y - self.offset[1]
-            if self.offset[1] == 0.0:
-                shifted = np.abs(shifted)  # exactly the same on both sides
-            distances.append(self._across(shifted + self.lug_width / 2))
+            if self.offset[1] == 0.0 and self.angle == 0.0:
+                y = np.abs(y)  # exactly the same on both sides
+            distances.append(bar_distance(y + lug / 2, lug, channel))
         return np.maximum.reduce(distances)
-
-    def _across(self, position: Array) -> Array:
-        pitch = self.lug_width + self.channel_width
-        u = np.mod(position + _ROUNDING, pitch)
-        into = np.minimum(u - self.lug_width, pitch - u)
-        return np.where(u >= self.lug_width, np.maximum(into, 0.0), -np.minimum(u, -into))
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._checks import between, not_negative
+
+if TYPE_CHECKING:
+    from .shape import SoleShape
 
 Array = NDArray[np.float64]
 
@@ -34,6 +38,10 @@ class WearPlane:
     def __post_init__(self) -> None:
         not_negative(self.depth, "wear.depth")
         between(self.angle, 0.0, math.radians(45), "wear.angle", "0 deg to 45 deg")
+
+    def worn_height(self, x: Array, y: Array, unworn: Array, shape: SoleShape) -> Array:
+        """Return the height (m) of the worn land at (x, y): the higher of sole and plane."""
+        return np.maximum(unworn, self.height(x, *shape.centre_line()))
 
     def height(self, x: Array, centre_line_x: Array, centre_line_height: Array) -> Array:
         """Return the height (m) of the plane over the sole plane at ``x`` (m).

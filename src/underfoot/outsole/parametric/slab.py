@@ -1,0 +1,114 @@
+"""The body between the land surface of a sole and its top, as wide as needed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..profile import Facet, Rocker
+from ..shape import SoleShape
+from .modelling import MM, kernel
+from .toe_spring import SoleProfile
+
+Array = NDArray[np.float64]
+MARGIN = 0.02  # m around the plan form
+_CROWN_NODES = 15
+
+
+def slab(shape: SoleShape) -> Any:
+    """Return the body over the unworn land: profile and crown below, the midsole's side above.
+
+    Without a crown its pieces are planes and cylinders, exact; with one they are spline surfaces
+    through points of the land (parabola across).
+    """
+    profile = side_face(shape)
+    body = _across(profile, shape)
+    if shape.crown_radius is None:
+        return body
+
+    crowned = None
+    breaks = break_points(shape)
+    for first, last in zip(breaks[:-1], breaks[1:], strict=True):
+        piece = _crowned_piece(shape, first, last)
+        crowned = piece if crowned is None else crowned + piece
+    return body * crowned
+
+
+def break_points(shape: SoleShape) -> list[float]:
+    """Return the places along the sole where its profile changes its kind, margins included."""
+    rear, toe = shape.profile, None
+    if isinstance(rear, SoleProfile):
+        rear, toe = rear.rear, rear.toe
+    inner = {0.0, shape.length}
+    if isinstance(rear, Facet):
+        inner.add(rear.length)
+    if isinstance(rear, Rocker):
+        inner.add(rear.start)
+    if toe is not None:
+        inner.add(toe.start)
+    inside = sorted(x for x in inner if 0.0 <= x <= shape.length)
+    return [-MARGIN, *inside, shape.length + MARGIN]
+
+
+def side_face(shape: SoleShape) -> Any:
+    """Return the outline of the slab seen from the side, at y = -width/2 - margin."""
+    breaks = break_points(shape)
+    y = (-shape.width / 2 - MARGIN) * MM
+    top = _top(shape)
+
+    def point(x: float, z: float) -> Any:
+        return kernel().Pnt(x * MM, y, z * MM)
+
+    def land(x: float) -> float:
+        return float(shape.profile.height(np.array([x]))[0])
+
+    below = [
+        _curve(point, [(x, land(x)) for x in (a, (a + b) / 2, b)])
+        for a, b in zip(breaks[:-1], breaks[1:], strict=True)
+    ]
+    above = [
+        _curve(point, [(x, top(x)) for x in (b, (a + b) / 2, a)])
+        for a, b in reversed(list(zip(breaks[:-1], breaks[1:], strict=True)))
+    ]
+    low, high = breaks[0], breaks[-1]
+    rise = kernel().Segment(point(high, land(high)), point(high, top(high)))
+    fall = kernel().Segment(point(low, top(low)), point(low, land(low)))
+    return kernel().Face(kernel().Wire([*below, rise, *above, fall]))
+
+
+def _top(shape: SoleShape) -> Any:
+    """Return the height (m) of the sole's upper side against x: it follows the toe spring."""
+    toe = shape.profile.toe if isinstance(shape.profile, SoleProfile) else None
+
+    def height(x: float) -> float:
+        lift = 0.0 if toe is None else float(toe.height(np.array([x]))[0])
+        return shape.outsole_thickness + lift
+
+    return height
+
+
+def _curve(point: Any, places: list[tuple[float, float]]) -> Any:
+    """Return the line or arc through three places (x, z)."""
+    (x0, z0), (_, z1), (x2, z2) = places
+    if abs(z1 - (z0 + z2) / 2) < 1e-9:
+        return kernel().Segment(point(x0, z0), point(x2, z2))
+    return kernel().ArcOfCircle(*(point(x, z) for x, z in places))
+
+
+def _across(face: Any, shape: SoleShape) -> Any:
+    return face.Extrude(kernel().Vec(0.0, (shape.width + 2 * MARGIN) * MM, 0.0))
+
+
+def _crowned_piece(shape: SoleShape, first: float, last: float) -> Any:
+    """Return everything over the crowned land between two places, up to beyond the top."""
+    assert shape.crown_radius is not None
+    x = np.linspace(first, last, _CROWN_NODES)
+    half = shape.width / 2 + MARGIN
+    y = np.linspace(-half, half, _CROWN_NODES)
+    grid_x, grid_y = np.meshgrid(x, y, indexing="ij")
+    z = shape.profile.height(grid_x) + grid_y**2 / (2 * shape.crown_radius)
+    surface = kernel().SplineSurfaceInterpolation(np.stack([grid_x, grid_y, z], axis=-1) * MM)
+    top = shape.outsole_thickness + float(z.max())
+    return surface.Extrude(kernel().Vec(0.0, 0.0, 2 * top * MM))

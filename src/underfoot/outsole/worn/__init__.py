@@ -1,0 +1,17 @@
+"""Wear of soles: patches, maps, Archard wear step by step, and how worn a sole is."""
+
+from __future__ import annotations
+
+from .archard import ArchardStep, archard_wear
+from .map import WornMap
+from .measures import WearMeasures, wear_measures
+from .patch import WornPatch
+
+__all__ = [
+    "ArchardStep",
+    "WearMeasures",
+    "WornMap",
+    "WornPatch",
+    "archard_wear",
+    "wear_measures",
+]
