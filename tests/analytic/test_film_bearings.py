@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 
 from underfoot.core import InputError, MissingExtraError
-from underfoot.film import available_backends, factorization, film_pressure
+from underfoot.film import (
+    available_backends,
+    factorization,
+    film_pressure,
+    mass_conserving_film,
+    mass_conserving_history,
+)
 from underfoot.reference import lubrication
 
 OIL = {"viscosity": 0.1, "speed": 0.5}
@@ -215,3 +221,59 @@ def test_missing_back_end_is_named(monkeypatch):
     monkeypatch.setattr(linear, "available_backends", lambda: ("superlu",))
     with pytest.raises(MissingExtraError, match="mkl"):
         linear.factorization(sp.identity(3, format="csr"), "pardiso")
+
+
+@pytest.mark.parametrize("speed", [0.5, -0.5])
+def test_many_cells_along_and_few_across_settle(speed):
+    """Parabolic slider on 1024 x 3 cells: Reynolds' condition by quadrature along the film.
+
+    dp/dx = -6 eta V (h - h*) / h^3 with p = dp/dx = 0 where it ruptures (V along +x, sole above).
+    """
+    from scipy.integrate import quad
+    from scipy.optimize import brentq
+
+    cells, length, thin = 1024, 0.01, 2e-5
+
+    def gap(x):
+        return thin * (1 + 4 * (x / length) ** 2)
+
+    def slope(x, end):
+        return 6 * 0.1 * 0.5 * (gap(x) - gap(end)) / gap(x) ** 3
+
+    def remaining(end):
+        return quad(slope, inlet, end, args=(end,))[0]
+
+    inlet = -0.5 * length + 0.5 * length / cells  # the film's rim: centre of the first cell
+    end = brentq(remaining, 1e-5, 0.4 * length)
+    load = -quad(lambda x: (x - inlet) * slope(x, end), inlet, end)[0]
+
+    x = (np.arange(cells) + 0.5) / cells * length - 0.5 * length
+    film = np.ones((cells, 3), dtype=bool)
+    film[[0, -1]] = False
+    heights = np.repeat(gap(x)[:, None], 3, axis=1)
+    given = {"spacing": length / cells, "viscosity": 0.1, "speed": speed, "film": film}
+    found = film_pressure(heights, **given)
+    assert found.iterations <= 5
+    assert found.load / (3 * length / cells) == pytest.approx(load, rel=1e-4)
+
+
+def test_mass_conserving_films_settle_on_such_grids_too():
+    """Steady, and carried in time while the plates part and come back."""
+    cells, length = 1024, 0.01
+    x = (np.arange(cells) + 0.5) / cells - 0.5
+    shape = np.repeat((2e-5 * (1 + 4 * x**2))[:, None], 3, axis=1)
+    film = np.ones((cells, 3), dtype=bool)
+    film[[0, -1]] = False
+    given = {"spacing": length / cells, "viscosity": 0.1, "speed": 0.5, "film": film}
+    steady = mass_conserving_film(shape, **given)
+    assert steady.iterations <= 10
+    assert steady.mass_residual < 1e-11
+    assert steady.load == pytest.approx(film_pressure(shape, **given).load, rel=1e-3)
+    times = np.linspace(0.0, 2e-3, 9)
+    history = list(
+        mass_conserving_history(
+            lambda t: shape * (1 + 0.2 * np.sin(2 * np.pi * t / 2e-3)), times, **given
+        )
+    )
+    assert max(one.mass_residual for one in history) < 1e-11
+    assert max(one.iterations for one in history) <= 60

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from underfoot.core import ConvergenceError, InputError
 
-from ._kernels.flux import film_flow
+from ._kernels.jfo import Film, coarser, finer, net_outflow, operators
 from ._kernels.pattern import Pattern
 from .linear import factorization
 
 Array = NDArray[np.float64]
 MOST_SETS = 60
+FEWEST_CELLS = 32  # shortest axis that is still halved for a first guess
 OPEN = 100.0  # gap of the open surroundings over the largest gap of the film
 
 
@@ -84,20 +86,60 @@ def film_pressure(
     _check(h, mask, spacing, viscosity, speed, opening_speed, flow_factor)
     safe = np.where(np.isfinite(h), h, OPEN * h[mask].max())
     safe = np.maximum(safe, h[mask].min())
-    conductance = np.asarray(flow_factor, dtype=float) * safe**3 / (12 * viscosity)
-    blank = np.zeros_like(safe)
-    flow = film_flow(safe, blank, conductance, blank, spacing=spacing, wall_speed=-speed)
-    opening = np.broadcast_to(np.asarray(opening_speed, dtype=float), h.shape) * spacing**2
-    pattern = Pattern(mask)
-    source = pattern.gather(flow.outflow + opening)
-    coefficients = pattern.rows_of(flow.by_pressure)
+    conductance = np.broadcast_to(np.asarray(flow_factor, dtype=float), h.shape)
+    conductance = conductance * safe**3 / (12 * viscosity)
+    instant = Film(
+        gap=safe,
+        along=conductance,
+        across=conductance,
+        carried=-0.5 * speed * safe,
+        mask=mask,
+        rim_pressure=np.zeros_like(safe),
+        rim_fraction=np.ones_like(safe),
+        dx=spacing,
+        dy=spacing,
+        storage=None,
+        content=np.broadcast_to(np.asarray(opening_speed, dtype=float), h.shape),
+    )
+    solved = _settled(instant, backend)
+    outflow = net_outflow(instant, operators(instant), solved.pressure, instant.rim_fraction)
+    return FilmPressure(
+        pressure=solved.pressure,
+        cavitated=solved.cavitated,
+        void_rate=solved.void / spacing**2,
+        rim_outflow=float(outflow[mask].sum()),
+        load=float(solved.pressure.sum()) * spacing**2,
+        iterations=solved.iterations,
+    )
+
+
+class _Settled(NamedTuple):
+    """Fields (nx, ny) of one grid."""
+
+    pressure: Array
+    cavitated: NDArray[np.bool_]
+    void: Array  # m^3/s that a cavitated cell opens up
+    excess: Array  # m^3/s, above 0 where full, below where cavitated
+    iterations: int
+
+
+def _settled(film: Film, backend: str | None) -> _Settled:
+    """Return the pressure of a film whose ``content`` holds dh/dt, m/s.
+
+    The set of cavitated cells moves by about a cell an iteration, so that the search starts from
+    that of a grid with cells of twice the size.
+    """
+    pattern = Pattern(film.mask)
+    parts = operators(film)
+    blank, full = np.zeros_like(film.gap), np.ones_like(film.gap)
+    opening = film.content * film.dx * film.dy
+    source = pattern.gather(net_outflow(film, parts, blank, full) + opening)
+    coefficients = pattern.rows_of(parts.by_pressure)
     matrix = pattern.matrix(coefficients)
     diagonal = coefficients[0]
     unit = np.zeros_like(coefficients)
     unit[0] = 1.0
-
-    cavitated = np.zeros(pattern.size, dtype=bool)
-    pressure = np.zeros(pattern.size)
+    cavitated = pattern.gather(_guess(film, backend))
     factors = None
     iterations = 0
     while True:
@@ -121,18 +163,25 @@ def film_pressure(
             )
         cavitated = updated
     pressure = np.where(cavitated, 0.0, pressure)
-    net = matrix @ pressure + source
-    field = pattern.scatter(pressure)
-    void = pattern.scatter(np.where(cavitated, net, 0.0)) / spacing**2
-    total = film_flow(safe, field, conductance, blank, spacing=spacing, wall_speed=-speed)
-    return FilmPressure(
-        pressure=field,
-        cavitated=pattern.scatter(cavitated.astype(float)) > 0,
-        void_rate=void,
-        rim_outflow=float(pattern.gather(total.outflow).sum()),
-        load=float(pressure.sum()) * spacing**2,
-        iterations=iterations,
+    void = np.where(cavitated, matrix @ pressure + source, 0.0)
+    return _Settled(
+        pattern.scatter(pressure),
+        pattern.scatter(cavitated.astype(float)) > 0,
+        pattern.scatter(void),
+        pattern.scatter(np.where(cavitated, -void, pressure * diagonal)),
+        iterations,
     )
+
+
+def _guess(film: Film, backend: str | None) -> NDArray[np.bool_]:
+    """Return the cavitated cells of a coarser grid; none where there is no such grid."""
+    coarse = coarser(film, FEWEST_CELLS)
+    if coarse is not None:
+        try:
+            return finer(_settled(coarse, backend).excess, film.mask.shape) < 0.0
+        except ConvergenceError:
+            pass  # a first guess only
+    return np.zeros_like(film.mask)
 
 
 def _film_mask(gap: Array, film: ArrayLike | None) -> NDArray[np.bool_]:
