@@ -18,6 +18,7 @@ from .checks import mismatches
 from .compose import DEFAULT, DRY, GIVEN, Origin, composed, nested
 from .content import case_hash, spread
 from .errors import CaseError, translated
+from .friction_table import with_friction_table
 from .keys import known_paths, path_kind, unit_of, unknown_path
 from .places import Places
 from .quantity import DOOR, default_of
@@ -62,6 +63,7 @@ class Case(Section):
     _text: str = PrivateAttr(default="")
     _catalogue: Catalogue = PrivateAttr(default_factory=Catalogue)
     _hash: str = PrivateAttr(default="")
+    _folder: Path = PrivateAttr(default_factory=Path.cwd)
 
     @classmethod
     def load(
@@ -95,7 +97,7 @@ class Case(Section):
         if settings:
             toml.parsed(text, str(path))
             text = toml.changed(text, settings, _path_kind)
-        return cls._from_text(text, catalogue, places)
+        return cls._from_text(text, catalogue, places, path.parent)
 
     @classmethod
     def from_text(cls, text: str, *, catalogue: Catalogue | None = None) -> Case:
@@ -110,9 +112,13 @@ class Case(Section):
         return cls.from_text(toml.written(mapping), catalogue=catalogue)
 
     @classmethod
-    def _from_text(cls, text: str, catalogue: Catalogue, places: Places) -> Case:
-        mapping = toml.parsed(text, places.file)
+    def _from_text(
+        cls, text: str, catalogue: Catalogue, places: Places, folder: Path | None = None
+    ) -> Case:
+        mapping: Mapping[str, Any] = toml.parsed(text, places.file)
         _check_version(mapping, places)
+        folder = Path.cwd() if folder is None else folder
+        mapping = with_friction_table(mapping, folder, places)
         dry = _is_dry(mapping)
         if dry:
             mapping = {**mapping, "contaminant": {"from": DRY}}
@@ -147,6 +153,7 @@ class Case(Section):
         case._entries = parts.entries
         case._text = text
         case._catalogue = catalogue
+        case._folder = folder
         case._hash = case_hash(case)
         return case
 
@@ -166,7 +173,7 @@ class Case(Section):
         """
         settings = path if isinstance(path, Mapping) else {path: value}
         text = toml.changed(self._text, settings, _path_kind)
-        return type(self)._from_text(text, self._catalogue, Places())
+        return type(self)._from_text(text, self._catalogue, Places(), self._folder)
 
     @property
     def hash(self) -> str:
