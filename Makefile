@@ -7,7 +7,7 @@ export OMP_NUM_THREADS ?= 1
 export MKL_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: run test check bench validate clean help
+.PHONY: run test check bench validate docs clean help
 
 run: $(READY)  ## the main job: a worn work shoe on a floor with glycerol
 	$(BIN)/underfoot run examples/work_shoe_untreaded_glycerol.toml --out out/work_shoe_untreaded_glycerol --overwrite
@@ -26,6 +26,10 @@ validate: $(READY)  ## closed-form checks, printed with their errors
 
 bench: $(READY)  ## measured cost, memory and scaling
 	$(BIN)/python -m benchmarks
+
+docs: $(READY)  ## the documentation as an offline site in out/docs
+	$(BIN)/sphinx-build -q -W --keep-going -b html docs out/docs
+	@echo "open out/docs/index.html"
 
 clean:  ## remove the environment and everything that was made
 	rm -rf $(VENV) out .pytest_cache .ruff_cache .hypothesis .import_linter_cache

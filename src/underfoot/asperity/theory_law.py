@@ -38,6 +38,8 @@ def persson_law(
         phi of the mean gap (m), 0 or more and not falling; None leaves it at 1, which lets too
         much fluid through at small gaps.
 
+    Notes
+    -----
     Within 2 % of half-space gaps up to a tenth of E* h', 7 % at 0.3 and 20 % at 0.5 (self-affine,
     Hurst exponent 0.8). Without hysteresis: at speed take the modulus at the asperities' rate.
     """

@@ -1,0 +1,34 @@
+"""Sphinx: the documentation as one offline site (``make docs``)."""
+
+from importlib import metadata
+
+project = "Underfoot"
+author = "The Underfoot authors"
+copyright = author
+release = metadata.version("underfoot")
+
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
+myst_heading_anchors = 3
+exclude_patterns = ["_build"]
+html_theme = "furo"
+html_title = f"Underfoot {release}"
+html_static_path: list[str] = []
+templates_path: list[str] = []
+
+napoleon_google_docstring = False
+napoleon_custom_sections = [("Errors", "Raises"), "Source"]
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"
+autodoc_default_options = {"members": True, "undoc-members": False}
+suppress_warnings = ["myst.header", "ref.python"]
+
+
+def _plain_formulas(app, what, name, object_, options, lines) -> None:  # noqa: ANN001
+    """Formulas in docstrings are plain text: |E*| is a modulus, no markup."""
+    lines[:] = [line.replace("|", "\\|").replace("*", "\\*") for line in lines]
+
+
+def setup(app) -> None:  # noqa: ANN001
+    """Called by Sphinx."""
+    app.connect("autodoc-process-docstring", _plain_formulas)
