@@ -17,8 +17,8 @@ def stribeck_law_from_fit(
 ) -> StribeckLaw:
     """Return Eq. 17 as a friction law from a fit of trials (``trials.stribeck_fit``).
 
-    Standard errors become the law's uncertainties, the residuals of the fit its own error; what the fit did not identify in its range of
-    speeds is kept with a note.
+    Standard errors become the law's uncertainties, the residuals of the fit its own error; what the
+    fit did not identify in its range of speeds is kept with a note.
 
     Parameters
     ----------

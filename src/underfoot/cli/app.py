@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from .calibrate import calibrate_app
 from .catalogue import catalogue
 from .check import check
 from .compare import compare
@@ -58,6 +59,7 @@ _add(
 )
 app.command("test")(guarded(by_method))
 app.add_typer(trials_app)
+app.add_typer(calibrate_app)
 app.add_typer(studies_app)
 
 

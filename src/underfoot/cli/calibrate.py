@@ -1,0 +1,81 @@
+"""``underfoot calibrate``: from measurements to what a case uses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .guard import guarded, say
+from .options import Overwrite
+
+calibrate_app = typer.Typer(
+    name="calibrate", help="Make laws of trials, with their uncertainty.", no_args_is_help=True
+)
+
+
+def law(
+    folder: Annotated[
+        Path, typer.Argument(help='Results of "underfoot trials analyse".', show_default=False)
+    ],
+    out: Annotated[Path, typer.Option("--out", help="Law file (CSV).", show_default=False)],
+    where: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--where",
+            metavar="CONDITION=VALUE",
+            help="Trials that count, as fluid=water; may be given several times.",
+            show_default=False,
+        ),
+    ] = None,
+    form: Annotated[
+        str, typer.Option("--form", help="fit (Eq. 17) or readings (mean at each speed).")
+    ] = "fit",
+    pressure: Annotated[
+        str | None,
+        typer.Option(
+            "--pressure", help='Contact pressure of the tests, as "266 kPa".', show_default=False
+        ),
+    ] = None,
+    overwrite: Overwrite = False,
+) -> None:
+    """Write the friction law of one pair and fluid from analysed pin-on-disk trials.
+
+    A case uses it with models.friction = "table" and interface.friction_table = "FILE".
+    """
+    from underfoot.calibrate.law_file import law_file_text, law_table, trial_readings
+    from underfoot.core import InputError, to_si
+
+    chosen = {}
+    for text in where or ():
+        name, sign, value = text.partition("=")
+        if not sign or not name.strip() or not value.strip():
+            raise InputError(
+                f'"{text}" is no condition', where="--where", allowed="CONDITION=VALUE"
+            )
+        chosen[name.strip()] = value.strip()
+    load = None if pressure is None else to_si(pressure, "Pa", where="--pressure")
+    if load is not None and not load > 0:
+        raise InputError(f"{pressure}", where="--pressure", allowed="above 0")
+    if out.exists() and not overwrite:
+        raise InputError(f"{out} exists", where="--out", remedy="Add --overwrite to replace it")
+    table = law_table(trial_readings(folder, chosen), form=form)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    out.write_text(law_file_text(table, pressure=load), encoding="utf-8")
+    for note in table.notes:
+        say(note)
+    worst = float(table.deviation.max())
+    print(
+        f"wrote {out}: COF {table.cof[0]:.3f} at {table.speed[0]:.3g} m/s to {table.cof[-1]:.3f} "
+        f"at {table.speed[-1]:.3g} m/s, standard deviation up to {worst:.3f}\n"
+        f'Use it: models.friction = "table", interface.friction_table = "{out.name}"'
+    )
+
+
+calibrate_app.command()(guarded(law))
+
+
+@calibrate_app.callback()
+def _group() -> None:
+    """Make laws of trials, with their uncertainty."""
