@@ -35,7 +35,7 @@ def opened(page, *, width=1280, height=800, touch=False, dark=False):
 
     process = subprocess.Popen(
         [
-            browser(), "--headless=new", "--no-sandbox", "--remote-debugging-pipe",
+            browser() or "", "--headless=new", "--no-sandbox", "--remote-debugging-pipe",
             "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run",
             f"--user-data-dir={profile}", "about:blank",
         ],
@@ -138,22 +138,24 @@ class Session:
         self.value(f"{frame}.then(() => {frame}).then(() => true)")
 
     def picture(self, selector=None):
-        """Return the window, or one element, as an array (height, width, 3), and PNG bytes."""
-        options = {}
-        if selector:
-            box = self.value(
-                f"(() => {{ const b = document.querySelector({selector!r}).getBoundingClientRect();"
-                " return [b.left + scrollX, b.top + scrollY, b.width, b.height] })()"
-            )
-            options = {
-                "clip": dict(zip(("x", "y", "width", "height"), box, strict=True)) | {"scale": 1},
-                "captureBeyondViewport": True,
-            }
-        data = self.call("Page.captureScreenshot", format="png", **options)["data"]
+        """Return what the window shows, or one element of it, (height, width, 3), and the PNG."""
         from matplotlib.image import imread
 
-        png = base64.b64decode(data)
-        return np.asarray(imread(io.BytesIO(png)))[..., :3], png
+        png = base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
+        seen = np.asarray(imread(io.BytesIO(png)))[..., :3]
+        if selector:
+            left, top, right, bottom = self.value(
+                f"(() => {{ const b = document.querySelector({selector!r}).getBoundingClientRect();"
+                " return [b.left, b.top, b.right, b.bottom].map((v) => Math.max(0, Math.round(v)))"
+                "})()"
+            )
+            seen = seen[top:bottom, left:right]
+        return seen, png
+
+    def whole_page(self):
+        """Return the PNG of the page from top to bottom."""
+        shot = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=True)
+        return base64.b64decode(shot["data"])
 
     def key(self, key, modifiers=0):
         """Press a key; modifiers: 1 Alt, 2 Ctrl, 8 Shift."""

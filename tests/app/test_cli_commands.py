@@ -107,6 +107,82 @@ def test_a_missing_file_is_refused(underfoot):
     assert "there is no file nothing.toml" in found.stderr
 
 
+@pytest.mark.parametrize("command", ["check", "run"])
+def test_a_folder_in_place_of_a_case_is_refused_in_words(underfoot, tmp_path, command):
+    found = underfoot(command, tmp_path)
+    assert found.exit_code == 2
+    assert "is a folder" in found.stderr
+    assert "rrno" not in found.stderr
+    (tmp_path / "case.toml").write_text("")
+    assert "case.toml" in underfoot(command, tmp_path).stderr.split("Did you mean")[1]
+
+
+def test_a_place_that_cannot_be_written_is_refused_before_anything_is_computed(
+    underfoot, tmp_path, monkeypatch
+):
+    def never(*arguments, **options):
+        raise AssertionError("computed first")
+
+    monkeypatch.setattr("underfoot.case.run.run", never)
+    (tmp_path / "file").write_text("mine")
+    for place in ("/proc/underfoot", tmp_path / "file" / "out"):
+        for command in (("run", EXAMPLE), ("compare", EXAMPLE, EXAMPLE)):
+            found = underfoot(*command, "--out", place)
+            assert found.exit_code == 2, found.stderr
+            assert "nothing can be written in" in found.stderr
+            assert "computed first" not in found.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_compare_refuses_what_is_no_result_before_anything_is_computed(
+    underfoot, tmp_path, monkeypatch
+):
+    def never(*arguments, **options):
+        raise AssertionError("computed first")
+
+    monkeypatch.setattr("underfoot.case.run.run", never)
+    (tmp_path / "empty").mkdir()
+    for arguments, words in (
+        ((EXAMPLE, "nothere"), "there is no result folder or case file nothere"),
+        ((EXAMPLE, "emty"), 'Did you mean "empty"?'),
+        ((EXAMPLE, "empty"), "holds no result"),
+        ((EXAMPLE,), "1 result given"),
+        ((EXAMPLE,) * 9, "9 results given"),
+    ):
+        found = underfoot("compare", *arguments)
+        assert found.exit_code == 2, found.stderr
+        assert words in found.stderr
+        assert "underfoot new" not in found.stderr
+
+
+def test_trouble_with_files_is_told_in_words():
+    from underfoot.cli.guard import file_trouble
+
+    assert file_trouble(IsADirectoryError(21, "Is a directory", "/tmp")) == (
+        "/tmp is a folder; a file is needed."
+    )
+    assert "no space left" in file_trouble(OSError(28, "No space left on device", "/a"))
+    assert file_trouble(OSError("odd")) == "odd."
+
+
+def test_the_terminal_names_the_weightiest_assumptions():
+    from underfoot.cli.show import weightiest
+
+    listed = (
+        "motion: duration = 0.12 s (90 ms)",
+        "shoe.heel: length = 60 mm (no heel shape printed)",
+        "interface: roughness_beyond_cutoff = 2.0 (one reading)",
+        "interface: effective_rq = 14 um (composite)",
+        "Contact friction is proportional to the contact pressure.",
+    )
+    assert weightiest(listed) == [
+        "interface: roughness_beyond_cutoff = 2.0",
+        "shoe.heel: length = 60 mm",
+        "motion: duration = 0.12 s",
+    ]
+    assert weightiest(listed[4:]) == [listed[4]]
+
+
 def test_debug_shows_the_traceback(underfoot, monkeypatch):
     monkeypatch.setenv("UNDERFOOT_DEBUG", "1")
     found = underfoot("check", "nothing.toml")

@@ -118,6 +118,16 @@ def test_compare_reads_result_folders_and_names_what_differs(finished):
     assert "0.200 in COF" in content["verdict"]
     shown = underfoot("compare", "result", "other", folder=folder)
     assert "interface.constant_cof" in shown.stdout
+    three = underfoot(
+        "compare", "result", "other", "other", "--out", "compared", "--json", folder=folder
+    )
+    assert three.returncode == 0, three.stderr
+    several = json.loads(three.stdout)
+    assert [rank["letter"] for rank in several["ranking"]] == ["A", "B", "C"]
+    assert several["differences"][0]["third"] == "0.6"
+    page = (folder / "compared" / "compare.html").read_text()
+    assert page.count('class="stage"') == 3
+    assert (folder / "compared" / "compare_contact_pressure.png").stat().st_size > 10_000
     missing = underfoot("compare", "result", "nothing.toml", folder=folder)
     assert missing.returncode == 2
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 _MOST_ASSUMPTIONS = 3
 _WEIGHTY = ("interface", "shoe.heel", "shoe.tread", "shoe.sole", "motion")
-"""Sections named first: the roughness of the interface and the shape of the sole decide the film."""
+"""Sections named first: interface roughness and the shape of the sole decide the film."""
 
 
 def show_result(result: Result, folder: Path | None) -> None:

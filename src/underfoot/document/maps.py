@@ -127,9 +127,9 @@ def save_maps(dataset: xarray.Dataset, folder: Path) -> list[Path]:
     paths = []
     for quantity in quantities([dataset]):
         paths.append(folder / f"{quantity.name}.png")
-        map_figure(dataset, quantity).savefig(paths[-1], dpi=150)
+        map_figure(dataset, quantity).savefig(paths[-1], dpi=120)
     paths.append(folder / "maps.png")
-    overview_figure(dataset).savefig(paths[-1], dpi=130)
+    overview_figure(dataset).savefig(paths[-1], dpi=120)
     return paths
 
 

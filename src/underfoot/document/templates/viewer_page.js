@@ -16,6 +16,7 @@ async function startViewer(root) {
   const drawings = stages.map((stage, k) => new Drawing(stage.querySelector("canvas"), scene.panes[k], colours));
   const state = { quantity: scene.quantities[0], frame: -1, cell: -1, pane: 0 };
   const view = { opening: 0.5, stretch: 1 };
+  const views = { below: [0, 0], oblique: [-0.5, 0.75], side: [-Math.PI / 2, 1.45] };
   let waiting = false;
 
   // Corners of the box about all soles and their grids, in m.
@@ -30,8 +31,8 @@ async function startViewer(root) {
     return found;
   }
 
-  // Turn to a side and stand so that everything just fits.
-  function look(turn, tilt) {
+  // Where to stand so that everything just fits, seen from a side.
+  function fit(turn, tilt) {
     const points = corners(), { canvas } = drawings[0], lens = Math.tan(view.opening / 2) * 0.96;
     const { right, up, forward } = axes({ turn, tilt }), dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     const wide = lens * canvas.clientWidth / Math.max(canvas.clientHeight, 1);
@@ -45,7 +46,16 @@ async function startViewer(root) {
       });
       target = target.map((v, k) => v + middle[0] * right[k] + middle[1] * up[k]);
     }
-    Object.assign(view, { turn, tilt, target, distance, home: distance });
+    return { turn, tilt, target, distance, home: distance };
+  }
+
+  function look(name) {
+    let found = fit(...views[name]);
+    if (name === "oblique") { // a long sole in a wide window lies better across it
+      const across = fit(-1.15, views.oblique[1]);
+      if (across.distance < 0.85 * found.distance) found = across;
+    }
+    Object.assign(view, found);
     redraw();
   }
 
@@ -204,7 +214,7 @@ async function startViewer(root) {
       e.preventDefault();
       zoom(Math.exp(Math.max(-60, Math.min(60, e.deltaY)) * 0.003));
     }, { passive: false });
-    canvas.addEventListener("dblclick", () => look(...oblique));
+    canvas.addEventListener("dblclick", () => look("oblique"));
     canvas.addEventListener("keydown", (e) => {
       const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[e.key];
       if (step && e.altKey && state.cell >= 0) {
@@ -214,7 +224,7 @@ async function startViewer(root) {
       else if (step) orbit(step[0] * 0.09, step[1] * 0.09);
       else if (e.key === "+" || e.key === "=") zoom(0.87);
       else if (e.key === "-") zoom(1.15);
-      else if (e.key === "0" || e.key === "Home") look(...oblique);
+      else if (e.key === "0" || e.key === "Home") look("oblique");
       else if (e.key === "Enter" || e.key === " ") pick(k, canvas.clientWidth / 2, canvas.clientHeight / 2);
       else if (e.key === "Escape") { state.cell = -1; tell(); redraw(); }
       else return;
@@ -222,8 +232,7 @@ async function startViewer(root) {
     });
   });
 
-  const oblique = [-0.5, 0.75], views = { below: [0, 0], oblique, side: [-Math.PI / 2, 1.45] };
-  for (const button of root.querySelectorAll("[data-view]")) button.addEventListener("click", () => look(...views[button.dataset.view]));
+  for (const button of root.querySelectorAll("[data-view]")) button.addEventListener("click", () => look(button.dataset.view));
   for (const input of root.querySelectorAll("input[name='quantity']")) {
     input.addEventListener("change", () => choose(scene.quantities[Number(input.value)]));
   }
@@ -241,7 +250,7 @@ async function startViewer(root) {
 
   root.querySelector(".body").hidden = false;
   find("loading").hidden = true;
-  look(...oblique);
+  look("oblique");
   await choose(state.quantity);
   root.dataset.ready = "yes";
 }

@@ -1,0 +1,214 @@
+"""The page in a real browser: no complaint, a picture that follows its controls, values."""
+
+import functools
+import itertools
+import re
+
+import numpy as np
+import pytest
+from chromium import browser, opened
+
+from underfoot.document import case_differences, comparison, write_comparison
+from underfoot.document.page import result_page
+from underfoot.document.scene import unpacked, viewer_scene
+
+needs_browser = pytest.mark.skipif(browser() is None, reason="no Chromium on this machine")
+pytestmark = pytest.mark.xdist_group("browser")
+
+
+@pytest.fixture(scope="module")
+def page(worn_shoe_result, tmp_path_factory):
+    path = tmp_path_factory.mktemp("page") / "report.html"
+    path.write_text(result_page(worn_shoe_result, maps=_NoMaps()), encoding="utf-8")
+    return path
+
+
+class _NoMaps(dict):
+    def __missing__(self, name):
+        return b""
+
+
+@pytest.fixture(scope="module")
+def tab(page):
+    with opened(page) as session:
+        yield session
+
+
+def centre(tab):
+    box = tab.value(
+        "(() => { document.querySelector('canvas').scrollIntoView({block: 'center'});"
+        "const b = document.querySelector('canvas').getBoundingClientRect();"
+        "return [b.left + b.width / 2, b.top + b.height / 2] })()"
+    )
+    return tuple(round(v) for v in box)
+
+
+def colourful(picture):
+    """Share of the pixels that are no grey: data, not rubber, floor or paper."""
+    return float(np.mean(np.ptp(picture, axis=2) > 0.12))
+
+
+def choose(tab, title):
+    tab.value(
+        "[...document.querySelectorAll('.choice label')]"
+        f".find((one) => one.textContent === {title!r}).querySelector('input').click()"
+    )
+    tab.settle()
+
+
+def changed(first, second):
+    return float(np.mean(np.abs(first - second).max(axis=2) > 0.05))
+
+
+@needs_browser
+def test_the_sole_is_drawn_in_colour_and_nothing_is_complained_of(tab):
+    picture, _ = tab.picture("canvas")
+    assert colourful(picture) > 0.05
+    assert len(np.unique((picture * 255).astype(int).reshape(-1, 3), axis=0)) > 300
+    assert tab.complaints == []
+    assert tab.value("document.querySelector('.viewer').dataset.ready") == "yes"
+
+
+@needs_browser
+def test_every_quantity_gives_its_own_picture_and_scale(tab):
+    seen = {}
+    titles = tab.value("[...document.querySelectorAll('.choice label')].map((l) => l.textContent)")
+    assert titles[:5] == [
+        "Contact pressure", "Fluid pressure", "Film thickness", "Load carried by fluid",
+        "Local shear",
+    ]  # fmt: skip
+    for title in titles:
+        choose(tab, title)
+        legend = tab.value("document.querySelector('[data-part=bar-title]').textContent")
+        assert legend.startswith(title)
+        assert "(" in legend, "no unit"
+        ticks = tab.value("document.querySelectorAll('.ticks span').length")
+        assert 2 <= ticks <= 9, title
+        seen[title] = tab.picture("canvas")[0]
+    for first, second in itertools.pairwise(titles):
+        assert changed(seen[first], seen[second]) > 0.01, (first, second)
+    assert tab.complaints == []
+
+
+@needs_browser
+def test_mouse_keyboard_and_height_move_the_sole(tab):
+    tab.value("document.querySelector('[data-view=oblique]').click()")
+    x, y = centre(tab)
+    tab.settle()
+    still, _ = tab.picture("canvas")
+    assert changed(still, tab.picture("canvas")[0]) == 0.0
+    pictures = [still]
+
+    def moved(what):
+        tab.settle()
+        pictures.append(tab.picture("canvas")[0])
+        assert changed(pictures[-2], pictures[-1]) > 0.01, what
+
+    tab.drag((x, y), (x + 90, y + 20))
+    moved("drag")
+    tab.drag((x, y), (x - 60, y), modifiers=8)
+    moved("shift and drag")
+    tab.value("document.querySelector('canvas').focus()")
+    tab.key("ArrowLeft")
+    moved("arrow")
+    tab.key("+")
+    moved("plus")
+    tab.value(
+        "(() => { const s = document.querySelector('[data-part=stretch]'); s.value = 8;"
+        "s.dispatchEvent(new Event('input')) })()"
+    )
+    moved("height")
+    tab.value("document.querySelector('[data-part=stretch]').value = 1")
+    tab.value("document.querySelector('[data-part=stretch]').dispatchEvent(new Event('input'))")
+    tab.key("0")
+    tab.settle()
+    back = tab.picture("canvas")[0]
+    assert changed(still[8:-8, 8:-8], back[8:-8, 8:-8]) < 0.01  # without the ring of the focus
+
+
+@needs_browser
+def test_a_point_tells_the_values_of_the_field_there(tab, worn_shoe_result):
+    tab.value("document.querySelector('[data-view=below]').click()")
+    tab.settle()
+    x, y = centre(tab)
+    tab.drag((x, y + 60), (x, y + 60))
+    place = tab.value("document.querySelector('[data-part=values-place]').textContent")
+    at = [float(v) * 1e-3 for v in re.findall(r"-?\d+\.\d", place)]
+    field = worn_shoe_result.fields["film_thickness"].sel(x=at[0], y=at[1], method="nearest")
+    told = tab.value("document.querySelector('[data-part=values-table]').innerText")
+    value = float(re.search(r"Film thickness\s+([\d.]+) µm", told).group(1))
+    assert value * 1e-6 == pytest.approx(float(field), rel=6e-3)
+    before = place
+    tab.value("document.querySelector('canvas').focus()")
+    tab.key("ArrowUp", modifiers=1)
+    after = tab.value("document.querySelector('[data-part=values-place]').textContent")
+    assert after != before
+    tab.key("Escape")
+    assert tab.value("document.querySelector('[data-part=values]').hidden")
+
+
+@needs_browser
+def test_on_a_telephone_it_fits_and_follows_two_fingers(page):
+    with opened(page, width=390, height=844, touch=True, dark=True) as tab:
+        assert tab.value("document.documentElement.scrollWidth") <= 390
+        x, y = centre(tab)
+        tab.settle()
+        before, _ = tab.picture("canvas")
+        assert before[5, 5].mean() < 0.3, "not dark"
+        tab.touch(
+            [(x - 30, y), (x + 30, y)], [(x - 45, y), (x + 45, y)], [(x - 70, y), (x + 70, y)]
+        )
+        assert changed(before, tab.picture("canvas")[0]) > 0.05
+        tab.value("document.querySelector('.theme').click()")
+        tab.settle()
+        assert tab.picture("canvas")[0][5, 5].mean() > 0.7, "not light"
+        assert tab.complaints == []
+
+
+@needs_browser
+def test_without_webgl_the_page_says_so(page, tmp_path):
+    text = page.read_text().replace('getContext("webgl2"', 'getContext("none"')
+    plain = tmp_path / "plain.html"
+    plain.write_text(text)
+    with opened(plain) as tab:
+        said = tab.value("document.querySelector('[data-part=loading]').textContent")
+        assert "can't be shown here" in said
+        assert tab.value("document.querySelector('.body').hidden")
+
+
+@needs_browser
+def test_compared_soles_turn_together(worn_shoe_result, tmp_path):
+    results = [worn_shoe_result, worn_shoe_result]
+    write_comparison(results, comparison(*results), [], tmp_path)
+    with opened(tmp_path / "compare.html") as tab:
+        assert tab.complaints == []
+        x, y = centre(tab)
+        tab.settle()
+        second = functools.partial(tab.picture, ".stage:nth-child(2) canvas")
+        before, _ = second()
+        tab.drag((x, y), (x + 80, y))
+        assert changed(before, second()[0]) > 0.01
+        tab.value("document.querySelector('[data-view=below]').click()")
+        tab.settle()
+        one, two = tab.picture(".stage:nth-child(1) canvas")[0], second()[0]
+        assert changed(one[80:], two[80:]) < 0.01
+
+
+def test_the_page_holds_the_fields_to_three_digits(worn_shoe_result):
+    scene = viewer_scene([worn_shoe_result])
+    pane = scene["panes"][0]
+    fields = worn_shoe_result.fields
+    film = unpacked(pane["fields"]["film_thickness"], (pane["nx"], pane["ny"]))
+    i = int(np.argmin(np.abs(fields.x.values - pane["x0"])))
+    j = int(np.argmin(np.abs(fields.y.values - pane["y0"])))
+    own = fields.film_thickness.values[i : i + pane["nx"], j : j + pane["ny"]] * 1e6
+    there = np.isfinite(film)
+    assert there.sum() == fields.inside.values.sum()
+    np.testing.assert_allclose(film[there], own[there], rtol=6e-4)
+
+
+def test_differences_between_cases_are_listed_for_any_number(worn_shoe_case):
+    thin = worn_shoe_case.replace("contaminant.viscosity", "41 cP")
+    assert case_differences([worn_shoe_case, worn_shoe_case, thin]) == [
+        ("contaminant.viscosity", "219 cP", "219 cP", "41 cP")
+    ]
