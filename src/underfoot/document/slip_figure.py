@@ -1,0 +1,129 @@
+"""Pictures of a slip: the heel over the floor's sensors, pressures, speeds and forces in time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .slip_words import shown_motion
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure, SubFigure
+
+    from underfoot.slip.dynamics import SlipMotion, SlipStudy
+
+FLUID, LOAD, ASKED, GIVEN = "#1f6fb2", "0.35", "#b3472f", "#2e7d4f"
+OUTLINE = np.array([[0.0, -0.02], [0.0, 0.02]])
+
+
+def slip_figure(study: SlipStudy) -> Figure:
+    """Return the median walker's slip as the report draws one (Fig. 32), with speeds and forces.
+
+    Top: heel path over the array (forward is up) and each sensor's pressure at its place in the
+    array; bottom: heel speed over the population's band, forces. Without fluid only the bottom.
+    """
+    from matplotlib.figure import Figure
+
+    motion = shown_motion(study)
+    wet = study.setting.viscosity is not None and study.representative is not None
+    figure = Figure(figsize=(10.5, 8.6 if wet else 4.0), layout="constrained")
+    below: Figure | SubFigure = figure
+    if wet:
+        halves: Any = figure.subfigures(2, 1, height_ratios=[1.35, 1.0])
+        below = halves[1]
+        left, right = halves[0].subfigures(1, 2, width_ratios=[1.0, 2.2])
+        _path(left.subplots(), study, motion)
+        _pressures(right, study, motion)
+    speeds, forces = below.subplots(1, 2)
+    _speeds(speeds, study, motion)
+    _forces(forces, motion, wet)
+    return figure
+
+
+def _path(axes: Axes, study: SlipStudy, motion: SlipMotion) -> None:
+    walker, array = motion.walker, study.array
+    x, y = array.places(walker)
+    columns, rows = np.meshgrid(y + walker.lateral, x - walker.landing)
+    axes.plot(1e3 * columns, 1e3 * rows, "x", color="0.2", ms=9, mew=1.8, label="sensor")
+    way = 1e3 * (motion.distance - walker.landing)
+    side = np.full(way.size, 1e3 * walker.lateral)
+    end = float(1e3 * (x[-1] - walker.landing) + 25)
+    axes.plot(side, way, color=FLUID, lw=3, label="heel's rear end", solid_capstyle="butt")
+    axes.plot(side[0], way[0], "o", color=FLUID, ms=9, mfc="white", mew=2, label="heel contact")
+    if way[-1] > end:
+        axes.annotate("", (side[0], end), (side[0], end - 12),
+                      arrowprops={"arrowstyle": "-|>", "color": FLUID, "lw": 2})  # fmt: skip
+    axes.set(
+        xlim=(1e3 * y.max() + 22, 1e3 * y.min() - 22) if y.size > 1 else (40, -40),
+        ylim=(-35, end),
+        xlabel="across (mm, left of the walk positive)",
+        ylabel="along the walk (mm)",
+        aspect="equal",
+    )
+    axes.set_title("Heel path over the sensors", fontsize=10)
+    axes.legend(frameon=False, fontsize=8, loc="lower center", ncols=2, bbox_to_anchor=(0.5, -0.36))
+
+
+def _pressures(figure: SubFigure, study: SlipStudy, motion: SlipMotion) -> None:
+    from underfoot.slip.dynamics import array_pressures
+
+    run, array = study.representative, study.array
+    assert run is not None
+    found = array_pressures(motion, run.maps, array) / 1e3
+    grid = figure.subplots(array.rows, array.columns, sharex=True, sharey=True, squeeze=False)
+    last = min(1e3 * float(motion.time[-1]), 1e3 * _over(motion, found) + 40)
+    for i in range(array.rows):
+        for j in range(array.columns):
+            axes = grid[array.rows - 1 - i][j]
+            axes.fill_between(1e3 * motion.time, found[:, i, j], color=FLUID, alpha=0.35, lw=0)
+            axes.plot(1e3 * motion.time, found[:, i, j], color=FLUID, lw=1.3)
+            axes.text(0.95, 0.85, f"{found[:, i, j].max():.3g} kPa", ha="right", fontsize=8,
+                      transform=axes.transAxes)  # fmt: skip
+            axes.set_xlim(0, last)
+            axes.set_ylim(0, max(1.15 * found.max(), 5.0))
+            axes.spines[["top", "right"]].set_visible(False)
+            axes.tick_params(labelsize=8)
+    figure.supxlabel("time after heel contact (ms)", fontsize=9)
+    figure.supylabel("fluid pressure (kPa)", fontsize=9)
+    figure.suptitle("Pressure at each sensor, at its place in the array", fontsize=10)
+
+
+def _over(motion: SlipMotion, pressures: np.ndarray) -> float:
+    busy = np.flatnonzero(pressures.max(axis=(1, 2)) > 1.0)
+    return float(motion.time[busy[-1]]) if busy.size else 0.1
+
+
+def _speeds(axes: Axes, study: SlipStudy, motion: SlipMotion) -> None:
+    if len(study.subjects) > 4:
+        last = max(s.motion.time[-1] for s in study.subjects)
+        time = np.linspace(0, last, 200)
+        speeds = np.array(
+            [np.interp(time, s.motion.time, s.motion.speed, right=s.motion.speed[-1])
+             for s in study.subjects]
+        )  # fmt: skip
+        low, middle, high = np.percentile(speeds, [5, 50, 95], axis=0)
+        axes.fill_between(1e3 * time, low, high, color="0.88", label="90 % of the walkers")
+        axes.plot(1e3 * time, middle, color="0.55", lw=1, label="median")
+    axes.plot(1e3 * motion.time, motion.speed, color=FLUID, lw=2, label=motion.walker.name)
+    axes.axhline(0.2, color=ASKED, lw=1, ls=":")
+    axes.text(1e3 * motion.time[-1], 0.2, " slip above 0.2 m/s", va="bottom", ha="right",
+              color=ASKED, fontsize=8)  # fmt: skip
+    axes.set(xlabel="time after heel contact (ms)", ylabel="heel speed (m/s)", xlim=(0, None),
+             ylim=(0, None))  # fmt: skip
+    axes.legend(frameon=False, fontsize=8, loc="upper left")
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def _forces(axes: Axes, motion: SlipMotion, wet: bool) -> None:
+    time = 1e3 * motion.time
+    axes.plot(time, motion.normal, color=LOAD, lw=1.5, label="load on the foot")
+    if wet:
+        axes.plot(time, motion.fluid_load, color=FLUID, lw=1.5, label="of it on the film")
+    axes.plot(time, motion.drive, color=ASKED, lw=1.5, label="push forward, r F")
+    axes.plot(time, motion.friction, color=GIVEN, lw=1.5, label="friction")
+    axes.axhline(0, color="0.6", lw=0.6)
+    axes.set(xlabel="time after heel contact (ms)", ylabel="force (N)", xlim=(0, None))
+    axes.legend(frameon=False, fontsize=8)
+    axes.spines[["top", "right"]].set_visible(False)

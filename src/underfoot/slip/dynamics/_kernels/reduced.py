@@ -1,0 +1,166 @@
+"""Time stepping of the reduced slip: film height and foot speed, compiled."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+# places of the constants in the parameter vector
+AREA, AREA_POWER, AREA_ANGLE = 0, 1, 2
+STIFFNESS, DECAY, LEAK, LEAK_ANGLE = 3, 4, 5, 6
+WEDGE, WEDGE_ANGLE, LENGTH, START, SHEAR = 7, 8, 9, 10, 11
+COUNT = 12
+REFERENCE_LOAD = 500.0
+GAMMA = 1.0 - 1.0 / math.sqrt(2.0)
+SMALLEST = 1e-7
+
+
+@njit(cache=True)
+def _contact_pressure(h, p, p0, u):
+    """Contact share of a mean pressure: p0 exp(-h/u), rounded off at p."""
+    raw = p0 * math.exp(-h / u)
+    # smooth minimum: all the load at most, and never quite without film while film is there
+    return raw * p / (raw**4 + p**4) ** 0.25
+
+
+@njit(cache=True)
+def _film_rate(h, v, p, lean, c, viscosity, pool):
+    """Rate of the mean film height: leakage under its pressure, inflow by the wedge."""
+    pc = _contact_pressure(h, p, c[STIFFNESS], c[DECAY])
+    pf = p - pc
+    leak = c[LEAK] * math.exp(c[LEAK_ANGLE] * lean)
+    out = leak * h**3 * pf / (12.0 * viscosity)
+    if v <= 0.0:
+        return -out
+    drawn = c[WEDGE] * math.exp(c[WEDGE_ANGLE] * lean) * viscosity * v
+    height = 1.0 / (1.0 / pool + max(pf, 0.0) / drawn)
+    return -out + 0.5 * v / c[LENGTH] * (height - h)
+
+
+@njit(cache=True)
+def _solved_height(base, share, v, p, lean, c, viscosity, pool):
+    """Solve h = base + share * rate(h) by bisection safeguarded secant steps."""
+    low, high = SMALLEST, 4.0 * pool
+    h = min(max(base, low), high)
+    for _ in range(60):
+        g = h - base - share * _film_rate(h, v, p, lean, c, viscosity, pool)
+        if g > 0.0:
+            high = h
+        else:
+            low = h
+        eps = 1e-6 * h + 1e-12
+        slope = (
+            h + eps - base - share * _film_rate(h + eps, v, p, lean, c, viscosity, pool) - g
+        ) / eps
+        new = h - g / slope if slope > 0.0 else 0.5 * (low + high)
+        if not (low < new < high):
+            new = 0.5 * (low + high)
+        if abs(new - h) < 1e-12 + 1e-9 * h:
+            return new
+        h = new
+    return h
+
+
+@njit(cache=True)
+def _area(load, lean, c):
+    return (
+        c[AREA]
+        * (max(load, 1.0) / REFERENCE_LOAD) ** c[AREA_POWER]
+        * math.exp(c[AREA_ANGLE] * lean)
+    )
+
+
+@njit(cache=True)
+def _friction(v, h, load, lean, c, viscosity, table_speed, table_cof):
+    """Friction force and film load of a state."""
+    area = _area(load, lean, c)
+    p = load / area
+    pc = _contact_pressure(h, p, c[STIFFNESS], c[DECAY]) if viscosity > 0.0 else p
+    cof = np.interp(v, table_speed, table_cof)
+    force = cof * pc * area
+    if viscosity > 0.0:
+        force += c[SHEAR] * viscosity * v * area / h
+    return force, (p - pc) * area
+
+
+@njit(cache=True)
+def carried(
+    times, normals, drives, leans, given_speed, v0, mass, c, viscosity, pool, table_speed,
+    table_cof, over,
+):  # fmt: skip
+    """Return speed, film, friction, film load, work and loss at ``times`` and the last index.
+
+    With ``given_speed`` (n,) of numbers the speed is that, not solved; nan lets the foot move.
+    Film by SDIRK2 (L-stable), speed by the trapezoidal rule with the film at both ends.
+    """
+    n = times.size
+    speed, film = np.zeros(n), np.zeros(n)
+    friction, fluid = np.zeros(n), np.zeros(n)
+    work, lost = np.zeros(n), np.zeros(n)
+    wet = viscosity > 0.0
+    speed[0], film[0] = v0, c[START]
+    held = not math.isnan(given_speed[0])
+    if held:
+        speed[0] = given_speed[0]
+    acceleration, last, began = 0.0, 0.0, drives[0]
+    end = n - 1
+    for i in range(n - 1):
+        dt = times[i + 1] - times[i]
+        v = speed[i]
+        guess = given_speed[i + 1] if held else max(v + dt * acceleration, 0.0)
+        new = guess
+        h = film[i]
+        for _ in range(4 if not held else 1):
+            if wet:
+                # two implicit stages, load and speed linear within the step
+                t1 = GAMMA
+                f1 = normals[i] + t1 * (normals[i + 1] - normals[i])
+                l1 = leans[i] + t1 * (leans[i + 1] - leans[i])
+                v1 = v + t1 * (new - v)
+                p1 = f1 / _area(f1, l1, c)
+                h1 = _solved_height(film[i], GAMMA * dt, v1, p1, l1, c, viscosity, pool)
+                k1 = (h1 - film[i]) / (GAMMA * dt)
+                f2, l2 = normals[i + 1], leans[i + 1]
+                p2 = f2 / _area(f2, l2, c)
+                base = film[i] + (1.0 - GAMMA) * dt * k1
+                h = _solved_height(base, GAMMA * dt, new, p2, l2, c, viscosity, pool)
+            if held:
+                break
+            before = new
+            load, lean, drive = normals[i + 1], leans[i + 1], drives[i + 1]
+            if v <= 1e-9:
+                most, _f = _friction(0.0, h, load, lean, c, viscosity, table_speed, table_cof)
+                if drive <= most:
+                    new = 0.0
+                    break
+            net = began - last
+            if v <= 1e-9:
+                net = max(net, 0.0)
+            for _ in range(40):
+                ff, _f = _friction(new, h, load, lean, c, viscosity, table_speed, table_cof)
+                next_ = max(v + 0.5 * dt / mass * (net + drive - ff), 0.0)
+                if abs(next_ - new) < 1e-11:
+                    new = next_
+                    break
+                new = next_
+            if abs(new - before) < 1e-10:
+                break
+        ff, wf = _friction(
+            new, h, normals[i + 1], leans[i + 1], c, viscosity, table_speed, table_cof
+        )
+        if new <= 1e-9 and not held:
+            new = 0.0
+            ff = min(max(drives[i + 1], 0.0), ff)
+        speed[i + 1], film[i + 1], friction[i + 1], fluid[i + 1] = new, h, ff, wf
+        moved = 0.5 * (v + new) * dt
+        asked = 0.5 * (began + drives[i + 1])
+        work[i + 1] = work[i] + asked * moved
+        lost[i + 1] = lost[i] + (asked - mass * (new - v) / dt) * moved
+        acceleration = (drives[i + 1] - ff) / mass if new > 0.0 else 0.0
+        last, began = ff, drives[i + 1]
+        if not held and new <= 1e-9 and times[i + 1] > over:
+            end = i + 1
+            break
+    return speed, film, friction, fluid, work, lost, end

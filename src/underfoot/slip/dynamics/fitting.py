@@ -1,0 +1,258 @@
+"""The reduced model's constants, fitted to runs of the full one and tested on others."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core import InputError, Progress, silent
+
+from ._kernels import reduced as kernel
+from .motion import SlipMotion
+from .reduced import NAMES, ReducedSole, cof_table
+from .walker import Population, Spread, Walker
+
+if TYPE_CHECKING:
+    from .sole_contact import Setting
+
+Array = NDArray[np.float64]
+SPEED_SCALE = 0.2  # m/s, the report's slip threshold: an error of that size weighs one
+POINTS = 60
+# factors on the first guess; the first start is the guess itself
+STARTS = ((1.0, 1.0, 1.0), (0.3, 1.0, 3.0), (3.0, 0.5, 0.5), (1.0, 2.0, 0.3))
+FIRST_LOOK, POLISH = 8, 40  # evaluations of the slope from each start, and from the best
+LEAST_LOAD = 30.0  # N, below which shares say nothing
+
+
+@dataclass(frozen=True, slots=True)
+class FitError:
+    """How far the reduced model is from full runs; SI."""
+
+    runs: int
+    peak_speed: float
+    speed: float
+    distance: float
+    fluid_share: float
+    same_outcome: float
+
+    def __str__(self) -> str:
+        return (
+            f"{self.runs} runs: peak speed ± {self.peak_speed:.2g} m/s, speed in time ± "
+            f"{self.speed:.2g} m/s, distance ± {1e3 * self.distance:.2g} mm, load on the film ± "
+            f"{100 * self.fluid_share:.2g} % of the load, same side of 0.2 m/s in "
+            f"{100 * self.same_outcome:.0f} %"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class ReducedFit:
+    """A fitted reduced model; ``held_out`` is its error on runs that the fit did not see."""
+
+    sole: ReducedSole
+    fitted: FitError
+    held_out: FitError
+    at_bound: tuple[str, ...]
+
+
+def design(population: Population, count: int, seed: int = 7) -> tuple[Walker, ...]:
+    """Return walkers that span a population twice as wide as itself, by a Latin hypercube."""
+    from scipy.stats import norm
+
+    names = ("mass", "rcof", "walking_speed", "heel_speed", "shoe_angle")
+    generator = np.random.default_rng(seed)
+    columns = [generator.permutation(count) for _ in range(len(names) + 1)]
+    places = (np.column_stack(columns) + generator.random((count, len(columns)))) / count
+    found = []
+    for row in places:
+        values = {}
+        for name, share in zip(names, row, strict=False):
+            spread: Spread = getattr(population, name)
+            # 5 to 95 % of a normal twice as wide
+            at = spread.mean + 2 * spread.sd * float(norm.ppf(0.05 + 0.9 * share)) / 1.645
+            values[name] = float(np.clip(at, spread.low, spread.high))
+        pick = population.histories[int(row[-1] * len(population.histories))]
+        found.append(
+            Walker(
+                history=pick,
+                effective_mass=population.effective_mass,
+                recorded_angle=population.recorded_angle,
+                name=f"design {len(found) + 1}",
+                **values,
+            )
+        )
+    return tuple(found)
+
+
+def fitted_reduced(
+    setting: Setting,
+    runs: Sequence[SlipMotion],
+    held_out: Sequence[SlipMotion],
+    areas: Sequence[tuple[float, float, float]],
+    *,
+    progress: Progress = silent,
+) -> ReducedFit:
+    """Return the reduced model that follows full runs best.
+
+    Parameters
+    ----------
+    setting
+        Shoe, floor and fluid of the runs.
+    runs, held_out
+        Full motions to fit to, and others to test on.
+    areas
+        (load, shoe angle, (sum p)^2 / sum p^2 dA) of the full runs' instants: the loaded area.
+
+    Notes
+    -----
+    Area constants by regression on ``areas``. The others by least squares on the film's share of
+    the load (full speed imposed) and on the speed in time (foot set free), over 0.2 m/s, from
+    four starts.
+
+    Errors
+    ------
+    InputError
+        Fewer than three runs or areas.
+    """
+    from scipy.optimize import least_squares
+
+    if len(runs) < 3 or len(areas) < 3:
+        raise InputError(f"{len(runs)} runs", where="runs", allowed="3 or more")
+    area = _area_constants(areas, setting.shoe_angle)
+    mean_pressure = 500.0 / area[0]
+    speeds, cofs = cof_table(setting.friction, mean_pressure)
+    blank = ReducedSole(
+        np.ones(kernel.COUNT), setting.viscosity, setting.settings.pool_depth, setting.shoe_angle,
+        speeds, cofs,
+    )  # fmt: skip
+    side = math.sqrt(area[0])
+    guess = np.array([
+        *area, 5 * mean_pressure, 0.5 * _gap_decay(setting), 12 * 2.4 / side**2, 0.0, 30.0, 0.0,
+        side, max(setting.settings.start_film, 2e-6), 1.0,
+    ])  # fmt: skip
+    if setting.viscosity is None:
+        sole = replace(blank, constants=guess)
+        return ReducedFit(sole, error_of(sole, runs), error_of(sole, held_out), ())
+    low, high = _bounds(guess)
+    free = [i for i in range(kernel.COUNT) if i > kernel.AREA_ANGLE]
+    signed = [i in (kernel.LEAK_ANGLE, kernel.WEDGE_ANGLE) for i in free]
+
+    def constants(z: Array) -> Array:
+        out = guess.copy()
+        for i, value, sign in zip(free, z, signed, strict=True):
+            out[i] = value if sign else math.exp(value)
+        return out
+
+    lows = np.array([low[i] if s else math.log(low[i]) for i, s in zip(free, signed, strict=True)])
+    highs = np.array(
+        [high[i] if s else math.log(high[i]) for i, s in zip(free, signed, strict=True)]
+    )
+
+    def residual(z: Array) -> Array:
+        return _residual(replace(blank, constants=constants(z)), runs)
+
+    def improved(z: Array, most: int) -> Any:
+        return least_squares(
+            residual, z, bounds=(lows, highs), loss="soft_l1", diff_step=1e-4, max_nfev=most
+        )
+
+    best = None
+    for number, (leak, decay, wedge) in enumerate(STARTS):
+        progress("Fitting the reduced model", 0.6 * number / len(STARTS), None)
+        start = guess.copy()
+        start[kernel.LEAK] *= leak
+        start[kernel.DECAY] *= decay
+        start[kernel.WEDGE] *= wedge
+        z = np.array(
+            [start[i] if s else math.log(start[i]) for i, s in zip(free, signed, strict=True)]
+        )
+        found = improved(np.clip(z, lows + 1e-6, highs - 1e-6), FIRST_LOOK)
+        if best is None or found.cost < best.cost:
+            best = found
+    assert best is not None
+    progress("Fitting the reduced model", 0.6, None)
+    best = improved(np.clip(best.x, lows + 1e-9, highs - 1e-9), POLISH)
+    sole = replace(blank, constants=constants(best.x))
+    stuck = tuple(
+        NAMES[i]
+        for i, z, a, b in zip(free, best.x, lows, highs, strict=True)
+        if min(z - a, b - z) < 1e-3 * (b - a)
+    )
+    return ReducedFit(sole, error_of(sole, runs), error_of(sole, held_out), stuck)
+
+
+def error_of(sole: ReducedSole, runs: Sequence[SlipMotion]) -> FitError:
+    """Return the root-mean-square errors of the reduced model against full runs."""
+    peaks, speeds, distances, shares, same = [], [], [], [], []
+    for run in runs:
+        own = sole.motion(run.walker)
+        peaks.append(own.peak_speed - run.peak_speed)
+        speeds.append(np.interp(run.time, own.time, own.speed, right=0.0) - run.speed)
+        distances.append(own.distance[-1] - run.distance[-1])
+        fluid, _ = sole.carried_at(run)
+        loaded = run.normal > LEAST_LOAD
+        shares.append((fluid - run.fluid_load)[loaded] / run.normal[loaded])
+        same.append((own.peak_speed > SPEED_SCALE) == (run.peak_speed > SPEED_SCALE))
+
+    def rms(values: Sequence[float] | Array) -> float:
+        return float(np.sqrt(np.mean(np.square(values)))) if len(values) else math.nan
+
+    return FitError(
+        len(runs),
+        rms(peaks),
+        rms(np.concatenate(speeds)) if speeds else math.nan,
+        rms(distances),
+        rms(np.concatenate(shares)) if shares else math.nan,
+        float(np.mean(same)) if same else math.nan,
+    )
+
+
+def _residual(sole: ReducedSole, runs: Sequence[SlipMotion]) -> Array:
+    out = []
+    for run in runs:
+        at = np.unique(np.linspace(1, run.time.size - 1, POINTS).astype(int))
+        fluid, _ = sole.carried_at(run)
+        load = np.maximum(run.normal[at], LEAST_LOAD)
+        out.append((fluid[at] - run.fluid_load[at]) / load / math.sqrt(at.size))
+        own = sole.motion(run.walker, step=1e-3)
+        speed = np.interp(run.time[at], own.time, own.speed, right=0.0)
+        out.append((speed - run.speed[at]) / SPEED_SCALE / math.sqrt(at.size))
+    found = np.concatenate(out)
+    return np.where(np.isfinite(found), found, 1e3)
+
+
+def _area_constants(
+    areas: Sequence[tuple[float, float, float]], middle: float
+) -> tuple[float, float, float]:
+    """Return area at 500 N, its power of the load and its growth with the angle."""
+    rows = np.array([row for row in areas if row[0] > LEAST_LOAD and row[2] > 0])
+    lean = rows[:, 1] - middle
+    columns = [np.ones(len(rows)), np.log(rows[:, 0] / kernel.REFERENCE_LOAD)]
+    if np.ptp(lean) > 1e-4:
+        columns.append(lean)
+    fit, *_ = np.linalg.lstsq(np.column_stack(columns), np.log(rows[:, 2]), rcond=None)
+    return float(math.exp(fit[0])), float(fit[1]), float(fit[2]) if len(fit) > 2 else 0.0
+
+
+def _gap_decay(setting: Setting) -> float:
+    """Return twice the gap over which the asperities' pressure falls by e."""
+    gaps = np.geomspace(1e-7, 1e-3, 200)
+    pressure = setting.asperities.pressure(gaps)
+    near = int(np.argmin(np.abs(np.log(np.maximum(pressure, 1e-300) / 3e5))))
+    slope = float(setting.asperities.stiffness(gaps[near : near + 1])[0])
+    return 2 * float(pressure[near]) / max(slope, 1e-300)
+
+
+def _bounds(guess: Array) -> tuple[Array, Array]:
+    low, high = guess * 1e-3, guess * 1e3
+    low[kernel.DECAY], high[kernel.DECAY] = guess[kernel.DECAY] / 20, guess[kernel.DECAY] * 20
+    low[kernel.LENGTH], high[kernel.LENGTH] = guess[kernel.LENGTH] / 30, guess[kernel.LENGTH] * 30
+    low[kernel.START], high[kernel.START] = 1e-6, 6e-4
+    low[kernel.SHEAR], high[kernel.SHEAR] = 0.05, 20.0
+    for i in (kernel.LEAK_ANGLE, kernel.WEDGE_ANGLE):
+        low[i], high[i] = -40.0, 40.0
+    return low, high

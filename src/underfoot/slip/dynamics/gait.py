@@ -1,0 +1,210 @@
+"""What a step asks of the floor: load, shear ratio and foot angle against time since contact."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core import InputError
+
+Array = NDArray[np.float64]
+COLUMNS = ("time_s", "normal_per_body_weight", "shear_ratio", "foot_angle_deg")
+LEAST_LOAD = 0.05  # of body weight: below, the ratio of two small forces is noise
+GATE = 0.15  # of body weight (100 N of 70 kg): RCOF counts above it, as in the report's G.6.1
+
+
+@dataclass(frozen=True, slots=True)
+class GaitHistory:
+    """One step of dry walking from heel contact on.
+
+    Parameters
+    ----------
+    name
+        Of the recording and step.
+    time
+        (n,), s, from 0, rising.
+    normal
+        (n,), normal force over body weight, 1, not negative.
+    ratio
+        (n,), shear over normal force, 1; positive pushes the floor forward (braking), which is
+        what slides the foot forward when friction fails. Size: resultant; sign: along the walk.
+    foot_angle
+        (n,), rad, toe up positive, 0 with the foot flat; None when not recorded.
+    walking_speed
+        m/s; None when not recorded.
+    heel_speed
+        Horizontal speed of the heel at contact, m/s; None when not recorded.
+    source
+        Recording, licence and how body weight was found.
+
+    Errors
+    ------
+    InputError
+        Arrays that don't match, times that don't rise, values that are not finite, a negative
+        load, a ratio outside -1.5 to 1.5.
+    """
+
+    name: str
+    time: Array
+    normal: Array
+    ratio: Array
+    foot_angle: Array | None = None
+    walking_speed: float | None = None
+    heel_speed: float | None = None
+    source: str = ""
+    notes: tuple[str, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        where = f"history {self.name}"
+        for label in ("time", "normal", "ratio", "foot_angle"):
+            given = getattr(self, label)
+            if given is None:
+                continue
+            values = np.asarray(given, dtype=float)
+            object.__setattr__(self, label, values)
+            if values.ndim != 1 or values.size < 5 or values.shape != np.shape(self.time):
+                raise InputError(
+                    f"{label} has shape {values.shape}", where=where, allowed="5 or more samples"
+                )
+            if not np.isfinite(values).all():
+                raise InputError(f"{label} holds values that are no numbers", where=where)
+        if self.time[0] != 0 or not (np.diff(self.time) > 0).all():
+            raise InputError(
+                "times do not rise from 0", where=where, allowed="seconds since heel contact"
+            )
+        if (self.normal < 0).any():
+            raise InputError("the normal force is negative", where=where, allowed="0 or more")
+        if self.normal.max() > 4:
+            raise InputError(
+                f"the normal force reaches {self.normal.max():.3g} body weights",
+                where=where,
+                allowed="up to 4",
+                remedy="Divide it by body weight",
+            )
+        if np.abs(self.ratio).max() > 1.5:
+            raise InputError(
+                f"the shear ratio reaches {np.abs(self.ratio).max():.3g}",
+                where=where,
+                allowed="-1.5 to 1.5",
+            )
+
+    @property
+    def duration(self) -> float:
+        """Length of the history, s."""
+        return float(self.time[-1])
+
+    @property
+    def rcof(self) -> float:
+        """Largest ratio in the first half above 15 % of body weight, 1."""
+        early = (self.time <= 0.5 * self.duration) & (self.normal > GATE)
+        if not early.any() or self.ratio[early].max() <= 0:
+            raise InputError(
+                "no braking above 15 % of body weight in the first half",
+                where=f"history {self.name}",
+                remedy="Give a whole stance, with braking as positive ratio",
+            )
+        return float(self.ratio[early].max())
+
+    @property
+    def end_of_braking(self) -> float:
+        """Time after which the ratio is positive no more, s; the end when it stays positive."""
+        positive = np.flatnonzero((self.ratio > 0) & (self.normal > GATE))
+        return float(self.time[positive[-1]]) if positive.size else 0.0
+
+    def asking(self, rcof: float) -> GaitHistory:
+        """Return the history with its ratio scaled to another RCOF."""
+        if not 0 <= rcof <= 1:
+            raise InputError(f"RCOF {rcof:g}", where="rcof", allowed="0 to 1")
+        return replace(self, ratio=self.ratio * (rcof / self.rcof))
+
+    def lasting(self, duration: float) -> GaitHistory:
+        """Return the history stretched in time to another length, s."""
+        if not (math.isfinite(duration) and duration > 0):
+            raise InputError(f"{duration:g} s", where="duration", allowed="above 0")
+        return replace(self, time=self.time * (duration / self.duration))
+
+
+def load_history(path: Path | str) -> GaitHistory:
+    """Return a history from a table of our own columns (CSV; lines with # are notes).
+
+    Columns: time_s, normal_per_body_weight, shear_ratio and, where known, foot_angle_deg.
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise InputError("there is no such file", where=str(path)) from None
+    return history_from_lines(text.splitlines(), path.stem)
+
+
+def history_from_lines(lines: Iterable[str], name: str) -> GaitHistory:
+    """Return the history in the lines of a table."""
+    notes: dict[str, str] = {}
+    rows = []
+    for line in lines:
+        if line.startswith("#"):
+            key, sign, value = line[1:].partition(":")
+            if sign:
+                notes[key.strip()] = value.strip()
+        elif line.strip():
+            rows.append(line)
+    table = list(csv.DictReader(rows))
+    missing = [c for c in COLUMNS[:3] if not table or c not in table[0]]
+    if missing:
+        raise InputError(
+            f"the column {missing[0]} is missing", where=name, allowed=", ".join(COLUMNS)
+        )
+    try:
+        values = {c: np.array([float(row[c]) for row in table]) for c in COLUMNS[:3]}
+        angles = [row.get(COLUMNS[3]) or "" for row in table]
+        angle = np.radians([float(a) for a in angles]) if all(angles) else None
+    except (TypeError, ValueError) as error:
+        raise InputError(f"a cell is no number ({error})", where=name) from None
+    return GaitHistory(
+        name,
+        values["time_s"],
+        values["normal_per_body_weight"],
+        values["shear_ratio"],
+        angle,
+        walking_speed=_number(notes.get("walking speed (m/s)")),
+        heel_speed=_number(notes.get("heel speed at contact (m/s)")),
+        source="; ".join(notes[k] for k in ("source", "licence", "body weight") if k in notes),
+    )
+
+
+def history_text(history: GaitHistory, notes: dict[str, str]) -> str:
+    """Return a table that ``load_history`` reads; ``notes`` become its first lines."""
+    lines = [f"# {key}: {value}" for key, value in notes.items()]
+    for key, value in (
+        ("walking speed (m/s)", history.walking_speed),
+        ("heel speed at contact (m/s)", history.heel_speed),
+    ):
+        if value is not None:
+            lines.append(f"# {key}: {value:.3f}")
+    lines.append(",".join(COLUMNS))
+    angle = history.foot_angle
+    for i, (t, n, r) in enumerate(zip(history.time, history.normal, history.ratio, strict=True)):
+        last = "" if angle is None else f"{math.degrees(angle[i]):.2f}"
+        lines.append(f"{t:.4f},{n:.4f},{r:.4f},{last}")
+    return "\n".join(lines) + "\n"
+
+
+def packaged_histories() -> tuple[GaitHistory, ...]:
+    """Return the steps that come with the package: real dry walking of six laboratories."""
+    from importlib.resources import files
+
+    folder = files("underfoot") / "data" / "gait"
+    found = sorted((f for f in folder.iterdir() if f.name.endswith(".csv")), key=lambda f: f.name)
+    return tuple(
+        history_from_lines(f.read_text(encoding="utf-8").splitlines(), f.name[:-4]) for f in found
+    )
+
+
+def _number(text: str | None) -> float | None:
+    return None if text is None else float(text)

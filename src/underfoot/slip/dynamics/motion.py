@@ -1,0 +1,208 @@
+"""The foot as a mass between what the body asks and what the floor gives."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core import InputError, Progress, Status, silent
+
+from .walker import Walker
+
+Array = NDArray[np.float64]
+STEP = 4e-3
+"""s, longest step of the foot's motion (see docs/physics/slip_dynamics.md for its error)."""
+MOST_SWEEPS = 60
+STILL = 1e-9  # m/s
+
+
+class Instant(Protocol):
+    """Contact and film after a step."""
+
+    @property
+    def fluid_load(self) -> float:
+        """Load carried by the fluid, N."""
+        ...
+
+    @property
+    def usable(self) -> bool:
+        """False when the solver gave up."""
+        ...
+
+    def friction(self, speed: float) -> float:
+        """Return the friction force (N, 0 or more) if the foot slid forward at ``speed``."""
+        ...
+
+
+class FootContact(Protocol):
+    """Contact and film under a sole, carried in time."""
+
+    def advance(
+        self, duration: float, *, normal_force: float, speed: float, shoe_angle: float
+    ) -> Instant:
+        """Carry on by ``duration``; load, speed and angle go linearly to the values given."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class SlipMotion:
+    """The foot against time; arrays (n,), SI.
+
+    ``drive`` is r F, ``friction`` what the floor gives (N, against sliding), ``fluid_load`` the
+    load on the film (N). ``work_in``, ``dissipated`` and ``kinetic`` are energies since contact
+    (J), ``kinetic`` the energy itself. ``still_sliding`` says that the history ended first.
+    """
+
+    walker: Walker
+    time: Array
+    speed: Array
+    distance: Array
+    normal: Array
+    drive: Array
+    friction: Array
+    fluid_load: Array
+    shoe_angle: Array
+    work_in: Array
+    dissipated: Array
+    status: Status
+    model: str
+    notes: tuple[str, ...] = ()
+
+    @property
+    def kinetic(self) -> Array:
+        """Kinetic energy of the foot, J."""
+        return 0.5 * self.walker.moving_mass * self.speed**2
+
+    @property
+    def still_sliding(self) -> bool:
+        """True when the foot still slides at the end."""
+        return bool(self.speed[-1] > 1e-6)
+
+    @property
+    def peak_speed(self) -> float:
+        """Largest speed after the first minimum of the speed, m/s (no filter, no marker)."""
+        low = (
+            int(np.argmax(np.diff(self.speed) > 1e-12))
+            if (np.diff(self.speed) > 1e-12).any()
+            else -1
+        )
+        return float(self.speed[low:].max())
+
+
+def slip_motion(
+    walker: Walker,
+    contact: FootContact,
+    *,
+    step: float = STEP,
+    model: str = "full",
+    seen: Callable[[float, Instant], None] | None = None,
+    progress: Progress = silent,
+) -> SlipMotion:
+    """Return the motion of a foot that lands on the floor and slides, or does not.
+
+    m dV/dt = r(t) F(t) - FF(V, film, contact),  V >= 0
+
+    by the trapezoidal rule for V with contact and film carried to the predicted speed. At rest
+    friction is what the body asks, up to its greatest value at the lowest speed. A foot is not
+    pushed backward. It ends when the foot rests and braking is over, or with the history.
+
+    Parameters
+    ----------
+    walker
+        Who steps.
+    contact
+        Fresh, unloaded.
+    step
+        Longest step, s.
+    seen
+        Called with the time and the contact after every step.
+
+    Errors
+    ------
+    InputError
+        A step that is not positive or longer than a tenth of the history.
+    """
+    history = walker.step
+    end = history.duration
+    if not (math.isfinite(step) and 0 < step <= end / 10):
+        raise InputError(f"{step:g} s", where="step", allowed=f"above 0, up to {end / 10:.3g} s")
+    mass, over = walker.moving_mass, history.end_of_braking
+    count = math.ceil(end / step)
+    times = np.linspace(0.0, end, count + 1)
+    normals, drives, angles = walker.demands(times)
+    speed, distance = walker.heel_speed, 0.0
+    acceleration = 0.0
+    friction = 0.0
+    work_in = dissipated = 0.0
+    rows = [(0.0, speed, 0.0, 0.0, float(drives[0]), 0.0, 0.0, float(angles[0]), 0.0, 0.0)]
+    status = Status.CONVERGED
+    begin = float(drives[0])
+    for i in range(count):
+        duration = float(times[i + 1] - times[i])
+        normal, drive = float(normals[i + 1]), float(drives[i + 1])
+        guess = max(speed + duration * acceleration, 0.0)
+        instant = contact.advance(
+            duration, normal_force=normal, speed=guess, shoe_angle=float(angles[i + 1])
+        )
+        if not instant.usable:
+            status = Status.NOT_CONVERGED
+            break
+        if seen is not None:
+            seen(float(times[i + 1]), instant)
+        new, friction_now = _new_speed(
+            instant, speed, duration / (2 * mass), begin - friction, drive, guess
+        )
+        moved = 0.5 * (speed + new) * duration
+        asked = 0.5 * (begin + drive)
+        # what friction really took, also when the foot came to rest within the step
+        given = asked - mass * (new - speed) / duration
+        work_in += asked * moved
+        dissipated += given * moved
+        acceleration = (drive - friction_now) / mass if new > 0 else 0.0
+        distance += moved
+        speed, friction, begin = new, friction_now, drive
+        rows.append(
+            (float(times[i + 1]), speed, distance, normal, drive, friction, instant.fluid_load,
+             float(angles[i + 1]), work_in, dissipated)
+        )  # fmt: skip
+        progress("Slipping", float(times[i + 1]) / end, None)
+        if speed <= STILL and times[i + 1] > over:
+            break
+    columns = np.array(rows).T
+    notes = ()
+    if status is Status.CONVERGED and speed > 1e-6:
+        notes = (
+            f"still sliding at {speed:.2f} m/s when the history of {end:.2f} s ends: distance is "
+            "a lower bound",
+        )
+    time, v, x, n, d, ff, wf, angle, win, diss = columns
+    return SlipMotion(walker, time, v, x, n, d, ff, wf, angle, win, diss, status, model, notes)
+
+
+def _new_speed(
+    instant: Instant, speed: float, share: float, net: float, drive: float, guess: float
+) -> tuple[float, float]:
+    """Return speed and friction at the end of a step; friction at rest is what is asked."""
+    if speed <= STILL:
+        most = instant.friction(0.0)
+        if drive <= most:
+            return 0.0, max(drive, 0.0)
+        net = max(net, 0.0)
+    found = guess
+    friction = instant.friction(found)
+    for _ in range(MOST_SWEEPS):
+        next_ = max(speed + share * (net + drive - friction), 0.0)
+        friction = instant.friction(next_)
+        if abs(next_ - found) < 1e-10:
+            found = next_
+            break
+        found = next_
+    if found <= STILL:
+        most = instant.friction(0.0)
+        return 0.0, min(max(drive, 0.0), most)
+    return found, friction

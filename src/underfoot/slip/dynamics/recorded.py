@@ -1,0 +1,143 @@
+"""Gait histories out of recordings: force plates, and heel and toe markers where there are any."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core import InputError
+
+from .gait import LEAST_LOAD, GaitHistory
+
+if TYPE_CHECKING:
+    from underfoot.trials.axes import Axes
+    from underfoot.trials.gait import RequiredFriction
+    from underfoot.trials.trial import Marker, Trial
+
+GRAVITY = 9.80665
+DUTY = 0.62  # stance over stride of level walking (assumed, textbook value)
+RATE = 200.0  # Hz of the tables
+FLAT = (0.3, 0.5)  # share of the stance in which the foot lies flat
+_TOE = re.compile(r"toe$|mt2$|mt1$", re.IGNORECASE)
+
+
+def recorded_histories(path: Path | str, *, mass: float | None = None) -> list[GaitHistory]:
+    """Return a history for every accepted step of a recording (any file ``trials`` reads).
+
+    Parameters
+    ----------
+    path
+        C3D, MOT or table with force plates.
+    mass
+        Of the person, kg; None takes the file's, else body weight is estimated as mean normal
+        force of the stance x 2 x 0.62 (two stances of 62 % of a stride carry it together).
+
+    Errors
+    ------
+    InputError
+        No accepted step; the reasons are listed.
+    """
+    from underfoot.trials.gait import required_frictions
+    from underfoot.trials.readers import read_trial
+
+    trial = read_trial(Path(path))
+    steps = required_frictions(trial)
+    found = [
+        step_history(trial, step, mass=mass, name=f"{Path(path).stem} {step.stance.plate}")
+        for step in steps
+        if step.measurement.value is not None
+    ]
+    if not found:
+        reasons = [s.stance.reason or s.measurement.reason for s in steps] or ["no contact"]
+        raise InputError(
+            "no step can be used: " + "; ".join(dict.fromkeys(reasons)), where=str(path)
+        )
+    return found
+
+
+def step_history(
+    trial: Trial, step: RequiredFriction, *, mass: float | None = None, name: str = ""
+) -> GaitHistory:
+    """Return one accepted step as a history: forces low-passed as for RCOF, 200 samples a second.
+
+    Foot angle: from the line heel marker to toe marker (or first or second metatarsal head of the
+    same side), against its angle while the foot lies flat (30 to 50 % of stance).
+    """
+    from underfoot.trials.axes import axes_of
+    from underfoot.trials.events import body_mass
+    from underfoot.trials.filters import low_passed
+    from underfoot.trials.gait import RcofDefinition
+    from underfoot.trials.plates import plate_named
+
+    axes, stance = axes_of(trial), step.stance
+    assert stance.walking is not None  # an RCOF has one
+    plate = plate_named(trial, stance.plate)
+    force = low_passed(plate.force, plate.rate, RcofDefinition().filter)
+    force = force[stance.start : stance.stop]
+    normal = np.maximum(force @ axes.up, 0.0)
+    shear = force - np.outer(force @ axes.up, axes.up)
+    own = mass or body_mass(trial)
+    weight = own * GRAVITY if own else float(normal.mean()) * 2 * DUTY
+    since = np.arange(len(normal)) / plate.rate
+    size = np.linalg.norm(shear, axis=1) * np.where(shear @ stance.walking < 0, 1.0, -1.0)
+    ratio = np.where(normal > LEAST_LOAD * weight, size / np.maximum(normal, 1.0), 0.0)
+    time = np.arange(0.0, since[-1] + 0.5 / plate.rate, 1 / RATE)
+    heel_speed, angle = _heel(trial, step, axes, time)
+    how = f"{own:g} kg" if own else f"estimated {weight:.0f} N: mean normal force x 2 x {DUTY:g}"
+    return GaitHistory(
+        name or stance.plate,
+        time,
+        np.interp(time, since, normal / weight),
+        np.interp(time, since, ratio),
+        angle,
+        walking_speed=_walking_speed(trial, stance.contact, stance.toe_off, axes),
+        heel_speed=heel_speed,
+        source=how,
+    )
+
+
+def _heel(
+    trial: Trial, step: RequiredFriction, axes: Axes, time: NDArray[np.float64]
+) -> tuple[float | None, NDArray[np.float64] | None]:
+    """Return the heel's speed at contact and the foot's angle at ``time``, where recorded."""
+    from underfoot.trials.heel import heel_motion
+
+    stance = step.stance
+    heel = trial.marker(stance.heel) if stance.heel else None
+    if heel is None or stance.walking is None:
+        return None, None
+    motion = heel_motion(heel, axes.up)
+    speed = float(np.interp(stance.contact, motion.time, motion.speed))
+    toe = _toe_of(trial, stance.heel)
+    if toe is None or len(toe.positions) != len(heel.positions):
+        return (speed if math.isfinite(speed) else None), None
+    line = toe.positions - heel.positions
+    tilt = np.arctan2(line @ axes.up, line @ stance.walking)
+    share = (motion.time - stance.contact) / stance.duration
+    flat = (share > FLAT[0]) & (share < FLAT[1])
+    if not (flat.any() and np.isfinite(tilt[flat]).all()):
+        return speed, None
+    angle = np.interp(time + stance.contact, motion.time, tilt - np.median(tilt[flat]))
+    return speed, (angle if np.isfinite(angle).all() else None)
+
+
+def _toe_of(trial: Trial, heel: str) -> Marker | None:
+    side = heel.strip()[0].lower()
+    names = [n for n in trial.markers if _TOE.search(n) and n.strip()[0].lower() == side]
+    names.sort(key=lambda n: (not n.lower().endswith("toe"), not n.lower().endswith("mt2")))
+    return trial.marker(names[0]) if names else None
+
+
+def _walking_speed(trial: Trial, begin: float, end: float, axes: Axes) -> float | None:
+    from underfoot.trials.axes import marker_velocity
+
+    found = marker_velocity(trial, begin, end, axes.up)
+    if found is None or not np.isfinite(found).all():
+        return None
+    speed = float(np.linalg.norm(found))
+    return speed if 0.3 < speed < 3 else None

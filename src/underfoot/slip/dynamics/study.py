@@ -1,0 +1,293 @@
+"""A population on one floor: who slips, how fast, how far, and what sensors see."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core import Cache, ConvergenceError, Progress, SourcedValue, Status, silent
+
+from .fitting import ReducedFit, cof_table, design, fitted_reduced
+from .full_runs import ROOM, FullRun, full_runs
+from .motion import STEP, SlipMotion
+from .observed import ObservedSlip, Outcome, OutcomeLimits, observed
+from .reduced import ReducedSole
+from .sensors import PressureShape, SensorArray, array_pressures, pressure_shape
+from .sole_contact import Setting
+from .walker import Population, Walker
+
+Array = NDArray[np.float64]
+Z95 = 1.959963984540054
+FIT_RUNS, HELD_OUT = 12, 4
+
+
+@dataclass(frozen=True, slots=True)
+class SubjectSlip:
+    """One person's step."""
+
+    walker: Walker
+    motion: SlipMotion
+    pressures: Array | None
+    seen: ObservedSlip
+
+
+@dataclass(frozen=True, slots=True)
+class SlipStudy:
+    """A population's slips; ``full`` says that everybody went through the full model.
+
+    ``fit`` and ``pressure_error`` (relative error of the peak reading on held-out full runs) are
+    None on a dry floor; ``representative`` is a full run of the person closest to the median.
+    """
+
+    setting: Setting
+    population: Population
+    array: SensorArray
+    subjects: tuple[SubjectSlip, ...]
+    full: bool
+    fit: ReducedFit | None
+    pressure_error: float | None
+    representative: FullRun | None
+    full_runs: tuple[FullRun, ...]
+    breaches: tuple[str, ...]
+    failed: int = 0
+
+    def shares(self) -> dict[Outcome, tuple[float, float, float]]:
+        """Return share, lower and upper 95 % bound (Wilson) of each outcome.
+
+        A single person has no band: nan.
+        """
+        count = len(self.subjects)
+        found = {}
+        for outcome in Outcome:
+            hits = sum(s.seen.outcome is outcome for s in self.subjects)
+            found[outcome] = (hits / count, *_wilson(hits, count))
+        return found
+
+    def slipped(self) -> tuple[float, float, float]:
+        """Return the share of peak slipping speeds above 0.2 m/s (G.6.1) with its 95 % bounds."""
+        hits = sum(s.seen.slipped for s in self.subjects)
+        return (hits / len(self.subjects), *_wilson(hits, len(self.subjects)))
+
+    def of(self, name: str) -> Array:
+        """Return a number of every subject (n,), nan where there is none."""
+        values = [getattr(s.seen, name) for s in self.subjects]
+        return np.array([math.nan if v is None else float(v) for v in values])
+
+    def mean(self, name: str, unit: str, *, crossed: bool = False) -> SourcedValue:
+        """Return the mean of a number over the subjects, their standard deviation as uncertainty.
+
+        ``crossed`` counts only those whose heel passed over the sensors, as the report does.
+        """
+        values = self.of(name)
+        if crossed:
+            values = values[np.array([s.seen.crossed for s in self.subjects])]
+        values = values[np.isfinite(values)]
+        if not values.size:
+            return SourcedValue(None, unit, reason="no subject has one")
+        single = values.size < 2
+        return SourcedValue(
+            float(values.mean()),
+            unit,
+            source="simulated population",
+            uncertainty=None if single else float(values.std(ddof=1)),
+            reason="one subject has no spread" if single else "",
+            note=f"mean and standard deviation of {values.size} subjects",
+        )
+
+    def correlation(self) -> float | None:
+        """Return Pearson's r of peak slipping speed and peak pressure of those who crossed."""
+        crossed = np.array([s.seen.crossed for s in self.subjects])
+        speed, pressure = self.of("peak_speed")[crossed], self.of("peak_pressure")[crossed]
+        if speed.size < 3 or np.ptp(speed) == 0 or np.ptp(pressure) == 0:
+            return None
+        return float(np.corrcoef(speed, pressure)[0, 1])
+
+    def rows(self) -> Array:
+        """Return the mean peak (rows,) of each row of sensors over those who crossed, Pa."""
+        found = [s.seen.row_peaks for s in self.subjects if s.seen.crossed and s.seen.row_peaks]
+        if not found:
+            return np.full(self.array.rows, math.nan)
+        return np.mean(np.array(found), axis=0)
+
+
+def slip_study(
+    setting: Setting,
+    population: Population,
+    *,
+    array: SensorArray | None = None,
+    full: bool = False,
+    fit_runs: int = FIT_RUNS,
+    held_out: int = HELD_OUT,
+    step: float = STEP,
+    limits: OutcomeLimits | None = None,
+    cache: Cache | None = None,
+    progress: Progress = silent,
+) -> SlipStudy:
+    """Return the slips of a population on one floor.
+
+    The reduced model is fitted to ``fit_runs`` full slips of made-up persons that span the
+    population, tested on ``held_out`` others, and run for everybody; with ``full`` everybody goes
+    through the full model. Full slips are kept in the cache: a stopped study goes on.
+
+    Errors
+    ------
+    ConvergenceError
+        Too few full slips could be solved to fit to.
+    """
+    array = array or SensorArray()
+    cache = cache or Cache(ROOM)
+    walkers = population.walkers()
+    if setting.viscosity is None:
+        return _dry_study(setting, population, array, walkers, limits)
+    options = {"inlet_diameter": array.inlet_diameter, "step": step, "cache": cache}
+
+    def part(low: float, high: float) -> Progress:
+        def told(stage: str, fraction: float, residual: float | None = None) -> None:
+            progress(stage, low + (high - low) * fraction, residual)
+
+        return told
+
+    if full:
+        runs = full_runs(setting, walkers, progress=progress, **options)
+        good = [r for r in runs if r.motion.status is Status.CONVERGED]
+        if not good:
+            raise ConvergenceError("no slip could be solved", where="slip", remedy=_REMEDY)
+        subjects = [
+            _subject(r.motion, array_pressures(r.motion, r.maps, array), array, limits, i)
+            for i, r in enumerate(good)
+        ]
+        return SlipStudy(
+            setting, population, array, tuple(subjects), True, None, None,
+            _nearest(good, subjects), tuple(good), _words(good), len(runs) - len(good),
+        )  # fmt: skip
+    people = design(population, fit_runs + held_out)
+    runs = full_runs(setting, people, progress=part(0.0, 0.8), **options)
+    good = [r for r in runs if r.motion.status is Status.CONVERGED]
+    if len(good) < max(4, len(runs) // 2):
+        raise ConvergenceError(
+            f"only {len(good)} of {len(runs)} slips could be solved", where="slip", remedy=_REMEDY
+        )
+    every = max(len(good) // max(held_out, 1), 2)
+    tested = good[every - 1 :: every][:held_out]
+    used = [r for r in good if not any(r is t for t in tested)]
+    rows = [row for r in used for row in r.area_rows()]
+    fit = fitted_reduced(
+        setting, [r.motion for r in used], [r.motion for r in tested], rows,
+        progress=part(0.8, 0.93),
+    )  # fmt: skip
+    shape = pressure_shape(used, setting.shoe_angle)
+    subjects = _reduced_subjects(fit.sole, shape, walkers, array, limits)
+    chosen = walkers[_middle(subjects)]
+    shown = full_runs(setting, [chosen], progress=part(0.95, 1.0), **options)
+    return SlipStudy(
+        setting, population, array, tuple(subjects), False, fit,
+        _pressure_error(shape, fit.sole, tested, array),
+        shown[0] if shown[0].motion.status is Status.CONVERGED else None,
+        tuple(good), _words(good), len(runs) - len(good),
+    )  # fmt: skip
+
+
+_REMEDY = "Use a finer grid, a thicker start film, or a narrower population"
+
+
+def _reduced_subjects(
+    sole: ReducedSole,
+    shape: PressureShape,
+    walkers: Sequence[Walker],
+    array: SensorArray,
+    limits: OutcomeLimits | None,
+) -> list[SubjectSlip]:
+    found = []
+    for i, walker in enumerate(walkers):
+        motion = sole.motion(walker)
+        thin = _thinned(motion)
+        pressures = array_pressures(thin, shape.maps(thin), array)
+        found.append(_subject(thin, pressures, array, limits, i))
+    return found
+
+
+def _dry_study(
+    setting: Setting,
+    population: Population,
+    array: SensorArray,
+    walkers: Sequence[Walker],
+    limits: OutcomeLimits | None,
+) -> SlipStudy:
+    """Without fluid friction depends on load and speed alone: the reduced model is exact."""
+    speeds, cofs = cof_table(setting.friction, 3e5)
+    constants = np.ones(12)
+    constants[[1, 2]] = 0.0
+    sole = ReducedSole(constants, None, 1e-3, setting.shoe_angle, speeds, cofs)
+    subjects = [
+        _subject(_thinned(sole.motion(walker)), None, array, limits, i)
+        for i, walker in enumerate(walkers)
+    ]
+    return SlipStudy(setting, population, array, tuple(subjects), False, None, None, None, (), ())
+
+
+def _subject(
+    motion: SlipMotion,
+    pressures: Array | None,
+    array: SensorArray,
+    limits: OutcomeLimits | None,
+    seed: int,
+) -> SubjectSlip:
+    seen = observed(motion, pressures, array, limits=limits, seed=seed)
+    return SubjectSlip(motion.walker, motion, pressures, seen)
+
+
+def _thinned(motion: SlipMotion, every: int = 4) -> SlipMotion:
+    """Return the motion at every fourth instant: what drawings and sensors need."""
+    from dataclasses import replace
+
+    keep = np.unique(np.append(np.arange(0, motion.time.size, every), motion.time.size - 1))
+    names = (
+        "time", "speed", "distance", "normal", "drive", "friction", "fluid_load", "shoe_angle",
+        "work_in", "dissipated",
+    )  # fmt: skip
+    return replace(motion, **{name: getattr(motion, name)[keep] for name in names})
+
+
+def _pressure_error(
+    shape: PressureShape, sole: ReducedSole, tested: Sequence[FullRun], array: SensorArray
+) -> float | None:
+    """Return the root-mean-square relative error of the peak reading on held-out full runs."""
+    errors = []
+    for run in tested:
+        true = float(array_pressures(run.motion, run.maps, array).max())
+        own = sole.motion(run.motion.walker)
+        found = float(array_pressures(own, shape.maps(own), array).max())
+        if true > 1e3:
+            errors.append(found / true - 1)
+    return float(np.sqrt(np.mean(np.square(errors)))) if errors else None
+
+
+def _middle(subjects: Sequence[SubjectSlip]) -> int:
+    """Return the subject whose peak speed is nearest to the median of those who crossed."""
+    speeds = np.array([s.seen.peak_speed for s in subjects])
+    crossed = np.array([s.seen.crossed for s in subjects])
+    pool = crossed if crossed.any() else np.ones(speeds.size, dtype=bool)
+    middle = float(np.median(speeds[pool]))
+    return int(np.argmin(np.where(pool, np.abs(speeds - middle), np.inf)))
+
+
+def _nearest(runs: Sequence[FullRun], subjects: Sequence[SubjectSlip]) -> FullRun:
+    return runs[_middle(subjects)]
+
+
+def _wilson(hits: int, count: int) -> tuple[float, float]:
+    """Return the 95 % bounds of a share; nan for fewer than two."""
+    if count < 2:
+        return math.nan, math.nan
+    share, z = hits / count, Z95
+    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
+    half = z * math.sqrt(share * (1 - share) / count + z * z / (4 * count**2)) / (1 + z * z / count)
+    return max(middle - half, 0.0), min(middle + half, 1.0)
+
+
+def _words(runs: Sequence[FullRun]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(word for run in runs for word in run.breaches))

@@ -1,0 +1,204 @@
+"""A person who takes a step, and a population of them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core import InputError
+
+from .gait import GaitHistory, packaged_histories
+
+Array = NDArray[np.float64]
+GRAVITY = 9.80665
+REFERENCE_SPEED = 1.36
+"""m/s, mean walking speed of the recorded steps that know it; taken for those that don't."""
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """What the body asks of the foot at an instant: load (N), drive (N) and shoe angle (rad)."""
+
+    normal: float
+    drive: float
+    shoe_angle: float
+
+
+@dataclass(frozen=True, slots=True)
+class Walker:
+    """One person's step onto the floor; SI.
+
+    Parameters
+    ----------
+    history
+        Load and shear ratio against time of a dry step.
+    mass
+        Of the body, kg.
+    rcof
+        Required coefficient of friction, 0 to 1; the history's ratio is scaled to it.
+    heel_speed
+        Forward speed of the heel at contact, m/s.
+    shoe_angle
+        rad, toe up positive.
+    walking_speed
+        m/s; the history is stretched in time to it. None keeps its length.
+    effective_mass
+        Share of the body's mass that moves with the slipping heel, 1.
+    landing
+        Distance of the heel's rear end behind the first row of sensors at contact, m.
+    lateral
+        Place of the heel's centre line to the left of the sensors' middle column, m.
+    recorded_angle
+        Let the shoe angle fall as in the history (where it has one) instead of holding it.
+
+    Errors
+    ------
+    InputError
+        A mass that is not positive, an RCOF outside 0 to 1, a negative heel speed.
+    """
+
+    history: GaitHistory
+    mass: float = 70.0
+    rcof: float = 0.20
+    heel_speed: float = 0.34
+    shoe_angle: float = math.radians(10)
+    walking_speed: float | None = None
+    effective_mass: float = 0.114
+    landing: float = 0.01
+    lateral: float = 0.0
+    recorded_angle: bool = False
+    name: str = "walker"
+
+    def __post_init__(self) -> None:
+        for label, value, low, high, allowed in (
+            ("mass", self.mass, 5.0, 400.0, "5 to 400 kg"),
+            ("rcof", self.rcof, 0.0, 1.0, "0 to 1"),
+            ("heel_speed", self.heel_speed, 0.0, 6.0, "0 to 6 m/s"),
+            ("effective_mass", self.effective_mass, 1e-3, 1.0, "0.001 to 1"),
+            ("walking_speed", self.walking_speed or 1.0, 0.1, 6.0, "0.1 to 6 m/s"),
+        ):
+            if not (math.isfinite(value) and low <= value <= high):
+                raise InputError(f"{value:g}", where=f"walker.{label}", allowed=allowed)
+
+    @property
+    def moving_mass(self) -> float:
+        """Mass of the slipping foot, kg."""
+        return self.mass * self.effective_mass
+
+    @property
+    def step(self) -> GaitHistory:
+        """The history as this person walks it: own RCOF, own length."""
+        asked = self.history.asking(self.rcof)
+        if self.walking_speed is None:
+            return asked
+        own = self.history.walking_speed or REFERENCE_SPEED
+        return asked.lasting(self.history.duration * own / self.walking_speed)
+
+    def demands(self, times: Array) -> tuple[Array, Array, Array]:
+        """Return load (N), drive r F (N) and shoe angle (rad) at times since contact (s)."""
+        step = self.step
+        normal = np.interp(times, step.time, step.normal) * self.mass * GRAVITY
+        drive = np.interp(times, step.time, step.ratio) * normal
+        angle = np.full(np.shape(times), self.shoe_angle)
+        if self.recorded_angle and step.foot_angle is not None:
+            fall = np.interp(times, step.time, step.foot_angle) - step.foot_angle[0]
+            angle = np.maximum(self.shoe_angle + fall, 0.0)
+        return normal, drive, angle
+
+
+@dataclass(frozen=True, slots=True)
+class Spread:
+    """Normal distribution, cut at ``low`` and ``high``, with its source."""
+
+    mean: float
+    sd: float
+    low: float = -math.inf
+    high: float = math.inf
+    source: str = ""
+    assumed: bool = True
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.mean) and math.isfinite(self.sd) and self.sd >= 0):
+            raise InputError(f"{self.mean:g} ± {self.sd:g}", where="spread", allowed="sd 0 or more")
+        if not self.low <= self.mean <= self.high:
+            raise InputError(
+                f"a mean of {self.mean:g}", where="spread", allowed=f"{self.low:g} to {self.high:g}"
+            )
+
+    def draw(self, count: int, generator: np.random.Generator) -> Array:
+        """Return ``count`` values; those beyond the cuts are drawn again."""
+        values = generator.normal(self.mean, self.sd, count)
+        for _ in range(100):
+            beyond = (values < self.low) | (values > self.high)
+            if not beyond.any():
+                break
+            values[beyond] = generator.normal(self.mean, self.sd, int(beyond.sum()))
+        return np.clip(values, self.low, self.high)
+
+
+_STEPS = "13 steps of dry walking with heel markers that come with the package (slip_dynamics.md)"
+
+
+@dataclass(frozen=True, slots=True)
+class Population:
+    """Who walks: distributions of what differs between persons, drawn independently.
+
+    ``mass``, ``rcof``, ``walking_speed``, ``heel_speed`` and ``shoe_angle`` are normal and cut;
+    ``history`` is drawn from ``histories``; ``landing`` is uniform. ``effective_mass`` is one
+    number for all (assumed).
+    """
+
+    subjects: int = 40
+    seed: int = 1
+    histories: tuple[GaitHistory, ...] = field(default_factory=packaged_histories)
+    mass: Spread = Spread(
+        70.0, 11.8, 35.0, 140.0, "final progress report on shoe-floor friction, G.5.1", False
+    )
+    rcof: Spread = Spread(0.20, 0.03, 0.05, 1.0, "see slip_probability.md")
+    walking_speed: Spread = Spread(1.36, 0.18, 0.7, 2.2, _STEPS)
+    heel_speed: Spread = Spread(0.33, 0.11, 0.05, 1.0, _STEPS)
+    shoe_angle: Spread = Spread(
+        math.radians(10), math.radians(2), math.radians(2), math.radians(30)
+    )
+    landing: tuple[float, float] = (0.0, 0.02)
+    lateral: Spread = Spread(0.0, 0.01, -0.03, 0.03, "assumption")
+    effective_mass: float = 0.114
+    recorded_angle: bool = False
+
+    def __post_init__(self) -> None:
+        if self.subjects < 1 or int(self.subjects) != self.subjects:
+            raise InputError(
+                f"{self.subjects} subjects", where="slip.subjects", allowed="1 or more"
+            )
+        if not self.histories:
+            raise InputError("no gait history", where="slip.histories", allowed="1 or more")
+        if self.mass.low <= 0 or not 0 <= self.rcof.low <= self.rcof.high <= 1:
+            raise InputError("mass above 0, RCOF 0 to 1", where="slip")
+
+    def walkers(self) -> tuple[Walker, ...]:
+        """Return the persons; the same seed gives the same, and more subjects the same first."""
+        return tuple(self.walker(i) for i in range(self.subjects))
+
+    def walker(self, index: int) -> Walker:
+        """Return one person."""
+        generator = np.random.default_rng([self.seed, index])
+
+        def one(spread: Spread) -> float:
+            return float(spread.draw(1, generator)[0])
+
+        return Walker(
+            history=self.histories[int(generator.integers(len(self.histories)))],
+            mass=one(self.mass),
+            rcof=one(self.rcof),
+            walking_speed=one(self.walking_speed),
+            heel_speed=one(self.heel_speed),
+            shoe_angle=one(self.shoe_angle),
+            landing=float(generator.uniform(*self.landing)),
+            lateral=one(self.lateral),
+            effective_mass=self.effective_mass,
+            recorded_angle=self.recorded_angle,
+            name=f"subject {index + 1}",
+        )
