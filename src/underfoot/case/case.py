@@ -35,6 +35,7 @@ from .sections import (
     Sensor,
     Shoe,
 )
+from .sections_slip import SlipPeople
 
 
 class Case(Section):
@@ -57,6 +58,7 @@ class Case(Section):
     numerics: Numerics = Numerics()
     sensor: Sensor = Sensor()
     risk: Risk = Risk()
+    slip: SlipPeople = SlipPeople()
 
     _origins: dict[str, Origin] = PrivateAttr(default_factory=dict)
     _entries: dict[str, str] = PrivateAttr(default_factory=dict)

@@ -22,6 +22,7 @@ from .risk import risk
 from .run import run
 from .schema import schema
 from .sensitivity import sensitivity
+from .slip import slip
 from .stribeck import stribeck
 from .studies import studies_app
 from .trials import trials_app
@@ -45,6 +46,7 @@ _add(
     new,
     check,
     run,
+    slip,
     compare,
     sensitivity,
     risk,
