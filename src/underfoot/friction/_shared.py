@@ -9,6 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from underfoot.core import Breach, InputError, Range, SourcedValue, breaches
 
+from .law import FrictionParts
+
 Array = NDArray[np.float64]
 SMALLEST_FILM = 2e-7
 """m: the viscous part counts no film thinner than this; mean gaps of rough soles are micrometres
@@ -45,6 +47,21 @@ def viscous_shear(viscosity: float | None, speed: Array, film_thickness: Array) 
     if viscosity is None:
         return np.zeros_like(film_thickness)
     return viscosity * speed / np.maximum(film_thickness, SMALLEST_FILM)
+
+
+def proportional_parts(
+    adhesion: float,
+    hysteresis: float,
+    viscosity: float | None,
+    contact_pressure: ArrayLike,
+    speed: ArrayLike,
+    film_thickness: ArrayLike,
+) -> FrictionParts:
+    """Return the shear stresses (Pa) of two constant coefficients of the contact and eta V / h."""
+    pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
+    return FrictionParts(
+        adhesion * pressure, hysteresis * pressure, viscous_shear(viscosity, velocity, film)
+    )
 
 
 def law_breaches(

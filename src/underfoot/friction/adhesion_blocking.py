@@ -12,11 +12,10 @@ from underfoot.fluid import AdhesionBlocking
 from ._shared import (
     PIN_PRESSURE,
     REPORT,
-    checked,
     checked_viscosity,
     coefficient,
     law_breaches,
-    viscous_shear,
+    proportional_parts,
 )
 from .law import FrictionParts
 from .uncertain_inputs import UncertainInputs
@@ -88,12 +87,8 @@ class AdhesionBlockingLaw(UncertainInputs):
         self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
     ) -> FrictionParts:
         """Return the shear stresses in Pa."""
-        pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
-        adhesion, hysteresis = self.cof_parts
-        return FrictionParts(
-            adhesion * pressure,
-            hysteresis * pressure,
-            viscous_shear(self.viscosity, velocity, film),
+        return proportional_parts(
+            *self.cof_parts, self.viscosity, contact_pressure, speed, film_thickness
         )
 
     def breaches(

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, InputError, SourcedValue
 
-from ._shared import checked, checked_viscosity, law_breaches, viscous_shear
+from ._shared import checked_viscosity, law_breaches, proportional_parts
 from .law import FrictionParts
 from .uncertain_inputs import UncertainInputs
 
@@ -57,11 +57,13 @@ class ConstantLaw(UncertainInputs):
         self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
     ) -> FrictionParts:
         """Return the shear stresses in Pa."""
-        pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
-        return FrictionParts(
-            self.cof_adhesion * pressure,
-            self.cof_hysteresis * pressure,
-            viscous_shear(self.viscosity, velocity, film),
+        return proportional_parts(
+            self.cof_adhesion,
+            self.cof_hysteresis,
+            self.viscosity,
+            contact_pressure,
+            speed,
+            film_thickness,
         )
 
     @property

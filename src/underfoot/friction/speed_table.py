@@ -37,6 +37,8 @@ class SpeedTableLaw(UncertainInputs):
         (n,) standard deviations; None when not known.
     pressure
         Lowest and highest contact pressure of the readings, Pa.
+    assumed
+        Further assumptions behind the readings, in words.
 
     Errors
     ------
@@ -51,10 +53,8 @@ class SpeedTableLaw(UncertainInputs):
     viscosity: float | None = None
     cof_deviation: NDArray[np.float64] | None = None
     pressure: tuple[float, float] | None = None
+    assumed: tuple[str, ...] = ()
     name: str = field(default="speed_table", init=False)
-    assumptions: tuple[str, ...] = field(
-        default=("Contact friction is proportional to the contact pressure.",), init=False
-    )
 
     def __post_init__(self) -> None:
         for label in ("speed", "cof", "cof_deviation"):
@@ -85,6 +85,11 @@ class SpeedTableLaw(UncertainInputs):
         if not self.source.strip():
             raise InputError("no source", where="source", remedy="Say who measured it, and on what")
         checked_viscosity(self.viscosity)
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What no measurement stands behind."""
+        return ("Contact friction is proportional to the contact pressure.", *self.assumed)
 
     def __call__(
         self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike

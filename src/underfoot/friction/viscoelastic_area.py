@@ -43,9 +43,9 @@ class ViscoelasticArea:
     Parameters
     ----------
     exponent
-        n of the modulus, 1; ``modulus_exponent`` takes it from a relaxation spectrum. Rubber
-        near 20 C has 0.05 to 0.3; the report's own model loses 12 to 29 % of area from 0.1 to
-        1 m/s (G.1.2), n = 0.06 to 0.15.
+        n of the modulus, 1; ``modulus_exponent`` takes it from a relaxation spectrum. A power law
+        has tan delta = tan(n pi / 2): a loss tangent of 0.1 to 0.5 is n of 0.06 to 0.3. The
+        report's own model loses 12 to 29 % of area from 0.1 to 1 m/s (G.1.2), n = 0.06 to 0.15.
     rest_speed
         V0, m/s.
     """
