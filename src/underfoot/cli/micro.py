@@ -31,6 +31,14 @@ def micro(
         Path | None,
         typer.Option("--out", help="Folder for histories and the picture.", show_default=False),
     ] = None,
+    snapshots: Annotated[
+        int,
+        typer.Option(
+            "--snapshots",
+            min=0,
+            help="VTU files of the slide for ParaView (explicit, with --out): open block.pvd.",
+        ),
+    ] = 0,
     template: Annotated[
         bool, typer.Option("--template", help="Print a commented case to start from.")
     ] = False,
@@ -39,8 +47,12 @@ def micro(
 ) -> None:
     """Press a rough block on a rough floor and slide it: contact area, hysteresis, history.
 
-    With --out: micro.json, history_SPEED.csv for each speed, history.png.
+    With --out: micro.json, history_SPEED.csv for each speed, history.png. An explicit run that was
+    stopped goes on from there when the same command is given again.
     """
+    import shutil
+    import tempfile
+
     from underfoot.core import InputError
     from underfoot.core.files import check_writable_folder, whole_folder
     from underfoot.core.progress import bar
@@ -55,14 +67,32 @@ def micro(
             remedy="underfoot micro --template > block.toml writes one to start from",
         )
     chosen = micro_case(case, solver=solver)
+    if snapshots and (out is None or chosen.solver != "explicit"):
+        raise InputError(
+            f"{snapshots} snapshots",
+            where="--snapshots",
+            allowed="with --out and the explicit solver",
+            remedy="Add --solver explicit --out FOLDER",
+        )
     if out is not None:
         check_writable_folder(out, overwrite=overwrite)
-    with bar("micro model") as progress:
-        results = [chosen.result(speed, progress) for speed in chosen.speeds]
-    content = as_data(chosen, results)
-    if out is not None:
-        with whole_folder(out, overwrite=overwrite) as staging:
-            _write(staging, chosen, results, content)
+    with tempfile.TemporaryDirectory() as pictures:
+        with bar("micro model") as progress:
+            results = [
+                chosen.result(
+                    speed,
+                    progress,
+                    snapshots=snapshots,
+                    folder=Path(pictures) / f"snapshots_{speed:g}",
+                )
+                for speed in chosen.speeds
+            ]
+        content = as_data(chosen, results)
+        if out is not None:
+            with whole_folder(out, overwrite=overwrite) as staging:
+                _write(staging, chosen, results, content)
+                if snapshots:
+                    shutil.copytree(pictures, staging, dirs_exist_ok=True)
     if json:
         import json as json_text
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from underfoot.asperity.finite_element import (
+        ExplicitSettings,
         MicroBlock,
         MicroLoading,
         MicroMaterial,
@@ -21,6 +22,7 @@ TEMPLATE = """\
 # A rough rubber block on a rough rigid floor. What is left out takes the value shown.
 name = "rubber on a rough tile"
 solver = "condensed"            # condensed: small strains, no inertia; explicit: finite elements
+finite_strain = false           # true: condensed about the block's own finite compression (slower)
 
 [block]
 size = ["0.8 mm", "0.5 mm", "0.5 mm"]   # along sliding, across, high
@@ -52,9 +54,17 @@ control = "height"              # keep the height reached under the load, or "lo
 press_time = "1 ms"
 hold_time = "0.3 ms"
 ramp_time = "0.1 ms"
+
+[explicit]                      # of the explicit solver only
+mass_scaling = 1.0              # factor on the density, or "auto": the largest within its bounds
+hourglass = "stiffness"         # or "viscous", which makes friction of its own
+contact_damping = 0.3           # of critical
+precision = "double"            # or "single"
 """
 KEYS: Mapping[str, frozenset[str]] = {
-    "": frozenset({"name", "solver", "block", "floor", "material", "loading"}),
+    "": frozenset(
+        {"name", "solver", "finite_strain", "block", "floor", "material", "loading", "explicit"}
+    ),
     "block": frozenset(
         {"size", "elements", "bottom_layer", "roughness_layers", "sides", "roughness"}
     ),
@@ -62,6 +72,7 @@ KEYS: Mapping[str, frozenset[str]] = {
     "floor": frozenset({"peak_to_valley", "wavelength", "form", "file"}),
     "material": frozenset({"report", "power_law", "spectrum", "poisson_ratio", "bulk_modulus"}),
     "material.power_law": frozenset({"shear_modulus", "exponent"}),
+    "explicit": frozenset({"mass_scaling", "hourglass", "contact_damping", "precision"}),
     "loading": frozenset(
         {
             "mean_pressure",
@@ -88,38 +99,79 @@ class MicroCase:
     loading: MicroLoading
     speeds: tuple[float, ...]
     assumed: tuple[str, ...] = ()
+    finite_strain: bool = False
+    settings: ExplicitSettings | None = None
     _condensed: list[Any] = field(default_factory=list)
 
-    def result(self, speed: float, progress: Progress) -> MicroResult:
-        """Return the history at one speed."""
+    def result(
+        self,
+        speed: float,
+        progress: Progress,
+        *,
+        snapshots: int = 0,
+        folder: Path | None = None,
+    ) -> MicroResult:
+        """Return the history at one speed; ``folder`` gets the snapshots of explicit elements."""
         loading = replace(self.loading, speed=speed)
         if self.solver == "explicit":
-            from underfoot.asperity.finite_element import explicit_sliding
-
-            return explicit_sliding(
-                self.block, self.floor, self.material, loading, progress=progress
-            )
+            return self._explicit(loading, progress, snapshots, folder)
         from underfoot.asperity.condensed_block import (
             condensed_block,
             condensed_poisson_ratio,
             condensed_sliding,
+            pressed_block,
+            pressure_ratio_of,
         )
 
         if not self._condensed:
             nu = condensed_poisson_ratio(self.material)
-            self._condensed.append(condensed_block(self.block, nu, progress=progress))
+            self._condensed.append(
+                pressed_block(
+                    self.block, nu, pressure_ratio_of(self.material, loading), progress=progress
+                )
+                if self.finite_strain
+                else condensed_block(self.block, nu, progress=progress)
+            )
         return condensed_sliding(
             self._condensed[0], self.floor, self.material, loading, progress=progress
         )
+
+    def _explicit(
+        self, loading: MicroLoading, progress: Progress, snapshots: int, folder: Path | None
+    ) -> MicroResult:
+        """March on from where an earlier run of the same case was stopped, if there is one."""
+        import shutil
+
+        from underfoot.asperity.finite_element import explicit_sliding
+        from underfoot.core import DataError
+        from underfoot.core.cache import content_hash, default_folder
+
+        parts = (self.block, self.floor, self.material, loading, self.settings)
+        kept = default_folder() / "micro" / content_hash(*parts, snapshots)
+        restart = kept / "restart.npz"
+        run: dict[str, Any] = {"output": kept, "overwrite": True, "progress": progress}
+        run["snapshots"] = snapshots
+        try:
+            result = explicit_sliding(*parts, restart=restart if restart.is_file() else None, **run)
+        except DataError:  # left by another version
+            shutil.rmtree(kept)
+            result = explicit_sliding(*parts, **run)
+        if folder is not None:
+            for path in sorted(kept.glob("block*")):
+                folder.mkdir(parents=True, exist_ok=True)
+                shutil.copy2(path, folder)
+        shutil.rmtree(kept)
+        return result
 
     def described(self) -> list[str]:
         """Return the case in words."""
         b, m = self.block, self.material
         size = " x ".join(f"{length * 1e3:g}" for length in b.size)
         mesh = " x ".join(str(count) for count in b.elements)
+        strain = ", about its finite compression" if self.finite_strain else ""
         control = "load kept" if self.loading.control == "load" else "height kept"
         return [
-            f"{self.solver} block of {size} mm, {mesh} elements, {b.sides} sides",
+            f"{self.solver} block of {size} mm, {mesh} elements, {b.sides} sides{strain}",
             f"roughness Rz {b.roughness.peak_to_valley * 1e6:g} um on a floor of Rz "
             f"{self.floor.peak_to_valley * 1e6:g} um",
             f"shear modulus {m.shear.equilibrium_modulus * 1e-6:.4g} MPa relaxed, "
@@ -140,7 +192,7 @@ def micro_case(path: Path, *, solver: str | None = None) -> MicroCase:
     """
     import tomllib
 
-    from underfoot.asperity.finite_element import MicroBlock, MicroLoading
+    from underfoot.asperity.finite_element import ExplicitSettings, MicroBlock, MicroLoading
     from underfoot.core import InputError, to_si, unknown_name
 
     try:
@@ -151,6 +203,9 @@ def micro_case(path: Path, *, solver: str | None = None) -> MicroCase:
     chosen = solver or given.get("solver", "condensed")
     if chosen not in ("condensed", "explicit"):
         raise unknown_name("solver", str(chosen), ("condensed", "explicit"), where="solver")
+    finite_strain = given.get("finite_strain", False)
+    if not isinstance(finite_strain, bool):
+        raise InputError(f"{finite_strain!r}", where="finite_strain", allowed="true or false")
     where = str(path)
     block = given.get("block", {})
     values: dict[str, Any] = {
@@ -197,6 +252,8 @@ def micro_case(path: Path, *, solver: str | None = None) -> MicroCase:
             for v in (speeds if isinstance(speeds, list) else [speeds])
         ),
         tuple(assumed),
+        finite_strain,
+        ExplicitSettings(**given.get("explicit", {})),
     )
 
 

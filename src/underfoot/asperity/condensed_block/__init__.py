@@ -2,7 +2,8 @@
 
 from .area import edge_corrected_contact_area, nodal_contact_area
 from .compliance import CondensedBlock, condensed_block
-from .march import condensed_poisson_ratio, condensed_sliding
+from .march import condensed_poisson_ratio, condensed_sliding, pressure_ratio_of
+from .pressed import pressed_block
 
 __all__ = [
     "CondensedBlock",
@@ -11,4 +12,6 @@ __all__ = [
     "condensed_sliding",
     "edge_corrected_contact_area",
     "nodal_contact_area",
+    "pressed_block",
+    "pressure_ratio_of",
 ]

@@ -13,7 +13,7 @@ from underfoot.asperity.finite_element.mesh import Mesh, block_mesh
 from underfoot.core import ConvergenceError, InputError, Progress, silent
 
 from ._kernels.hexahedron import stiffness_matrices
-from ._kernels.schur import schur_complement
+from ._kernels.pardiso import schur_complement
 
 BATCH = 128
 
@@ -43,6 +43,9 @@ class CondensedBlock:
         before it was made symmetric: the error of the factorisation (reciprocity).
     unit_vector_compliance
         1/m, (3, n, 3, n): the same for displacement and force along x, y, z, or None.
+    pressure_ratio
+        Mean pressure over shear modulus that the block is linearised about (``pressed_block``);
+        ``points`` are then the nodes' places without that pressure, were the compliance constant.
     """
 
     block: MicroBlock
@@ -53,6 +56,7 @@ class CondensedBlock:
     unit_compliance: np.ndarray
     asymmetry: float
     unit_vector_compliance: np.ndarray | None = None
+    pressure_ratio: float = 0.0
 
 
 def condensed_block(
@@ -92,14 +96,14 @@ def condensed_block(
             where="MicroBlock.roughness",
             remedy="Raise roughness_layers or bottom_layer",
         )
-    same, kept = _merged(mesh, block.sides == "periodic")
+    same, kept = merged_nodes(mesh, block.sides == "periodic")
     top = mesh.shape[2] - 1
     plane = mesh.shape[0] * mesh.shape[1]
-    stiffness, number = _assembled(same[corners], matrices, same[: top * plane])
+    stiffness, number = assembled(same[corners], matrices, same[: top * plane])
     bottom = kept[kept < plane]
     axes = (0, 1, 2) if sideways else (2,)
     loaded = np.concatenate([number[3 * bottom + axis] for axis in axes])
-    found = _inverse_block(stiffness, loaded, progress)
+    found = inverse_block(stiffness, loaded, progress)
     largest = float(np.abs(found).max())
     asymmetry = float(np.abs(found - found.T).max()) / largest
     if not asymmetry < 1e-6:
@@ -123,7 +127,7 @@ def condensed_block(
     )
 
 
-def _merged(mesh: Mesh, periodic: bool) -> tuple[np.ndarray, np.ndarray]:
+def merged_nodes(mesh: Mesh, periodic: bool) -> tuple[np.ndarray, np.ndarray]:
     """Return the node that stands for each node, and the nodes that stand for themselves."""
     own = np.arange(mesh.nodes.shape[1]).reshape(mesh.shape[::-1])
     same = own.copy()
@@ -134,7 +138,7 @@ def _merged(mesh: Mesh, periodic: bool) -> tuple[np.ndarray, np.ndarray]:
     return same, np.flatnonzero(same == own.ravel())
 
 
-def _assembled(
+def assembled(
     nodes: np.ndarray, matrices: np.ndarray, free: np.ndarray
 ) -> tuple[sp.csr_matrix, np.ndarray]:
     """Return the stiffness of the ``free`` nodes and the place of each degree of freedom."""
@@ -151,7 +155,7 @@ def _assembled(
     return matrix, number
 
 
-def _inverse_block(matrix: sp.csr_matrix, loaded: np.ndarray, progress: Progress) -> np.ndarray:
+def inverse_block(matrix: sp.csr_matrix, loaded: np.ndarray, progress: Progress) -> np.ndarray:
     """Return the entries (loaded, loaded) of the inverse."""
     progress("compliance of the block", 0.0, None)
     order = np.argsort(loaded)

@@ -151,6 +151,7 @@ class March:
             "rows": rows,
             "counts": np.array([self.stage, self.holds, self.steps, int(self.settled)]),
             "rate": np.array(self._rate),
+            "shown": np.array([time for time, _ in self._shown]),
         }
 
     def restore(self, arrays: dict[str, np.ndarray]) -> None:
@@ -164,6 +165,7 @@ class March:
         self.stage, self.holds, self.steps = (int(n) for n in arrays["counts"][:3])
         self.settled = bool(arrays["counts"][3])
         self._rate = float(arrays["rate"])
+        self._shown = [(float(t), _name(n)) for n, t in enumerate(arrays["shown"], start=1)]
 
     def _watch(self) -> None:
         """Keep a copy of a state known to be sound; stop when squeezed elements ask for less."""
@@ -215,8 +217,12 @@ class March:
 
     def _show(self) -> None:
         assert self.output is not None
-        name = f"block_{len(self._shown) + 1:04d}.vtu"
+        name = _name(len(self._shown) + 1)
         snapshot(self.output / name, self.assembly)
         self._shown.append((float(self.assembly.state[names.TIME]), name))
         times, files = zip(*self._shown, strict=True)
         collection(self.output / "block.pvd", list(times), list(files))
+
+
+def _name(number: int) -> str:
+    return f"block_{number:04d}.vtu"
