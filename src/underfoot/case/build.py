@@ -70,6 +70,10 @@ def sole_map(case: Case, spacing: float, progress: Progress = silent) -> SoleMap
     """Return the tilted heel of the case on a grid of ``spacing`` (m)."""
     from underfoot import outsole
 
+    if case.shoe.outsole.file is not None:
+        from .build_outsole import file_sole_map
+
+        return file_sole_map(case, spacing)
     from .build_sole import sole_shape
 
     return outsole.heel_map(

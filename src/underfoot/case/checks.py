@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from underfoot.core import InputError, RangeError, display
 
+from .checks_outsole import outsole_mismatches
 from .checks_sole import sole_mismatches
 
 if TYPE_CHECKING:
@@ -18,8 +19,11 @@ def mismatches(case: Case, given: Collection[str], places: Places) -> Iterator[I
     """Yield what does not fit together; ``given`` are the paths written in the file."""
     yield from _material(case, places)
     yield from _roughness(case, places)
-    yield from _heel(case, given, places)
-    yield from sole_mismatches(case, given, places)
+    if case.shoe.outsole.file is not None:
+        yield from outsole_mismatches(case, places)
+    else:
+        yield from _heel(case, given, places)
+        yield from sole_mismatches(case, given, places)
     yield from _contaminant(case, given, places)
     yield from _rest(case, places)
 

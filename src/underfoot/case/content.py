@@ -21,7 +21,8 @@ def case_hash(case: Case) -> str:
     """
     content = case.model_dump(exclude=_NAMES)
     left_aside = unused(case)
-    for path in left_aside:
+    # the checksum tells which outsole it is, wherever the file lies
+    for path in (*left_aside, "shoe.outsole.file"):
         *parents, key = path.split(".")
         table = content
         for parent in parents:

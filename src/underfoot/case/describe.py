@@ -75,6 +75,10 @@ def assumptions(case: Case) -> list[str]:
         reason = "; ".join(part for part in parts if part) or "assumed"
         groups.setdefault((section, reason), []).append(f"{key} = {_text(leaf.given, None)}")
     found = [f"{section}: {', '.join(keys)} ({why})" for (section, why), keys in groups.items()]
+    if case.shoe.outsole.file is not None:
+        from .build_outsole import outsole_notes
+
+        found += outsole_notes(case)
     if case.interface.effective_rq is None:
         for path, roughness in (("shoe", case.shoe.roughness), ("floor", case.floor.roughness)):
             if roughness.rq is None and roughness.ra is not None:

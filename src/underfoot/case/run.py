@@ -17,6 +17,7 @@ from underfoot.core import (
 )
 
 from . import build
+from .build_outsole import compression_breaches
 from .describe import assumptions
 from .result import Result
 from .scalars import regime, scalars, spread_origin, undetermined
@@ -125,6 +126,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
     found = [
         *found,
         *sole.breaches,
+        *compression_breaches(case, contact.approach),
         *asperities.breaches(pressure=contact.contact_pressure.max(), speed=motion.speed),
         *law.breaches(**local),
         *(risk.breaches if risk else ()),

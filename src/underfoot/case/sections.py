@@ -9,6 +9,7 @@ from pydantic import Field
 
 from .quantity import Quantity, default
 from .sections_base import Force, Length, Section
+from .sections_outsole import OutsoleFile
 from .sections_sole import HeelShape
 from .sections_tread import Tread, Wear
 
@@ -95,6 +96,7 @@ class Shoe(Section):
 
     material: Material
     roughness: SurfaceRoughness
+    outsole: OutsoleFile = OutsoleFile()
     heel: HeelShape = HeelShape()
     tread: Tread
     wear: Wear = Wear()

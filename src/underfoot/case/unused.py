@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from .schema import fields
+
 if TYPE_CHECKING:
     from .case import Case
 
@@ -16,7 +18,7 @@ def unused(case: Case) -> frozenset[str]:
         found += ["shoe.heel.facet_angle", "shoe.heel.facet_length"]
     if shoe.heel.profile != "rocker":
         found += ["shoe.heel.rocker_radius", "shoe.heel.rocker_start"]
-    found += [*_sole(case), *_tread(case), *_wear(case)]
+    found += [*_sole(case), *_tread(case), *_wear(case), *_outsole(case)]
     if shoe.sole.midsole_modulus is None:
         found.append("shoe.sole.midsole_poisson_ratio")
     if shoe.material.modulus is not None:
@@ -65,6 +67,18 @@ def _sole(case: Case) -> list[str]:
     else:
         names = ("rear_radius", "front_radius")
     return [f"shoe.heel.{name}" for name in names]
+
+
+def _outsole(case: Case) -> list[str]:
+    """Return heel and tread of a case with an outsole file; without one, how to read it."""
+    if case.shoe.outsole.file is None:
+        return ["shoe.outsole", *_all_of(case, "outsole")]
+    return ["shoe.heel", "shoe.tread", *_all_of(case, "heel"), *_all_of(case, "tread")]
+
+
+def _all_of(case: Case, part: str) -> list[str]:
+    section = type(getattr(case.shoe, part))
+    return [f"shoe.{part}.{path}" for path, _ in fields(section)]
 
 
 def _tread(case: Case) -> list[str]:

@@ -46,7 +46,12 @@ def check(
 
 def cost(case: Case) -> str:
     """Return what a run will take, in words."""
-    area = case.shoe.heel.length * case.shoe.heel.width
+    if case.shoe.outsole.file is not None:
+        from underfoot.case.build_outsole import file_sole_map
+
+        area = file_sole_map(case, case.numerics.quick_grid_spacing).plan_area
+    else:
+        area = case.shoe.heel.length * case.shoe.heel.width
     full = _estimate(area / case.numerics.grid_spacing**2)
     quick = _estimate(area / case.numerics.quick_grid_spacing**2)
     return f"Cost: {full} on one core; with --quick {quick}."
@@ -54,7 +59,7 @@ def cost(case: Case) -> str:
 
 def _estimate(cells: float) -> str:
     low, high = (seconds * cells for seconds in SECONDS_PER_CELL)
-    return f"{cells:.0f} cells under the heel, about {low:.0f} to {high:.0f} s"
+    return f"{cells:.0f} cells under the sole, about {low:.0f} to {high:.0f} s"
 
 
 def _listed(title: str, lines: list[str]) -> None:

@@ -143,6 +143,7 @@ def surface_map(
         Grid too coarse for the plan form or for most of the channels; angle out of range.
     """
     from ._kernels.tilt import tilted_rows
+    from .surface_resolution import resolution_breaches
 
     positive(spacing, "grid.spacing")
     not_negative(padding, "grid.padding")
@@ -180,6 +181,7 @@ def surface_map(
     if covered.any():
         clearance -= clearance.min()
     land = covered & surface.land[cells]
+    found = resolution_breaches(surface, spacing)
     return SoleMap(
         x=x,
         y=y,
@@ -189,6 +191,7 @@ def surface_map(
         tread_depth=np.where(land, surface.tread_depth[cells], 0.0),
         spacing=float(spacing),
         outline=outline,
+        breaches=tuple(found),
     )
 
 

@@ -42,7 +42,7 @@ def without_holes(mask: Mask) -> Mask:
 
 
 def rim(mask: Mask, steps: int = 1) -> Mask:
-    """Return the cells of the mask within ``steps`` cells of the outside, which the array ends in."""
+    """Return the cells of the mask within ``steps`` cells of the outside or the array's edge."""
     return mask & grown(~np.pad(mask, 1), steps)[1:-1, 1:-1]
 
 

@@ -88,9 +88,14 @@ def _without_spikes(height: Array) -> tuple[Array, list[str]]:
     from scipy.ndimage import grey_closing
 
     inside = np.isfinite(height)
-    closed = grey_closing(np.where(inside, height, -np.inf), _SPIKE_CELLS)
-    spikes = inside & (closed - np.where(inside, height, np.inf) > SPIKE_HEIGHT)
-    spikes &= np.isfinite(closed)
+    # a lug's thin end at the rim is narrow one way only, and beside the rim nothing is known
+    filled = np.where(inside, height, np.inf)
+    closed = np.minimum(
+        grey_closing(filled, (_SPIKE_CELLS, 1)), grey_closing(filled, (1, _SPIKE_CELLS))
+    )
+    known = inside & ~rim(inside, 2) & np.isfinite(closed)
+    spikes = np.zeros_like(inside)
+    spikes[known] = closed[known] - height[known] > SPIKE_HEIGHT
     if not spikes.any():
         return height, []
     count = int(np.count_nonzero(spikes))
@@ -126,7 +131,8 @@ def without_ledges(height: Array, land: Mask, spacing: float) -> tuple[Array, li
         if not beside.any():
             continue
         heights = height[around]
-        own, other = float(np.median(heights[piece])), float(np.median(heights[beside]))
+        own = float(np.median(heights[piece]))
+        other = float(np.percentile(heights[beside], 25))  # some of it is the ledge itself
         if own - other > _LEDGE:
             gone[around] |= piece | (beside & (heights > (own + other) / 2))
     share = np.count_nonzero(gone) / np.count_nonzero(inside)
