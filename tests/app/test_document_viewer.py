@@ -1,5 +1,6 @@
 """The page in a real browser: no complaint, a picture that follows its controls, values."""
 
+import dataclasses
 import functools
 import itertools
 import re
@@ -136,8 +137,8 @@ def test_a_point_tells_the_values_of_the_field_there(tab, worn_shoe_result):
     at = [float(v) * 1e-3 for v in re.findall(r"-?\d+\.\d", place)]
     field = worn_shoe_result.fields["film_thickness"].sel(x=at[0], y=at[1], method="nearest")
     told = tab.value("document.querySelector('[data-part=values-table]').innerText")
-    value = float(re.search(r"Film thickness\s+([\d.]+) µm", told).group(1))
-    assert value * 1e-6 == pytest.approx(float(field), rel=6e-3)
+    (value,) = re.findall(r"Film thickness\s+([\d.]+) µm", told)
+    assert float(value) * 1e-6 == pytest.approx(float(field), rel=6e-3)
     before = place
     tab.value("document.querySelector('canvas').focus()")
     tab.key("ArrowUp", modifiers=1)
@@ -162,6 +163,35 @@ def test_on_a_telephone_it_fits_and_follows_two_fingers(page):
         tab.value("document.querySelector('.theme').click()")
         tab.settle()
         assert tab.picture("canvas")[0][5, 5].mean() > 0.7, "not light"
+        assert tab.complaints == []
+
+
+@needs_browser
+def test_a_history_can_be_walked_through(worn_shoe_result, tmp_path):
+    fields = worn_shoe_result.fields.copy()
+    share = np.linspace(0.05, 1.0, fields.sizes["time"])
+    frames = share[:, None, None] * fields.fluid_pressure.values
+    fields["fluid_pressure_history"] = (("time", "x", "y"), frames, {"units": "Pa"})
+    path = tmp_path / "history.html"
+    result = dataclasses.replace(worn_shoe_result, fields=fields)
+    path.write_text(result_page(result, maps=_NoMaps()), encoding="utf-8")
+    with opened(path) as tab:
+        assert tab.value("document.querySelector('[data-part=time-row]').hidden")
+        choose(tab, "Fluid pressure")
+        assert not tab.value("document.querySelector('[data-part=time-row]').hidden")
+        centre(tab)
+        tab.settle()
+        last = tab.picture("canvas")[0]
+        tab.value(
+            "(() => { const s = document.querySelector('[data-part=time]'); s.value = 0;"
+            "s.dispatchEvent(new Event('input')) })()"
+        )
+        tab.settle()
+        tab.settle()
+        first = tab.picture("canvas")[0]
+        assert changed(first, last) > 0.02
+        at = f"{float(fields.time[0]) * 1e3:.3g} ms"
+        assert tab.value("document.querySelector('[data-part=time-value]').textContent") == at
         assert tab.complaints == []
 
 

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from underfoot.case.result import Result
 
 _MOST_ASSUMPTIONS = 3
+_LONGEST_ASSUMPTION = 64
+_LONGEST_VALUE = 34
 _WEIGHTY = ("interface", "shoe.heel", "shoe.tread", "shoe.sole", "motion")
 """Sections named first: interface roughness and the shape of the sole decide the film."""
 
@@ -26,12 +28,11 @@ def show_result(result: Result, folder: Path | None) -> None:
     console.print(f"\n[bold]{_plain(result.name)}[/bold]", markup=True)
     console.print(verdict(result), markup=False)
     if result.status.usable:
-        rows, last = [], ""
-        for row in summary_rows(result):
-            remark = "" if row.remark == last else row.remark
-            last = row.remark
-            rows.append((row.label, row.value, remark))
-        console.print(table((), rows, remarks=True))
+        rows = [(row.label, row.value, row.remark) for row in summary_rows(result)]
+        short = [row for row in rows if len(row[1]) <= _LONGEST_VALUE]
+        console.print(table((), fitting(short, console.width), remarks=True))
+        for label, value, _ in (row for row in rows if row not in short):
+            console.print(f"{label.strip().capitalize()}: {value}.", markup=False)
     if result.assumptions:
         count = len(result.assumptions)
         shown = weightiest(result.assumptions)
@@ -58,8 +59,32 @@ def weightiest(assumptions: Sequence[str], most: int = _MOST_ASSUMPTIONS) -> lis
     ranked = sorted(range(len(assumptions)), key=lambda k: (order.get(sections[k], len(order)), k))
     chosen: dict[str, str] = {}
     for k in ranked:
-        chosen.setdefault(sections[k], assumptions[k].partition(" (")[0])
+        chosen.setdefault(sections[k], _shortened(assumptions[k].partition(" (")[0]))
     return list(chosen.values())[:most]
+
+
+def fitting(rows: Sequence[tuple[str, str, str]], width: int) -> list[tuple[str, str, str]]:
+    """Return rows with the remarks that fit beside label and value, each said once.
+
+    The report has all of them; wrapped into a narrow column they hide the numbers.
+    """
+    room = width - sum(max((len(row[k]) for row in rows), default=0) for k in (0, 1)) - 2
+    kept, last = [], ""
+    for label, value, remark in rows:
+        shown = remark if remark != last and len(remark) <= room else ""
+        last = remark
+        kept.append((label, value, shown))
+    return kept
+
+
+def _shortened(line: str) -> str:
+    """Return an assumption on one line of a terminal."""
+    parts = line.split(", ")
+    count = len(parts)
+    while len(parts) > 1 and len(", ".join(parts)) > _LONGEST_ASSUMPTION:
+        parts.pop()
+    left = count - len(parts)
+    return ", ".join(parts) + (f" and {left} more" if left else "")
 
 
 def table(heads: Sequence[str], rows: Sequence[Sequence[str]], *, remarks: bool = False) -> Table:

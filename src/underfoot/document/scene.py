@@ -93,6 +93,7 @@ def _pane(
         "y0": float(y[0]),
         "spacing": spacing(dataset),
         "plane": _plane(x, y, height[crop], land[crop]),
+        "outline": _outline(dataset),
         "height": packed(height[crop]),
         "land": packed(land[crop].astype(float)),
         "fields": {name: packed(values[crop]) for name, values in fields.items()},
@@ -105,6 +106,14 @@ def _pane(
             if past is not None
         },
     }
+
+
+def _outline(dataset: xarray.Dataset) -> list[list[float]]:
+    """Return the rim as [x, y] in m, to which the page draws the outermost cells; or nothing."""
+    if "outline_x" not in dataset or "outline_y" not in dataset:
+        return []
+    rim = np.stack([dataset["outline_x"].values, dataset["outline_y"].values], axis=1)
+    return [[float(f"{v:.5g}") for v in point] for point in rim[np.isfinite(rim).all(axis=1)]]
 
 
 def _plane(

@@ -43,10 +43,10 @@ function soleMesh(pane) {
   for (let i = 0; i < nx; i++) for (let j = 0; j < ny; j++) if (known(i, j)) {
     for (let c = 0; c < 4; c++) corners[(i * ny + j) * 4 + c] = corner(i, j, c >> 1, c & 1);
   }
-  const points = [], faces = [];
+  const points = [], faces = [], rim = onRim(pane, known);
   const point = (i, j, ci, cj, z, kind) => {
     const inset = kind ? 0.5 : 0.002;
-    points.push(x0 + (i + ci - 0.5) * d, y0 + (j + cj - 0.5) * d, z,
+    points.push(...rim(i + ci, j + cj), z,
       i + (kind ? 0.5 : ci ? 1 - inset : inset), j + (kind ? 0.5 : cj ? 1 - inset : inset), kind);
     return points.length / 6 - 1;
   };
@@ -74,6 +74,29 @@ function soleMesh(pane) {
     }
   }
   return { points: new Float32Array(points), faces: new Uint32Array(faces), top };
+}
+
+// Where the corner (i, j) of cells is drawn: on the rim of the sole if it is at its edge and the rim
+// is near, so that a round heel is not a staircase.
+function onRim(pane, known) {
+  const { spacing: d, x0, y0, outline: rim } = pane, seen = new Map();
+  const nearest = (x, y) => {
+    let best = [x, y], least = 0.9 * d;
+    for (let k = 0; k < rim.length; k++) {
+      const [ax, ay] = rim[k], [bx, by] = rim[(k + 1) % rim.length], dx = bx - ax, dy = by - ay;
+      const share = Math.min(1, Math.max(0, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1)));
+      const px = ax + share * dx, py = ay + share * dy, away = Math.hypot(px - x, py - y);
+      if (away < least) { least = away; best = [px, py]; }
+    }
+    return best;
+  };
+  return (i, j) => {
+    const x = x0 + (i - 0.5) * d, y = y0 + (j - 0.5) * d;
+    if (known(i - 1, j - 1) && known(i - 1, j) && known(i, j - 1) && known(i, j)) return [x, y];
+    const key = i * (pane.ny + 1) + j;
+    if (!seen.has(key)) seen.set(key, nearest(x, y));
+    return seen.get(key);
+  };
 }
 
 // A 10 mm grid behind the sole, in its upper plane, and an arrow along the walking direction.
