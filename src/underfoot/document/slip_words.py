@@ -17,6 +17,8 @@ from .sentences import Row, percent
 if TYPE_CHECKING:
     from underfoot.slip.dynamics import SlipMotion, SlipStudy
 
+MASSES = (0.06, 0.114, 0.17)
+"""Shares of the body that may move with the heel: foot and shank, the default, the whole leg."""
 _NUMBERS = (
     ("peak_speed", "Peak slipping speed", "m/s"),
     ("distance", "Distance slipped", "m"),
@@ -92,6 +94,13 @@ def slip_rows(study: SlipStudy) -> list[Row]:
             rows.append(
                 Row("  its peak pressure", f"± {percent(study.pressure_error)}", "relative")
             )
+    speeds = [study.peak_speed_at(share) for share in MASSES]
+    if None not in speeds:
+        words = " / ".join(f"{v:.2f}" for v in speeds if v is not None)
+        shares = " / ".join(f"{share:g}" for share in MASSES)
+        rows.append(
+            Row(f"Peak speed if {shares} of the body moved", f"{words} m/s", "assumed mass varied")
+        )
     if study.failed:
         rows.append(Row("Slips that could not be solved", str(study.failed), "left out"))
     return rows
@@ -125,27 +134,19 @@ def slip_cautions(study: SlipStudy) -> tuple[str, ...]:
 def slip_data(study: SlipStudy) -> dict[str, Any]:
     """Return the answer as plain data in SI; what is missing is None."""
 
-    def number(value: SourcedValue) -> dict[str, Any]:
-        return {"mean": value.value, "sd": value.uncertainty, "reason": value.reason}
-
     def clean(x: float) -> float | None:
         return None if math.isnan(x) else x
 
-    wet = study.setting.viscosity is not None
     return {
         "sentence": slip_sentence(study),
         "subjects": len(study.subjects),
         "model": "full" if study.full else "reduced",
-        "slipped": [clean(x) for x in study.slipped()],
         "outcomes": {str(k): [clean(x) for x in v] for k, v in study.shares().items()},
-        **{name: number(study.mean(name, unit)) for name, _, unit in _NUMBERS[:2]},
-        **{
-            f"{name}_crossed": number(study.mean(name, unit, crossed=True))
-            for name, _, unit in _NUMBERS
-            if wet or name in ("peak_speed", "distance")
+        "numbers": study.numbers(),
+        "row_peaks_Pa": [clean(float(p)) for p in study.rows()],
+        "peak_speed_by_effective_mass": {
+            f"{share:g}": study.peak_speed_at(share) for share in MASSES
         },
-        "correlation": study.correlation() if wet else None,
-        "row_peaks": [clean(float(p)) for p in study.rows()] if wet else None,
         "fit_error": None if study.fit is None else str(study.fit.held_out),
         "pressure_error": study.pressure_error,
         "failed": study.failed,

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from .full_runs import FullRun, full_run, full_runs
     from .gait import GaitHistory, history_text, load_history, packaged_histories
     from .motion import FootContact, SlipMotion, slip_motion
-    from .observed import ObservedSlip, Outcome, OutcomeLimits, judged, observed
+    from .observation import ObservedSlip, Outcome, OutcomeLimits, judged, observed
     from .recorded import recorded_histories, step_history
     from .reduced import ReducedSole, cof_table
     from .sensors import PressureShape, SensorArray, array_pressures, pressure_shape
@@ -23,7 +23,7 @@ _PLACES = {
     "full_runs": ("FullRun", "full_run", "full_runs"),
     "gait": ("GaitHistory", "history_text", "load_history", "packaged_histories"),
     "motion": ("FootContact", "SlipMotion", "slip_motion"),
-    "observed": ("ObservedSlip", "Outcome", "OutcomeLimits", "judged", "observed"),
+    "observation": ("ObservedSlip", "Outcome", "OutcomeLimits", "judged", "observed"),
     "recorded": ("recorded_histories", "step_history"),
     "reduced": ("ReducedSole", "cof_table"),
     "sensors": ("PressureShape", "SensorArray", "array_pressures", "pressure_shape"),

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from underfoot.core import Breach
 
 Array = NDArray[np.float64]
-ROOM = "slip-1"
+ROOM = "slip-2"
 _FIELDS = (
     "time", "speed", "distance", "normal", "drive", "friction", "fluid_load", "shoe_angle",
     "work_in", "dissipated",

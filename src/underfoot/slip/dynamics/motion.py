@@ -154,8 +154,11 @@ def slip_motion(
             break
         if seen is not None:
             seen(float(times[i + 1]), instant)
+        if i == 0 and normal > 0:
+            # the floor has not been asked yet: as much friction for each newton as a step later
+            friction = instant.friction(speed) * float(normals[0]) / normal
         new, friction_now = _new_speed(
-            instant, speed, duration / (2 * mass), begin - friction, drive, guess
+            instant, speed, duration / (2 * mass), begin - friction, drive
         )
         moved = 0.5 * (speed + new) * duration
         asked = 0.5 * (begin + drive)
@@ -185,24 +188,43 @@ def slip_motion(
 
 
 def _new_speed(
-    instant: Instant, speed: float, share: float, net: float, drive: float, guess: float
+    instant: Instant, speed: float, share: float, net: float, drive: float
 ) -> tuple[float, float]:
-    """Return speed and friction at the end of a step; friction at rest is what is asked."""
+    """Return speed and friction at the end of a step; friction at rest is what is asked.
+
+    Root of V - speed - share (net + drive - FF(V)) by the Illinois form of the secant method,
+    between rest and the speed without friction.
+    """
+    most = instant.friction(0.0)
     if speed <= STILL:
-        most = instant.friction(0.0)
         if drive <= most:
             return 0.0, max(drive, 0.0)
         net = max(net, 0.0)
-    found = guess
-    friction = instant.friction(found)
-    for _ in range(MOST_SWEEPS):
-        next_ = max(speed + share * (net + drive - friction), 0.0)
-        friction = instant.friction(next_)
-        if abs(next_ - found) < 1e-10:
-            found = next_
-            break
-        found = next_
-    if found <= STILL:
-        most = instant.friction(0.0)
+
+    def excess(v: float, friction: float) -> float:
+        return v - speed - share * (net + drive - friction)
+
+    low, high = 0.0, speed + share * (net + drive)
+    at_low = excess(low, most)
+    if at_low >= 0 or high <= STILL:
         return 0.0, min(max(drive, 0.0), most)
+    friction = instant.friction(high)
+    at_high = excess(high, friction)
+    found, side = high, 0
+    for _ in range(MOST_SWEEPS):
+        if at_high - at_low <= 0:
+            break
+        found = (low * at_high - high * at_low) / (at_high - at_low)
+        friction = instant.friction(found)
+        value = excess(found, friction)
+        if abs(value) < 1e-12 or high - low < 1e-12:
+            break
+        if value < 0:
+            low, at_low = found, value
+            at_high = 0.5 * at_high if side < 0 else at_high
+            side = -1
+        else:
+            high, at_high = found, value
+            at_low = 0.5 * at_low if side > 0 else at_low
+            side = 1
     return found, friction

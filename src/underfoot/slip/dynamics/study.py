@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from underfoot.core import Cache, ConvergenceError, Progress, SourcedValue, Stat
 from .fitting import ReducedFit, cof_table, design, fitted_reduced
 from .full_runs import ROOM, FullRun, full_runs
 from .motion import STEP, SlipMotion
-from .observed import ObservedSlip, Outcome, OutcomeLimits, observed
+from .observation import ObservedSlip, Outcome, OutcomeLimits, observed
 from .reduced import ReducedSole
 from .sensors import PressureShape, SensorArray, array_pressures, pressure_shape
 from .sole_contact import Setting
@@ -54,6 +54,7 @@ class SlipStudy:
     full_runs: tuple[FullRun, ...]
     breaches: tuple[str, ...]
     failed: int = 0
+    sole: ReducedSole | None = None
 
     def shares(self) -> dict[Outcome, tuple[float, float, float]]:
         """Return share, lower and upper 95 % bound (Wilson) of each outcome.
@@ -105,6 +106,63 @@ class SlipStudy:
         if speed.size < 3 or np.ptp(speed) == 0 or np.ptp(pressure) == 0:
             return None
         return float(np.corrcoef(speed, pressure)[0, 1])
+
+    def peak_speed_at(self, effective_mass: float) -> float | None:
+        """Return the mean largest heel speed (m/s) if another share of the body moved with it.
+
+        By the reduced model, whose contact does not know the mass; None without one.
+        """
+        if self.sole is None:
+            return None
+        people = [replace(s.walker, effective_mass=effective_mass) for s in self.subjects]
+        return float(np.mean([self.sole.motion(walker).peak_speed for walker in people]))
+
+    def sensor_passages(self) -> dict[str, Array]:
+        """Return what the report's Table 7 regresses, one value a sensor that a heel passed.
+
+        ``peak`` (Pa), ``row`` (1 is met first), ``lateral`` (m, from the heel's middle, unsigned)
+        and ``speed`` (m/s, of the heel when its rear end passes the sensor, IRSS).
+        """
+        columns: dict[str, list[float]] = {"peak": [], "row": [], "lateral": [], "speed": []}
+        for subject in self.subjects:
+            if subject.pressures is None or not subject.seen.crossed:
+                continue
+            motion = subject.motion
+            x, y = self.array.places(subject.walker)
+            for i, place in enumerate(x):
+                if motion.distance[-1] < place:
+                    continue
+                when = float(np.interp(place, motion.distance, motion.time))
+                for j, side in enumerate(y):
+                    columns["peak"].append(float(subject.pressures[:, i, j].max()))
+                    columns["row"].append(i + 1)
+                    columns["lateral"].append(abs(float(side)))
+                    columns["speed"].append(float(np.interp(when, motion.time, motion.speed)))
+        return {name: np.array(values) for name, values in columns.items()}
+
+    def numbers(self) -> dict[str, float | None]:
+        """Return the study's figures in SI by name; None where there is none.
+
+        Peak speed, peak pressure and duration are of those whose heel crossed the sensors.
+        """
+        found: dict[str, float | None] = {}
+        for name, unit in (
+            ("peak_speed", "m/s"),
+            ("distance", "m"),
+            ("peak_pressure", "Pa"),
+            ("duration", "s"),
+        ):
+            value = self.mean(name, unit, crossed=True)
+            found[name], found[f"{name}_sd"] = value.value, value.uncertainty
+        share, low, high = self.slipped()
+        found |= {"slipped": share, "slipped_low": low, "slipped_high": high}
+        for outcome, (share, _, _) in self.shares().items():
+            found[str(outcome).replace(" ", "_")] = share
+        found["correlation"] = self.correlation()
+        rows = self.rows()
+        found["last_over_first_row"] = float(rows[-1] / rows[0]) if rows[0] > 0 else None
+        found["crossed"] = float(np.mean([s.seen.crossed for s in self.subjects]))
+        return {k: None if v is None or math.isnan(v) else v for k, v in found.items()}
 
     def rows(self) -> Array:
         """Return the mean peak (rows,) of each row of sensors over those who crossed, Pa."""
@@ -187,7 +245,7 @@ def slip_study(
         setting, population, array, tuple(subjects), False, fit,
         _pressure_error(shape, fit.sole, tested, array),
         shown[0] if shown[0].motion.status is Status.CONVERGED else None,
-        tuple(good), _words(good), len(runs) - len(good),
+        tuple(good), _words(good), len(runs) - len(good), fit.sole,
     )  # fmt: skip
 
 
@@ -226,7 +284,9 @@ def _dry_study(
         _subject(_thinned(sole.motion(walker)), None, array, limits, i)
         for i, walker in enumerate(walkers)
     ]
-    return SlipStudy(setting, population, array, tuple(subjects), False, None, None, None, (), ())
+    return SlipStudy(
+        setting, population, array, tuple(subjects), False, None, None, None, (), (), 0, sole
+    )
 
 
 def _subject(
@@ -242,8 +302,6 @@ def _subject(
 
 def _thinned(motion: SlipMotion, every: int = 4) -> SlipMotion:
     """Return the motion at every fourth instant: what drawings and sensors need."""
-    from dataclasses import replace
-
     keep = np.unique(np.append(np.arange(0, motion.time.size, every), motion.time.size - 1))
     names = (
         "time", "speed", "distance", "normal", "drive", "friction", "fluid_load", "shoe_angle",

@@ -86,6 +86,38 @@ def _friction(v, h, load, lean, c, viscosity, table_speed, table_cof):
 
 
 @njit(cache=True)
+def _solved_speed(v, share, push, h, load, lean, c, viscosity, table_speed, table_cof):
+    """Root of V - v - share (push - FF(V)) between rest and the speed without friction."""
+    low, high = 0.0, v + share * push
+    ff, _f = _friction(0.0, h, load, lean, c, viscosity, table_speed, table_cof)
+    at_low = -v - share * (push - ff)
+    if at_low >= 0.0 or high <= 1e-12:
+        return 0.0
+    ff, _f = _friction(high, h, load, lean, c, viscosity, table_speed, table_cof)
+    at_high = share * ff
+    found, side = high, 0
+    for _ in range(60):
+        if at_high - at_low <= 0.0:
+            break
+        found = (low * at_high - high * at_low) / (at_high - at_low)
+        ff, _f = _friction(found, h, load, lean, c, viscosity, table_speed, table_cof)
+        value = found - v - share * (push - ff)
+        if abs(value) < 1e-13 or high - low < 1e-13:
+            break
+        if value < 0.0:
+            low, at_low = found, value
+            if side < 0:
+                at_high *= 0.5
+            side = -1
+        else:
+            high, at_high = found, value
+            if side > 0:
+                at_low *= 0.5
+            side = 1
+    return found
+
+
+@njit(cache=True)
 def carried(
     times, normals, drives, leans, given_speed, v0, mass, c, viscosity, pool, table_speed,
     table_cof, over,
@@ -104,7 +136,12 @@ def carried(
     held = not math.isnan(given_speed[0])
     if held:
         speed[0] = given_speed[0]
-    acceleration, last, began = 0.0, 0.0, drives[0]
+    acceleration, began = 0.0, drives[0]
+    last, _f = _friction(
+        speed[0], film[0], normals[0], leans[0], c, viscosity, table_speed, table_cof
+    )
+    if not held and v0 <= 1e-9:
+        last = min(max(drives[0], 0.0), last)
     end = n - 1
     for i in range(n - 1):
         dt = times[i + 1] - times[i]
@@ -138,13 +175,9 @@ def carried(
             net = began - last
             if v <= 1e-9:
                 net = max(net, 0.0)
-            for _ in range(40):
-                ff, _f = _friction(new, h, load, lean, c, viscosity, table_speed, table_cof)
-                next_ = max(v + 0.5 * dt / mass * (net + drive - ff), 0.0)
-                if abs(next_ - new) < 1e-11:
-                    new = next_
-                    break
-                new = next_
+            new = _solved_speed(
+                v, 0.5 * dt / mass, net + drive, h, load, lean, c, viscosity, table_speed, table_cof
+            )
             if abs(new - before) < 1e-10:
                 break
         ff, wf = _friction(

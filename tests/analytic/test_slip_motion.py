@@ -1,0 +1,127 @@
+"""Motions of the foot with a known exact answer."""
+
+import math
+
+import numpy as np
+import pytest
+
+from slip_floors import WEIGHT, Floor, constant, dry_sole, walker
+from underfoot.core import InputError
+from underfoot.slip.dynamics import GaitHistory, Walker, packaged_histories, slip_motion
+from underfoot.slip.dynamics._kernels import reduced as kernel
+
+
+def test_without_friction_speed_is_the_integral_of_the_drive():
+    person = walker(packaged_histories()[0], 0.22, heel_speed=1.0)
+    for motion in (slip_motion(person, Floor()), dry_sole(0.0).motion(person)):
+        gained = np.concatenate(
+            [[0.0], np.cumsum(0.5 * (motion.drive[1:] + motion.drive[:-1]) * np.diff(motion.time))]
+        )
+        assert np.abs(motion.speed - 1.0 - gained / person.moving_mass).max() < 1e-12
+        assert motion.still_sliding
+        assert "lower bound" in motion.notes[0]
+
+
+@pytest.mark.parametrize("cof", [0.25, 0.6])
+def test_friction_above_the_demand_stops_the_heel_where_it_should(cof):
+    person = walker(constant(0.2), 0.2)
+    stop = 0.5 * 0.3**2 * person.moving_mass / ((cof - 0.2) * WEIGHT)
+    full = slip_motion(person, Floor(cof=cof), step=1e-3)
+    fast = dry_sole(cof).motion(person, step=1e-3)
+    for motion in (full, fast):
+        assert motion.speed[-1] == 0.0
+        assert not motion.still_sliding
+        # within what the foot moves in the step in which it stops
+        assert motion.distance[-1] == pytest.approx(stop, abs=0.3 * 1e-3)
+        assert motion.friction[-1] == pytest.approx(0.2 * WEIGHT)
+    assert np.abs(full.speed - fast.speed[: full.speed.size]).max() < 1e-9
+
+
+def test_friction_below_the_demand_lets_it_accelerate():
+    person = walker(constant(0.2), 0.2)
+    rate = (0.2 - 0.05) * WEIGHT / person.moving_mass
+    for motion in (slip_motion(person, Floor(cof=0.05)), dry_sole(0.05).motion(person)):
+        assert np.abs(motion.speed - 0.3 - rate * motion.time).max() < 1e-10
+        assert motion.distance[-1] == pytest.approx(0.3 * 0.5 + 0.5 * rate * 0.25, rel=1e-9)
+
+
+def test_drag_ends_at_its_terminal_speed():
+    person = walker(constant(0.2, 2.0), 0.2)
+    motion = slip_motion(person, Floor(drag=200.0))
+    assert motion.speed[-1] == pytest.approx(0.2 * WEIGHT / 200.0, rel=1e-6)
+
+
+def test_a_resting_foot_starts_when_the_demand_passes_friction():
+    time = np.linspace(0, 0.5, 201)
+    history = GaitHistory("ramp", time, np.ones(201), 0.4 * time)
+    person = Walker(history, mass=70, rcof=0.2, heel_speed=0.0, effective_mass=8 / 70)
+    asked = person.demands(time)[1] / WEIGHT
+    start = float(np.interp(0.1, asked, time))
+    for motion in (
+        slip_motion(person, Floor(cof=0.1), step=1e-3),
+        dry_sole(0.1).motion(person, step=1e-3),
+    ):
+        moving = motion.time[np.argmax(motion.speed > 0)]
+        assert start <= moving <= start + 2.5e-3
+        exact = 0.5 * 0.8 * (motion.time - start) ** 2 * WEIGHT / person.moving_mass
+        exact = np.where(motion.time > start, exact * asked[-1] / 0.4, 0.0)
+        assert np.abs(motion.speed - exact).max() < 0.02 * exact.max()
+
+
+def test_film_of_the_reduced_model_squeezes_as_h_over_root_of_time():
+    constants = np.ones(kernel.COUNT)
+    constants[[kernel.AREA, kernel.AREA_POWER, kernel.AREA_ANGLE]] = 1e-3, 0.0, 0.0
+    constants[kernel.STIFFNESS], constants[kernel.DECAY] = 1e-30, 1e-6  # no contact
+    constants[[kernel.LEAK_ANGLE, kernel.WEDGE_ANGLE]] = 0.0
+    constants[kernel.LEAK], constants[kernel.START] = 1e5, 50e-6
+    times = np.linspace(0, 0.3, 601)
+    load = np.full(times.size, 500.0)
+    zero = np.zeros(times.size)
+    table = np.array([0.0, 1.0]), np.array([0.2, 0.2])
+    film = kernel.carried(
+        times, load, zero, zero, zero, 0.0, 8.0, constants, 0.219, 6e-4, *table, 0.0
+    )[1]
+    rate = 1e5 * (500.0 / 1e-3) / (12 * 0.219)
+    exact = 1 / np.sqrt(1 / (50e-6) ** 2 + 2 * rate * times)
+    assert np.abs(film / exact - 1).max() < 1e-4
+
+
+def test_wedge_holds_the_film_that_its_inlet_draws_in():
+    constants = np.ones(kernel.COUNT)
+    constants[[kernel.AREA, kernel.AREA_POWER, kernel.AREA_ANGLE]] = 1e-3, 0.0, 0.0
+    constants[kernel.STIFFNESS], constants[kernel.DECAY] = 1e-30, 1e-6
+    constants[[kernel.LEAK_ANGLE, kernel.WEDGE_ANGLE]] = 0.0
+    constants[[kernel.LEAK, kernel.START, kernel.WEDGE, kernel.LENGTH]] = 1e-9, 50e-6, 30.0, 0.03
+    times = np.linspace(0, 3.0, 3001)
+    load, zero, speed = (np.full(times.size, v) for v in (500.0, 0.0, 0.5))
+    table = np.array([0.0, 1.0]), np.array([0.2, 0.2])
+    out = kernel.carried(
+        times, load, zero, zero, speed, 0.5, 8.0, constants, 0.219, 6e-4, *table, 0.0
+    )
+    inlet = 30.0 * 0.219 * 0.5 / 5e5
+    assert out[1][-1] == pytest.approx(1 / (1 / 6e-4 + 1 / inlet), rel=1e-6)
+    assert out[2][-1] == pytest.approx(0.219 * 0.5 * 1e-3 / out[1][-1], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("changes", "where"),
+    [
+        ({"mass": -70.0}, "mass"),
+        ({"mass": math.nan}, "mass"),
+        ({"rcof": 1.2}, "rcof"),
+        ({"rcof": -0.1}, "rcof"),
+        ({"heel_speed": -1.0}, "heel_speed"),
+        ({"effective_mass": 0.0}, "effective_mass"),
+    ],
+)
+def test_people_who_cannot_be_are_refused(changes, where):
+    with pytest.raises(InputError, match=where):
+        walker(constant(0.2), **({"rcof": 0.2} | changes))
+
+
+def test_a_step_longer_than_a_tenth_of_the_history_is_refused():
+    person = walker(constant(0.2), 0.2)
+    with pytest.raises(InputError, match="step"):
+        slip_motion(person, Floor(), step=0.2)
+    with pytest.raises(InputError, match="step"):
+        dry_sole(0.1).motion(person, step=-1.0)
