@@ -37,7 +37,13 @@ class TreadMap:
     noise: float
 
 
-def tread_map(height: Array, spacing: float, *, widest: float = WIDEST_CHANNEL) -> TreadMap:
+def tread_map(
+    height: Array,
+    spacing: float,
+    *,
+    widest: float = WIDEST_CHANNEL,
+    channels: Mask | None = None,
+) -> TreadMap:
     """Return which parts of a sole are land and how high its lugs stand.
 
     The base is the grey opening of the height (z up, so channels are peaks) by a square of side
@@ -54,6 +60,8 @@ def tread_map(height: Array, spacing: float, *, widest: float = WIDEST_CHANNEL) 
         Side of a cell, m.
     widest
         Of a channel, m.
+    channels
+        Cells that are known to be channel beside those found.
     """
     from scipy.ndimage import maximum_filter, minimum_filter
 
@@ -66,6 +74,8 @@ def tread_map(height: Array, spacing: float, *, widest: float = WIDEST_CHANNEL) 
     noise = height_noise(height)
     level = max(SHALLOWEST_CHANNEL, NOISE_FACTOR * noise)
     channel = inside & (np.where(inside, height, 0.0) - np.where(inside, opened, 0.0) > level)
+    if channels is not None:
+        channel |= inside & channels
     cells = max(1, math.ceil(SMALLEST_PIECE / spacing**2))
     channel = without_specks(channel, cells)
     channel |= inside & ~channel & ~without_specks(inside & ~channel, cells)

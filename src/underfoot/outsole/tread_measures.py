@@ -70,11 +70,10 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
         depth = _shares(channel_depth(surface)[channel])
         width = _shares(local_width(channel, spacing)[channel])
         drained = float(np.count_nonzero(draining(surface)) / np.count_nonzero(channel))
-    numbers, _ = pieces(land)
-    areas = np.bincount(numbers.ravel())[1:].astype(np.float64) * spacing**2
+    areas = np.bincount(pieces(land)[0].ravel())[1:].astype(np.float64) * spacing**2
     lugs = areas[areas >= SMALLEST_PIECE * (1 - 1e-9)]
     lugs = areas if lugs.size == 0 else lugs
-    patch = numbers == int(np.argmax(areas)) + 1
+    patch = largest_patch(surface)
     along, across = np.nonzero(patch.any(axis=1))[0], np.nonzero(patch.any(axis=0))[0]
     radius = distance_within(land)
 
@@ -97,6 +96,12 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
         patch_circle=circle(patch),
         free_circle=circle(land),
     )
+
+
+def largest_patch(surface: SoleSurface) -> Mask:
+    """Return the largest connected piece of land."""
+    numbers, _ = pieces(surface.land)
+    return numbers == int(np.argmax(np.bincount(numbers.ravel())[1:])) + 1
 
 
 def channel_depth(surface: SoleSurface) -> Array:

@@ -105,12 +105,15 @@ def _without_spikes(height: Array) -> tuple[Array, list[str]]:
     ]
 
 
-def without_ledges(height: Array, land: Mask, spacing: float) -> tuple[Array, list[str]]:
-    """Return the height map without ledges along the rim, and what was left out.
+def without_ledges(
+    height: Array, land: Mask, spacing: float, channel_depth: float
+) -> tuple[Array, Mask, list[str]]:
+    """Return the height map without ledges along the rim, which of them are channels, and words.
 
-    A ledge is land at the rim that stands over what lies beside it (a side wall, a welt, a midsole
-    that overhangs) by more than 1 mm: it never meets the floor, and counted as plan form it would
-    spoil land ratio and widths.
+    A ledge is land at the rim that stands more than 1 mm over what lies beside it: it never meets
+    the floor. At the depth of the channels (``channel_depth``, m; 20 % more at most) it is a
+    channel that the rim cuts open; higher it is a side wall, a welt or a midsole that overhangs,
+    which counted as plan form would spoil land ratio and widths.
     """
     from scipy.ndimage import find_objects, maximum_filter, minimum_filter
 
@@ -121,7 +124,7 @@ def without_ledges(height: Array, land: Mask, spacing: float) -> tuple[Array, li
     numbers, _ = pieces(even)
     at_rim = np.setdiff1d(numbers[rim(inside, 3)], [0])
     reach = max(2, round(_BESIDE / spacing))
-    gone = np.zeros_like(inside)
+    gone, cut_open = np.zeros_like(inside), np.zeros_like(inside)
     boxes = find_objects(numbers)
     for number in at_rim:
         box = boxes[number - 1]
@@ -134,15 +137,21 @@ def without_ledges(height: Array, land: Mask, spacing: float) -> tuple[Array, li
         own = float(np.median(heights[piece]))
         other = float(np.percentile(heights[beside], 25))  # some of it is the ledge itself
         if own - other > _LEDGE:
-            gone[around] |= piece | (beside & (heights > (own + other) / 2))
+            into = cut_open if own - other <= 1.2 * channel_depth else gone
+            into[around] |= piece | (beside & (heights > (own + other) / 2))
     share = np.count_nonzero(gone) / np.count_nonzero(inside)
+    cut_open &= land & ~gone
     if share == 0 or share > _MOST_LEDGE:
-        return height, []
+        return height, cut_open, []
     area = np.count_nonzero(gone) * spacing**2 * 1e6
-    return np.where(gone, np.nan, height), [
-        f"A ledge along the rim, more than 1 mm above the sole beside it ({area:.3g} mm²), left "
-        "out of the plan form: it never meets the floor."
-    ]
+    return (
+        np.where(gone, np.nan, height),
+        cut_open,
+        [
+            f"A ledge along the rim, more than 1 mm above the sole beside it ({area:.3g} mm²), left "
+            "out of the plan form: it never meets the floor."
+        ],
+    )
 
 
 def plan_outline(inside: Mask, x: Array, y: Array, spacing: float) -> Array:

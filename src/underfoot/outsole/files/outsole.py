@@ -278,9 +278,11 @@ def _region(
 
 def _surface(height: Array, spacing: float, name: str) -> tuple[SoleSurface, list[str]]:
     found = tread_map(height, spacing)
-    height, words = without_ledges(height, found.land, spacing)
-    if words:
-        found = tread_map(height, spacing)
+    lugs = found.tread_depth[found.tread_depth > 0]
+    deep = float(np.percentile(lugs, 90)) if lugs.size else 0.0
+    height, cut_open, words = without_ledges(height, found.land, spacing, deep)
+    if words or cut_open.any():
+        found = tread_map(height, spacing, channels=cut_open)
     inside = np.isfinite(height)
     x = (np.arange(height.shape[0], dtype=np.float64) + 0.5) * spacing
     y = (np.arange(height.shape[1], dtype=np.float64) - (height.shape[1] - 1) / 2) * spacing
