@@ -90,7 +90,27 @@ relaxation.terms = [
 def test_every_law_explains_itself(name):
     found = called("explain", name)
     assert found.exit_code == 0
-    assert "Parameters" in found.output
+    assert len(found.output.splitlines()) <= 36  # one screen
+    whole = called("explain", name, "--full").output
+    assert "Parameters\n----" in whole
+    assert len(whole) > len(found.output)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("StribeckLaw", "Eq. 17 of the report"),
+        ("soft_ehl", "Eq. 18 of the report"),
+        ("Eq. 17", "stribeck_cof"),
+        ("eq 26", "AdhesionBlockingLaw"),
+        ("mass_conserving_film", "not in the report"),
+        ("regime", "They can differ"),
+    ],
+)
+def test_the_report_s_equations_are_named_and_found(name, text):
+    found = called("explain", name)
+    assert found.exit_code == 0
+    assert text in found.output
 
 
 def test_study_g3_writes_its_tables(tmp_path):

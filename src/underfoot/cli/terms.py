@@ -13,6 +13,13 @@ TERMS = {
     "boundary lubrication": "the film carries no load: friction comes from touching asperities.",
     "mixed lubrication": "load shared between touching asperities and fluid pressure.",
     "full film": "the fluid carries all of the load; friction is only its shear.",
+    "regime": "who carries the load. By lambda: a smooth film over undeformed roughness, boundary "
+    "below 1, full film above 3. By load share: what the fluid carries, boundary below 10 %, full "
+    "film above 90 %. They can differ: soft asperities flatten and are held apart by a mean "
+    "pressure far below their stiffness (load share ahead of lambda), and waves longer than the "
+    "stylus' cut-off keep carrying where lambda counts a thick film (lambda ahead).",
+    "lambda": "film thickness over the roughness of both surfaces together (Eq. 21); see regime.",
+    "load share": "part of the load that the fluid carries; see regime.",
     "stribeck": "the fall of friction with speed and viscosity as the film takes over the load; "
     "here COF = asymptote + (COF_BL - asymptote) exp(-v / tau_hydro) (Eq. 17).",
     "wedge": "fluid drawn into a narrowing gap builds up pressure that lifts the sole.",
@@ -26,6 +33,10 @@ TERMS = {
     "fluid_load": "part of the normal force that fluid pressure carries under the whole sole.",
     "fluid_load_sensor": "what a row of pressure sensors in the floor would read of the fluid "
     "load: a wide inlet averages over tread channels and reads too little (Eq. 27).",
+    "fluid_share": "at each point, the part of the pressure that the fluid carries; 100 % is a "
+    "full film.",
+    "clearance": "height of the undeformed sole above the floor as it stands there.",
+    "land": "where a sole can touch the floor: lugs and untreaded parts, not channels.",
     "pool_depth": "depth of the liquid on the floor; deeper gaps hold no film.",
     "facet": "plane bevel at the rear of the heel, moulded or worn.",
     "assumed": "no measurement and no publication stands behind this value: measure it.",

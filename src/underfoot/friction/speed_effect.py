@@ -9,7 +9,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from underfoot.core import Breach, InputError, Range, SourcedValue
+from underfoot.core import Breach, InputError, Range, SourcedValue, breaches
 
 from ._shared import (
     PIN_PRESSURE,
@@ -98,6 +98,8 @@ class SpeedEffectLaw(UncertainInputs):
         Further assumptions behind the numbers, in words.
     effect_inputs
         Numbers of ``effect`` by field name, with their standard deviations.
+    calibrated_product
+        Viscosity x speed of the data behind the levels, Pa m; None when not known.
 
     Errors
     ------
@@ -112,6 +114,7 @@ class SpeedEffectLaw(UncertainInputs):
     model_deviation: float | None = None
     assumed: tuple[str, ...] = ()
     effect_inputs: Mapping[str, SourcedValue] = field(default_factory=dict)
+    calibrated_product: Range | None = None
 
     def __post_init__(self) -> None:
         coefficient(self.cof_boundary, "cof_boundary")
@@ -185,9 +188,13 @@ class SpeedEffectLaw(UncertainInputs):
         self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
     ) -> list[Breach]:
         """Return what leaves the tests behind the calibration: 0.05 to 1 m/s, up to 266.1 kPa."""
-        return law_breaches(
+        found = law_breaches(
             self.name, RANGES, self.viscosity, contact_pressure, speed, film_thickness
         )
+        if self.viscosity is None or self.calibrated_product is None:
+            return found
+        product = {"viscosity x speed": self.viscosity * np.abs(np.asarray(speed, dtype=float))}
+        return found + breaches(self.name, {"viscosity x speed": self.calibrated_product}, product)
 
     def _left(self, pressure: NDArray[np.float64], speed: NDArray[np.float64]) -> Any:
         return self.effect.adhesion_left(
