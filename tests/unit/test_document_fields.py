@@ -166,6 +166,7 @@ def test_three_results_are_ranked_and_beyond_their_bands_or_not(worn_shoe_result
     assert found.ranking[0].chance == "above 99 %"
     # Phi(0.01 / (0.02 sqrt 2)) = 0.638
     assert found.ranking[1].chance == "64 %"
+    assert "told apart" in comparison(results[1], results[0]).verdict
     assert found.ranking[0].interval == "0.261 to 0.339"
     assert found.verdict.startswith("c grips best, by 0.190 in COF before b")
     row = next(row for row in found.rows if row.label == "Coefficient of friction")

@@ -116,7 +116,7 @@ def _show(results: list[Result], compared: Comparison, changed: list[tuple[str, 
 
     from underfoot.document.comparison import letters
 
-    from .show import table
+    from .show import LONGEST_VALUE, table
 
     console = Console(highlight=False)
     console.print(" ".join([compared.verdict, compared.beyond]).strip(), markup=False)
@@ -130,8 +130,12 @@ def _show(results: list[Result], compared: Comparison, changed: list[tuple[str, 
         heads = ("", "COF", "95 % interval", "better than the next")
         console.print("\nRanked", table(heads, rows), sep="\n")
     console.print()
-    rows = [(row.label, *row.values, row.beyond) for row in compared.rows]
-    console.print(table(("Results", *named, "difference from A"), rows))
+    rows = [
+        (row.label, *row.values, row.beyond.replace(" the band", "").replace(" estimated", ""))
+        for row in compared.rows
+        if max(map(len, row.values)) <= LONGEST_VALUE
+    ]
+    console.print(table(("Results", *named, "against A"), rows))
     console.print()
     if changed:
         console.print(table(("Cases differ in", *named), changed))

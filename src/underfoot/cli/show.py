@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 _MOST_ASSUMPTIONS = 3
 _LONGEST_ASSUMPTION = 64
-_LONGEST_VALUE = 34
+LONGEST_VALUE = 34
 _WEIGHTY = ("interface", "shoe.heel", "shoe.tread", "shoe.sole", "motion")
 """Sections named first: interface roughness and the shape of the sole decide the film."""
 
@@ -29,7 +29,7 @@ def show_result(result: Result, folder: Path | None) -> None:
     console.print(verdict(result), markup=False)
     if result.status.usable:
         rows = [(row.label, row.value, row.remark) for row in summary_rows(result)]
-        short = [row for row in rows if len(row[1]) <= _LONGEST_VALUE]
+        short = [row for row in rows if len(row[1]) <= LONGEST_VALUE]
         console.print(table((), fitting(short, console.width), remarks=True))
         for label, value, _ in (row for row in rows if row not in short):
             console.print(f"{label.strip().capitalize()}: {value}.", markup=False)

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 LETTERS = "ABCDEFGH"
 _NAMES = {label: name for name, label, _ in _ROWS}
+_TOLD_APART = 0.75
+"""Least chance at which an order is stated."""
 _BAND = 1.96
 """Half width of a 95 % band in standard deviations."""
 
@@ -110,8 +112,13 @@ def _order(results: Sequence[Result]) -> str:
     ranked = _ranked(results)
     best, second = (results[number] for number in ranked[:2])
     lead = best.value("cof") - second.value("cof")
-    if lead == 0.0:
-        return f"{_named(results, ranked[0])} and {_named(results, ranked[1])} grip alike."
+    chance = _chance(best.scalars["cof"], second.scalars["cof"])
+    if lead == 0.0 or (chance is not None and chance < _TOLD_APART):
+        sure = "" if chance is None else f" (chance that it is the better one: {_percent(chance)})"
+        return (
+            f"{_named(results, ranked[0])} and {_named(results, ranked[1])} can't be told apart: "
+            f"the first is ahead by {lead:.3f} in COF{sure}."
+        )
     if len(results) == 2:
         text = f"{_named(results, ranked[0])} grips better by {lead:.3f} in COF"
     else:
@@ -119,10 +126,12 @@ def _order(results: Sequence[Result]) -> str:
             f"{_named(results, ranked[0])} grips best, by {lead:.3f} in COF before "
             f"{_named(results, ranked[1])}"
         )
-    chance = _chance(best.scalars["cof"], second.scalars["cof"])
     if chance is None:
         return text + "; how sure that is was not estimated."
-    return text + f" (chance that the order is right, by the friction law's spread: {chance})."
+    return (
+        text
+        + f" (chance that the order is right, by the friction law's spread: {_percent(chance)})."
+    )
 
 
 def _lower(text: str) -> str:
@@ -151,7 +160,8 @@ def _ranking(results: Sequence[Result]) -> tuple[Rank, ...]:
             chance = ""
         else:
             other = results[ranked[place + 1]].scalars["cof"]
-            chance = _chance(cof, other) or "not estimated"
+            share = _chance(cof, other)
+            chance = "not estimated" if share is None else _percent(share)
         made.append(
             Rank(
                 LETTERS[number],
@@ -173,16 +183,19 @@ def _interval(scalar: SourcedValue) -> tuple[float, float] | None:
     return max(scalar.value - half, 0.0), scalar.value + half
 
 
-def _chance(first: SourcedValue, second: SourcedValue) -> str | None:
-    """Return the chance that the larger one is larger, in words."""
+def _chance(first: SourcedValue, second: SourcedValue) -> float | None:
+    """Return the chance that the larger one is larger, 0.5 to 1; None if not estimated."""
     if first.value is None or second.value is None:
         return None
     if first.uncertainty is None or second.uncertainty is None:
         return None
     spread = hypot(first.uncertainty, second.uncertainty)
     if spread == 0.0:
-        return "above 99 %" if first.value != second.value else "50 %"
-    chance = 0.5 * (1.0 + erf(abs(first.value - second.value) / spread / sqrt(2.0)))
+        return 1.0 if first.value != second.value else 0.5
+    return 0.5 * (1.0 + erf(abs(first.value - second.value) / spread / sqrt(2.0)))
+
+
+def _percent(chance: float) -> str:
     return "above 99 %" if chance > 0.99 else percent(chance)
 
 
@@ -225,9 +238,11 @@ def _cautions(results: Sequence[Result]) -> tuple[str, ...]:
     versions = {result.provenance.versions.get("underfoot", "") for result in results}
     if len(versions) > 1:
         found.append(f"Computed with different versions: {', '.join(sorted(versions))}.")
-    for letter, result in zip(letters(results), results, strict=True):
-        if result.status.usable and result.breaches:
-            number = len(result.breaches)
-            lines = "1 remark" if number == 1 else f"{number} remarks"
-            found.append(f"{letter} leaves a tested range ({lines} in its report).")
+    left = [
+        f"{letter} ({len(result.breaches)})"
+        for letter, result in zip(letters(results), results, strict=True)
+        if result.status.usable and result.breaches
+    ]
+    if left:
+        found.append(f"Outside a tested range, with the number of remarks: {', '.join(left)}.")
     return tuple(found)
