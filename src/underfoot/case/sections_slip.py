@@ -42,10 +42,10 @@ class SlipPeople(Section):
         "8 kg of 70: between foot and shank (0.06) and the whole leg (0.17)",
         assumed=True,
     )
-    walking_speed_mean: Pace = default(1.36, "1.36 m/s", _STEPS, assumed=True)
+    walking_speed_mean: Pace = default(1.35, "1.35 m/s", _STEPS, assumed=True)
     walking_speed_sd: SpeedSpread = default(0.18, "0.18 m/s", _STEPS, assumed=True)
     heel_speed_mean: HeelSpeed = default(0.33, "0.33 m/s", _STEPS, assumed=True)
-    heel_speed_sd: SpeedSpread = default(0.11, "0.11 m/s", _STEPS, assumed=True)
+    heel_speed_sd: SpeedSpread = default(0.12, "0.12 m/s", _STEPS, assumed=True)
     shoe_angle_sd: AngleSpread = default(
         math.radians(4.0), "4 deg", f"angle at heel contact in the {_STEPS}", assumed=True
     )

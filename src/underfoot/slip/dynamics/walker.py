@@ -14,7 +14,7 @@ from .gait import GaitHistory, packaged_histories
 
 Array = NDArray[np.float64]
 GRAVITY = 9.80665
-REFERENCE_SPEED = 1.36
+REFERENCE_SPEED = 1.35
 """m/s, mean walking speed of the recorded steps that know it; taken for those that don't."""
 
 
@@ -158,10 +158,10 @@ class Population:
         70.0, 11.8, 35.0, 140.0, "final progress report on shoe-floor friction, G.5.1", False
     )
     rcof: Spread = Spread(0.20, 0.03, 0.05, 1.0, "see slip_probability.md")
-    walking_speed: Spread = Spread(1.36, 0.18, 0.7, 2.2, _STEPS)
-    heel_speed: Spread = Spread(0.33, 0.11, 0.05, 1.0, _STEPS)
+    walking_speed: Spread = Spread(1.35, 0.18, 0.7, 2.2, _STEPS)
+    heel_speed: Spread = Spread(0.33, 0.12, 0.02, 1.0, _STEPS)
     shoe_angle: Spread = Spread(
-        math.radians(10), math.radians(2), math.radians(2), math.radians(30)
+        math.radians(10), math.radians(4), math.radians(2), math.radians(18)
     )
     landing: tuple[float, float] = (0.0, 0.02)
     lateral: Spread = Spread(0.0, 0.01, -0.03, 0.03, "assumption")
