@@ -18,6 +18,7 @@ from .guard import guarded
 from .method import by_method
 from .micro import micro
 from .new import new
+from .outsole import outsole_app
 from .risk import risk
 from .run import run
 from .schema import schema
@@ -27,6 +28,7 @@ from .stribeck import stribeck
 from .studies import studies_app
 from .trials import trials_app
 from .validate import validate
+from .wear import wear
 
 app = typer.Typer(
     name="underfoot",
@@ -50,6 +52,7 @@ _add(
     compare,
     sensitivity,
     risk,
+    wear,
     stribeck,
     contact,
     micro,
@@ -63,6 +66,7 @@ app.command("test")(guarded(by_method))
 app.add_typer(trials_app)
 app.add_typer(calibrate_app)
 app.add_typer(studies_app)
+app.add_typer(outsole_app)
 
 
 def _version(wanted: bool) -> None:

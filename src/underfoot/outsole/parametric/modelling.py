@@ -1,4 +1,4 @@
-"""Wires, faces and prisms of the modelling kernel from arrays in metres; the kernel counts in mm."""
+"""Wires, faces and prisms of the modelling kernel from arrays in m; the kernel counts in mm."""
 
 from __future__ import annotations
 

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..profile import Facet, Rocker
+from ..profile import Facet, Profile, Rocker
 from ..shape import SoleShape
 from .modelling import MM, kernel
-from .toe_spring import SoleProfile
+from .toe_spring import SoleProfile, ToeSpring
 
 Array = NDArray[np.float64]
-MARGIN = 0.02  # m around the plan form
+MARGIN = 0.02  # m on both sides of the plan form
+ENDS = 0.5e-3  # m behind and before it, where profiles still have their formula
 _CROWN_NODES = 15
 
 
@@ -30,7 +33,7 @@ def slab(shape: SoleShape) -> Any:
 
     crowned = None
     breaks = break_points(shape)
-    for first, last in zip(breaks[:-1], breaks[1:], strict=True):
+    for first, last in pairwise(breaks):
         piece = _crowned_piece(shape, first, last)
         crowned = piece if crowned is None else crowned + piece
     return body * crowned
@@ -38,18 +41,39 @@ def slab(shape: SoleShape) -> Any:
 
 def break_points(shape: SoleShape) -> list[float]:
     """Return the places along the sole where its profile changes its kind, margins included."""
-    rear, toe = shape.profile, None
-    if isinstance(rear, SoleProfile):
-        rear, toe = rear.rear, rear.toe
-    inner = {0.0, shape.length}
+    rear, toe = _parts(shape)
+    inner: set[float] = set()
     if isinstance(rear, Facet):
         inner.add(rear.length)
     if isinstance(rear, Rocker):
         inner.add(rear.start)
     if toe is not None:
         inner.add(toe.start)
-    inside = sorted(x for x in inner if 0.0 <= x <= shape.length)
-    return [-MARGIN, *inside, shape.length + MARGIN]
+    inside = sorted(x for x in inner if 0.0 < x < shape.length)
+    return [-ENDS, *inside, shape.length + ENDS]
+
+
+def land_profile(shape: SoleShape, x: Array) -> Array:
+    """Return the profile (m) at x, each curve carried on beyond the ends of the sole.
+
+    ``Profile.height`` holds its last height there, which would put a kink on the rim itself.
+    """
+    rear, toe = _parts(shape)
+    height = rear.height(x)
+    if isinstance(rear, Rocker):
+        into = np.maximum(rear.start - x, 0.0)
+        height = rear.radius - np.sqrt(np.maximum(rear.radius**2 - into**2, 0.0))
+    if toe is not None:
+        into = np.maximum(x - toe.start, 0.0)
+        height = height + toe.radius - np.sqrt(np.maximum(toe.radius**2 - into**2, 0.0))
+    return height
+
+
+def _parts(shape: SoleShape) -> tuple[Profile, ToeSpring | None]:
+    profile = shape.profile
+    if isinstance(profile, SoleProfile):
+        return profile.rear, profile.toe
+    return profile, None
 
 
 def side_face(shape: SoleShape) -> Any:
@@ -62,15 +86,14 @@ def side_face(shape: SoleShape) -> Any:
         return kernel().Pnt(x * MM, y, z * MM)
 
     def land(x: float) -> float:
-        return float(shape.profile.height(np.array([x]))[0])
+        return float(land_profile(shape, np.array([x]))[0])
 
     below = [
-        _curve(point, [(x, land(x)) for x in (a, (a + b) / 2, b)])
-        for a, b in zip(breaks[:-1], breaks[1:], strict=True)
+        _curve(point, [(x, land(x)) for x in (a, (a + b) / 2, b)]) for a, b in pairwise(breaks)
     ]
     above = [
         _curve(point, [(x, top(x)) for x in (b, (a + b) / 2, a)])
-        for a, b in reversed(list(zip(breaks[:-1], breaks[1:], strict=True)))
+        for a, b in reversed(list(pairwise(breaks)))
     ]
     low, high = breaks[0], breaks[-1]
     rise = kernel().Segment(point(high, land(high)), point(high, top(high)))
@@ -80,11 +103,13 @@ def side_face(shape: SoleShape) -> Any:
 
 def _top(shape: SoleShape) -> Any:
     """Return the height (m) of the sole's upper side against x: it follows the toe spring."""
-    toe = shape.profile.toe if isinstance(shape.profile, SoleProfile) else None
+    toe = _parts(shape)[1]
 
     def height(x: float) -> float:
-        lift = 0.0 if toe is None else float(toe.height(np.array([x]))[0])
-        return shape.outsole_thickness + lift
+        if toe is None:
+            return shape.outsole_thickness
+        into = max(x - toe.start, 0.0)
+        return shape.outsole_thickness + toe.radius - math.sqrt(toe.radius**2 - into**2)
 
     return height
 
@@ -108,7 +133,7 @@ def _crowned_piece(shape: SoleShape, first: float, last: float) -> Any:
     half = shape.width / 2 + MARGIN
     y = np.linspace(-half, half, _CROWN_NODES)
     grid_x, grid_y = np.meshgrid(x, y, indexing="ij")
-    z = shape.profile.height(grid_x) + grid_y**2 / (2 * shape.crown_radius)
+    z = land_profile(shape, grid_x) + grid_y**2 / (2 * shape.crown_radius)
     surface = kernel().SplineSurfaceInterpolation(np.stack([grid_x, grid_y, z], axis=-1) * MM)
     top = shape.outsole_thickness + float(z.max())
     return surface.Extrude(kernel().Vec(0.0, 0.0, 2 * top * MM))

@@ -15,6 +15,7 @@ from ..shape import SoleShape
 from ..tread import ArcChannel
 from .lugs import Outline, lug_outlines, slit_outlines
 from .modelling import MM, arc_edge, kernel, outline_wire, plate_with_holes, raised, rim_face
+from .rounding import rounded
 from .slab import slab
 
 LEAST_PRINTABLE = 0.3e-3
@@ -39,8 +40,9 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
     """Return the new sole as a solid: the same description that ``heel_map`` samples.
 
     The land is cut from a slab, its rim and its lugs' edges are rounded by fillets; a channel keeps
-    its depth straight above the land. Fillets roll along the surface, the map's rounding is straight
-    above it: on a bevel of 10 degrees they differ by less than 2 % of the radius. Wear is left out.
+    its depth straight above the land. Fillets roll along the surface, the map's rounding is
+    straight above it: on a bevel of 10 degrees they differ by less than 2 % of the radius. Wear is
+    left out.
 
     Errors
     ------
@@ -51,7 +53,7 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
     remarks: list[str] = []
     body = slab(shape) * raised(rim_face(shape.rim_arcs(), -_BELOW), 0.3)
     if shape.edge_radius > 0:
-        rim = [edge for edge in body.edges if _on_lower_rim(edge, shape)]
+        rim = [i for i, edge in enumerate(body.edges) if _on_lower_rim(edge, shape)]
         body = _rounded(body, rim, shape.edge_radius, "the lower rim", remarks)
     lower = body
     tread, lugs = shape.tread, []
@@ -60,8 +62,9 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
         plate = plate_with_holes(lugs, -_BELOW)
         body = body - raised(plate, 0.3) * _layer(lower, tread.depth)
         if tread.edge_radius > 0:
-            edges = [edge for edge in body.edges if _on_lug(edge, shape)]
-            free = [edge for edge in edges if _free_of_kinks(edge, shape)]
+            edges = [(i, edge) for i, edge in enumerate(body.edges) if _on_lug(edge, shape)]
+            whole = _free_lugs(lugs, shape)
+            free = [i for i, edge in edges if _belongs(edge, whole)]
             if free:
                 body = _rounded(body, free, tread.edge_radius, "the lugs' edges", remarks)
             if len(free) < len(edges):
@@ -141,16 +144,13 @@ def _half_ring(channel: ArcChannel) -> Any:
     return raised(closed(outer), 0.3) - raised(closed(inner), 0.3)
 
 
-def _rounded(body: Any, edges: list[Any], radius: float, name: str, remarks: list[str]) -> Any:
+def _rounded(body: Any, edges: list[int], radius: float, name: str, remarks: list[str]) -> Any:
     """Return the body with fillets; where the kernel can't make them the edges stay sharp."""
-    try:
-        found = body.MakeFillet(edges, radius * MM)
-        if 0.5 * float(body.mass) < float(found.mass) < 1.0001 * float(body.mass):
-            return found
-    except Exception as error:  # the kernel raises types of its own
-        del error
-    remarks.append(f"{name} stay sharp: a radius of {radius * 1e3:g} mm can't be made there")
-    return body
+    found = rounded(body, edges, radius)
+    if found is None:
+        remarks.append(f"left sharp: {name}, {radius * 1e3:g} mm can't be rolled along all of it")
+        return body
+    return found
 
 
 def _on_lower_rim(edge: Any, shape: SoleShape) -> bool:
@@ -183,23 +183,33 @@ def _on_lug(edge: Any, shape: SoleShape) -> bool:
     return off < 1e-6 or tread.pattern == "circles"
 
 
-def _free_of_kinks(edge: Any, shape: SoleShape) -> bool:
-    """Whether the lug of an edge keeps clear of the rim and of kinks of the profile.
+def _free_lugs(lugs: Sequence[Outline], shape: SoleShape) -> list[Outline]:
+    """Return the lugs that keep clear of the rounded rim and of kinks of the profile.
 
-    The kernel can't roll a fillet over those, and may end the whole program when it tries.
+    The kernel can't roll a fillet over those.
     """
     from .slab import break_points
 
-    tread = shape.tread
-    assert tread is not None
-    x, y = np.array([[v.p[0], v.p[1]] for v in edge.vertices]).T / MM
-    size = 1.5 * max(tread.lug_width, tread.lug_length or 0.0)
-    middle = np.array([edge.center.x, edge.center.y]) / MM
-    x, y = np.append(x, middle[0]), np.append(y, middle[1])
-    if tread.pattern not in ("grid", "blocks", "circles", "hexagons"):
-        return False  # bars always end at the rim
-    clear = size + shape.edge_radius + tread.edge_radius
-    if float(shape.inward_distance(x, y).min()) < clear:
-        return False
-    kinks = np.array(break_points(shape)[2:-2])
-    return bool(kinks.size == 0 or np.abs(x[:, None] - kinks[None, :]).min() > size)
+    assert shape.tread is not None
+    clear = shape.edge_radius + 2 * shape.tread.edge_radius
+    kinks = np.array(break_points(shape)[1:-1])
+    found = []
+    for lug in lugs:
+        low, high = lug.points.min(axis=0) - lug.radius, lug.points.max(axis=0) + lug.radius
+        around = np.array([[low[0], low[1]], [high[0], low[1]], [low[0], high[1]], high])
+        if shape.inward_distance(around[:, 0], around[:, 1]).min() < clear:
+            continue
+        if ((kinks > low[0] - clear) & (kinks < high[0] + clear)).any():
+            continue
+        found.append(lug)
+    return found
+
+
+def _belongs(edge: Any, lugs: Sequence[Outline]) -> bool:
+    """Whether an edge lies on one of these lugs."""
+    ends = np.array([[v.p[0], v.p[1]] for v in edge.vertices]) / MM
+    for lug in lugs:
+        low, high = lug.points.min(axis=0) - lug.radius, lug.points.max(axis=0) + lug.radius
+        if (ends > low - 1e-6).all() and (ends < high + 1e-6).all():
+            return True
+    return False

@@ -1,0 +1,221 @@
+"""``underfoot outsole make``: a sole from a few lengths and angles as STEP, STL, OBJ or PLY."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from .options import AsJson, Overwrite, Settings
+
+if TYPE_CHECKING:
+    from underfoot.outsole.parametric import SoleFile
+    from underfoot.outsole.shape import SoleShape
+
+Text = Annotated[str | None, typer.Option(show_default=False)]
+LENGTHS = {
+    "lug": "tread.lug_width",
+    "channel": "tread.channel_width",
+    "depth": "tread.depth",
+    "lug_length": "tread.lug_length",
+    "arm": "tread.arm_length",
+    "angle": "tread.angle",
+    "edge": "tread.edge_radius",
+}
+
+
+def make(
+    spec: Annotated[
+        Path | None,
+        typer.Argument(help="Outsole file or case file (TOML).", show_default=False),
+    ] = None,
+    pattern: Annotated[
+        str | None,
+        typer.Option(
+            "--pattern",
+            help="none, grid, blocks, transverse, longitudinal, bars, chevrons, circles, hexagons.",
+            show_default=False,
+        ),
+    ] = None,
+    lug: Annotated[
+        str | None, typer.Option("--lug", help='Width of a lug, as "6 mm".', show_default=False)
+    ] = None,
+    channel: Annotated[
+        str | None, typer.Option("--channel", help="Width of a channel.", show_default=False)
+    ] = None,
+    pitch: Annotated[
+        str | None, typer.Option("--pitch", help="Lug and channel together.", show_default=False)
+    ] = None,
+    depth: Annotated[
+        str | None, typer.Option("--depth", help="Height of the lugs.", show_default=False)
+    ] = None,
+    lug_length: Annotated[
+        str | None, typer.Option("--lug-length", help="Of blocks.", show_default=False)
+    ] = None,
+    arm: Annotated[
+        str | None, typer.Option("--arm", help="Of chevrons, across.", show_default=False)
+    ] = None,
+    angle: Annotated[
+        str | None, typer.Option("--angle", help="Of the pattern.", show_default=False)
+    ] = None,
+    edge: Annotated[
+        str | None, typer.Option("--edge", help="Radius of the lugs' edges.", show_default=False)
+    ] = None,
+    sipes: Annotated[
+        str | None,
+        typer.Option(
+            "--sipes", help='Width, depth and spacing: "0.5 mm, 2 mm, 4 mm".', show_default=False
+        ),
+    ] = None,
+    whole: Annotated[
+        bool, typer.Option("--whole", help="A whole sole of common widths, not a heel.")
+    ] = False,
+    set_: Settings = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", help="File: .step, .stl, .obj or .ply (mm).", show_default=False),
+    ] = None,
+    json: AsJson = False,
+    overwrite: Overwrite = False,
+) -> None:
+    """Make a sole: the same description serves the solver (in a case) and the CAD.
+
+    Give an outsole file, or a pattern with lug, channel and depth. The file is read back and its
+    volume compared with the solid's; meshes must be watertight.
+    """
+    from underfoot.core import InputError
+    from underfoot.outsole.parametric import write_sole
+
+    given = dict(zip(LENGTHS, (lug, channel, depth, lug_length, arm, angle, edge), strict=True))
+    if (spec is None) == (pattern is None):
+        raise InputError(
+            "no sole" if spec is None else "a file and --pattern together",
+            where="underfoot outsole make",
+            allowed="an outsole file, or --pattern with --lug, --channel and --depth",
+        )
+    if out is not None and out.exists() and not overwrite:
+        raise InputError(
+            f"{out} exists", where="--out", remedy="Choose another name, or add --overwrite."
+        )
+    shape = (
+        _from_file(spec, set_)
+        if spec is not None
+        else _from_options(pattern or "", given, pitch, sipes, whole, set_)
+    )
+    written = None if out is None else write_sole(shape, out)
+    found = as_dict(shape, written)
+    if json:
+        import json as json_text
+
+        print(json_text.dumps(found, indent=2, ensure_ascii=False))
+    else:
+        _show(found, written)
+
+
+def as_dict(shape: SoleShape, written: SoleFile | None) -> dict[str, Any]:
+    """Return the measures of a sole and of its file as plain data, SI."""
+    from underfoot.outsole import heel_surface
+
+    surface = heel_surface(shape, spacing=0.25e-3)
+    found: dict[str, Any] = {
+        "length_m": shape.length,
+        "width_m": shape.width,
+        "plan_area_m2": shape.plan_area,
+        "land_ratio": surface.land_ratio,
+        "tread_depth_m": 0.0 if shape.tread is None else shape.tread.depth,
+    }
+    if written is not None:
+        found |= {
+            "file": str(written.path),
+            "volume_m3": written.volume,
+            "file_volume_m3": written.read_volume,
+            "triangles": written.triangles,
+            "lugs": written.lugs,
+            "remarks": list(written.remarks),
+        }
+    return found
+
+
+def _show(found: dict[str, Any], written: SoleFile | None) -> None:
+    print(
+        f"{found['length_m'] * 1e3:.0f} x {found['width_m'] * 1e3:.0f} mm, "
+        f"{found['plan_area_m2'] * 1e4:.1f} cm2, {found['land_ratio']:.0%} of it land, "
+        f"tread {found['tread_depth_m'] * 1e3:g} mm"
+    )
+    if written is None:
+        print("Nothing written: name a file with --out sole.step")
+        return
+    kind = f"{written.triangles} triangles, watertight" if written.triangles else "a solid"
+    print(f"wrote {written.path}: {kind}, {written.volume * 1e6:.2f} cm3", end="")
+    print(f" (read back: {written.read_volume / written.volume - 1:+.2%})")
+    for remark in written.remarks:
+        print(f"note: {remark}")
+
+
+def _from_file(spec: Path, settings: list[str] | None) -> SoleShape:
+    from underfoot.case import toml
+    from underfoot.case.outsole_file import read_outsole
+
+    from .options import loaded
+
+    if spec.is_file() and "shoe" in toml.parsed(toml.read(spec), str(spec)):
+        from underfoot.case.build_sole import new_sole
+
+        return new_sole(loaded(spec, None, settings))
+    return read_outsole(spec, _settings(settings)).shape()
+
+
+def _from_options(
+    pattern: str,
+    given: dict[str, str | None],
+    pitch: str | None,
+    sipes: str | None,
+    whole: bool,
+    settings: list[str] | None,
+) -> SoleShape:
+    from underfoot.case.outsole_file import outsole_from
+    from underfoot.core import InputError, to_si
+
+    if pitch is not None and given["lug"] is not None:
+        if given["channel"] is not None:
+            raise InputError("--pitch and --channel say the same thing twice", where="--pitch")
+        lug, whole_pitch = (
+            to_si(given["lug"], "m", where="--lug"),
+            to_si(pitch, "m", where="--pitch"),
+        )
+        if lug >= whole_pitch:
+            raise InputError(
+                f"a lug of {lug * 1e3:g} mm leaves no channel in {whole_pitch * 1e3:g} mm",
+                where="--lug",
+                allowed=f"below {whole_pitch * 1e3:g} mm",
+            )
+        given["channel"] = f"{whole_pitch - lug!r} m"
+    tread: dict[str, Any] = {"pattern": pattern}
+    for name, path in LENGTHS.items():
+        if given[name] is not None:
+            tread[path.removeprefix("tread.")] = given[name]
+    if sipes is not None:
+        parts = [part.strip() for part in sipes.split(",")]
+        if len(parts) != 3:
+            raise InputError(
+                f'"{sipes}"', where="--sipes", allowed='width, depth, spacing: "0.5 mm, 2 mm, 4 mm"'
+            )
+        tread["sipes"] = dict(zip(("width", "depth", "spacing"), parts, strict=True))
+    heel: dict[str, Any] = {"profile": "flat"}
+    if whole:
+        heel |= {"plan": "sole", "length": "290 mm", "width": "68 mm"}
+        heel |= {"waist_width": "58 mm", "ball_width": "100 mm"}
+    mapping: dict[str, Any] = {"heel": heel, "tread": tread}
+    if whole:
+        mapping["sole"] = {"outsole_thickness": "12 mm"}
+    for key, value in _settings(settings).items():
+        section, _, name = key.rpartition(".")
+        mapping.setdefault(section or "heel", {})[name] = value
+    return outsole_from(mapping).shape()
+
+
+def _settings(settings: list[str] | None) -> dict[str, Any]:
+    from .options import _setting
+
+    return dict(_setting(text) for text in settings or ())
