@@ -81,26 +81,13 @@ def sole_map(case: Case, spacing: float, progress: Progress = silent) -> SoleMap
     )
 
 
-def compliance(case: Case, sole: SoleMap, modulus: float) -> Compliance:
+def compliance(
+    case: Case, sole: SoleMap, modulus: float, progress: Progress = silent
+) -> Compliance:
     """Return how the sole gives way under pressure."""
-    from underfoot.outsole.compliance import half_space_compliance, layered_compliance
+    from .build_compliance import sole_compliance
 
-    poisson_ratio = case.shoe.material.poisson_ratio
-    if case.models.compliance == "half_space":
-        shape = (sole.x.size, sole.y.size)
-        return half_space_compliance(
-            shape, sole.spacing, modulus=modulus, poisson_ratio=poisson_ratio
-        )
-    layers = case.shoe.sole
-    return layered_compliance(
-        sole,
-        modulus=modulus,
-        poisson_ratio=poisson_ratio,
-        thickness=layers.outsole_thickness,
-        midsole_modulus=layers.midsole_modulus,
-        midsole_thickness=layers.midsole_thickness,
-        midsole_poisson_ratio=layers.midsole_poisson_ratio,
-    )
+    return sole_compliance(case, sole, modulus, progress)
 
 
 def asperity_law(case: Case, modulus: float, progress: Progress = silent) -> PressureGapLaw:
