@@ -200,3 +200,31 @@ def test_area_correction_is_the_published_share_of_the_boundary():
     plain, corrected = contact_fractions(contact, (2.0, 2.0), np)
     assert plain == 18 / 256
     assert corrected == pytest.approx((18 - (np.pi - 1 + np.log(2)) / 24 * 18) / 256)
+
+
+@pytest.mark.parametrize(
+    ("changed", "text"),
+    [
+        ({"speed": [0.1, 0.2]}, "Call it once for each"),
+        ({"pressure": np.array([1e5, 2e5])}, "Call it once for each"),
+        ({"speed": "0.1 m/s"}, "is a str"),
+        ({"poisson_ratio": None}, "is a NoneType"),
+    ],
+)
+def test_lists_and_words_in_place_of_a_number_are_refused(changed, text):
+    given = {"spacing": 1e-6, "modulus": 2e6, "speed": 0.1, "pressure": 1e5} | changed
+    height = np.random.default_rng(0).normal(0.0, 1e-7, (16, 16))
+    with pytest.raises(InputError, match=next(iter(changed))) as refused:
+        steady_sliding(height, **given)
+    assert text in str(refused.value)
+
+
+def test_a_contact_of_a_few_nodes_is_marked():
+    from underfoot.surface import self_affine
+
+    floor = self_affine(64, 5e-6, 5e-6, 0.8, 1.6e-4, 4e-5, seed=1)
+    light = steady_sliding(floor.heights, floor.spacing, 5e6, 0.0, 1.0)
+    assert light.status is Status.OUT_OF_RANGE
+    assert [one.quantity for one in light.breaches] == ["nodes in contact"]
+    heavy = steady_sliding(floor.heights, floor.spacing, 5e6, 0.0, 1e5)
+    assert heavy.status is Status.CONVERGED

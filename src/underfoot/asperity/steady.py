@@ -219,7 +219,7 @@ def steady_sliding(
             f"stopped after {state.steps} iterations at an error of {state.error:.1e} "
             f"(asked for {tolerance:.1e}): the numbers are not a result"
         )
-    found = tuple(resolution_breaches(slope, short))
+    found = tuple(resolution_breaches(slope, short, int(xp.sum(xp.astype(p > 0.0, xp.int64)))))
     return SteadySliding(
         pressure=p,
         gap=gap,

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError, Range, breaches
+from underfoot.core import Breach, InputError, Range, breaches, display
 
 from ._kernels.threads import namespace
 
@@ -32,6 +32,8 @@ _RANGES = {
         0.0, 0.1, "1", "resolution, limit assumed"
     ),
 }
+FEWEST_NODES = 30
+"""Nodes in contact below which area, gap and friction rest on too few spots (assumed)."""
 _NEGLIGIBLE_LOSS_TANGENT = 1e-3
 
 
@@ -72,6 +74,8 @@ def checked_contact_input(
         raise InputError(f"spacing {spacing}", where="spacing", allowed="one length or two, m")
     dx, dy = (_positive("spacing", value, "m") for value in steps)
     _positive("pressure", pressure, "Pa")
+    _one_number("speed", speed)
+    _one_number("poisson_ratio", poisson_ratio)
     if not math.isfinite(speed):
         raise InputError(f"speed {speed} m/s", where="speed", allowed="a finite speed, m/s")
     if not 0.0 <= poisson_ratio <= 0.5:
@@ -136,15 +140,26 @@ def loss_reason(moduli: Array, frequencies: Array) -> list[str]:
         return []
     return [
         f"hysteresis is negligible because the material is: its loss tangent is at most "
-        f"{tangent:.1e} between {w.min():.3g} and {w.max():.3g} rad/s, the frequencies this "
+        f"{_plain(tangent)} between {display(w.min() / (2 * math.pi), 'Hz')} and "
+        f"{display(w.max() / (2 * math.pi), 'Hz')}, the frequencies this "
         f"surface excites at this speed; a spectrum with relaxation times near those is needed"
     ]
 
 
-def resolution_breaches(rms_slope: float, short_share: float) -> list[Breach]:
-    """Return whether slopes are too steep for the theory or too short for the grid."""
+def _plain(value: float) -> str:
+    return f"{value:.1g}" if value >= 1e-6 else "0"
+
+
+def resolution_breaches(rms_slope: float, short_share: float, nodes: int) -> list[Breach]:
+    """Return whether slopes are too steep for the theory or too short for the grid, and whether
+    the contact (``nodes`` in contact) is too small for it.
+    """
     values = dict(zip(_RANGES, (rms_slope, short_share), strict=True))
-    return breaches("steady_sliding", _RANGES, values)
+    found = breaches("steady_sliding", _RANGES, values)
+    enough = Range(FEWEST_NODES, math.inf, "1", "resolution of the contact itself, limit assumed")
+    return found + breaches(
+        "steady_sliding", {"nodes in contact": enough}, {"nodes in contact": nodes}
+    )
 
 
 def _as_floats(height: Any) -> Any:
@@ -163,7 +178,23 @@ def _as_floats(height: Any) -> Any:
         ) from error
 
 
+def _one_number(name: str, value: Any) -> None:
+    if np.ndim(value) == 0 and isinstance(value, int | float | np.number | np.ndarray):
+        return
+    several = np.ndim(value) > 0
+    raise InputError(
+        f"{np.size(value)} values" if several else f"{value!r} is a {type(value).__name__}",
+        where=name,
+        allowed="one number",
+        remedy="Call it once for each; ContactTable.from_surfaces makes a table over pressures "
+        "and speeds"
+        if several
+        else None,
+    )
+
+
 def _positive(name: str, value: float, unit: str) -> float:
+    _one_number(name, value)
     if not (math.isfinite(value) and value > 0.0):
         raise InputError(
             f"{name} {value} {unit}", where=name, allowed=f"a finite value above 0 {unit}"

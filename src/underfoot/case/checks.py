@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from underfoot.core import InputError, RangeError, display
 
 from .checks_outsole import outsole_mismatches
+from .checks_roughness import roughness_mismatches
 from .checks_sole import sole_mismatches
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 def mismatches(case: Case, given: Collection[str], places: Places) -> Iterator[InputError]:
     """Yield what does not fit together; ``given`` are the paths written in the file."""
     yield from _material(case, places)
-    yield from _roughness(case, places)
+    yield from roughness_mismatches(case, places)
     if case.shoe.outsole.file is not None:
         yield from outsole_mismatches(case, places)
     else:
@@ -49,18 +50,6 @@ def _material(case: Case, places: Places) -> Iterator[InputError]:
             "a midsole needs both its modulus and its thickness",
             where=places(f"shoe.sole.{missing}"),
         )
-
-
-def _roughness(case: Case, places: Places) -> Iterator[InputError]:
-    if case.interface.effective_rq is not None:
-        return
-    for path, roughness in (("shoe", case.shoe.roughness), ("floor", case.floor.roughness)):
-        if roughness.rq_or_estimate is None:
-            yield InputError(
-                "neither Rq nor Ra is given",
-                where=places(f"{path}.roughness"),
-                remedy=f'Write {path}.roughness.rq = "5 um" (or ra), or interface.effective_rq',
-            )
 
 
 def _heel(case: Case, given: Collection[str], places: Places) -> Iterator[InputError]:

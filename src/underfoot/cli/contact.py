@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -9,6 +10,8 @@ import typer
 
 from .contact_input import RubberChoice, SurfaceChoice, rubber_from, surface_from
 from .options import AsJson, Overwrite
+
+_METRES = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?(?:e[+-]?\d+)?) m\b(?!/)")
 
 if TYPE_CHECKING:
     from underfoot.asperity import SteadySliding
@@ -87,7 +90,7 @@ def contact(
     )
     found, flow = solved(floor, rubber, velocity, load, poisson)
     scales = scale_dependence(floor, rubber, velocity, load, poisson) if cutoffs else None
-    notes = [*assumed, *found.notes, *floor.processing]
+    notes = [with_units(note) for note in (*assumed, *found.notes, *floor.processing)]
     content = as_data(floor, found, flow, scales, described, notes)
     if out is not None:
         with whole_folder(out, overwrite=overwrite) as staging:
@@ -100,6 +103,13 @@ def contact(
         _show(content, out)
     if not found.status.usable:
         raise typer.Exit(4)
+
+
+def with_units(note: str) -> str:
+    """Return a note with its lengths as people write them: 3.125e-05 m as 31.3 um."""
+    from underfoot.core import display
+
+    return _METRES.sub(lambda match: display(float(match.group(1)), "m"), note)
 
 
 def solved(

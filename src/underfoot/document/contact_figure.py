@@ -46,6 +46,11 @@ def contact_figure(heights: np.ndarray, spacing: float, contact: Any, title: str
             interpolation="nearest",
         )
         ax.set_title(name)
+        if name.startswith("Gap") and touching.all():
+            ax.clear()
+            ax.axis("off")
+            ax.text(0.5, 0.5, "full contact:\nno gap anywhere", ha="center", va="center")
+            continue
         if name.startswith("Gap"):
             ax.set_facecolor("#a9bfd1")  # contact, apart from small gaps
         ax.set_xlabel("across, y (µm)")
