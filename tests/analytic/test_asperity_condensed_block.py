@@ -1,10 +1,16 @@
 """Condensed block against closed forms and against the half-space solver."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from underfoot.asperity import steady_sliding
-from underfoot.asperity.condensed_block import condensed_block, condensed_sliding
+from underfoot.asperity.condensed_block import (
+    condensed_block,
+    condensed_poisson_ratio,
+    condensed_sliding,
+)
 from underfoot.asperity.condensed_block._kernels.hexahedron import stiffness_matrices
 from underfoot.asperity.finite_element import MicroBlock, MicroLoading, MicroMaterial, MicroSurface
 from underfoot.material import RelaxationSpectrum, power_law_spectrum, young_from_shear
@@ -200,15 +206,34 @@ def test_explicit_finite_elements_agree_where_strains_are_small():
     # report's, where finite strain plays no part
     from underfoot.asperity.finite_element import ExplicitSettings, explicit_sliding
 
-    block = MicroBlock(elements=(20, 13, 7), roughness=MicroSurface.checkerboard(3.51e-6, 0.5e-3))
+    block = MicroBlock(elements=(18, 12, 6), roughness=MicroSurface.checkerboard(3.51e-6, 0.5e-3))
     floor = MicroSurface.checkerboard(3.51e-6, 0.4e-3)
-    material = rubber(RelaxationSpectrum(0.59e6))
-    loading = MicroLoading(speed=0.5, slide_distance=0.8e-3, mean_pressure=16e3)
+    material = rubber(RelaxationSpectrum(0.59e6), 0.49)
+    loading = MicroLoading(speed=0.5, slide_distance=0.4e-3, mean_pressure=16e3, press_time=0.6e-3)
     quick = condensed_sliding(block, floor, material, loading).averages
-    settings = ExplicitSettings(mass_scaling="auto", penalty_factor=0.1)
-    full = explicit_sliding(block, floor, material, loading, settings).averages
+    settings = ExplicitSettings(mass_scaling="auto")
+    full = explicit_sliding(
+        block, floor, material, replace(loading, slide_distance=0.41e-3), settings
+    ).averages
     assert quick is not None
     assert full is not None
     assert quick.mean_pressure == pytest.approx(full.mean_pressure, rel=0.01)
     assert quick.cof_absolute == pytest.approx(full.cof_absolute, rel=0.03)
     assert quick.area_per_force == pytest.approx(full.area_per_force, rel=0.03)
+
+
+@pytest.mark.parametrize("nu", [0.3, 0.45, 0.499])
+def test_moduli_of_a_poisson_ratio_are_those_of_engineering(nu):
+    """K, nu and the confined modulus E (1 - nu) / ((1 + nu) (1 - 2 nu)) go together."""
+    shear = RelaxationSpectrum(0.44e6, np.array([0.15e6]), np.array([40.0]))
+    material = MicroMaterial.from_poisson(shear, nu)
+    assert condensed_poisson_ratio(material) == pytest.approx(nu, rel=1e-12)
+    young = 2.0 * 0.44e6 * (1.0 + nu)
+    assert material.bulk_modulus == pytest.approx(young / (3.0 * (1.0 - 2.0 * nu)), rel=1e-12)
+    block = MicroBlock(
+        size=(0.2e-3, 0.2e-3, 0.5e-3), elements=(2, 2, 5), bottom_layer=None, sides="periodic"
+    )
+    loading = MicroLoading(slide_distance=0.0, press_time=1e-3, hold_time=1e4)
+    found = condensed_sliding(block, MicroSurface(), material, loading)
+    confined = young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    assert -found.height[-1] == pytest.approx(160e3 * 0.5e-3 / confined, rel=1e-6)

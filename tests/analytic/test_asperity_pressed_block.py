@@ -42,15 +42,14 @@ def elements(count: int = 3, seed: int = 2) -> tuple[Any, ...]:
 
 
 def test_tangent_is_the_derivative_of_the_forces():
-    _, *numbers = elements()
+    _, gradient, hourglass, volume, stiffness = elements()
+    numbers = gradient, hourglass, volume, stiffness, 1.0, 50.0
     rng = np.random.default_rng(7)
     moved, along = 0.1 * rng.normal(size=(2, 3, 8, 3))
-    _, tangent, least = forces_and_tangents(moved, *numbers, 1.0, 50.0)
+    _, tangent, least = forces_and_tangents(moved, *numbers)
     assert least > 0.3
     step = 1e-6
-    ahead, behind = (
-        forces_and_tangents(moved + s * step * along, *numbers, 1.0, 50.0)[0] for s in (1, -1)
-    )
+    ahead, behind = (forces_and_tangents(moved + s * step * along, *numbers)[0] for s in (1, -1))
     slope = ((ahead - behind) / (2.0 * step)).reshape(3, 24)
     assert np.allclose(
         slope, np.einsum("eab,eb->ea", tangent, along.reshape(3, 24)), rtol=1e-6, atol=1e-6
@@ -59,20 +58,21 @@ def test_tangent_is_the_derivative_of_the_forces():
 
 
 def test_turning_costs_nothing_and_uniform_compression_has_its_exact_stress():
-    corners, *numbers = elements()
+    corners, gradient, hourglass, volume, stiffness = elements()
+    numbers = gradient, hourglass, volume, stiffness, 1.0, 50.0
     angle = 0.7
     turn = np.array(
         [[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]]
     )
-    forces, *_ = forces_and_tangents(corners @ turn.T - corners, *numbers, 1.0, 50.0)
+    forces, *_ = forces_and_tangents(corners @ turn.T - corners, *numbers)
     assert np.abs(forces).max() < 1e-12
     stretch = np.diag([1.0, 1.0, 0.85])
-    forces, *_ = forces_and_tangents(corners @ (stretch - np.eye(3)), *numbers, 1.0, 50.0)
+    forces, *_ = forces_and_tangents(corners @ (stretch - np.eye(3)), *numbers)
     jac, i1 = 0.85, 2.0 + 0.85**2
     stress = jac ** (-2 / 3) * (0.85 - i1 / 3.0 / 0.85) + 50.0 * (jac - 1.0)
     # virtual work of a unit vertical strain
     assert np.einsum("ea,ea->e", forces[:, :, 2], corners[:, :, 2]) == pytest.approx(
-        stress * numbers[2], rel=1e-12
+        stress * volume, rel=1e-12
     )
 
 

@@ -7,6 +7,7 @@ from typer.testing import CliRunner
 
 from underfoot.cli.app import app
 from underfoot.cli.micro_input import TEMPLATE, micro_case
+from underfoot.core import silent
 
 SMALL = """
 name = "small"
@@ -112,3 +113,54 @@ def test_a_study_prints_each_line_with_its_verdict(run):
     assert done.exit_code == 0, done.output
     for words in ("rubber, rougher floor", "within scatter", "Not taken as printed", "wavelengths"):
         assert words in done.stdout
+
+
+EXPLICIT = (
+    SMALL.replace('speeds = ["0.5 m/s"]', 'speeds = ["1 m/s"]')
+    .replace(
+        'power_law = { shear_modulus = "0.44 MPa", exponent = 0.12 }',
+        'report = "rubber"\npoisson_ratio = 0.45',
+    )
+    .replace('"0.8 mm"', '"0.2 mm"')
+    + 'press_time = "0.2 ms"\nhold_time = "0.1 ms"\n'
+)
+
+
+def test_an_explicit_run_goes_on_where_it_was_stopped(run, small, tmp_path, monkeypatch):
+    monkeypatch.setenv("UNDERFOOT_CACHE", str(tmp_path / "cache"))
+    small.write_text(EXPLICIT, encoding="utf-8")
+    case = micro_case(small, solver="explicit")
+    stages = []
+
+    def stopped(stage, fraction, residual=None):
+        if stage == "slide" and fraction > 0.5:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        case.result(1.0, stopped, snapshots=4)
+    rest = case.result(
+        1.0,
+        lambda stage, fraction, residual=None: stages.append(stage),
+        snapshots=4,
+        folder=tmp_path / "vtu",
+    )
+    assert set(stages) == {"slide"}  # neither pressed nor held again
+    names = sorted(path.name for path in (tmp_path / "vtu").iterdir())
+    assert names == ["block.pvd", *(f"block_{n:04d}.vtu" for n in range(1, 5))]
+    whole = case.result(1.0, silent)
+    assert (whole.shear_force == rest.shear_force).all()
+    assert not list((tmp_path / "cache" / "micro").iterdir())
+    done = run("micro", small, "--snapshots", "2")
+    assert done.exit_code == 2
+    assert "--solver explicit" in done.output
+
+
+def test_finite_strain_and_settings_of_the_elements_come_from_the_case(small):
+    small.write_text(
+        "finite_strain = true\n" + SMALL + '[explicit]\nhourglass = "viscous"\n', encoding="utf-8"
+    )
+    case = micro_case(small)
+    assert case.finite_strain
+    assert case.settings is not None
+    assert case.settings.hourglass == "viscous"
+    assert "finite compression" in case.described()[0]

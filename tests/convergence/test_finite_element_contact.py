@@ -105,28 +105,28 @@ def test_gap_converges_with_the_penalty():
 
 @pytest.mark.slow
 def test_sliding_friction_and_area_against_the_half_space():
-    """Two relaxation terms, 26 elements a wavelength: friction within 5 % of the FFT solver.
+    """Two relaxation terms, 24 elements a wavelength: within 5 % of the FFT solver.
 
     The half-space gets the block's material: constant K, so E/(1-nu^2) = 4 G (3K + G)/(3K + 4G).
-    Closed nodes count whole cells: the area of the block is some 20 % too large.
+    Closed nodes count whole cells: without their edges the area is that of the half-space.
     """
     shear = RelaxationSpectrum(0.6e6, np.array([0.5e6, 0.4e6]), np.array([3e-5, 1e-4]))
     rubber = MicroMaterial.from_poisson(shear, 0.49, at="instantaneous")
     floor = MicroSurface.checkerboard(35.1e-6, LENGTH)
     block = MicroBlock(
         size=(LENGTH, LENGTH, 0.5 * LENGTH),
-        elements=(26, 26, 8),
-        bottom_layer=LENGTH / 26,
+        elements=(24, 24, 7),
+        bottom_layer=LENGTH / 24,
         roughness_layers=1,
         sides="periodic",
     )
     loading = MicroLoading(
         mean_pressure=100e3,
         speed=1.0,
-        slide_distance=2.0 * LENGTH,
+        slide_distance=1.5 * LENGTH,
         control="load",
-        press_time=0.3e-3,
-        hold_time=0.2e-3,
+        press_time=0.2e-3,
+        hold_time=0.15e-3,
     )
     result = explicit_sliding(block, floor, rubber, loading)
     assert result.status is Status.CONVERGED
@@ -139,8 +139,14 @@ def test_sliding_friction_and_area_against_the_half_space():
     exact = steady_sliding(
         floor.height(x[:, None], x[None, :]), LENGTH / 96, modulus, 1.0, 100e3, 0.5
     )
-    means = result.averages
-    assert means is not None
-    assert means.cof_hysteresis == pytest.approx(exact.cof_hysteresis, rel=0.05)
-    ratio = means.real_contact_fraction / exact.real_contact_fraction_corrected
-    assert 1.0 < ratio < 1.3
+    # The wavelength after the first half one, in which rubber and speed settle.
+    last = result.distance > 0.5 * LENGTH
+    normal = result.normal_force[last].mean()
+    cof = result.shear_force[last].mean() / normal
+    assert cof == pytest.approx(exact.cof_hysteresis, rel=0.05)
+    nodal, corrected = (
+        area[last].mean() / LENGTH**2 / exact.real_contact_fraction_corrected
+        for area in (result.real_contact_area, result.corrected_contact_area)
+    )
+    assert 1.1 < nodal < 1.3
+    assert corrected == pytest.approx(1.0, abs=0.05)

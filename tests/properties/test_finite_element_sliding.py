@@ -15,6 +15,8 @@ from underfoot.asperity.finite_element import (
     MicroSurface,
     explicit_sliding,
 )
+from underfoot.asperity.finite_element.area import EDGE_EXCESS, edge_excess_area
+from underfoot.asperity.finite_element.assembly import assembled
 from underfoot.asperity.finite_element.settings import mass_scaling_error
 from underfoot.core import Cancelled, ConvergenceError, DataError, InputError, Status
 from underfoot.material import Elastomer, RelaxationSpectrum
@@ -175,3 +177,43 @@ def test_bulk_modulus_of_table_2():
     assert MicroMaterial.from_poisson(neolite, 0.499).bulk_modulus == pytest.approx(
         9324e6, rel=1e-3
     )
+
+
+def test_mass_is_scaled_within_both_bounds():
+    neolite = MicroMaterial.from_poisson(RelaxationSpectrum(30e6), 0.49)
+    for speed in (0.1, 1.0):
+        loading = replace(FAST, speed=speed)
+        plain = assembled(BLOCK, FLOOR, neolite, loading, ExplicitSettings())
+        scaled = assembled(BLOCK, FLOOR, neolite, loading, ExplicitSettings(mass_scaling="auto"))
+        assert scaled.mass_scaling > 1.2
+        assert scaled.impact_friction == pytest.approx(1e-4, rel=1e-9)
+        assert scaled.impact_friction == pytest.approx(
+            scaled.mass_scaling * plain.impact_friction, rel=1e-9
+        )
+        assert mass_scaling_error(speed, neolite.wave_speeds[1], scaled.mass_scaling) <= 0.01
+    asked = ExplicitSettings(mass_scaling=2.0 * scaled.mass_scaling)
+    slow = replace(FAST, slide_distance=0.0, press_time=2e-5, hold_time=0.0)
+    result = explicit_sliding(replace(BLOCK, elements=(9, 6, 4)), FLOOR, neolite, slow, asked)
+    assert any(breach.quantity == "COF of scaled inertia" for breach in result.breaches)
+
+
+@pytest.mark.slow
+def test_friction_of_scaled_inertia_stays_within_its_bound():
+    """Loss-free neolite: what the lower nodes lose as they meet the floor, energies and all."""
+    neolite = MicroMaterial.from_poisson(RelaxationSpectrum(30e6), 0.49)
+    block = replace(BLOCK, elements=(14, 9, 5), bottom_layer=50e-6)
+    loading = replace(FAST, speed=0.1, slide_distance=0.41e-3, hold_time=1e-3)
+    result = explicit_sliding(block, FLOOR, neolite, loading, ExplicitSettings(mass_scaling="auto"))
+    assert result.averages is not None
+    assert abs(result.averages.cof_hysteresis) < 1e-4
+    assert any("on the COF" in note for note in result.notes)
+
+
+def test_edges_of_contact_spots():
+    touching = np.zeros((8, 10), dtype=bool)
+    touching[2:5, 3:7] = True  # 3 by 4 nodes: 6 sides along x, 8 along y
+    expected = EDGE_EXCESS * (6 * 2.0 + 8 * 1.0) * np.sqrt(2.0)
+    for periodic in (True, False):
+        assert edge_excess_area(touching, 1.0, 2.0, periodic=periodic) == pytest.approx(expected)
+    assert edge_excess_area(np.ones((8, 10), dtype=bool), 1.0, 2.0, periodic=True) == 0.0
+    assert edge_excess_area(np.ones((8, 10), dtype=bool), 1.0, 2.0, periodic=False) == 0.0

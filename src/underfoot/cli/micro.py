@@ -165,7 +165,9 @@ def _write(
         )
         for speed, result in zip(chosen.speeds, results, strict=True)
     ]
-    history_figure(shown, title="").savefig(folder / "history.png", dpi=150)
+    history_figure(shown, chosen.floor.wavelength, title="").savefig(
+        folder / "history.png", dpi=150
+    )
 
 
 def _show(content: dict[str, Any], out: Path | None) -> None:

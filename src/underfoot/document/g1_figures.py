@@ -54,18 +54,23 @@ def g1_figures(study: Any) -> dict[str, Figure]:
         "fig11_area_roughness_own": roughness_figure(rows, "area_per_force", own=True),
     }
     if study.histories:
-        made = {"fig03_history": history_figure(study.histories), **made}
+        made = {
+            "fig03_history": history_figure(study.histories, study.settings.floor_wavelength),
+            **made,
+        }
     return made
 
 
 def history_figure(
     histories: Sequence[Any],
+    wavelength: float,
     title: str = "Fig. 3: rubber, high shoe roughness on the high floor",
 ) -> Figure:
     """Return Fig. 3: real contact area, normal and shear force against time, a column for each.
 
     ``histories`` have ``time`` (s), ``distance`` (m), ``normal_force``, ``shear_force`` (N),
-    ``real_contact_area`` (m^2), ``series`` and ``speed`` (m/s).
+    ``real_contact_area`` (m^2), ``series`` and ``speed`` (m/s); ``wavelength`` (m) is the floor's:
+    the mean shear force is that over whole ones after the first.
     """
     from matplotlib.figure import Figure
 
@@ -88,14 +93,20 @@ def history_figure(
                 axes.set_ylabel(label)
             _plain(axes)
             if row < 2:
-                axes.set_ylim(bottom=0.0)
+                # The columns share their axis: the limit must hold for what was drawn before.
+                top = max(
+                    1.06 * float(values.max(initial=0.0)), axes.get_ylim()[1] if column else 0
+                )
+                axes.set_ylim(0.0, top if top > 0.0 else 1.0)
             else:
                 axes.axhline(0.0, color="0.6", linewidth=0.8)
                 axes.set_xlabel("time (ms)")
-                mean = float(np.mean(values[history.distance > 0.0])) if sliding.size else 0.0
+                mean = _whole_wavelength_mean(history.distance, values, wavelength)
+                if mean is None:
+                    continue
                 axes.axhline(mean, color=colour, linewidth=0.9, linestyle="--")
                 axes.annotate(
-                    f"mean while sliding {0.0 if abs(mean) < 5e-3 else mean:.2f} mN",
+                    f"mean over whole floor waves {0.0 if abs(mean) < 5e-3 else mean:.2f} mN",
                     (0.02, 0.96),
                     xycoords="axes fraction",
                     fontsize="small",
@@ -265,6 +276,22 @@ def _no_loss(axes: Axes, largest: float) -> None:
         va="center",
         color="0.35",
     )
+
+
+def _whole_wavelength_mean(
+    distance: np.ndarray, values: np.ndarray, wavelength: float
+) -> float | None:
+    """Return the mean over the whole wavelengths after the first (of one: over it), or None."""
+    slid = np.flatnonzero(distance > 0.0)
+    whole = int(distance[-1] / wavelength * (1.0 + 1e-6)) if slid.size else 0
+    if whole < 1:
+        return None
+    start = wavelength * min(1, whole - 1)
+    end = min(wavelength * whole, float(distance[-1]))
+    places = np.linspace(start, end, 4001)
+    x = np.concatenate([[0.0], distance[slid]])
+    y = np.concatenate([values[slid[:1]], values[slid]])
+    return float(np.trapezoid(np.interp(places, x, y), places) / (end - start))
 
 
 def _factor(quantity: str) -> float:
