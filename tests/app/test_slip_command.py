@@ -34,7 +34,7 @@ def test_a_dry_floor_needs_no_film(tmp_path):
     found = slip(DRY, "--subjects", 12, "--out", out, cache=tmp_path)
     assert "0 of 12 walkers slip" in found.stdout
     assert "The floor is dry" in found.stdout
-    rows = list(csv.DictReader((out / "subjects.csv").open()))
+    rows = list(csv.DictReader((out / "subjects.csv").read_text().splitlines()))
     assert len(rows) == 12
     assert {row["outcome"] for row in rows} == {"no slip"}
     page = (out / "slip.html").read_text()

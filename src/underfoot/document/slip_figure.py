@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from underfoot.slip.dynamics import SlipMotion, SlipStudy
 
 FLUID, LOAD, ASKED, GIVEN = "#1f6fb2", "0.35", "#b3472f", "#2e7d4f"
-OUTLINE = np.array([[0.0, -0.02], [0.0, 0.02]])
 
 
 def slip_figure(study: SlipStudy) -> Figure:
@@ -46,7 +45,9 @@ def _path(axes: Axes, study: SlipStudy, motion: SlipMotion) -> None:
     walker, array = motion.walker, study.array
     x, y = array.places(walker)
     columns, rows = np.meshgrid(y + walker.lateral, x - walker.landing)
-    axes.plot(1e3 * columns, 1e3 * rows, "x", color="0.2", ms=9, mew=1.8, label="sensor")
+    axes.plot(
+        1e3 * columns.ravel(), 1e3 * rows.ravel(), "x", color="0.2", ms=9, mew=1.8, label="sensor"
+    )
     way = 1e3 * (motion.distance - walker.landing)
     side = np.full(way.size, 1e3 * walker.lateral)
     end = float(1e3 * (x[-1] - walker.landing) + 25)
@@ -79,7 +80,7 @@ def _pressures(figure: SubFigure, study: SlipStudy, motion: SlipMotion) -> None:
             axes = grid[array.rows - 1 - i][j]
             axes.fill_between(1e3 * motion.time, found[:, i, j], color=FLUID, alpha=0.35, lw=0)
             axes.plot(1e3 * motion.time, found[:, i, j], color=FLUID, lw=1.3)
-            axes.text(0.95, 0.85, f"{found[:, i, j].max():.3g} kPa", ha="right", fontsize=8,
+            axes.text(0.95, 0.85, f"{found[:, i, j].max():.0f} kPa", ha="right", fontsize=8,
                       transform=axes.transAxes)  # fmt: skip
             axes.set_xlim(0, last)
             axes.set_ylim(0, max(1.15 * found.max(), 5.0))
@@ -107,9 +108,7 @@ def _speeds(axes: Axes, study: SlipStudy, motion: SlipMotion) -> None:
         axes.fill_between(1e3 * time, low, high, color="0.88", label="90 % of the walkers")
         axes.plot(1e3 * time, middle, color="0.55", lw=1, label="median")
     axes.plot(1e3 * motion.time, motion.speed, color=FLUID, lw=2, label=motion.walker.name)
-    axes.axhline(0.2, color=ASKED, lw=1, ls=":")
-    axes.text(1e3 * motion.time[-1], 0.2, " slip above 0.2 m/s", va="bottom", ha="right",
-              color=ASKED, fontsize=8)  # fmt: skip
+    axes.axhline(0.2, color=ASKED, lw=1, ls=":", label="slip above 0.2 m/s")
     axes.set(xlabel="time after heel contact (ms)", ylabel="heel speed (m/s)", xlim=(0, None),
              ylim=(0, None))  # fmt: skip
     axes.legend(frameon=False, fontsize=8, loc="upper left")

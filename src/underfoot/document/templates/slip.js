@@ -47,7 +47,7 @@
     const y0 = 390, h = 150, left = 70, right = W - 130, xs = d.sole_x;
     const lo = Math.min(...xs), hi = Math.min(Math.max(...xs), 0.09), sx = (x) => left + (x - lo) / (hi - lo) * (right - left);
     const most = Math.min(d.pool, 300), sy = (f) => y0 - Math.min(f, most) / most * h;
-    text(`Under the heel, along its centre line: film (0 to ${most.toFixed(0)} µm, blown up) in the colour of its pressure`, left, y0 - h - 12, ink("--ink"));
+    text(`Under the heel, along its centre line: film (0 to ${most.toFixed(0)} µm) in the colour of its pressure`, left, y0 - h - 12, ink("--ink"));
     const inside = [];
     xs.forEach((x, k) => { if (x <= hi && d.films[i][k] !== null) inside.push([x, d.films[i][k]]); });
     for (let k = 0; k + 1 < inside.length; k++) {
@@ -60,17 +60,17 @@
     line(inside.map(([x, f]) => [sx(x), sy(f)]), ink("--ink"), 2.5);
     line([[left, y0], [right, y0]], ink("--soft"), 3);
     text("rear end", sx(0), y0 + 17, ink("--soft"), "center", 12); text("toe →", right, y0 + 17, ink("--soft"), "right", 12);
-    [0, 0.02, 0.04, 0.06].forEach((x) => { if (x > 0 && x < hi) text(`${(1000 * x).toFixed(0)} mm`, sx(x), y0 + 17, ink("--soft"), "center", 12); });
+    [0, 0.02, 0.04].forEach((x) => { if (x > 0 && x < hi) text(`${(1000 * x).toFixed(0)} mm`, sx(x), y0 + 17, ink("--soft"), "center", 12); });
     for (let k = 0; k < 60; k++) { c.fillStyle = shade(1 - k / 59); c.fillRect(W - 100, y0 - h + k * h / 60, 14, h / 60 + 1); }
     text(`${d.highest.toFixed(0)} kPa`, W - 82, y0 - h + 10, ink("--soft"), "left", 12); text("0", W - 82, y0, ink("--soft"), "left", 12);
     const share = d.normal[i] > 1 ? d.film_load[i] / d.normal[i] : 0;
-    text(`${(100 * share).toFixed(0)} % of ${d.normal[i].toFixed(0)} N on the film`, right, y0 - h + 8, ink("--ink"), "right");
+    text(`${(100 * share).toFixed(0)} % of ${d.normal[i].toFixed(0)} N on the film`, right, y0 - h - 12, ink("--ink"), "right");
   }
   function curve(values, most, least, x0, y0, w, h, colour, i, label, row) {
     const sx = (t) => x0 + t / d.time[n - 1] * w, sy = (v) => y0 - (v - least) / (most - least) * h;
     line(values.map((v, k) => [sx(d.time[k]), sy(v)]), colour, 1.8);
     c.fillStyle = colour; c.beginPath(); c.arc(sx(d.time[i]), sy(values[i]), 4, 0, 7); c.fill();
-    text(label, x0 + 8, y0 - h + 4 + 15 * row, colour, "left", 12);
+    text(label, x0 + w, y0 - h - 4 + 15 * row, colour, "right", 12);
   }
   function graphs(i) {
     const y0 = H - 34, h = 140, w = W / 2 - 90;
@@ -84,7 +84,7 @@
       text("0", x, y0 + 18, ink("--soft"), "center", 12); text(`${(1000 * d.time[n - 1]).toFixed(0)} ms`, x + w, y0 + 18, ink("--soft"), "right", 12);
       if (!g) { curve(d.speed, most, least, x, y0, w, h, ink("--accent"), i, "heel speed", 0);
         const slip = y0 - (0.2 - least) / (most - least) * h; c.setLineDash([3, 4]); line([[x, slip], [x + w, slip]], "#b3472f", 1); c.setLineDash([]);
-        text("slip above 0.2 m/s", x + w, slip - 4, "#b3472f", "right", 11); }
+        text("slip above 0.2 m/s", x + 8, slip - 4, "#b3472f", "left", 11); }
       else { curve(d.drive, most, least, x, y0, w, h, "#c2603f", i, "push forward, r F", 0); curve(d.friction, most, least, x, y0, w, h, "#3f9664", i, "friction", 1); }
     });
   }

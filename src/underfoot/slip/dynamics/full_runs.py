@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,11 +15,8 @@ from .sensors import MAP_X, MAP_Y, sensor_map
 from .sole_contact import Setting, SoleFoot, SoleInstant
 from .walker import Walker
 
-if TYPE_CHECKING:
-    from underfoot.core import Breach
-
 Array = NDArray[np.float64]
-ROOM = "slip-2"
+ROOM = "slip-3"
 _FIELDS = (
     "time", "speed", "distance", "normal", "drive", "friction", "fluid_load", "shoe_angle",
     "work_in", "dissipated",
@@ -33,7 +29,8 @@ class FullRun:
 
     ``maps`` (n, len(MAP_X), len(MAP_Y)) is the pressure that a floor sensor reads at places of the
     sole's frame at ``motion.time``; ``areas`` (n,) the loaded area; ``profiles`` (n, nx) the film
-    along the centre line at ``profile_x``; ``peaks`` (n,) the highest film pressure anywhere.
+    along the centre line at ``profile_x``; ``peaks`` (n,) the highest film pressure anywhere;
+    ``extremes`` (2,) the highest contact pressure (Pa) and the thinnest film under load (m).
     """
 
     motion: SlipMotion
@@ -42,7 +39,7 @@ class FullRun:
     peaks: Array
     profiles: NDArray[np.float32]
     profile_x: Array
-    breaches: tuple[str, ...] = ()
+    extremes: Array
 
     def area_rows(self) -> list[tuple[float, float, float]]:
         """Return (load, shoe angle, area) of every instant under load."""
@@ -114,7 +111,7 @@ def _computed(
     line = int(np.argmin(np.abs(setting.sole.y)))
     empty = np.full(setting.sole.x.size, np.nan, dtype=np.float32)
     maps, areas, peaks, profiles = [zero], [0.0], [0.0], [empty]
-    breaches: dict[str, None] = {}
+    extremes = np.array([0.0, np.inf])
 
     def seen(time: float, instant: Instant) -> None:
         assert isinstance(instant, SoleInstant)
@@ -125,9 +122,8 @@ def _computed(
         areas.append(float(total.sum()) ** 2 / square * state.spacing**2 if square > 0 else 0.0)
         peaks.append(float(state.fluid_pressure.max()))
         profiles.append(state.film_thickness[:, line].astype(np.float32))
-        found: Sequence[Breach] = instant.breaches(state.speed)
-        for breach in found:
-            breaches[str(breach)] = None
+        extremes[0] = max(extremes[0], float(state.contact_pressure.max()))
+        extremes[1] = min(extremes[1], float(state.film_thickness[setting.sole.inside].min()))
 
     load = float(walker.step.normal.max() * walker.mass * 9.80665)
     motion = slip_motion(
@@ -145,7 +141,7 @@ def _computed(
         np.array(peaks[:count]),
         np.array(profiles[:count]),
         np.asarray(setting.sole.x),
-        tuple(breaches),
+        extremes,
     )
 
 
@@ -159,7 +155,7 @@ def _stored(run: FullRun) -> dict[str, object]:
         "profiles": run.profiles,
         "profile_x": run.profile_x,
         "notes": np.array(motion.notes, dtype=str),
-        "breaches": np.array(run.breaches, dtype=str),
+        "extremes": run.extremes,
     }
 
 
@@ -173,8 +169,5 @@ def _restored(stored: dict[str, np.ndarray], walker: Walker) -> FullRun:
     )
     return FullRun(
         motion, stored["maps"], stored["areas"], stored["peaks"], stored["profiles"],
-        stored["profile_x"], tuple(str(b) for b in stored["breaches"]),
+        stored["profile_x"], stored["extremes"],
     )  # fmt: skip
-
-
-Runner = Callable[[Walker], FullRun]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from underfoot.core import Breach, Status
+from underfoot.core import Status
 
 if TYPE_CHECKING:
     from underfoot.asperity.law import PressureGapLaw
@@ -64,14 +64,6 @@ class SoleInstant:
         solid = parts.adhesion + parts.hysteresis
         viscous = np.where(state.wet[felt], parts.viscous, 0.0) * (speed / max(speed, LOWEST_SPEED))
         return float((solid + viscous).sum()) * state.spacing**2
-
-    def breaches(self, speed: float) -> list[Breach]:
-        """Return what leaves the range of the friction law."""
-        return self.law.breaches(
-            contact_pressure=self.state.contact_pressure,
-            speed=max(speed, LOWEST_SPEED),
-            film_thickness=self.state.film_thickness,
-        )
 
 
 class SoleFoot:

@@ -220,7 +220,7 @@ def slip_study(
         ]
         return SlipStudy(
             setting, population, array, tuple(subjects), True, None, None,
-            _nearest(good, subjects), tuple(good), _words(good), len(runs) - len(good),
+            _nearest(good, subjects), tuple(good), _breaches(setting, good), len(runs) - len(good),
         )  # fmt: skip
     people = design(population, fit_runs + held_out)
     runs = full_runs(setting, people, progress=part(0.0, 0.8), **options)
@@ -245,7 +245,7 @@ def slip_study(
         setting, population, array, tuple(subjects), False, fit,
         _pressure_error(shape, fit.sole, tested, array),
         shown[0] if shown[0].motion.status is Status.CONVERGED else None,
-        tuple(good), _words(good), len(runs) - len(good), fit.sole,
+        tuple(good), _breaches(setting, good), len(runs) - len(good), fit.sole,
     )  # fmt: skip
 
 
@@ -347,5 +347,16 @@ def _wilson(hits: int, count: int) -> tuple[float, float]:
     return max(middle - half, 0.0), min(middle + half, 1.0)
 
 
-def _words(runs: Sequence[FullRun]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(word for run in runs for word in run.breaches))
+def _breaches(setting: Setting, runs: Sequence[FullRun]) -> tuple[str, ...]:
+    """Return what left the range of the friction law, over all moving instants."""
+    speeds = np.concatenate([run.motion.speed for run in runs])
+    moving = speeds[speeds > 1e-2]
+    if not moving.size:
+        return ()
+    extremes = np.array([run.extremes for run in runs])
+    found = setting.friction.breaches(
+        contact_pressure=extremes[:, 0].max(),
+        speed=np.array([moving.min(), moving.max()]),
+        film_thickness=max(float(extremes[:, 1].min()), 1e-9),
+    )
+    return tuple(dict.fromkeys(str(breach) for breach in found))
