@@ -19,7 +19,7 @@ SPIKE_HEIGHT = 1e-3
 _SPIKE_CELLS = 3
 _WALL = 2.0  # rise over run: steeper is a wall
 _LEDGE = 1e-3  # m above what lies beside it
-_BESIDE = 1e-3  # m from its edge
+_BESIDE = 2e-3  # m from its edge
 _MOST_LEDGE = 0.4  # of the plan form: more is no ledge
 
 
@@ -148,8 +148,8 @@ def without_ledges(
         np.where(gone, np.nan, height),
         cut_open,
         [
-            f"A ledge along the rim, more than 1 mm above the sole beside it ({area:.3g} mm²), left "
-            "out of the plan form: it never meets the floor."
+            f"A ledge along the rim, more than 1 mm above the sole beside it ({area:.3g} mm²), was "
+            "left out of the plan form: it never meets the floor."
         ],
     )
 

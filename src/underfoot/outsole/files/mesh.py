@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -111,7 +112,8 @@ def _format_of(head: bytes, path: Path) -> str | None:
         return "STL"
     lines = [line.split(None, 1)[0] for line in head.splitlines() if line.strip()]
     known = {b"v", b"vn", b"vt", b"f", b"o", b"g", b"s", b"mtllib", b"usemtl", b"#"}
-    if b"v" in lines and all(word in known or word.startswith(b"#") for word in lines[:-1]):
+    corners = re.search(rb"^v\s+[-+.\d]+\s+[-+.\d]+", head, re.MULTILINE)
+    if corners and all(word in known or word.startswith(b"#") for word in lines[:-1]):
         return "OBJ"
     return None
 

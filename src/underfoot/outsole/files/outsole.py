@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -93,6 +93,7 @@ def outsole_from_mesh(
         No face with an area.
     """
     chosen = settings or FileSettings()
+    mesh = replace(mesh, triangles=np.ascontiguousarray(mesh.triangles, dtype=np.float32))
     words = list(mesh.remarks)
     sound = soundness(mesh, where)
     axes = box_axes(mesh.triangles, chosen)
@@ -219,8 +220,9 @@ def _seen_words(seen: View, sound: Soundness, mesh: Mesh) -> tuple[str, ...]:
         words.append(f"Normals are turned over {up:.0%} of the ground side; tolerated.")
     if not sheet:
         shape = tuple(max(1, int(n * seen.spacing / _OVERLAP_PITCH)) for n in covered.shape)
-        # off the cells' own places by an odd part, so that lines don't run along edges
-        first = tuple(start + 0.381966 * _OVERLAP_PITCH for start in seen.first)
+        # off the cells' own places by odd parts, so that lines don't run along edges or diagonals
+        odd = (0.381966, 0.527864)
+        first = tuple(s + n * _OVERLAP_PITCH for s, n in zip(seen.first, odd, strict=True))
         crossed, met = overlap_lines(
             mesh.triangles, seen.axes, (first[0], first[1]), _OVERLAP_PITCH, (shape[0], shape[1])
         )
@@ -306,6 +308,4 @@ def _surface(height: Array, spacing: float, name: str) -> tuple[SoleSurface, lis
 
 
 def _told(surface: SoleSurface, words: list[str]) -> SoleSurface:
-    from dataclasses import replace
-
     return replace(surface, remarks=tuple(words))

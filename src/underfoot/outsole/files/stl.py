@@ -52,7 +52,7 @@ def read_stl(path: Path) -> Mesh:
     if promised >= 0 and size == _HEADER + _RECORD * promised:
         return Mesh(_binary(path, promised), "STL (binary)")
     if head.lstrip()[:5].lower() == b"solid":
-        return Mesh(_text(path), "STL (text)")
+        return _text(path)
     whole = (size - _HEADER) // _RECORD
     if promised > whole:
         raise DataError(
@@ -70,7 +70,7 @@ def _binary(path: Path, count: int) -> NDArray[np.float32]:
     return np.ascontiguousarray(records["corners"], dtype=np.float32)
 
 
-def _text(path: Path) -> NDArray[np.float32]:
+def _text(path: Path) -> Mesh:
     data = path.read_bytes()
     corners = _CORNER.findall(data)
     mentioned = len(re.findall(rb"\bvertex\b", data, re.IGNORECASE))
@@ -87,7 +87,9 @@ def _text(path: Path) -> NDArray[np.float32]:
         numbers = np.array(corners, dtype="S").astype(np.float32)
     except ValueError as error:
         raise DataError(f"a corner is no number ({error})", where=str(path)) from error
-    return numbers.reshape(-1, 3, 3)
+    ended = re.search(rb"\bendsolid\b", data[-400:], re.IGNORECASE) is not None
+    remark = "The text has no end mark (endsolid): it may be cut short."
+    return Mesh(numbers.reshape(-1, 3, 3), "STL (text)", remarks=() if ended else (remark,))
 
 
 def _first_bad_line(data: bytes) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -35,7 +36,7 @@ def read_with_trimesh(path: Path) -> Mesh:
     vertices = np.asarray(getattr(found, "vertices", np.zeros((0, 3))), dtype=np.float32)
     faces = np.asarray(getattr(found, "faces", np.zeros((0, 3))), dtype=np.int64).reshape(-1, 3)
     if faces.shape[0] == 0:
-        points = f"{vertices.shape[0]} points and no faces" if vertices.size else "no faces"
+        points = _points_alone(path, kind)
         raise DataError(
             f"the {kind} file holds {points}",
             where=str(path),
@@ -48,3 +49,14 @@ def read_with_trimesh(path: Path) -> Mesh:
             remedy="It may be cut short or damaged: export the outsole again",
         )
     return Mesh(np.ascontiguousarray(vertices[faces]), kind)
+
+
+def _points_alone(path: Path, kind: str) -> str:
+    """Return how many points a file without faces holds, in words."""
+    if kind == "PLY":
+        head = path.read_bytes()[:4096].split(b"end_header")[0]
+        told = re.search(rb"element vertex (\d+)", head)
+        count = int(told[1]) if told else 0
+    else:
+        count = len(re.findall(rb"^v\s", path.read_bytes(), re.MULTILINE))
+    return f"{count} points and no faces" if count else "no faces"
