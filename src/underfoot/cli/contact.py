@@ -204,6 +204,7 @@ def _write(folder: Path, floor: HeightMap, found: SteadySliding, content: dict[s
 
     import numpy as np
 
+    from underfoot.core import display
     from underfoot.document.contact_figure import save_contact_figure
 
     (folder / "contact.json").write_text(
@@ -218,7 +219,7 @@ def _write(folder: Path, floor: HeightMap, found: SteadySliding, content: dict[s
             gap=found.gap,
         )
         title = (
-            f"{found.nominal_pressure * 1e-3:.4g} kPa, {found.speed:g} m/s: "
+            f"{display(found.nominal_pressure, 'Pa')}, {display(found.speed, 'm/s')}: "
             f"real contact {100.0 * found.real_contact_fraction_corrected:.3g} %, "
             f"hysteresis COF {found.cof_hysteresis:.3g}"
         )

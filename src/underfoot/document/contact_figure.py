@@ -16,19 +16,20 @@ def contact_figure(heights: np.ndarray, spacing: float, contact: Any, title: str
 
     ``heights`` (m, (nx, ny), axis 0 along sliding), ``spacing`` (m) and a result with ``pressure``
     (Pa) and ``gap`` (m) on the same grid, as ``steady_sliding`` returns it. Sliding is drawn
-    upwards. The gap's colours end at its 99 % quantile.
+    upwards. The gap's colours end at the 99 % quantile of where it is open.
     """
     from matplotlib.colors import ListedColormap
     from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    figure = Figure(figsize=(9.2, 8.0), layout="constrained")
+    figure = Figure(figsize=(9.4, 8.0), layout=ConstrainedLayoutEngine(rect=(0.02, 0, 0.97, 1)))
     axes = figure.subplots(2, 2)
     nx, ny = heights.shape
     extent = (0.0, ny * spacing * 1e6, 0.0, nx * spacing * 1e6)
     touching = contact.pressure > 0.0
     open_gap = np.ma.masked_array(contact.gap * 1e6, mask=touching)
     carried = np.ma.masked_array(contact.pressure * 1e-6, mask=~touching)
-    highest = float(np.quantile(contact.gap, 0.99)) * 1e6
+    highest = 1e6 * float(np.quantile(contact.gap[~touching], 0.99)) if not touching.all() else 0.0
     panels = (
         ("Surface", (heights - heights.mean()) * 1e6, "height (µm)", "cividis", (None, None)),
         ("Contact pressure", carried, "pressure (MPa)", "viridis", (0.0, None)),
@@ -48,7 +49,7 @@ def contact_figure(heights: np.ndarray, spacing: float, contact: Any, title: str
         ax.set_title(name)
         if name.startswith("Gap") and touching.all():
             ax.clear()
-            ax.axis("off")
+            ax.set(xticks=[], yticks=[], box_aspect=1)
             ax.text(0.5, 0.5, "full contact:\nno gap anywhere", ha="center", va="center")
             continue
         if name.startswith("Gap"):
