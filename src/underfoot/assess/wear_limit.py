@@ -29,7 +29,7 @@ class Passing:
     ``at`` is the value by interpolation between the computed states; ``low`` and ``high`` hold
     90 % of the draws; inf (-inf for tread left) where the limit is not passed within the range. All
     nan where no state was computed. ``passed`` is the share of draws that pass within the range,
-    ``words`` says in short what ``at`` is: "passed", "passed when new" or "not passed within the range".
+    ``words`` says what ``at`` is: "passed", "passed when new" or "not passed within the range".
     """
 
     words: str

@@ -108,7 +108,7 @@ def sole_mesh(made: SoleSolid) -> Any:
 def _meshed(made: SoleSolid) -> Any:
     """Return the surface mesh of the finite-element mesher: slower, but closed on any solid."""
     import trimesh
-    from netgen.meshing import MeshingStep
+    from netgen.meshing import MeshingStep  # pyright: ignore[reportAttributeAccessIssue]
 
     mesh = (
         kernel().OCCGeometry(made.body).GenerateMesh(maxh=5.0, perfstepsend=MeshingStep.MESHSURFACE)

@@ -60,7 +60,9 @@ class WornMap:
             (value - nodes[0]) / (nodes[1] - nodes[0])
             for value, nodes in ((x, self.x), (y, self.y))
         ]
-        return map_coordinates(self.removed, at, order=1, mode="nearest")
+        flat = [np.ravel(each) for each in at]
+        found = map_coordinates(self.removed, flat, order=1, mode="nearest")
+        return found.reshape(x.shape)
 
     def worn_height(self, x: Array, y: Array, unworn: Array, shape: SoleShape) -> Array:
         """Return the height (m) of the worn land at (x, y)."""
