@@ -62,3 +62,12 @@ def test_rubber_without_loss_is_named():
     assert any("no hysteresis friction" in note for note in found.notes)
     assert np.all(found.normal_force > 0.0)
     assert np.all(np.diff(found.time) > 0.0)
+
+
+def test_spots_of_a_node_are_not_given_a_corrected_area():
+    hard = MicroMaterial(RelaxationSpectrum(30e6), 15e9)
+    found = condensed_sliding(BLOCK, ROUGH, hard, LOADING)
+    assert found.averages is not None
+    assert np.isnan(found.averages.area_per_force_corrected)
+    assert found.averages.area_per_force > 0.0
+    assert any("node or two" in note for note in found.notes)

@@ -22,7 +22,10 @@ from underfoot.asperity.finite_element import (
     MicroResult,
     MicroSurface,
 )
-from underfoot.asperity.finite_element.averages import whole_wavelength_averages
+from underfoot.asperity.finite_element.averages import (
+    resolution_note,
+    whole_wavelength_averages,
+)
 from underfoot.asperity.finite_element.mesh import check_pattern
 from underfoot.core import Cancelled, InputError, Progress, Status, silent
 
@@ -234,6 +237,7 @@ class _March:
         averages = self._averages(table) if status is Status.CONVERGED else None
         if averages is not None:
             notes += self._loss_note(loading) + self._strain_note(loading)
+            notes += resolution_note(averages)
         return MicroResult(
             time=table[:, 0],
             distance=table[:, 1],

@@ -8,6 +8,20 @@ import numpy as np
 
 from .inputs import MicroAverages
 
+LEAST_RESOLVED = 0.5
+"""Share of the nodal contact area that must be left without its edges; below it spots are of a node
+or two, and the correction was never measured there."""
+
+
+def resolution_note(means: MicroAverages) -> list[str]:
+    """Say when contact spots are too small for their area to be known."""
+    if not math.isnan(means.area_per_force_corrected):
+        return []
+    return [
+        "contact spots are of a node or two: the real contact area is a count of nodes, up to "
+        "several times too large; refine the lower face or take steady_sliding"
+    ]
+
 
 def whole_wavelength_averages(
     distance: np.ndarray,
@@ -51,6 +65,8 @@ def whole_wavelength_averages(
     mean_normal = float(normal.mean())
     area = float(between(real_contact_area).mean())
     corrected = float(between(corrected_area).mean())
+    if corrected < LEAST_RESOLVED * area:
+        corrected = math.nan
     return MicroAverages(
         cof_hysteresis=cof,
         cof_absolute=float(between(absolute_shear).mean()) / mean_normal,

@@ -312,7 +312,7 @@ class MicroAverages:
         Largest difference of one wavelength's signed COF from their mean (NaN with only one).
     area_per_force_corrected, real_contact_fraction_corrected
         The same area less what the edges of contact spots count too much (``edge_excess_area``):
-        the better estimate.
+        the better estimate. NaN where the edges are more than half of it: spots of a node or two.
     """
 
     cof_hysteresis: float

@@ -21,6 +21,7 @@ from underfoot.core.files import check_writable_folder
 from underfoot.core.status import worst
 
 from .assembly import Assembly, assembled
+from .averages import resolution_note
 from .files import loaded_state, saved_state
 from .inputs import MicroBlock, MicroLoading, MicroMaterial, MicroResult
 from .march import March
@@ -174,6 +175,8 @@ def _result(
         notes.append("no whole floor wavelength was slid: there is no mean")
     elif means is not None and means.wavelengths == 1 and rows[-1, 1] < 1.99 * floor.wavelength:
         notes.append("one wavelength only: it holds the start of sliding")
+    if means is not None:
+        notes += resolution_note(means)
     if found:
         status = worst(status, Status.OUT_OF_RANGE)
     return MicroResult(
