@@ -20,6 +20,7 @@ from .content import case_hash, spread
 from .errors import CaseError, translated
 from .friction_table import with_friction_table
 from .keys import known_paths, path_kind, unit_of, unknown_path
+from .motion_table import with_motion_history
 from .outsole_checksum import with_checksum
 from .places import Places
 from .quantity import DOOR, default_of
@@ -29,13 +30,12 @@ from .sections import (
     Floor,
     Interface,
     Models,
-    Motion,
     Numerics,
     Risk,
     Section,
-    Sensor,
     Shoe,
 )
+from .sections_motion import Motion, Sensor
 from .sections_slip import SlipPeople
 
 
@@ -122,6 +122,7 @@ class Case(Section):
         _check_version(mapping, places)
         folder = Path.cwd() if folder is None else folder
         mapping = with_friction_table(mapping, folder, places)
+        mapping = with_motion_history(mapping, folder, places)
         mapping = with_checksum(mapping, folder, places)
         dry = _is_dry(mapping)
         if dry:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from underfoot.core import InputError, RangeError, display
 
+from .checks_motion import motion_mismatches
 from .checks_outsole import outsole_mismatches
 from .checks_roughness import roughness_mismatches
 from .checks_sole import sole_mismatches
@@ -103,7 +104,7 @@ def _contaminant(case: Case, given: Collection[str], places: Places) -> Iterator
             where=places("contaminant"),
             remedy='Write viscosity = "219 cP", or glycerol_fraction = "90 %" with its basis. '
             'Without one only a measured friction applies: contaminant = "none" with '
-            'models.friction = "constant", and no film',
+            'models.friction = "constant" or "table", and no film',
         )
     if fluid.viscosity is not None and fluid.glycerol_fraction is not None:
         yield InputError(
@@ -124,14 +125,7 @@ def _contaminant(case: Case, given: Collection[str], places: Places) -> Iterator
 
 
 def _rest(case: Case, places: Places) -> Iterator[InputError]:
-    motion = case.motion
-    if motion.duration < motion.force_rise_time:
-        yield RangeError(
-            f"{display(motion.duration, 's')} ends before the force has risen",
-            where=places("motion.duration"),
-            allowed=f"at least {display(motion.force_rise_time, 's')} (motion.force_rise_time)",
-            remedy=f'Write motion.duration = "{motion.force_rise_time * 1e3 + 90:.0f} ms"',
-        )
+    yield from motion_mismatches(case, places)
     if case.interface.shortest_wave >= case.interface.longest_wave:
         yield RangeError(
             "the shortest wave of the interface is not shorter than the longest",

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from underfoot.core import InputError, nearest_match
+from underfoot.core import InputError
+
+from .table_file import opened_sheet, sheet_column
 
 if TYPE_CHECKING:
     from underfoot.friction import SpeedTableLaw
-    from underfoot.trials.readers.sheet import Sheet
 
     from .case import Case
     from .places import Places
@@ -65,22 +66,18 @@ def read_friction_table(path: Path, where: str) -> tuple[list[dict[str, str | fl
     InputError
         No file, no table, a column missing, fewer than two speeds, a value missing or negative.
     """
-    from underfoot.core import DataError
-    from underfoot.trials.readers.sheet import read_sheet
-
-    if not path.is_file():
-        near = [p.name for p in path.parent.glob("*.csv")] if path.parent.is_dir() else []
-        raise InputError(
-            f"there is no file {path}",
+    sheet = opened_sheet(path, where)
+    columns = {
+        name: sheet_column(
+            sheet,
+            name,
+            *COLUMNS[name],
             where=where,
-            nearest=nearest_match(path.name, near),
-            remedy="The path counts from the folder of the case file",
+            allowed="speed and cof; also sd, pressure, viscosity",
+            required=name in ("speed", "cof"),
         )
-    try:
-        sheet = read_sheet(path)
-    except DataError as error:
-        raise InputError(f"{path.name}: {error}", where=where) from error
-    columns = {name: _column(sheet, name, where) for name in COLUMNS}
+        for name in COLUMNS
+    }
     count = len(next(iter(sheet.numbers.values()), ()))
     readings: list[dict[str, str | float]] = []
     for row in range(count):
@@ -114,41 +111,6 @@ def _first_lines(path: Path) -> list[str]:
 def _said(line: str) -> str:
     name, _, text = line.lstrip("#; ").partition(":")
     return text.strip() if name.strip().casefold() == "source" else ""
-
-
-def _column(sheet: Sheet, name: str, where: str) -> np.ndarray | None:
-    from underfoot.trials.readers.unit_factors import si_unit
-
-    unit, headings = COLUMNS[name]
-    plain = {_plain(key): key for key in reversed(list(sheet.numbers))}
-    key = next((plain[one] for one in headings if one in plain), None)
-    if key is None:
-        if name not in ("speed", "cof"):
-            return None
-        raise InputError(
-            f'{sheet.name} has no column "{name}" of numbers',
-            where=where,
-            allowed="speed and cof; also sd, pressure, viscosity. Found: "
-            + ", ".join(sheet.columns[:8]),
-        )
-    written = sheet.units.get(key, "")
-    known = si_unit(written) if written else None
-    factor = 1.0
-    if known is not None and unit != "1":
-        if known[0] not in (unit, unit.replace("*", " "), unit.replace("*", "·")):
-            raise InputError(
-                f'{sheet.name}: "{written}" is no unit of {name}', where=where, allowed=unit
-            )
-        factor = known[1]
-    elif written and unit != "1":
-        from underfoot.core import to_si
-
-        factor = to_si(f"1 {written}", unit, where=f"{where}, {name}")
-    return sheet.numbers[key] * factor
-
-
-def _plain(heading: str) -> str:
-    return " ".join(heading.casefold().replace("_", " ").split())
 
 
 def table_law(case: Case, viscosity: float | None) -> SpeedTableLaw:

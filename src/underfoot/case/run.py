@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from underfoot.core import (
 )
 
 from . import build
+from .build_motion import Recorder, history_fields, scanned, solved_motion
 from .build_outsole import compression_breaches
 from .describe import assumptions
 from .result import Result
@@ -51,8 +52,6 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
         Not even the first contact could be solved.
     """
     from underfoot.friction import cof, sampled_cof
-    from underfoot.outsole import floor_sensor_reading
-    from underfoot.outsole.solver import SolverSettings, solve_sliding
 
     started = time.perf_counter()
     spacing = case.numerics.quick_grid_spacing if quick else case.numerics.grid_spacing
@@ -63,23 +62,15 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
     sole = build.sole_map(case, spacing)
     asperities = build.asperity_law(case, modulus.value, progress)
     motion = case.motion
-    settings = SolverSettings(
-        pool_depth=case.contaminant.pool_depth if case.contaminant else 0.6e-3,
-        start_film=motion.start_film,
-        rise_time=motion.force_rise_time,
-        end_time=max(motion.duration, motion.force_rise_time),
-        steady=motion.steady,
-        tolerance=case.numerics.tolerance,
-    )
+    recorder = Recorder(case, law, sole)
     prepared = time.perf_counter()
-    contact = solve_sliding(
+    contact = solved_motion(
+        case,
         sole,
         build.compliance(case, sole, modulus.value),
         asperities,
         viscosity=None if fluid is None else fluid.value,
-        speed=motion.speed,
-        normal_force=motion.normal_force,
-        settings=settings,
+        watch=recorder,
         progress=progress,
     )
     solved = time.perf_counter()
@@ -108,21 +99,15 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
         sampled=sampled,
         source=f"{law.name} law: {law.source}",
     )
-    sensor = floor_sensor_reading(
-        sole.x,
-        sole.y,
-        contact.fluid_pressure,
-        contact.film_thickness,
-        inlet_diameter=case.sensor.inlet_diameter,
-        scan_spacing=case.sensor.scan_spacing,
-        scans=case.sensor.scans,
-    )
+    sensor = scanned(case, sole, contact)
     usable = contact.status.usable
     numbers, risk = (
         scalars(case, contact, friction, sensor, sampled)
         if usable
         else (undetermined(case, contact.status), None)
     )
+    if usable:
+        numbers |= recorder.array_scalars()
     found = [
         *found,
         *sole.breaches,
@@ -139,7 +124,11 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
         scalars=numbers,
         labels={**regime(contact), **spread_origin(sampled)} if usable else {},
         fields=_fields(
-            sole, contact, sensor, parts.total - np.where(contact.wet, 0.0, parts.viscous)
+            sole,
+            contact,
+            sensor,
+            parts.total - np.where(contact.wet, 0.0, parts.viscous),
+            history_fields(contact, recorder),
         ),
         status=status,
         breaches=_words(found),
@@ -199,17 +188,18 @@ def _errata(case: Case) -> tuple[str, ...]:
 
 
 def _fields(
-    sole: SoleMap, contact: SoleContact, sensor: SensorReading, shear: object
+    sole: SoleMap,
+    contact: SoleContact,
+    sensor: SensorReading,
+    shear: object,
+    in_time: tuple[dict[str, Any], dict[str, Any]],
 ) -> xarray.Dataset:
     import xarray
 
     def on_sole(values: object, unit: str, name: str) -> tuple[tuple[str, str], object, dict]:
         return (("x", "y"), values, {"units": unit, "long_name": name})
 
-    def in_time(values: object, unit: str, name: str) -> tuple[str, object, dict]:
-        return ("time", values, {"units": unit, "long_name": name})
-
-    history = contact.history
+    histories, times = in_time
     return xarray.Dataset(
         {
             "contact_pressure": on_sole(
@@ -229,14 +219,12 @@ def _fields(
             ),
             "outline_x": ("outline", sole.outline[:, 0], {"units": "m"}),
             "outline_y": ("outline", sole.outline[:, 1], {"units": "m"}),
-            "load_history": in_time(history.load, "N", "applied load"),
-            "fluid_load_history": in_time(history.fluid_load, "N", "load carried by the fluid"),
-            "approach_history": in_time(history.approach, "m", "approach of the foot"),
+            **histories,
         },
         coords={
             "x": ("x", sole.x, {"units": "m", "long_name": "along the walking direction"}),
             "y": ("y", sole.y, {"units": "m", "long_name": "across"}),
-            "time": ("time", history.time, {"units": "s", "long_name": "time"}),
+            **times,
             "sensor_x": ("sensor_x", sensor.x, {"units": "m"}),
             "sensor_y": ("sensor_y", sensor.scan_y, {"units": "m"}),
         },

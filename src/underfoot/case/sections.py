@@ -9,13 +9,13 @@ from pydantic import Field
 
 from .quantity import Quantity, default
 from .sections_base import Force, Length, Section
+from .sections_motion import Speed
 from .sections_outsole import OutsoleFile
 from .sections_sole import HeelShape
 from .sections_tread import Tread, Wear
 
 _REPORT = "final progress report on shoe-floor friction"
 _HEEL = "assumption"
-_TESTER = f"{_REPORT}, G.4.1"
 
 _mm, _um = 1e-3, 1e-6
 Roughness_ = Annotated[float, Quantity("m", 1e-9, 1e-3)]
@@ -24,9 +24,6 @@ Modulus = Annotated[float, Quantity("Pa", 1e4, 1e12)]
 TermModulus = Annotated[float, Quantity("Pa", 0.0, 1e12, open_low=True)]
 Hardness = Annotated[float, Quantity("1", 0.0, 100.0, open_low=True)]
 Poisson = Annotated[float, Quantity("1", 0.0, 0.5)]
-ShoeAngle = Annotated[float, Quantity("rad", math.radians(-30), math.radians(60))]
-Speed = Annotated[float, Quantity("m/s", 0.0, 20.0, open_low=True)]
-Time = Annotated[float, Quantity("s", 0.0, 60.0, open_low=True)]
 RelaxationTime = Annotated[float, Quantity("s", 0.0, 1e12, open_low=True)]
 Viscosity = Annotated[float, Quantity("Pa*s", 1e-5, 1e3)]
 Temperature = Annotated[float, Quantity("K", 250.0, 450.0)]
@@ -141,22 +138,6 @@ class Contaminant(Section):
     boundary: Boundary = Boundary()
 
 
-class Motion(Section):
-    """How the heel meets the floor."""
-
-    speed: Speed
-    normal_force: Force
-    shoe_angle: ShoeAngle = Field(description="toe up positive")
-    force_rise_time: Time = default(0.03, "30 ms", _TESTER)
-    duration: Time = default(0.12, "0.12 s", "90 ms of sliding under full load", assumed=True)
-    start_film: Annotated[float, Quantity("m", 1e-6, 0.01)] = default(
-        50 * _um, "50 um", "lowest point above the floor when loading starts", assumed=True
-    )
-    steady: Annotated[bool, Field(strict=True)] = default(
-        False, False, "the result is taken at the end of the duration"
-    )
-
-
 class FrictionReading(Section):
     """One reading of a user's own friction table."""
 
@@ -234,7 +215,7 @@ class Models(Section):
     asperity: Literal["exponential", "contact_table"] = default(
         "exponential", "exponential", "Persson 2007, low-load form"
     )
-    compliance: Literal["layered", "half_space"] = default(
+    compliance: Literal["layered", "finite_element", "half_space"] = default(
         "layered", "layered", "outsole layer with free edges"
     )
     friction: Literal[
@@ -263,14 +244,6 @@ class Numerics(Section):
         0, 0, "of the draws behind the intervals; the same seed gives the same numbers"
     )
     tolerance: Tolerance = default(1e-4, 1e-4, "relative imbalance of volume and load")
-
-
-class Sensor(Section):
-    """Fluid-pressure sensor in the floor, as the report's instrument reads."""
-
-    inlet_diameter: Length = default(10 * _mm, "10 mm", _TESTER)
-    scan_spacing: Length = default(10 * _mm, "10 mm", _TESTER)
-    scans: Annotated[int, Field(ge=1, le=200, strict=True)] = default(7, 7, _TESTER)
 
 
 class Risk(Section):

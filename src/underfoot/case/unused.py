@@ -46,6 +46,7 @@ def unused(case: Case) -> frozenset[str]:
     if friction != "bowden_tabor":
         found.append("interface.shear_strength")
     found.append("interface.friction_table")  # its readings are part of the case
+    found.append("motion.history")  # its points are
     if friction != "table":
         found += ["interface.friction_readings", "interface.friction_source"]
     if case.models.asperity != "contact_table":

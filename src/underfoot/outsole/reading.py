@@ -14,6 +14,8 @@ from ._checks import not_negative, positive
 
 Array = NDArray[np.float64]
 _SOURCE = "pocket at uniform pressure in the computed film, Eq. (27)"
+GAP_CAP = 0.3e-3
+"""m, gap from which a pocket vents freely (assumed)."""
 _SMALLEST_GAP = 1e-7
 """m: keeps the weights of a fully sealed rim defined; far below any computed mean gap."""
 
@@ -49,7 +51,7 @@ def floor_sensor_reading(
     scan_spacing: float = 10e-3,
     scans: int = 7,
     sampling_step: float = 0.7e-3,
-    gap_cap: float = 0.3e-3,
+    gap_cap: float = GAP_CAP,
     offsets: int = 11,
 ) -> SensorReading:
     """Return the fluid load and the peak pressure as a sensor in the floor would give them.
@@ -102,7 +104,6 @@ def floor_sensor_reading(
     if offsets % 2 == 0:
         raise InputError(f"{offsets} is even", where="sensor.offsets", allowed="an odd number")
     spacing = float(along[1] - along[0])
-    conductance = np.clip(gap, _SMALLEST_GAP, gap_cap) ** 3
     reach = 0.5 * inlet_diameter + spacing
     count = math.ceil((along[-1] - along[0] + 2 * reach) / sampling_step) + 1
     middle = 0.5 * (along[0] + along[-1])
@@ -110,14 +111,16 @@ def floor_sensor_reading(
     tracks = (np.arange(scans, dtype=np.float64) - 0.5 * (scans - 1)) * scan_spacing
     shifts = (np.arange(offsets) - offsets // 2) * (scan_spacing / offsets)
     lanes = (tracks[None, :] + shifts[:, None]).ravel()
-    rim = _rim(inlet_diameter, spacing)
-    read = _pocket_pressure(
-        (places - along[0]) / spacing,
-        (lanes - across[0]) / spacing,
-        rim / spacing,
+    read = pocket_pressure(
+        along,
+        across,
         pressure,
-        conductance,
-        gap_cap**3,
+        gap,
+        places,
+        lanes,
+        inlet_diameter=inlet_diameter,
+        gap_cap=gap_cap,
+        spacing=spacing,
     ).reshape(count, offsets, scans)
     scan_loads = read.sum(axis=0) * scan_spacing * sampling_step
     loads = scan_loads.sum(axis=1)
@@ -141,6 +144,33 @@ def floor_sensor_reading(
         outermost_share=float(outer) / total if total > 0 else 0.0,
         loads=loads,
         peaks=peaks,
+    )
+
+
+def pocket_pressure(
+    x: Array,
+    y: Array,
+    fluid_pressure: Array,
+    film_thickness: Array,
+    places: Array,
+    lanes: Array,
+    *,
+    inlet_diameter: float,
+    gap_cap: float,
+    spacing: float,
+) -> Array:
+    """Return the reading (places x lanes) of pockets centred at ``places`` (x) and ``lanes`` (y).
+
+    Mean film pressure over the rim weighted by h^3; lengths in m, maps (nx, ny) as in
+    ``floor_sensor_reading``, which checks them.
+    """
+    return _pocket_pressure(
+        (places - x[0]) / spacing,
+        (lanes - y[0]) / spacing,
+        _rim(inlet_diameter, spacing) / spacing,
+        np.asarray(fluid_pressure, dtype=float),
+        np.clip(np.asarray(film_thickness, dtype=float), _SMALLEST_GAP, gap_cap) ** 3,
+        gap_cap**3,
     )
 
 

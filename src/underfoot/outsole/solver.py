@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
@@ -39,6 +40,7 @@ def solve_sliding(
     normal_force: float,
     settings: SolverSettings | None = None,
     progress: Progress = silent,
+    watch: Callable[[SoleState], None] | None = None,
 ) -> SoleContact:
     """Return contact pressure, fluid pressure and film under a sole pressed and slid.
 
@@ -63,6 +65,8 @@ def solve_sliding(
         Start, times and accuracy.
     progress
         Receives stage, fraction of the time and residual; an exception it raises stops the work.
+    watch
+        Receives the state after every inner step.
 
     Raises
     ------
@@ -85,6 +89,7 @@ def solve_sliding(
         typical_force=normal_force,
         end_time=None if settings.steady and not dry else end,
         progress=progress,
+        watch=watch,
     )
     rise = settings.rise_time
     state = sliding.advance(
@@ -106,5 +111,10 @@ def solve_sliding(
                 longest_step=max(end - rise, rise) / settings.time_resolution,
                 most_steps=left,
             )
+    return with_history(state, sliding)
+
+
+def with_history(state: SoleState, sliding: SlidingSole) -> SoleContact:
+    """Return a state with the history and the cost of the sole that it comes from."""
     solved = {part.name: getattr(state, part.name) for part in fields(SoleState)}
-    return SoleContact(**solved, history=sliding.history, counts=counts)
+    return SoleContact(**solved, history=sliding.history, counts=sliding.counts)

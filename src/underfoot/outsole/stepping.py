@@ -76,6 +76,8 @@ class SlidingSole:
         s, only to report progress against.
     progress
         Receives stage, fraction of the time and residual; an exception it raises stops the work.
+    watch
+        Receives the state after every inner step.
 
     Notes
     -----
@@ -98,6 +100,7 @@ class SlidingSole:
         end_time: float | None = None,
         progress: Progress = silent,
         stage: str = "Pressing and sliding the sole",
+        watch: Callable[[SoleState], None] | None = None,
     ) -> None:
         settings = settings or SolverSettings()
         check_setup(sole, compliance.self_compliance, viscosity, typical_force, settings)
@@ -106,6 +109,7 @@ class SlidingSole:
         self.viscosity = viscosity
         self.history = History()
         self._progress, self._stage, self._end_time = progress, stage, end_time
+        self._watch = watch
         self._clearance_at = clearance_at or (
             lambda angle: rolled_clearance(sole, angle - shoe_angle)
         )
@@ -222,6 +226,22 @@ class SlidingSole:
         done = self._loop(ramp, LONGEST_TIME, math.inf, most_steps, settled)
         return self._state(done)
 
+    def begin(self, *, normal_force: float, speed: float, shoe_angle: float | None = None) -> None:
+        """Set what holds at time 0, before the first ``advance``, which ramps from here.
+
+        Without it the load starts at 0 and the speed at that of the first ``advance``.
+        """
+        check_demand(1.0, normal_force, speed, shoe_angle)
+        if self.counts.time_steps:
+            raise InputError("the sole is moving already", where="begin", allowed="a new sole")
+        self._load, self._speed = normal_force, speed
+        if shoe_angle is not None and shoe_angle != self._angle:
+            self._check_stretch(shoe_angle)
+            march = self._march
+            clearance = self._clearance(shoe_angle)
+            march.turn(clearance)
+            self._angle = shoe_angle
+
     def bookmark(self) -> Bookmark:
         """Return this instant, to try several continuations from."""
         march = self._march
@@ -308,6 +328,8 @@ class SlidingSole:
             history.residual.append(march.residuals[-1])
             history.speed.append(self._speed)
             history.shoe_angle.append(self._angle)
+            if self._watch is not None:
+                self._watch(self._state(True))
             if settled is not None and settled(state, taken):
                 return True
         return settled is None

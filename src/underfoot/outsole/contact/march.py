@@ -19,6 +19,7 @@ GROWTH = 1.5
 CUT = 2.5
 SHORTEST = 1e-4  # of the first step, below which the march gives up
 LETS_GO = 1.05  # times the pool depth; without it a cell at the brink flips at every step
+ROOM = 1.3  # times the cells needed now, beyond which they are chosen anew
 MARGIN = 3  # cells around the pool that may come into contact within a step
 
 
@@ -75,6 +76,13 @@ class March:
         self._pool_depth = pool_depth
         self._shortest = first_step * SHORTEST
         self._cells: Cells | None = None
+
+    def turn(self, clearance: Array) -> None:
+        """Put another clearance under the state, without time passing."""
+        state, change = self.state, clearance - self.problem.clearance
+        self.problem = replace(self.problem, clearance=clearance)
+        self.state = replace(state, gap=state.gap + change)
+        self.film = _film_mask(self.problem, self.state.gap, self._pool_depth, None)
 
     def advance(
         self, most: float, demand_after: Callable[[float], Demand], tick: Callable[[float], None]
@@ -138,15 +146,15 @@ def _film_mask(problem: Problem, gap: Array, pool_depth: float, before: Mask | N
 
 def _cells(problem: Problem, fit: PoleFit, cells: Cells | None, film: Mask) -> Cells:
     """Return cells that hold the film with room to spare, the present ones if they do."""
-    if (
-        cells is not None
-        and not (film & ~cells.mask).any()
-        and cells.pattern.size < 1.3 * film.sum() + 500
-    ):
-        return cells
     mask = np.asarray(binary_dilation(film, iterations=MARGIN), dtype=bool) & (
         problem.clearance < 0.5
     )
+    if (
+        cells is not None
+        and not (film & ~cells.mask).any()
+        and cells.pattern.size < ROOM * np.count_nonzero(mask)
+    ):
+        return cells
     return Cells(mask, problem, fit)
 
 

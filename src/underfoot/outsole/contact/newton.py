@@ -34,6 +34,8 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 SMALLEST_GAP = 2e-7  # m; the flow sees no thinner film (the pressure law does)
 STALL = 12  # Newton steps without halving the residual after which a shorter time step is tried
+STALE = 10  # GMRES iterations above which the next Newton step gets a new factorization
+FORCING = 0.3  # share of the residual to which GMRES solves, once the residual is small
 THIN = 2e-4  # m; steps are limited where the film is thinner
 
 
@@ -126,6 +128,7 @@ def implicit_step(
     unit = np.zeros((5, size))
     unit[0] = 1.0
     change = np.inf
+    solve, count = None, 0
     faint = 1e-9 * load / (size * area)
 
     for iteration in range(problem.most_newton + 1):
@@ -170,10 +173,11 @@ def implicit_step(
         if iteration == problem.most_newton or _hopeless(attempt.residuals):
             break
 
-        try:
-            solve = cells.preconditioner.factorise(by_pressure, by_gap, problem.backend)
-        except ConvergenceError:
-            break
+        if solve is None or count > STALE:
+            try:
+                solve = cells.preconditioner.factorise(by_pressure, by_gap, problem.backend)
+            except ConvergenceError:
+                break
         jacobian_p = pattern.matrix(by_pressure)
         jacobian_h = pattern.matrix(by_gap)
 
@@ -185,7 +189,11 @@ def implicit_step(
             return out
 
         right = np.append(-residual, shortage / (size * area))
-        step, count, _ = krylov_solution(product, solve, right, tolerance=problem.krylov_tolerance)
+        # far from the solution an exact Newton step is wasted
+        exact = problem.krylov_tolerance
+        step, count, _ = krylov_solution(
+            product, solve, right, tolerance=min(max(exact, FORCING * error), 30 * exact)
+        )
         attempt.krylov += count
         attempt.newton += 1
         if not np.isfinite(step).all():
