@@ -15,7 +15,7 @@ from underfoot.core import InputError, Progress, Status, silent
 from .walker import Walker
 
 Array = NDArray[np.float64]
-STEP = 4e-3
+STEP = 8e-3
 """s, longest step of the foot's motion (see docs/physics/slip_dynamics.md for its error)."""
 MOST_SWEEPS = 60
 STILL = 1e-9  # m/s
