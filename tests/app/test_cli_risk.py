@@ -144,3 +144,23 @@ def test_command(tmp_path) -> None:
     wrong = subprocess.run([*command, "--wanted", "150 %"], capture_output=True, text=True)
     assert wrong.returncode != 0
     assert "above 0 and below 1" in wrong.stderr
+
+
+def test_a_full_run_ends_with_what_would_help(tmp_path) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(TEXT + 'numerics.grid_spacing = "2.5 mm"\n', encoding="utf-8")
+    command = [str(Path(sys.executable).with_name("underfoot")), "run", str(path), "--out"]
+    done = subprocess.run([*command, str(tmp_path / "full")], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    stored = json.loads((tmp_path / "full" / "risk.json").read_text(encoding="utf-8"))
+    best = min(
+        (one for one in stored["changes"] if one["slip_probability"] is not None),
+        key=lambda one: one["slip_probability"],
+    )
+    page = (tmp_path / "full" / "report.html").read_text(encoding="utf-8")
+    for text in (done.stdout.replace("\n", " "), page):
+        assert best["words"] in " ".join(text.split())
+        assert "The film carries" in text
+    command = [*command, str(tmp_path / "plain"), "--no-changes"]
+    assert subprocess.run(command, capture_output=True).returncode == 0
+    assert not (tmp_path / "plain" / "risk.json").exists()

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rich.table import Table
 
+    from underfoot.assess.risk import RiskReport
     from underfoot.case.result import Result
 
 _MOST_ASSUMPTIONS = 3
@@ -18,11 +19,12 @@ _WEIGHTY = ("interface", "shoe.heel", "shoe.tread", "shoe.sole", "motion")
 """Sections named first: interface roughness and the shape of the sole decide the film."""
 
 
-def show_result(result: Result, folder: Path | None) -> None:
+def show_result(result: Result, folder: Path | None, advice: RiskReport | None = None) -> None:
     """Print the verdict, the table, the weightiest assumptions, breaches, where the files are."""
     from rich.console import Console
 
     from underfoot.document import summary_rows, verdict
+    from underfoot.document.risk_sentences import change_lines, limit_words
 
     console = Console(highlight=False)
     console.print(f"\n[bold]{_plain(result.name)}[/bold]", markup=True)
@@ -33,6 +35,11 @@ def show_result(result: Result, folder: Path | None) -> None:
         console.print(table((), fitting(short, console.width), remarks=True))
         for label, value, _ in (row for row in rows if row not in short):
             console.print(f"{label.strip().capitalize()}: {value}.", markup=False)
+        console.print(f"\n{limit_words(result)}", markup=False)
+    if advice is not None:
+        console.print("What would help most, each computed:")
+        for line in change_lines(advice):
+            console.print(f"  - {line}", markup=False)
     if result.assumptions:
         count = len(result.assumptions)
         shown = weightiest(result.assumptions)

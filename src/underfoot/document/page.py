@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from .maps import map_figure
 from .quantities import quantities
+from .risk_sentences import change_lines, limit_words
 from .sentences import summary_rows, verdict
 from .viewer import viewer_script, viewer_section
 
@@ -15,10 +16,13 @@ if TYPE_CHECKING:
     from jinja2 import Environment
     from matplotlib.figure import Figure
 
+    from underfoot.assess.risk import RiskReport
     from underfoot.case.result import Result
 
 
-def result_page(result: Result, maps: dict[str, bytes] | None = None) -> str:
+def result_page(
+    result: Result, maps: dict[str, bytes] | None = None, advice: RiskReport | None = None
+) -> str:
     """Return the page of one result as HTML text; ``maps`` are PNG by quantity, if drawn."""
     found = quantities([result.fields])
     if maps is None:
@@ -28,6 +32,8 @@ def result_page(result: Result, maps: dict[str, bytes] | None = None) -> str:
         result=result,
         verdict=verdict(result),
         rows=summary_rows(result),
+        limit=limit_words(result) if result.status.usable else "",
+        changes=change_lines(advice) if advice is not None else (),
         viewer=viewer_section([result]),
         script=viewer_script(),
         maps=[(quantity.title, embedded(maps[quantity.name])) for quantity in found],

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from underfoot.assess.risk import Bought, RiskReport
+    from underfoot.case.result import Result
 
 MOST = 3
 
@@ -42,7 +43,21 @@ def change_lines(found: RiskReport) -> list[str]:
     best = found.best[:MOST]
     if not best:
         return ["None of the changes that were computed lowers it."]
-    return [f"{one.change.words}: {bought_words(one)}" for one in best]
+    before = f"{found.outcome.number('cof'):.2f}"
+    chance = percent(found.outcome.number("slip_probability"))
+    return [
+        f"{one.change.words}: friction {before} to {one.number('cof'):.2f}, "
+        f"steps that slip {chance} to {percent(one.number('slip_probability'))}"
+        for one in best
+    ]
+
+
+def limit_words(result: Result) -> str:
+    """Return what limits the friction of a result, in a sentence."""
+    from underfoot.assess.outcomes import Outcome
+    from underfoot.assess.risk import limit
+
+    return limit(Outcome.of(result)).words
 
 
 def bought_words(one: Bought) -> str:
