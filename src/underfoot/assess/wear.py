@@ -25,6 +25,8 @@ LARGEST_PATCH = 0.8
 """Largest patch of a series as a share of the heel's length and width."""
 HEEL_PART = 0.25
 """Share of a whole sole's length that is its heel."""
+LONGEST_HEEL, WIDTH_OF_HEEL = 0.12, 0.65
+"""m, and the heel's width as a share of a whole sole's (assumed: common lasts)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +123,13 @@ def wear_series(
         raise unknown_name("mode", mode, MODES, where="mode")
     if steps < 2:
         raise InputError(f"{steps} steps make no series", where="steps", allowed="2 or more")
-    if case.shoe.tread.pattern == "none" or not case.shoe.tread.depth:
+    if mode == "archard" and case.shoe.outsole.file is not None:
+        raise InputError(
+            "wear by pressure and sliding needs a parametric sole",
+            where="mode",
+            allowed="plane or patch with an outsole file",
+        )
+    if not _extent(case)[0] > 0:
         raise InputError(
             "the sole has no tread that could wear away",
             where="shoe.tread.pattern",
@@ -168,8 +176,7 @@ def wear_series(
 
 def worn_cases(case: Case, mode: str, steps: int, deepest: float | None) -> list[Case]:
     """Return the case new and worn in ``steps`` equal steps."""
-    depth, heel = case.shoe.tread.depth, case.shoe.heel
-    assert depth is not None  # of a treaded sole
+    depth, heel_length, heel_width = _extent(case)
     angle = case.shoe.wear.angle
     if "shoe.wear.angle" not in case.origins or case.origins["shoe.wear.angle"].kind == "default":
         angle = max(case.motion.shoe_angle, 0.0)
@@ -178,8 +185,7 @@ def worn_cases(case: Case, mode: str, steps: int, deepest: float | None) -> list
     cases = [new]
     share = np.arange(1, steps + 1) / steps
     if mode == "patch":
-        length = heel.length * (HEEL_PART if heel.plan == "sole" else 1.0) * LARGEST_PATCH
-        width = heel.width * LARGEST_PATCH
+        length, width = heel_length * LARGEST_PATCH, heel_width * LARGEST_PATCH
         if deepest is not None:
             grow = math.sqrt(deepest / (math.pi / 4 * length * width))
             length, width = length * grow, width * grow
@@ -232,9 +238,29 @@ def _wear_down(cases: list[Case], progress: Progress) -> None:
         archard_state(worn)
 
 
+def _extent(case: Case) -> tuple[float, float, float]:
+    """Return depth of the tread, length and width of the heel, m."""
+    heel, tread = case.shoe.heel, case.shoe.tread
+    if case.shoe.outsole.file is not None:
+        from underfoot.case.build_outsole import file_outsole
+
+        surface = file_outsole(case).surface
+        # longer than a heel can be: a whole sole or its rear half
+        part = HEEL_PART if surface.length > LONGEST_HEEL else 1.0
+        width = surface.width if part == 1.0 else WIDTH_OF_HEEL * surface.width
+        return float(surface.tread_depth.max()), surface.length * part, width
+    depth = 0.0 if tread.pattern == "none" else tread.depth or 0.0
+    return depth, heel.length * (HEEL_PART if heel.plan == "sole" else 1.0), heel.width
+
+
 def _measures(case: Case) -> WearMeasures:
+    from underfoot.outsole.worn import surface_wear_measures, wear_measures
+
+    if case.shoe.outsole.file is not None:
+        from underfoot.case.build_outsole import file_outsole, file_surface
+
+        return surface_wear_measures(file_outsole(case).surface, file_surface(case))
     from underfoot.case.build_sole import sole_shape
-    from underfoot.outsole.worn import wear_measures
 
     return wear_measures(sole_shape(case))
 

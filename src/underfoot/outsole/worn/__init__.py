@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .archard import ArchardStep, archard_wear
 from .map import WornMap
-from .measures import WearMeasures, wear_measures
+from .measures import WearMeasures, surface_wear_measures, wear_measures
 from .patch import WornPatch
 
 __all__ = [
@@ -13,5 +13,6 @@ __all__ = [
     "WornMap",
     "WornPatch",
     "archard_wear",
+    "surface_wear_measures",
     "wear_measures",
 ]

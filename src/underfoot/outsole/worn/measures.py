@@ -7,11 +7,16 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..heel_grid import cut_heel
 
 if TYPE_CHECKING:
     from ..shape import SoleShape
+    from ..sole_surface import SoleSurface
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 MEASURING_CELL = 0.5e-3  # m
 
@@ -54,8 +59,6 @@ def wear_measures(shape: SoleShape, *, spacing: float = MEASURING_CELL) -> WearM
     On a sole that had no tread the patch is 0: nothing was worn away. Channels that have opened
     onto the patch through their floor count as part of it.
     """
-    from scipy.ndimage import find_objects, label
-
     rows = np.arange(math.ceil(shape.length / spacing), dtype=np.float64)
     columns = np.arange(math.ceil(shape.width / spacing), dtype=np.float64)
     x, y = np.meshgrid(
@@ -64,13 +67,40 @@ def wear_measures(shape: SoleShape, *, spacing: float = MEASURING_CELL) -> WearM
     inside = shape.inward_distance(x, y) > 0
     new = cast("SoleShape", replace(cast("Any", shape), wear=None))
     removed = np.where(inside, shape.land_height(x, y) - shape.unworn_height(x, y), 0.0)
-    volume = float((cut_heel(shape, x, y)[0] - cut_heel(new, x, y)[0])[inside].sum()) * spacing**2
-    depth = 0.0 if shape.tread is None else shape.tread.depth
+    raised = (cut_heel(shape, x, y)[0] - cut_heel(new, x, y)[0])[inside]
+    depth = np.where(inside, 0.0 if shape.tread is None else shape.tread.depth, 0.0)
+    return _measured(removed, inside, depth, float(raised.sum()) * spacing**2, spacing)
+
+
+def surface_wear_measures(new: SoleSurface, worn: SoleSurface) -> WearMeasures:
+    """Return how worn a sole known by its heights is, against the same sole when new.
+
+    Each cell has the lug height of the nearest land, so that a channel counts with its lugs; parts
+    that had no tread are left aside.
+    """
+    from .._kernels.land import nearest_true
+
+    inside = new.inside
+    removed = np.where(inside, np.nan_to_num(worn.land_base - new.land_base), 0.0)
+    raised = np.nan_to_num(worn.height - new.height)[inside]
+    depth = np.where(inside, new.tread_depth[nearest_true(new.land)], 0.0)
+    area = new.spacing**2
+    return _measured(removed, inside, depth, float(raised.sum()) * area, new.spacing)
+
+
+def _measured(
+    removed: Array, inside: Mask, depth: Array, volume: float, spacing: float
+) -> WearMeasures:
+    """Return the measures from removed thickness and height of the lugs (m), cell by cell."""
+    from scipy.ndimage import find_objects, label
+
+    treaded = inside & (depth > 0)
     left = np.clip(depth - removed, 0.0, None)
-    length = width = area = 0.0
-    if depth > 0:
+    length = width = area = least = mean = 0.0
+    if treaded.any():
+        least, mean = float(left[treaded].min()), float(left[treaded].mean())
         # a lug worn to its last hundredth of a millimetre drains nothing
-        patches = np.asarray(label(inside & (left < 1e-5))[0])  # type: ignore[index]
+        patches = np.asarray(label(treaded & (left < 1e-5))[0])  # type: ignore[index]
         if patches.any():
             sizes = np.bincount(patches.ravel())[1:]
             largest = int(sizes.argmax())
@@ -80,8 +110,8 @@ def wear_measures(shape: SoleShape, *, spacing: float = MEASURING_CELL) -> WearM
             width = (across.stop - across.start) * spacing
     return WearMeasures(
         removed_depth=float(removed.max()),
-        tread_left=float(left[inside].min()),
-        mean_tread_left=float(left[inside].mean()),
+        tread_left=least,
+        mean_tread_left=mean,
         worn_patch_area=area,
         worn_patch_length=length,
         worn_patch_width=width,
