@@ -143,7 +143,7 @@ def check_load(case: Case, sole: SoleMap) -> None:
     area = np.count_nonzero(heights < depth) * sole.spacing**2 * 1e6
     raise InputError(
         f"{force:g} N bottoms out the sole: it would press {display(depth, 'm')} into "
-        f"{display(thickness, 'm')} of outsole, on {area:.3g} mm² of land",
+        f"{display(thickness, 'm')} of outsole, on {area:.0f} mm² of land",
         where="motion.normal_force",
         allowed=f"an approach of up to {BOTTOMED:.0%} of the outsole's thickness",
         remedy="Look at the file with: underfoot outsole inspect. Is the right region under the "

@@ -27,6 +27,7 @@ Array = NDArray[np.float64]
 _COARSE = 400  # cells along the sole for finding sides and plane
 _NEARLY_SQUARE = 1.3
 _LEVEL = math.radians(0.05)  # a tilt below it is that of noise and roundings
+_MOST_TURN = math.radians(12)  # beyond it the sole stands on a stud or on its side
 _OVERLAP_PITCH = 2e-3  # m between the lines on which crossing material is looked for
 _SHEET = 0.05e-3
 
@@ -187,6 +188,12 @@ def _level_view(mesh: Mesh, axes: Array, spacing: float) -> tuple[View, Array, l
         plane = resting_plane(height, spacing)
         turned, angle = levelled(axes, plane)
         if angle < _LEVEL:
+            break
+        if angle > _MOST_TURN:
+            words.append(
+                f"It would rest {math.degrees(angle):.0f}° off level, on few points: left as it "
+                "lies."
+            )
             break
         total += angle
         axes = turned
