@@ -30,7 +30,7 @@ REASONS = {
     **{("report", HYSTERESIS, along): _NOT_RUBBER for along in ALONG},
     ("report", AREA, "speed"): (
         "one term that relaxes in 40 or 77 s is frozen while a slide lasts milliseconds, so the "
-        "area can't depend on speed; inertia, in explicit runs only, adds 2 to 3 %"
+        "area can't depend on speed"
     ),
     ("report", AREA, "shoe_rz"): _GEOMETRY,
     ("report", AREA, "floor_rz"): _GEOMETRY,

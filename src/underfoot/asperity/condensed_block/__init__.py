@@ -2,7 +2,8 @@
 
 from .area import edge_corrected_contact_area, nodal_contact_area
 from .compliance import CondensedBlock, condensed_block
-from .march import condensed_poisson_ratio, condensed_sliding, pressure_ratio_of
+from .march import condensed_sliding
+from .moduli import condensed_poisson_ratio, pressure_ratio_of
 from .pressed import pressed_block
 
 __all__ = [

@@ -82,7 +82,8 @@ def explicit_sliding(
         the status CANCELLED and a restart file (with ``output``).
 
     Validity: spectrum and bulk modulus of a nearly incompressible solid; real contact area needs 13
-    or more elements a wavelength (marked below that), and even 26 overestimate it by some 10 %.
+    or more elements a wavelength (marked below that); counted by nodes even 26 overestimate it by
+    20 %, without its edges by some 4 %.
 
     Errors
     ------
