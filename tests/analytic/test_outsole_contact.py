@@ -8,6 +8,7 @@ import pytest
 from underfoot.asperity.exponential import ExponentialLaw
 from underfoot.core import Status
 from underfoot.film import film_flow, upwinding
+from underfoot.outsole._kernels.elastic import block_compression
 from underfoot.outsole.compliance import half_space_compliance, layered_compliance
 from underfoot.outsole.solver import SolverSettings, solve_sliding
 from underfoot.reference import contact, lubrication
@@ -78,10 +79,23 @@ def test_free_sided_lugs_compress_as_blocks():
     with_lugs = layered_compliance(sole, modulus=modulus, poisson_ratio=0.49, thickness=0.02)
     lugs = with_lugs._weighted[-1]
     compressed = lugs[1] * lugs[0](lugs[1] * 1e5)
-    factor = 5.0 / (4 * 3.0)
-    block = 1e5 * depth / (modulus * (1 + 2 * factor**2))
-    assert compressed[land] == pytest.approx(block, rel=2e-3)
+    expected = block_compression(land, spacing, np.array(depth), modulus, 0.49) * 1e5
+    assert compressed[land] == pytest.approx(expected[land], rel=2e-3)
     assert (compressed[~land] == 0).all()
+    # a free side gives way more than the middle; none more than a free column
+    assert compressed[7, 7] > compressed[4, 4]
+    assert compressed[land].max() < 1e5 * depth / modulus
+
+
+def test_block_of_a_strip_follows_its_closed_form():
+    """Between two free sides q = cosh(k x) / cosh(k a), and E f / d = 0.875 (q + (1 - q) E / M)."""
+    spacing, height, modulus, nu = 0.1e-3, 3e-3, 4e6, 0.5
+    mask = np.zeros((62, 400), bool)
+    mask[1:-1] = True
+    found = block_compression(mask, spacing, np.array(height), modulus, nu)[1:-1, 200]
+    x = (np.arange(60) - 29.5) * spacing
+    exact = np.cosh(x / height) / np.cosh(30 * spacing / height)
+    assert found * modulus / height == pytest.approx(0.875 * exact, rel=2e-3)
 
 
 def test_compliance_is_reciprocal():

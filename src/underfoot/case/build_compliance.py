@@ -50,6 +50,7 @@ def sole_compliance(
         modulus=modulus,
         poisson_ratio=poisson_ratio,
         thickness=layers.outsole_thickness,
+        shoe_angle=case.motion.shoe_angle,
         midsole_modulus=layers.midsole_modulus,
         midsole_thickness=layers.midsole_thickness,
         midsole_poisson_ratio=layers.midsole_poisson_ratio,

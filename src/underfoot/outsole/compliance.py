@@ -20,6 +20,7 @@ from ._kernels.elastic import (
     Convolution,
     attenuation,
     balanced_weights,
+    block_compression,
     bonded_layer_symbol,
     fast_length,
     free_sided_symbol,
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Symbol = Callable[[Array], Array]
 BOX_THICKNESSES = 16.0  # side of the box on which a layer's influence coefficients are found
+THINNEST = 0.1  # share of the outsole left above the deepest profile
 TREADED_SHARE = 0.5  # of the land that must be lugs for the tread to be modelled as lugs
 
 
@@ -124,6 +126,7 @@ def layered_compliance(
     modulus: float,
     poisson_ratio: float,
     thickness: float,
+    shoe_angle: float | None = None,
     midsole_modulus: float | None = None,
     midsole_thickness: float | None = None,
     midsole_poisson_ratio: float = 0.3,
@@ -136,7 +139,11 @@ def layered_compliance(
     sole
         Plan form and tread.
     modulus, poisson_ratio, thickness
-        Of the outsole: Pa, 1 (0 to 0.5), m (without the tread depth).
+        Of the outsole: Pa, 1 (0 to 0.5), m.
+    shoe_angle
+        Tilt of the sole's plane against the floor, rad; then the thickness is that from this plane
+        to the midsole and profile and lugs are taken off. None: the thickness above the lugs, the
+        same everywhere.
     midsole_modulus, midsole_thickness, midsole_poisson_ratio
         Of the layer between outsole and rigid foot; both None for none. A Poisson's ratio of 0.3
         stands for a foam (assumed).
@@ -148,9 +155,10 @@ def layered_compliance(
     -----
     Bonded layer by its Fourier symbol; a midsole adds its own symbol, attenuated by
     (1 + k T) exp(-k T) through the outsole. Free edges: the part of the response that a block of
-    the plan form (height T) or a lug (height of the tread) has with free sides is split off,
-    1 / (E (1 + 2 S^2) / d + E* k / 2) with S = area / (perimeter d), and balanced on its mask so
-    that a uniform pressure compresses it uniformly. Lugs stand in series on the layer.
+    the plan form or a lug has with free sides is split off, 1 / (1 / f + E* k / 2), and balanced on
+    its mask so that a uniform pressure compresses it as ``block_compression`` says: by its own
+    height at each place, more near a free side than in the middle. Lugs stand in series on the
+    layer.
     """
     _check_elastic(modulus, poisson_ratio)
     _check_positive(thickness, "thickness")
@@ -160,6 +168,10 @@ def layered_compliance(
             where="midsole_modulus" if midsole_modulus is None else "midsole_thickness",
         )
     shape = (sole.x.size, sole.y.size)
+    body = np.full(shape, float(thickness))
+    if shoe_angle is not None:
+        body = body_thickness(sole, thickness, shoe_angle)
+        thickness = float(body[sole.inside & sole.land].mean())
     total = thickness + (midsole_thickness or 0.0)
     extent = 2 * max(shape) * sole.spacing
     box = fast_length(math.ceil(max(extent, BOX_THICKNESSES * total) / sole.spacing))
@@ -187,47 +199,66 @@ def layered_compliance(
         return ConvolutionCompliance(shape, [(plain, None)], lambda q: layer(q) + midsole(q))
 
     depth = mean_lug_depth(sole)
-    footprint_factor = shape_factor(sole.inside, sole.spacing, thickness)
+    land = sole.inside & sole.land
+    plan = land if depth == 0.0 else sole.inside
+    give = block_compression(plan, sole.spacing, body, modulus, poisson_ratio)
+    mean_give = float(give[plan].mean())
 
     def footprint(q: Array) -> Array:
-        return free_sided_symbol(q, modulus, poisson_ratio, thickness, footprint_factor)
+        return free_sided_symbol(q, modulus, poisson_ratio, mean_give)
 
     def rest(q: Array) -> Array:
         return np.maximum(layer(q) - footprint(q), 0.0) + midsole(q)
 
+    block = influence(footprint)
+    plan_weight = balanced_weights(block, plan, give)
     if depth == 0.0:
-        land = sole.inside & sole.land
-        block = influence(footprint)
-        weight = balanced_weights(block, land, float(footprint(np.zeros(1))[0]))
         return ConvolutionCompliance(
-            shape, [(influence(rest), None), (block, weight)], lambda q: rest(q) + footprint(q)
+            shape,
+            [(influence(rest), None), (block, plan_weight)],
+            lambda q: rest(q) + footprint(q),
         )
 
-    land = sole.inside & sole.land
-    lug_factor = shape_factor(land, sole.spacing, depth)
+    height = np.where(sole.tread_depth > 0, sole.tread_depth, 0.0)
+    # untreaded land beside the lugs is as stiff as a lug of the least height the grid can tell
+    height = np.maximum(height, min(0.5 * sole.spacing, depth))
+    lug_give = block_compression(land, sole.spacing, height, modulus, poisson_ratio)
+    mean_lug_give = float(lug_give[land].mean())
 
     def lug(q: Array) -> Array:
-        return free_sided_symbol(q, modulus, poisson_ratio, depth, lug_factor)
+        return free_sided_symbol(q, modulus, poisson_ratio, mean_lug_give)
 
     def smooth(q: Array) -> Array:
         return attenuation(q, depth)
 
-    block = influence(lambda q: footprint(q) * smooth(q))
-    plan = balanced_weights(influence(footprint), sole.inside, float(footprint(np.zeros(1))[0]))
     lugs = influence(lug)
-    lug_weight = balanced_weights(lugs, land, float(lug(np.zeros(1))[0]))
     return ConvolutionCompliance(
         shape,
-        [(influence(lambda q: rest(q) * smooth(q)), None), (block, plan), (lugs, lug_weight)],
+        [
+            (influence(lambda q: rest(q) * smooth(q)), None),
+            (influence(lambda q: footprint(q) * smooth(q)), plan_weight),
+            (lugs, balanced_weights(lugs, land, lug_give)),
+        ],
         lambda q: (rest(q) + footprint(q)) * smooth(q) + lug(q),
     )
 
 
-def shape_factor(mask: NDArray[np.bool_], spacing: float, height: float) -> float:
-    """Return S = loaded area / free side area of the blocks of a mask (m grid, m height)."""
-    padded = np.pad(mask, 1)
-    sides = sum(int((padded != np.roll(padded, 1, axis)).sum()) for axis in (0, 1))
-    return float(mask.sum()) * spacing / (sides * height)
+def body_thickness(sole: SoleMap, thickness: float, shoe_angle: float) -> Array:
+    """Return the outsole (m) above lugs and profile, (nx, ny), of ``thickness`` from its plane.
+
+    The plane lies at ``shoe_angle`` against the floor and touches the lowest land. At least a tenth
+    of the thickness: land that rises higher (an arch, a toe) does not come near the floor.
+    """
+    land = sole.inside & sole.land
+    height = sole.clearance - math.tan(shoe_angle) * sole.x[:, None]
+    over = np.where(land, (height - height[land].min()) * math.cos(shoe_angle), 0.0)
+    above = thickness - over - np.where(land, sole.tread_depth, 0.0)
+    above = np.maximum(above, THINNEST * thickness)
+    from scipy.ndimage import distance_transform_edt
+
+    nearest = distance_transform_edt(~land, return_distances=False, return_indices=True)
+    assert isinstance(nearest, np.ndarray)
+    return above[nearest[0], nearest[1]]
 
 
 def mean_lug_depth(sole: SoleMap) -> float:

@@ -30,17 +30,68 @@ def bonded_layer_symbol(
 
 
 def free_sided_symbol(
-    wavenumber: Array, modulus: float, poisson_ratio: float, height: float, shape_factor: float
+    wavenumber: Array, modulus: float, poisson_ratio: float, uniform: float
 ) -> Array:
     """Return deflection over pressure (m/Pa) of a block with free sides.
 
-    1 / (E_app / d + E* k / 2) with E_app = E (1 + 2 S^2): a uniform pressure compresses the
-    block by p d / E_app (bonded block, Gent and Lindley 1959), a short wave meets the half-space.
-    Positive in real space.
+    1 / (1 / f + E* k / 2): a uniform pressure compresses the block by f (m/Pa, its mean over the
+    face), a short wave meets the half-space. Positive in real space.
     """
     plane = modulus / (1 - poisson_ratio**2)
-    apparent = modulus * (1 + 2 * shape_factor**2)
-    return 1 / (apparent / height + 0.5 * plane * np.asarray(wavenumber, dtype=float))
+    return 1 / (1 / uniform + 0.5 * plane * np.asarray(wavenumber, dtype=float))
+
+
+BONDED_END = 0.875
+"""Compression of a block against the parabolic flow below: the bonded end holds it back. Found from
+finite elements of single blocks, +-2 % for area / (perimeter height) from 0.4 to 1.5."""
+
+
+def block_compression(
+    mask: NDArray[np.bool_],
+    spacing: float,
+    height: Array,
+    modulus: float,
+    poisson_ratio: float,
+) -> Array:
+    """Return the deflection (m/Pa) of blocks under a uniform pressure, 0 outside the mask.
+
+    The blocks cover ``mask`` (nx, ny), are ``height`` (nx, ny, m) high, bonded at their base, free
+    at their sides and free of friction on their face. Rubber flows sideways as a parabola over the
+    height; q, the share of the pressure that this flow carries, is 1 at a free side and
+
+        lap q = c q / d^2,  c = 3 / (2 (1 + nu)),   f = 0.875 d (q / E + (1 - q) / M)
+
+    with M = E (1 - nu) / ((1 + nu)(1 - 2 nu)) of the confined rest (infinite for nu = 0.5). The
+    mean of q falls with the shape factor as Gent and Lindley (1959) found for blocks bonded at both
+    ends, here of twice the height; the face near a free side gives way more than its middle.
+    """
+    from scipy.sparse import csr_matrix
+    from scipy.sparse.linalg import spsolve
+
+    inside = np.argwhere(mask) + 1
+    count = len(inside)
+    number = np.full((mask.shape[0] + 2, mask.shape[1] + 2), -1)
+    number[inside[:, 0], inside[:, 1]] = np.arange(count)
+    depth = np.broadcast_to(height, mask.shape)[mask]
+    diagonal = 1.5 / (1 + poisson_ratio) * (spacing / depth) ** 2
+    right = np.zeros(count)
+    rows, columns = [np.arange(count)], [np.arange(count)]
+    for along, across in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+        neighbour = number[inside[:, 0] + along, inside[:, 1] + across]
+        held = neighbour >= 0
+        rows.append(np.flatnonzero(held))
+        columns.append(neighbour[held])
+        diagonal += np.where(held, 1.0, 2.0)  # a free side lies half a cell away
+        right += np.where(held, 0.0, 2.0)
+    values = np.concatenate([diagonal, np.full(sum(map(len, rows)) - count, -1.0)])
+    matrix = csr_matrix(
+        (values, (np.concatenate(rows), np.concatenate(columns))), shape=(count, count)
+    )
+    share = np.asarray(spsolve(matrix.tocsc(), right))
+    confined = (1 + poisson_ratio) * (1 - 2 * poisson_ratio) / (1 - poisson_ratio)
+    result = np.zeros(mask.shape)
+    result[mask] = BONDED_END * depth / modulus * (share + (1 - share) * confined)
+    return result
 
 
 def attenuation(wavenumber: Array, depth: float) -> Array:
@@ -100,23 +151,23 @@ def half_space_influence(shape: tuple[int, int], spacing: float, plane_modulus: 
     return total / (np.pi * plane_modulus)
 
 
-def balanced_weights(influence: Array, mask: NDArray[np.bool_], uniform: float) -> Array:
+def balanced_weights(influence: Array, mask: NDArray[np.bool_], uniform: Array) -> Array:
     """Return weights w, 0 outside the mask, such that w * K(w) equals ``uniform`` on the mask.
 
-    K is the convolution with the (positive) influence coefficients. w K w is symmetric, so work
-    done by one pressure on the deflection of another is reciprocal, and a uniform pressure deflects
-    the masked area uniformly, as a block with free sides does (symmetric matrix balancing, Sinkhorn
-    1964).
+    K is the convolution with the (positive) influence coefficients, ``uniform`` (nx, ny) the wanted
+    deflection under a uniform pressure. w K w is symmetric, so work done by one pressure on the
+    deflection of another is reciprocal (symmetric matrix balancing, Sinkhorn 1964).
     """
     convolution = Convolution(influence, mask.shape)
     weight = mask.astype(float)
-    for _ in range(60):
+    wanted = np.where(mask, uniform, 1.0)
+    for _ in range(80):
         row = weight * convolution(weight)
-        error = np.abs(row[mask] / uniform - 1).max()
+        error = np.abs(row[mask] / wanted[mask] - 1).max()
         if error < 1e-3:
             break
-        safe = np.where(mask, np.maximum(row, 0.02 * uniform), uniform)
-        weight = np.where(mask, weight * np.sqrt(uniform / safe), 0.0)
+        safe = np.where(mask, np.maximum(row, 0.02 * wanted), wanted)
+        weight = np.where(mask, weight * np.sqrt(wanted / safe), 0.0)
     return weight
 
 

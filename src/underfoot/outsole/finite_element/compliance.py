@@ -36,7 +36,8 @@ class FiniteElementCompliance:
 
     C = P D P + (1 - P) L (1 - P) with P the projection (on the grid's cells) to the hats of the
     land nodes, D the finite-element compliance on them and L the layered compliance. So lugs, rim,
-    thickness and midsole act as they are; symmetric and positive as both parts are.
+    thickness and midsole act as they are; symmetric and positive as both parts are. Between cells
+    without finite elements (channels, land far above the floor) and the others L acts.
     """
 
     def __init__(
@@ -48,6 +49,7 @@ class FiniteElementCompliance:
         self._transposed = sp.csr_matrix(hats.T)
         self._inverse_gram = inverse_gram
         self._exact = exact
+        self._bare = (np.diff(hats.indptr) == 0).reshape(layers.self_compliance.shape)
         plain = layers.self_compliance
         own, covered = (self._diagonal(matrix, plain.shape) for matrix in (exact, inverse_gram))
         self._self = np.maximum(own + (1 - covered) ** 2 * plain, 0.05 * plain)
@@ -70,7 +72,7 @@ class FiniteElementCompliance:
     @property
     def covered(self) -> NDArray[np.bool_]:
         """Cells whose pressure the finite elements see, (nx, ny)."""
-        return np.asarray(np.diff(self._hats.indptr) > 0).reshape(self._self.shape)
+        return ~self._bare
 
     def symbol(self, wavenumber: Array) -> Array:
         """Return the deflection over pressure (m/Pa) of a wave far from free edges."""
@@ -79,10 +81,16 @@ class FiniteElementCompliance:
     def apply(self, pressure: Array) -> Array:
         """Return the deflection (nx, ny) in m of a pressure field (nx, ny) in Pa."""
         weight = self._transposed @ pressure.ravel()
-        fine = pressure - (self._hats @ (self._inverse_gram @ weight)).reshape(pressure.shape)
-        rise = self._layers.apply(fine)
+        coarse = (self._hats @ (self._inverse_gram @ weight)).reshape(pressure.shape)
+        rise = self._layers.apply(pressure - coarse)
         over = self._exact @ weight - self._inverse_gram @ (self._transposed @ rise.ravel())
-        return rise + (self._hats @ over).reshape(pressure.shape)
+        rise += (self._hats @ over).reshape(pressure.shape)
+        rise += np.where(self._bare, self._layers.apply(coarse), 0.0)
+        alone = np.where(self._bare, pressure, 0.0)
+        if alone.any():
+            pushed = self._transposed @ self._layers.apply(alone).ravel()
+            rise += (self._hats @ (self._inverse_gram @ pushed)).reshape(pressure.shape)
+        return rise
 
 
 def finite_element_compliance(
@@ -137,17 +145,22 @@ def finite_element_compliance(
         modulus=modulus,
         poisson_ratio=poisson_ratio,
         thickness=thickness,
+        shoe_angle=shoe_angle,
         midsole_modulus=midsole_modulus,
         midsole_thickness=midsole_thickness,
         midsole_poisson_ratio=midsole_poisson_ratio,
     )
     hats = hats_on_cells(land, sole)
-    values, vectors = np.linalg.eigh((hats.T @ hats).toarray())
-    kept = values > FAINT * values[-1]
-    turn = vectors[:, kept] / np.sqrt(values[kept])
+    gram = (hats.T @ hats).toarray()
+    size = np.sqrt(np.maximum(np.diagonal(gram), 1e-12))  # each hat counts alike, however small
+    values, vectors = np.linalg.eigh(gram / np.outer(size, size))
+    kept = values > FAINT
+    turn = vectors[:, kept] / np.sqrt(values[kept]) / size[:, None]
     inverse_gram = turn @ turn.T
-    # a sum over cells stands for an integral over their areas
-    exact = inverse_gram @ land.work @ inverse_gram / sole.spacing**2
+    # The sum of hat times pressure over the cells is the force on a node: the elements' own overlap
+    # turns it into pressure, so that force is kept where cells cover a rim only in part.
+    by_force = np.linalg.inv(land.overlap.toarray())
+    exact = by_force @ land.work @ by_force * sole.spacing**2
     return FiniteElementCompliance(layers, hats, inverse_gram, exact)
 
 
@@ -225,8 +238,10 @@ def sole_land(
     return land
 
 
-def hats_on_cells(land: LandCompliance, sole: SoleMap) -> sp.csr_matrix:
-    """Return the value of each hat at each cell centre, (nx ny, n); 0 where no land is near."""
+def hats_on_cells(land: LandCompliance, sole: SoleMap, reach: float = REACH) -> sp.csr_matrix:
+    """Return the value of each hat at each cell centre, (nx ny, n); 0 beyond ``reach`` (m)."""
+    from scipy.spatial import cKDTree
+
     cell = sole.spacing
     corners = land.nodes[land.triangles]
     ny = sole.y.size
@@ -251,6 +266,13 @@ def hats_on_cells(land: LandCompliance, sole: SoleMap) -> sp.csr_matrix:
             taken[i[at], j[to]] = depth[at, to]
             clipped = np.clip(share[at, to], 0.0, None)
             best[int(i[at] * ny + j[to])] = (nodes, clipped / clipped.sum())
+    # what the mesh leaves out at rims belongs to the nearest node
+    left = np.argwhere(sole.land & (sole.clearance < reach) & np.isneginf(taken))
+    if len(left):
+        places = np.column_stack([sole.x[left[:, 0]], sole.y[left[:, 1]]])
+        _, nearest = cKDTree(land.nodes).query(places)
+        for (at, to), node in zip(left, np.atleast_1d(nearest), strict=True):
+            best[int(at * ny + to)] = (np.full(3, node), np.full(3, 1 / 3))
     for place, (nodes, share) in best.items():
         rows += [place] * 3
         columns += nodes.tolist()
