@@ -76,9 +76,14 @@ def sole_map(case: Case, spacing: float, progress: Progress = silent) -> SoleMap
         return file_sole_map(case, spacing)
     from .build_sole import sole_shape
 
-    return outsole.heel_map(
+    sole = outsole.heel_map(
         sole_shape(case, progress), shoe_angle=case.motion.shoe_angle, spacing=spacing
     )
+    if case.shoe.heel.plan == "heel":
+        return sole
+    from .build_outsole import trimmed
+
+    return trimmed(sole, case.shoe.outsole.reach)
 
 
 def compliance(

@@ -59,7 +59,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
     modulus, found = build.youngs_modulus(case)
     fluid = build.viscosity(case)
     assert modulus.value is not None
-    sole = build.sole_map(case, spacing)
+    sole = build.sole_map(case, spacing, progress)
     asperities = build.asperity_law(case, modulus.value, progress)
     motion = case.motion
     recorder = Recorder(case, law, sole)
