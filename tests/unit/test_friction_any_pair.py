@@ -31,7 +31,7 @@ CHOICES = [
 def test_every_entry_gives_a_law_or_a_remedy(section, name, law):
     settings = {section: name, "models.friction": law}
     if name in WITHOUT_ROUGHNESS:
-        with pytest.raises(CaseError, match="roughness.rq = "):
+        with pytest.raises(CaseError, match=r"roughness\.rq = "):
             BASE.replace(settings)
         return
     case = BASE.replace(settings)
