@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from .guard import say
 from .micro_input import TEMPLATE, MicroCase, micro_case
 from .options import AsJson, Overwrite
 
@@ -47,8 +48,9 @@ def micro(
 ) -> None:
     """Press a rough block on a rough floor and slide it: contact area, hysteresis, history.
 
-    With --out: micro.json, history_SPEED.csv for each speed, history.png. An explicit run that was
-    stopped goes on from there when the same command is given again.
+    With --out: micro.json, history_SPEED.csv for each speed, history.png.
+
+    A stopped explicit run goes on when the same command is given again.
     """
     import shutil
     import tempfile
@@ -77,16 +79,21 @@ def micro(
     if out is not None:
         check_writable_folder(out, overwrite=overwrite)
     with tempfile.TemporaryDirectory() as pictures:
-        with bar("micro model") as progress:
-            results = [
-                chosen.result(
-                    speed,
-                    progress,
-                    snapshots=snapshots,
-                    folder=Path(pictures) / f"snapshots_{speed:g}",
-                )
-                for speed in chosen.speeds
-            ]
+        try:
+            with bar("micro model") as progress:
+                results = [
+                    chosen.result(
+                        speed,
+                        progress,
+                        snapshots=snapshots,
+                        folder=Path(pictures) / f"snapshots_{speed:g}",
+                    )
+                    for speed in chosen.speeds
+                ]
+        except KeyboardInterrupt:
+            if chosen.solver == "explicit":
+                say("its last state is kept: the same command goes on from there")
+            raise
         content = as_data(chosen, results)
         if out is not None:
             with whole_folder(out, overwrite=overwrite) as staging:
@@ -179,17 +186,18 @@ def _show(content: dict[str, Any], out: Path | None) -> None:
     for line in content["block"]:
         console.print(line, markup=False)
     table = Table(box=None, pad_edge=False)
-    for heading in ("speed", "COF", "mean |shear|", "A_c/F_N", "A_c/A_0", "pressure", "status"):
+    for heading in ("speed", "COF", "mean |shear|", "A_c/F_N", "no edges", "pressure", "status"):
         table.add_column(heading, no_wrap=heading != "status")
     notes: list[str] = list(content["assumed"])
     for row in content["results"]:
         cells = ["-"] * 5
         if "cof_hysteresis" in row:
+            without = row["area_per_force_corrected"]
             cells = [
                 f"{row['cof_hysteresis']:.5f}",
                 f"{row['cof_absolute']:.4f}",
                 f"{row['area_per_force'] * 1e6:.4g} mm²/N",
-                f"{row['real_contact_fraction']:.4f}",
+                "-" if without is None else f"{without * 1e6:.4g} mm²/N",
                 f"{row['mean_pressure'] * 1e-3:.4g} kPa",
             ]
         table.add_row(f"{row['speed_m_per_s']:g} m/s", *cells, row["status"])
@@ -197,7 +205,8 @@ def _show(content: dict[str, Any], out: Path | None) -> None:
     console.print(table)
     console.print(
         "COF is the signed mean of shear over whole floor wavelengths; mean |shear| (over normal "
-        "force) is no friction.",
+        "force) is no friction. A_c counts whole cells of touching nodes, as finite elements do; "
+        '"no edges" is the better estimate of the same area.',
         style="dim",
     )
     if notes:
