@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .fitting import FitError, ReducedFit, design, error_of, fitted_reduced
-    from .full_runs import FullRun, full_run, full_runs
     from .gait import GaitHistory, history_text, load_history, packaged_histories
+    from .kept_runs import FullRun, full_run, full_runs
     from .motion import FootContact, SlipMotion, slip_motion
     from .observation import ObservedSlip, Outcome, OutcomeLimits, judged, observed
     from .recorded import recorded_histories, step_history
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _PLACES = {
     "fitting": ("FitError", "ReducedFit", "design", "error_of", "fitted_reduced"),
-    "full_runs": ("FullRun", "full_run", "full_runs"),
+    "kept_runs": ("FullRun", "full_run", "full_runs"),
     "gait": ("GaitHistory", "history_text", "load_history", "packaged_histories"),
     "motion": ("FootContact", "SlipMotion", "slip_motion"),
     "observation": ("ObservedSlip", "Outcome", "OutcomeLimits", "judged", "observed"),

@@ -17,7 +17,7 @@ from .walker import Walker
 if TYPE_CHECKING:
     from underfoot.outsole.sole_state import SoleState
 
-    from .full_runs import FullRun
+    from .kept_runs import FullRun
 
 Array = NDArray[np.float64]
 MAP_X: NDArray[np.float64] = np.linspace(-10e-3, 90e-3, 51)

@@ -93,3 +93,7 @@ class SoleFoot:
             duration, normal_force=normal_force, speed=speed, shoe_angle=shoe_angle
         )
         return SoleInstant(state, self._law)
+
+    def settled(self, *, normal_force: float, speed: float) -> SoleInstant:
+        """Carry on at constant load and speed until nothing moves."""
+        return SoleInstant(self._sliding.settle(normal_force=normal_force, speed=speed), self._law)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from underfoot.core import Cache, ConvergenceError, Progress, SourcedValue, Status, silent
 
 from .fitting import ReducedFit, cof_table, design, fitted_reduced
-from .full_runs import ROOM, FullRun, full_runs
+from .kept_runs import ROOM, FullRun, full_runs
 from .motion import STEP, SlipMotion
 from .observation import ObservedSlip, Outcome, OutcomeLimits, observed
 from .reduced import ReducedSole
