@@ -18,6 +18,7 @@ SPIKE_HEIGHT = 1e-3
 """A single low cell stands out by at least this, m."""
 _SPIKE_CELLS = 3
 _WALL = 2.0  # rise over run: steeper is a wall
+_FAR_SIDE = 1.5e-3  # m above the next two cells
 _LEDGE = 1e-3  # m above what lies beside it
 _BESIDE = 2e-3  # m from its edge
 _MOST_LEDGE = 0.4  # of the plan form: more is no ledge
@@ -118,6 +119,14 @@ def without_ledges(
     from scipy.ndimage import find_objects, maximum_filter, minimum_filter
 
     inside = np.isfinite(height)
+    # over the last cells of the rim a body may show nothing but its far side
+    sliver = np.zeros_like(inside)
+    for part, step in ((land, _FAR_SIDE), (inside, max(_FAR_SIDE, 1.2 * channel_depth))):
+        lowest = minimum_filter(np.where(part, height, np.inf), 5)
+        last = rim(inside, 2) & part
+        sliver[last] |= height[last] - lowest[last] > step
+    height = np.where(sliver, np.nan, height)
+    inside, land = inside & ~sliver, land & ~sliver
     high = maximum_filter(np.where(inside, height, -np.inf), 3)
     low = minimum_filter(np.where(inside, height, np.inf), 3)
     even = land & (high - low <= max(_WALL * spacing, 0.3e-3))

@@ -290,7 +290,7 @@ def _surface(height: Array, spacing: float, name: str) -> tuple[SoleSurface, lis
     lugs = found.tread_depth[found.tread_depth > 0]
     deep = float(np.percentile(lugs, 90)) if lugs.size else 0.0
     height, cut_open, words = without_ledges(height, found.land, spacing, deep)
-    if words or cut_open.any():
+    if words or cut_open.any() or not np.isfinite(height[found.land]).all():
         found = tread_map(height, spacing, channels=cut_open)
     inside = np.isfinite(height)
     x = (np.arange(height.shape[0], dtype=np.float64) + 0.5) * spacing
@@ -298,7 +298,7 @@ def _surface(height: Array, spacing: float, name: str) -> tuple[SoleSurface, lis
     words.append(
         f"Channels are hollows of {found.level * 1e3:.2g} mm and more, narrower than 16 mm."
     )
-    if found.noise > 20e-6:
+    if found.noise > 10e-6:
         words.append(f"The heights carry noise of {found.noise * 1e6:.0f} um (standard deviation).")
     surface = SoleSurface(
         x=x,
