@@ -104,3 +104,16 @@ def test_trends_see_which_way_the_numbers_go():
     assert threshold.agrees
     even = WearSeries("x", "plane", 5.0, tuple(states([1, 5, 6, 7])), {}, ())
     assert trends(even)[2].agrees is False
+
+
+def test_the_patch_at_the_limit_is_measured_not_interpolated():
+    # no patch before the last tenth of the last step, though the last state has one
+    def state(part):
+        patch = max(part - 2.9, 0.0) * 1e-3
+        return WearMeasures(part * 1e-3, (3 - part) * 1e-3, 0, patch, 0, 0, 0)
+
+    between = [state(part) for part in np.linspace(0, 3, 31)]
+    loads = states([1, 1.1, 2, 20])
+    found = passing(loads, "fluid_load", 5.0, draws=1, seed=0, between=between)
+    assert 2e-3 < found.at["removed_depth"] < 2.9e-3
+    assert found.at["worn_patch_area"] == 0.0

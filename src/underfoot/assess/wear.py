@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from .wear_limit import Passing, passing
 
 if TYPE_CHECKING:
     from underfoot.case import Case
+    from underfoot.outsole.shape import SoleShape
     from underfoot.outsole.worn import WearMeasures
 
 MODES = ("archard", "plane", "patch")
@@ -23,6 +24,8 @@ BAND_INPUTS = ("interface.roughness_beyond_cutoff", "shoe.material.shore_a")
 """What the band of the limit is made of: the least known inputs that decide the film."""
 LARGEST_PATCH = 0.8
 """Largest patch of a series as a share of the heel's length and width."""
+PARTS = 6
+"""Parts of a step in which the wear is measured, to say how worn the sole is at the limit."""
 HEEL_PART = 0.25
 """Share of a whole sole's length that is its heel."""
 LONGEST_HEEL, WIDTH_OF_HEEL = 0.12, 0.65
@@ -161,13 +164,14 @@ def wear_series(
         own, *ends = found[number * each : (number + 1) * each]
         pairs = zip(inputs, ends[::2], ends[1::2], strict=True)
         points.append(WearPoint(state, own, tuple((one.path, a, b) for one, a, b in pairs)))
+    between = measures_between(case, cases, mode, deepest)
     return WearSeries(
         name=case.name,
         mode=mode,
         limit=limit,
         points=tuple(points),
         passings={
-            name: passing(points, name, limit, draws=draws, seed=seed)
+            name: passing(points, name, limit, draws=draws, seed=seed, between=between)
             for name in ("fluid_load", "fluid_load_sensor")
         },
         assumptions=_assumptions(cases[-1], mode, inputs),
@@ -220,6 +224,32 @@ def worn_cases(case: Case, mode: str, steps: int, deepest: float | None) -> list
             )
         )
     return cases
+
+
+def measures_between(
+    case: Case, cases: list[Case], mode: str, deepest: float | None
+) -> list[WearMeasures]:
+    """Return how worn the sole is from new to the end, in ``PARTS`` even parts of each step.
+
+    Between two states of Archard wear the removed thickness is taken as linear.
+    """
+    steps = len(cases) - 1
+    if mode != "archard":
+        return [_measures(worn) for worn in worn_cases(case, mode, steps * PARTS, deepest)]
+    from underfoot.case.build_sole import archard_state, new_sole
+    from underfoot.outsole.worn import WornMap, wear_measures
+
+    new = new_sole(cases[0])
+    maps = [archard_state(worn).worn for worn in cases[1:]]
+    removed = [np.zeros_like(maps[0].removed), *(worn.removed for worn in maps)]
+    found = []
+    for place in np.linspace(0, steps, steps * PARTS + 1):
+        before = min(int(place), steps - 1)
+        share = place - before
+        blend = (1 - share) * removed[before] + share * removed[before + 1]
+        worn = WornMap(maps[0].x, maps[0].y, blend)
+        found.append(wear_measures(cast("SoleShape", replace(cast("Any", new), wear=worn))))
+    return found
 
 
 def band_inputs(case: Case) -> list[OpenInput]:

@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
+    from underfoot.outsole.worn import WearMeasures
+
     from .wear import WearPoint
 
 Array = NDArray[np.float64]
@@ -40,7 +42,13 @@ class Passing:
 
 
 def passing(
-    points: Sequence[WearPoint], name: str, limit: float, *, draws: int, seed: int
+    points: Sequence[WearPoint],
+    name: str,
+    limit: float,
+    *,
+    draws: int,
+    seed: int,
+    between: Sequence[WearMeasures] = (),
 ) -> Passing:
     """Return where a number first rises above ``limit``.
 
@@ -48,11 +56,21 @@ def passing(
     by what the runs at one deviation moved it (linear to either side), and reads the place of the
     limit between two states on a scale somewhere between linear and logarithmic: that uncertainty
     is the interpolation's. Inputs are independent and the same at all states of a draw.
+    ``between`` holds how worn the sole is from the first state to the last in even parts: a patch
+    begins only where the tread ends, so that it can't be interpolated between far states.
     """
     known = [point for point in points if not math.isnan(point.outcome.number(name))]
-    measured = {
-        each: np.array([getattr(point.measures, each) for point in known]) for each in MEASURES
-    }
+    order = np.array(
+        [
+            number
+            for number, point in enumerate(points)
+            if not math.isnan(point.outcome.number(name))
+        ],
+        dtype=float,
+    )
+    states = list(between) or [point.measures for point in points]
+    parts = np.linspace(0, len(points) - 1, len(states))
+    measured = {each: np.array([getattr(state, each) for state in states]) for each in MEASURES}
     if len(known) < 2:
         nothing = dict.fromkeys(MEASURES, math.nan)
         return Passing("not determined", math.nan, nothing, dict(nothing), dict(nothing))
@@ -66,11 +84,13 @@ def passing(
         low, high = (_departure(known, index, name, end, centre) for end in (False, True))
         moved += np.maximum(deviate, 0)[:, None] * high - np.minimum(deviate, 0)[:, None] * low
     places = first_passing(moved, math.log(max(limit, LEAST)), rng.uniform(size=draws))
-    found = {each: _along(values, places) for each, values in measured.items()}
+    found = {each: _along(parts, values, order, places) for each, values in measured.items()}
     quantiles = {
         each: np.quantile(values, SHARES, method="nearest") for each, values in found.items()
     }
-    at = {each: float(_along(v, np.array([place]))[0]) for each, v in measured.items()}
+    at = {
+        each: float(_along(parts, v, order, np.array([place]))[0]) for each, v in measured.items()
+    }
     words = "passed"
     if math.isinf(place):
         words = "not passed within the range"
@@ -117,8 +137,9 @@ def _departure(
     return np.where(np.isnan(moved), 0.0, moved)
 
 
-def _along(values: Array, places: Array) -> Array:
-    """Return a measure at fractional states; beyond the range inf, or -inf if it falls."""
+def _along(parts: Array, values: Array, index: Array, places: Array) -> Array:
+    """Return a measure at fractional places among the known states; beyond them +-inf."""
     beyond = math.inf if values[-1] >= values[0] else -math.inf
     inside = np.where(np.isfinite(places), places, 0.0)
-    return np.where(np.isfinite(places), np.interp(inside, np.arange(values.size), values), beyond)
+    state = np.interp(inside, np.arange(index.size), index)
+    return np.where(np.isfinite(places), np.interp(state, parts, values), beyond)

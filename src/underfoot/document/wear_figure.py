@@ -68,12 +68,18 @@ def wear_figure(series: WearSeries) -> Figure:
     """Return three panels over wear: fluid load with its limit, peak pressure and COF."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(12.0, 4.2), layout="constrained")
+    figure = Figure(figsize=(12.0, 4.6), layout="constrained")
     load, peak, friction = figure.subplots(1, 3)
     place, label = _axis(series)
+    wears = zip(series.measured("tread_left"), series.measured("worn_patch_area"), strict=True)
+    words = [f"{left * 1e3:.2g} mm\n{patch * 1e6:.0f} mm²" for left, patch in wears]
+    top = load.secondary_xaxis("top")
+    top.set_xticks(place, words, fontsize=7)
+    top.set_xlabel("tread left where it is least, worn patch", fontsize=8)
     for axes in (load, peak, friction):
         axes.set_xlabel(label)
-        axes.spines[["top", "right"]].set_visible(False)
+        axes.spines["right"].set_visible(False)
+        axes.spines["top"].set_visible(axes is load)
     _curve(load, series, place, "fluid_load", "under the sole", FILM, 1.0)
     _curve(load, series, place, "fluid_load_sensor", "as floor sensors read it", SENSOR, 1.0)
     load.axhline(series.limit, color="0.4", linestyle="--", linewidth=1)
