@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from underfoot.friction import FrictionLaw
     from underfoot.outsole import SensorReading, SoleMap
     from underfoot.outsole.compliance import Compliance
+    from underfoot.outsole.cost import Cost
     from underfoot.outsole.sensor_array import ArrayReading
     from underfoot.outsole.sole_state import SoleState, SolverSettings
     from underfoot.outsole.solver import SoleContact
@@ -27,6 +28,31 @@ READ_STEPS = 24
 """Instants, spread over the time steps, at which the scans are read for a history."""
 READ_OFFSETS = 3
 """Lateral places over which such a reading is averaged."""
+
+
+def cost(case: Case, spacing: float) -> Cost:
+    """Return what solving the case on cells of ``spacing`` (m) will take."""
+    from underfoot.outsole.cost import solution_cost
+
+    if case.shoe.outsole.file is not None:
+        from .build_outsole import file_sole_map
+
+        area = file_sole_map(case, case.numerics.quick_grid_spacing).plan_area
+    else:
+        area = case.shoe.heel.length * case.shoe.heel.width
+    return solution_cost(area, spacing)
+
+
+def refuse_too_large(case: Case, spacing: float, where: str) -> None:
+    """Refuse a grid that would take more memory than the case allows."""
+    from underfoot.outsole.cost import refuse_too_large
+
+    refuse_too_large(
+        cost(case, spacing),
+        most_memory=case.numerics.most_memory,
+        where=where,
+        spacing=spacing,
+    )
 
 
 def solver_settings(case: Case) -> SolverSettings:

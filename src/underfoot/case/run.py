@@ -17,7 +17,7 @@ from underfoot.core import (
 )
 
 from . import build
-from .build_motion import Recorder, history_fields, scanned, solved_motion
+from .build_motion import Recorder, history_fields, refuse_too_large, scanned, solved_motion
 from .build_outsole import compression_breaches
 from .describe import assumptions
 from .result import Result
@@ -55,6 +55,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
 
     started = time.perf_counter()
     spacing = case.numerics.quick_grid_spacing if quick else case.numerics.grid_spacing
+    named = "numerics.quick_grid_spacing" if quick else "numerics.grid_spacing"
+    refuse_too_large(case, spacing, named)
     law = build.friction_law(case, case.catalogue)
     modulus, found = build.youngs_modulus(case)
     fluid = build.viscosity(case)

@@ -9,9 +9,6 @@ from .options import AsJson, CasePath, CatalogueFolders, Settings, loaded
 if TYPE_CHECKING:
     from underfoot.case import Case
 
-SECONDS_PER_CELL = (0.4e-3, 1.2e-3)
-"""Solution time of the example cases, untreaded to treaded, on one core of a small server."""
-
 
 def check(
     case: CasePath,
@@ -41,25 +38,21 @@ def check(
     print(composition(found))
     _listed("Assumed, with no measurement behind it", assumptions(found))
     _listed("Outside a tested range", tested_range_breaches(found))
-    print(f"\n{cost(found)}")
+    print(f"\n{cost_words(found)}")
 
 
-def cost(case: Case) -> str:
-    """Return what a run will take, in words."""
-    if case.shoe.outsole.file is not None:
-        from underfoot.case.build_outsole import file_sole_map
+def cost_words(case: Case) -> str:
+    """Return what a run will take, in words; a warning where it would be refused."""
+    from underfoot.case.build_motion import cost
+    from underfoot.outsole.cost import megabytes
 
-        area = file_sole_map(case, case.numerics.quick_grid_spacing).plan_area
-    else:
-        area = case.shoe.heel.length * case.shoe.heel.width
-    full = _estimate(area / case.numerics.grid_spacing**2)
-    quick = _estimate(area / case.numerics.quick_grid_spacing**2)
-    return f"Cost: {full} on one core; with --quick {quick}."
-
-
-def _estimate(cells: float) -> str:
-    low, high = (seconds * cells for seconds in SECONDS_PER_CELL)
-    return f"{cells:.0f} cells under the sole, about {low:.0f} to {high:.0f} s"
+    numerics = case.numerics
+    full, quick = cost(case, numerics.grid_spacing), cost(case, numerics.quick_grid_spacing)
+    words = f"Cost: {full}, on one core; with --quick {quick}."
+    if full.memory > numerics.most_memory:
+        limit = megabytes(numerics.most_memory)
+        words += f" Refused as it is: numerics.most_memory is {limit}."
+    return words
 
 
 def _listed(title: str, lines: list[str]) -> None:

@@ -122,7 +122,9 @@ def implicit_step(
     lean = None if dry else _lean(problem, old_gap)
     pressure = np.where(cells.mask, start.pressure, 0.0)
     approach = start.approach
-    gap = problem.gap(pressure, approach)
+    gap = start.gap
+    # a sole that rolls changes its clearance: Newton brings it in, or the guess cuts the floor
+    missing = problem.gap(pressure, approach) - gap
     attempt = Attempt(None, 0, 0)
     size = pattern.size
     unit = np.zeros((5, size))
@@ -156,7 +158,9 @@ def implicit_step(
             by_gap = np.where(cavitated, unit * stiffness, by_h / diagonal)
         shortage = load - float(pressure.sum()) * area
         wrong = float(np.abs(fluid[cavitated]).sum()) * area / load
+        lacking = pattern.gather(missing)
         error = max(imbalance, wrong, abs(shortage) / load, min(change, 1.0) * 0.1)
+        error = max(error, 0.01 * float(np.abs(lacking).max()) / problem.decay)
         attempt.residuals.append(error)
         tick(error)
         if error < problem.tolerance:
@@ -188,7 +192,7 @@ def implicit_step(
             out[-1] = vector[:-1].mean()
             return out
 
-        right = np.append(-residual, shortage / (size * area))
+        right = np.append(-residual - jacobian_h @ lacking, shortage / (size * area))
         # far from the solution an exact Newton step is wasted
         exact = problem.krylov_tolerance
         step, count, _ = krylov_solution(
@@ -199,11 +203,12 @@ def implicit_step(
         if not np.isfinite(step).all():
             break
         delta = pattern.scatter(step[:-1])
-        rise = problem.compliance.apply(delta) - step[-1]
+        rise = problem.compliance.apply(delta) - step[-1] + missing
         share = _step_share(problem, local_gap, pattern.gather(rise))
         pressure = pressure + share * delta
         approach += share * float(step[-1])
         gap = gap + share * rise
+        missing = (1 - share) * missing
         change = float(np.abs(delta).sum()) * area / load if share == 1.0 else np.inf
     return attempt
 
