@@ -119,10 +119,10 @@ def wear_page(series: WearSeries, picture: bytes) -> str:
 
     rows = []
     for point in series.points:
-        cells = [f"{getattr(point.measures, name) * scale:.3g}" for name, _, scale, _ in COLUMNS]
+        cells = [_short(getattr(point.measures, name) * scale) for name, _, scale, _ in COLUMNS]
         for name, _, scale, _ in NUMBERS:
             value = point.outcome.number(name) * scale
-            cells.append("not determined" if math.isnan(value) else f"{value:.3g}")
+            cells.append("not determined" if math.isnan(value) else _short(value))
         rows.append(cells)
     template = environment().get_template("wear.html")
     return template.render(
@@ -161,38 +161,35 @@ def wear_sentences(series: WearSeries) -> list[str]:
                 f"{_share(series, passing.passed)}."
             )
             continue
-        tread = _interval(
-            passing.at["tread_left"],
-            passing.low["tread_left"],
-            passing.high["tread_left"],
-            1e3,
-            "mm",
-        )
-        patch = _interval(
-            passing.at["worn_patch_area"],
-            passing.low["worn_patch_area"],
-            passing.high["worn_patch_area"],
-            1e6,
-            "mm2",
-        )
+        at, low, high = passing.at, passing.low, passing.high
+        tread = _interval(at["tread_left"], low["tread_left"], high["tread_left"], 1e3, "mm")
+        area = (at["worn_patch_area"], low["worn_patch_area"], high["worn_patch_area"])
+        patch = "no patch worn through yet"
+        if any(each > 0 for each in area):
+            patch = f"a worn patch of {_interval(*area, 1e6, 'mm2')}"
         found.append(
             f"{lead} passes {series.limit:g} N with {tread} of tread left at the most worn "
-            f"place and a worn patch of {patch}{_share(series, passing.passed)}."
+            f"place and {patch}{_share(series, passing.passed)}."
         )
     return found
+
+
+def _short(value: float) -> str:
+    """Return a number with three figures, whole where it is large."""
+    return f"{value:.0f}" if abs(value) >= 100 else f"{value:.3g}"
 
 
 def _interval(value: float, low: float, high: float, scale: float, unit: str) -> str:
     ends = []
     for end in (low, high):
-        ends.append("beyond the range" if math.isinf(end) else f"{end * scale:.3g}")
-    return f"{value * scale:.3g} {unit} (90 %: {ends[0]} to {ends[1]})"
+        ends.append("beyond the range" if math.isinf(end) else _short(end * scale))
+    return f"{_short(value * scale)} {unit} (90 %: {ends[0]} to {ends[1]})"
 
 
 def _share(series: WearSeries, passed: float) -> str:
     if not series.points[0].variants:
         return ""
-    return f"; {passed:.0%} of the draws pass it within the range"
+    return f"; {passed * 100:.0f} % of the draws pass it within the range"
 
 
 def _axis(series: WearSeries) -> tuple[NDArray[np.float64], str]:
