@@ -343,4 +343,4 @@ def test_five_million_faces_are_read(tmp_path):
     assert "noise of" in said(found)
     measures = tread_measures(found.surface)
     assert measures.land_ratio == pytest.approx(0.36, abs=0.01)
-    assert measures.channel_width[1] == pytest.approx(4e-3, abs=0.3e-3)
+    assert 4e-3 < measures.channel_width[1] < 4.5e-3  # wider where channels cross

@@ -98,8 +98,8 @@ def _rim_rise(height: Array) -> float:
     ring = inside & ~core
     if not core.any() or not ring.any():
         return 0.0
-    land = np.percentile(height[core], 20)
-    return float(np.median(height[ring]) - land)
+    # the same low percentile on both: a ring half of channels is no rim that turns up
+    return float(np.percentile(height[ring], 20) - np.percentile(height[core], 20))
 
 
 def toe_end(plan: Mask, settings: FileSettings) -> Found:
