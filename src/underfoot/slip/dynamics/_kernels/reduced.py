@@ -21,8 +21,11 @@ SMALLEST = 1e-7
 def _contact_pressure(h, p, p0, u):
     """Contact share of a mean pressure: p0 exp(-h/u), rounded off at p."""
     raw = p0 * math.exp(-h / u)
+    low, high = min(raw, p), max(raw, p)
+    if low <= 0.0:
+        return 0.0
     # smooth minimum: all the load at most, and never quite without film while film is there
-    return raw * p / (raw**4 + p**4) ** 0.25
+    return low / (1.0 + (low / high) ** 4) ** 0.25
 
 
 @njit(cache=True)
@@ -34,7 +37,7 @@ def _film_rate(h, v, p, lean, c, viscosity, pool):
     out = leak * h**3 * pf / (12.0 * viscosity)
     if v <= 0.0:
         return -out
-    drawn = c[WEDGE] * math.exp(c[WEDGE_ANGLE] * lean) * viscosity * v
+    drawn = max(c[WEDGE] * math.exp(c[WEDGE_ANGLE] * lean) * viscosity * v, 1e-30)
     height = 1.0 / (1.0 / pool + max(pf, 0.0) / drawn)
     return -out + 0.5 * v / c[LENGTH] * (height - h)
 
