@@ -101,7 +101,7 @@ def test_dry_contact_is_unilateral_and_carries_the_load(treaded):
 
 
 def test_treaded_sole_by_solver_and_by_finite_elements(treaded):
-    """Dry contact of four lugs: the solver against finer direct elements with a solver of their own.
+    """Dry contact of four lugs: the solver against finer direct elements, solved on their own.
 
     The layers are 14 % too stiff on so small a sole (lugs stand on rubber, not on a rigid base);
     on a heel of 60 mm they are within 1 % (docs/physics/sole_compliance.md).

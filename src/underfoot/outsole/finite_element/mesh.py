@@ -15,6 +15,8 @@ from underfoot.core import InputError
 from .plan import Plan
 
 Array = NDArray[np.float64]
+SNAP = 0.125
+"""Share of a cell to which corners of the plan are rounded; the cells' own corners stay."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +132,7 @@ def _triangulation(
         size = element if near and (is_land or len(plan.land) > 1) else far_element
         geometry.SetDomainMaxH(domain, 1e3 * size)
         for index, ring in enumerate((polygon.exterior, *polygon.interiors)):
-            corners = [(round(1e3 * px, 7), round(1e3 * py, 7)) for px, py in ring.coords[:-1]]
+            corners = [(round(1e3 * px, 6), round(1e3 * py, 6)) for px, py in ring.coords[:-1]]
             if ring.is_ccw != (index == 0):
                 corners.reverse()  # the piece lies to the left of its rings
             for corner in corners:
@@ -144,11 +146,15 @@ def _triangulation(
                     sides[start, end] = {"leftdomain": domain, "rightdomain": 0}
     for (start, end), domains in sides.items():
         geometry.Append(["line", start, end], **domains)
-    mesh = geometry.GenerateMesh(
-        mp=import_module("netgen.meshing").MeshingParameters(
-            maxh=1e3 * far_element, grading=0.4, quad_dominated=False
-        )
-    )
+    wanted = import_module("netgen.meshing").MeshingParameters(maxh=1e3 * far_element, grading=0.4)
+    try:
+        mesh = geometry.GenerateMesh(mp=wanted)
+    except Exception as error:  # netgen's own exception has no public name
+        raise InputError(
+            "the plan form can't be meshed",
+            where="models.compliance",
+            remedy='Change numerics.grid_spacing a little, or use models.compliance = "layered"',
+        ) from error
     points = np.array([tuple(point.p)[:2] for point in mesh.Points()]) * 1e-3
     elements = mesh.Elements2D()
     triangles = np.array([[v.nr - 1 for v in e.vertices] for e in elements], dtype=np.int64)
@@ -166,7 +172,8 @@ def _pieces(plan: Plan) -> list[tuple[Any, bool]]:
     import shapely
 
     everything = [*plan.land, *plan.channels]
-    grid = 1e-8  # m; corners closer than this are one
+    # corners closer than this become one: slivers at the rim can't be meshed
+    grid = SNAP * float(plan.x[1] - plan.x[0])
     lines = shapely.union_all(
         [shapely.set_precision(p.boundary, grid) for p in everything], grid_size=grid
     )
