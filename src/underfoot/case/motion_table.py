@@ -99,11 +99,12 @@ def read_motion_table(path: Path, where: str) -> list[dict[str, str]]:
                 where=where,
                 allowed="a number",
             )
-    if not found["time"].size:
-        raise InputError(f"{path.name} has no rows", where=where, allowed="two points or more")
+    count = found["time"].size
+    if count < 2:
+        raise InputError(f"{path.name} has {count} rows", where=where, allowed="2 or more")
     return [
         {name: f"{values[row]:.12g} {COLUMNS[name][0]}" for name, values in found.items()}
-        for row in range(found["time"].size)
+        for row in range(count)
     ]
 
 

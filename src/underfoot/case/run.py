@@ -20,12 +20,14 @@ from . import build
 from .build_motion import Recorder, history_fields, refuse_too_large, scanned, solved_motion
 from .build_outsole import compression_breaches
 from .describe import assumptions
+from .grid_error import grid_errors, grid_words, readings, with_grid_errors
 from .result import Result
 from .scalars import regime, scalars, spread_origin, undetermined
 
 if TYPE_CHECKING:
     import xarray
 
+    from underfoot.asperity.law import PressureGapLaw
     from underfoot.outsole import SensorReading, SoleMap
     from underfoot.outsole.solver import SoleContact
 
@@ -108,8 +110,16 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
         if usable
         else (undetermined(case, contact.status), None)
     )
+    labels = {**regime(contact), **spread_origin(sampled)} if usable else {}
     if usable:
         numbers |= recorder.array_scalars()
+        coarse_spacing = case.numerics.quick_grid_spacing
+        if case.numerics.grid_check and not quick and coarse_spacing > spacing:
+            coarse = _readings_on(case, coarse_spacing, modulus.value, asperities, fluid, progress)
+            if coarse is not None:
+                errors = grid_errors(readings(contact, sensor), coarse, coarse_spacing / spacing)
+                numbers = with_grid_errors(numbers, errors)
+                labels["grid_error"] = grid_words(numbers, errors, spacing, coarse_spacing)
     found = [
         *found,
         *sole.breaches,
@@ -124,7 +134,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
     return Result(
         name=case.name,
         scalars=numbers,
-        labels={**regime(contact), **spread_origin(sampled)} if usable else {},
+        labels=labels,
         fields=_fields(
             sole,
             contact,
@@ -154,6 +164,27 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
         ),
         case_text=case.to_toml(complete=True),
     )
+
+
+def _readings_on(
+    case: Case,
+    spacing: float,
+    modulus: float,
+    asperities: PressureGapLaw,
+    fluid: SourcedValue | None,
+    progress: Progress,
+) -> dict[str, float] | None:
+    """Return the readings of the case on another grid; None where that did not converge."""
+    sole = build.sole_map(case, spacing)
+    contact = solved_motion(
+        case,
+        sole,
+        build.compliance(case, sole, modulus),
+        asperities,
+        viscosity=None if fluid is None else fluid.value,
+        progress=progress,
+    )
+    return readings(contact, scanned(case, sole, contact)) if contact.status.usable else None
 
 
 def _closures(

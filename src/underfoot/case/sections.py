@@ -244,6 +244,9 @@ class Numerics(Section):
         0, 0, "of the draws behind the intervals; the same seed gives the same numbers"
     )
     tolerance: Tolerance = default(1e-4, 1e-4, "relative imbalance of volume and load")
+    grid_check: Annotated[bool, Field(strict=True)] = default(
+        False, False, "one grid; true solves the quick one too and estimates the grid's error"
+    )
     most_memory: Annotated[float, Quantity("B", 2e8, 1e13)] = default(
         2e9, "2 GB", "a run that would take more is refused before it starts"
     )
