@@ -24,6 +24,8 @@ BAND_INPUTS = ("interface.roughness_beyond_cutoff", "shoe.material.shore_a")
 """What the band of the limit is made of: the least known inputs that decide the film."""
 LARGEST_PATCH = 0.8
 """Largest patch of a series as a share of the heel's length and width."""
+BEYOND_TREAD = 1.6
+"""Thickness lost at the end of an Archard series in depths of the tread."""
 PARTS = 6
 """Parts of a step in which the wear is measured, to say how worn the sole is at the limit."""
 HEEL_PART = 0.25
@@ -107,7 +109,8 @@ def wear_series(
         Number of worn states.
     deepest
         Thickness lost at the end, m (archard, plane); area of the patch at the end, m^2 (patch).
-        By default the depth of the tread, and a patch of 0.8 of the heel's length and width.
+        By default the depth of the tread (plane), 1.6 times that (archard: a single place is worn
+        through first), and a patch of 0.8 of the heel's length and width.
     limit
         Fluid load, N; by default 5 N, the report's limit of detection (G.4).
     band
@@ -205,8 +208,10 @@ def worn_cases(case: Case, mode: str, steps: int, deepest: float | None) -> list
                 )
             )
         return cases
-    end = depth if deepest is None else deepest
     thickness = case.shoe.sole.outsole_thickness
+    end = depth if deepest is None else deepest
+    if deepest is None and mode == "archard":
+        end = min(BEYOND_TREAD * depth, (depth + thickness) / 2)
     if not 0 < end < thickness:
         raise InputError(
             f"wear of {display(end, 'm')} is deeper than the sole",
