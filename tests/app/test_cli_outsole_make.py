@@ -72,6 +72,13 @@ def test_case_and_outsole_file_describe_the_same_sole(path):
     assert new_sole(Case.load(path)) == read_outsole(spec).shape()
 
 
+def test_the_outsole_file_of_the_guide_is_the_shipped_one(tmp_path):
+    guide = (OUTSOLES.parents[1] / "docs" / "guide" / "parametric_soles.md").read_text()
+    path = tmp_path / "guide.toml"
+    path.write_text(guide.split("```toml\n")[1].split("```")[0])
+    assert read_outsole(path).shape() == read_outsole(OUTSOLES / "heel_hexagons.toml").shape()
+
+
 def test_outsole_file_tells_where_it_is_wrong(tmp_path):
     path = tmp_path / "sole.toml"
     path.write_text('[tread]\npattern = "bars"\nlug_widht = "5 mm"\n')
