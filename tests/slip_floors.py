@@ -45,7 +45,7 @@ def walker(history: GaitHistory, rcof: float, **changes) -> Walker:
 
 def slippery_sole() -> ReducedSole:
     """Constants of the size that fits to untreaded soles in glycerol give."""
-    c = np.array([1.5e-3, 0.4, 0.0, 2e6, 2e-5, 1e5, 0.0, 100.0, 0.0, 0.05, 1e-4, 1.0])
+    c = np.array([1.5e-3, 0.4, 0.0, 2e6, 2e-5, 1e5, 0.0, 100.0, 0.0, 0.05, 1e-4, 1.0, 0.0, 0.0])
     assert c.size == kernel.COUNT
     speeds = np.linspace(0, 10, 50)
     return ReducedSole(c, 0.219, 6e-4, np.radians(10), speeds, 0.1 + 0.2 * np.exp(-speeds))

@@ -72,7 +72,7 @@ def test_film_of_the_reduced_model_squeezes_as_h_over_root_of_time():
     constants = np.ones(kernel.COUNT)
     constants[[kernel.AREA, kernel.AREA_POWER, kernel.AREA_ANGLE]] = 1e-3, 0.0, 0.0
     constants[kernel.STIFFNESS], constants[kernel.DECAY] = 1e-30, 1e-6  # no contact
-    constants[[kernel.LEAK_ANGLE, kernel.WEDGE_ANGLE]] = 0.0
+    constants[[kernel.LEAK_ANGLE, kernel.WEDGE_ANGLE]] = 0.0  # the angle stays at its middle
     constants[kernel.LEAK], constants[kernel.START] = 1e5, 50e-6
     times = np.linspace(0, 0.3, 601)
     load = np.full(times.size, 500.0)
@@ -90,7 +90,7 @@ def test_wedge_holds_the_film_that_its_inlet_draws_in():
     constants = np.ones(kernel.COUNT)
     constants[[kernel.AREA, kernel.AREA_POWER, kernel.AREA_ANGLE]] = 1e-3, 0.0, 0.0
     constants[kernel.STIFFNESS], constants[kernel.DECAY] = 1e-30, 1e-6
-    constants[[kernel.LEAK_ANGLE, kernel.WEDGE_ANGLE]] = 0.0
+    constants[[kernel.LEAK_ANGLE, kernel.WEDGE_ANGLE]] = 0.0  # the angle stays at its middle
     constants[[kernel.LEAK, kernel.START, kernel.WEDGE, kernel.LENGTH]] = 1e-9, 50e-6, 30.0, 0.03
     times = np.linspace(0, 3.0, 3001)
     load, zero, speed = (np.full(times.size, v) for v in (500.0, 0.0, 0.5))

@@ -88,7 +88,7 @@ def test_on_a_dry_floor_both_models_agree(wet):
     setting = slip_setting(case)
     walker = slip_population(case).walker(0)
     full = slip_motion(walker, SoleFoot(setting, walker.shoe_angle), step=STEP)
-    constants = np.ones(12)
+    constants = np.ones(14)
     reduced = ReducedSole(constants, None, 1e-3, 0.0, *cof_table(setting.friction, 3e5))
     fast = reduced.motion(walker, step=STEP)
     assert np.abs(full.speed - fast.speed[: full.speed.size]).max() < 2e-3 * full.speed.max()

@@ -87,7 +87,8 @@ def slip_rows(study: SlipStudy) -> list[Row]:
             Row(
                 "Reduced model against full runs it did not see",
                 f"± {error.peak_speed:.2g} m/s",
-                str(error),
+                f"{error}; on those it was fitted to, reaching further out: "
+                f"± {study.fit.fitted.peak_speed:.2g} m/s",
             )
         )
         if study.pressure_error is not None:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 SPEED_SCALE = 0.2  # m/s, the report's slip threshold: an error of that size weighs one
 POINTS = 60
+SIGNED = (kernel.LEAK_ANGLE, kernel.WEDGE_ANGLE, kernel.LEAK_BEND, kernel.WEDGE_BEND)
 # factors on the first guess; the first start is the guess itself
 STARTS = ((1.0, 1.0, 1.0), (0.3, 1.0, 3.0), (3.0, 0.5, 0.5), (1.0, 2.0, 0.3))
 FIRST_LOOK, POLISH = 8, 40  # evaluations of the slope from each start, and from the best
@@ -60,7 +61,7 @@ class ReducedFit:
 
 
 def design(population: Population, count: int, seed: int = 7) -> tuple[Walker, ...]:
-    """Return walkers that span a population twice as wide as itself, by a Latin hypercube."""
+    """Return walkers that span a population to two standard deviations, by a Latin hypercube."""
     from scipy.stats import norm
 
     names = ("mass", "rcof", "walking_speed", "heel_speed", "shoe_angle")
@@ -72,7 +73,7 @@ def design(population: Population, count: int, seed: int = 7) -> tuple[Walker, .
         values = {}
         for name, share in zip(names, row, strict=False):
             spread: Spread = getattr(population, name)
-            # 5 to 95 % of a normal twice as wide
+            # normal between its 5 and 95 %, stretched to two standard deviations
             at = spread.mean + 2 * spread.sd * float(norm.ppf(0.05 + 0.9 * share)) / 1.645
             values[name] = float(np.clip(at, spread.low, spread.high))
         pick = population.histories[int(row[-1] * len(population.histories))]
@@ -132,14 +133,14 @@ def fitted_reduced(
     side = math.sqrt(area[0])
     guess = np.array([
         *area, 5 * mean_pressure, 0.5 * _gap_decay(setting), 12 * 2.4 / side**2, 0.0, 30.0, 0.0,
-        side, max(setting.settings.start_film, 2e-6), 1.0,
+        side, max(setting.settings.start_film, 2e-6), 1.0, 0.0, 0.0,
     ])  # fmt: skip
     if setting.viscosity is None:
         sole = replace(blank, constants=guess)
         return ReducedFit(sole, error_of(sole, runs), error_of(sole, held_out), ())
     low, high = _bounds(guess)
     free = [i for i in range(kernel.COUNT) if i > kernel.AREA_ANGLE]
-    signed = [i in (kernel.LEAK_ANGLE, kernel.WEDGE_ANGLE) for i in free]
+    signed = [i in SIGNED for i in free]
 
     def constants(z: Array) -> Array:
         out = guess.copy()
@@ -253,6 +254,7 @@ def _bounds(guess: Array) -> tuple[Array, Array]:
     low[kernel.LENGTH], high[kernel.LENGTH] = guess[kernel.LENGTH] / 30, guess[kernel.LENGTH] * 30
     low[kernel.START], high[kernel.START] = 1e-6, 6e-4
     low[kernel.SHEAR], high[kernel.SHEAR] = 0.05, 20.0
-    for i in (kernel.LEAK_ANGLE, kernel.WEDGE_ANGLE):
-        low[i], high[i] = -40.0, 40.0
+    for i in SIGNED:
+        most = 400.0 if i in (kernel.LEAK_BEND, kernel.WEDGE_BEND) else 40.0
+        low[i], high[i] = -most, most
     return low, high

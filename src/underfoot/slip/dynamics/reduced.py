@@ -23,21 +23,36 @@ Array = NDArray[np.float64]
 STEP = 0.5e-3
 NAMES = (
     "area", "area_power", "area_angle", "stiffness", "decay", "leak", "leak_angle", "wedge",
-    "wedge_angle", "length", "start_film", "shear",
+    "wedge_angle", "length", "start_film", "shear", "leak_bend", "wedge_bend",
 )  # fmt: skip
-UNITS = ("m^2", "1", "1/rad", "Pa", "m", "1/m^2", "1/rad", "1", "1/rad", "m", "m", "1")
+UNITS = (
+    "m^2",
+    "1",
+    "1/rad",
+    "Pa",
+    "m",
+    "1/m^2",
+    "1/rad",
+    "1",
+    "1/rad",
+    "m",
+    "m",
+    "1",
+    "1/rad^2",
+    "1/rad^2",
+)
 TABLE_SPEEDS = np.concatenate([[0.0], np.geomspace(LOWEST_SPEED, 10.0, 96)])
 
 
 @dataclass(frozen=True, slots=True)
 class ReducedSole:
-    """One sole on one floor with one fluid, in twelve constants.
+    """One sole on one floor with one fluid, in fourteen constants.
 
     p = F / A,  A = area (F / 500 N)^area_power,  p_c = stiffness exp(-h / decay) (at most p)
     dh/dt = -leak h^3 p_f / (12 eta) + V / (2 length) (h_w - h),  p_f = p - p_c
     1 / h_w = 1 / pool + p_f / (wedge eta V),  FF = COF(V) p_c A + shear eta V A / h
 
-    A carries exp(area_angle a), leakage and wedge their own such factor, a the shoe angle against
+    A carries exp(area_angle a), leakage and wedge exp(angle a + bend a^2), a the shoe angle against
     ``shoe_angle``. ``speeds``, ``cofs`` tabulate the contact's friction over pressure.
     """
 
@@ -50,7 +65,7 @@ class ReducedSole:
 
     def __post_init__(self) -> None:
         if self.constants.shape != (kernel.COUNT,) or not np.isfinite(self.constants).all():
-            raise InputError("twelve finite constants are wanted", where="reduced.constants")
+            raise InputError("fourteen finite constants are wanted", where="reduced.constants")
 
     def motion(self, walker: Walker, *, step: float = STEP) -> SlipMotion:
         """Return the slip of a walker (see ``motion.slip_motion`` for the rules)."""

@@ -15,7 +15,7 @@ from .fitting import ReducedFit, cof_table, design, fitted_reduced
 from .kept_runs import ROOM, FullRun, full_runs
 from .motion import STEP, SlipMotion
 from .observation import ObservedSlip, Outcome, OutcomeLimits, observed
-from .reduced import ReducedSole
+from .reduced import NAMES, ReducedSole
 from .sensors import PressureShape, SensorArray, array_pressures, pressure_shape
 from .sole_contact import Setting
 from .walker import Population, Walker
@@ -277,7 +277,7 @@ def _dry_study(
 ) -> SlipStudy:
     """Without fluid friction depends on load and speed alone: the reduced model is exact."""
     speeds, cofs = cof_table(setting.friction, 3e5)
-    constants = np.ones(12)
+    constants = np.ones(len(NAMES))
     constants[[1, 2]] = 0.0
     sole = ReducedSole(constants, None, 1e-3, setting.shoe_angle, speeds, cofs)
     subjects = [

@@ -11,7 +11,8 @@ from numba import njit
 AREA, AREA_POWER, AREA_ANGLE = 0, 1, 2
 STIFFNESS, DECAY, LEAK, LEAK_ANGLE = 3, 4, 5, 6
 WEDGE, WEDGE_ANGLE, LENGTH, START, SHEAR = 7, 8, 9, 10, 11
-COUNT = 12
+LEAK_BEND, WEDGE_BEND = 12, 13  # how leakage and wedge bend with the angle
+COUNT = 14
 REFERENCE_LOAD = 500.0
 GAMMA = 1.0 - 1.0 / math.sqrt(2.0)
 SMALLEST = 1e-7
@@ -33,11 +34,12 @@ def _film_rate(h, v, p, lean, c, viscosity, pool):
     """Rate of the mean film height: leakage under its pressure, inflow by the wedge."""
     pc = _contact_pressure(h, p, c[STIFFNESS], c[DECAY])
     pf = p - pc
-    leak = c[LEAK] * math.exp(c[LEAK_ANGLE] * lean)
+    leak = c[LEAK] * math.exp(c[LEAK_ANGLE] * lean + c[LEAK_BEND] * lean**2)
     out = leak * h**3 * pf / (12.0 * viscosity)
     if v <= 0.0:
         return -out
-    drawn = max(c[WEDGE] * math.exp(c[WEDGE_ANGLE] * lean) * viscosity * v, 1e-30)
+    growth = math.exp(c[WEDGE_ANGLE] * lean + c[WEDGE_BEND] * lean**2)
+    drawn = max(c[WEDGE] * growth * viscosity * v, 1e-30)
     height = 1.0 / (1.0 / pool + max(pf, 0.0) / drawn)
     return -out + 0.5 * v / c[LENGTH] * (height - h)
 
