@@ -1,14 +1,18 @@
 """Where a load passes a limit, on loads made up with a known answer."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from underfoot.assess.wear import WearPoint, WearSeries
+from underfoot.assess.wear import WearPoint, WearSeries, worn_cases
 from underfoot.assess.wear_limit import first_passing, passing
 from underfoot.assess.wear_trends import trends
+from underfoot.case import Case
 from underfoot.outsole.worn import WearMeasures
+
+OUTSOLES = Path(__file__).parents[2] / "examples" / "outsoles"
 
 
 class Loads:
@@ -117,3 +121,19 @@ def test_the_patch_at_the_limit_is_measured_not_interpolated():
     found = passing(loads, "fluid_load", 5.0, draws=1, seed=0, between=between)
     assert 2e-3 < found.at["removed_depth"] < 2.9e-3
     assert found.at["worn_patch_area"] == 0.0
+
+
+def test_worn_cases_keep_what_the_case_says_of_its_wear():
+    case = Case.load(OUTSOLES / "heel_hexagons_glycerol.toml")
+    plain = worn_cases(case, "archard", 2, None)
+    assert [round(each.shoe.wear.depth * 1e3, 3) for each in plain] == [0, 2, 4]
+    assert plain[-1].shoe.wear.angle == pytest.approx(case.motion.shoe_angle)
+    own = case.replace({"shoe.wear.angle": "14 deg", "shoe.wear.angle_range": "6 deg"})
+    worn = worn_cases(own, "archard", 2, 1e-3)[-1].shoe.wear
+    assert worn.angle == pytest.approx(math.radians(14))
+    assert worn.angle_range == pytest.approx(math.radians(6))
+    areas = [
+        each.shoe.wear.patch_length * each.shoe.wear.patch_width * math.pi / 4
+        for each in worn_cases(case, "patch", 4, 1e-3)[1:]
+    ]
+    assert areas == pytest.approx([0.25e-3, 0.5e-3, 0.75e-3, 1e-3])

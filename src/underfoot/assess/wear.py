@@ -187,8 +187,7 @@ def worn_cases(case: Case, mode: str, steps: int, deepest: float | None) -> list
     angle = case.shoe.wear.angle
     if "shoe.wear.angle" not in case.origins or case.origins["shoe.wear.angle"].kind == "default":
         angle = max(case.motion.shoe_angle, 0.0)
-    new = case.replace("shoe.wear", None) if "shoe.wear" in case.to_toml() else case
-    new = new.replace("shoe.wear.depth", "0 mm")
+    new = case.replace("shoe.wear.depth", "0 mm")
     cases = [new]
     share = np.arange(1, steps + 1) / steps
     if mode == "patch":
