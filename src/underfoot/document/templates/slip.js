@@ -79,7 +79,7 @@
       const most = 1.15 * Math.max(...values.flat(), g ? 10 : 0.25), least = Math.min(0, 1.1 * Math.min(...values.flat()));
       line([[x, y0 - h], [x, y0], [x + w, y0]], ink("--line"), 1.5);
       const zero = y0 - (0 - least) / (most - least) * h; line([[x, zero], [x + w, zero]], ink("--line"), 1);
-      text(most.toPrecision(2), x - 6, y0 - h + 8, ink("--soft"), "right", 12); text("0", x - 6, zero + 4, ink("--soft"), "right", 12);
+      text(most.toFixed(most < 10 ? 1 : 0), x - 6, y0 - h + 8, ink("--soft"), "right", 12); text("0", x - 6, zero + 4, ink("--soft"), "right", 12);
       text(unit, x - 6, y0 - h + 24, ink("--soft"), "right", 12);
       text("0", x, y0 + 18, ink("--soft"), "center", 12); text(`${(1000 * d.time[n - 1]).toFixed(0)} ms`, x + w, y0 + 18, ink("--soft"), "right", 12);
       if (!g) { curve(d.speed, most, least, x, y0, w, h, ink("--accent"), i, "heel speed", 0);
