@@ -35,6 +35,7 @@ Mask = NDArray[np.bool_]
 SMALLEST_GAP = 2e-7  # m; the flow sees no thinner film (the pressure law does)
 STALL = 12  # Newton steps without halving the residual after which a shorter time step is tried
 STALE = 10  # GMRES iterations above which the next Newton step gets a new factorization
+NEAR = 0.3  # share to which the last Newton step must have brought the residual for that
 FORCING = 0.3  # share of the residual to which GMRES solves, once the residual is small
 THIN = 2e-4  # m; steps are limited where the film is thinner
 
@@ -177,7 +178,8 @@ def implicit_step(
         if iteration == problem.most_newton or _hopeless(attempt.residuals):
             break
 
-        if solve is None or count > STALE:
+        near = len(attempt.residuals) > 1 and error < NEAR * attempt.residuals[-2]
+        if solve is None or count > STALE or not near:
             try:
                 solve = cells.preconditioner.factorise(by_pressure, by_gap, problem.backend)
             except ConvergenceError:
