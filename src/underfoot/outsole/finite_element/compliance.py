@@ -55,12 +55,12 @@ class FiniteElementCompliance:
         self._self = np.maximum(own + (1 - covered) ** 2 * plain, 0.05 * plain)
 
     def _diagonal(self, matrix: Array, shape: tuple[int, ...]) -> Array:
-        left = np.zeros(self._hats.shape[0])
-        rows, columns = self._hats.nonzero()
-        at = np.split(columns, np.searchsorted(rows, np.arange(1, left.size)))
-        for place in np.unique(rows):
-            nodes = at[place]
-            weight = np.asarray(self._hats[place, nodes].todense()).ravel()
+        """Return the diagonal of H M H^T as a map; H has its rows in CSR order."""
+        starts, columns, values = self._hats.indptr, self._hats.indices, self._hats.data
+        left = np.zeros(starts.size - 1)
+        for place in np.flatnonzero(np.diff(starts)):
+            nodes = columns[starts[place] : starts[place + 1]]
+            weight = values[starts[place] : starts[place + 1]]
             left[place] = weight @ matrix[np.ix_(nodes, nodes)] @ weight
         return left.reshape(shape)
 
@@ -240,7 +240,7 @@ def sole_land(
 
 def hats_on_cells(land: LandCompliance, sole: SoleMap, reach: float = REACH) -> sp.csr_matrix:
     """Return the value of each hat at each cell centre, (nx ny, n); 0 beyond ``reach`` (m)."""
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
     cell = sole.spacing
     corners = land.nodes[land.triangles]
@@ -270,7 +270,7 @@ def hats_on_cells(land: LandCompliance, sole: SoleMap, reach: float = REACH) -> 
     left = np.argwhere(sole.land & (sole.clearance < reach) & np.isneginf(taken))
     if len(left):
         places = np.column_stack([sole.x[left[:, 0]], sole.y[left[:, 1]]])
-        _, nearest = cKDTree(land.nodes).query(places)
+        _, nearest = KDTree(land.nodes).query(places)
         for (at, to), node in zip(left, np.atleast_1d(nearest), strict=True):
             best[int(at * ny + to)] = (np.full(3, node), np.full(3, 1 / 3))
     for place, (nodes, share) in best.items():

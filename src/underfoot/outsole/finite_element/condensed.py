@@ -106,7 +106,7 @@ def _by_solves(matrix: sp.csr_matrix, kept: NDArray[np.int64]) -> Array:
         right = np.zeros((matrix.indptr.size - 1, part.size))
         right[part, np.arange(part.size)] = 1.0
         inverse[:, first : first + part.size] = factors.solve(right)[kept]
-    return np.linalg.inv(inverse)
+    return np.asarray(np.linalg.inv(inverse), dtype=float)
 
 
 def _singular() -> ConvergenceError:

@@ -93,7 +93,8 @@ def land_compliance(
     surface = condensed(stiffness, kept)
     progress("Condensing the sole to its land", 0.9)
     factor = cho_factor(surface, overwrite_a=True)
-    work = right[kept].T @ cho_solve(factor, sp.csr_matrix(right[kept]).toarray())
+    carried = sp.csr_matrix(right[kept]).toarray()
+    work = carried.T @ cho_solve(factor, carried)
     return LandCompliance(
         coordinates[vertices, :2],
         coordinates[vertices, 2],
