@@ -102,7 +102,7 @@ def land_compliance(
         0.5 * (work + work.T),
         area,
         overlap,
-        stiffness.shape[0],
+        int(stiffness.indptr.size) - 1,
     )
 
 
