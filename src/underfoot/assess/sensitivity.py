@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from underfoot.core import Progress, display, silent
@@ -20,7 +20,8 @@ class OpenInput:
     """An input that was assumed, with the spread that its reason leaves.
 
     ``deviation`` is a standard deviation in SI, or the factor of one when ``ratio`` is true;
-    ``low`` and ``high`` bound what is tried.
+    ``low`` and ``high`` bound what is tried. ``along`` are lengths that keep their ratio to it.
+    With ``only_assumed`` it counts as open only where the case's value is marked as assumed.
     """
 
     path: str
@@ -29,6 +30,8 @@ class OpenInput:
     ratio: bool = False
     low: float = -math.inf
     high: float = math.inf
+    along: tuple[str, ...] = ()
+    only_assumed: bool = False
 
     def ends(self, value: float) -> tuple[float, float]:
         """Return the values one standard deviation below and above, within the bounds."""
@@ -48,6 +51,17 @@ OPEN_INPUTS = (
     ),
     OpenInput("shoe.heel.facet_length", 5e-3, "not printed in the report", low=2e-3),
     OpenInput("shoe.heel.edge_radius", 1e-3, "not printed in the report", low=0.0),
+    OpenInput(
+        "shoe.heel.width",
+        3e-3,
+        "heels of one size are 65 to 75 mm wide",
+        low=20e-3,
+        along=("shoe.heel.rear_radius",),
+        only_assumed=True,
+    ),
+    OpenInput("shoe.tread.lug_width", 1e-3, "not printed", low=1e-3, only_assumed=True),
+    OpenInput("shoe.tread.arc_channel.position", 3e-3, "not printed", low=5e-3, only_assumed=True),
+    OpenInput("shoe.tread.arc_channel.width", 1e-3, "not printed", low=1e-3, only_assumed=True),
     OpenInput("shoe.sole.outsole_thickness", 5e-3, "not printed in the report", low=5e-3),
     OpenInput(
         "shoe.material.shore_a",
@@ -172,13 +186,15 @@ def open_inputs(case: Case, inputs: Sequence[OpenInput] = OPEN_INPUTS) -> list[O
     for one in inputs:
         if one.path in aside or case.value(one.path) is None:
             continue
+        if one.only_assumed and not case.sourced(one.path).assumed:
+            continue
         if one.path == "interface.roughness_beyond_cutoff" and case.interface.effective_rq:
             continue
         if one.path == "shoe.material.shore_a" and case.shoe.material.modulus is not None:
             continue
         own = case.sourced(one.path).uncertainty
         if own:
-            one = OpenInput(one.path, own, "its stated uncertainty", low=one.low, high=one.high)
+            one = replace(one, deviation=own, reason="its stated uncertainty", ratio=False)
         found.append(one)
     return found
 
@@ -193,12 +209,20 @@ def variants(
     for one in open_inputs(case) if inputs is None else inputs:
         low, high = one.ends(float(case.value(one.path)))
         unit = unit_at(one.path)
-        at_low, at_high = (
-            case.replace(one.path, value if unit == "1" else f"{value!r} {unit}")
-            for value in (low, high)
-        )
+        at_low, at_high = (_at(case, one, value, unit) for value in (low, high))
         found.append((one, low, high, at_low, at_high))
     return found
+
+
+def _at(case: Case, one: OpenInput, value: float, unit: str) -> Case:
+    """Return the case with an open input at a value, and what goes along with it."""
+    from underfoot.case.case import unit_at
+
+    settings: dict[str, object] = {one.path: value if unit == "1" else f"{value!r} {unit}"}
+    ratio = value / float(case.value(one.path))
+    for path in one.along:
+        settings[path] = f"{ratio * float(case.value(path))!r} {unit_at(path)}"
+    return case.replace(settings)
 
 
 def sensitivity(
