@@ -12,7 +12,7 @@ from .verdict import Erratum, Verdict
 
 @dataclass(frozen=True, slots=True)
 class PinLine:
-    """One printed or wanted statement beside ours."""
+    """One printed or wanted statement beside ours; ``difference`` is ours against printed."""
 
     quantity: str
     source: str
@@ -20,6 +20,7 @@ class PinLine:
     ours: str
     verdict: Verdict
     reason: str
+    difference: str = ""
 
 
 @dataclass(frozen=True, slots=True)

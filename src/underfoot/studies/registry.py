@@ -36,6 +36,18 @@ STUDIES: tuple[Study, ...] = (
         "final progress report on shoe-floor friction, G.3",
         "underfoot.studies.g3",
     ),
+    Study(
+        "g5",
+        "Fluid pressure and speed in unexpected slips: untreaded against treaded",
+        "final progress report on shoe-floor friction, G.5",
+        "underfoot.studies.g5",
+    ),
+    Study(
+        "g6",
+        "Three outsoles in 50 % glycerol: friction from pin-level inputs, and who slips",
+        "final progress report on shoe-floor friction, G.6",
+        "underfoot.studies.g6",
+    ),
 )
 
 

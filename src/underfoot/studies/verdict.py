@@ -135,3 +135,31 @@ def compared_sign(printed: int, ours: Iterable[float]) -> Verdict:
         return Verdict.NOT_AVAILABLE
     agrees = all(printed * value > ROUNDING for value in values)
     return Verdict.REPRODUCED if agrees else Verdict.DISAGREES
+
+
+def compared_mean(
+    printed: float, deviation: float, count: int, ours: float, *, trend: bool | None = None
+) -> Verdict:
+    """Return the verdict on a mean against a printed mean with its standard deviation.
+
+    Reproduced within 1.96 standard errors of the printed mean, within scatter within one standard
+    deviation of it. Beyond, ``trend`` says whether the direction against a second condition holds;
+    None where there is none.
+
+    Errors
+    ------
+    InputError
+        A negative deviation, fewer than two values behind the mean.
+    """
+    if deviation < 0 or count < 2:
+        raise InputError(
+            f"{deviation:g} of {count}", where="printed", allowed="a deviation of two or more"
+        )
+    if ours != ours:
+        return Verdict.NOT_AVAILABLE
+    off = abs(ours - printed)
+    if off <= 1.96 * deviation / count**0.5:
+        return Verdict.REPRODUCED
+    if off <= deviation:
+        return Verdict.WITHIN_SCATTER
+    return Verdict.TREND_ONLY if trend else Verdict.DISAGREES
