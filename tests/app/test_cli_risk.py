@@ -18,7 +18,8 @@ from underfoot.assess.changes import Change, possible_changes
 from underfoot.assess.risk import limit, risk_report
 from underfoot.case import Case
 from underfoot.core import InputError
-from underfoot.document.risk_sentences import chance_words, change_lines, percent, risk_sentences
+from underfoot.document.risk_sentences import chance_words, change_lines, risk_sentences
+from underfoot.document.sentences import percent
 from underfoot.slip import MODELS, Chang2004, RequiredFriction, needed_acof, slip_model
 
 TEXT = """

@@ -54,6 +54,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
         Not even the first contact could be solved.
     """
     from underfoot.friction import cof, sampled_cof
+    from underfoot.outsole.edge_peak import peak_pressure
 
     started = time.perf_counter()
     spacing = case.numerics.quick_grid_spacing if quick else case.numerics.grid_spacing
@@ -71,7 +72,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
     contact = solved_motion(
         case,
         sole,
-        build.compliance(case, sole, modulus.value),
+        build.compliance(case, sole, modulus.value, progress),
         asperities,
         viscosity=None if fluid is None else fluid.value,
         watch=recorder,
@@ -112,6 +113,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
     )
     labels = {**regime(contact), **spread_origin(sampled)} if usable else {}
     if usable:
+        if remark := peak_pressure(sole, contact.total_pressure).remark:
+            labels["edge_peak"] = remark
         numbers |= recorder.array_scalars()
         coarse_spacing = case.numerics.quick_grid_spacing
         if case.numerics.grid_check and not quick and coarse_spacing > spacing:

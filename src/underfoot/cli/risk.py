@@ -122,7 +122,8 @@ def _show(found: RiskReport, out: Path | None) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from underfoot.document.risk_sentences import bought_words, percent, risk_sentences
+    from underfoot.document.risk_sentences import bought_words, risk_sentences
+    from underfoot.document.sentences import percent
 
     console = Console(highlight=False)
     console.print(f"\n[bold]{found.case}[/bold]")

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from .sentences import percent
+
 if TYPE_CHECKING:
     from underfoot.assess.risk import Bought, RiskReport
     from underfoot.case.result import Result
@@ -75,14 +77,3 @@ def chance_words(chance: float) -> str:
     if chance < 1e-3:
         return "fewer than 1 in 1000"
     return f"1 in {1 / chance:.0f}" if chance < 0.2 else percent(chance)
-
-
-def percent(chance: float) -> str:
-    """Return a probability in percent without false digits."""
-    if math.isnan(chance):
-        return "not determined"
-    if chance < 1e-3:
-        return "below 0.1 %"
-    if chance > 0.999:
-        return "above 99.9 %"
-    return f"{100 * chance:.1f} %" if chance < 0.1 else f"{100 * chance:.0f} %"

@@ -32,10 +32,14 @@ _ROWS = (
     ("fluid_load_sensor", "  as floor sensors would read it", ""),
     ("peak_fluid_pressure", "Peak fluid pressure", "anywhere under the sole"),
     ("peak_fluid_pressure_sensor", "  as a floor sensor would read it", ""),
+    ("array_peak", "  highest in the sensor array", "G.5's sensors stay in the floor"),
+    *((f"array_peak_row_{n}", f"  row {n} of the array", "") for n in range(1, 10)),
+    ("array_duration", "  pressure lasts in the array", ""),
     ("contact_area", "Contact area", "where the rough surfaces touch"),
     ("minimum_film_thickness", "Thinnest film", "mean gap between the surfaces"),
     ("slip_probability", "Probability of a slip", "for the walkers described in the case"),
 )
+_LABELS = (("grid_error", "What the grid leaves"), ("edge_peak", "Caution on pressures"))
 
 
 def summary_rows(result: Result) -> list[Row]:
@@ -56,6 +60,7 @@ def summary_rows(result: Result) -> list[Row]:
         origin = result.labels["cof_spread_from"]
         how = result.labels.get("cof_spread_how", "")
         rows.insert(place, Row("  its spread comes from", origin, how))
+    rows += [Row(label, result.labels[key], "") for key, label in _LABELS if key in result.labels]
     return rows
 
 
@@ -70,14 +75,19 @@ def value_text(name: str, scalar: SourcedValue) -> str:
             low, high = (_number(name, end) for end in scalar.interval)
             spread = f" ({low} to {high})" if low != high else spread
     else:
-        text = display(scalar.value, scalar.unit)
+        text = _shown(scalar.value, scalar.unit)
         spread = (
-            ""
-            if scalar.uncertainty is None
-            else f" ± {display(scalar.uncertainty, scalar.unit, 2)}"
+            "" if scalar.uncertainty is None else f" ± {_shown(scalar.uncertainty, scalar.unit, 2)}"
         )
     text = _typeset(text + spread)
     return text + (" (assumed)" if scalar.assumed else "")
+
+
+def _shown(value: float, unit: str, digits: int = 3) -> str:
+    """Return a number with its unit; forces in newtons, however small."""
+    if unit == "N" and abs(value) < 1:
+        return f"{value:.2f} N" if abs(value) >= 0.005 else "below 0.01 N"
+    return display(value, unit, digits)
 
 
 def _number(name: str, value: float) -> str:
