@@ -45,13 +45,19 @@ def list_studies(json: AsJson = False) -> None:
 
 
 def run_study(
-    name: Annotated[str, typer.Argument(help="Name of the study, as g1.", show_default=False)],
+    name: Annotated[
+        str, typer.Argument(help="Name of the study, as g1, or all.", show_default=False)
+    ],
     out: Annotated[
         Path | None,
-        typer.Option("--out", help="Folder for tables and figures.", show_default=False),
+        typer.Option(
+            "--out",
+            help="Folder for tables and figures; out/studies by default for all.",
+            show_default=False,
+        ),
     ] = None,
     quick: Annotated[
-        bool, typer.Option("--quick", help="Lowest and highest speed only, coarser mesh.")
+        bool, typer.Option("--quick", help="Coarser grids, fewer speeds and persons.")
     ] = False,
     explicit: Annotated[
         bool,
@@ -80,21 +86,41 @@ def run_study(
         str, typer.Option("--floor-wavelength", help="Of the floor's roughness.")
     ] = "0.4 mm",
     processes: Annotated[
-        int, typer.Option("--processes", min=1, help="For --explicit: cases at the same time.")
+        int, typer.Option("--processes", min=1, help="Cases at the same time.")
     ] = 2,
     json: AsJson = False,
     overwrite: Overwrite = False,
 ) -> None:
     """Run a study and print each published number beside ours, with a verdict and its reason.
 
-    With --out: figures, verdicts.csv, cases.csv, study.json.
+    With --out: figures, verdicts.csv, cases.csv, study.json. `all` runs every study and writes one
+    page (studies.html), summary.csv and summary.md; a study that fails does not stop the others.
     """
     from underfoot.core.files import check_writable_folder, whole_folder
     from underfoot.core.progress import bar
     from underfoot.studies import study
     from underfoot.studies.g1 import run
 
+    if name.strip().lower() == "all":
+        from .studies_all import run_all_studies
+        from .studies_pin import refuse_options
+
+        refuse_options("all", {"--explicit": explicit, "--series": series})
+        if not run_all_studies(
+            quick=quick, out=out, json=json, overwrite=overwrite, processes=processes
+        ):
+            raise typer.Exit(4)
+        return
     chosen = study(name)
+    if chosen.name in ("g5", "g6"):
+        from .studies_people import run_people_study
+        from .studies_pin import refuse_options
+
+        refuse_options(chosen.name, {"--explicit": explicit, "--series": series})
+        run_people_study(
+            chosen, quick=quick, out=out, json=json, overwrite=overwrite, processes=processes
+        )
+        return
     if chosen.name in ("g2", "g3"):
         from .studies_pin import refuse_options, run_pin_study
 

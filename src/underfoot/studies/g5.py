@@ -45,8 +45,8 @@ NOTES = (
 def slip_case(name: str, *, quick: bool = False) -> Case:
     """Return the case of a shoe of G.5, "untreaded" or "treaded"; that of the examples.
 
-    ``quick`` takes 12 persons, fewer full slips behind the reduced model and a grid of 2 mm
-    (1.2 mm under tread, which is two cells across a channel).
+    ``quick`` takes 24 persons, fewer full slips behind the reduced model and untreaded a grid of
+    2 mm.
     """
     from underfoot.case import Case
 
@@ -61,9 +61,9 @@ def slip_case(name: str, *, quick: bool = False) -> Case:
         "slip": {"subjects": 40},
     }
     if quick:
-        mapping["slip"] = {"subjects": 24, "fit_runs": 6, "test_runs": 2, "time_step": "16 ms"}
-        spacing = "2 mm" if name == "untreaded" else "1.2 mm"
-        mapping["numerics"] = {"quick_grid_spacing": spacing}
+        mapping["slip"] = {"subjects": 24, "fit_runs": 8, "test_runs": 2}
+        if name == "untreaded":
+            mapping["numerics"] = {"quick_grid_spacing": "2 mm"}
     return Case.from_mapping(mapping)
 
 
