@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from underfoot.core import InputError, nearest_match
+from underfoot.core import InputError
 
+from .beside import existing_file
 from .places import Places
 
 _REPLACED = ("heel", "tread")
@@ -62,14 +63,7 @@ def _plain(given: Any) -> Any:
 def _checksum(path: Path, where: str) -> str:
     from underfoot.outsole.files.checksum import checksum
 
-    if not path.is_file():
-        near = [one.name for one in path.parent.glob("*")] if path.parent.is_dir() else []
-        raise InputError(
-            f"there is no file {path}",
-            where=where,
-            nearest=nearest_match(path.name, near),
-            remedy="The path counts from the folder of the case file",
-        )
+    existing_file(path, where)
     try:
         return checksum(path)
     except OSError as error:

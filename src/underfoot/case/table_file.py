@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from underfoot.core import InputError, nearest_match
+from underfoot.core import InputError
+
+from .beside import existing_file
 
 if TYPE_CHECKING:
     from underfoot.trials.readers.sheet import Sheet
@@ -21,14 +23,7 @@ def opened_sheet(path: Path, where: str) -> Sheet:
     from underfoot.core import DataError
     from underfoot.trials.readers.sheet import read_sheet
 
-    if not path.is_file():
-        near = [p.name for p in path.parent.glob("*.csv")] if path.parent.is_dir() else []
-        raise InputError(
-            f"there is no file {path}",
-            where=where,
-            nearest=nearest_match(path.name, near),
-            remedy="The path counts from the folder of the case file",
-        )
+    existing_file(path, where, "*.csv")
     try:
         return read_sheet(path)
     except DataError as error:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .options import AsJson, CasePath, CatalogueFolders, Overwrite, Settings
+from .options import AsJson, CasePath, CatalogueFolders, OutFolder, Overwrite, Settings
 
 if TYPE_CHECKING:
     from underfoot.assess.method import Condition, MethodPrediction
@@ -35,10 +35,7 @@ def by_method(
     quick: Annotated[
         bool, typer.Option("--quick", help="Coarser grid, and the friction law's spread alone.")
     ] = False,
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", help="Folder for the tables.", show_default=False),
-    ] = None,
+    out: OutFolder = None,
     set_: Settings = None,
     json: AsJson = False,
     overwrite: Overwrite = False,

@@ -30,6 +30,10 @@ Settings = Annotated[
     ),
 ]
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace what is there.")]
+OutFolder = Annotated[
+    Path | None, typer.Option("--out", help="Folder for files.", show_default=False)
+]
+FullGrid = Annotated[bool, typer.Option("--full", help="The full grid; the quick one by default.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for other programs.")]
 
 

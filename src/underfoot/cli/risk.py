@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .options import AsJson, CasePath, CatalogueFolders, Overwrite, Settings
+from .options import AsJson, CasePath, CatalogueFolders, FullGrid, OutFolder, Overwrite, Settings
 
 if TYPE_CHECKING:
     from underfoot.assess.risk import RiskReport
@@ -18,13 +18,8 @@ def risk(
     wanted: Annotated[
         str, typer.Option("--wanted", help="Chance of a slip to aim at, as 5 % or 0.05.")
     ] = "5 %",
-    full: Annotated[
-        bool, typer.Option("--full", help="The full grid; the quick one by default.")
-    ] = False,
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", help="Folder for the tables.", show_default=False),
-    ] = None,
+    full: FullGrid = False,
+    out: OutFolder = None,
     set_: Settings = None,
     json: AsJson = False,
     overwrite: Overwrite = False,

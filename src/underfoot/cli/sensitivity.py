@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from .options import AsJson, CasePath, CatalogueFolders, Overwrite, Settings
+from .options import AsJson, CasePath, CatalogueFolders, FullGrid, OutFolder, Overwrite, Settings
 
 if TYPE_CHECKING:
     from underfoot.assess.sensitivity import Sensitivity
@@ -22,13 +22,8 @@ SHOWN = (
 
 def sensitivity(
     case: CasePath,
-    full: Annotated[
-        bool, typer.Option("--full", help="The full grid; the quick one by default.")
-    ] = False,
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", help="Folder for figure and table.", show_default=False),
-    ] = None,
+    full: FullGrid = False,
+    out: OutFolder = None,
     set_: Settings = None,
     json: AsJson = False,
     overwrite: Overwrite = False,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .options import AsJson, CasePath, CatalogueFolders, Overwrite, Settings
+from .options import AsJson, CasePath, CatalogueFolders, FullGrid, OutFolder, Overwrite, Settings
 
 if TYPE_CHECKING:
     from underfoot.assess.wear import WearSeries
@@ -33,13 +33,8 @@ def wear(
         bool, typer.Option("--band/--no-band", help="Vary the least known inputs (4 runs a state).")
     ] = True,
     seed: Annotated[int, typer.Option("--seed", help="Of the band's draws.", min=0)] = 0,
-    full: Annotated[
-        bool, typer.Option("--full", help="The full grid; the quick one by default.")
-    ] = False,
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", help="Folder for report, figure and table.", show_default=False),
-    ] = None,
+    full: FullGrid = False,
+    out: OutFolder = None,
     set_: Settings = None,
     json: AsJson = False,
     overwrite: Overwrite = False,
