@@ -12,8 +12,9 @@ from underfoot.core import InputError
 
 from .sensitivity import Sensitivity
 
-LARGEST = 2.0
-"""Standard deviations up to which an input's effect is carried on from one."""
+LARGEST = 1.0
+"""Standard deviations at which an input was computed; beyond, its effect is held, not carried on:
+that of a heel's angle, the largest of all, does not go on growing."""
 
 
 def sampled(
@@ -23,15 +24,16 @@ def sampled(
     value: float | None = None,
     factors: Sequence[float] = (),
     least: float,
+    most: float = math.inf,
     draws: int = 20_000,
     seed: int = 0,
 ) -> NDArray[np.float64]:
     """Return draws (draws,) of a positive number over all open inputs together.
 
-    ln N = ln N_0 + sum_i f_i(z_i), each z_i standard normal and cut at 2, f_i linear on either
-    side through the two computed ends of input i: effects are taken as factors that multiply, so
-    a reading near zero stays positive and one that a single degree multiplies by ten has a long
-    upper tail. Interactions beyond that are not looked for.
+    g(N) = g(N_0) + sum_i f_i(z_i), each z_i standard normal and held at its computed ends (1), f_i
+    linear on either side through them; g(N) = ln N, or ln N / (M - N) where N can't pass M.
+    Effects are factors that multiply, so a reading near zero stays positive and one that a single
+    degree multiplies by ten has a long upper tail. Interactions beyond that are not looked for.
 
     Parameters
     ----------
@@ -45,37 +47,51 @@ def sampled(
         Further causes, each as the factor of one standard deviation (grid, place of the tracks).
     least
         Smaller numbers count as this one: no reading tells them apart.
+    most
+        M, which the number can't pass (a load: the normal force); none by default.
     draws, seed
         Number of draws and where they start; the same seed gives the same draws.
 
     Errors
     ------
     InputError
-        ``least`` or a factor that is not positive.
+        ``least`` or a factor that is not positive, ``most`` not above ``least``.
     """
+    if not most > least:
+        raise InputError(f"{most:g}", where="most", allowed="above least")
+
     if not least > 0:
         raise InputError(f"{least:g}", where="least", allowed="above 0")
     if any(not factor > 0 for factor in factors):
         raise InputError(f"{list(factors)}", where="factors", allowed="above 0")
-    centre = _log(found.nominal.number(name), least)
-    start = centre if value is None else _log(value, least)
+    nominal = found.nominal.number(name)
+    centre = _scaled(nominal, least, most)
+    start = centre if value is None else _scaled(value, least, most)
     if math.isnan(start) or math.isnan(centre):
         return np.full(draws, np.nan)
     random = np.random.default_rng(seed)
     total = np.full(draws, start)
     for effect in found.effects:
         z = np.clip(random.standard_normal(draws), -LARGEST, LARGEST)
-        low = _log(effect.low.number(name), least) - centre
-        high = _log(effect.high.number(name), least) - centre
+        low = _scaled(effect.low.number(name), least, most) - centre
+        high = _scaled(effect.high.number(name), least, most) - centre
         if math.isnan(low) and math.isnan(high):
             continue
         low = -high if math.isnan(low) else low
         high = -low if math.isnan(high) else high
         total += np.where(z < 0, -z * low, z * high)
     for factor in factors:
-        total += np.clip(random.standard_normal(draws), -LARGEST, LARGEST) * math.log(factor)
-    return np.maximum(np.exp(total), least)
+        total += random.standard_normal(draws) * math.log(factor)
+    odds = np.exp(total)
+    return np.maximum(odds if math.isinf(most) else most * odds / (1.0 + odds), least)
 
 
-def _log(value: float, least: float) -> float:
-    return value if math.isnan(value) else math.log(max(value, least))
+def _scaled(value: float, least: float, most: float) -> float:
+    """Return ln N, or ln N / (M - N), of a number held between both bounds; nan of nan."""
+    if math.isnan(value):
+        return value
+    value = max(value, least)
+    if math.isinf(most):
+        return math.log(value)
+    value = min(value, (1.0 - 1e-6) * most)
+    return math.log(value / (most - value))

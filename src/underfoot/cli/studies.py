@@ -112,6 +112,13 @@ def run_study(
             raise typer.Exit(4)
         return
     chosen = study(name)
+    if chosen.name == "g4":
+        from .studies_g4 import run_g4
+        from .studies_pin import refuse_options
+
+        refuse_options(chosen.name, {"--explicit": explicit, "--series": series})
+        run_g4(chosen, quick=quick, processes=processes, out=out, json=json, overwrite=overwrite)
+        return
     if chosen.name in ("g5", "g6"):
         from .studies_people import run_people_study
         from .studies_pin import refuse_options

@@ -37,6 +37,12 @@ STUDIES: tuple[Study, ...] = (
         "underfoot.studies.g3",
     ),
     Study(
+        "g4",
+        "Fluid pressure under six shoes in two fluids: who is on the right side of 5 N",
+        "final progress report on shoe-floor friction, G.4",
+        "underfoot.studies.g4",
+    ),
+    Study(
         "g5",
         "Fluid pressure and speed in unexpected slips: untreaded against treaded",
         "final progress report on shoe-floor friction, G.5",
@@ -47,6 +53,12 @@ STUDIES: tuple[Study, ...] = (
         "Three outsoles in 50 % glycerol: friction from pin-level inputs, and who slips",
         "final progress report on shoe-floor friction, G.6",
         "underfoot.studies.g6",
+    ),
+    Study(
+        "calibration",
+        "Which parameters the report's data can fix, and which they can't",
+        "final progress report on shoe-floor friction, G.2, G.4, G.5, G.6",
+        "underfoot.studies.calibration",
     ),
 )
 
