@@ -56,7 +56,7 @@ def speed_pressure_figure(slips: Mapping[str, Any]) -> Figure:
     axes.set_xlim(left=0)
     axes.set_ylim(bottom=0)
     axes.legend(frameon=False, fontsize=8)
-    axes.set_title("Fig. 33: peak slipping speed against peak fluid pressure (report: r = 0.87)")
+    axes.set_title("Fig. 33: peak speed against peak pressure (report: r = 0.87)")
     _plain(axes)
     return figure
 
@@ -102,14 +102,21 @@ def wedge_squeeze_figure(sole: Any, passages: Mapping[str, np.ndarray]) -> Figur
     figure = Figure(figsize=(10.5, 6.4), layout="constrained")
     panels = figure.subplots(2, 2)
     time = np.linspace(0.0, 0.3, 601)
-    for speed, style in ((0.0, ":"), (0.5, "--"), (1.5, "-")):
-        load = held_load(sole, time, speed)
+    shown = ((219e-3, "-"), (20e-3, "--"), (1.89e-3, ":"))
+    longer = np.linspace(0.0, 3.0, 6001)
+    for viscosity, style in shown:
+        load = held_load(replace(sole, viscosity=viscosity), longer, 0.5)
         panels[0, 0].plot(
-            1e3 * time[1:], load[1:] / 5, style, color=UNTREADED, label=f"{speed:g} m/s"
+            1e3 * longer[1:],
+            load[1:] / 5,
+            style,
+            color=UNTREADED,
+            label=f"{1e3 * viscosity:g} mPa s",
         )
-    panels[0, 0].set(xlabel="dwell time (ms)", ylabel="load on the film (%)", xscale="log")
-    panels[0, 0].set_xlim(1, 300)
-    panels[0, 0].legend(frameon=False, fontsize=8)
+    panels[0, 0].set(xlabel="dwell time at 0.5 m/s (ms)", ylabel="load on the film (%)")
+    panels[0, 0].set_xscale("log")
+    panels[0, 0].set_xlim(1, 3000)
+    panels[0, 0].legend(frameon=False, fontsize=8, loc="lower left")
     viscosities = np.geomspace(1e-3, 0.5, 25)
     for instant, style in ((0.05, "--"), (0.2, "-")):
         loads = [
@@ -129,7 +136,7 @@ def wedge_squeeze_figure(sole: Any, passages: Mapping[str, np.ndarray]) -> Figur
         panels[0, 1].axvline(value, color="0.7", linewidth=0.8)
         panels[0, 1].text(value, 1, name, rotation=90, fontsize=7, va="bottom", ha="right")
     panels[0, 1].set(xlabel="viscosity (mPa s)", ylabel="load on the film (%)", xscale="log")
-    panels[0, 1].legend(frameon=False, fontsize=8, loc="center left")
+    panels[0, 1].legend(frameon=False, fontsize=8, loc="upper left")
     if passages["peak"].size:
         edges = np.arange(0.0, 0.05, 0.005)
         middle, level = [], []
@@ -142,16 +149,13 @@ def wedge_squeeze_figure(sole: Any, passages: Mapping[str, np.ndarray]) -> Figur
     panels[1, 0].set(xlabel="distance from the heel's middle (mm)", ylabel="sensor's peak (kPa)")
     panels[1, 0].set_ylim(bottom=0)
     speeds = np.linspace(0.0, 3.0, 31)
-    for instant, style in ((0.05, "--"), (0.2, "-")):
-        loads = [held_load(sole, time, float(v))[np.searchsorted(time, instant)] for v in speeds]
+    for viscosity, style in shown:
+        thin = replace(sole, viscosity=viscosity)
+        loads = [held_load(thin, time, float(v))[np.searchsorted(time, 0.2)] for v in speeds]
         panels[1, 1].plot(
-            speeds,
-            np.array(loads) / 5,
-            style,
-            color=UNTREADED,
-            label=f"after {1e3 * instant:.0f} ms",
+            speeds, np.array(loads) / 5, style, color=UNTREADED, label=f"{1e3 * viscosity:g} mPa s"
         )
-    panels[1, 1].set(xlabel="sliding speed, held (m/s)", ylabel="load on the film (%)")
+    panels[1, 1].set(xlabel="sliding speed, held for 200 ms (m/s)", ylabel="load on the film (%)")
     panels[1, 1].legend(frameon=False, fontsize=8)
     figure.suptitle("Fig. 35: wedge and squeeze, untreaded heel under 500 N, computed")
     for axes in panels.flat:
