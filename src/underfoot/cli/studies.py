@@ -119,7 +119,7 @@ def run_study(
         refuse_options(chosen.name, {"--explicit": explicit, "--series": series})
         run_g4(chosen, quick=quick, processes=processes, out=out, json=json, overwrite=overwrite)
         return
-    if chosen.name in ("g5", "g6"):
+    if chosen.name in ("g5", "g6", "calibration"):
         from .studies_people import run_people_study
         from .studies_pin import refuse_options
 

@@ -1,4 +1,4 @@
-"""What ``underfoot studies run`` prints and writes for the studies of people (g5, g6)."""
+"""What ``underfoot studies run`` prints and writes for g5, g6 and calibration."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 def run_people_study(
     chosen: Study, *, quick: bool, out: Path | None, json: bool, overwrite: bool, processes: int
 ) -> None:
-    """Run a study of slips; print it, and write tables and figures to ``out``."""
+    """Run such a study; print it, and write tables and figures to ``out``."""
     from importlib import import_module
 
     from underfoot.core.files import check_writable_folder, whole_folder
@@ -58,8 +58,10 @@ def write_people_study(found: StudyResult, folder: Path) -> None:
             writer.writerows(rows)
     if found.name == "g5":
         from underfoot.document.g5_figures import g5_figures as figures
-    else:
+    elif found.name == "g6":
         from underfoot.document.g6_figures import g6_figures as figures
+    else:
+        from underfoot.document.calibration_figure import calibration_figures as figures
     for name, figure in figures(found.data).items():
         figure.savefig(folder / f"{name}.png", dpi=150)
 
