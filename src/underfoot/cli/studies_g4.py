@@ -25,7 +25,7 @@ def run_g4(
         found = run(quick=quick, processes=processes, progress=progress)
     if out is not None:
         with whole_folder(out, overwrite=overwrite) as staging:
-            write_g4(found, staging)
+            write_g4_study(found, staging)
     if json:
         import json as json_text
 
@@ -35,7 +35,7 @@ def run_g4(
     return found
 
 
-def write_g4(found: StudyResult, folder: Path) -> None:
+def write_g4_study(found: StudyResult, folder: Path) -> None:
     """Write tables, statements, maps and figures into an existing folder."""
     import csv
     import json as json_text
