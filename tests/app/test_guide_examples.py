@@ -19,7 +19,7 @@ def blocks(page, language):
 def test_the_case_of_the_guide_loads_and_its_python_does_what_it_says(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (toml,) = blocks("case_files.md", "toml")
-    Path("kitchen.toml").write_text(toml)
+    Path(toml.splitlines()[0].removeprefix("# ")).write_text(toml)
     (python,) = blocks("case_files.md", "python")
     names: dict = {}
     exec(compile(python, "case_files.md", "exec"), names)
@@ -31,10 +31,11 @@ def test_the_case_of_the_guide_loads_and_its_python_does_what_it_says(tmp_path, 
 
 def test_the_catalogue_of_the_guide_loads_and_makes_a_case(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    folder = tmp_path / "my_folder"
-    folder.mkdir()
     (toml,) = blocks("catalogue.md", "toml")
-    (folder / "own.toml").write_text(toml)
+    file = tmp_path / toml.splitlines()[0].removeprefix("# ")
+    folder = file.parent
+    folder.mkdir()
+    file.write_text(toml)
     (python,) = blocks("catalogue.md", "python")
     exec(compile(python, "catalogue.md", "exec"), {})
     case = Case.from_mapping(

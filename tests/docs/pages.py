@@ -1,12 +1,12 @@
-"""Runs the blocks of a documentation page in their order and holds the printed output to the page.
+"""Runs the blocks of a documentation page in their order and holds what they print to the page.
 
-What a block is, the page shows: ``sh`` are commands of a terminal, ``python`` goes on in one session, a ``toml`` or
-``csv`` block whose first line is ``# name`` is that file. A ``text`` block after one of these is what it prints: each of
-its lines must come, in order, with the same words and numbers within 2 % or one unit of the last digit printed;
-``...`` stands for lines left out.
+What a block is, the page shows: ``sh`` are commands of a terminal, ``python`` goes on in one
+session, a ``toml`` or ``csv`` block whose first line is ``# name`` is that file. A ``text`` block
+after one of these is what it prints: each of its lines must come, in order, with the same words and
+with numbers within 2 % or one unit of the last digit shown; ``...`` stands for lines left out.
 
-``python tests/docs/pages.py docs/tutorials/designer.md`` prints what the blocks of a page print now, ``--mend`` puts
-today's numbers into the page (``!!`` marks a line that is no longer printed).
+``python tests/docs/pages.py docs/tutorials/designer.md`` prints what the blocks of a page print
+now, ``--mend`` puts today's numbers into the page (``!!`` marks a line no longer printed).
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ TOLERANCE = 0.02
 
 @dataclass(frozen=True)
 class Block:
-    """One fenced block: language, text and the output that the page shows after it (None: none shown)."""
+    """One fenced block and the output that the page shows after it (None: none)."""
 
     language: str
     text: str
@@ -67,9 +67,9 @@ class Session:
 
 
 def command_output(line: str) -> str:
-    """Standard output of one command; those of the program run in this process, others in a shell."""
+    """Standard output of a command; the program runs in this process, others in a shell."""
     if not line.startswith("underfoot "):
-        done = subprocess.run(line, shell=True, capture_output=True, text=True, check=True)  # noqa: S602
+        done = subprocess.run(line, shell=True, capture_output=True, text=True, check=True)
         return done.stdout
     from typer.testing import CliRunner
 
@@ -107,9 +107,8 @@ def close(shown: str, printed: str) -> bool:
 
 def agrees(shown: str, printed: str) -> bool:
     """Whether a line has the same words and numbers near enough."""
-    words = [" ".join(NUMBER.sub("#", line).split()) for line in (shown, printed)]
-    pairs = list(zip(NUMBER.findall(shown), NUMBER.findall(printed), strict=False))
-    return words[0] == words[1] and all(close(a, b) for a, b in pairs)
+    pairs = zip(NUMBER.findall(shown), NUMBER.findall(printed), strict=False)
+    return _words(shown) == _words(printed) and all(close(a, b) for a, b in pairs)
 
 
 def held(shown: str, printed: str) -> int:
@@ -126,21 +125,26 @@ def held(shown: str, printed: str) -> int:
 
 
 def mended(shown: str, printed: str) -> str:
-    """The shown lines with today's numbers: each takes the next printed line of the same words."""
-    lines = iter(printed.splitlines())
+    """The shown lines with today's numbers: each from the next printed line of the same words."""
+    lines = printed.splitlines()
     result = []
     for wanted in shown.splitlines():
-        words = " ".join(NUMBER.sub("#", wanted).split())
-        if words not in ("", "..."):
-            same = (x for x in lines if " ".join(NUMBER.sub("#", x).split()) == words)
-            found = next(same, None)
-            if found is None:
-                lines = iter(printed.splitlines())
+        if wanted.strip() not in ("", "..."):
+            words = _words(wanted)
+            same = [index for index, line in enumerate(lines) if _words(line) == words]
+            near = [index for index in same if agrees(wanted, lines[index])]
+            if not same:
                 wanted = f"!! {wanted}"
-            elif not agrees(wanted, found):
-                wanted = found.rstrip()
+            else:
+                index = (near or same)[0]
+                wanted = wanted if near else lines[index].rstrip()
+                lines = lines[index + 1 :]
         result.append(wanted)
     return "\n".join(result) + "\n"
+
+
+def _words(line: str) -> str:
+    return " ".join(NUMBER.sub("#", line).split())
 
 
 @contextlib.contextmanager
@@ -170,7 +174,7 @@ def numbers_compared(page: Path, folder: Path) -> int:
 
 
 def main(page: str, *, mend: bool) -> None:
-    """Print what the blocks of a page print now; with ``mend`` put today's numbers into the page."""
+    """Print what the blocks of a page print now; ``mend`` puts the numbers into the page."""
     source = Path(page).resolve()
     text = source.read_text()
     with tempfile.TemporaryDirectory() as folder, reader(Path(folder)) as session:

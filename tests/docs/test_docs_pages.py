@@ -1,0 +1,40 @@
+"""Every command and Python block of the tutorials runs, and prints what the page says."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from pages import ROOT, agrees, blocks_of, held, numbers_compared
+
+TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", TUTORIALS, ids=lambda page: page.stem)
+def test_a_tutorial_prints_what_it_says(page, tmp_path):
+    assert numbers_compared(page, tmp_path) >= 20
+
+
+@pytest.mark.parametrize("name", ["trials_analysis"])
+def test_a_guide_prints_what_it_says(name, tmp_path):
+    assert numbers_compared(ROOT / "docs" / "guide" / f"{name}.md", tmp_path) >= 1
+
+
+@pytest.mark.parametrize("page", TUTORIALS, ids=lambda page: page.stem)
+def test_every_block_of_a_tutorial_shows_what_it_prints_or_prints_nothing(page):
+    shown = [block for block in blocks_of(page) if block.shown is not None]
+    assert len(shown) >= 8
+    for block in shown:
+        assert any(character.isdigit() for character in block.shown or ""), block.line
+
+
+def test_pages_are_held_to_words_and_numbers():
+    assert agrees("COF 0.100 ± 0.02", "COF   0.101 ± 0.02")
+    assert not agrees("COF 0.100", "COF 0.105")
+    assert not agrees("COF 0.100", "ACOF 0.100")
+    assert held("a 1\n...\nb 2", "a 1\nx 9\nb 2") == 2
+    with pytest.raises(AssertionError, match="not printed"):
+        held("b 2\na 1", "a 1\nb 2")

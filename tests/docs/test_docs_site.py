@@ -1,0 +1,58 @@
+"""The documentation holds together: no warning, every page reachable, every name there."""
+
+import importlib
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+
+
+@pytest.mark.slow
+def test_the_documentation_is_read_without_a_warning(tmp_path):
+    command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "dummy"]
+    done = subprocess.run(
+        [*command, str(DOCS), str(tmp_path)],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "PYTHONPATH": ""},
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def test_every_page_of_the_physics_belongs_to_a_topic():
+    filed = (DOCS / "physics" / "index.md").read_text()
+    listed = re.findall(r"^([a-z0-9_]+)$", filed, flags=re.MULTILINE)
+    pages = {path.stem for path in (DOCS / "physics").glob("*.md")} - {"index"}
+    assert pages - set(listed) == set(), "name these under a topic of docs/physics/index.md"
+    assert len(listed) == len(set(listed))
+
+
+@pytest.mark.parametrize("page", sorted(DOCS.rglob("*.md")), ids=lambda path: path.stem)
+def test_every_link_within_the_documentation_leads_to_a_file(page):
+    for target in re.findall(r"\]\(([^)#\s]+\.md)(?:#[\w-]*)?\)", page.read_text()):
+        if not target.startswith("http"):
+            assert (page.parent / target).exists(), target
+
+
+def test_every_name_of_the_code_that_a_page_links_to_exists():
+    count = 0
+    for page in DOCS.rglob("*.md"):
+        for name in re.findall(r"\{py:\w+\}`([\w.]+)`", page.read_text()):
+            room, _, member = name.rpartition(".")
+            assert hasattr(importlib.import_module(room), member), f"{page.name}: {name}"
+            count += 1
+    assert count > 15
+
+
+def test_the_interface_pages_list_every_room():
+    listed = "".join(path.read_text() for path in (DOCS / "api").glob("*.md"))
+    rooms = {path.parent.name for path in (ROOT / "src" / "underfoot").glob("*/__init__.py")}
+    for room in rooms - {"cli", "data"}:
+        assert f"automodule:: underfoot.{room}" in listed, room
