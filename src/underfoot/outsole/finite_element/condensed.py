@@ -17,35 +17,46 @@ ANALYSE_AND_FACTORISE, RELEASE = 12, -1
 FIRST_BLOCK = 64  # unit loads solved at once without MKL
 
 
-def condensed(matrix: sp.csr_matrix, kept: NDArray[np.int64]) -> Array:
-    """Return the Schur complement S = K_kk - K_kr K_rr^-1 K_rk of the ``kept`` unknowns.
+def upper_triangle(matrix: sp.csr_matrix, last: NDArray[np.int64]) -> sp.csr_matrix:
+    """Return the upper triangle of a symmetric matrix with the unknowns ``last`` put last."""
+    size = matrix.indptr.size - 1
+    others = np.ones(size, dtype=bool)
+    others[last] = False
+    place = np.empty(size, dtype=np.int32)
+    place[others] = np.arange(size - last.size)
+    place[last] = np.arange(size - last.size, size)
+    row = np.repeat(place, np.diff(matrix.indptr))
+    column = place[matrix.indices]
+    taken = row <= column
+    upper = sp.csr_matrix((matrix.data[taken], (row[taken], column[taken])), shape=(size, size))
+    upper.sort_indices()
+    return upper
 
-    ``matrix`` is symmetric positive definite; (n_kept, n_kept). Its inverse is the block of the
-    inverse of the matrix, so S is all that loads on the kept unknowns see.
+
+def condensed(upper: sp.csr_matrix, count: int) -> Array:
+    """Return the Schur complement S = K_kk - K_kr K_rr^-1 K_rk of the last ``count`` unknowns.
+
+    ``upper`` is the upper triangle of a symmetric positive definite matrix; (count, count). Its
+    inverse is the block of the inverse of the matrix, so S is all that loads on them see.
 
     Raises
     ------
     ConvergenceError
         The matrix is singular or not positive definite to working precision.
     """
-    answer = _by_pardiso(matrix, kept) if mkl_library() is not None else _by_solves(matrix, kept)
+    answer = _by_pardiso(upper, count) if mkl_library() is not None else _by_solves(upper, count)
     if not np.isfinite(answer).all():
         raise _singular()
     return 0.5 * (answer + answer.T)
 
 
-def _by_pardiso(matrix: sp.csr_matrix, kept: NDArray[np.int64]) -> Array:
+def _by_pardiso(upper: sp.csr_matrix, count: int) -> Array:
     """Return the Schur complement that PARDISO leaves on the last unknowns."""
     library = mkl_library()
     assert library is not None
-    size, count = matrix.indptr.size - 1, kept.size
-    last = np.zeros(size, dtype=bool)
-    last[kept] = True
-    order = np.concatenate([np.flatnonzero(~last), kept])
-    upper = sp.csr_matrix(sp.triu(matrix[order][:, order]))
-    upper.sort_indices()
+    size = upper.indptr.size - 1
     values = np.ascontiguousarray(upper.data, dtype=float)
-    rows, columns = upper.indptr.astype(np.int32), upper.indices.astype(np.int32)
+    rows, columns = (np.asarray(part, dtype=np.int32) for part in (upper.indptr, upper.indices))
     handle, options = np.zeros(64, dtype=np.int64), np.zeros(64, dtype=np.int32)
     options[0] = 1  # no defaults
     options[1] = 2  # nested dissection
@@ -87,25 +98,26 @@ def _by_pardiso(matrix: sp.csr_matrix, kept: NDArray[np.int64]) -> Array:
     return np.triu(answer) + np.triu(answer, 1).T if not np.tril(answer, -1).any() else answer
 
 
-def _by_solves(matrix: sp.csr_matrix, kept: NDArray[np.int64]) -> Array:
+def _by_solves(upper: sp.csr_matrix, count: int) -> Array:
     """Return the same by one solve a kept unknown, with SciPy alone (slower, more memory)."""
     from scipy.sparse.linalg import splu
 
+    size = upper.indptr.size - 1
     try:
         factors = splu(
-            sp.csc_matrix(matrix),
+            sp.csc_matrix(upper + sp.triu(upper, 1).T),
             permc_spec="MMD_AT_PLUS_A",
             diag_pivot_thresh=0.0,
             options={"SymmetricMode": True},
         )
     except RuntimeError as error:
         raise _singular() from error
-    inverse = np.empty((kept.size, kept.size))
-    for first in range(0, kept.size, FIRST_BLOCK):
-        part = kept[first : first + FIRST_BLOCK]
-        right = np.zeros((matrix.indptr.size - 1, part.size))
-        right[part, np.arange(part.size)] = 1.0
-        inverse[:, first : first + part.size] = factors.solve(right)[kept]
+    inverse = np.empty((count, count))
+    for first in range(0, count, FIRST_BLOCK):
+        block = min(FIRST_BLOCK, count - first)
+        right = np.zeros((size, block))
+        right[size - count + first + np.arange(block), np.arange(block)] = 1.0
+        inverse[:, first : first + block] = factors.solve(right)[size - count :]
     return np.asarray(np.linalg.inv(inverse), dtype=float)
 
 
