@@ -44,7 +44,7 @@ def test_every_link_within_the_documentation_leads_to_a_file(page):
 def test_every_name_of_the_code_that_a_page_links_to_exists():
     count = 0
     for page in DOCS.rglob("*.md"):
-        for name in re.findall(r"\{py:\w+\}`([\w.]+)`", page.read_text()):
+        for name in re.findall(r"\{py:\w+\}`~?([\w.]+)`", page.read_text()):
             room, _, member = name.rpartition(".")
             assert hasattr(importlib.import_module(room), member), f"{page.name}: {name}"
             count += 1
