@@ -120,7 +120,7 @@ def _friction_lines(frictions: Sequence[SoleFriction]) -> list[PinLine]:
         spread = float(np.nanmax([0.0, *(one.deviation for one in soles.values())]))
         inside = least >= BAND[0] - 5e-4 and most <= BAND[1] + 5e-4
         reach = spread or max(0.5 * (one.high - one.low) for one in soles.values())
-        near = least - reach <= BAND[1] and most + reach >= BAND[0]
+        near = all(cof - reach <= BAND[1] and cof + reach >= BAND[0] for cof in cofs)
         off = max(BAND[0] - least, most - BAND[1], 0.0)
         lines.append(
             PinLine(
@@ -150,7 +150,7 @@ def _friction_lines(frictions: Sequence[SoleFriction]) -> list[PinLine]:
     lines.append(
         PinLine(
             "under-shoe fluid pressure, slip tester", "G.6.2", "below 10 kPa",
-            f"{highest / 1e3:.2g} kPa",
+            f"at most {highest / 1e3:.2g} kPa",
             Verdict.REPRODUCED if highest < PRESSURE_BELOW else Verdict.DISAGREES,
             f"4 mm sensor; the film carries at most "
             f"{100 * max(one.film_share for one in frictions):.1f} % of the load",
@@ -220,11 +220,12 @@ def _risk_lines(frictions: Sequence[SoleFriction], steps: dict[str, Slips]) -> l
             )
         )  # fmt: skip
     lowest, middle, highest = risk_by_rcof()
+    off = np.abs(np.array([lowest - 0.03, middle - 0.26, highest - 0.83]))
     lines.append(
         PinLine(
             "risk at the lowest, median and highest RCOF", "G.6.2", "3, 26, 83 %",
             f"{100 * lowest:.0f}, {100 * middle:.0f}, {100 * highest:.0f} %",
-            Verdict.REPRODUCED,
+            Verdict.REPRODUCED if off.max() < 0.05 else Verdict.TREND_ONLY,
             "consistency only: mean and spread of RCOF were derived from these and the risks in "
             "ACOF - RCOF; expected extremes of 29 persons",
             f"{100 * (lowest - 0.03):+.0f}, {100 * (middle - 0.26):+.0f}, "
