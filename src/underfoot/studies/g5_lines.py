@@ -122,8 +122,8 @@ def _line(
         low, high = (edge / scale for edge in bands[name])
         words = f"means of {count} persons: {low:.3g} to {high:.3g} {unit}; " + words
     return PinLine(
-        title, "G.5.2", f"{printed:g} ± {deviation:g} {unit}", f"{ours:.3g} ± {_short(spread)} {unit}",
-        verdict, words.rstrip("; "), f"{ours - printed:+.3g} {unit}",
+        title, "G.5.2", f"{printed:g} ± {deviation:g} {unit}",
+        f"{ours:.3g} ± {_short(spread)} {unit}", verdict, words.rstrip("; "), f"{ours - printed:+.3g} {unit}",
     )  # fmt: skip
 
 
