@@ -123,7 +123,8 @@ def _line(
         words = f"means of {count} persons: {low:.3g} to {high:.3g} {unit}; " + words
     return PinLine(
         title, "G.5.2", f"{printed:g} ± {deviation:g} {unit}",
-        f"{ours:.3g} ± {_short(spread)} {unit}", verdict, words.rstrip("; "), f"{ours - printed:+.3g} {unit}",
+        f"{ours:.3g} ± {_short(spread)} {unit}", verdict, words.rstrip("; "),
+        f"{ours - printed:+.3g} {unit}",
     )  # fmt: skip
 
 
