@@ -39,14 +39,23 @@ def test_every_condition_converges_and_carries_the_load(shoe, fluid):
     assert 0.0 < found.value("cof") < 1.0
 
 
-def test_the_untreaded_work_shoe_in_glycerol_reads_within_a_factor_of_two():
-    printed = READINGS.sourced("fluid_load_work_shoe_untreaded_glycerol", "N").value
-    read = result("work_shoe_untreaded", "glycerol").value("fluid_load_sensor")
-    assert printed / 2 < read < printed * 2
+@pytest.mark.parametrize("kind", ["work", "athletic"])
+def test_untreaded_loads_in_glycerol_are_within_30_percent(kind):
+    printed = READINGS.sourced(f"fluid_load_{kind}_shoe_untreaded_glycerol", "N").value
+    read = result(f"{kind}_shoe_untreaded", "glycerol").value("fluid_load_sensor")
+    assert read == pytest.approx(printed, rel=0.30)
 
 
-def test_the_untreaded_athletic_shoe_in_glycerol_is_on_the_right_side():
-    assert result("athletic_shoe_untreaded", "glycerol").value("fluid_load_sensor") > SMALL
+def test_the_peak_under_the_athletic_shoe_is_within_50_percent():
+    """The work shoe's is not on fine grids: docs/studies/g4.md."""
+    printed = READINGS.sourced("peak_pressure_athletic_shoe_untreaded_glycerol", "Pa").value
+    read = result("athletic_shoe_untreaded", "glycerol").value("peak_fluid_pressure_sensor")
+    assert read == pytest.approx(printed, rel=0.50)
+
+
+@pytest.mark.parametrize("kind", ["work", "athletic"])
+def test_untreaded_shoes_read_next_to_nothing_in_detergent(kind):
+    assert result(f"{kind}_shoe_untreaded", "detergent").value("fluid_load_sensor") < SMALL
 
 
 @pytest.mark.parametrize("fluid", ["glycerol", "detergent"])

@@ -161,7 +161,8 @@ def _notes(results: Sequence[Judged], lost: Sequence[str], quick: bool) -> tuple
         f"grid of {1e3 * grid:g} mm; 500 N in all twelve, as the printed loads; 250 N beside it",
         "bands: each open input at one standard deviation to either side on the quick grid, taken "
         "as factors that multiply and drawn together (20 000 draws, normal, held at the computed "
-        "ends, loads below 500 N); grid and place of the tracks drawn with them",
+        "ends, loads below 500 N, peaks below the highest film pressure computed); grid and place "
+        "of the tracks drawn with them",
         "treaded shoes: facet angle, roughness, starting film and lug width are varied"
         if not quick
         else "quick: no bands under treaded shoes, no grid error in the others",

@@ -120,14 +120,23 @@ def _draws(name: str, reading: Reading, found: Sensitivity | None, refinement: f
     spread = reading.outcome.spread(name)
     if value > LEAST[name] and spread > 0:
         factors.append(1.0 + spread / value)
-    loads = name != "peak_fluid_pressure_sensor"
-    force = reading.condition.case.motion.normal_force if loads else math.inf
-    return sampled(found, name, value=value, factors=factors, least=LEAST[name], most=force)
+    most = reading.condition.case.motion.normal_force
+    if name == "peak_fluid_pressure_sensor":
+        most = max(value * (1.0 + 1e-6), highest_film_pressure(reading, found))
+    return sampled(found, name, value=value, factors=factors, least=LEAST[name], most=most)
+
+
+def highest_film_pressure(reading: Reading, found: Sensitivity) -> float:
+    """Return the highest pressure under the sole in any computed case, Pa: no pocket reads more."""
+    ends = [end for effect in found.effects for end in (effect.low, effect.high)]
+    outcomes = (reading.outcome, found.nominal, *ends)
+    return float(np.nanmax([one.number("peak_fluid_pressure") for one in outcomes]))
 
 
 def _banded(value: float, draws: np.ndarray) -> Banded:
+    """Return the value with its band, which holds the value itself."""
     low, high = np.percentile(draws, [2.5, 97.5])
-    return Banded(value, float(low), float(high))
+    return Banded(value, float(np.minimum(low, value)), float(np.maximum(high, value)))
 
 
 def _cof(reading: Reading, found: Sensitivity | None) -> Banded:
