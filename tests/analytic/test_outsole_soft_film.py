@@ -46,6 +46,7 @@ def body(shape, spacing, modulus):
     return half_space_compliance(shape, spacing, modulus=modulus, poisson_ratio=RATIO)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("load", SLIDING)
 def test_sliding_soft_film_is_that_of_the_reference(load):
     """Centre and least film within 3 %, load and Hertz peak within 1 %."""
