@@ -69,6 +69,8 @@ def levels_figure() -> Figure:
         label=f"viscosity x tau = {1e3 * (decay.value or 0):.2f} mPa m",
     )  # fmt: skip
     right.set(xlabel="viscosity (mPa s)", ylabel="decay speed tau (m/s)", xscale="log")
+    right.set_xticks([0.5, 1, 2, 4, 8], ["0.5", "1", "2", "4", "8"])
+    right.minorticks_off()
     right.set_ylim(bottom=0)
     right.legend(frameon=False, fontsize=8)
     figure.suptitle("Fig. 18 and 20: friction at rest and decay speed; one product fits all four")

@@ -169,7 +169,13 @@ def summary_markdown(runs: Sequence[StudyRun], *, quick: bool = False) -> str:
     ]
     for study, counts in verdict_counts(lines).items():
         text.append(f"| {study} | " + " | ".join(str(counts[str(v)]) for v in Verdict) + " |")
-    text += ["", *(f"- *{verdict}*: {verdict.rule}" for verdict in Verdict), ""]
+    text += ["", *(f"- *{verdict}*: {verdict.rule}" for verdict in Verdict)]
+    text += [
+        "",
+        "Of a mean that is printed with its deviation: reproduced within 1.96 standard errors, "
+        "within scatter within one standard deviation.",
+        "",
+    ]
     for run in runs:
         text += [f"## {run.study.name}: {run.study.title}", "", f"Source: {run.study.source}.", ""]
         if run.error:
