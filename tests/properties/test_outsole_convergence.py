@@ -31,8 +31,9 @@ def body(treaded):
     return sole, layered_compliance(sole, modulus=MODULUS, poisson_ratio=0.49, thickness=0.025)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("treaded", [False, True])
-@settings(max_examples=10, deadline=None, phases=[Phase.explicit, Phase.generate])
+@settings(max_examples=8, deadline=None, phases=[Phase.explicit, Phase.generate])
 @given(
     speed=st.floats(-2.0, math.log10(3)),
     force=st.floats(1.0, math.log10(2000)),
