@@ -40,6 +40,8 @@ def possible_changes(case: Case) -> list[Change]:
 
 def _new_tread(case: Case) -> Change | None:
     tread = case.shoe.tread
+    if case.shoe.outsole.file is not None:  # its tread is the file's
+        return None
     if tread.pattern != "none" and (tread.depth or 0.0) >= WORN_OUT:
         return None
     return Change(
@@ -52,7 +54,9 @@ def _new_tread(case: Case) -> Change | None:
 
 def _wider_channels(case: Case) -> Change | None:
     tread = case.shoe.tread
-    if tread.pattern == "none" or not tread.channel_width or (tread.depth or 0.0) < WORN_OUT:
+    if case.shoe.outsole.file is not None or tread.pattern == "none":
+        return None
+    if not tread.channel_width or (tread.depth or 0.0) < WORN_OUT:
         return None
     wider = 1.5 * tread.channel_width
     return Change(
