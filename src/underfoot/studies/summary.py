@@ -19,6 +19,7 @@ from .registry import STUDIES, Study
 from .verdict import Verdict
 
 _NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?")
+_REPORT = "final progress report on shoe-floor friction, "
 _UNITS = re.compile(r"%|kPa|kN|\bN\b|ms|m/s|mm")
 
 
@@ -119,7 +120,14 @@ def _line(study: str, line: Any) -> SummaryLine:
     ours = str(getattr(line, "ours_text", line.ours))
     difference = getattr(line, "difference", "") or range_difference(printed, ours)
     return SummaryLine(
-        study, line.source, quantity, printed, ours, difference, str(line.verdict), line.reason
+        study,
+        line.source.removeprefix(_REPORT),
+        quantity,
+        printed,
+        ours,
+        difference,
+        str(line.verdict),
+        line.reason,
     )
 
 
@@ -162,7 +170,7 @@ def summary_markdown(runs: Sequence[StudyRun], *, quick: bool = False) -> str:
         "# Every printed number beside ours",
         "",
         "Written by `underfoot studies run all" + (" --quick" if quick else "") + "`; the table is "
-        "`summary.md` in its folder. Reasons shortened here stand in full on the page.",
+        "`summary.md` in its folder.",
         "",
         "| study | " + " | ".join(str(verdict) for verdict in Verdict) + " |",
         "|---" * (len(Verdict) + 1) + "|",
