@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 FILM_MATTERS = 0.05
 """Share of the load carried by the film from which drainage is worth naming."""
+GAIN_MATTERS = 1.1
+"""Factor on the COF from which drainage is worth naming; a film's own shear counts against it."""
 QUOTED_SLOPES = (-41.2, -45.1, -54.7)
 _QUOTED = (
     "slope of another study as quoted in final progress report on shoe-floor friction, G.6.3; "
@@ -54,7 +56,8 @@ class Limit:
         """ "film", "fluid" (what it leaves of adhesion) or "dry"."""
         if math.isnan(self.film_share):
             return "dry"
-        return "film" if self.film_share > FILM_MATTERS else "fluid"
+        carried = self.film_share > FILM_MATTERS and self.drained > GAIN_MATTERS * self.cof
+        return "film" if carried else "fluid"
 
     @property
     def words(self) -> str:
@@ -66,8 +69,10 @@ class Limit:
                 f"The film carries {100 * self.film_share:.0f} % of the load; "
                 f"drained, the same surfaces would give about {self.drained:.2f}."
             )
+        share = f"The film carries {100 * self.film_share:.0f} % of the load"
         return (
-            "The surfaces touch; what limits it is the adhesion that the fluid blocks between them."
+            f"{share}, which matters little here; what limits the friction is the adhesion that "
+            "the fluid blocks where the surfaces touch."
         )
 
 

@@ -104,6 +104,17 @@ def tested_range_breaches(case: Case) -> list[str]:
     return [str(breach) for breach in found]
 
 
+def given_in_vain(case: Case) -> list[str]:
+    """Return what the case file gives and no chosen shape, fluid or model looks at."""
+    from .compose import GIVEN
+
+    return [
+        f"{path} = {origin.leaf.given}"
+        for path, origin in case.origins.items()
+        if origin.kind == GIVEN and path in unused(case) and case.value(path) is not None
+    ]
+
+
 def differences(first: Case, second: Case) -> list[tuple[str, str, str]]:
     """Return (path, first, second) of the values in which two cases differ."""
     left, right = ({path: value for path, value, _ in rows(case)} for case in (first, second))

@@ -19,7 +19,7 @@ from underfoot.core import (
 from . import build
 from .build_motion import Recorder, history_fields, refuse_too_large, scanned, solved_motion
 from .build_outsole import compression_breaches
-from .describe import assumptions
+from .describe import assumptions, given_in_vain
 from .grid_error import grid_errors, grid_words, readings, with_grid_errors
 from .result import Result
 from .scalars import regime, scalars, spread_origin, undetermined
@@ -113,6 +113,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent) -> Resu
     )
     labels = {**regime(contact), **spread_origin(sampled)} if usable else {}
     if usable:
+        if aside := given_in_vain(case):
+            labels["given_in_vain"] = "; ".join(aside)
         if remark := peak_pressure(sole, contact.total_pressure).remark:
             labels["edge_peak"] = remark
         numbers |= recorder.array_scalars()

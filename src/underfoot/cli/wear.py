@@ -16,9 +16,14 @@ if TYPE_CHECKING:
 def wear(
     case: CasePath,
     mode: Annotated[
-        str,
-        typer.Option("--mode", help="archard (pressure times sliding), plane or patch."),
-    ] = "archard",
+        str | None,
+        typer.Option(
+            "--mode",
+            help="archard (pressure times sliding; the default), plane (the default for an outsole "
+            "from a file) or patch.",
+            show_default=False,
+        ),
+    ] = None,
     steps: Annotated[int, typer.Option("--steps", help="Worn states to compute.", min=2)] = 6,
     limit: Annotated[
         str, typer.Option("--limit", help='Fluid load looked for: "5 N" or "20 %" of the load.')
@@ -53,6 +58,8 @@ def wear(
     from .options import loaded
 
     given = loaded(case, catalogue, set_)
+    if mode is None:
+        mode = "archard" if given.shoe.outsole.file is None else "plane"
     if mode not in MODES:
         raise unknown_name("mode", mode, MODES, where="--mode")
     if out is not None:

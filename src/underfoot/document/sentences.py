@@ -39,7 +39,11 @@ _ROWS = (
     ("minimum_film_thickness", "Thinnest film", "mean gap between the surfaces"),
     ("slip_probability", "Probability of a slip", "for the walkers described in the case"),
 )
-_LABELS = (("grid_error", "What the grid leaves"), ("edge_peak", "Caution on pressures"))
+_LABELS = (
+    ("grid_error", "What the grid leaves"),
+    ("edge_peak", "Caution on pressures"),
+    ("given_in_vain", "Given, but looked at by no chosen model"),
+)
 
 
 def summary_rows(result: Result) -> list[Row]:

@@ -39,8 +39,8 @@ class PeakPressure:
         if not self.at_edge:
             return ""
         return (
-            f"the highest pressure, {self.highest / 1e3:.0f} kPa, lies at the edge of a lug or of "
-            "the sole and grows on a finer grid; its mean over "
+            f"the highest pressure of contact and fluid together, {self.highest / 1e3:.0f} kPa, "
+            "lies at the edge of a lug or of the sole and grows on a finer grid; its mean over "
             f"{self.area * 1e6:.0f} mm2 is {self.mean / 1e3:.0f} kPa"
         )
 
