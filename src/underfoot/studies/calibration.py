@@ -32,7 +32,7 @@ CONTACTS = (0.08, 0.11, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5)
 READING = 0.15
 """Relative standard deviation of a reading of the slip tester, assumed: none is printed."""
 OPEN = (
-    ("heel's facet length, radius, width; outsole thickness", "G.4", "five readings stand against "
+    ("heel's facet length, radius, width; outsole thickness", "G.4", "few readings stand against "
      "them all, and each moves load and peak as the facet's angle does"),
     ("adhesion and hysteresis apart", "G.2", "only their sum is printed; Fig. 22 and 23 hold the "
      "readings as pictures"),
