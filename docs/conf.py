@@ -25,11 +25,11 @@ autodoc_default_options = {"members": True, "undoc-members": False}
 suppress_warnings = ["myst.header", "ref.python"]
 
 
-def _plain_formulas(app, what, name, object_, options, lines) -> None:  # noqa: ANN001
+def _plain_formulas(app, what, name, object_, options, lines) -> None:
     """Formulas in docstrings are plain text: |E*| is a modulus, no markup."""
     lines[:] = [line.replace("|", "\\|").replace("*", "\\*") for line in lines]
 
 
-def setup(app) -> None:  # noqa: ANN001
+def setup(app) -> None:
     """Called by Sphinx."""
     app.connect("autodoc-process-docstring", _plain_formulas)
