@@ -19,6 +19,8 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 MEASURING_CELL = 0.5e-3  # m
+SHALLOW = 0.5
+"""Share of the median lug height below which a part of a scanned sole is rounded rim, no lug."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +78,8 @@ def surface_wear_measures(new: SoleSurface, worn: SoleSurface) -> WearMeasures:
     """Return how worn a sole known by its heights is, against the same sole when new.
 
     Each cell has the lug height of the nearest land, so that a channel counts with its lugs; parts
-    that had no tread are left aside.
+    that had no tread are left aside, and so is the rounded rim, where a lug measures less than half
+    of the median height.
     """
     from .._kernels.land import nearest_true
 
@@ -84,6 +87,9 @@ def surface_wear_measures(new: SoleSurface, worn: SoleSurface) -> WearMeasures:
     removed = np.where(inside, np.nan_to_num(worn.land_base - new.land_base), 0.0)
     raised = np.nan_to_num(worn.height - new.height)[inside]
     depth = np.where(inside, new.tread_depth[nearest_true(new.land)], 0.0)
+    lugs = depth[depth > 0]
+    if lugs.size:
+        depth = np.where(depth < SHALLOW * np.median(lugs), 0.0, depth)
     area = new.spacing**2
     return _measured(removed, inside, depth, float(raised.sum()) * area, new.spacing)
 
