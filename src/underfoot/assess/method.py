@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from underfoot.core import InputError, Progress, SourcedValue, display, silent, unknown_name
@@ -156,6 +156,13 @@ def predict(
         window = tuple(found[number * width : (number + 1) * width])
         effects = _effects(changed, processes, progress) if with_band else None
         conditions.append(_condition(entry, name, changed, window, effects))
+        if len(plan) > 1:  # floor and fluid differ from condition to condition
+            listed = [
+                replace(one, name=f"{one.name}, {name.replace('_', ' ')}")
+                if one.name in ("floor", "contaminant")
+                else one
+                for one in listed
+            ]
         requirements += [one for one in listed if one not in requirements]
     if times:
         requirements.append(_window_words(entry, times))

@@ -137,19 +137,17 @@ def write_prediction(found: MethodPrediction, folder: Path) -> None:
 
 def _show(found: MethodPrediction, name: str, out: Path | None) -> None:
     from rich.console import Console
-    from rich.table import Table
+
+    from .show import table
 
     console = Console(highlight=False)
     console.print(f"\n[bold]{name}[/bold] by {found.title}")
     for one in found.conditions:
         console.print(f"  {one.title}: {sentence(one)}", markup=False)
-    table = Table(box=None, pad_edge=False)
-    for head in ("the method asks", "required", "used", "how sure"):
-        table.add_column(head, overflow="fold")
-    for row in found.requirements:
-        table.add_row(row.name, row.required, row.used, row.mark)
+    heads = ("the method asks", "required", "used", "how sure")
+    rows = [(row.name, row.required, row.used, row.mark) for row in found.requirements]
     console.print()
-    console.print(table)
+    console.print(table(heads, rows))
     breaches = list(dict.fromkeys(b for one in found.conditions for b in one.outcome.breaches))
     if breaches:
         console.print("\nOutside a tested range:")

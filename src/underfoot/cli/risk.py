@@ -115,10 +115,11 @@ def write_risk(found: RiskReport, folder: Path) -> None:
 
 def _show(found: RiskReport, out: Path | None) -> None:
     from rich.console import Console
-    from rich.table import Table
 
     from underfoot.document.risk_sentences import bought_words, risk_sentences
     from underfoot.document.sentences import percent
+
+    from .show import table
 
     console = Console(highlight=False)
     console.print(f"\n[bold]{found.case}[/bold]")
@@ -127,18 +128,21 @@ def _show(found: RiskReport, out: Path | None) -> None:
     if found.outcome.usable:
         best = {id(one): place for place, one in enumerate(found.best, 1)}
         console.print("\nWhat it would take, each computed:")
-        table = Table(box=None, pad_edge=False, show_header=False)
-        for one in sorted(found.changes, key=lambda each: best.get(id(each), 99)):
-            place = f"{best[id(one)]}." if id(one) in best else "-"
-            table.add_row(place, one.change.words, bought_words(one))
-        console.print(table)
+        rows = [
+            (f"{best[id(one)]}." if id(one) in best else "-", one.change.words, bought_words(one))
+            for one in sorted(found.changes, key=lambda each: best.get(id(each), 99))
+        ]
+        console.print(table((), rows))
         console.print("\nThe same friction by every model:")
-        models = Table(box=None, pad_edge=False)
-        for head in ("model", "chance of a slip", f"friction for {percent(found.wanted)}"):
-            models.add_column(head)
-        for one in found.models:
-            needed = "-" if one.needed_acof is None else f"{one.needed_acof:.3f}"
-            models.add_row(one.name, percent(one.probability), needed)
-        console.print(models)
+        heads = ("model", "chance of a slip", f"friction for {percent(found.wanted)}")
+        models = [
+            (
+                one.name,
+                percent(one.probability),
+                "-" if one.needed_acof is None else f"{one.needed_acof:.3f}",
+            )
+            for one in found.models
+        ]
+        console.print(table(heads, models))
     if out is not None:
         console.print(f"\nFiles in {out}", markup=False)

@@ -90,9 +90,10 @@ def as_dict(found: Sensitivity) -> dict[str, Any]:
 
 def _show(found: Sensitivity, full: bool, out: Path | None) -> None:
     from rich.console import Console
-    from rich.table import Table
 
     from underfoot.core import display
+
+    from .show import table
 
     console = Console(highlight=False)
     console.print(f"\n[bold]{found.nominal.name}[/bold]")
@@ -107,7 +108,7 @@ def _show(found: Sensitivity, full: bool, out: Path | None) -> None:
             f"\n{label}: {display(band.value, unit, 3)} ± {display(band.deviation, unit, 2)}"
             f"   (seen: {display(band.lowest, unit, 3)} to {display(band.highest, unit, 3)})"
         )
-        table = Table(box=None, pad_edge=False, show_header=False)
+        rows = []
         for effect in found.ranked(name)[:4]:
             ends = " and ".join(
                 "not computed"
@@ -117,8 +118,8 @@ def _show(found: Sensitivity, full: bool, out: Path | None) -> None:
                 else display(end.number(name), unit, 3)
                 for end in (effect.low, effect.high)
             )
-            table.add_row(f"  {effect.path}", effect.words, ends)
-        console.print(table)
+            rows.append((f"  {effect.path}", effect.words, ends))
+        console.print(table((), rows))
         for path in band.not_computed:
             console.print(f"  not computed, not in the spread: {path}")
     if out is not None:
