@@ -53,7 +53,11 @@ def test_the_catalogue_of_the_guide_loads_and_makes_a_case(tmp_path, monkeypatch
 
 def test_the_guide_names_every_command_and_exit_code():
     text = (GUIDE / "command_line.md").read_text()
-    names = [command.callback.__name__ for command in app.registered_commands if command.callback]
+    names = [
+        command.name or command.callback.__name__
+        for command in app.registered_commands
+        if command.callback
+    ]
     names += [group.typer_instance.info.name for group in app.registered_groups]
     for name in names:
         assert f"`underfoot {name}" in text

@@ -9,7 +9,12 @@ from underfoot.core.catalogue import Catalogue
 BOOK = Catalogue.load()
 SHOES = [name for name in BOOK.names("shoe") if name != "slip_tester_heel"]
 FLOORS = [name for name in BOOK.names("floor") if not name.startswith("ceramic")]
-SETUPS = [n for n in BOOK.names("setup") if BOOK.entry("setup", n).under("motion")]
+# a history fixes load, speed and angle, which the changes below alter
+SETUPS = [
+    n
+    for n in BOOK.names("setup")
+    if (motion := BOOK.entry("setup", n).under("motion")) and "history_points" not in motion
+]
 
 
 def quantities(low, high, *units):

@@ -45,6 +45,20 @@ def test_the_history_is_the_mean_of_the_recorded_steps() -> None:
     np.testing.assert_allclose(np.degrees([p.shoe_angle or 0.0 for p in points]), angles, atol=0.06)
 
 
+def test_a_case_with_a_history_survives_its_text() -> None:
+    case = Case.from_text(TEXT)
+    for complete in (False, True):
+        again = Case.from_text(case.to_toml(complete=complete))
+        assert again.hash == case.hash
+        assert again.motion.history_points is not None
+        assert case.motion.history_points is not None
+        for ours, theirs in zip(
+            case.motion.history_points, again.motion.history_points, strict=True
+        ):
+            assert theirs.normal_force == pytest.approx(ours.normal_force)
+            assert theirs.shoe_angle == pytest.approx(ours.shoe_angle)
+
+
 @pytest.mark.slow
 def test_a_heel_strikes_and_rolls_flat() -> None:
     result = run(Case.from_text(TEXT), quick=True)

@@ -80,7 +80,12 @@ class MethodPrediction:
 def method_names(case: Case) -> list[str]:
     """Return the set-ups of the catalogue that a case can be tested by."""
     names = case.catalogue.names("setup")
-    return [name for name in names if "motion.speed" in case.catalogue.entry("setup", name).values]
+    entries = [case.catalogue.entry("setup", name).values for name in names]
+    return [
+        name
+        for name, values in zip(names, entries, strict=True)
+        if "motion.speed" in values and any(path.startswith("method.") for path in values)
+    ]
 
 
 def method_name(given: str, case: Case) -> str:
