@@ -38,7 +38,7 @@ CHANGES = st.fixed_dictionaries(
     {},
     optional={
         "contaminant.viscosity": sourced(quantities(0.5, 900, "cP", "mPa*s")),
-        "contaminant.pool_depth": quantities(0.1, 3, "mm"),
+        "contaminant.pool_depth": quantities(0.3, 3, "mm"),
         "motion.speed": sourced(quantities(0.01, 5, "m/s")),
         "motion.normal_force": quantities(10, 900, "N"),
         "motion.shoe_angle": quantities(-20, 40, "deg"),
@@ -46,7 +46,7 @@ CHANGES = st.fixed_dictionaries(
         "shoe.material.poisson_ratio": st.floats(0.1, 0.5),
         "shoe.heel.facet_angle": quantities(0, 50, "deg", "degree"),
         "shoe.sole.outsole_thickness": quantities(6, 40, "mm"),
-        "interface.effective_rq": sourced(quantities(0.1, 90, "um")),
+        "interface.effective_rq": sourced(quantities(0.1, 60, "um")),
         "models.hardness": st.sampled_from(["gent", "ruess"]),
         "models.friction": st.sampled_from(["boundary", "stribeck"]),
         "sensor.scans": st.integers(1, 20),
