@@ -3,23 +3,36 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
+# Two workers. Quick tests: each takes over from the other when its own are done. Slow ones: a file
+# stays with one worker, since its tests share long runs.
+PYTEST := $(BIN)/pytest -n 2 --dist
 export OMP_NUM_THREADS ?= 1
 export MKL_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: run test check bench validate docs clean help
+.PHONY: run check test test-slow test-install chromium bench validate docs clean help
 
 run: $(READY)  ## the main job: a worn work shoe on a floor with glycerol
 	$(BIN)/underfoot run examples/work_shoe_untreaded_glycerol.toml --out out/work_shoe_untreaded_glycerol --overwrite
 
-test: check  ## static checks, then every test
-	$(BIN)/pytest -n 2 --dist loadfile
-
-check: $(READY)  ## ruff, pyright, import-linter
+check: $(READY)  ## ruff, pyright, import-linter (a minute)
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/pyright
 	$(BIN)/lint-imports
+
+test: check  ## static checks, then every test that is not slow (minutes)
+	$(PYTEST) worksteal -m "not slow"
+
+test-slow: $(READY)  ## the slow tests
+	$(PYTEST) loadfile -m slow
+
+test-install: $(READY)  ## the wheel without the lock, on newest and lowest versions, runs the main job
+	$(BIN)/python tests/install/wheel.py
+
+chromium:  ## a browser for the tests of the pages, where there is none (Debian, Ubuntu; as root)
+	@command -v chromium chromium-browser google-chrome chrome || { \
+	apt-get update -q && apt-get install -y -q --no-install-recommends chromium; }
 
 validate: $(READY)  ## closed-form checks, printed with their errors
 	$(BIN)/underfoot validate
@@ -35,7 +48,7 @@ clean:  ## remove the environment and everything that was made
 	rm -rf $(VENV) out .pytest_cache .ruff_cache .hypothesis .import_linter_cache
 
 help:  ## this list
-	@grep -hE '^[a-z]+:.*##' Makefile | sed 's/:.*##/\t/'
+	@grep -hE '^[a-z-]+:.*##' Makefile | sed 's/:.*##/\t/'
 
 $(READY): requirements.lock pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Underfoot needs Python 3.11 or newer; set PYTHON=python3.11 (or newer)")'

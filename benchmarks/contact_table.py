@@ -6,14 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from underfoot.asperity.contact_table import QUANTITIES, ContactTable
-from underfoot.asperity.cutoff import cutoff_dependence
-from underfoot.asperity.flow_factor import flow_factors
-from underfoot.asperity.persson import persson
-from underfoot.asperity.steady import steady_sliding
-from underfoot.asperity.table_error import leave_out_errors
 from underfoot.core import Cache
 from underfoot.material import power_law_spectrum
+from underfoot.rough_contact.contact_table import QUANTITIES, ContactTable, leave_out_errors
+from underfoot.rough_contact.cutoff import cutoff_dependence
+from underfoot.rough_contact.flow_factor import flow_factors
+from underfoot.rough_contact.persson import persson
+from underfoot.rough_contact.steady import steady_sliding
 from underfoot.surface import isotropic_spectrum, self_affine, spectral_moments
 
 RUBBER = power_law_spectrum(1.3e6, 0.12)

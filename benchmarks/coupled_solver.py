@@ -31,10 +31,10 @@ def measured(spacing: float, treaded: bool, backend: str | None) -> dict[str, fl
     """Return what one run took, in this process."""
     import resource
 
-    from underfoot.asperity.exponential import ExponentialLaw
-    from underfoot.outsole import Facet, Heel, Tread, heel_map
-    from underfoot.outsole.compliance import layered_compliance
-    from underfoot.outsole.solver import SolverSettings, solve_sliding
+    from underfoot.rough_contact.pressure_gap_law import ExponentialLaw
+    from underfoot.shoe import Facet, Heel, Tread, heel_map
+    from underfoot.sole_contact.compliance import layered_compliance
+    from underfoot.sole_contact.solver import SolverSettings, solve_sliding
 
     tread = Tread("grid", lug_width=5e-3, channel_width=2.4e-3, depth=1.5e-3)
     heel = Heel(
@@ -73,21 +73,20 @@ def condition(name: str, spacing: float) -> dict[str, float]:
     """Return what one of the example cases took, in this process."""
     import resource
 
-    from underfoot.case import Case, build
-    from underfoot.case.build_motion import solved_motion
+    from underfoot.case import Case
+    from underfoot.compute.contact import solved_motion
+    from underfoot.compute.resolve import resolved
+    from underfoot.compute.sole import sole_map
 
     case = Case.load(f"examples/{name}.toml")
     began = time.process_time()
-    modulus, _ = build.youngs_modulus(case)
-    fluid = build.viscosity(case)
-    assert modulus.value is not None
-    sole = build.sole_map(case, spacing)
+    context, sole = resolved(case), sole_map(case, spacing)
     solved = solved_motion(
         case,
         sole,
-        build.compliance(case, sole, modulus.value),
-        build.asperity_law(case, modulus.value),
-        viscosity=None if fluid is None else fluid.value,
+        case.compliance.build(context, sole),
+        case.rough_contact.build(context),
+        viscosity=case.film.build(context),
     )
     counts = solved.counts
     return {

@@ -33,20 +33,20 @@ def gap(cells: int, dimpled: bool) -> np.ndarray:
 def main() -> None:
     from threadpoolctl import threadpool_limits
 
-    from underfoot.film import available_backends, mass_conserving_film
+    from underfoot.core.sparse import back_ends
+    from underfoot.film import Film, film_pressure
 
     print("slider     cells  backend   CPU s  sets  mass residual    load N  cavitated")
     slowest, leakiest = 0.0, 0.0
     for dimpled in (False, True):
-        for backend in available_backends():
+        for backend in back_ends():
             loads = []
             for cells in CELLS if backend == "pardiso" else CELLS[:-1]:
                 given = gap(cells, dimpled)
                 with threadpool_limits(1):
                     began = time.process_time()
-                    film = mass_conserving_film(
-                        given, spacing=LENGTH / cells, viscosity=0.1, speed=0.5, backend=backend
-                    )
+                    walls = Film(given, spacing=LENGTH / cells, viscosity=0.1, speed=0.5)
+                    film = film_pressure(walls, backend=backend)
                     took = time.process_time() - began
                 loads.append(film.load)
                 leakiest = max(leakiest, film.mass_residual)

@@ -12,15 +12,15 @@ from pathlib import Path
 
 import numpy as np
 
-from underfoot.asperity.finite_element import (
+from underfoot.block import (
     ExplicitSettings,
     MicroBlock,
     MicroLoading,
     MicroMaterial,
     MicroSurface,
 )
-from underfoot.asperity.finite_element._kernels import generate, names
-from underfoot.asperity.finite_element.assembly import Assembly, assembled
+from underfoot.block._kernels import generate, names
+from underfoot.block.assembly import Assembly, assembled
 from underfoot.material import RelaxationSpectrum
 
 MESHES = ((26, 16, 9), (64, 40, 20), (128, 80, 50))
@@ -67,11 +67,36 @@ def rate(elements: int, advance: Callable[[int], None]) -> float:
     return elements * count / best / 1e6
 
 
+def cpp_loop(rows: list[generate.Statement], shift: str = "") -> str:
+    lines = [f"#pragma GCC ivdep\nfor (int l = 0; l < {generate.LANES}; ++l) {{"]
+    for target, value in rows:
+        declare = "" if "[" in target else "const T "
+        value = generate.lane(value, shift).replace("abs(", "std::abs(")
+        lines.append(f"  {declare}{generate.lane(target, shift)} = {value};")
+    return "\n".join([*lines, "}"]) + "\n"
+
+
+def cpp_source(terms: str) -> str:
+    """Return the body of the C++ element loop with "none", "one" or "many" terms."""
+    passes = generate.variant(terms, False)
+    n = len(generate.PARAMETERS)
+    text = "".join(f"const T {name} = P[{i}];\n" for i, name in enumerate(generate.PARAMETERS))
+    if terms == "one":
+        text += f"const T decay = P[{n}], weight = P[{n + 1}];\n"
+    text += cpp_loop(passes[0])
+    if terms == "many":
+        text += "for (int term = 0; term < terms; ++term) {\n"
+        text += f"const int row = {6 * generate.LANES} * term;\n"
+        text += f"const T decay = P[{n} + 2 * term], weight = P[{n + 1} + 2 * term];\n"
+        text += cpp_loop(generate.term_pass(), "row + ") + "}\n" + cpp_loop(passes[1])
+    return text
+
+
 def peer(folder: Path, flags: list[str], precision: str, terms: int) -> ctypes.CDLL:
     kind = {0: "none", 1: "one"}.get(terms, "many")
     text = Path(__file__).with_suffix(".cpp").read_text(encoding="utf-8")
     for word, value in (
-        ("// statements", generate.cpp_source(kind)),
+        ("// statements", cpp_source(kind)),
         ("ELEMENT_ROWS", str(generate.ELEMENT_ROWS)),
         ("LANES", str(generate.LANES)),
         ("WORK", str(generate.WORK_ROWS)),

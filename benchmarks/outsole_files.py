@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from underfoot.outsole._kernels.height_buffer import height_buffer
-from underfoot.outsole.files import FileSettings, outsole_from_mesh, read_mesh
-from underfoot.outsole.tread_measures import tread_measures
+from underfoot.shoe._kernels.height_buffer import height_buffer
+from underfoot.shoe.files import FileSettings, outsole_from_mesh, read_mesh
+from underfoot.shoe.tread_measures import tread_measures
 
 ROWS, COLUMNS = 2122, 708
 TIME_LIMIT, MEMORY_LIMIT = 2.0, 2e9

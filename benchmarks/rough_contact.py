@@ -28,8 +28,8 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import numpy as np
 
-from underfoot.asperity import SteadySliding, steady_sliding
 from underfoot.material import RelaxationSpectrum
+from underfoot.rough_contact import SlidingSettings, SteadySliding, steady_sliding
 
 TIMES = np.logspace(-9.0, 0.0, 30)
 RUBBER = RelaxationSpectrum(1.0, 0.025 * TIMES**-0.25, TIMES)
@@ -64,7 +64,13 @@ def elastic_error(pressure: np.ndarray, height: np.ndarray) -> float:
 def ours(height: np.ndarray, pressure: float, speed: float, fft: str) -> SteadySliding:
     modulus = 1.0 if speed == 0.0 else RUBBER
     return steady_sliding(
-        height, 1.0 / height.shape[0], modulus, speed / LENGTH, pressure, 0.0, fft=fft
+        height,
+        1.0 / height.shape[0],
+        modulus,
+        speed / LENGTH,
+        pressure,
+        0.0,
+        settings=SlidingSettings(fft=fft),
     )
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import psutil
 
-from underfoot.document.trials_report import STORE, write_trials_report
+from underfoot.report.trials_report import STORE, write_trials_report
 from underfoot.trials.analyse import analyse_folder
 from underfoot.trials.protocols import protocol
 from underfoot.trials.simulate import simulated_folder
@@ -28,7 +28,7 @@ def main() -> None:
             begin, before = time.perf_counter(), _cpu()
             analysis = analyse_folder(folder, protocol("report_g6"), store=out / STORE, processes=2)
             analysed, middle = time.perf_counter() - begin, _cpu()
-            write_trials_report(analysis, out)
+            write_trials_report(analysis, out, processes=2)
             total, after = time.perf_counter() - begin, _cpu()
         begin = time.perf_counter()
         analyse_folder(folder, protocol("report_g6"), store=out / STORE, processes=2)

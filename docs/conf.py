@@ -1,16 +1,27 @@
 """Sphinx: the documentation as one offline site (``make docs``)."""
 
+import sys
 from importlib import metadata
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
 
 project = "Underfoot"
 author = "The Underfoot authors"
 copyright = author
 release = metadata.version("underfoot")
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.mathjax",
+    "sphinx-mathjax-offline",  # the site loads nothing from elsewhere
+    "drawn",
+]
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
-exclude_patterns = ["_build"]
+exclude_patterns = ["_build", "_drawn"]
 html_theme = "furo"
 html_title = f"Underfoot {release}"
 html_static_path = ["_static"]
@@ -22,7 +33,7 @@ napoleon_custom_sections = [("Errors", "Raises"), "Source"]
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 autodoc_default_options = {"members": True, "undoc-members": False}
-suppress_warnings = ["myst.header", "ref.python"]
+suppress_warnings = ["myst.header", "ref.python", "misc.highlighting_failure"]
 
 
 def _plain_formulas(app, what, name, object_, options, lines) -> None:

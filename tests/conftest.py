@@ -1,11 +1,59 @@
 """What several tests share."""
 
 import os
+import shutil
+import signal
 
 import pytest
 
+CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "chrome")
+LONG = 10  # s of CPU, above which a test should be marked slow
+NO_BROWSER = "no Chromium on this machine (Debian, Ubuntu: apt-get install chromium)"
+
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("MKL_NUM_THREADS", "1")
+# started in the background of a shell, the programs of the tests would ignore Ctrl-C
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item):
+    """Tests in a browser fail in CI where there is none; elsewhere the summary says so."""
+    if item.get_closest_marker("browser") and not any(map(shutil.which, CHROMIUM)):
+        (pytest.fail if os.environ.get("CI") == "true" else pytest.skip)(NO_BROWSER)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item):
+    before = os.times()
+    answer = yield
+    cpu = sum(os.times()[:4]) - sum(before[:4])  # this process and those it waited for
+    item.user_properties.append(("cpu", cpu))
+    return answer
+
+
+def pytest_terminal_summary(terminalreporter, config):
+    passed = (
+        terminalreporter.stats.get("passed", []) if config.option.markexpr == "not slow" else []
+    )
+    long = sorted(
+        ((dict(report.user_properties).get("cpu", 0.0), report.nodeid) for report in passed),
+        reverse=True,
+    )
+    if long and long[0][0] > LONG:
+        terminalreporter.section(f"more than {LONG} s of CPU without the mark slow")
+        for cpu, name in long:
+            if cpu > LONG:
+                terminalreporter.line(f"{cpu:5.0f} s {name}")
+    skipped = [
+        report
+        for report in terminalreporter.stats.get("skipped", [])
+        if NO_BROWSER in str(report.longrepr)
+    ]
+    if skipped:
+        terminalreporter.section("BROWSER TESTS DID NOT RUN", sep="!", yellow=True, bold=True)
+        terminalreporter.line(f"{len(skipped)} tests of the pages: {NO_BROWSER}", yellow=True)
 
 
 @pytest.fixture(autouse=True)
@@ -35,6 +83,6 @@ def worn_shoe_case():
 @pytest.fixture(scope="session")
 def worn_shoe_result(worn_shoe_case):
     """Its result."""
-    from underfoot.case.run import run
+    from underfoot.compute.run import run
 
     return run(worn_shoe_case)

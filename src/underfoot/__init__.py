@@ -1,31 +1,45 @@
 """Underfoot: the friction between a shoe, a floor and what is spilled on it.
 
->>> from underfoot import Case, run
->>> result = run(Case.load("examples/work_shoe_untreaded_glycerol.toml"))  # doctest: +SKIP
->>> result.value("cof")  # doctest: +SKIP
+>>> import underfoot as uf
+>>> case = uf.load("examples/work_shoe_untreaded_glycerol.toml")  # doctest: +SKIP
+>>> uf.run(case).value("cof")  # doctest: +SKIP
 """
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .case import Case
-    from .case.result import Result
-    from .case.run import run
+    from .case import Case, load
+    from .compute.result import Result
+    from .compute.run import run
+    from .core.catalogue import catalogue
+    from .questions.comparison import compare
+    from .questions.explanation import explain
 
-__all__ = ["Case", "Result", "run"]
+    __version__: str
 
-_HOMES = {"Case": ".case", "Result": ".case.result", "run": ".case.run"}
+__all__ = ["Case", "Result", "__version__", "catalogue", "compare", "explain", "load", "run"]
+
+_HOMES = {
+    "Case": ".case",
+    "Result": ".compute.result",
+    "catalogue": ".core.catalogue",
+    "compare": ".questions.comparison",
+    "explain": ".questions.explanation",
+    "load": ".case",
+    "run": ".compute.run",
+}
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        return import_module(".core.provenance", __name__).version()
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from importlib import import_module
-
     return getattr(import_module(_HOMES[name], __name__), name)
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *_HOMES])
+    return __all__

@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from film_between_walls import solved_film
 from underfoot.core import InputError
-from underfoot.film import mass_conserving_film, wall_shear
+from underfoot.film import wall_shear
 
 ETA, SPEED, LENGTH, H0 = 0.1, 0.5, 0.01, 2e-5
 
@@ -20,7 +21,7 @@ def test_drag_of_the_inclined_bearing():
     film[[0, -1]] = False
     spacing = LENGTH / cells
     given = {"spacing": spacing, "viscosity": ETA, "speed": SPEED}
-    solved = mass_conserving_film(gap, film=film, **given)
+    solved = solved_film(gap, mask=film, **given)
     lower, upper = wall_shear(solved.pressure, gap, fraction=solved.fraction, **given)
     unit = ETA * SPEED * LENGTH / H0
     flat = unit * (4 * math.log(1 + m) / m - 6 / (2 + m))

@@ -11,9 +11,12 @@ from underfoot.friction import (
     AdhesionBlockingLaw,
     BoundaryFriction,
     BoundaryLaw,
+    BowdenTaborLaw,
     ConstantLaw,
     FrictionLaw,
     FrictionParts,
+    ShearStrength,
+    SpeedTableLaw,
     StribeckLaw,
     boundary_friction_at,
     cof,
@@ -298,3 +301,23 @@ def test_bad_integration():
         cof(parts, one, one, spacing=0.0)
     with pytest.raises(InputError, match="not finite"):
         cof(parts, one, math.nan * one, spacing=1e-3)
+
+
+def test_every_law_presents_itself_in_short():
+    cof = SourcedValue(0.4, "1", "a pin", 0.03)
+    laws = [
+        ConstantLaw(0.3, 0.1, "own readings", adhesion_deviation=0.02),
+        BoundaryLaw(cof, SourcedValue(0.1), viscosity=0.2),
+        StribeckLaw(cof, SourcedValue(0.2, "m/s"), SourcedValue(0.1)),
+        SpeedTableLaw([0.1, 0.3, 1.0], [0.5, 0.4, 0.3], "own readings"),
+        BowdenTaborLaw(ShearStrength(2e5, "own readings"), lambda p, v: p / 1e6),
+    ]
+    for law in laws:
+        assert len(repr(law)) < 200
+        assert type(law).__name__ in repr(law)
+        assert law.name in law.summary()
+        assert law._repr_html_().startswith("<table>")
+    frame = laws[1].to_frame().set_index("input")
+    assert frame.loc["cof_boundary", "standard deviation"] == 0.03
+    assert frame.loc["viscosity", "value"] == 0.2
+    assert list(laws[3].to_frame()["COF"]) == [0.5, 0.4, 0.3]

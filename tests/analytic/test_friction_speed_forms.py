@@ -18,7 +18,7 @@ from underfoot.friction import (
     shear_strength_from_cof,
     spectrum_scale,
 )
-from underfoot.friction._load_sharing import fluid_share
+from underfoot.friction.speed_effect import fluid_share
 from underfoot.reference import hertz_point, soft_ehl_film
 from underfoot.surface import IsotropicSpectrum, asperities, spectral_moments
 

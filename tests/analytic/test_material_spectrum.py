@@ -239,3 +239,10 @@ def test_a_reduced_spectrum_states_its_error():
         reduced(many, (1.0, 1e2), terms_per_decade=0)
     with pytest.raises(InputError, match="no loss"):
         reduced(RelaxationSpectrum(1e6), (1.0, 1e2))
+
+
+def test_spectrum_presents_itself():
+    spectrum = RelaxationSpectrum(1e6, [2e6, 3e6], [1e-3, 1.0], source="a test")
+    assert len(repr(spectrum)) < 200
+    assert list(spectrum.to_frame()["modulus Pa"]) == [1e6, 2e6, 3e6]
+    assert "a test" in spectrum.summary()

@@ -15,8 +15,8 @@ from underfoot.slip import (
     MODELS,
     Beschorner2016,
     Chang2004,
+    RcofPopulation,
     ReportG6,
-    RequiredFriction,
     SlipModel,
     slip_model,
     slip_risk,
@@ -119,7 +119,7 @@ def test_risk_carries_its_band():
 
 
 def test_risk_without_uncertainty_has_no_band():
-    found = slip_risk(acof(0.15), rcof=RequiredFriction(0.19, 0.02, "measured"))
+    found = slip_risk(acof(0.15), rcof=RcofPopulation(0.19, 0.02, "measured"))
     assert found.low is None
     assert found.probability.uncertainty is None
     assert found.probability.reason
@@ -128,19 +128,19 @@ def test_risk_without_uncertainty_has_no_band():
 
 def test_chang_with_uncertain_acof_adds_the_variances():
     """P = Phi((mean R - mean A) / sqrt(s_R^2 + s_A^2)) is the mean over the uncertain ACOF."""
-    found = slip_risk(acof(0.24, 0.04), rcof=RequiredFriction(0.2, 0.03), model=Chang2004())
+    found = slip_risk(acof(0.24, 0.04), rcof=RcofPopulation(0.2, 0.03), model=Chang2004())
     assert found.expected == pytest.approx(norm.cdf(-0.04 / 0.05), abs=1e-6)
 
 
 @pytest.mark.parametrize(
     "build",
     [
-        lambda: RequiredFriction(1.2, 0.03),
-        lambda: RequiredFriction(-0.1, 0.03),
-        lambda: RequiredFriction(math.nan, 0.03),
-        lambda: RequiredFriction(0.2, -0.01),
-        lambda: RequiredFriction(0.2, math.nan),
-        lambda: RequiredFriction(0.2, 0.7),
+        lambda: RcofPopulation(1.2, 0.03),
+        lambda: RcofPopulation(-0.1, 0.03),
+        lambda: RcofPopulation(math.nan, 0.03),
+        lambda: RcofPopulation(0.2, -0.01),
+        lambda: RcofPopulation(0.2, math.nan),
+        lambda: RcofPopulation(0.2, 0.7),
         lambda: slip_risk(acof(math.nan)),
         lambda: slip_risk(acof(-0.1)),
         lambda: slip_risk(acof(None)),
@@ -160,3 +160,48 @@ def test_bad_input(build):
 def test_range_error_names_the_range():
     with pytest.raises(RangeError, match="0 to 1"):
         ReportG6()(0.2, 1.5)
+
+
+def test_tested_range_of_the_logistic_models_is_that_of_their_studies():
+    """Each end of the tested ACOF - RCOF gives back the study's extreme predicted risk."""
+    for model, highest, lowest in ((Beschorner2016(), 0.95, 0.03), (ReportG6(), 0.925, 0.006)):
+        low, high = model.tested.low, model.tested.high
+        assert low < high
+        assert model(0.3 + low, 0.3) == pytest.approx(highest, abs=2e-3)
+        assert model(0.3 + high, 0.3) == pytest.approx(lowest, abs=2e-3)
+        assert not model.breaches(0.3 + 0.5 * (low + high), 0.3)
+        for outside in (low - 0.01, high + 0.01):
+            (breach,) = model.breaches(0.3 + outside, 0.3)
+            assert breach.quantity == "ACOF - RCOF"
+
+
+def test_risk_of_plain_numbers_and_arrays():
+    """ACOF 0.14 on RCOF 0.2 +- 0: even odds of the report's model by its definition."""
+    exact = RcofPopulation(0.2, 0.0)
+    single = slip_risk(0.14, rcof=exact)
+    assert single.probability.value == pytest.approx(0.5)
+    assert single.low is None
+    assert single.probability.reason == "the available friction came without one"
+    acofs = np.array([[0.1, 0.14], [0.2, 0.3]])
+    risks = slip_risk(acofs, rcof=exact)
+    values = [[risk.probability.value for risk in row] for row in risks]
+    assert np.array(values) == pytest.approx(ReportG6()(acofs, 0.2))
+    assert slip_risk(np.float32(0.14), rcof=exact).probability.value == pytest.approx(0.5, abs=1e-6)
+    for bad in (-0.1, math.nan, [0.1, -0.1]):
+        with pytest.raises(InputError):
+            slip_risk(bad)
+    with pytest.raises(InputError, match="one ACOF"):
+        slip_risk([0.1, 0.2], samples=[0.1, 0.2])
+
+
+def test_risk_and_models_present_themselves():
+    risk = slip_risk(acof(0.25, 0.02))
+    assert len(repr(risk)) < 200
+    assert "outside the tested range" in risk.summary()
+    frame = risk.to_frame().set_index("quantity")
+    assert frame.loc["probability of a slip", "value"] == risk.probability.value
+    for name in MODELS:
+        model = slip_model(name)
+        assert len(repr(model)) < 200
+        table = model.to_frame()
+        assert list(table["probability of a slip"]) == list(model(table["ACOF"], 0.2))

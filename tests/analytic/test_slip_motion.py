@@ -6,8 +6,14 @@ import numpy as np
 import pytest
 
 from slip_floors import WEIGHT, Floor, constant, dry_sole, walker
-from underfoot.core import InputError
-from underfoot.slip.dynamics import GaitHistory, Walker, packaged_histories, slip_motion
+from underfoot.core import InputError, Status
+from underfoot.slip.dynamics import (
+    GaitHistory,
+    SlipMotion,
+    Walker,
+    packaged_histories,
+    slip_motion,
+)
 from underfoot.slip.dynamics._kernels import reduced as kernel
 
 
@@ -125,3 +131,37 @@ def test_a_step_longer_than_a_tenth_of_the_history_is_refused():
         slip_motion(person, Floor(), step=0.2)
     with pytest.raises(InputError, match="step"):
         dry_sole(0.1).motion(person, step=-1.0)
+
+
+def test_the_length_of_a_step_goes_inversely_with_the_walking_speed():
+    """Same step length: at twice the speed of the recording the foot is on the floor half as long.
+
+    The recording's own speed counts where it is known, 1.35 m/s where it is not.
+    """
+    recorded = GaitHistory(
+        "recorded", np.linspace(0.0, 0.6, 61), np.ones(61), np.full(61, 0.2), walking_speed=1.0
+    )
+    for speed, duration in ((0.5, 1.2), (1.0, 0.6), (2.0, 0.3)):
+        step = Walker(recorded, walking_speed=speed).step
+        assert step.duration == pytest.approx(duration)
+    unknown = constant(0.2, duration=0.6)
+    assert Walker(unknown, walking_speed=2.7).step.duration == pytest.approx(0.3)
+    assert Walker(unknown).step.duration == pytest.approx(0.6)
+
+
+@pytest.mark.parametrize(
+    ("speed", "peak"),
+    [
+        ([0.9, 0.4, 0.2, 0.5, 0.3], 0.5),  # the landing, 0.9, is before the first minimum
+        ([0.3, 0.1, 0.2, 0.05, 0.6, 0.0], 0.6),
+        ([0.5, 0.3, 0.1, 0.0], 0.0),  # only slows down: no peak after its minimum
+        ([0.2, 0.4, 0.6], 0.6),
+    ],
+)
+def test_peak_speed_is_the_largest_after_the_first_minimum(speed, peak):
+    speed = np.array(speed)
+    zeros = np.zeros(speed.size)
+    time = 0.01 * np.arange(speed.size)
+    person = Walker(constant(0.2))
+    motion = SlipMotion(person, time, speed, *[zeros] * 8, Status.CONVERGED, "full")
+    assert motion.peak_speed == peak

@@ -116,7 +116,7 @@ def test_numbers_of_a_sine(standard):
     assert found.rms_curvature == pytest.approx(a * q**2 / np.sqrt(2), rel=4e-3)
     assert found.evaluation_length == pytest.approx(4 * MM)
     assert found.standard == standard
-    assert "0.0008" in found.processing[-1]
+    assert "cut-off 800 um" in found.processing[-1]
 
 
 def test_sections_count_their_own_peaks_and_the_standards_differ():
@@ -495,3 +495,15 @@ def test_a_map_from_a_profile_has_the_slopes_of_the_profile():
     assert made.rms_height == pytest.approx(floor.rms_height, rel=0.15)
     assert rms_slope(made) == pytest.approx(rms_slope(floor), rel=0.1)
     assert "isotropy assumed" in " ".join(made.processing)
+
+
+def test_moments_of_an_isotropic_surface_are_mean_squares_of_its_derivatives():
+    """m0 = <h^2>, m2 = <h_x^2>, m4 = <h_xx^2>: means over both axes by Fourier derivatives."""
+    floor = self_affine(256, 4e-6, 4e-6, 0.8, 256e-6, 32e-6, 3)
+    spectrum = np.fft.fft2(floor.heights - floor.heights.mean())
+    q = 2 * np.pi * np.fft.fftfreq(256, 4e-6)
+    moments = spectral_moments(isotropic_spectrum(floor))
+    for order, moment in ((0, moments.m0), (1, moments.m2), (2, moments.m4)):
+        along = np.fft.ifft2((1j * q[:, None]) ** order * spectrum).real
+        across = np.fft.ifft2((1j * q[None, :]) ** order * spectrum).real
+        assert moment == pytest.approx(np.mean([along**2, across**2]), rel=0.03)

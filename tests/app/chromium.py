@@ -13,12 +13,12 @@ import time
 
 import numpy as np
 
-NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
+from conftest import CHROMIUM
 
 
 def browser():
-    """Return the path of a Chromium, or None."""
-    return next((found for found in map(shutil.which, NAMES) if found), None)
+    """Return the path of a Chromium; tests with the mark "browser" run only where there is one."""
+    return next(path for path in map(shutil.which, CHROMIUM) if path)
 
 
 @contextlib.contextmanager
@@ -35,7 +35,7 @@ def opened(page, *, width=1280, height=800, touch=False, dark=False):
 
     process = subprocess.Popen(
         [
-            browser() or "", "--headless=new", "--no-sandbox", "--remote-debugging-pipe",
+            browser(), "--headless=new", "--no-sandbox", "--remote-debugging-pipe",
             "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run",
             f"--user-data-dir={profile}", "about:blank",
         ],

@@ -51,6 +51,7 @@ def test_table_and_files(tmp_path):
         "contact.json",
         "contact.npz",
         "contact.png",
+        "report.html",
     }
     assert (out / "contact.png").read_bytes().startswith(b"\x89PNG")
     content = json.loads((out / "contact.json").read_text(encoding="utf-8"))
@@ -137,7 +138,7 @@ def test_a_file_that_is_no_spectrum(tmp_path):
 
 
 def test_what_did_not_converge_is_no_number(monkeypatch, tmp_path):
-    import underfoot.cli.contact as command
+    import underfoot.questions.contact as command
 
     honest = command.solved
 
@@ -152,4 +153,4 @@ def test_what_did_not_converge_is_no_number(monkeypatch, tmp_path):
     content = json.loads(found.stdout)
     assert content["real_contact_fraction"] is None
     assert content["status"] == "not converged"
-    assert [path.name for path in out.glob("[!.]*")] == ["contact.json"]
+    assert sorted(path.name for path in out.glob("[!.]*")) == ["contact.json", "report.html"]

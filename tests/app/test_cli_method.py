@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 from scipy.stats import norm
 
-from underfoot.assess.method import method_name, predict, probability_at_least
 from underfoot.case import Case
 from underfoot.core import InputError
+from underfoot.questions.method import Basis, method_name, method_prediction, probability_at_least
 
 TEXT = """
 name = "Worn work shoe"
@@ -52,12 +52,12 @@ def test_probability_is_that_of_the_normal_distribution() -> None:
 
 def test_the_method_sets_motion_floor_and_fluid() -> None:
     case = Case.from_text(TEXT)
-    found = predict(case, "report-whole-shoe", with_band=False, quick=True)
+    found = method_prediction(case, "report-whole-shoe", with_band=False, quick=True)
     (condition,) = found.conditions
     assert condition.contaminant == "glycerol_50pct"
     own = {row.name: row for row in found.requirements}
     assert own["shoe angle"].required == "7 deg"
-    assert own["floor"].mark == "assumed"
+    assert own["floor"].basis is Basis.ASSUMED
     values = [one.number("cof") for one in condition.window]
     mean = (values[0] + 4 * values[1] + values[2]) / 6
     assert condition.cof.value == pytest.approx(mean)
@@ -67,9 +67,9 @@ def test_the_method_sets_motion_floor_and_fluid() -> None:
 
 def test_a_limit_becomes_a_probability_and_keeping_a_part_is_a_departure() -> None:
     case = Case.from_text(TEXT)
-    found = predict(case, "iso13287", keep=["contaminant"], with_band=False, quick=True)
+    found = method_prediction(case, "iso13287", keep=["contaminant"], with_band=False, quick=True)
     row = next(row for row in found.requirements if row.name.startswith("contaminant,"))
-    assert row.mark == "departs"
+    assert row.basis is Basis.DEPARTURE
     assert "glycerol_90pct" in row.used
     tile = found.conditions[0]
     assert tile.limit is not None
@@ -85,9 +85,10 @@ def test_unknown_methods_and_parts_are_answered_with_the_nearest() -> None:
     with pytest.raises(InputError, match="en_iso_13287"):
         method_name("iso_1328", case)
     with pytest.raises(InputError, match="contaminant"):
-        predict(case, "iso13287", keep=["contaminants"])
+        method_prediction(case, "iso13287", keep=["contaminants"])
 
 
+@pytest.mark.slow
 def test_command_writes_what_it_shows(case_file, tmp_path) -> None:
     out = tmp_path / "out"
     done = underfoot("test", case_file, "--method", "report-whole-shoe", "--quick", "--out", out)
@@ -103,6 +104,7 @@ def test_command_writes_what_it_shows(case_file, tmp_path) -> None:
     assert "--overwrite" in refused.stderr
 
 
+@pytest.mark.slow
 def test_sensitivity_command(case_file, tmp_path) -> None:
     out = tmp_path / "out"
     done = underfoot("sensitivity", case_file, "--out", out, "--json")

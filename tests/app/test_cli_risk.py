@@ -14,13 +14,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import norm
 
-from underfoot.assess.changes import Change, possible_changes
-from underfoot.assess.risk import limit, risk_report
 from underfoot.case import Case
 from underfoot.core import InputError
-from underfoot.document.risk_sentences import chance_words, change_lines, risk_sentences
-from underfoot.document.sentences import percent
-from underfoot.slip import MODELS, Chang2004, RequiredFriction, needed_acof, slip_model
+from underfoot.core.presentation import percent
+from underfoot.questions.changes import Change, possible_changes
+from underfoot.questions.risk import odds, risk_assessment
+from underfoot.slip import MODELS, Chang2004, RcofPopulation, needed_acof, slip_model
 
 TEXT = """
 name = "Worn work shoe"
@@ -44,13 +43,13 @@ def _own_cache(tmp_path_factory, monkeypatch):
     name=st.sampled_from(sorted(MODELS)),
 )
 def test_needed_friction_gives_back_the_risk(risk, mean, sd, name) -> None:
-    rcof, model = RequiredFriction(mean, sd), slip_model(name)
+    rcof, model = RcofPopulation(mean, sd), slip_model(name)
     acof = needed_acof(risk, rcof=rcof, model=model)
     assert model.population(acof, mean, sd) == pytest.approx(risk, rel=1e-6)
 
 
 def test_needed_friction_of_two_normals_in_closed_form() -> None:
-    rcof = RequiredFriction(0.2, 0.03)
+    rcof = RcofPopulation(0.2, 0.03)
     expected = 0.2 + norm.isf(0.05) * 0.03  # ACOF taken as certain
     assert needed_acof(0.05, rcof=rcof, model=Chang2004()) == pytest.approx(expected, abs=1e-9)
 
@@ -60,7 +59,7 @@ def test_impossible_risks_are_refused(risk) -> None:
     with pytest.raises(InputError, match="above 0 and below 1"):
         needed_acof(risk)
     with pytest.raises(InputError, match="above 0 and below 1"):
-        risk_report(Case.from_text(TEXT), wanted=risk)
+        risk_assessment(Case.from_text(TEXT), target=risk)
 
 
 def test_changes_fit_the_case() -> None:
@@ -82,7 +81,7 @@ def test_changes_are_computed_and_ranked_by_the_chance_they_leave() -> None:
     rougher = Change("rougher", "rougher", "shoe", {"interface.roughness_beyond_cutoff": 4})
     slower = Change("slower", "slower", "walking", {"risk.rcof_mean": 0.15})
     wrong = Change("wrong", "wrong", "shoe", {"shoe.material.shore_a": 1000})
-    found = risk_report(case, changes=[rougher, wrong, slower])
+    found = risk_assessment(case, changes=[rougher, wrong, slower])
     assert [one.change.name for one in found.changes] == ["rougher", "wrong", "slower"]
     assert not found.changes[1].computed
     assert "100" in found.changes[1].reason
@@ -93,27 +92,36 @@ def test_changes_are_computed_and_ranked_by_the_chance_they_leave() -> None:
     assert found.limit.kind == "film"
     share = found.limit.film_share
     solid = found.outcome.number("cof") - found.outcome.number("cof_viscous")
-    assert found.limit.drained * (1 - share) == pytest.approx(solid)
-    assert found.more_friction is not None
-    needed = needed_acof(0.05, rcof=RequiredFriction(case.risk.rcof_mean, case.risk.rcof_sd))
-    assert found.more_friction + found.outcome.number("cof") == pytest.approx(needed)
-    assert f"{100 * share:.0f} % of the load" in " ".join(risk_sentences(found))
-    assert len(change_lines(found)) == len(found.best[:3])
+    assert found.limit.cof_without_film * (1 - share) == pytest.approx(solid)
+    assert found.missing_friction is not None
+    needed = needed_acof(0.05, rcof=RcofPopulation(case.risk.rcof_mean, case.risk.rcof_sd))
+    assert found.missing_friction + found.outcome.number("cof") == pytest.approx(needed)
+    assert f"{100 * share:.0f} % of the load" in " ".join(found.headline())
+    assert len(found.change_sentences()) == len(found.best[:3])
+    assert [row[0] for row in found.table().rows] == [
+        *(f"{place}." for place in range(1, len(found.best) + 1)),
+        *["-"] * (len(found.changes) - len(found.best)),
+    ]
 
 
 def test_without_a_film_the_fluid_limits() -> None:
-    found = risk_report(Case.from_text(TEXT).replace("contaminant", "detergent"), changes=[])
+    found = risk_assessment(Case.from_text(TEXT).replace("contaminant", "detergent"), changes=[])
     if found.limit.film_share < 0.05:
-        assert found.limit.kind == "fluid"
-    assert limit(found.outcome).cof == found.outcome.number("cof")
+        assert found.limit.kind == "boundary"
+    assert found.limit.cof == found.outcome.number("cof")
 
 
 @pytest.mark.parametrize(
-    ("chance", "words"),
-    [(1e-5, "fewer than 1 in 1000"), (0.01, "1 in 100"), (0.05, "1 in 20"), (0.54, "54 %")],
+    ("probability", "text"),
+    [
+        (1e-5, "fewer than 1 in 1000 steps"),
+        (0.01, "1 in 100 steps"),
+        (0.199, "1 in 5 steps"),
+        (0.54, "54 % of steps"),
+    ],
 )
-def test_chances_in_words(chance, words) -> None:
-    assert chance_words(chance) == words
+def test_probabilities_as_odds(probability, text) -> None:
+    assert odds(probability) == text
 
 
 def test_percent_has_no_false_digits() -> None:
@@ -136,13 +144,13 @@ def test_command(tmp_path) -> None:
         env=os.environ.copy(),
     )
     assert done.returncode == 0, done.stderr
-    assert "of steps" in done.stdout
+    assert "Slip probability" in done.stdout
     stored = json.loads((tmp_path / "out" / "risk.json").read_text(encoding="utf-8"))
     assert {one["name"] for one in stored["models"]} >= set(MODELS)
     with (tmp_path / "out" / "changes.csv").open(encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     assert len(rows) == len(stored["changes"]) > 4
-    wrong = subprocess.run([*command, "--wanted", "150 %"], capture_output=True, text=True)
+    wrong = subprocess.run([*command, "--target", "150 %"], capture_output=True, text=True)
     assert wrong.returncode != 0
     assert "above 0 and below 1" in wrong.stderr
 
@@ -160,8 +168,8 @@ def test_a_full_run_ends_with_what_would_help(tmp_path) -> None:
     )
     page = (tmp_path / "full" / "report.html").read_text(encoding="utf-8")
     for text in (done.stdout.replace("\n", " "), page):
-        assert best["words"] in " ".join(text.split())
+        assert best["action"] in " ".join(text.split())
         assert "The film carries" in text
-    command = [*command, str(tmp_path / "plain"), "--no-changes"]
+    command = [*command, str(tmp_path / "plain"), "--no-advice"]
     assert subprocess.run(command, capture_output=True).returncode == 0
     assert not (tmp_path / "plain" / "risk.json").exists()

@@ -103,7 +103,7 @@ def test_every_law_explains_itself(name):
         ("soft_ehl", "Eq. 18 of the report"),
         ("Eq. 17", "stribeck_cof"),
         ("eq 26", "AdhesionBlockingLaw"),
-        ("mass_conserving_film", "not in the report"),
+        ("film_pressure", "not in the report"),
         ("regime", "They can differ"),
     ],
 )
@@ -127,11 +127,10 @@ def test_options_of_another_study_are_refused():
 
 
 def test_study_g2_draws_its_figures(tmp_path):
-    from underfoot.cli.studies_pin import write_pin_study
-    from underfoot.studies import g2
-
-    write_pin_study(g2.run(samples=100), tmp_path)
-    names = {path.name for path in tmp_path.iterdir()}
+    out = tmp_path / "g2"
+    found = RUNNER.invoke(app, ["studies", "run", "g2", "--quick", "--out", str(out)])
+    assert found.exit_code == 0, found.output
+    names = {path.name for path in out.iterdir()}
     assert {"fig16_master_curve.png", "blind_predictions.png", "blind_errors.png"} <= names
-    with (tmp_path / "mechanisms.csv").open(encoding="utf-8-sig") as stream:
+    with (out / "mechanisms.csv").open(encoding="utf-8-sig") as stream:
         assert len(list(csv.DictReader(stream))) == 9

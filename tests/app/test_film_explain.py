@@ -6,7 +6,7 @@ from typer.testing import CliRunner
 from underfoot.cli.app import app
 
 NAMES = {
-    "mass_conserving_film": ("theta", "Giacopini"),
+    "film_pressure": ("theta", "Giacopini"),
     "soft_ehl": ("7.43", "Hamrock and Dowson (1978)"),
     "film_regime": ("g_E", "Esfahanian and Hamrock"),
     "lambda_ratio": ("Rq1^2", "Eq. 21"),

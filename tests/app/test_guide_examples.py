@@ -20,9 +20,13 @@ def test_the_case_of_the_guide_loads_and_its_python_does_what_it_says(tmp_path, 
     monkeypatch.chdir(tmp_path)
     (toml,) = blocks("case_files.md", "toml")
     Path(toml.splitlines()[0].removeprefix("# ")).write_text(toml)
-    (python,) = blocks("case_files.md", "python")
+    from_file, from_names = blocks("case_files.md", "python")
     names: dict = {}
-    exec(compile(python, "case_files.md", "exec"), names)
+    exec(compile(from_file, "case_files.md", "exec"), names)
+    without_file = {"uf": names["uf"]}
+    exec(compile(from_names, "case_files.md", "exec"), without_file)
+    assert without_file["case"].motion.speed == 0.5
+    assert without_file["case"].shoe.tread.depth == 1.1e-3
     assert names["case"].contaminant.viscosity == 0.07
     assert names["case"].sourced("contaminant.viscosity").uncertainty == 0.003
     assert names["thin"].contaminant.viscosity == 0.041
@@ -48,7 +52,8 @@ def test_the_catalogue_of_the_guide_loads_and_makes_a_case(tmp_path, monkeypatch
         catalogue=Catalogue.load([folder]),
     )
     assert case.contaminant.viscosity == 0.018
-    assert case.shoe.heel.rocker_radius == pytest.approx(0.08)
+    assert case.shoe.heel.profile.radius == pytest.approx(0.08)
+    assert case.shoe.heel.profile.start == pytest.approx(0.025)
 
 
 def test_the_guide_names_every_command_and_exit_code():

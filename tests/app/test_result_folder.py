@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 import xarray
 
-from underfoot.case.result import Result
+from underfoot.compute.result import Result
 from underfoot.core import DataError, InputError, Status, to_si
-from underfoot.document import comparison, summary_rows, verdict, write_outputs
+from underfoot.questions.comparison import compare
+from underfoot.report import write_report
 
 REQUIRED = (
     "cof cof_adhesion cof_hysteresis cof_viscous normal_force fluid_load fluid_load_sensor "
@@ -21,9 +22,9 @@ REQUIRED = (
 
 @pytest.fixture(scope="module")
 def folder(worn_shoe_result, tmp_path_factory):
-    made = tmp_path_factory.mktemp("run")
-    write_outputs(worn_shoe_result, made)
-    return made
+    written = write_report(worn_shoe_result, tmp_path_factory.mktemp("run") / "out")
+    assert written.failures == ()
+    return written.folder
 
 
 def test_json_gives_each_number_its_unit_spread_and_marks(folder):
@@ -105,22 +106,22 @@ def test_an_unconverged_result_gives_no_number(worn_shoe_result):
             "status": Status.NOT_CONVERGED,
         }
     )
-    assert "No result" in verdict(failed)
-    assert "No comparison" in comparison(worn_shoe_result, failed).verdict
+    assert "No result" in failed.headline()[0]
+    assert "No comparison" in compare(worn_shoe_result, failed).headline()[0]
     with pytest.raises(DataError, match="not converged"):
         failed.value("cof")
 
 
 def test_the_summary_reads_in_units_people_use(worn_shoe_result):
-    rows = {row.label.strip(): row.value for row in summary_rows(worn_shoe_result)}
-    assert "%" in rows["Probability of a slip"]
+    rows = {label.strip(): value for label, value, _ in worn_shoe_result.table().rows}
+    assert "%" in rows["Slip probability"]
     assert rows["Peak fluid pressure"].endswith("kPa")
     assert "µm" in rows["Thinnest film"]
     assert "um" not in rows["Thinnest film"].replace("µm", "")
 
 
 def test_a_result_compared_with_itself_has_no_order(worn_shoe_result):
-    assert "same case" in comparison(worn_shoe_result, worn_shoe_result).verdict
+    assert "cases are the same" in compare(worn_shoe_result, worn_shoe_result).headline()[0]
 
 
 def test_saving_refuses_a_folder_that_holds_something(worn_shoe_result, tmp_path):

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from underfoot.case import Case
-from underfoot.case.result import Result
-from underfoot.case.run import run
-from underfoot.document.sentences import summary_rows, value_text
+from underfoot.compute.result import Result
+from underfoot.compute.run import run
+from underfoot.core.presentation import value_text
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "work_shoe_untreaded_glycerol.toml"
 COARSE = {"numerics.quick_grid_spacing": "3 mm", "models.friction": "asperity_ehl"}
@@ -67,9 +67,10 @@ def test_files_and_words_show_it(result, tmp_path):
     assert float(rows["cof"]["low_95"]) == result.scalars["cof"].interval[0]
     assert rows["contact_area"]["low_95"] == ""
     assert Result.load(tmp_path / "out").scalars["cof"] == result.scalars["cof"]
-    shown = {row.label: row for row in summary_rows(result)}
-    assert shown["Coefficient of friction"].remark.startswith("95 %: ")
-    assert any("spread" in label for label in shown)
+    shown = {label: (value, remark) for label, value, remark in result.table().rows}
+    low, high = result.scalars["cof"].interval
+    assert f"{low:.3f} to {high:.3f}" in " ".join(shown["Coefficient of friction"])
+    assert any("Uncertainty of the COF" in note for note in result.remarks()["Notes"])
 
 
 def test_a_skewed_interval_takes_the_place_of_one_deviation(result):

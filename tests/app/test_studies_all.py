@@ -1,5 +1,6 @@
 """All studies in one run: failures, the page, the table in the documentation."""
 
+import json
 import os
 import re
 import subprocess
@@ -9,97 +10,122 @@ from pathlib import Path
 import pytest
 
 from underfoot.core.errors import Cancelled
-from underfoot.document.studies_page import studies_page
-from underfoot.studies import g3, summary
-from underfoot.studies.figure_list import FIGURES, figure_rows
-from underfoot.studies.pin_study import PinLine, PinTable
-from underfoot.studies.registry import STUDIES, study
-from underfoot.studies.study_result import StudyResult
-from underfoot.studies.verdict import Erratum, Verdict
+from underfoot.report.studies_page import studies_page, write_study
+from underfoot.studies import (
+    STUDIES,
+    Computed,
+    Figure,
+    Layer,
+    Options,
+    Panel,
+    Quantity,
+    StudyResult,
+    Table,
+    g2,
+    g3,
+    headline,
+    judged,
+    read_results,
+    run_all,
+    runner,
+    study,
+    summary_markdown,
+    write_summary,
+)
+from underfoot.studies.summary import figure_rows
 
 ROOT = Path(__file__).parents[2]
 
 
 def result(name):
-    line = PinLine(
-        "a share", "G.9", "7 to 27 %", "20 to 30 %", Verdict.WITHIN_SCATTER, "so <it> is"
-    )
-    table = PinTable("t", "A table", ("x", "y"), (("a", 1.5), ("b", None)))
-    erratum = Erratum("here", "1", "2", "because")
-    return StudyResult(
-        name, (line,), (table,), ("it holds",), (erratum,), ("n",), ("as",), 1.0, 1.0
-    )
+    """Every quantity a study is asked for, as the number 1 on one grid; a figure, a table."""
+    asked = {one.quantity: one for one in study(name).statements if one.quantity}
+    values = {
+        path: Quantity.of([3.0 - k for k in range(len(one.names))], names=one.names)
+        if one.names
+        else Quantity.of(1.0, one.si_unit)
+        for path, one in asked.items()
+    }
+    figure = Figure((Panel((Layer("points", [1.0], [2.0]),)),), "so <it> is")
+    table = Table("t", "A table of <words>", ("x", "y"), (("a", 1.5), ("b", None)))
+    computed = Computed(values, (table,), {"made_up": figure}, ("it holds",), ("n",), ("as",))
+    return StudyResult(study(name), computed, True, 1.0, 1.0)
 
 
 @pytest.fixture
 def one_fails(monkeypatch):
-    def run(one, **_):
-        if one.name == "g2":
+    def run(chosen, options):
+        options.progress("half way", 0.5)
+        if chosen.name == "g2":
             raise ValueError("broken on purpose")
-        return result(one.name)
+        return result(chosen.name)
 
-    monkeypatch.setattr(summary, "run_study", run)
+    monkeypatch.setattr(runner, "run_study", run)
 
 
 def test_a_failing_study_is_said_and_does_not_stop_the_rest(one_fails):
-    runs = summary.run_all(quick=True)
-    assert [run.study.name for run in runs] == [one.name for one in STUDIES]
-    assert [run.study.name for run in runs if run.error] == ["g2"]
-    text = summary.summary_markdown(runs)
+    results = list(run_all(options=Options(quick=True)))
+    assert [r.study.name for r in results] == list(STUDIES)
+    assert [r.study.name for r in results if r.error] == ["g2"]
+    text = summary_markdown(results)
     assert "Failed: ValueError: broken on purpose" in text
-    assert "| a share (G.9) | 7 to 27 % | 20 to 30 % | +3 points | within scatter |" in text
+    assert "1 N" in text
 
 
-def test_cancelling_stops(monkeypatch):
+def test_cancelling_stops(one_fails):
     def progress(stage, fraction, residual=None):
         if stage.startswith("g3"):
             raise Cancelled("stopped")
 
-    monkeypatch.setattr(summary, "run_study", lambda one, **_: result(one.name))
     with pytest.raises(Cancelled):
-        summary.run_all(progress=progress)
+        list(run_all(options=Options(progress=progress)))
 
 
-def test_the_page_holds_everything_and_needs_no_network(one_fails, tmp_path):
-    runs = summary.run_all()
-    lines = summary.summary_lines(runs)
-    page = studies_page(
-        runs, lines, counts=summary.verdict_counts(lines),
-        rules={str(v): v.rule for v in Verdict}, figures=figure_rows({"g1": ["fig03_history"]}),
-        remarks={}, images={("g1", "fig03_history"): b"\x89PNG"}, quick=True,
-    )  # fmt: skip
+def test_progress_rises_over_all_studies(one_fails):
+    told = []
+    list(run_all(options=Options(progress=lambda stage, f, r=None: told.append(f))))
+    assert told == sorted(told)
+    assert 0.0 <= told[0] < told[-1] <= 1.0
+
+
+def test_the_page_and_folders_hold_everything_and_need_no_network(one_fails, tmp_path):
+    results = list(run_all())
+    images = {}
+    for one in (r for r in results if not r.error):
+        place = tmp_path / one.study.name
+        place.mkdir()
+        for name in write_study(one, place):
+            images[one.study.name, name] = (place / f"{name}.png").read_bytes()
+    page = studies_page(results, images, quick=True)
     assert not re.search(r"(src|href)=[\"']https?:", page)
     assert "broken on purpose" in page
-    assert "so &lt;it&gt; is" in page
-    assert "data:image/png" in page
-    assert "g1/fig03_history" in page
-    summary.write_summary(runs, tmp_path)
+    assert "A table of &lt;words&gt;" in page
+    assert page.count("data:image/png") == len(STUDIES) - 1
+    write_summary(results, tmp_path)
     table = (tmp_path / "summary.csv").read_text(encoding="utf-8-sig").splitlines()
-    assert len(table) == len(STUDIES)  # the head, and one line of each but the failed one
-    assert table[0].startswith("study,source,quantity,printed,ours,difference,verdict,reason")
+    assert len(table) == 1 + sum(len(study(n).statements) for n in STUDIES if n != "g2")
+    again = read_results(tmp_path)  # judged again from the files alone
+    assert headline(again) == headline([r for r in results if not r.error])
+    points = (tmp_path / "g1/made_up.csv").read_text(encoding="utf-8-sig").splitlines()
+    assert points[1].startswith(",points,1.0,2.0")
 
 
-@pytest.mark.parametrize(
-    ("printed", "ours", "wanted"),
-    [
-        ("7 to 27 %", "10 to 20 %", "inside"),
-        ("7 to 27 %", "0 to 30 %", "-7 and +3 points"),
-        ("234 kPa", "200 kPa", "-34 kPa"),
-        ("0.49", "0.5", "+0.01"),
-        ("234 kPa", "201 N", ""),
-        ("least in water", "1", ""),
-        ("< 5", "3", ""),
-    ],
-)
-def test_differences_of_ranges(printed, ours, wanted):
-    assert summary.range_difference(printed, ours) == wanted
+def test_the_headline_is_the_count_of_independent_statements():
+    rows = dict(headline([result("g4")]))
+    assert rows["g4"] == rows["all"]
+    kinds = [one.kind for one in study("g4").statements]
+    assert sum(rows["g4"]) == kinds.count("independent") == 10
+    assert len(kinds) > 30
 
 
 def test_every_wanted_figure_is_in_the_list():
     wanted = {3, *range(5, 12), 14, 15, *range(16, 21), *range(22, 26), 29, 30, *range(32, 38)}
-    assert wanted <= {one.number for one in FIGURES}
-    assert all(one.file or one.remark for one in FIGURES)
-    assert {one.study for one in FIGURES} <= {one.name for one in STUDIES}
+    listed = [one for name in STUDIES for one in study(name).figures]
+    assert wanted <= {number for number, *_ in listed}
+    assert all(file or remark for _, _, file, remark in listed)
+    rows = figure_rows([result("g1")], {"g1": ["fig03_history"]})
+    assert rows[0][2] == "g1/fig03_history"
+    assert rows[-1][2] == "-"
 
 
 def documented():
@@ -107,29 +133,21 @@ def documented():
     rows = {}
     for line in (ROOT / "docs/studies/summary.md").read_text(encoding="utf-8").splitlines():
         cells = [cell.strip() for cell in line.strip("|").split(" | ")]
-        if len(cells) == 6:
-            rows[cells[0]] = cells[1:5]
+        if len(cells) == 7:
+            rows[cells[0]] = (cells[1], cells[3], cells[5])
     return rows
 
 
 def test_the_documented_table_agrees_with_a_fresh_computation():
     rows = documented()
-    fresh = summary.summary_lines([summary.StudyRun(study("g3"), g3.run(), "", 0, 0)])
-    assert len(fresh) > 5
+    fresh = judged(study("g3").statements, g3.compute(Options()).quantities)
+    fresh += judged(study("g2").statements, g2.compute(Options(quick=True)).quantities)
+    assert len(fresh) > 35
     for one in fresh:
-        printed, ours, difference, verdict = rows[f"{one.quantity} ({one.source})"]
-        assert (printed, ours, verdict) == (one.printed, one.ours, one.verdict)
-        assert difference == one.difference
-    from underfoot.studies.calibration import _decay_lines
-    from underfoot.studies.g6_people import population_risk, risk_by_rcof
-
-    for line in _decay_lines():
-        assert rows[f"{line.quantity} ({line.source})"][1] == line.ours
-    lowest, middle, highest = risk_by_rcof()
-    ours = rows["risk at the lowest, median and highest RCOF (G.6.2)"][1]
-    assert ours == f"{100 * lowest:.0f}, {100 * middle:.0f}, {100 * highest:.0f} %"
-    hard = next(v for k, v in rows.items() if k.startswith("slip risk, hard outsole"))
-    assert hard[1].startswith(f"{100 * population_risk(0.159)['report_g6']:.0f} %")
+        s = one.statement
+        if s.id == "coverage":  # of 100 draws here, of 200 there
+            continue
+        assert rows[f"{s.text} ({s.place})"] == (s.printed, one.ours, str(one.verdict))
 
 
 def studies(*arguments):
@@ -142,7 +160,7 @@ def studies(*arguments):
 def test_the_list_names_all_and_wrong_names_are_refused():
     found = studies("list")
     assert found.returncode == 0
-    assert all(one.name in found.stdout for one in STUDIES)
+    assert all(name in found.stdout for name in STUDIES)
     wrong = studies("run", "g9")
     assert wrong.returncode == 2
     assert "g" in wrong.stderr
@@ -150,3 +168,17 @@ def test_the_list_names_all_and_wrong_names_are_refused():
     explicit = studies("run", "all", "--explicit")
     assert explicit.returncode == 2
     assert "--explicit" in explicit.stderr
+
+
+def test_a_finished_folder_is_judged_again_as_a_process(tmp_path):
+    out = tmp_path / "g3"
+    assert studies("run", "g3", "--out", str(out)).returncode == 0
+    found = studies("summary", str(out), "--json")
+    assert found.returncode == 0, found.stderr
+    verdicts = {row["statement"]: row["verdict"] for row in json.loads(found.stdout)}
+    assert verdicts["g3.order_dry"] == "disagrees"
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    nothing = studies("summary", str(empty))
+    assert nothing.returncode == 2
+    assert "studies run --out" in nothing.stderr

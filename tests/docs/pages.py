@@ -1,9 +1,10 @@
 """Runs the blocks of a documentation page in their order and holds what they print to the page.
 
 What a block is, the page shows: ``sh`` are commands of a terminal, ``python`` goes on in one
-session, a ``toml`` or ``csv`` block whose first line is ``# name`` is that file. A ``text`` block
-after one of these is what it prints: each of its lines must come, in order, with the same words and
-with numbers within 2 % or one unit of the last digit shown; ``...`` stands for lines left out.
+session, a ``{plot}`` draws a figure, a ``toml`` or ``csv`` block whose first line is ``# name`` is
+that file. A ``text`` block after one of these is what it prints: each of its lines must come, in
+order, with the same words and with numbers within 2 % or one unit of the last digit shown; ``...``
+stands for lines left out.
 
 ``python tests/docs/pages.py docs/tutorials/designer.md`` prints what the blocks of a page print
 now, ``--mend`` puts today's numbers into the page (``!!`` marks a line no longer printed).
@@ -23,7 +24,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", flags=re.DOTALL | re.MULTILINE)
+BLOCK = re.compile(r"^```(\w+|\{plot\})\n(.*?)^```$", flags=re.DOTALL | re.MULTILINE)
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 TOLERANCE = 0.02
 
@@ -49,6 +50,8 @@ class Session:
         """Run one block in the folder (the working directory) and return what it prints."""
         if block.language in ("toml", "csv"):
             return self._written(block)
+        if block.language == "{plot}":
+            return self._drawn(block)
         if block.language == "python":
             printed = io.StringIO()
             with contextlib.redirect_stdout(printed):
@@ -56,6 +59,20 @@ class Session:
             return printed.getvalue()
         commands = block.text.replace("\\\n", " ").splitlines()
         return "".join(command_output(line) for line in commands if line.strip())
+
+    def _drawn(self, block: Block) -> str:
+        import matplotlib
+
+        matplotlib.use("Agg")
+        from matplotlib import pyplot
+
+        code = re.sub(r"\A(?::\w[\w-]*:.*\n)*", "", block.text)
+        try:
+            exec(compile(code, f"line {block.line}", "exec"), {"__name__": "__main__"})
+            assert pyplot.get_fignums(), f"line {block.line}: no figure"
+        finally:
+            pyplot.close("all")
+        return ""
 
     def _written(self, block: Block) -> str:
         name = re.match(r"# ([\w./-]+\.\w+)$", block.text.splitlines()[0])
@@ -88,7 +105,7 @@ def blocks_of(page: Path) -> list[Block]:
     ]
     result = []
     for number, (language, body, line) in enumerate(found):
-        if language not in ("sh", "python", "toml", "csv"):
+        if language not in ("sh", "python", "toml", "csv", "{plot}"):
             continue
         following = found[number + 1] if number + 1 < len(found) else ("", "", 0)
         shown = following[1] if following[0] == "text" else None

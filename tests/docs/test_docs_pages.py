@@ -10,12 +10,20 @@ sys.path.insert(0, str(Path(__file__).parent))
 from pages import ROOT, agrees, blocks_of, held, numbers_compared
 
 TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
+PHYSICS = [p for p in sorted((ROOT / "docs/physics").glob("*.md")) if p.stem != "index"]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("page", TUTORIALS, ids=lambda page: page.stem)
 def test_a_tutorial_prints_what_it_says(page, tmp_path):
     assert numbers_compared(page, tmp_path) >= 20
+
+
+@pytest.mark.parametrize("page", PHYSICS, ids=lambda page: page.stem)
+def test_a_page_of_physics_computes_its_numbers_and_figures(page, tmp_path):
+    languages = [block.language for block in blocks_of(page)]
+    assert languages.count("{plot}") >= 1
+    assert numbers_compared(page, tmp_path) >= 3
 
 
 @pytest.mark.parametrize("name", ["trials_analysis"])

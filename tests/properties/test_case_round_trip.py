@@ -37,16 +37,22 @@ def sourced(values):
 CHANGES = st.fixed_dictionaries(
     {},
     optional={
-        "contaminant.viscosity": sourced(quantities(0.5, 900, "cP", "mPa*s")),
-        "motion.speed": sourced(quantities(0.01, 5, "m/s")),
+        "contaminant.viscosity": sourced(quantities(0.5, 900, "cP", "mPa*s"))
+        | st.floats(5e-4, 0.9),
+        "motion.speed": sourced(quantities(0.01, 5, "m/s")) | st.floats(0.01, 5),
         "motion.normal_force": quantities(10, 900, "N"),
         "motion.shoe_angle": quantities(-20, 40, "deg"),
         "shoe.material.shore_a": st.integers(20, 95),
         "shoe.material.poisson_ratio": st.floats(0.1, 0.5),
         "shoe.heel.facet_angle": quantities(0, 50, "deg", "degree"),
         "shoe.sole.outsole_thickness": quantities(6, 40, "mm"),
-        "models.hardness": st.sampled_from(["gent", "ruess"]),
-        "models.friction": st.sampled_from(["boundary", "stribeck"]),
+        "hardness.model": st.sampled_from(["gent", "ruess"]),
+        "friction.model": st.sampled_from(["boundary", "stribeck", "asperity_ehl"]),
+        "friction.cof_bl": sourced(st.floats(0.0, 1.5)),
+        "rough_contact": st.sampled_from(["exponential", "contact_table"]),
+        "compliance": st.sampled_from(["layered", "half_space"]),
+        "risk.model": st.sampled_from(["report_g6", "chang_2004"]),
+        "shoe.wear": st.sampled_from([{"mode": "plane", "depth": 2e-4}, {"depth": "0.1 mm"}]),
         "sensor.scans": st.integers(1, 20),
         "motion.steady": st.booleans(),
     },
@@ -82,6 +88,8 @@ def cases(draw):
 @given(cases())
 def test_case_to_toml_to_case_keeps_the_hash(case):
     assert Case.from_text(case.to_toml()).hash == case.hash
+    assert case.model_copy() == case
+    assert Case.from_text(case.model_copy().to_toml()) == case
     complete = Case.from_text(case.to_toml(complete=True))
     assert complete.hash == case.hash
     assert complete.name == case.name

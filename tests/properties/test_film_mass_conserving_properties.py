@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from underfoot.film import mass_conserving_film
+from film_between_walls import solved_film
 
 H0, ETA = 1e-5, 0.1
 
@@ -32,7 +32,7 @@ def drawn(seed, rough, transient, flooded):
 @given(seeds, roughness, speeds, st.booleans(), st.booleans())
 def test_bounds_complementarity_and_volume(seed, rough, speed, transient, flooded):
     gap, more = drawn(seed, rough, transient, flooded)
-    solved = mass_conserving_film(gap, spacing=1e-3, viscosity=ETA, speed=speed, **more)
+    solved = solved_film(gap, spacing=1e-3, viscosity=ETA, speed=speed, **more)
     inner = (slice(1, -1), slice(1, -1))
     pressure, fraction = solved.pressure[inner], solved.fraction[inner]
     assert (pressure >= 0).all()
@@ -53,7 +53,7 @@ def test_bounds_complementarity_and_volume(seed, rough, speed, transient, floode
 def test_pressure_is_proportional_to_viscosity(seed, rough, times):
     gap, more = drawn(seed, rough, transient=False, flooded=False)
     thin, thick = (
-        mass_conserving_film(gap, spacing=1e-3, viscosity=eta, speed=0.5, **more)
+        solved_film(gap, spacing=1e-3, viscosity=eta, speed=0.5, **more)
         for eta in (ETA, ETA * times)
     )
     scale = max(thin.pressure.max(), 1e-3)
@@ -66,8 +66,8 @@ def test_pressure_is_proportional_to_viscosity(seed, rough, times):
 def test_mirrored_film_slides_backward(seed, rough, transient):
     gap, more = drawn(seed, rough, transient, flooded=False)
     mirrored = {k: v[::-1] if isinstance(v, np.ndarray) else v for k, v in more.items()}
-    ahead = mass_conserving_film(gap, spacing=1e-3, viscosity=ETA, speed=0.5, **more)
-    back = mass_conserving_film(gap[::-1], spacing=1e-3, viscosity=ETA, speed=-0.5, **mirrored)
+    ahead = solved_film(gap, spacing=1e-3, viscosity=ETA, speed=0.5, **more)
+    back = solved_film(gap[::-1], spacing=1e-3, viscosity=ETA, speed=-0.5, **mirrored)
     scale = max(ahead.pressure.max(), 1e-3)
     assert np.abs(back.pressure[::-1] - ahead.pressure).max() < 1e-8 * scale
     assert np.abs(back.fraction[::-1] - ahead.fraction).max() < 1e-8
@@ -77,8 +77,8 @@ def test_mirrored_film_slides_backward(seed, rough, transient):
 @given(seeds, roughness)
 def test_more_supply_never_lowers_pressure_or_fill(seed, rough):
     gap, more = drawn(seed, rough, transient=False, flooded=False)
-    starved = mass_conserving_film(gap, spacing=1e-3, viscosity=ETA, speed=0.5, **more)
-    flooded = mass_conserving_film(gap, spacing=1e-3, viscosity=ETA, speed=0.5)
+    starved = solved_film(gap, spacing=1e-3, viscosity=ETA, speed=0.5, **more)
+    flooded = solved_film(gap, spacing=1e-3, viscosity=ETA, speed=0.5)
     slack = 1e-9 * max(flooded.pressure.max(), 1e-3)
     assert (flooded.pressure >= starved.pressure - slack).all()
     assert (flooded.fraction >= starved.fraction - 1e-9)[1:-1, 1:-1].all()

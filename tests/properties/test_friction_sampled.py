@@ -12,6 +12,7 @@ from underfoot.friction import (
     ShearStrength,
     asperity_ehl_law,
     cof,
+    propagated,
     sampled_cof,
     self_affine_scale,
 )
@@ -37,8 +38,6 @@ def test_classes_of_pressure_stand_for_every_cell():
     contact, fluid, film, wet = sole(1)
     law = asperity_law()
     found = sampled_cof(law, contact, fluid, film, speed=0.3, wet=wet, samples=100, seed=4)
-    from underfoot.friction import propagated
-
     inputs = {**law.inputs, "model": SourcedValue(0.0, "1", "", law.error_of_model)}
     load, carried = (contact + fluid).sum(), contact.sum() / (contact + fluid).sum()
 
@@ -110,3 +109,14 @@ def test_a_law_with_an_input_of_unknown_spread_gives_no_interval():
         sampled_cof(strength, contact, fluid, film, speed=0.3, wet=wet, fluid_inputs=viscosity)
         is None
     )
+
+
+def test_a_wide_spread_is_drawn_log_normal_with_the_same_mean_and_deviation():
+    wide = propagated(
+        lambda values: values["x"], {"x": SourcedValue(2.0, uncertainty=1.2)}, samples=8000
+    )
+    drawn = wide.drawn["x"]
+    assert drawn.min() > 0.0
+    assert drawn.mean() == pytest.approx(2.0, rel=5e-3)
+    assert np.log(drawn).std() == pytest.approx(np.sqrt(np.log1p(0.36)), rel=5e-3)
+    assert wide.deviation == pytest.approx(1.2, rel=0.03)

@@ -11,17 +11,18 @@ from hypothesis import strategies as st
 from slip_floors import Floor, dry_sole, slippery_sole
 from underfoot.core import InputError
 from underfoot.slip.dynamics import (
+    FloorSensors,
     GaitHistory,
     Outcome,
     OutcomeLimits,
     Population,
-    SensorArray,
     Spread,
     Walker,
     observed,
     packaged_histories,
     slip_motion,
 )
+from underfoot.slip.dynamics.study import _wilson
 
 HISTORIES = packaged_histories()
 people = st.builds(
@@ -127,7 +128,7 @@ def test_population_has_the_spread_it_was_asked_for():
         lambda: Population(rcof=Spread(0.2, 0.03, -0.5, 1.0)),
         lambda: Spread(0.2, -0.1),
         lambda: Spread(2.0, 0.1, 0.0, 1.0),
-        lambda: SensorArray(rows=0),
+        lambda: FloorSensors(rows=0),
         lambda: OutcomeLimits(0.2, 0.1, 0.3),
     ],
 )
@@ -154,13 +155,13 @@ def test_histories_are_checked():
 
 
 def test_outcomes_follow_the_distance_and_the_speed():
-    array = SensorArray()
+    array = FloorSensors()
     person = Walker(HISTORIES[10], rcof=0.2, heel_speed=0.3)
     outcomes = []
     for cof in (0.5, 0.0):
         seen = observed(dry_sole(cof).motion(person), None, array)
         outcomes.append((seen.outcome, seen.slipped))
-    assert outcomes == [(Outcome.NO_SLIP, False), (Outcome.SLIP, True)]
+    assert outcomes == [(Outcome.NO_SLIP, False), (Outcome.LONG_SLIDE, True)]
     limits = OutcomeLimits()
     assert [limits.outcome(d) for d in (0.005, 0.02, 0.05, 0.5)] == list(Outcome)
 
@@ -169,7 +170,28 @@ def test_the_observed_peak_is_the_motion_s_own():
     """Filter and marker move the peak speed of a slip by little."""
     person = Walker(HISTORIES[10], rcof=0.2, heel_speed=0.3)
     motion = dry_sole(0.03).motion(person)
-    seen = observed(motion, None, SensorArray())
+    seen = observed(motion, None, FloorSensors())
     assert seen.peak_speed == pytest.approx(motion.peak_speed, rel=0.03)
     assert seen.start is not None
     assert -0.02 < seen.start < 0.08
+
+
+def test_bounds_of_a_share_are_wilsons():
+    """Both bounds p solve (share - p)^2 = 1.96^2 p (1 - p) / n; one person has none."""
+    for hits, count in ((9, 40), (0, 24), (24, 24), (1, 3)):
+        low, high = _wilson(hits, count)
+        assert 0.0 <= low < high <= 1.0
+        assert low - 1e-12 <= hits / count <= high + 1e-12
+        for bound in (low, high):
+            distance = (hits / count - bound) ** 2
+            exact = 1.959963984540054**2 * bound * (1.0 - bound) / count
+            assert distance == pytest.approx(exact, abs=1e-12)
+    assert all(np.isnan(_wilson(1, 1)))
+
+
+def test_sensors_lie_to_the_right_of_a_heel_that_lands_to_their_left():
+    x, y = FloorSensors(columns=3, spacing=0.03).places(
+        Walker(HISTORIES[10], landing=0.01, lateral=0.005)
+    )
+    assert x == pytest.approx([0.01, 0.04, 0.07])
+    assert y == pytest.approx([0.025, -0.005, -0.035])

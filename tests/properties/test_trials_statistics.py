@@ -149,8 +149,6 @@ def test_refusals_name_the_trouble():
         logistic_regression([0, 1, 0, 1], {"x": [1.0, 2, 3, 5], "z": [2.0, 4, 6, 10]})
     with pytest.raises(InputError, match="fewer than two"):
         fisher_exact([[1, 2], [0, 0]])
-    with pytest.raises(InputError, match="too large"):
-        fisher_exact(np.full((6, 6), 60))
     with pytest.raises(InputError, match="welch"):
         t_test([1.0, 2.0], [2.0, 3.0], kind="welsh")
 

@@ -62,13 +62,13 @@ def test_errata_are_applied_and_say_what_was_printed():
         nu = entry.sourced("poisson_ratio").value
         rule = 2 * ginf * (1 + nu) / (3 * (1 - 2 * nu))
         assert entry.sourced("bulk_modulus").value == pytest.approx(rule, rel=2e-3)
-    assert "2180 MPa" in BOOK.entry("material", "rubber_50a").leaf("bulk_modulus").note
+    assert "2180 MPa" in BOOK.entry("material", "rubber_50a").leaf("bulk_modulus").erratum
     radius = BOOK.entry("setup", "pin_on_disk_g2").sourced("method.reduced_radius")
     assert radius.value == 23.3e-3
     assert "micrometres" in radius.note
     waves = BOOK.entry("setup", "micro_fe_g1")
     assert waves.sourced("method.wavelength_shoe").value == 0.5e-3
-    assert "5 mm" in waves.leaf("method.wavelength_shoe").note
+    assert "5 mm" in waves.leaf("method.wavelength_shoe").erratum
 
 
 def test_the_relaxation_of_table_2():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from underfoot.case import Case
-from underfoot.case.run import run
+from underfoot.compute.run import run
 
 TEXT = """
 shoe = "work_shoe_half_tread"

@@ -1,7 +1,8 @@
 """Six shoes in two fluids against the floor-sensor readings of the report (G.4.2).
 
 One set of assumptions for all twelve. ``interface.roughness_beyond_cutoff`` was chosen on the
-untreaded work shoe in glycerol; the other eleven conditions check it.
+untreaded work shoe in glycerol. Whether a printed number agrees is judged by study g4 on three
+grids; here the default grid must stay where these bounds, each with its reason, put it.
 """
 
 from functools import cache
@@ -36,21 +37,28 @@ def test_every_condition_converges_and_carries_the_load(shoe, fluid):
     assert found.status.usable
     history = found.fields
     assert float(history.load_history[-1]) == pytest.approx(500.0, rel=2e-3)
-    assert 0.0 < found.value("cof") < 1.0
+    # Eq. 17 of the pin at 0.7 m/s leaves 0.21 (detergent) and 0.11 (90 % glycerol) in the
+    # contact; a film carries load and lowers it
+    most = {"detergent": 0.21, "glycerol": 0.12}[fluid]
+    assert 0.0 < found.value("cof") <= most
+
+
+TWO_READINGS = 0.30
+"""Two standard deviations of a reading of the tester (15 %, assumed: none is printed)."""
 
 
 @pytest.mark.parametrize("kind", ["work", "athletic"])
-def test_untreaded_loads_in_glycerol_are_within_30_percent(kind):
+def test_untreaded_loads_in_glycerol_are_within_the_reading_error(kind):
     printed = READINGS.sourced(f"fluid_load_{kind}_shoe_untreaded_glycerol", "N").value
     read = result(f"{kind}_shoe_untreaded", "glycerol").value("fluid_load_sensor")
-    assert read == pytest.approx(printed, rel=0.30)
+    assert read == pytest.approx(printed, rel=TWO_READINGS)
 
 
-def test_the_peak_under_the_athletic_shoe_is_within_50_percent():
-    """The work shoe's is not on fine grids: docs/studies/g4.md."""
+def test_the_peak_under_the_athletic_shoe_is_within_the_reading_error():
+    """The work shoe's is not: docs/studies/g4.md."""
     printed = READINGS.sourced("peak_pressure_athletic_shoe_untreaded_glycerol", "Pa").value
     read = result("athletic_shoe_untreaded", "glycerol").value("peak_fluid_pressure_sensor")
-    assert read == pytest.approx(printed, rel=0.50)
+    assert read == pytest.approx(printed, rel=TWO_READINGS)
 
 
 @pytest.mark.parametrize("kind", ["work", "athletic"])
@@ -63,7 +71,10 @@ def test_untreaded_shoes_read_next_to_nothing_in_detergent(kind):
     "shoe", [shoe for shoe in SHOES if "tread_" not in shoe and "un" not in shoe]
 )
 def test_treaded_shoes_read_next_to_nothing(shoe, fluid):
-    assert result(shoe, fluid).value("fluid_load_sensor") < SMALL
+    """A pocket of 10 mm is wider than a lug of 5 mm: it always lies over a channel, which holds no
+    pressure. A fifth of the printed bound: the sensor must not begin to see the film on the lugs.
+    """
+    assert result(shoe, fluid).value("fluid_load_sensor") < SMALL / 5
 
 
 @pytest.mark.parametrize("kind", ["work", "athletic"])
@@ -75,9 +86,11 @@ def test_viscosity_matters_only_without_tread(kind):
     assert thick > 5 * thin
 
 
-def test_the_peak_lies_on_the_centre_line_of_the_rear_half_of_the_heel():
-    """G.4.3: about 20 mm anterior of the back of the heel, near the centre line."""
+def test_the_peak_lies_between_the_printed_place_and_the_front_end_of_the_facet():
+    """G.4.3: about 20 mm anterior of the back of the heel. The film under the ground facet rises to
+    the facet's front end, which is assumed at 30 mm; the heel is the same on both sides.
+    """
     read = result("work_shoe_untreaded", "glycerol").fields.sensor_pressure
     top = read.where(read == read.max(), drop=True)
-    assert abs(float(top.sensor_y[0])) <= 0.02
-    assert 0.0 < float(top.sensor_x[0]) < 0.04
+    assert float(top.sensor_y[0]) == pytest.approx(0.0, abs=1e-9)
+    assert 0.015 <= float(top.sensor_x[0]) <= 0.030

@@ -74,7 +74,7 @@ def test_cut_stances_are_rejected_with_the_reason():
     found = required_frictions(_trial("opensim/leg69_stance_grf.mot"))
     reasons = [f.measurement.reason for f in found if not f.measurement.estimated]
     assert reasons == ["begins before the record", "ends after the record"]
-    assert "treadmill" in found[1].stance.walking_from
+    assert found[1].stance.direction.source == "treadmill"
 
 
 def test_a_heel_beside_the_plate_is_a_partial_hit():
@@ -96,7 +96,7 @@ def test_the_baseline_moves_rcof_as_described():
     plates = read_trial(DATA / "bmc" / "Gait.c3d").plates
     assert plates[0].baseline[1] == pytest.approx(10.5, abs=0.5)  # "10 N in Fy on plate 1"
     assert plates[1].baseline[2] == pytest.approx(-16.0, abs=0.5)
-    assert any("shear baseline of 10.9 N" in note for note in plates[0].notes)
+    assert any("shear baseline of 10.9 N" in flag.words for flag in plates[0].flags)
 
 
 def test_definitions_move_rcof_as_known():
@@ -126,7 +126,7 @@ def test_walking_direction_can_be_given_and_heels_are_found():
     trial = _trial("kineticstoolkit/c3d_sample.c3d")
     assert heel_candidates(trial)["right"] == ["r heel"]
     found = required_frictions(trial, walking="+x")
-    assert all(f.stance.walking_from == "given" for f in found)
+    assert all(f.stance.direction.source == "given" for f in found)
     backward = required_frictions(trial, walking="-x")
     assert all("no braking" in f.measurement.reason for f in backward)
     with pytest.raises(InputError, match="vertical axis"):
@@ -181,4 +181,4 @@ def test_mean_of_steps():
         mean_of([*found, other[0].measurement])
     none = mean_of([Measurement.not_estimated("rcof", "cut"), Measurement("rcof", 0.2)])
     assert none.uncertainty is None
-    assert "1 of 2" in none.flags[0]
+    assert "1 of 2" in none.flags[0].words

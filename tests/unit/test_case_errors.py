@@ -3,7 +3,7 @@
 import pytest
 
 from underfoot.case import Case, CaseError
-from underfoot.case.places import Places, key_lines
+from underfoot.case.text import Places, key_lines
 from underfoot.core import InputError, RangeError
 
 GOOD = {
@@ -64,10 +64,10 @@ def refused(path, value):
         ("shoe.tread.depth", "0 mm", 'pattern = "none"'),
         ("shoe.tread.edge_radius", "2.6 mm", "does not fit on the lug"),
         ("shoe.tread.arc_channel.width", "4 mm", "is missing"),
-        ("shoe.heel.profile", "rocker", 'is missing for the profile "rocker"'),
-        ("shoe.heel.rocker_radius", "80 mm", 'is not used by the profile "facet"'),
+        ("shoe.heel.profile", "rocker", 'is missing for model = "rocker"'),
+        ("shoe.heel.profile.radius", "80 mm", 'is not used by model = "facet"'),
         ("shoe.heel.edge_radius", "40 mm", "does not fit the plan form"),
-        ("shoe.sole.midsole_modulus", "1 MPa", "both its modulus and its thickness"),
+        ("shoe.sole.midsole_modulus", "1 MPa", "shoe.sole.midsole.thickness: is missing"),
         ("shoe.material.shore_a", 100, "no finite modulus"),
         ("shoe.material.shore_a", 0, "outside the physical range"),
         (
@@ -78,12 +78,12 @@ def refused(path, value):
             },
             "shoe.material.relaxation.terms.0",
         ),
-        ("contaminant.fraction_basis", "mass", "is not used without glycerol_fraction"),
+        ("contaminant.fraction_basis", "mass", 'write model = "glycerol_water"'),
         ("contaminant.glycerol_fraction", "85 %", "contaminant.fraction_basis: is missing"),
         ("motion.duration", "1 ms", "before the force has risen"),
         ("models.friction", "boundry", 'Did you mean "boundary"?'),
-        ("models.friction", "constant", "interface.constant_cof: is missing"),
-        ("models.friction", "adhesion_blocking", "interface.dry_adhesion_cof: is missing"),
+        ("models.friction", "constant", "friction.cof: is missing"),
+        ("models.friction", "adhesion_blocking", "friction.dry_adhesion_cof: is missing"),
         ("sensor.scans", 1.5, "a whole number"),
         ("sensor.scans", 0, "at least 1"),
         ("numerics.tolerance", 1.0, "outside the physical range"),
@@ -115,7 +115,9 @@ def test_glycerol_and_viscosity_both_given_are_refused():
         **GOOD,
         "contaminant": {"viscosity": "3 cP", "glycerol_fraction": 0.5, "fraction_basis": "mass"},
     }
-    with pytest.raises(CaseError, match="the same thing twice"):
+    with pytest.raises(
+        CaseError, match=r"contaminant.viscosity: is not used by model = .glycerol_water"
+    ):
         Case.from_mapping(tree)
 
 
@@ -131,6 +133,7 @@ def test_a_shoe_without_a_catalogue_entry_says_what_is_missing():
         "shoe": {
             "material": {"poisson_ratio": 0.49},
             "tread": {"pattern": "none"},
+            "heel": {"profile": "flat"},
             "roughness": {"rz": "30 um"},
         },
     }

@@ -5,9 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from underfoot.case import Case
-from underfoot.case.quantity import Quantity
-from underfoot.case.schema import CATALOGUE_SECTIONS, field_at, fields, marks_of, schema_text
+from underfoot.case.parts import CATALOGUE_SECTIONS, field_at, fields, keys
+from underfoot.case.schema import schema_text
+from underfoot.case.section import quantity_of
+from underfoot.case.versions import SHORT
 from underfoot.core import to_si
 from underfoot.core.catalogue import Catalogue
 
@@ -21,16 +22,16 @@ def test_the_committed_schema_is_up_to_date():
 
 def test_every_quantity_shows_its_unit_and_range():
     schema = json.loads(schema_text())
-    speed = schema["$defs"]["Motion"]["properties"]["speed"]
+    speed = schema["$defs"]["HeldMotion"]["properties"]["speed"]
     assert speed["unit"] == "m/s"
     assert speed["maximum_si"] == 20
     assert speed["anyOf"][0] == {"type": ["string"]}
-    assert schema["$defs"]["Motion"]["properties"]["from"]["type"] == "string"
-    assert schema["$defs"]["Motion"]["properties"]["force_rise_time"]["default"] == "30 ms"
+    assert schema["$defs"]["HeldMotion"]["properties"]["from"]["type"] == "string"
+    assert schema["$defs"]["HeldMotion"]["properties"]["force_rise_time"]["default"] == "30 ms"
     assert schema["properties"]["floor"]["anyOf"][1]["type"] == "string"
     assert "required" not in schema["$defs"]["Shoe"]
     text = schema_text()
-    units = {m.unit for _, f in fields(Case) for m in marks_of(f) if isinstance(m, Quantity)}
+    units = {quantity.unit for _, f in fields() if (quantity := quantity_of(f))}
     assert all(f'"unit": "{unit}"' in text for unit in units)
 
 
@@ -49,9 +50,13 @@ def test_every_catalogue_value_fits_its_section_and_is_physical(section, kind, p
     for path, leaf in values.items():
         if section == "shoe.material" and path.startswith("roughness."):
             continue
-        field = field_at(Case, f"{section}.{path}")
-        assert field is not None, f"{section}.{path} is no key of a case"
-        quantity = next((m for m in marks_of(field) if isinstance(m, Quantity)), None)
+        full = SHORT.get(f"{section}.{path}", f"{section}.{path}")
+        if full in keys():
+            assert leaf.given in keys()[full].options()
+            continue
+        field = field_at(full)
+        assert field is not None, f"{full} is no key of a case"
+        quantity = quantity_of(field)
         if quantity is not None:
             value = to_si(leaf.given, quantity.unit, where=path)
             assert quantity.low <= value <= quantity.high

@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from underfoot.case import Case, build
+from underfoot.case import Case
 from underfoot.case.errors import CaseError
+from underfoot.compute.resolve import resolved
 from underfoot.core.catalogue import Catalogue
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "work_shoe_untreaded_glycerol.toml"
@@ -35,7 +36,7 @@ def test_every_entry_gives_a_law_or_a_remedy(section, name, law):
             BASE.replace(settings)
         return
     case = BASE.replace(settings)
-    found = build.friction_law(case, case.catalogue)
+    found = case.friction.build(resolved(case))
     speed = np.array([0.0, 0.05, 0.3, 1.0])
     parts = found(np.full(4, 2e5), speed, np.full(4, 1.0))
     solid = (parts.adhesion + parts.hysteresis) / 2e5

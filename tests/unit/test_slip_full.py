@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from underfoot.case import Case
-from underfoot.case.build_slip import slip_population, slip_setting
+from underfoot.compute.slips import slip_population, slip_setting
 from underfoot.core import Cache, Cancelled
 from underfoot.slip.dynamics import (
+    FloorSensors,
     ReducedSole,
-    SensorArray,
     SoleFoot,
     array_pressures,
     cof_table,
@@ -50,7 +50,7 @@ def test_energy_is_kept_and_glycerol_slips(run):
 
 
 def test_sensors_read_while_the_heel_is_over_them(run):
-    found = array_pressures(run.motion, run.maps, SensorArray())
+    found = array_pressures(run.motion, run.maps, FloorSensors())
     assert found.shape == (run.motion.time.size, 3, 3)
     assert found.max() > 1e4
     assert found.max() <= run.peaks.max() * 1.01

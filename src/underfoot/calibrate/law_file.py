@@ -215,7 +215,7 @@ def _means(readings: TrialReadings, notes: list[str]) -> LawTable:
 
 
 def law_file_text(table: LawTable, *, pressure: float | None = None) -> str:
-    """Return the file that ``interface.friction_table`` of a case reads (SI, source and notes)."""
+    """Return the file that ``friction.table_file`` of a case reads (SI, source and notes)."""
     columns = ["speed (m/s)", "cof", "sd"]
     fixed = []
     for heading, value in (("pressure (Pa)", pressure), ("viscosity (Pa s)", table.viscosity)):

@@ -56,7 +56,7 @@ def pin_regimes(
     The pin has the report's reduced radius and face; its load is pressure times face. Film of
     Eq. 18 with half the sliding speed. None where the stylus Rq of neither surface is known.
     """
-    from underfoot.case import build
+    from underfoot.compute.resolve import resolved
     from underfoot.film import (
         compare_regimes,
         effective_modulus,
@@ -69,17 +69,16 @@ def pin_regimes(
     rough = [r.rq_or_estimate for r in (case.shoe.roughness, case.floor.roughness)]
     if rough[0] is None and rough[1] is None:
         return None
-    modulus = build.youngs_modulus(case)[0].value
-    assert modulus is not None  # the case checks that hardness or modulus is there
+    context = resolved(case)
     film = soft_ehl(
         viscosity=viscosity,
         speed=speed,
         load=pressure * pin.normal_force / pin.pressure,
         radius=pin.radius,
-        effective_modulus=effective_modulus(modulus, case.shoe.material.poisson_ratio),
+        effective_modulus=effective_modulus(context.youngs_modulus, context.poisson_ratio),
     )
     ratio = lambda_ratio(film.minimum, rough[0] or 0.0, rough[1] or 0.0)
-    share = fluid_load_share(film.central, build.asperity_law(case, modulus), pressure)
+    share = fluid_load_share(film.central, case.rough_contact.build(context), pressure)
     both = [compare_regimes(float(r), float(s)) for r, s in zip(ratio, share, strict=True)]
     apart = next((one.why for one in both if not one.agree), "")
     return PinRegimes(

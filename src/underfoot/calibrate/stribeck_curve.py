@@ -105,19 +105,20 @@ def stribeck_curve(
     InputError
         A dry case, a pressure that is not positive, or what the law itself misses.
     """
-    from underfoot.case import build
+    from underfoot.compute.resolve import resolved
     from underfoot.friction import sampled_points
 
     if not pressure > 0:
         raise InputError(f"{pressure:g} Pa", where="--pressure", allowed="above 0")
-    fluid = build.viscosity(case)
+    context = resolved(case)
+    fluid = context.viscosity
     if fluid is None or fluid.value is None:
         raise InputError(
             "a dry floor has no viscosity",
             where="contaminant",
             remedy='Choose a fluid, as --fluid water or contaminant = "canola_oil"',
         )
-    law = build.friction_law(case, case.catalogue)
+    law = case.friction.build(context)
     within = SPEEDS[(slowest <= SPEEDS) & (fastest >= SPEEDS)]
     speed = np.unique(np.concatenate([np.geomspace(slowest, fastest, COUNT), within]))
     gap = _gap(case, pressure)
@@ -130,7 +131,8 @@ def stribeck_curve(
     rest = float(law(pressure, 1e-9, gap).adhesion)
     left = found.adhesion / rest if rest > 0 else np.zeros(speed.shape)
     spread = sampled_points(law, **at, fluid_inputs={"viscosity": fluid}, seed=case.numerics.seed)
-    own = build.measured_friction(case, fluid.value)
+    measured_with = getattr(case.friction, "measured", None)
+    own = None if measured_with is None else measured_with(context)
     measured = None
     if own is not None and own.pair and not own.cof_boundary.assumed:
         measured = fluid_points(own, rq=0.0, speed=within)
@@ -158,18 +160,15 @@ def _gap(case: Case, pressure: float) -> float:
     """Return the mean gap (m) at which the rough interface carries the pressure."""
     from scipy.optimize import brentq
 
-    from underfoot.case import build
+    from underfoot.compute.resolve import resolved
 
-    modulus = build.youngs_modulus(case)[0].value
-    rq = case.effective_rq.value
-    assert modulus is not None
-    assert rq is not None  # effective_rq raises when it is not known
-    interface = build.asperity_law(case, modulus)
+    context = resolved(case)
+    interface = case.rough_contact.build(context)
 
     def excess(gap: float) -> float:
         return float(interface.pressure(gap)) - pressure
 
-    highest = 20 * rq
+    highest = 20 * context.rq_value
     if excess(0.0) <= 0 or excess(highest) >= 0:
         return 0.0 if excess(0.0) <= 0 else highest
     found: Any = brentq(excess, 0.0, highest, xtol=1e-12)

@@ -1,10 +1,22 @@
-"""The complete description of one computation: schema, TOML in and out, composition, run."""
+"""The complete description of one computation: sections and slots, TOML in and out, hash."""
 
-from __future__ import annotations
-
-from .case import Case, paths, unit_at
+from .case import Case
 from .describe import assumptions
 from .errors import CaseError
-from .schema import FILE_VERSION
+from .parts import FILE_VERSION, paths, unit_at
+from .section import Option, Origin, Section
 
-__all__ = ["FILE_VERSION", "Case", "CaseError", "assumptions", "paths", "unit_at"]
+load = Case.load
+
+__all__ = [
+    "FILE_VERSION",
+    "Case",
+    "CaseError",
+    "Option",
+    "Origin",
+    "Section",
+    "assumptions",
+    "load",
+    "paths",
+    "unit_at",
+]

@@ -1,72 +1,106 @@
-"""The case: shoe, floor, contaminant, motion and models; frozen, complete, with a hash."""
+"""The case: shoe, floor, contaminant, motion and one option in each slot; frozen, with a hash."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Never
 
-from pydantic import Field, PrivateAttr, ValidationError
+from pydantic import ValidationError
 
-from underfoot.core import InputError, SourcedValue
+from underfoot.core import InputError, SourcedValue, content_hash
 from underfoot.core.catalogue import Catalogue, catalogue_folders
-from underfoot.core.leaves import Leaf
+from underfoot.core.presentation import Presentable, Table
 
-from . import toml
-from .checks import mismatches
-from .compose import DEFAULT, DRY, GIVEN, Origin, composed, nested
-from .content import case_hash, spread
-from .errors import CaseError, translated
-from .friction_table import with_friction_table
-from .keys import known_paths, path_kind, unit_of, unknown_path
-from .motion_table import with_motion_history
-from .outsole_checksum import with_checksum
-from .places import Places
-from .quantity import DOOR, default_of
-from .schema import FILE_VERSION, fields
-from .sections import (
-    Contaminant,
-    Floor,
-    Interface,
-    Models,
-    Numerics,
-    Risk,
+from . import text as toml
+from .compose import DRY, composed, expanded, optional_reads
+from .contact import ComplianceOption, FilmOption, HardnessOption, RoughContactOption
+from .contaminant import ContaminantSection
+from .errors import CaseError, placed, translated
+from .friction import FrictionOption
+from .motion import Motion, Sensor
+from .numerics import Numerics
+from .parts import FILE_VERSION, CaseParts, field_at, keys, path_kind, unit_at
+from .people import Risk, Walkers
+from .quantity import DOOR
+from .section import (
+    DEFAULT,
+    GIVEN,
+    Option,
+    Origin,
     Section,
-    Shoe,
+    item_section,
+    origin_of,
+    plain_text,
+    unit_of,
+    walk,
 )
-from .sections_motion import Motion, Sensor
-from .sections_slip import SlipPeople
+from .shoe import Shoe
+from .surfaces import Floor, Interface
+from .versions import GONE, current_path, current_settings, sentence, upgrade
+
+_SECTIONS = tuple(CaseParts.model_fields)
+_ABSENT = SourcedValue(None, "1", reason="not given in the case")
 
 
-class Case(Section):
+class Case(Presentable):
     """Everything one computation needs. Values are SI floats; text with units is for the door.
 
-    Make one with ``load`` (a TOML file) or ``from_mapping``; change one with ``replace``. Two
-    cases are equal when their content is: ``name``, ``description``, comments and values that no
-    chosen model looks at don't count.
+    The sections are the truth: text, hash and equality are computed from them. Make a case with
+    ``load`` (a TOML file) or from its parts; change one with ``replace``. Two cases are equal when
+    their content is: ``name``, ``description`` and comments don't count.
+
+    Parameters
+    ----------
+    shoe, floor, contaminant, motion
+        Name of a catalogue entry, mapping (``{"from": "...", "speed": 0.5}``), or section.
+        Numbers are SI floats or text with a unit; ``contaminant="none"`` is a dry floor.
+    interface, hardness, rough_contact, film, compliance, friction, risk
+        Name of an option, mapping (``{"model": "constant", "cof": 0.5}``), or option.
+    numerics, sensor, slip, name, description
+        Further sections and text.
+    catalogue
+        To use instead of the package's own.
+
+    Raises
+    ------
+    CaseError
+        Everything that is wrong, each with its path.
     """
 
-    file_version: int = FILE_VERSION
-    name: str = "case"
-    description: str = ""
+    name: str
+    description: str
     shoe: Shoe
     floor: Floor
-    contaminant: Contaminant | None = Field(None, description='"none" for a dry floor')
+    contaminant: ContaminantSection | None
     motion: Motion
-    interface: Interface = Interface()
-    models: Models = Models()
-    numerics: Numerics = Numerics()
-    sensor: Sensor = Sensor()
-    risk: Risk = Risk()
-    slip: SlipPeople = SlipPeople()
+    interface: Interface
+    hardness: HardnessOption | None
+    rough_contact: RoughContactOption
+    film: FilmOption
+    compliance: ComplianceOption
+    friction: FrictionOption
+    numerics: Numerics
+    sensor: Sensor
+    risk: Risk
+    slip: Walkers
+    catalogue: Catalogue
+    """The catalogue that the case was composed with."""
+    changes: tuple[str, ...]
+    """What reading a file of an older version changed, in words."""
 
-    _origins: dict[str, Origin] = PrivateAttr(default_factory=dict)
-    _entries: dict[str, str] = PrivateAttr(default_factory=dict)
-    _text: str = PrivateAttr(default="")
-    _catalogue: Catalogue = PrivateAttr(default_factory=Catalogue)
-    _hash: str = PrivateAttr(default="")
-    _folder: Path = PrivateAttr(default_factory=Path.cwd)
+    _parts: CaseParts
+    _given: Mapping[str, Any]
+    _text: str | None
+    _edits: Mapping[str, Any]
+    _folder: Path
+
+    def __init__(self, *, catalogue: Catalogue | None = None, **parts: Any) -> None:
+        if "contaminant" in parts and parts["contaminant"] is None:
+            parts["contaminant"] = DRY
+        given, edits = _current(parts)
+        self._compose(given, catalogue or Catalogue.load(), toml.Places(), Path.cwd(), bool(edits))
 
     @classmethod
     def load(
@@ -87,7 +121,7 @@ class Case(Section):
         settings
             Dotted paths and values that replace what the file says.
 
-        Errors
+        Raises
         ------
         CaseError
             Everything that is wrong with the file, each with its line.
@@ -96,16 +130,13 @@ class Case(Section):
         text = toml.read(path)
         if catalogue is None:
             catalogue = Catalogue.load(catalogue_folders(path.parent))
-        places = Places(str(path), text, changed=settings or ())
-        if settings:
-            toml.parsed(text, str(path))
-            text = toml.changed(text, settings, _path_kind)
-        return cls._from_text(text, catalogue, places, path.parent)
+        places = toml.Places(str(path), text, changed=current_settings(settings or {}))
+        return cls._from_text(text, catalogue, places, path.parent, settings or {})
 
     @classmethod
     def from_text(cls, text: str, *, catalogue: Catalogue | None = None) -> Case:
         """Return the case in a TOML text."""
-        return cls._from_text(text, catalogue or Catalogue.load(), Places())
+        return cls._from_text(text, catalogue or Catalogue.load(), toml.Places(), Path.cwd(), {})
 
     @classmethod
     def from_mapping(
@@ -116,18 +147,53 @@ class Case(Section):
 
     @classmethod
     def _from_text(
-        cls, text: str, catalogue: Catalogue, places: Places, folder: Path | None = None
+        cls,
+        text: str,
+        catalogue: Catalogue,
+        places: toml.Places,
+        folder: Path,
+        settings: Mapping[str, Any],
     ) -> Case:
-        mapping: Mapping[str, Any] = toml.parsed(text, places.file)
-        _check_version(mapping, places)
-        folder = Path.cwd() if folder is None else folder
-        mapping = with_friction_table(mapping, folder, places)
-        mapping = with_motion_history(mapping, folder, places)
-        mapping = with_checksum(mapping, folder, places)
-        dry = _is_dry(mapping)
-        if dry:
-            mapping = {**mapping, "contaminant": {"from": DRY}}
-        elif "contaminant" not in mapping:
+        mapping = toml.parsed(text, places.file)
+        version = _version(mapping, places)
+        mapping.pop("file_version", None)
+        given, edits = _current(mapping) if version < FILE_VERSION else (mapping, {})
+        case = object.__new__(cls)
+        older = bool(edits) or ("file_version" in text and version == 1)
+        places.moved = {new: old for old, new, _ in upgrade(mapping)} if edits else {}
+        remarks = [sentence(old, new) for new, old in places.moved.items()]
+        if older:
+            edits = {"file_version": FILE_VERSION, **edits}
+        changes = _checked(settings)
+        given = _edited(given, changes)
+        case._compose(
+            given,
+            catalogue,
+            places,
+            folder,
+            lambda path: older or (bool(changes) and not _covers(changes, path)),
+            text=text,
+            edits={**edits, **changes},
+            remarks=remarks,
+            context=DOOR,
+        )
+        return case
+
+    def _compose(
+        self,
+        given: Mapping[str, Any],
+        catalogue: Catalogue,
+        places: toml.Places,
+        folder: Path,
+        lenient: Callable[[str], bool] | bool,
+        *,
+        text: str | None = None,
+        edits: Mapping[str, Any] | None = None,
+        remarks: list[str] | None = None,
+        context: Mapping[str, Any] | None = None,
+    ) -> None:
+        """Set every section from what is given and the catalogue."""
+        if "contaminant" not in given:
             raise CaseError(
                 [
                     InputError(
@@ -138,165 +204,304 @@ class Case(Section):
                     )
                 ]
             )
-        parts = composed(mapping, catalogue, places)
-        origins = parts.origins
-        tree = nested(origins, mapping)
-        if dry:
-            tree.pop("contaminant", None)
+        allow = lenient if callable(lenient) else (lambda _path: lenient)
+        found = composed(given, catalogue, places, folder, allow)
         try:
-            case = cls.model_validate(tree, context=DOOR)
+            parts = CaseParts.model_validate(found.tree, context=context)
         except ValidationError as error:
-            found = translated(error, cls, places, without=parts.failed)
-            raise CaseError([*parts.errors, *found]) from None
-        if parts.errors:
-            raise CaseError(parts.errors)
-        given = {path for path, origin in origins.items() if origin.kind == GIVEN}
-        problems = list(mismatches(case, given, places))
-        if problems:
-            raise CaseError(problems)
-        case._origins = {**case._default_origins(origins), **origins}
-        case._entries = parts.entries
-        case._text = text
-        case._catalogue = catalogue
-        case._folder = folder
-        case._hash = case_hash(case)
-        return case
+            more = translated(error, CaseParts, found.tree, places, without=found.failed)
+            raise CaseError([*found.errors, *more]) from None
+        for path, entry in found.entries.items():
+            section: Any = parts
+            for part in path.split("."):
+                section = getattr(section, part)
+            if isinstance(section, Section):
+                section._entry = entry
+        problems = [p for path, section in walk(parts) for p in section.problems(parts, path)]
+        if found.errors or problems:
+            raise CaseError([*found.errors, *(placed(error, places) for error in problems)])
+        dropped = dict.fromkeys(found.dropped)
+        said = [f"{path} is left out: {why}" for path, why in found.dropped.items()]
+        vars(self).update(
+            {name: getattr(parts, name) for name in _SECTIONS},
+            catalogue=catalogue,
+            changes=(*(remarks or ()), *(said if remarks or callable(lenient) else ())),
+            _parts=parts,
+            _given=_edited(given, dropped),
+            _text=text,
+            _edits={**(edits or {}), **dropped},
+            _folder=folder,
+        )
 
-    def save(self, path: Path | str, *, overwrite: bool = False) -> None:
-        """Write the file as it was read: comments, catalogue entries and units kept."""
-        toml.save(self._text, Path(path), overwrite=overwrite)
+    def __setattr__(self, name: str, value: Any) -> Never:
+        raise InputError(
+            f"a case is frozen: {name} can't be set",
+            where=f"case.{name}",
+            remedy=f'Make a new case: case = case.replace("{name}", ...)',
+        )
 
-    def to_toml(self, *, complete: bool = False) -> str:
-        """Return the file's text; ``complete`` writes every value with its source, no entries."""
-        return toml.complete_text(self) if complete else self._text
+    def __delattr__(self, name: str) -> Never:
+        self.__setattr__(name, None)
 
     def replace(self, path: str | Mapping[str, Any], value: Any = None, /) -> Case:
-        """Return a new case with one value changed (or several, as a mapping).
+        """Return a new case with one value changed, or several as a mapping.
 
-        ``case.replace("contaminant.viscosity", "41 cP")``; None takes a key out, so that the
-        catalogue or the default counts again; a section's path takes the name of an entry.
+        ``case.replace("contaminant.viscosity", "41 cP")`` or ``0.041`` (SI); None takes a key out,
+        so that the catalogue or the default counts again; a section's path takes the name of a
+        catalogue entry, a slot's that of an option, a mapping or a section. What the new option of
+        a slot does not use goes with the old one.
         """
-        settings = path if isinstance(path, Mapping) else {path: value}
-        text = toml.changed(self._text, settings, _path_kind)
-        return type(self)._from_text(text, self._catalogue, Places(), self._folder)
+        changes = _checked(path if isinstance(path, Mapping) else {path: value})
+        for section_path, section in list(changes.items()):
+            if isinstance(section, Section):
+                fields = self._changed_fields(section_path, section)
+                if fields is not None:
+                    del changes[section_path]
+                    changes |= fields
+        case = object.__new__(type(self))
+        before = {path: old for path, old in self._edits.items() if not _covers(changes, path)}
+        case._compose(
+            _edited(self._given, changes),
+            self.catalogue,
+            toml.Places(),
+            self._folder,
+            lambda path: not _covers(changes, path),
+            text=self._text,
+            edits={**before, **changes},
+        )
+        return case
 
-    @property
+    def _changed_fields(self, path: str, section: Section) -> dict[str, Any] | None:
+        """Return what a section changes by dotted path; None where a file can't say it so."""
+        present: Any = self._parts
+        for part in path.split("."):
+            present = getattr(present, part, None)
+        if type(present) is not type(section):
+            return None
+        changed: dict[str, Any] = {}
+        for name, value in section.tree().items():
+            old, here = getattr(present, name, None), f"{path}.{name}"
+            plain = getattr(section, name, None)
+            if name == getattr(section, "key", None) or (
+                plain == old and section.origin(name) == present.origin(name)
+            ):
+                continue
+            if isinstance(value, Section):
+                below = self._changed_fields(here, value)
+                if below is None:
+                    return None
+                changed |= below
+            elif value is None:
+                return None
+            else:
+                changed[here] = value
+        return changed
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None) -> Case:
+        """Return the case with other sections, as ``Case(**{**parts, **update})``."""
+        parts = {name: getattr(self, name) for name in _SECTIONS}
+        return type(self)(catalogue=self.catalogue, **{**parts, **(update or {})})
+
+    def __replace__(self, **changes: Any) -> Case:
+        return self.model_copy(update=changes)
+
+    def save(self, path: Path | str, *, overwrite: bool = False) -> None:
+        """Write the case as a file: comments, catalogue entries and units of its file kept."""
+        toml.save(self.to_toml(), Path(path), overwrite=overwrite)
+
+    def to_toml(self, *, complete: bool = False) -> str:
+        """Return the case as TOML; ``complete`` writes every value with its source, no entries."""
+        if complete or _has_section(self._given):
+            return toml.written(
+                self._complete_tree(), "Complete case: every value with its source."
+            )
+        if self._text is None:
+            head = {"file_version": FILE_VERSION}
+            return toml.written(head | {k: _as_text(v, k) for k, v in self._given.items()})
+        if not self._edits:
+            return self._text
+        edits = {path: _as_text(value, path) for path, value in self._edits.items()}
+        text = toml.changed(self._text, edits, expanded)
+        return toml.changed(text, dict.fromkeys(_emptied(text)), expanded)
+
+    @cached_property
     def hash(self) -> str:
-        """Hash of the content, the same on every machine; names and comments don't count."""
-        return self._hash
+        """Hash of the values and their uncertainties, the same on every machine.
+
+        Names, comments, sources and who walks (``slip``) don't count.
+        """
+        content: dict[str, Any] = {}
+        for path, section in walk(self._parts):
+            if path == "slip":
+                continue
+            cls = type(section)
+            if isinstance(section, Option):
+                own = cls.__module__.startswith("underfoot.")
+                content[f"{path}.{section.key}"] = (
+                    section.name if own else f"{cls.__module__}:{cls.__qualname__}"
+                )
+            for name in cls.model_fields:
+                value, here = getattr(section, name), f"{path}.{name}"
+                if value is None or isinstance(value, Section) or here in self.idle_paths:
+                    continue
+                if name not in (*cls.uncounted, *cls.replaced):
+                    content[here] = _rounded(value)
+                    origin = section._origins.get(name)
+                    if (
+                        origin is not None
+                        and origin.value == value
+                        and origin.uncertainty is not None
+                    ):
+                        content[f"{here}.uncertainty"] = _rounded(origin.uncertainty)
+        return content_hash(content)[:32]
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Case) and self._hash == other._hash
+        return isinstance(other, Case) and self.hash == other.hash
 
     def __hash__(self) -> int:
-        return hash(self._hash)
+        return hash(self.hash)
 
-    def __str__(self) -> str:
-        from .describe import composition
+    @cached_property
+    def idle_paths(self) -> frozenset[str]:
+        """Paths of values that none of the chosen options reads."""
+        chosen = {
+            path for option in vars(self._parts).values() for path in getattr(option, "reads", ())
+        }
+        return frozenset(set(optional_reads()) - chosen)
 
-        return composition(self)
-
-    @property
+    @cached_property
     def origins(self) -> Mapping[str, Origin]:
         """Where each value comes from, by dotted path."""
-        return self._origins
-
-    @property
-    def catalogue(self) -> Catalogue:
-        """The catalogue that the case was read with."""
-        return self._catalogue
+        origins: dict[str, Origin] = {}
+        for path, section in walk(self._parts):
+            names = list(type(section).model_fields)
+            if isinstance(section, Option):
+                names.insert(0, section.key)
+            for name in names:
+                origin = section.origin(name)
+                if origin is not None:
+                    origins[f"{path}.{name}"] = origin
+        return origins
 
     @property
     def entries(self) -> Mapping[str, str]:
         """Catalogue entry of each section that was taken from one."""
-        return self._entries
+        return {path: section._entry for path, section in walk(self._parts) if section._entry}
 
     def value(self, path: str) -> Any:
-        """Return the value at a dotted path, in SI."""
-        found: Any = self
-        for part in path.split("."):
-            if found is None:
-                return None
-            if not isinstance(found, Section) or part not in type(found).model_fields:
-                raise unknown_path(Case, path)
-            found = getattr(found, part)
-        return found
+        """Return the value at a dotted path, in SI; None where the chosen option has none."""
+        section, name = self._holder(path)
+        if section is None:
+            return None
+        if isinstance(section, Option) and name == section.key:
+            return section.name
+        return getattr(section, name) if name in type(section).model_fields else None
 
     def sourced(self, path: str) -> SourcedValue:
         """Return the number at a dotted path with its uncertainty, source and marks."""
-        value, unit = self.value(path), unit_at(path)
-        if value is None:
-            return SourcedValue(None, unit, reason="not given in the case")
-        origin = self._origins.get(path)
-        if origin is None:
-            return SourcedValue(float(value), unit, source="case")
-        leaf = origin.leaf
-        source = leaf.source or ("given in the case" if origin.kind == GIVEN else origin.kind)
-        return SourcedValue(
-            float(value),
-            unit,
-            source=source + ("" if leaf.verified else " (from memory, not verified)"),
-            uncertainty=spread(self, path),
-            assumed=leaf.assumed,
-            note=leaf.note,
-        )
+        section, name = self._holder(path)
+        if section is None or name not in type(section).model_fields:
+            return _ABSENT
+        return section.sourced(name)
+
+    def _holder(self, path: str) -> tuple[Section | None, str]:
+        """Return the section that holds a value, and the value's name in it."""
+        path = current_path(path)
+        known = field_at(path) is not None or path in keys()
+        if not known:
+            path_kind(path)
+        section: Any = self._parts
+        *parents, name = path.split(".")
+        for part in parents:
+            section = getattr(section, part, None)
+            if not isinstance(section, Section):
+                return None, name
+        return section, name
 
     @property
     def effective_rq(self) -> SourcedValue:
-        """Rq of the interface, m: as given, else f sqrt(Rq_shoe^2 + Rq_floor^2) of the stylus.
+        """Rq of the interface, m: as given, else f sqrt(Rq_shoe^2 + Rq_floor^2) of the stylus."""
+        return self.interface.rq(self.shoe.roughness, self.floor.roughness)
 
-        f is ``interface.roughness_beyond_cutoff``.
-        """
-        if self.interface.effective_rq is not None:
-            return self.sourced("interface.effective_rq")
-        shoe, floor = self.shoe.roughness.rq_or_estimate, self.floor.roughness.rq_or_estimate
-        if shoe is None or floor is None:
-            raise InputError("no roughness is given", where="interface.effective_rq")
-        return SourcedValue(
-            self.interface.roughness_beyond_cutoff * math.hypot(shoe, floor),
-            "m",
-            source=f"composite of the stylus Rq of shoe and floor, "
-            f"times {self.interface.roughness_beyond_cutoff:g}",
-            assumed=True,
-            note="the stylus' cut-off hides long waves, through which fluid leaks",
+    def __repr__(self) -> str:
+        fluid = "dry" if self.contaminant is None else self.entries.get("contaminant", "fluid")
+        shoe, floor = self.entries.get("shoe", "shoe"), self.entries.get("floor", "floor")
+        name = self.name if len(self.name) <= 60 else self.name[:57] + "..."
+        return (
+            f"<Case {name!r} [{self.hash[:12]}]: {shoe}, {floor}, {fluid}, "
+            f"friction {self.friction.name}>"[:199]
         )
 
-    def _default_origins(self, known: Mapping[str, Origin]) -> dict[str, Origin]:
-        found = {}
-        for path, field in fields(type(self)):
-            default = default_of(field)
-            if default is None or path in known or self.value(path) is None:
-                continue
-            leaf = Leaf(default.text, source=default.source, assumed=default.assumed)
-            found[path] = Origin(DEFAULT, leaf)
-        return found
+    def __str__(self) -> str:
+        return self.summary()
+
+    def table(self) -> Table:
+        """Return every value that is set with its origin."""
+        rows = [(path, value, origin) for path, value, origin in self.rows()]
+        rq = self.effective_rq
+        rows.append(("effective Rq of the interface", str(rq), rq.source))
+        if self.contaminant is None:
+            rows.append(("contaminant", "none", "dry floor"))
+        return Table(f"{self.name}  [{self.hash[:12]}]", ("value", "given", "origin"), rows)
+
+    def rows(self) -> list[tuple[str, str, str]]:
+        """Return (dotted path, value as given, origin in words) of every value that is set."""
+        return [
+            (path, value_text(origin, unit_at(path)), _origin_text(origin))
+            for path, origin in self.origins.items()
+            if path not in self.idle_paths
+        ]
+
+    def _complete_tree(self) -> dict[str, Any]:
+        tree: dict[str, Any] = {
+            "file_version": FILE_VERSION,
+            "name": self.name,
+            "description": self.description,
+        }
+        for path, section in walk(self._parts):
+            table = tree
+            for part in path.split("."):
+                table = table.setdefault(part, {})
+            names = list(type(section).model_fields)
+            for name in [section.key, *names] if isinstance(section, Option) else names:
+                origin = section.origin(name)
+                if (
+                    origin is not None
+                    and f"{path}.{name}" not in self.idle_paths
+                    and name not in type(section).replaced
+                ):
+                    table[name] = _origin_toml(origin, f"{path}.{name}")
+        if self.contaminant is None:
+            tree["contaminant"] = DRY
+        return tree
 
 
-def unit_at(path: str) -> str:
-    """Return the SI unit of the value at a dotted path of a case, ``"1"`` for words."""
-    return unit_of(Case, path)
+def value_text(origin: Origin, unit: str) -> str:
+    """Return a value as given, with its uncertainty."""
+    given = origin.leaf.given
+    if isinstance(given, bool):
+        return "yes" if given else "no"
+    if isinstance(given, list | tuple):
+        return f"{len(given)} terms"
+    spread = origin.leaf.uncertainty
+    return f"{plain_text(given, unit)}" + ("" if spread is None else f" ± {spread}")
 
 
-def paths() -> list[str]:
-    """Return every dotted path that a case file may set, sections included."""
-    return known_paths(Case)
+def _origin_text(origin: Origin) -> str:
+    leaf = origin.leaf
+    words = {GIVEN: "given", DEFAULT: "default"}.get(origin.kind, f"catalogue: {origin.entry}")
+    words += ", assumed" if leaf.assumed else ""
+    words += "" if leaf.verified else ", from memory"
+    return words + (f" ({leaf.source})" if leaf.source else "")
 
 
-def _path_kind(path: str) -> str:
-    return path_kind(Case, path)
-
-
-def _is_dry(mapping: Mapping[str, Any]) -> bool:
-    fluid = mapping.get("contaminant")
-    return fluid == DRY or (isinstance(fluid, Mapping) and fluid.get("from") == DRY)
-
-
-def _check_version(mapping: Mapping[str, Any], places: Places) -> None:
-    version = mapping.get("file_version", FILE_VERSION)
+def _version(mapping: Mapping[str, Any], places: toml.Places) -> int:
+    version = mapping.get("file_version", 1)
     if isinstance(version, bool) or not isinstance(version, int) or version < 1:
-        raise CaseError(
-            [InputError(f"{version!r} is no version", where=places("file_version"), allowed="1")]
+        error = InputError(
+            f"{version!r} is no version", where=places("file_version"), allowed="1 or 2"
         )
+        raise CaseError([error])
     if version > FILE_VERSION:
         raise CaseError(
             [
@@ -308,3 +513,146 @@ def _check_version(mapping: Mapping[str, Any], places: Places) -> None:
                 )
             ]
         )
+    return version
+
+
+def _current(mapping: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return a mapping in the paths of version 2, and the edits that make it so."""
+    edits: dict[str, Any] = {}
+    moves = upgrade(mapping)
+    for old, new, value in moves:
+        edits[old] = None
+        edits[new] = value
+    if not edits:
+        return dict(mapping), edits
+    current = _edited(mapping, edits)
+    gone = [path for path in GONE if _is_empty(current, path)]
+    edits |= dict.fromkeys(gone)
+    return _edited(current, dict.fromkeys(gone)), edits
+
+
+def with_settings(mapping: Mapping[str, Any], settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a mapping in the paths of version 2 with values set by dotted path."""
+    return _edited(_current(mapping)[0], current_settings(settings))
+
+
+def _is_empty(mapping: Mapping[str, Any], path: str) -> bool:
+    item: Any = mapping
+    for part in path.split("."):
+        item = item.get(part) if isinstance(item, Mapping) else None
+    marks = {"source", "note", "assumed", "verified"}
+    return isinstance(item, Mapping) and set(item) <= marks
+
+
+def _emptied(text: str) -> list[str]:
+    mapping = toml.parsed(text)
+    return [path for path in GONE if _is_empty(mapping, path)]
+
+
+def _checked(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return settings in the paths of version 2; refuse unknown paths and misfits."""
+    changes = current_settings(settings)
+    for path, value in changes.items():
+        allowed = value is None or isinstance(value, str | Mapping | Section)
+        if path_kind(path) == "section" and (not allowed or origin_of(value) is not None):
+            raise InputError(
+                f"{value!r} can't stand for a section",
+                where=path,
+                allowed="the name of a catalogue entry or option, a mapping, or a section",
+            )
+    return changes
+
+
+def _covers(changes: Mapping[str, Any], path: str) -> bool:
+    """Return whether a path, or a section around it, is among those set."""
+    return any(path == other or path.startswith(other + ".") for other in changes)
+
+
+def _edited(mapping: Mapping[str, Any], edits: Mapping[str, Any]) -> dict[str, Any]:
+    """Return nested mappings with values set (or, with None, taken out) by dotted path."""
+    edited = dict(mapping)
+    for path, value in edits.items():
+        table, parts = edited, path.split(".")
+        for depth, part in enumerate(parts[:-1]):
+            here = ".".join(parts[: depth + 1])
+            if table.get(part) is None and value is None:
+                break
+            below = expanded(table.get(part, {}), here) if part in table else {}
+            if not isinstance(below, Mapping) or "value" in below:
+                raise InputError("is a value, not a section", where=here)
+            table[part] = dict(below)
+            table = table[part]
+        else:
+            if value is None:
+                table.pop(parts[-1], None)
+            else:
+                table[parts[-1]] = value
+    return edited
+
+
+def _as_text(item: Any, path: str) -> Any:
+    """Return a given value as TOML writes it: SI numbers as text with their unit."""
+    if isinstance(item, Section):
+        item = {key: value for key, value in item.tree().items() if key not in item.replaced}
+    if isinstance(item, Origin):
+        return _origin_toml(item, path)
+    if isinstance(item, SourcedValue):
+        origin = origin_of(item)
+        assert origin is not None
+        return _origin_toml(origin, path)
+    if isinstance(item, Mapping):
+        leaf = "value" in item
+        return {
+            k: _as_text(v, path if leaf and k == "value" else f"{path}.{k}")
+            for k, v in item.items()
+        }
+    if isinstance(item, list | tuple):
+        return [_as_text(value, path) for value in item]
+    return plain_text(item, _unit_in(path))
+
+
+def _has_section(item: Any) -> bool:
+    if isinstance(item, Mapping):
+        return any(map(_has_section, item.values()))
+    return isinstance(item, Section)
+
+
+def _unit_in(path: str) -> str:
+    field = field_at(path)
+    if field is not None:
+        return unit_of(field)
+    head, _, name = path.rpartition(".")
+    parent = field_at(head) if head else None
+    section = None if parent is None else item_section(parent)
+    if section is not None and name in section.model_fields:
+        return unit_of(section.model_fields[name])
+    return "1"
+
+
+def _origin_toml(origin: Origin, path: str) -> Any:
+    leaf = origin.leaf
+    given = _as_text(leaf.given, path)
+    if origin.kind == DEFAULT and isinstance(origin.value, str) and origin.value == given:
+        marks: dict[str, Any] = {"source": leaf.source or None}
+    else:
+        marks = {
+            "uncertainty": leaf.uncertainty,
+            "source": leaf.source or None,
+            "assumed": True if leaf.assumed else None,
+            "verified": None if leaf.verified else False,
+            "note": leaf.note or None,
+            "erratum": leaf.erratum or None,
+        }
+    marks = {key: value for key, value in marks.items() if value is not None}
+    return {"value": given, **marks} if marks else given
+
+
+def _rounded(value: Any) -> Any:
+    """Return the value with 12 significant digits: "219 cP" and "0.219 Pa*s" are the same."""
+    if isinstance(value, float):
+        return float(f"{value:.12g}")
+    if isinstance(value, Section):
+        return {name: _rounded(getattr(value, name)) for name in type(value).model_fields}
+    if isinstance(value, list | tuple):
+        return [_rounded(item) for item in value]
+    return value

@@ -1,89 +1,179 @@
-"""From a case file and the catalogue to one complete set of values, each knowing its origin."""
+"""From what a case gives and the catalogue to one complete tree of values with their origins."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import PydanticCustomError
 
 from underfoot.core import InputError, unknown_name
 from underfoot.core.catalogue import Catalogue, Entry
 from underfoot.core.leaves import Leaf, leaves
 
-from .errors import CaseError
-from .places import Places
-from .schema import CATALOGUE_SECTIONS
+from .errors import CaseError, Place, placed
+from .friction import FrictionOption
+from .parts import CATALOGUE_SECTIONS, CaseParts, slot_table
+from .section import CATALOGUE, GIVEN, Option, Origin, Section, origin_of, section_in
+from .shoe import from_catalogue
+from .versions import RENAMED, SHORT
 
-GIVEN = "given"
-CATALOGUE = "catalogue"
-DEFAULT = "default"
 DRY = "none"
+_ALTERNATIVES = {
+    "contaminant.viscosity": ("contaminant.glycerol_fraction", "contaminant.fraction_basis"),
+    "contaminant.glycerol_fraction": ("contaminant.viscosity",),
+    "shoe.material.shore_a": ("shoe.material.modulus",),
+    "shoe.roughness.ra": ("shoe.roughness.rq",),
+    "floor.roughness.ra": ("floor.roughness.rq",),
+}
+"""Given value: values of the catalogue that it stands in for."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Composition:
-    """Values by path, catalogue entries by section, errors met, sections that were not found."""
+    """Tree of values with origins, catalogue entries by section, and what went wrong."""
 
-    origins: dict[str, Origin]
-    entries: dict[str, str]
-    errors: list[InputError]
-    failed: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Origin:
-    """Where one value of a case comes from: ``kind`` is given, catalogue or default."""
-
-    kind: str
-    leaf: Leaf
-    entry: str = ""
+    tree: dict[str, Any] = field(default_factory=dict)
+    entries: dict[str, str] = field(default_factory=dict)
+    errors: list[InputError] = field(default_factory=list)
+    failed: list[str] = field(default_factory=list)
+    """sections whose entry is not in the catalogue"""
+    dropped: dict[str, str] = field(default_factory=dict)
+    """path of a given value that no chosen option takes: why"""
 
 
-def composed(mapping: Mapping[str, Any], catalogue: Catalogue, places: Places) -> Composition:
-    """Return the leaves of a case, which section came from which entry, and what went wrong.
+def composed(
+    given: Mapping[str, Any],
+    catalogue: Catalogue,
+    places: Place,
+    folder: Path,
+    lenient: Callable[[str], bool],
+) -> Composition:
+    """Return the values of a case.
 
     A section's ``from`` is laid first, then that of its sub-sections (which replaces the whole
-    sub-section), then the keys of the file.
+    sub-section), then what is given. Catalogue values that the chosen options don't take are left
+    out; given ones too where ``lenient`` says so of their path, else they are an error later.
     """
-    errors: list[InputError] = []
-    failed: list[str] = []
-    tables = {key: _expanded(key, item) for key, item in mapping.items()}
-    found: dict[str, Origin] = {}
-    entries: dict[str, str] = {}
+    found = Composition()
+    tables = {key: expanded(item, key, found.entries) for key, item in given.items()}
+    laid: dict[str, Origin] = {}
     for section in sorted(CATALOGUE_SECTIONS, key=lambda path: path.count(".")):
         name = _from(tables, section)
-        if name is None or (section == "contaminant" and name == DRY):
-            continue
-        kind, part = CATALOGUE_SECTIONS[section]
-        where = places(f"{section}.from")
-        if not isinstance(name, str):
-            errors.append(InputError(f"{name!r} is no name", where=where, allowed="text"))
-            continue
-        try:
-            entry = catalogue.entry(kind, name, where=where)
-        except InputError as error:
-            errors.append(error)
-            failed.append(section)
-            continue
-        _replace_section(found, section, _part(entry, part, section), f"{kind} {name}")
-        if part and not entry.under(part):
-            known = [n for n in catalogue.names(kind) if catalogue.entry(kind, n).under(part)]
-            errors.append(unknown_name(f"{kind} with {part}", name, known, where=where))
-        entries[section] = name
+        if name is not None and not (section == "contaminant" and name == DRY):
+            _lay(found, laid, section, name, catalogue, places)
     try:
         own = leaves(_without_from(tables), source="")
     except InputError as error:
-        raise CaseError([*errors, _placed(error, places)]) from error
+        raise CaseError([*found.errors, placed(error, places)]) from error
+    record = _friction_record(found, tables, catalogue)
     for path, leaf in own.items():
-        _drop_alternatives(found, path)
-        found[path] = Origin(GIVEN, leaf)
-    return Composition(found, entries, errors, tuple(failed))
+        origin = leaf.given if isinstance(leaf.given, Origin) else origin_of(leaf.given)
+        if origin is None:
+            origin = Origin(GIVEN, leaf)
+        if path.startswith("friction.") and _of_another_fluid(origin, found.entries):
+            continue
+        for other in _ALTERNATIVES.get(path, ()):
+            if other in laid and laid[other].kind == CATALOGUE:
+                del laid[other]
+        laid[path] = origin
+        record.pop(path, None)
+    tree = _nested({**record, **laid}, tables)
+    if tables.get("contaminant") is not None and _from(tables, "contaminant") == DRY:
+        tree["contaminant"] = None
+    found.tree = _settled(found, CaseParts, tree, "", folder, lenient, places)
+    _settle_hardness(found, lenient, places)
+    _settle_reads(found, lenient, places)
+    return found
 
 
-def nested(origins: Mapping[str, Origin], mapping: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the given values as nested tables; the empty tables of ``mapping`` are kept."""
+def expanded(item: Any, path: str, entries: dict[str, str] | None = None) -> Any:
+    """Return sections as mappings, and names of entries and options as keys of a mapping."""
+    if isinstance(item, Section):
+        if entries is not None and item._entry:
+            entries[path] = item._entry
+        item = {k: v for k, v in item.tree().items() if k not in type(item).replaced}
+    elif isinstance(item, str):
+        if path in CATALOGUE_SECTIONS:
+            return {"from": item}
+        slot = slot_table().get(path)
+        return item if slot is None else {slot.key: item}
+    if not isinstance(item, Mapping) or "value" in item:
+        return item
+    return {key: expanded(below, f"{path}.{key}", entries) for key, below in item.items()}
+
+
+def _lay(
+    found: Composition,
+    laid: dict[str, Origin],
+    section: str,
+    name: Any,
+    catalogue: Catalogue,
+    places: Place,
+) -> None:
+    kind, part = CATALOGUE_SECTIONS[section]
+    where = places(f"{section}.from")
+    if not isinstance(name, str):
+        found.errors.append(InputError(f"{name!r} is no name", where=where, allowed="text"))
+        return
+    try:
+        entry = catalogue.entry(kind, name, where=where)
+    except InputError as error:
+        found.errors.append(error)
+        found.failed.append(section)
+        return
+    if part and not entry.under(part):
+        known = [n for n in catalogue.names(kind) if catalogue.entry(kind, n).under(part)]
+        found.errors.append(unknown_name(f"{kind} with {part}", name, known, where=where))
+    for path in [path for path in laid if path.startswith(section + ".")]:
+        del laid[path]
+    for path, leaf in _part(entry, part, section).items():
+        full = f"{section}.{path}"
+        laid[RENAMED.get(full) or SHORT.get(full) or full] = Origin(
+            CATALOGUE, leaf, f"{kind} {name}"
+        )
+    found.entries[section] = name
+
+
+def _part(entry: Entry, part: str, section: str) -> dict[str, Leaf]:
+    if part:
+        return entry.under(part)
+    other = {"shoe.material": "roughness.", "contaminant": "boundary."}.get(section)
+    if other is None:
+        return dict(entry.values)
+    return {path: leaf for path, leaf in entry.values.items() if not path.startswith(other)}
+
+
+def _friction_record(
+    found: Composition, tables: Mapping[str, Any], catalogue: Catalogue
+) -> dict[str, Origin]:
+    """Return what the catalogue knows of friction under the fluid and the chosen law takes."""
+    name = found.entries.get("contaminant")
+    if name is None or ("fluid", name) not in catalogue.entries:
+        return {}
+    try:
+        option = FrictionOption.pick(tables.get("friction", {}))
+    except (ValidationError, PydanticCustomError):
+        return {}
+    return {
+        f"friction.{key}": Origin(CATALOGUE, leaf, f"fluid {name}")
+        for key, leaf in catalogue.entry("fluid", name).under("boundary").items()
+        if key in option.model_fields
+    }
+
+
+def _of_another_fluid(origin: Origin, entries: Mapping[str, str]) -> bool:
+    ours = f"fluid {entries.get('contaminant', '')}"
+    return origin.kind == CATALOGUE and origin.entry.startswith("fluid ") and origin.entry != ours
+
+
+def _nested(origins: Mapping[str, Origin], tables: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values as nested tables; the empty tables that were given are kept."""
     tree: dict[str, Any] = {}
-    for section in _tables({key: _expanded(key, item) for key, item in mapping.items()}):
+    for section in _sections(tables):
         table = tree
         for part in section.split("."):
             table = table.setdefault(part, {})
@@ -94,20 +184,116 @@ def nested(origins: Mapping[str, Origin], mapping: Mapping[str, Any]) -> dict[st
             table = table.setdefault(parent, {})
             if not isinstance(table, dict):
                 raise InputError("is both a value and a section", where=path)
-        table[key] = origin.leaf.given
+        table[key] = origin
     return tree
 
 
-def _tables(table: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
+def _sections(table: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
     for key, item in table.items():
         if isinstance(item, Mapping) and "value" not in item:
             yield f"{prefix}{key}"
-            yield from _tables(item, f"{prefix}{key}.")
+            yield from _sections(item, f"{prefix}{key}.")
 
 
-def _expanded(key: str, item: Any) -> Any:
-    """Return ``shoe = "name"`` as ``shoe = {from = "name"}``."""
-    return {"from": item} if key in CATALOGUE_SECTIONS and isinstance(item, str) else item
+def _settled(
+    found: Composition,
+    model: type[Section],
+    table: dict[str, Any],
+    path: str,
+    folder: Path,
+    lenient: Callable[[str], bool],
+    places: Place,
+) -> dict[str, Any]:
+    """Return a section's table without what its option does not take, with what files hold."""
+    if issubclass(model, Option) and not model.name:
+        known = model.known().values()
+        try:
+            model = model.pick(table)
+        except (ValidationError, PydanticCustomError):
+            return table  # validation says what is wrong
+        for key in [k for k in table if k != model.key and k not in model.model_fields]:
+            here = f"{path}.{key}"
+            if not any(key in option.model_fields for option in known):
+                continue
+            if from_catalogue(table[key]):
+                del table[key]
+            elif lenient(here):
+                del table[key]
+                found.dropped[here] = f'not used by {model.key} = "{model.name}"'
+    try:
+        table = model.completed(table, folder, path)
+    except InputError as error:
+        found.errors.append(placed(error, places))
+        found.failed.append(path)
+    for key, info in model.model_fields.items():
+        section = section_in(info)
+        if section is not None and isinstance(table.get(key), dict):
+            below = f"{path}.{key}" if path else key
+            table[key] = _settled(found, section, table[key], below, folder, lenient, places)
+    return table
+
+
+def _settle_hardness(found: Composition, lenient: Callable[[str], bool], places: Place) -> None:
+    material = found.tree.get("shoe", {})
+    for part in ("material", "modulus"):
+        material = material.get(part) if isinstance(material, dict) else None
+    if material is None or (isinstance(material, Origin) and material.leaf.given is None):
+        return
+    given = found.tree.pop("hardness", None)
+    found.tree["hardness"] = None
+    if not isinstance(given, dict) or not given:
+        return
+    if lenient("hardness.model"):
+        found.dropped["hardness.model"] = "not used beside a measured modulus"
+        return
+    found.errors.append(
+        InputError(
+            "is not used: the modulus of the compound is given",
+            where=places("hardness.model"),
+            remedy="Remove it, or shoe.material.modulus",
+        )
+    )
+
+
+def _settle_reads(found: Composition, lenient: Callable[[str], bool], places: Place) -> None:
+    """Take out, or refuse, what only options that were not chosen would read."""
+    chosen = set()
+    for name, slot in _top_slots().items():
+        try:
+            chosen |= set(slot.pick(found.tree.get(name) or {}).reads)
+        except (ValidationError, PydanticCustomError):
+            return
+    for path, readers in optional_reads().items():
+        section, _, key = path.rpartition(".")
+        table = found.tree.get(section)
+        if path in chosen or not isinstance(table, dict) or key not in table:
+            continue
+        if not from_catalogue(table[key]):
+            if not lenient(path):
+                found.errors.append(
+                    InputError(
+                        "is not read by any chosen option",
+                        where=places(path),
+                        remedy=f"Remove it, or choose {' or '.join(readers)}",
+                    )
+                )
+                continue
+            found.dropped[path] = "not read by any chosen option"
+        del table[key]
+
+
+def _top_slots() -> dict[str, type[Option]]:
+    return {path: slot for path, slot in slot_table().items() if "." not in path}
+
+
+def optional_reads() -> dict[str, list[str]]:
+    """Return the paths that only some options read, with the options that do."""
+    reads: dict[str, list[str]] = {}
+    for name, slot in _top_slots().items():
+        for option in slot.known().values():
+            for path in option.reads:
+                reads.setdefault(path, []).append(f'{name}.{slot.key} = "{option.name}"')
+    return reads
 
 
 def _from(tables: Mapping[str, Any], section: str) -> Any:
@@ -116,8 +302,6 @@ def _from(tables: Mapping[str, Any], section: str) -> Any:
         if not isinstance(table, Mapping) or part not in table:
             return None
         table = table[part]
-    if isinstance(table, str):
-        return table
     return table.get("from") if isinstance(table, Mapping) else None
 
 
@@ -127,48 +311,5 @@ def _without_from(table: Mapping[str, Any], path: str = "") -> dict[str, Any]:
         here = f"{path}.{key}" if path else key
         if key == "from" and path in CATALOGUE_SECTIONS:
             continue
-        if here in CATALOGUE_SECTIONS and isinstance(item, str):
-            continue
         kept[key] = _without_from(item, here) if isinstance(item, Mapping) else item
     return kept
-
-
-def _part(entry: Entry, part: str, section: str) -> dict[str, Leaf]:
-    if part:
-        return entry.under(part)
-    if section == "shoe.material":
-        return {path: v for path, v in entry.values.items() if not path.startswith("roughness.")}
-    return dict(entry.values)
-
-
-def _replace_section(
-    found: dict[str, Origin], section: str, values: Mapping[str, Leaf], entry: str
-) -> None:
-    for path in [path for path in found if path.startswith(section + ".")]:
-        del found[path]
-    for path, leaf in values.items():
-        found[f"{section}.{path}"] = Origin(CATALOGUE, leaf, entry)
-
-
-def _drop_alternatives(found: dict[str, Origin], path: str) -> None:
-    """Drop what a given value stands in for, so that no given value is silently unused."""
-    alternatives = {
-        "contaminant.viscosity": ("contaminant.glycerol_fraction", "contaminant.fraction_basis"),
-        "contaminant.glycerol_fraction": ("contaminant.viscosity",),
-        "shoe.material.shore_a": ("shoe.material.modulus",),
-        "shoe.roughness.ra": ("shoe.roughness.rq",),
-        "floor.roughness.ra": ("floor.roughness.rq",),
-    }
-    for other in alternatives.get(path, ()):
-        if other in found and found[other].kind == CATALOGUE:
-            del found[other]
-
-
-def _placed(error: InputError, places: Places) -> InputError:
-    return InputError(
-        error.what,
-        where=places(error.where or ""),
-        allowed=error.allowed,
-        nearest=error.nearest,
-        remedy=error.remedy,
-    )

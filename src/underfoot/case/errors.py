@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
+from pydantic_core import PydanticCustomError
 
 from underfoot.core import InputError, RangeError, nearest_match, unknown_name
 
-from .places import Places
-from .schema import field_model
+from .section import Option, Section, item_section, section_in
 
-_WORDS = {
+_TYPES = {
     "string_type": "text",
     "int_type": "a whole number",
     "int_from_float": "a whole number",
@@ -22,6 +22,7 @@ _WORDS = {
     "model_type": "a section with its own keys",
     "model_attributes_type": "a section with its own keys",
 }
+Place = Callable[[str], str]
 
 
 class CaseError(InputError):
@@ -44,26 +45,62 @@ class CaseError(InputError):
         listed = "\n".join(f"  - {error}" for error in self.errors)
         return f"{len(self.errors)} problems:\n{listed}"
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.errors,)
+
+
+def placed(error: InputError, places: Place) -> InputError:
+    """Return the error with its place in the file."""
+    return type(error)(
+        error.what,
+        where=places(error.where or ""),
+        allowed=error.allowed,
+        nearest=error.nearest,
+        remedy=error.remedy,
+    )
+
 
 def translated(
     error: ValidationError,
-    model: type[BaseModel],
-    places: Places,
+    model: type[Section],
+    tree: Any,
+    places: Place,
     *,
     without: Iterable[str] = (),
 ) -> list[InputError]:
-    """Return pydantic's findings in our words; what is missing within ``without`` is left out."""
+    """Return the findings of a validation; what is missing within ``without`` is left out."""
     skipped = tuple(tuple(section.split(".")) for section in without)
-    found = []
+    errors = []
     for item in error.errors(include_url=False):
         location = item["loc"]
         if item["type"] == "missing" and any(location[: len(s)] == s for s in skipped):
             continue
-        found.append(_translated(item, model, places))
-    return found
+        errors.append(_translated(item, model, tree, places))
+    return errors
 
 
-def _translated(item: Mapping[str, Any], model: type[BaseModel], places: Places) -> InputError:
+def _owner(model: type[Section], tree: Any, location: tuple[str, ...]) -> type[Section] | None:
+    """Return the section at a location, of a slot the option that the tree chooses there."""
+    owner: type[Section] | None = model
+    for part in location:
+        if part.isdigit():
+            continue
+        field = None if owner is None else owner.model_fields.get(part)
+        if field is None:
+            return None
+        owner = section_in(field) or item_section(field)
+        tree = tree.get(part) if isinstance(tree, Mapping) else None
+        if owner is not None and issubclass(owner, Option) and not owner.name:
+            try:
+                owner = owner.pick(tree or {})
+            except (ValidationError, PydanticCustomError):
+                return None
+    return owner
+
+
+def _translated(
+    item: Mapping[str, Any], model: type[Section], tree: Any, places: Place
+) -> InputError:
     location = tuple(str(part) for part in item["loc"])
     where = places(".".join(location))
     kind, given, context = item["type"], item.get("input"), item.get("ctx", {})
@@ -72,17 +109,9 @@ def _translated(item: Mapping[str, Any], model: type[BaseModel], places: Places)
         pieces = {name: context.get(name) for name in ("allowed", "nearest", "remedy")}
         return error(context["what"], where=where, **pieces)
     if kind == "extra_forbidden":
-        owner = field_model(model, location[:-1])
-        known = set(owner.model_fields) if owner else set()
-        return unknown_name("key", location[-1], known, where=where)
+        return _not_taken(_owner(model, tree, location[:-1]), location[-1], where)
     if kind == "missing":
-        owner = field_model(model, location[:-1])
-        section = bool(owner) and field_model(model, location) is not None
-        return InputError(
-            "this section is missing" if section else "is missing",
-            where=where,
-            remedy='Add it, or take the section from the catalogue with from = "name"',
-        )
+        return _missing(_owner(model, tree, location[:-1]), location[-1], where)
     if kind == "literal_error":
         choices = [
             part.strip("' ") for part in str(context["expected"]).replace(" or ", ",").split(",")
@@ -97,7 +126,61 @@ def _translated(item: Mapping[str, Any], model: type[BaseModel], places: Places)
         bound = context.get("ge", context.get("le"))
         side = "at least" if kind.startswith("greater") else "at most"
         return RangeError(f"{given} is outside the range", where=where, allowed=f"{side} {bound}")
-    wanted = _WORDS.get(kind)
     return InputError(
-        f"{given!r} can't be used here", where=where, allowed=wanted or item["msg"].lower()
+        f"{given!r} can't be used here",
+        where=where,
+        allowed=_TYPES.get(kind) or item["msg"].lower(),
+    )
+
+
+def _not_taken(owner: type[Section] | None, key: str, where: str) -> InputError:
+    known = set(owner.model_fields) if owner else set()
+    if owner is None or not issubclass(owner, Option):
+        return unknown_name("key", key, known, where=where)
+    others = {name: o for name, o in owner.options().items() if key in o.model_fields}
+    if others:
+        choice = " or ".join(f'{owner.key} = "{name}"' for name in others)
+        return InputError(
+            f'is not used by {owner.key} = "{owner.name}"',
+            where=where,
+            allowed=", ".join(sorted(known)),
+            remedy=f"Remove it, or write {choice}",
+        )
+    siblings = {name for o in owner.options().values() for name in o.model_fields}
+    error = unknown_name("key", key, known | {owner.key}, where=where)
+    nearest = nearest_match(key, known | siblings | {owner.key})
+    if nearest is None or nearest in known or nearest == owner.key:
+        return error
+    takers = [name for name, o in owner.options().items() if nearest in o.model_fields]
+    choice = " or ".join(f'{owner.key} = "{name}"' for name in takers)
+    return InputError(
+        error.what,
+        where=where,
+        allowed=error.allowed,
+        nearest=nearest,
+        remedy=f"{nearest} belongs to {choice}",
+    )
+
+
+def _missing(owner: type[Section] | None, key: str, where: str) -> InputError:
+    field = None if owner is None else owner.model_fields.get(key)
+    if field is not None and section_in(field) is not None:
+        return InputError(
+            "this section is missing",
+            where=where,
+            remedy='Add it, or take the section from the catalogue with from = "name"',
+        )
+    extra = field.json_schema_extra if field is not None else None
+    stated = extra if isinstance(extra, dict) else {}
+    what, remedy = str(stated.get("missing", "is missing")), stated.get("remedy")
+    if owner is not None and issubclass(owner, Option) and what == "is missing":
+        what = f'is missing for {owner.key} = "{owner.name}"'
+    if remedy is None and field is not None and field.description:
+        remedy = f"Give {key}: {field.description}"
+    return InputError(
+        what,
+        where=where,
+        remedy=str(remedy)
+        if remedy
+        else 'Add it, or take the section from the catalogue with from = "name"',
     )

@@ -1,19 +1,26 @@
-"""Numbers with units as pydantic fields: text at the door, SI floats inside, ranges checked."""
+"""Numbers with units as fields: text at the door, SI floats inside, ranges checked."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import Any, Literal
+from functools import lru_cache
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
+from pydantic import Field, GetCoreSchemaHandler, ValidationInfo
 from pydantic.fields import FieldInfo
-from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from underfoot.core import InputError, display, to_si
 
 DOOR = {"door": True}
-"""Validation context of user files: numbers must carry their unit."""
+"""Validation context of files: numbers must carry their unit."""
+
+
+@lru_cache(maxsize=8192)
+def si_of_text(text: str, unit: str) -> float:
+    """Return a text with a unit in SI; each text is parsed once."""
+    return to_si(text, unit, where="")
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +34,7 @@ class Quantity:
     open_high: bool = False
 
     def allowed(self) -> str:
-        """Return the range in words."""
+        """Return the range as a person reads it."""
         low, high = display(self.low, self.unit), display(self.high, self.unit)
         return (
             f"{'above' if self.open_low else 'from'} {low} "
@@ -36,11 +43,15 @@ class Quantity:
 
     def parse(self, given: Any, info: ValidationInfo) -> float:
         """Return ``given`` in SI, checked against the range."""
-        if info.context is None and isinstance(given, float | int) and not isinstance(given, bool):
+        number = isinstance(given, float | int) and not isinstance(given, bool)
+        if number and not info.context and math.isfinite(given):
             value = float(given)
         else:
             try:
-                value = to_si(given, self.unit, where="")
+                if isinstance(given, str):
+                    value = si_of_text(given, self.unit)
+                else:
+                    value = to_si(given, self.unit, where="")
             except InputError as error:
                 raise refusal("input", error) from error
         inside = self.low <= value <= self.high
@@ -48,13 +59,12 @@ class Quantity:
         inside &= not (self.open_high and value == self.high)
         if not inside:
             text = given if isinstance(given, str) else f"{given:g}"
-            nearest = self._likely(text) if isinstance(given, str) else None
             raise refusal(
                 "range",
                 InputError(
                     f"{text} is outside the physical range",
                     allowed=self.allowed(),
-                    nearest=nearest,
+                    nearest=self._likely(text) if isinstance(given, str) else None,
                 ),
             )
         return value
@@ -62,38 +72,23 @@ class Quantity:
     def _likely(self, text: str) -> str | None:
         """Return the same number with the prefix that brings it into range, if only one does."""
         number, _, unit = text.strip().partition(" ")
-        if unit != "m":
-            return None
-        for other in ("mm", "um"):
+        for other in {"m": ("mm", "um"), "mN": ("N",), "Pa": ("MPa",)}.get(unit, ()):
             try:
                 value = to_si(f"{number} {other}", self.unit, where="")
             except InputError:
                 return None
-            if self.low < value < self.high:
+            if self.low <= value <= self.high:
                 return f"{number} {other}"
         return None
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        return core_schema.with_info_plain_validator_function(
-            self.parse, serialization=core_schema.plain_serializer_function_ser_schema(float)
-        )
-
-    def __get_pydantic_json_schema__(
-        self, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> JsonSchemaValue:
-        kinds = ["number", "string"] if self.unit == "1" else ["string"]
-        return {
-            "type": kinds,
-            "unit": self.unit,
-            "minimum_si": self.low,
-            "maximum_si": self.high,
-        }
+        return core_schema.with_info_plain_validator_function(self.parse)
 
 
 def refusal(kind: Literal["input", "range"], error: InputError) -> PydanticCustomError:
-    """Return the pydantic error that carries our message through validation."""
+    """Return the validation error that carries our message."""
     context = {
         "what": error.what,
         "allowed": error.allowed,
@@ -115,9 +110,16 @@ class Default:
 
 
 def default(value: Any, text: Any, source: str, *, assumed: bool = False) -> Any:
-    """Return a pydantic field with a sourced default; ``value`` is ``text`` in SI."""
+    """Return a field with a sourced default; ``value`` is ``text`` in SI."""
     extra = {"default_text": text, "source": source, "assumed": assumed}
     return Field(default=value, json_schema_extra=extra)
+
+
+def required(
+    description: str = "", *, missing: str = "is missing", remedy: str | None = None
+) -> Any:
+    """Return a field without default; ``missing`` and ``remedy`` are the answer to its absence."""
+    return Field(description=description, json_schema_extra={"missing": missing, "remedy": remedy})
 
 
 def default_of(field: FieldInfo) -> Default | None:
@@ -126,3 +128,16 @@ def default_of(field: FieldInfo) -> Default | None:
     if not isinstance(extra, dict) or "default_text" not in extra:
         return None
     return Default(extra["default_text"], str(extra["source"]), bool(extra["assumed"]))
+
+
+Length = Annotated[float, Quantity("m", 0.0, 0.5, open_low=True)]
+Depth = Annotated[float, Quantity("m", 0.0, 0.05)]
+Rounding = Annotated[float, Quantity("m", 0.0, 0.1)]
+LargeRadius = Annotated[float, Quantity("m", 1e-3, 10.0)]
+Angle = Annotated[float, Quantity("rad", 0.0, math.radians(60))]
+Force = Annotated[float, Quantity("N", 1.0, 1e4)]
+Speed = Annotated[float, Quantity("m/s", 0.0, 20.0, open_low=True)]
+Pressure = Annotated[float, Quantity("Pa", 0.0, 1e8, open_low=True)]
+Viscosity = Annotated[float, Quantity("Pa*s", 1e-5, 1e3)]
+Friction = Annotated[float, Quantity("1", 0.0, 5.0)]
+Flag = Annotated[bool, Field(strict=True)]

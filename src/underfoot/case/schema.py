@@ -1,168 +1,155 @@
-"""What a case file may hold: every key with its section, unit, default; and the JSON Schema."""
+"""The JSON Schema of case files: units, ranges in SI, defaults as text, catalogue entries."""
 
 from __future__ import annotations
 
-import types
+import json
 import typing
-from collections.abc import Iterator, Sequence
 from typing import Any
 
-from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-FILE_VERSION = 1
-"""Version of the case files that this package writes; it reads this and older ones."""
-
-CATALOGUE_SECTIONS: dict[str, tuple[str, str]] = {
-    "shoe": ("shoe", ""),
-    "shoe.material": ("material", ""),
-    "shoe.roughness": ("material", "roughness"),
-    "floor": ("floor", ""),
-    "contaminant": ("fluid", ""),
-    "motion": ("setup", "motion"),
-    "sensor": ("setup", "sensor"),
-    "risk": ("setup", "risk"),
-}
-"""Sections that can be taken ``from`` the catalogue: kind of entry and its sub-table."""
+from .parts import CATALOGUE_SECTIONS, FILE_VERSION, CaseParts, slot_table
+from .quantity import default_of
+from .section import Option, Section, item_section, quantity_of, section_in
 
 _SOURCED = "SourcedLeaf"
-
-
-def section_of(field: FieldInfo) -> type[BaseModel] | None:
-    """Return the section a field holds, or None for a value."""
-    return _section(field.annotation)
-
-
-def _section(annotation: Any) -> type[BaseModel] | None:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return annotation
-    if typing.get_origin(annotation) in (typing.Union, types.UnionType):
-        for part in typing.get_args(annotation):
-            found = _section(part)
-            if found is not None:
-                return found
-    return None
-
-
-def field_model(model: type[BaseModel], location: Sequence[str]) -> type[BaseModel] | None:
-    """Return the section at a location within ``model``, looking through lists of sections."""
-    found: type[BaseModel] | None = model
-    for part in location:
-        if found is None:
-            return None
-        if part.isdigit():
-            continue
-        field = found.model_fields.get(part)
-        if field is None:
-            return None
-        found = section_of(field)
-        if found is None:
-            items = [_section(argument) for argument in typing.get_args(field.annotation)]
-            found = next((item for item in items if item is not None), None)
-    return found
-
-
-def fields(model: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, FieldInfo]]:
-    """Yield every leaf field of a section tree with its dotted path."""
-    for name, field in model.model_fields.items():
-        path = f"{prefix}{name}"
-        section = section_of(field)
-        if section is None:
-            yield path, field
-        else:
-            yield from fields(section, f"{path}.")
-
-
-def field_at(model: type[BaseModel], path: str) -> FieldInfo | None:
-    """Return the leaf field at a dotted path, or None."""
-    return dict(fields(model)).get(path)
-
-
-def marks_of(field: FieldInfo) -> list[Any]:
-    """Return the marks (such as the unit) annotated on a field."""
-    return [*field.metadata, *_annotations(field.annotation)]
-
-
-def _annotations(annotation: Any) -> list[Any]:
-    found = list(getattr(annotation, "__metadata__", ()))
-    for part in typing.get_args(annotation):
-        found += _annotations(part)
-    return found
+_MARKS = {
+    **{name: {"type": "boolean"} for name in ("assumed", "verified")},
+    **{name: {"type": "string"} for name in ("source", "note")},
+}
+_TYPES: dict[Any, str] = {int: "integer", bool: "boolean", str: "string", float: "number"}
 
 
 def schema_text() -> str:
     """Return the JSON Schema of case files as text."""
-    import json
-
-    from .case import Case
-
-    return json.dumps(json_schema(Case), indent=2, ensure_ascii=False) + "\n"
+    return json.dumps(json_schema(), indent=2, ensure_ascii=False) + "\n"
 
 
-def json_schema(model: type[BaseModel]) -> dict[str, Any]:
-    """Return the JSON Schema of case files: units, ranges in SI, defaults as text, ``from``."""
-    schema = model.model_json_schema(mode="validation")
-    marks = {name: {"type": "boolean"} for name in ("assumed", "verified")}
-    marks |= {name: {"type": "string"} for name in ("source", "note")}
-    sections = dict(_sections(model))
-    origins = {
-        sections[path].__name__: kind
-        for path, (kind, _) in CATALOGUE_SECTIONS.items()
-        if path in sections
+def json_schema() -> dict[str, Any]:
+    """Return the JSON Schema of case files.
+
+    A section may come from the catalogue, so no key of it is required in the file; a slot is one
+    of its options, each with the keys that it takes.
+    """
+    definitions: dict[str, Any] = {
+        _SOURCED: {
+            "type": "object",
+            "description": "a value with what a reader must know to trust it",
+            "properties": {"value": {}, "uncertainty": {"type": ["number", "string"]}, **_MARKS},
+            "required": ["value"],
+            "additionalProperties": False,
+        }
     }
-    for name, definition in schema["$defs"].items():
-        properties = definition["properties"]
-        definition["properties"] = {key: _leaf(entry) for key, entry in properties.items()}
-        if name == "RelaxationTerm":
+    properties = {"file_version": {"type": "integer", "default": FILE_VERSION}}
+    slot_names = slot_table()
+    for name, field in CaseParts.model_fields.items():
+        section = section_in(field)
+        if section is None:
+            properties[name] = {"type": "string", "default": field.default}
             continue
-        definition["properties"].update(marks)
-        # a section may come from the catalogue, so no key of it is required in the file
-        definition.pop("required", None)
-        if name in origins:
-            definition["properties"]["from"] = {
-                "type": "string",
-                "description": f"a {origins[name]} of the catalogue; keys beside it override",
-            }
-    for path, entry in schema["properties"].items():
-        plain = _leaf(entry, sourced=False)
-        if path in CATALOGUE_SECTIONS:
-            plain = {"anyOf": [plain, {"type": "string", "description": "name in the catalogue"}]}
-        schema["properties"][path] = plain
-    schema["$defs"][_SOURCED] = {
+        kind = CATALOGUE_SECTIONS.get(name, ("",))[0]
+        entry = _reference(section, definitions, kind)
+        if kind or name in slot_names:
+            plain = {"type": "string", "description": "name of an entry of the catalogue"}
+            if not kind:
+                plain = {"enum": list(slot_names[name].options())}
+            entry = {"anyOf": [entry, plain]}
+        if field.description:
+            entry = {**entry, "description": field.description}
+        properties[name] = entry
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Underfoot case",
         "type": "object",
-        "description": "a value with what a reader must know to trust it",
-        "properties": {"value": {}, "uncertainty": {"type": ["number", "string"]}, **marks},
-        "required": ["value"],
+        "properties": properties,
+        "required": ["contaminant", "floor", "motion", "shoe"],
+        "additionalProperties": False,
+        "$defs": dict(sorted(definitions.items())),
+    }
+
+
+def _reference(section: type[Section], definitions: dict[str, Any], kind: str) -> dict[str, Any]:
+    if issubclass(section, Option) and not section.name:
+        options = section.options().values()
+        return {"anyOf": [_reference(option, definitions, kind) for option in options]}
+    name = section.__name__
+    if name not in definitions:
+        definitions[name] = {}  # stands for itself while its own fields are described
+        definitions[name] = _definition(section, definitions, kind)
+    return {"$ref": f"#/$defs/{name}"}
+
+
+def _definition(section: type[Section], definitions: dict[str, Any], kind: str) -> dict[str, Any]:
+    properties: dict[str, Any] = dict(_MARKS)
+    if kind:
+        properties["from"] = {
+            "type": "string",
+            "description": f"a {kind} of the catalogue; keys beside it override",
+        }
+    required: list[str] = []
+    if issubclass(section, Option):
+        choice = _sourced({"const": section.name}, section.source)
+        usual = section.usual == section.name or section.chosen_by or kind
+        properties[section.key] = choice
+        required = [] if usual else [section.key]
+    for key, field in section.model_fields.items():
+        below = section_in(field)
+        if below is not None:
+            inner = "material" if key in ("material", "roughness") and kind == "shoe" else ""
+            properties[key] = _reference(below, definitions, inner)
+            if issubclass(below, Option) and not below.name:
+                names = {"enum": list(below.options())}
+                properties[key] = {"anyOf": [properties[key], names]}
+        elif (item := item_section(field)) is not None:
+            entry = {"type": "array", "items": _reference(item, definitions, "")}
+            properties[key] = _described(entry, field)
+        else:
+            properties[key] = _leaf(field)
+    return {
+        "type": "object",
+        "description": (section.__doc__ or "").strip().splitlines()[0],
+        "properties": properties,
+        **({"required": required} if required else {}),
         "additionalProperties": False,
     }
-    schema["required"] = sorted({*schema.get("required", ()), "contaminant"})
-    schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
-    schema["title"] = "Underfoot case"
-    return schema
 
 
-def _sections(model: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, type[BaseModel]]]:
-    for name, field in model.model_fields.items():
-        section = section_of(field)
-        if section is not None:
-            yield f"{prefix}{name}", section
-            yield from _sections(section, f"{prefix}{name}.")
+def _leaf(field: FieldInfo) -> dict[str, Any]:
+    quantity = quantity_of(field)
+    if quantity is not None:
+        kinds = ["number", "string"] if quantity.unit == "1" else ["string"]
+        entry = _sourced({"type": kinds})
+        entry |= {
+            "unit": quantity.unit,
+            "minimum_si": quantity.low,
+            "maximum_si": quantity.high,
+        }
+    else:
+        parts = [part for part in _parts(field.annotation) if part is not type(None)]
+        literal = next((p for p in parts if typing.get_origin(p) is typing.Literal), None)
+        if literal is not None:
+            entry = _sourced({"enum": list(typing.get_args(literal))})
+        else:
+            entry = _sourced({"type": _TYPES.get(parts[0], "string")})
+    return _described(entry, field)
 
 
-def _leaf(entry: dict[str, Any], *, sourced: bool = True) -> dict[str, Any]:
-    entry = dict(entry)
-    text = entry.pop("default_text", None)
-    entry.pop("default", None)
-    entry.pop("title", None)
-    options = [option for option in entry.pop("anyOf", []) if option.get("type") != "null"]
-    if len(options) == 1:
-        entry = {**options[0], **entry}
-    if text is not None:
-        entry["default"] = text
-    if not sourced or "$ref" in entry or entry.get("type") == "array":
-        return entry
-    kind = entry.pop("type", None)
-    plain = {"type": kind} if kind else {}
-    if "enum" in entry:
-        plain["enum"] = entry.pop("enum")
-    return {**entry, "anyOf": [plain, {"$ref": f"#/$defs/{_SOURCED}"}]}
+def _described(entry: dict[str, Any], field: FieldInfo) -> dict[str, Any]:
+    known = default_of(field)
+    if known is not None:
+        entry = {**entry, "default": known.text}
+    description = field.description or (known.source if known is not None else "")
+    return {**entry, "description": description} if description else entry
+
+
+def _sourced(plain: dict[str, Any], description: str = "") -> dict[str, Any]:
+    entry: dict[str, Any] = {"anyOf": [plain, {"$ref": f"#/$defs/{_SOURCED}"}]}
+    return {**entry, "description": description} if description else entry
+
+
+def _parts(annotation: Any) -> list[Any]:
+    if typing.get_origin(annotation) in (None, typing.Literal):
+        return [annotation]
+    if typing.get_origin(annotation) is typing.Annotated:
+        return _parts(typing.get_args(annotation)[0])
+    return [part for inner in typing.get_args(annotation) for part in _parts(inner)]

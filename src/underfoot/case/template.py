@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from pydantic.fields import FieldInfo
 
 from underfoot.core.catalogue import Catalogue
 
-from .case import Case
 from .compose import DRY
-from .schema import CATALOGUE_SECTIONS, FILE_VERSION, field_model, fields
-
-if TYPE_CHECKING:
-    from pydantic.fields import FieldInfo
+from .friction import StribeckOption
+from .parts import CATALOGUE_SECTIONS, FILE_VERSION, field_at
+from .versions import RENAMED, SHORT
 
 _COLUMN = 44
 _HEAD = """\
@@ -64,10 +64,13 @@ def template(
             lines += _overrides(section, entry, catalogue)
         lines.append("")
     if contaminant == DRY:
-        lines += ["[models]", 'friction = "constant"', "", "[interface]"]
-        lines += ["constant_cof = 0.8  # measured on this shoe and floor, dry: set your own", ""]
+        lines += ["[friction]", 'model = "constant"']
+        lines += ["cof = 0.8  # measured on this shoe and floor, dry: set your own", ""]
     else:
-        lines += ["[interface]"]
+        lines += ["[friction]"]
+        about = "# as measured with the fluid; others: underfoot explain friction.model"
+        lines += [_commented('# model = "stribeck"', about)]
+        lines += [*_friction(contaminant, catalogue), "", "[interface]"]
         about = "# interface against both stylus Rq together; assumed, uncertain: vary it"
         lines += [_commented("# roughness_beyond_cutoff = 2.0", about), ""]
     lines += ["[risk]"]
@@ -76,25 +79,34 @@ def template(
     return "\n".join(lines) + "\n"
 
 
+def _friction(contaminant: str, catalogue: Catalogue) -> list[str]:
+    """Return what the catalogue knows of friction under a fluid and the usual law takes."""
+    lines = []
+    for path, leaf in catalogue.entry("fluid", contaminant).under("boundary").items():
+        if path in StribeckOption.model_fields:
+            remark = _remark(field_at(f"friction.{path}"), assumed=leaf.assumed)
+            lines.append(_commented(f"# {path} = {_text(leaf.given)}", remark))
+    return lines
+
+
 def _overrides(section: str, name: str, catalogue: Catalogue) -> list[str]:
     kind, part = CATALOGUE_SECTIONS[section]
     entry = catalogue.entry(kind, name)
     values = entry.under(part) if part else entry.values
-    model = field_model(Case, [section])
-    if model is None:
-        return []
     lines = []
-    for path, field in fields(model):
-        leaf = values.get(path)
-        if leaf is None or isinstance(leaf.given, list):
+    for path, leaf in values.items():
+        full = f"{section}.{path}"
+        full = RENAMED.get(full) or SHORT.get(full) or full
+        if not full.startswith(f"{section}.") or isinstance(leaf.given, list):
             continue
-        remark = _remark(field, assumed=leaf.assumed)
+        remark = _remark(field_at(full), assumed=leaf.assumed)
+        path = full.removeprefix(f"{section}.")
         lines.append(_commented(f"# {path} = {_text(leaf.given)}", remark))
     return lines
 
 
-def _remark(field: FieldInfo, *, assumed: bool) -> str:
-    parts = [field.description or "", "assumed" if assumed else ""]
+def _remark(field: FieldInfo | None, *, assumed: bool) -> str:
+    parts = [(field.description or "") if field else "", "assumed" if assumed else ""]
     text = "; ".join(part for part in parts if part)
     return f"# {text}" if text else ""
 

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 
 def main() -> None:
-    """Run the command line; what goes wrong is said in plain words on standard error."""
+    """Run the command line; errors are plain sentences on standard error."""
     import sys
 
+    from .guard import INTERRUPTED, TERMINATED, Terminated, end_cleanly_on_sigterm, say
+
     try:
+        end_cleanly_on_sigterm()
         from .app import app
 
         app()
-    except KeyboardInterrupt:
-        print("stopped; nothing was written", file=sys.stderr)
-        sys.exit(130)
+    except KeyboardInterrupt as stop:
+        say("stopped; nothing was written")
+        sys.exit(TERMINATED if isinstance(stop, Terminated) else INTERRUPTED)
 
 
 __all__ = ["main"]

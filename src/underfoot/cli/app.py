@@ -17,8 +17,10 @@ from .explain import explain
 from .guard import guarded
 from .method import by_method
 from .micro import micro
+from .migrate import migrate
 from .new import new
 from .outsole import outsole_app
+from .renamed import Command
 from .risk import risk
 from .run import run
 from .schema import schema
@@ -41,7 +43,7 @@ app = typer.Typer(
 
 def _add(*commands: Callable[..., None]) -> None:
     for command in commands:
-        app.command()(guarded(command))
+        app.command(cls=Command)(guarded(command))
 
 
 _add(
@@ -59,18 +61,19 @@ _add(
     explain,
     catalogue,
     schema,
+    migrate,
     validate,
     doctor,
 )
-app.command("test")(guarded(by_method))
+app.command("test", cls=Command)(guarded(by_method))
 app.add_typer(trials_app)
 app.add_typer(calibrate_app)
 app.add_typer(studies_app)
 app.add_typer(outsole_app)
 
 
-def _version(wanted: bool) -> None:
-    if wanted:
+def _version(requested: bool) -> None:
+    if requested:
         from underfoot.core.provenance import version
 
         print(f"underfoot {version()}")

@@ -42,7 +42,7 @@ def law(
 ) -> None:
     """Write the friction law of one pair and fluid from analysed pin-on-disk trials.
 
-    A case uses it with models.friction = "table" and interface.friction_table = "FILE".
+    A case uses it with friction.model = "table" and friction.table_file = "FILE".
     """
     from underfoot.calibrate.law_file import law_file_text, law_table, trial_readings
     from underfoot.core import InputError, to_si
@@ -69,7 +69,7 @@ def law(
     print(
         f"wrote {out}: COF {table.cof[0]:.3f} at {table.speed[0]:.3g} m/s to {table.cof[-1]:.3f} "
         f"at {table.speed[-1]:.3g} m/s, standard deviation up to {worst:.3f}\n"
-        f'Use it: models.friction = "table", interface.friction_table = "{out.name}"'
+        f'Use it: friction.model = "table", friction.table_file = "{out.name}"'
     )
 
 

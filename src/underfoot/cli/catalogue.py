@@ -1,12 +1,14 @@
-"""``underfoot catalogue``: what there is to build cases from."""
+"""``underfoot catalogue``: entries to build cases from."""
 
 from __future__ import annotations
 
+from json import dumps
 from typing import Annotated
 
 import typer
 
-from .options import AsJson, CatalogueFolders
+from .options import AsJson, CatalogueFolders, catalogue_for
+from .output import print_table
 
 
 def catalogue(
@@ -22,27 +24,28 @@ def catalogue(
     """List the entries of the catalogue; underfoot explain NAME shows one with its sources."""
     from underfoot.core.catalogue import KINDS
     from underfoot.core.errors import unknown_name
-
-    from .options import catalogue_for
+    from underfoot.core.presentation import Table
 
     known = catalogue_for(None, catalogue)
     if kind and kind.removesuffix("s") in KINDS:
         kind = kind.removesuffix("s")
     if kind and kind not in KINDS:
         raise unknown_name("kind of catalogue entry", kind, KINDS, where="catalogue")
-    chosen = {one: known.names(one) for one in ([kind] if kind else KINDS)}
+    chosen = {group: known.names(group) for group in ([kind] if kind else KINDS)}
     if json:
-        import json as json_text
-
-        print(json_text.dumps(chosen, indent=2))
+        print(dumps(chosen, indent=2))
         return
-    from rich.console import Console
-    from rich.table import Table
+    for group, names in chosen.items():
+        entries = [known.entry(group, name) for name in names]
+        rows = [
+            (
+                f"  {name}",
+                entry.title + ("" if entry.origin == "built in" else f" ({entry.origin})"),
+            )
+            for name, entry in zip(names, entries, strict=True)
+        ]
+        print_table(Table(group, ("", ""), rows))
 
-    for one, names in chosen.items():
-        table = Table(title=one, title_justify="left", show_header=False, box=None, pad_edge=False)
-        for name in names:
-            entry = known.entry(one, name)
-            own = "" if entry.origin == "built in" else f"({entry.origin})"
-            table.add_row(f"  {name}", f"{entry.title} {own}".strip())
-        Console(width=None, highlight=False).print(table)
+
+def _origin(origin: str) -> str:
+    return "" if origin == "built in" else f"({origin})"

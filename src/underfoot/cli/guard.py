@@ -1,41 +1,61 @@
-"""Errors as plain words and exit codes; a traceback only on request."""
+"""Errors as plain sentences and exit codes; a traceback only on request."""
 
 from __future__ import annotations
 
 import errno
 import functools
 import os
+import signal
 import sys
 from collections.abc import Callable
+from types import FrameType
 from typing import ParamSpec, TypeVar
 
 import typer
 
 P = ParamSpec("P")
 R = TypeVar("R")
-STOPPED = 130
-FAULT = 70
+INTERRUPTED, TERMINATED, INTERNAL = 130, 143, 70
+"""Exit codes after Ctrl-C, after SIGTERM and after an error of the program itself."""
+_FILE_ERRORS = {
+    errno.ENOENT: "{} does not exist",
+    errno.EISDIR: "{} is a folder; a file is needed",
+    errno.ENOTDIR: "a part of {} is a file, not a folder",
+    errno.EACCES: "no permission to use {}",
+    errno.EPERM: "no permission to use {}",
+    errno.EROFS: "{} can't be written: the disk is read-only",
+    errno.ENOSPC: "no space left on the disk for {}",
+    errno.EEXIST: "{} exists already",
+    errno.ENAMETOOLONG: "the name {} is too long",
+}
+
+
+class Terminated(KeyboardInterrupt):
+    """The process was asked to end (SIGTERM); it cleans up as after Ctrl-C."""
 
 
 def guarded(command: Callable[P, R]) -> Callable[P, R]:
-    """Return the command with its errors told on standard error; UNDERFOOT_DEBUG=1 shows all."""
+    """Return the command with its errors on standard error; UNDERFOOT_DEBUG=1 shows tracebacks."""
 
     @functools.wraps(command)
-    def told(*args: P.args, **kwargs: P.kwargs) -> R:
+    def run(*args: P.args, **kwargs: P.kwargs) -> R:
         from underfoot.core.errors import Cancelled, UnderfootError
 
         if os.environ.get("UNDERFOOT_DEBUG") == "1":
             return command(*args, **kwargs)
         try:
             return command(*args, **kwargs)
+        except Terminated:
+            say("terminated; no partial output was left behind")
+            raise typer.Exit(TERMINATED) from None
         except (KeyboardInterrupt, Cancelled):
-            say("stopped; nothing half-written was left behind")
-            raise typer.Exit(STOPPED) from None
+            say("stopped; no partial output was left behind")
+            raise typer.Exit(INTERRUPTED) from None
         except UnderfootError as error:
             say(f"error: {error}")
             raise typer.Exit(error.exit_code) from None
         except BrokenPipeError:
-            # the reader of a pipe (head, less) closed it: that is no error of ours
+            # the reader of a pipe (head, less) closed it: not an error
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             raise typer.Exit(0) from None
         except OSError as error:
@@ -47,30 +67,30 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
         except typer.Exit:
             raise
         except Exception as error:
-            say(f"fault of the program: {type(error).__name__}: {error}")
-            say("UNDERFOOT_DEBUG=1 shows where; please report it with the case file.")
-            raise typer.Exit(FAULT) from None
+            say(f"internal error: {type(error).__name__}: {error}")
+            say("Please report it with the case file; UNDERFOOT_DEBUG=1 shows the traceback.")
+            raise typer.Exit(INTERNAL) from None
 
-    return told
+    return run
+
+
+def end_cleanly_on_sigterm() -> None:
+    """Turn SIGTERM into an exception, so that workers and partial output are removed."""
+
+    def end(number: int, frame: FrameType | None) -> None:
+        raise Terminated
+
+    if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
+        signal.signal(signal.SIGTERM, end)
 
 
 def file_trouble(error: OSError) -> str:
-    """Return what went wrong with a file, in words and with its name."""
+    """Return what went wrong with a file, with its name."""
     name = str(error.filename or "")
-    words = {
-        errno.ENOENT: "there is no {}",
-        errno.EISDIR: "{} is a folder; a file is needed",
-        errno.ENOTDIR: "a part of {} is a file, not a folder",
-        errno.EACCES: "no permission to use {}",
-        errno.EPERM: "no permission to use {}",
-        errno.EROFS: "{} can't be written: the disk is read-only",
-        errno.ENOSPC: "no space left on the disk for {}",
-        errno.EEXIST: "{} exists already",
-        errno.ENAMETOOLONG: "the name {} is too long",
-    }.get(error.errno or 0)
-    if words is None:
+    text = _FILE_ERRORS.get(error.errno or 0)
+    if text is None:
         return f"{error.strerror or error}: {name}".rstrip(": ") + "."
-    return words.format(name or "the file") + "."
+    return text.format(name or "the file") + "."
 
 
 def say(text: str) -> None:

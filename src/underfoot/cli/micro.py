@@ -12,7 +12,7 @@ from .micro_input import TEMPLATE, MicroCase, micro_case
 from .options import AsJson, Overwrite
 
 if TYPE_CHECKING:
-    from underfoot.asperity.finite_element import MicroResult
+    from underfoot.block import MicroResult
 
 
 def micro(
@@ -144,9 +144,11 @@ def _write(
 ) -> None:
     import csv
     import json as json_text
-    from types import SimpleNamespace
 
-    from underfoot.document.g1_figures import history_figure
+    import numpy as np
+
+    from underfoot.report.study_figures import drawn
+    from underfoot.studies.g1 import history_figure
 
     (folder / "micro.json").write_text(
         json_text.dumps(content, indent=2, ensure_ascii=False), encoding="utf-8"
@@ -160,21 +162,13 @@ def _write(
             )
             arrays = [getattr(result, name) for name in columns]
             writer.writerows(zip(*arrays, result.real_contact_area, result.height, strict=True))
-    shown = [
-        SimpleNamespace(
-            series=chosen.name,
-            speed=speed,
-            time=result.time,
-            distance=result.distance,
-            normal_force=result.normal_force,
-            shear_force=result.shear_force,
-            real_contact_area=result.real_contact_area,
-        )
+    histories = {
+        (chosen.name, speed): {name: np.asarray(getattr(result, name)) for name in columns}
+        | {"real_contact_area": np.asarray(result.real_contact_area)}
         for speed, result in zip(chosen.speeds, results, strict=True)
-    ]
-    history_figure(shown, chosen.floor.wavelength, title="").savefig(
-        folder / "history.png", dpi=150
-    )
+    }
+    figure = drawn(history_figure(histories, chosen.floor.wavelength, chosen.name))
+    figure.savefig(folder / "history.png", dpi=150)
 
 
 def _show(content: dict[str, Any], out: Path | None) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from underfoot.asperity.finite_element import (
+    from underfoot.block import (
         ExplicitSettings,
         MicroBlock,
         MicroLoading,
@@ -115,7 +115,7 @@ class MicroCase:
         loading = replace(self.loading, speed=speed)
         if self.solver == "explicit":
             return self._explicit(loading, progress, snapshots, folder)
-        from underfoot.asperity.condensed_block import (
+        from underfoot.block import (
             condensed_block,
             condensed_poisson_ratio,
             condensed_sliding,
@@ -142,7 +142,7 @@ class MicroCase:
         """March on from where an earlier run of the same case was stopped, if there is one."""
         import shutil
 
-        from underfoot.asperity.finite_element import explicit_sliding
+        from underfoot.block import explicit_sliding
         from underfoot.core import DataError
         from underfoot.core.cache import content_hash, default_folder
 
@@ -192,7 +192,7 @@ def micro_case(path: Path, *, solver: str | None = None) -> MicroCase:
     """
     import tomllib
 
-    from underfoot.asperity.finite_element import ExplicitSettings, MicroBlock, MicroLoading
+    from underfoot.block import ExplicitSettings, MicroBlock, MicroLoading
     from underfoot.core import InputError, to_si, unknown_name
 
     try:
@@ -258,7 +258,7 @@ def micro_case(path: Path, *, solver: str | None = None) -> MicroCase:
 
 
 def _surface(given: Mapping[str, Any], path: Path, where: str) -> MicroSurface:
-    from underfoot.asperity.finite_element import MicroSurface
+    from underfoot.block import MicroSurface
     from underfoot.core import InputError, to_si
 
     if "file" in given:
@@ -287,7 +287,7 @@ def _surface(given: Mapping[str, Any], path: Path, where: str) -> MicroSurface:
 
 
 def _material(given: Mapping[str, Any], path: Path) -> tuple[MicroMaterial, list[str]]:
-    from underfoot.asperity.finite_element import MicroMaterial
+    from underfoot.block import MicroMaterial
     from underfoot.core import InputError, to_si
     from underfoot.material import (
         RelaxationSpectrum,

@@ -26,7 +26,7 @@ def new(
 ) -> None:
     """Write a new case file, with comments, from parts of the catalogue."""
     from underfoot.case.template import template
-    from underfoot.case.toml import save
+    from underfoot.case.text import save
 
     from .options import catalogue_for
 

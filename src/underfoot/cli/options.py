@@ -1,7 +1,9 @@
-"""Options that several commands share."""
+"""Options that several commands share, each defined once."""
 
 from __future__ import annotations
 
+import tomllib
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -16,7 +18,7 @@ CatalogueFolders = Annotated[
     list[Path] | None,
     typer.Option(
         "--catalogue",
-        help="Folder with entries of your own; may be given several times.",
+        help="Folder with catalogue entries of your own; may be repeated.",
         show_default=False,
     ),
 ]
@@ -25,16 +27,47 @@ Settings = Annotated[
     typer.Option(
         "--set",
         metavar="PATH=VALUE",
-        help='Change a value, as in --set "contaminant.viscosity=41 cP".',
+        help='Change an input, for example --set "contaminant.viscosity=41 cP"; may be repeated.',
         show_default=False,
     ),
 ]
-Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace what is there.")]
-OutFolder = Annotated[
-    Path | None, typer.Option("--out", help="Folder for files.", show_default=False)
+Quick = Annotated[
+    bool, typer.Option("--quick/--full", help="Coarse grid (first look) or fine grid.")
 ]
-FullGrid = Annotated[bool, typer.Option("--full", help="The full grid; the quick one by default.")]
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for other programs.")]
+Processes = Annotated[
+    int | None,
+    typer.Option(
+        "--processes",
+        min=1,
+        help="Cases computed at the same time; by default the cores, at most 4.",
+        show_default=False,
+    ),
+]
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace the output folder or file.")]
+OutFolder = Annotated[
+    Path | None,
+    typer.Option("--out", help="Folder for data, figures and report.html.", show_default=False),
+]
+RampAngle = Annotated[
+    str | None,
+    typer.Option(
+        "--ramp",
+        help='Slope of the walkway, as "5 deg" (walking up) or "-5 deg" (walking down).',
+        show_default=False,
+    ),
+]
+PlateFrame = Annotated[
+    str | None,
+    typer.Option(
+        help="On a ramp, the axes of the plates: surface (normal and tangential to the ramp) or "
+        "horizontal.",
+        show_default=False,
+    ),
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON in SI units instead of tables.")]
+ShowAll = Annotated[
+    bool, typer.Option("--all", help="Print every assumption and remark, not the first three.")
+]
 
 
 def catalogue_for(case: Path | None, folders: list[Path] | None) -> Catalogue:
@@ -45,7 +78,7 @@ def catalogue_for(case: Path | None, folders: list[Path] | None) -> Catalogue:
     return Catalogue.load(catalogue_folders(beside, folders or ()))
 
 
-def loaded(path: Path, folders: list[Path] | None, settings: list[str] | None) -> Case:
+def loaded(path: Path, folders: list[Path] | None, settings: Sequence[str] | None) -> Case:
     """Return the case of a file with the changes of ``--set``."""
     from underfoot.case import Case
     from underfoot.core import InputError
@@ -58,26 +91,23 @@ def loaded(path: Path, folders: list[Path] | None, settings: list[str] | None) -
             allowed="a case file (TOML)",
             nearest=str(own) if own.is_file() else None,
         )
-
-    changes = dict(_setting(text) for text in settings or ())
+    changes = dict(map(setting, settings or ()))
     return Case.load(path, catalogue=catalogue_for(path, folders), settings=changes)
 
 
-def _setting(text: str) -> tuple[str, Any]:
-    import tomllib
-
+def setting(text: str) -> tuple[str, Any]:
+    """Return path and value of one ``--set``."""
     from underfoot.core import InputError
 
     path, sign, value = text.partition("=")
     if not sign or not path.strip():
         raise InputError(
-            f'"{text}" is no setting',
+            f'"{text}" is not a setting',
             where="--set",
-            allowed='PATH=VALUE, as "motion.speed=0.3 m/s"',
+            allowed='PATH=VALUE, for example "motion.speed=0.3 m/s"',
         )
     value = value.strip()
     try:
-        given: Any = tomllib.loads(f"x = {value}")["x"]
+        return path.strip(), tomllib.loads(f"x = {value}")["x"]
     except tomllib.TOMLDecodeError:
-        given = value
-    return path.strip(), given
+        return path.strip(), value

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .options import AsJson, Overwrite, Settings
+from .options import AsJson, Overwrite, Settings, setting
 
 if TYPE_CHECKING:
-    from underfoot.outsole.parametric import SoleFile
-    from underfoot.outsole.shape import SoleShape
+    from underfoot.shoe.parametric import SoleFile
+    from underfoot.shoe.shape import SoleShape
 
 Text = Annotated[str | None, typer.Option(show_default=False)]
 LENGTHS = {
@@ -85,7 +85,7 @@ def make(
     volume compared with the solid's; meshes must be watertight.
     """
     from underfoot.core import InputError
-    from underfoot.outsole.parametric import write_sole
+    from underfoot.shoe.parametric import write_sole
 
     given = dict(zip(LENGTHS, (lug, channel, depth, lug_length, arm, angle, edge), strict=True))
     if (spec is None) == (pattern is None):
@@ -115,7 +115,7 @@ def make(
 
 def as_dict(shape: SoleShape, written: SoleFile | None) -> dict[str, Any]:
     """Return the measures of a sole and of its file as plain data, SI."""
-    from underfoot.outsole import heel_surface
+    from underfoot.shoe import heel_surface
 
     surface = heel_surface(shape, spacing=0.25e-3)
     found: dict[str, Any] = {
@@ -154,13 +154,13 @@ def _show(found: dict[str, Any], written: SoleFile | None) -> None:
 
 
 def _from_file(spec: Path, settings: list[str] | None) -> SoleShape:
-    from underfoot.case import toml
-    from underfoot.case.outsole_file import read_outsole
+    from underfoot.case import text as toml
+    from underfoot.compute.sole import read_outsole
 
     from .options import loaded
 
     if spec.is_file() and "shoe" in toml.parsed(toml.read(spec), str(spec)):
-        from underfoot.case.build_sole import new_sole
+        from underfoot.compute.sole import new_sole
 
         return new_sole(loaded(spec, None, settings))
     return read_outsole(spec, _settings(settings)).shape()
@@ -174,9 +174,13 @@ def _from_options(
     whole: bool,
     settings: list[str] | None,
 ) -> SoleShape:
-    from underfoot.case.outsole_file import outsole_from
-    from underfoot.core import InputError, to_si
+    from underfoot.case.sole import TreadPattern
+    from underfoot.compute.sole import outsole_from
+    from underfoot.core import InputError, to_si, unknown_name
 
+    patterns = TreadPattern.options()
+    if pattern not in patterns and ":" not in pattern:  # module:Class of another package
+        raise unknown_name("pattern", pattern, patterns, where="--pattern")
     if pitch is not None and given["lug"] is not None:
         if given["channel"] is not None:
             raise InputError("--pitch and --channel say the same thing twice", where="--pitch")
@@ -191,6 +195,18 @@ def _from_options(
                 allowed=f"below {whole_pitch * 1e3:g} mm",
             )
         given["channel"] = f"{whole_pitch - lug!r} m"
+    chosen = _settings(settings)
+    missing = [
+        f"--{name}"
+        for name in ("lug", "channel", "depth")
+        if pattern != "none" and given[name] is None and LENGTHS[name] not in chosen
+    ]
+    if missing:
+        raise InputError(
+            f'the pattern "{pattern}" needs {", ".join(missing)}',
+            where="underfoot outsole make",
+            allowed='lengths, for example --lug "6 mm" --channel "3 mm" --depth "4 mm"',
+        )
     tread: dict[str, Any] = {"pattern": pattern}
     for name, path in LENGTHS.items():
         if given[name] is not None:
@@ -209,13 +225,11 @@ def _from_options(
     mapping: dict[str, Any] = {"heel": heel, "tread": tread}
     if whole:
         mapping["sole"] = {"outsole_thickness": "12 mm"}
-    for key, value in _settings(settings).items():
+    for key, value in chosen.items():
         section, _, name = key.rpartition(".")
         mapping.setdefault(section or "heel", {})[name] = value
     return outsole_from(mapping).shape()
 
 
 def _settings(settings: list[str] | None) -> dict[str, Any]:
-    from .options import _setting
-
-    return dict(_setting(text) for text in settings or ())
+    return dict(map(setting, settings or ()))

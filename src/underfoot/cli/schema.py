@@ -18,7 +18,7 @@ def schema(
 ) -> None:
     """Print the JSON Schema of case files, for editors and other programs."""
     from underfoot.case.schema import schema_text
-    from underfoot.case.toml import save
+    from underfoot.case.text import save
 
     if out is None:
         print(schema_text(), end="")

@@ -60,7 +60,7 @@ def stribeck(
         check_writable_folder(out, overwrite=overwrite)
     given = loaded(case, catalogue, settings)
     if law is not None:
-        given = given.replace("models.friction", law)
+        given = given.replace("friction.model", law)
     load = to_si(pressure, "Pa", where="--pressure")
     curves = [
         stribeck_curve(one, label, pressure=load, slowest=low, fastest=high)
@@ -82,7 +82,7 @@ def write_stribeck(curves: list[StribeckCurve], folder: Path, title: str) -> Non
     """Write stribeck.png and stribeck.csv into an existing folder."""
     import csv
 
-    from underfoot.document.stribeck_figure import stribeck_figure
+    from underfoot.report.stribeck_figure import stribeck_figure
 
     stribeck_figure(curves, title).savefig(folder / "stribeck.png", dpi=150)
     with (folder / "stribeck.csv").open("w", newline="", encoding="utf-8-sig") as stream:
@@ -93,7 +93,7 @@ def write_stribeck(curves: list[StribeckCurve], folder: Path, title: str) -> Non
 
 
 def _cases(given: Any, fluids: list[str]) -> list[tuple[Any, str]]:
-    from underfoot.case.build import measured_fluids
+    from underfoot.case.friction import measured_fluids
 
     if not fluids:
         return [(given, given.entries.get("contaminant", "the case's fluid"))]
@@ -121,9 +121,16 @@ def _show(curves: list[StribeckCurve], pressure: str, out: Path | None) -> None:
         console.print(f"\n{curve.label}, {display(curve.viscosity, 'Pa*s')}", markup=False)
         table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0))
         for heading in (
-            "speed\nm/s", "viscosity\nx speed\nmPa m", "COF", "95 %", "adhe-\nsion",
-            "hyste-\nresis", "vis-\ncous", "lambda", "load on\nfluid",
-        ):  # fmt: skip
+            "speed\nm/s",
+            "viscosity\nx speed\nmPa m",
+            "COF",
+            "95 %",
+            "adhe-\nsion",
+            "hyste-\nresis",
+            "vis-\ncous",
+            "lambda",
+            "load on\nfluid",
+        ):
             table.add_column(heading, justify="right", no_wrap=True)
         if curve.points is not None:
             table.add_column("pub-\nlished", justify="right")

@@ -8,8 +8,9 @@ from typing import Annotated
 import typer
 
 from .guard import guarded
-from .options import AsJson
+from .options import AsJson, PlateFrame, RampAngle
 from .trials_analyse import analyse, simulate
+from .trials_steps import definitions, edit, export
 
 trials_app = typer.Typer(
     name="trials",
@@ -54,10 +55,13 @@ def describe(
     baseline: Annotated[
         bool, typer.Option(help="Subtract the force of the unloaded plate.")
     ] = True,
+    ramp: RampAngle = None,
+    plate_frame: PlateFrame = None,
     as_json: AsJson = False,
 ) -> None:
     """Show plates, rates, axes, signs, baselines, heels and every step, taken or left and why."""
     from underfoot.trials.describe import described_file
+    from underfoot.trials.ramp import ramp_from
 
     found = described_file(
         file,
@@ -67,6 +71,7 @@ def describe(
         vertical=vertical,
         walking=walking,
         subtract_baseline=baseline,
+        ramp=ramp_from(ramp or "0 deg", plate_frame or "", where="--ramp"),
     )
     if as_json:
         import json
@@ -79,3 +84,6 @@ def describe(
 trials_app.command()(guarded(describe))
 trials_app.command()(guarded(analyse))
 trials_app.command()(guarded(simulate))
+trials_app.command()(guarded(edit))
+trials_app.command()(guarded(definitions))
+trials_app.command()(guarded(export))

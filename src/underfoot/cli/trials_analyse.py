@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from .guard import say
-from .options import CatalogueFolders, Overwrite
+from .options import CatalogueFolders, Overwrite, PlateFrame, RampAngle
 
 
 def analyse(
@@ -38,6 +38,20 @@ def analyse(
             show_default=False,
         ),
     ] = None,
+    names: Annotated[
+        str,
+        typer.Option(
+            help=r"Pattern of file names that gives conditions, as "
+            r"'S(?P<subject>\d+)_(?P<shoe>\w+?)_(?P<n>\d+)'; else the protocol's.",
+            show_default=False,
+        ),
+    ] = "",
+    merge_spelling: Annotated[
+        bool,
+        typer.Option("--merge-spelling", help='Take "hard", "Hard" and "HARD" as one level.'),
+    ] = False,
+    ramp: RampAngle = None,
+    plate_frame: PlateFrame = None,
     details: Annotated[int, typer.Option(help="Number of single trials drawn in detail.")] = 4,
     processes: Annotated[
         int | None, typer.Option(help="Files analysed at once.", show_default="all processors")
@@ -69,12 +83,14 @@ def analyse(
     assert protocol is not None
     assert out is not None
     chosen = protocol_named(protocol, known)
+    slope = {"ramp": ramp, "plate_frame": plate_frame}
+    chosen = chosen.with_settings({key: value for key, value in slope.items() if value is not None})
     if details < 0 or (processes is not None and processes < 1):
         raise InputError("must not be negative", where="--details, --processes")
     if out.resolve() == folder.resolve():
         raise InputError("the folder of the trials can't take the results", where="--out")
     from underfoot.core.progress import bar
-    from underfoot.document.trials_report import STORE, check_report_folder, write_trials_report
+    from underfoot.report.trials_report import STORE, check_report_folder, write_trials_report
     from underfoot.trials.analyse import CAUTION, REFUSED, analyse_folder
 
     check_report_folder(out, overwrite=overwrite)
@@ -84,11 +100,13 @@ def analyse(
             chosen,
             profile=profile,
             conditions=conditions,
+            names=names,
+            merge_spelling=merge_spelling,
             store=out / STORE,
             processes=processes,
             progress=progress,
         )
-        write_trials_report(analysis, out, details=details, progress=progress)
+        write_trials_report(analysis, out, details=details, processes=processes, progress=progress)
     for one in analysis.files:
         reasons = f": {'; '.join(one.reasons)}" if one.reasons else ""
         print(f"{one.verdict:<9} {one.file}{reasons}")
@@ -105,9 +123,9 @@ def analyse(
 
 
 def simulate(
-    kind: Annotated[str, typer.Argument(help="slips, tester, pin_on_disk or relaxation.")],
+    kind: Annotated[str, typer.Argument(help="slips, study, tester, pin_on_disk or relaxation.")],
     out: Annotated[Path, typer.Option(help="Folder to be made.", show_default=False)],
-    count: Annotated[int, typer.Option(help="Number of trials, scans or repeats.")] = 12,
+    count: Annotated[int, typer.Option(help="Number of trials, persons, scans or repeats.")] = 12,
     seed: Annotated[int, typer.Option(help="Another seed gives other trials.")] = 1,
     overwrite: Overwrite = False,
 ) -> None:

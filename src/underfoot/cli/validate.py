@@ -2,49 +2,46 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+from json import dumps
+
 import typer
 
+from .guard import say
 from .options import AsJson
+from .output import print_table
 
 
 def validate(json: AsJson = False) -> None:
-    """Compute cases with a known exact answer and print the errors."""
-    from underfoot.case.validation import checks
+    """Compute cases with a known exact solution and print the errors."""
+    from underfoot.core.presentation import Table
+    from underfoot.questions.validation import checks
 
-    rows = []
-    for name, computed, exact, error, tolerance, source in checks():
-        rows.append((name, computed, exact, error, tolerance, source))
-    failed = [row[0] for row in rows if not row[3] <= row[4]]
+    rows = list(checks())
+    failed = [check.name for check in rows if not check.passed]
     if json:
-        import json as json_text
-
-        keys = ("name", "computed", "exact", "relative_error", "tolerance", "source")
-        print(json_text.dumps([dict(zip(keys, row, strict=True)) for row in rows], indent=2))
+        print(
+            dumps(
+                [asdict(check) | {"relative_error": check.relative_error} for check in rows],
+                indent=2,
+            )
+        )
     else:
-        _shown(rows)
+        cells = [
+            (
+                check.name,
+                f"{check.computed:.6g}",
+                f"{check.exact:.6g}",
+                f"{100 * check.relative_error:.2g} %",
+                f"{100 * check.tolerance:.2g} %",
+                "yes" if check.passed else "no",
+                check.source,
+            )
+            for check in rows
+        ]
+        heads = ("Check", "Computed", "Exact", "Error", "Tolerance", "Within", "Source")
+        print_table(Table("", heads, cells))
         print(f"{len(rows) - len(failed)} of {len(rows)} within their tolerance")
     if failed:
-        from .guard import say
-
         say(f"error: outside the tolerance: {', '.join(failed)}")
         raise typer.Exit(1)
-
-
-def _shown(rows: list[tuple[str, float, float, float, float, str]]) -> None:
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(box=None, pad_edge=False)
-    for heading in ("check", "computed", "exact", "error", "allowed", "source"):
-        table.add_column(heading)
-    for name, computed, exact, error, tolerance, source in rows:
-        mark = "" if error <= tolerance else "[red]"
-        table.add_row(
-            f"{mark}{name}",
-            f"{computed:.6g}",
-            f"{exact:.6g}",
-            f"{mark}{100 * error:.2g} %",
-            f"{100 * tolerance:.2g} %",
-            source.replace("[", "\\["),
-        )
-    Console(highlight=False).print(table)

@@ -11,13 +11,14 @@ import os
 import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import cache, lru_cache
 from importlib import resources
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from .errors import InputError, unknown_name
 from .leaves import INHERITED, Leaf, leaves
+from .presentation import Presentable, Table
 from .values import SourcedValue
 
 KINDS = ("fluid", "floor", "material", "protocol", "published", "setup", "shoe")
@@ -75,9 +76,11 @@ class Entry:
         return f"{self.origin}, {self.kind}.{self.name}.{path}"
 
 
-@dataclass(frozen=True, slots=True)
-class Catalogue:
+@dataclass(frozen=True, slots=True, repr=False)
+class Catalogue(Presentable):
     """All entries of the package and of the user's folders."""
+
+    kind: ClassVar[str] = "catalogue"
 
     entries: Mapping[tuple[str, str], Entry] = field(default_factory=dict)
     folders: tuple[str, ...] = ()
@@ -96,12 +99,28 @@ class Catalogue:
             leads nowhere or in a circle.
         """
         chosen = tuple(str(Path(folder)) for folder in folders)
-        if not chosen:
-            return _built_in()
-        raw = dict(_built_in_tables())
-        for folder in chosen:
-            _add(raw, _folder_tables(Path(folder)))
-        return cls(_entries(raw), chosen)
+        return _loaded(chosen, tuple(_stamp(Path(folder)) for folder in chosen))
+
+    def __repr__(self) -> str:
+        own = f", with {', '.join(self.folders)}" if self.folders else ""
+        return f"<Catalogue of {len(self.entries)} entries{own:.120}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Travel between processes by the folders where those still hold the same."""
+        try:
+            same = Catalogue.load(self.folders) is self
+        except InputError:
+            same = False
+        return (
+            (Catalogue.load, (self.folders,))
+            if same
+            else (Catalogue, (dict(self.entries), self.folders))
+        )
+
+    def table(self) -> Table:
+        """Return every entry with its kind and title."""
+        rows = [(kind, name, self.entries[kind, name].title) for kind, name in sorted(self.entries)]
+        return Table("Catalogue", ("kind", "name", "title"), rows)
 
     def names(self, kind: str) -> list[str]:
         """Return the sorted names of one kind."""
@@ -122,6 +141,11 @@ class Catalogue:
         if not found:
             raise unknown_name("catalogue entry", name, {known for _, known in self.entries})
         return "\n\n".join(_described(entry) for entry in found)
+
+
+def catalogue(*folders: Path | str) -> Catalogue:
+    """Return the catalogue: the built-in entries and those of ``folders``."""
+    return Catalogue.load(folders)
 
 
 def catalogue_folders(
@@ -149,9 +173,19 @@ def _built_in_tables() -> dict[tuple[str, str], tuple[str, dict[str, Any]]]:
     return raw
 
 
-@cache
-def _built_in() -> Catalogue:
-    return Catalogue(_entries(_built_in_tables()))
+@lru_cache(maxsize=16)
+def _loaded(folders: tuple[str, ...], stamps: tuple[tuple[Any, ...], ...]) -> Catalogue:
+    """Read folders once for each state (``stamps``) of their files."""
+    raw = dict(_built_in_tables())
+    for folder in folders:
+        _add(raw, _folder_tables(Path(folder)))
+    return Catalogue(_entries(raw), folders)
+
+
+def _stamp(folder: Path) -> tuple[Any, ...]:
+    """Return name, time and size of every file of a folder."""
+    states = [(file, file.stat()) for file in sorted(folder.rglob("*.toml"))]
+    return tuple((str(file), state.st_mtime_ns, state.st_size) for file, state in states)
 
 
 def _folder_tables(
@@ -164,6 +198,9 @@ def _folder_tables(
         )
     tables: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {}
     for file in sorted(folder.rglob("*.toml")):
+        # The studies' statements and the corpus of measurements are read by their own rooms.
+        if built_in and file.parent.name in ("statements", "measurements"):
+            continue
         origin = BUILT_IN if built_in else str(file)
         try:
             content = tomllib.loads(file.read_text(encoding="utf-8"))
@@ -258,5 +295,6 @@ def _described(entry: Entry) -> str:
         marks += ["assumed"] if leaf.assumed else []
         marks += [] if leaf.verified else ["from memory, not verified"]
         marks += [leaf.note] if leaf.note and leaf.note != entry.note else []
+        marks += [leaf.erratum] if leaf.erratum else []
         lines.append(f"  {path} = {leaf.given}{spread}   [{'; '.join(marks)}]")
     return "\n".join(lines)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 import shutil
+import subprocess
+import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,6 +16,17 @@ from .errors import InputError
 MARKER = ".underfoot"
 """File that says a folder may be replaced."""
 _OWN = (MARKER, "result.json", ".files", "restart.npz")
+# Waits for the end of its parent, then removes what that had no time to remove.
+_GUARD = """
+import os, shutil, sys
+sys.stdin.buffer.read()
+staging, path = sys.argv[1:]
+aside = staging + "-old"
+if os.path.isdir(aside) and not os.path.exists(path):
+    os.rename(aside, path)
+for folder in (staging, aside):
+    shutil.rmtree(folder, ignore_errors=True)
+"""
 
 
 @contextmanager
@@ -20,16 +34,19 @@ def whole_folder(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
     """Yield a temporary folder that becomes ``path`` only when the block ends well.
 
     An existing, non-empty ``path`` is refused unless ``overwrite``; then it is replaced as a
-    whole, and kept as it was if the block fails.
+    whole, and kept as it was if the block fails. Where this process is killed, a small process of
+    its own removes the temporary folder.
     """
     path = Path(path).resolve()
     check_writable_folder(path, overwrite=overwrite)
     path.parent.mkdir(parents=True, exist_ok=True)
     staging = Path(tempfile.mkdtemp(prefix=f".{path.name}-", dir=path.parent))
     staging.chmod(0o755)
+    guard = _guard(staging, path)
     try:
-        yield staging
+        # first: a disk that fills up later must not cost the files that fit
         (staging / MARKER).write_text("made by underfoot; --overwrite may replace this folder\n")
+        yield staging
         if path.exists():
             aside = staging.with_name(staging.name + "-old")
             path.rename(aside)
@@ -44,6 +61,26 @@ def whole_folder(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
     except BaseException:
         shutil.rmtree(staging, ignore_errors=True)
         raise
+    finally:
+        if guard is not None:
+            guard.kill()
+            guard.communicate()
+
+
+def _guard(staging: Path, path: Path) -> subprocess.Popen[bytes] | None:
+    """Start the process that removes ``staging`` when this one ends without having done so."""
+    if getattr(sys, "frozen", False):
+        return None  # there is no interpreter to start
+    try:
+        return subprocess.Popen(
+            [sys.executable, "-I", "-S", "-c", _GUARD, str(staging), str(path)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,  # a signal to the group of this process leaves it alone
+        )
+    except OSError:
+        return None
 
 
 def check_writable_folder(path: Path, *, overwrite: bool = False) -> None:
@@ -83,3 +120,9 @@ def _check_place(path: Path) -> None:
             where="--out",
             remedy="Choose another folder",
         ) from error
+
+
+def checksum(path: Path | str) -> str:
+    """Return the SHA-256 of a file as 64 hexadecimal digits."""
+    with Path(path).open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()

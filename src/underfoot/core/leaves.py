@@ -12,7 +12,7 @@ from .values import SourcedValue
 
 INHERITED = ("source", "assumed", "verified", "note")
 """Marks that a table hands down to the values in it."""
-_LEAF_KEYS = frozenset({"value", "uncertainty", *INHERITED})
+_LEAF_KEYS = frozenset({"value", "uncertainty", "erratum", *INHERITED})
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +20,8 @@ class Leaf:
     """One value as written, with what a reader must know to trust it.
 
     ``given`` is text with a unit, a plain number, a word, or a list of these. ``verified`` is False
-    for values from memory, not checked against their source.
+    for values from memory, not checked against their source; ``erratum`` says what the source
+    prints in its place.
     """
 
     given: Any
@@ -29,6 +30,7 @@ class Leaf:
     assumed: bool = False
     verified: bool = True
     note: str = ""
+    erratum: str = ""
 
     def sourced(self, unit: str | None = None, *, where: str) -> SourcedValue:
         """Return the value in SI; ``unit`` None takes the SI unit that fits the text."""
@@ -41,7 +43,7 @@ class Leaf:
             source=self.source + ("" if self.verified else " (from memory, not verified)"),
             uncertainty=None if spread is None else to_si(spread, unit, where=where),
             assumed=self.assumed,
-            note=self.note,
+            note="; ".join(part for part in (self.note, self.erratum) if part),
         )
 
 
@@ -72,7 +74,7 @@ def _collect(
             unknown = set(item) - _LEAF_KEYS
             if unknown:
                 raise unknown_name("mark", sorted(unknown)[0], _LEAF_KEYS, where=where)
-            marks = {k: item[k] for k in INHERITED if k in item}
+            marks = {k: item[k] for k in (*INHERITED, "erratum") if k in item}
             if "source" in marks and "assumed" not in marks:
                 marks["assumed"] = False
             found[where] = replace(

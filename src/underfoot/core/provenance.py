@@ -9,9 +9,20 @@ from importlib import metadata
 from typing import Any
 
 
+def package_version(name: str) -> str:
+    """Return the version of a package, "unknown" where it is not recorded.
+
+    An application that was frozen, or a folder on the path, carries no record of versions.
+    """
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return "unknown"
+
+
 def version() -> str:
     """Return the version of this package."""
-    return metadata.version("underfoot")
+    return package_version("underfoot")
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +36,8 @@ class Provenance:
     timings: dict[str, float] = field(default_factory=dict)
     versions: dict[str, str] = field(default_factory=dict)
     created: str = ""
+    objects: dict[str, str] = field(default_factory=dict)
+    """slot: object given to ``run`` in place of the case's option"""
 
     @classmethod
     def now(
@@ -35,10 +48,11 @@ class Provenance:
         citations: tuple[str, ...] = (),
         errata: tuple[str, ...] = (),
         timings: dict[str, float] | None = None,
+        objects: dict[str, str] | None = None,
     ) -> Provenance:
         """Return a provenance stamped with the present time and the versions in use."""
         packages = ("underfoot", "numpy", "scipy")
-        versions = {name: metadata.version(name) for name in packages}
+        versions = {name: package_version(name) for name in packages}
         versions["python"] = platform.python_version()
         return cls(
             case_hash=case_hash,
@@ -48,6 +62,7 @@ class Provenance:
             timings=dict(timings or {}),
             versions=versions,
             created=datetime.now(UTC).isoformat(timespec="seconds"),
+            objects=dict(objects or {}),
         )
 
     def as_dict(self) -> dict[str, Any]:

@@ -105,11 +105,15 @@ def to_si(given: object, unit: str, *, where: str) -> float:
             f"{given!r} is not a quantity", where=where, allowed=f'text such as "{example}"'
         )
     match = _NUMBER.match(_plain(given))
-    if match is None:
+    if match is None or match.group(2).startswith(","):
+        pointed = given.replace(",", ".")
+        comma = given.count(",") == 1 and _NUMBER.match(_plain(pointed)) is not None
         raise InputError(
             f'"{given}" is not a number with a unit',
             where=where,
             allowed=f'for example "{example}"',
+            nearest=pointed if comma else None,
+            remedy="Numbers have a decimal point" if comma else None,
         )
     number, text = float(match.group(1)), match.group(2)
     if not text:
@@ -184,6 +188,13 @@ def _convert(number: float, text: str, unit: str, given: str, where: str, exampl
         return float(Decimal(repr(number)) + Decimal("273.15"))
     if unit == "rad" and text == "deg":
         return math.radians(number)
+    if unit == "1":
+        raise InputError(
+            f'"{given}" has a unit, this quantity has none',
+            where=where,
+            allowed=f'for example "{example}"',
+            remedy=f'Write {number:g}, without "{text}"',
+        )
     import pint
 
     registry = _registry()
@@ -196,7 +207,7 @@ def _convert(number: float, text: str, unit: str, given: str, where: str, exampl
             allowed=f'a unit of {unit}, for example "{example}"',
             nearest=nearest_match(text, _KNOWN),
         ) from error
-    target = "dimensionless" if unit == "1" else {"K": "kelvin"}.get(unit, unit)
+    target = {"K": "kelvin"}.get(unit, unit)
     try:
         return float(quantity.to(target).magnitude)
     except pint.DimensionalityError as error:
@@ -211,3 +222,8 @@ def _finite(value: float, given: object, where: str) -> float:
     if not math.isfinite(value):
         raise InputError(f"{given} is not finite", where=where, allowed="a finite number")
     return value
+
+
+def metres(length: float, digits: int = 4) -> str:
+    """Return a length (m) as people write it: 3.125e-5 as "31.25 um"."""
+    return display(length, "m", digits)

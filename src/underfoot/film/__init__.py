@@ -1,20 +1,17 @@
 """Fluid film between sole and floor: Reynolds and cavitation, wedge, squeeze, soft EHL, regimes."""
 
-from ._kernels.flux import Flow, Stencil, Upwinding, film_flow, upwinding
-from ._kernels.pattern import Pattern
-from .linear import Factorization, available_backends, factorization
-from .mass_conserving import (
-    MassConservingFilm,
-    mass_conserving_film,
-    mass_conserving_history,
-)
+from ._kernels.faces import Upwinding, upwinding
+from .operator import Cavity, Conductance, FilmOperator, Stencil, divergence, film_operator
 from .patir_cheng_1978 import (
     patir_cheng_breaches,
     patir_cheng_mean_gap,
     patir_cheng_pressure_factors,
 )
 from .patir_cheng_1979 import patir_cheng_shear_factor, patir_cheng_shear_flow
+from .pattern import Pattern
+from .pressure import Film, FilmPressure, film_history, film_pressure
 from .regimes import (
+    SHARE_LIMITS,
     Lubrication,
     RegimeComparison,
     RegimeMap,
@@ -24,7 +21,6 @@ from .regimes import (
     lubrication_by_load_share,
     regime_map,
 )
-from .reynolds import FilmPressure, film_pressure
 from .soft_ehl import (
     FilmRegime,
     SoftEhlFilm,
@@ -50,12 +46,14 @@ from .tapered_wedge import (
 from .wall_shear import wall_shear
 
 __all__ = [
-    "Factorization",
+    "SHARE_LIMITS",
+    "Cavity",
+    "Conductance",
+    "Film",
+    "FilmOperator",
     "FilmPressure",
     "FilmRegime",
-    "Flow",
     "Lubrication",
-    "MassConservingFilm",
     "Pattern",
     "RegimeComparison",
     "RegimeMap",
@@ -63,19 +61,17 @@ __all__ = [
     "Stencil",
     "TaperedWedge",
     "Upwinding",
-    "available_backends",
     "compare_regimes",
+    "divergence",
     "effective_modulus",
-    "factorization",
-    "film_flow",
+    "film_history",
+    "film_operator",
     "film_pressure",
     "film_regime",
     "fluid_load_share",
     "lambda_ratio",
     "lubrication_by_lambda",
     "lubrication_by_load_share",
-    "mass_conserving_film",
-    "mass_conserving_history",
     "patir_cheng_breaches",
     "patir_cheng_mean_gap",
     "patir_cheng_pressure_factors",

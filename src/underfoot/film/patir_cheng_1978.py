@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, Range, RangeError, breaches
+from underfoot.core.arrays import Array
+from underfoot.core.checks import positive, positive_array
 
-from ._checks import positive
-
-Array = NDArray[np.float64]
 SOURCE = "Patir and Cheng (1978) J. Lubr. Technol. 100:12-17, Table 1"
 
 TABLE = {
@@ -62,10 +62,14 @@ def patir_cheng_pressure_factors(
     leaves other channels than this. Source: Patir and Cheng (1978) J. Lubr. Technol. 100:12-17.
     """
     ratio = np.maximum(
-        positive(gap, "gap") / float(positive(rq, "rq")), RANGES["gap over roughness H"].low
+        positive_array(gap, "gap") / positive(rq, "rq"), RANGES["gap over roughness H"].low
     )
-    gamma = _checked(anisotropy)
-    return _between(ratio, gamma), _between(ratio, 1 / gamma)
+    gamma = checked_anisotropy(anisotropy)
+    along, across = (
+        between_gammas(lambda known: _tabulated(ratio, known), TABLE, value)
+        for value in (gamma, 1 / gamma)
+    )
+    return along, across
 
 
 def patir_cheng_mean_gap(gap: ArrayLike, rq: float) -> Array:
@@ -74,24 +78,25 @@ def patir_cheng_mean_gap(gap: ArrayLike, rq: float) -> Array:
     h_T = (h / 2) (1 + erf(h / (2^(1/2) Rq))) + Rq / (2 pi)^(1/2) exp(-h^2 / (2 Rq^2))
 
     What the walls carry and what the film stores is h_T, what resists pressure flow is
-    phi_x h^3 / (12 eta): give ``mass_conserving_film`` the gap h_T and the factor phi (h / h_T)^3.
+    phi_x h^3 / (12 eta): give ``Film`` the gap h_T and the factor phi (h / h_T)^3.
     Source: Patir and Cheng 1978 for Gaussian heights.
     """
     from scipy.special import erf
 
-    h, sigma = positive(gap, "gap"), float(positive(rq, "rq"))
+    h, sigma = positive_array(gap, "gap"), positive(rq, "rq")
     bell = np.exp(-((h / sigma) ** 2) / 2) * sigma / math.sqrt(2 * math.pi)
     return np.asarray(0.5 * h * (1 + erf(h / (math.sqrt(2) * sigma))) + bell)
 
 
 def patir_cheng_breaches(gap: ArrayLike, rq: float) -> list[Breach]:
     """Return whether any gap (m) over roughness (m) leaves the range of the flow factors."""
-    ratio = positive(gap, "gap") / float(positive(rq, "rq"))
+    ratio = positive_array(gap, "gap") / positive(rq, "rq")
     return breaches("patir_cheng_1978", RANGES, {"gap over roughness H": ratio})
 
 
-def _checked(anisotropy: float) -> float:
-    gamma = float(positive(anisotropy, "anisotropy"))
+def checked_anisotropy(anisotropy: float) -> float:
+    """Return gamma; refuse one beyond the tables of 1978 and 1979."""
+    gamma = positive(anisotropy, "anisotropy")
     allowed = RANGES["anisotropy gamma"]
     if not allowed.low * (1 - 1e-9) <= gamma <= allowed.high * (1 + 1e-9):
         raise RangeError(
@@ -108,10 +113,10 @@ def _tabulated(ratio: Array, gamma: float) -> Array:
     return 1 - c * np.exp(-r * ratio) if gamma <= 1 else 1 + c * ratio**-r
 
 
-def _between(ratio: Array, gamma: float) -> Array:
-    known = sorted(TABLE)
+def between_gammas(at: Callable[[float], Array], table: Iterable[float], gamma: float) -> Array:
+    """Return ``at(gamma)`` linear in ln gamma between the gammas of a table, held beyond it."""
+    known = sorted(table)
     after = min(max(int(np.searchsorted(known, gamma)), 1), len(known) - 1)
     low, high = known[after - 1], known[after]
-    share = math.log(gamma / low) / math.log(high / low)
-    share = min(max(share, 0.0), 1.0)
-    return np.asarray((1 - share) * _tabulated(ratio, low) + share * _tabulated(ratio, high))
+    share = min(max(math.log(gamma / low) / math.log(high / low), 0.0), 1.0)
+    return np.asarray((1 - share) * at(low) + share * at(high))

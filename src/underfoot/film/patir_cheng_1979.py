@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ._checks import positive
-from .patir_cheng_1978 import _checked
+from underfoot.core.arrays import Array
+from underfoot.core.checks import not_negative, positive, positive_array
 
-Array = NDArray[np.float64]
+from .patir_cheng_1978 import between_gammas, checked_anisotropy
+
 SOURCE = "Patir and Cheng (1979) J. Lubr. Technol. 101:220-229, Table 1"
 
 TABLE = {
@@ -46,13 +47,9 @@ def patir_cheng_shear_factor(gap: ArrayLike, rq: float, *, anisotropy: float = 1
 
     Source: Patir and Cheng (1979) J. Lubr. Technol. 101:220-229.
     """
-    ratio = np.maximum(positive(gap, "gap") / float(positive(rq, "rq")), 0.5)
-    gamma = _checked(anisotropy)
-    known = sorted(TABLE)
-    after = min(max(int(np.searchsorted(known, gamma)), 1), len(known) - 1)
-    low, high = known[after - 1], known[after]
-    share = min(max(math.log(gamma / low) / math.log(high / low), 0.0), 1.0)
-    return np.asarray((1 - share) * _tabulated(ratio, low) + share * _tabulated(ratio, high))
+    ratio = np.maximum(positive_array(gap, "gap") / positive(rq, "rq"), 0.5)
+    gamma = checked_anisotropy(anisotropy)
+    return between_gammas(lambda known: _tabulated(ratio, known), TABLE, gamma)
 
 
 def patir_cheng_shear_flow(
@@ -63,7 +60,7 @@ def patir_cheng_shear_flow(
     anisotropy_upper: float = 1.0,
     anisotropy_lower: float = 1.0,
 ) -> Array:
-    """Return s = sigma phi_s (m), for ``mass_conserving_film``'s ``shear_flow``.
+    """Return s = sigma phi_s (m), for the ``shear_flow`` of a ``Film``.
 
     sigma phi_s = sigma [(Rq1 / sigma)^2 Phi_s(H, gamma1) - (Rq2 / sigma)^2 Phi_s(H, gamma2)],
     sigma^2 = Rq1^2 + Rq2^2, 1 the upper wall. The walls carry V s / 2 more than V h / 2 along the
@@ -71,11 +68,11 @@ def patir_cheng_shear_flow(
 
     ``gap`` and both roughnesses (one may be 0) in m. Source as ``patir_cheng_shear_factor``.
     """
-    upper = float(positive(rq_upper, "rq_upper", zero=True))
-    lower = float(positive(rq_lower, "rq_lower", zero=True))
+    upper = not_negative(rq_upper, "rq_upper")
+    lower = not_negative(rq_lower, "rq_lower")
     sigma = math.hypot(upper, lower)
     if sigma == 0:
-        return np.zeros_like(positive(gap, "gap"))
+        return np.zeros_like(positive_array(gap, "gap"))
     first = patir_cheng_shear_factor(gap, sigma, anisotropy=anisotropy_upper)
     second = patir_cheng_shear_factor(gap, sigma, anisotropy=anisotropy_lower)
     return (upper**2 * first - lower**2 * second) / sigma

@@ -7,14 +7,13 @@ from enum import StrEnum
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, InputError
+from underfoot.core.arrays import Array
+from underfoot.core.checks import between, not_negative, positive, positive_array
 
-from ._checks import positive
 from .soft_ehl import lambda_ratio, soft_ehl
-
-Array = NDArray[np.float64]
 
 LAMBDA_LIMITS = (1.0, 3.0)
 """Boundary below the first, full film above the second (the report, Fig. 19; Hamrock 1991)."""
@@ -74,8 +73,7 @@ def lubrication_by_lambda(lambda_ratio: float) -> Lubrication:
     soft asperities flatten under the film, so rubber runs on a full film at lambda below 3.
     Source: the report, text to Fig. 19.
     """
-    value = float(positive(lambda_ratio, "lambda_ratio", zero=True))
-    return _named(value, LAMBDA_LIMITS)
+    return _named(not_negative(lambda_ratio, "lambda_ratio"), LAMBDA_LIMITS)
 
 
 def lubrication_by_load_share(fluid_share: float) -> Lubrication:
@@ -83,10 +81,7 @@ def lubrication_by_load_share(fluid_share: float) -> Lubrication:
 
     The limits are assumed. ``fluid_share`` 0 to 1, from a coupled solution or ``fluid_load_share``.
     """
-    share = float(positive(fluid_share, "fluid_share", zero=True))
-    if share > 1:
-        raise InputError(f"{share} is no share", where="fluid_share", allowed="0 to 1")
-    return _named(share, SHARE_LIMITS)
+    return _named(between(fluid_share, 0.0, 1.0, "fluid_share"), SHARE_LIMITS)
 
 
 def fluid_load_share(film_thickness: ArrayLike, law: GapPressure, mean_pressure: float) -> Array:
@@ -98,8 +93,8 @@ def fluid_load_share(film_thickness: ArrayLike, law: GapPressure, mean_pressure:
 
     Source: load sharing after Johnson, Greenwood and Poon (1972) Wear 19:91-108.
     """
-    thickness = positive(film_thickness, "film_thickness", zero=True)
-    carried = np.asarray(law.pressure(thickness)) / float(positive(mean_pressure, "mean_pressure"))
+    thickness = positive_array(film_thickness, "film_thickness", zero=True)
+    carried = np.asarray(law.pressure(thickness)) / positive(mean_pressure, "mean_pressure")
     return 1 - np.clip(carried, 0.0, 1.0)
 
 
@@ -154,8 +149,8 @@ def regime_map(
             where="law" if law is None else "mean_pressure",
             remedy="Give both or neither.",
         )
-    eta = np.atleast_1d(positive(viscosity, "viscosity"))
-    v = np.atleast_1d(positive(speed, "speed"))
+    eta = np.atleast_1d(positive_array(viscosity, "viscosity"))
+    v = np.atleast_1d(positive_array(speed, "speed"))
     film = soft_ehl(
         viscosity=eta[:, None],
         speed=v[None, :],

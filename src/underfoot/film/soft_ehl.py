@@ -6,14 +6,11 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError, Range, breaches, unknown_name
-
-from ._checks import positive
-
-Array = NDArray[np.float64]
+from underfoot.core import Breach, InputError, Range, breaches, checks, unknown_name
+from underfoot.core.arrays import Array
+from underfoot.core.checks import not_negative, positive, positive_array
 
 SPEEDS = {"entrainment": 0.5, "sliding": 1.0}
 """Share of the sliding speed that the formula is given."""
@@ -94,10 +91,13 @@ def soft_ehl(
     """
     if speed_is not in SPEEDS:
         raise unknown_name("speed", speed_is, SPEEDS, where="speed_is")
-    eta, force = positive(viscosity, "viscosity"), positive(load, "load")
-    r, modulus = positive(radius, "radius"), positive(effective_modulus, "effective_modulus")
-    k = float(positive(ellipticity, "ellipticity"))
-    u = SPEEDS[speed_is] * positive(speed, "speed", zero=True)
+    eta, force = positive_array(viscosity, "viscosity"), positive_array(load, "load")
+    r, modulus = (
+        positive_array(radius, "radius"),
+        positive_array(effective_modulus, "effective_modulus"),
+    )
+    k = positive(ellipticity, "ellipticity")
+    u = SPEEDS[speed_is] * positive_array(speed, "speed", zero=True)
     speed_number = eta * u / (modulus * r)
     load_number = force / (modulus * r**2)
     least = 7.43 * (1 - 0.85 * math.exp(-0.31 * k)) * speed_number**0.65 * load_number**-0.21
@@ -123,11 +123,7 @@ def effective_modulus(modulus: float, poisson_ratio: float = 0.5) -> float:
     2 / E' = (1 - nu1^2) / E1 + (1 - nu2^2) / E2 with E2 without limit. The report took E' = E:
     films 1.53 times as thick at nu = 0.5. Source: Hamrock and Dowson 1978.
     """
-    if not 0 <= poisson_ratio <= 0.5:
-        raise InputError(
-            f"{poisson_ratio} is no Poisson's ratio", where="poisson_ratio", allowed="0 to 0.5"
-        )
-    return 2 * float(positive(modulus, "modulus")) / (1 - poisson_ratio**2)
+    return 2 * positive(modulus, "modulus") / (1 - checks.poisson_ratio(poisson_ratio) ** 2)
 
 
 def radius_of_parabola(coefficient: float) -> float:
@@ -135,7 +131,7 @@ def radius_of_parabola(coefficient: float) -> float:
 
     ``trials.reduced_radius`` fits B to a recorded profile.
     """
-    return 1 / (2 * float(positive(coefficient, "coefficient")))
+    return 1 / (2 * positive(coefficient, "coefficient"))
 
 
 def lambda_ratio(film_thickness: ArrayLike, rq_first: float, rq_second: float) -> Array:
@@ -144,10 +140,9 @@ def lambda_ratio(film_thickness: ArrayLike, rq_first: float, rq_second: float) -
     ``film_thickness`` in m (any shape), roughnesses in m (one may be 0). Both roughnesses count as
     they were measured, undeformed.
     """
-    thickness = positive(film_thickness, "film_thickness", zero=True)
+    thickness = positive_array(film_thickness, "film_thickness", zero=True)
     first, second = (
-        float(positive(rq, where, zero=True))
-        for rq, where in ((rq_first, "rq_first"), (rq_second, "rq_second"))
+        not_negative(rq, where) for rq, where in ((rq_first, "rq_first"), (rq_second, "rq_second"))
     )
     if first == second == 0:
         raise InputError("both walls are smooth", where="rq_first", remedy="Give a roughness.")
@@ -185,12 +180,12 @@ def film_regime(
     Source: Hamrock and Dowson 1979; Esfahanian and Hamrock 1991, Tribol. Trans. 34:628-632
     (coefficients as in public lecture codes; 141 and 128 from memory).
     """
-    eta = float(positive(viscosity, "viscosity"))
-    u = float(positive(entrainment_speed, "entrainment_speed"))
-    r, modulus = float(positive(radius, "radius")), float(positive(effective_modulus, "modulus"))
-    a = float(positive(radius_ratio, "radius_ratio"))
+    eta = positive(viscosity, "viscosity")
+    u = positive(entrainment_speed, "entrainment_speed")
+    r, modulus = positive(radius, "radius"), positive(effective_modulus, "modulus")
+    a = positive(radius_ratio, "radius_ratio")
     speed_number = eta * u / (modulus * r)
-    load_number = float(positive(load, "load")) / (modulus * r**2)
+    load_number = positive(load, "load") / (modulus * r**2)
     k = a ** (2 / math.pi)
     elasticity = load_number ** (8 / 3) / speed_number**2
     side = 1 / (1 + 2 / (3 * a))
@@ -198,7 +193,7 @@ def film_regime(
         FilmRegime.ISOVISCOUS_RIGID: 128 * a * side**2 * (0.131 * math.atan(a / 2) + 1.683) ** 2,
         FilmRegime.ISOVISCOUS_ELASTIC: 8.70 * elasticity**0.67 * (1 - 0.85 * math.exp(-0.31 * k)),
     }
-    xi = float(positive(pressure_viscosity, "pressure_viscosity", zero=True))
+    xi = not_negative(pressure_viscosity, "pressure_viscosity")
     if xi > 0:
         viscous = xi * modulus * load_number**3 / speed_number**2
         grouped[FilmRegime.PIEZOVISCOUS_RIGID] = 141 * viscous**0.375 * (1 - math.exp(-0.0387 * a))

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from underfoot.core import InputError
+from underfoot.core.arrays import Array
+from underfoot.core.checks import positive, positive_array
 
-from ._checks import positive
-
-Array = NDArray[np.float64]
 _TERMS = 60
 
 
@@ -37,7 +36,7 @@ def squeeze_time_disc(
     Rigid, smooth, parallel, fully flooded, no inertia; a soft sole traps a thicker pocket in its
     middle and takes longer to empty it. Source: Stefan 1874.
     """
-    shape = 0.5 * math.pi * float(positive(radius, "radius")) ** 4
+    shape = 0.5 * math.pi * positive(radius, "radius") ** 4
     return _time(shape, viscosity, load, start_gap, end_gap)
 
 
@@ -58,7 +57,7 @@ def squeeze_time_rectangle(
 
     Source: Hays 1961 for the square plate; torsion after Saint-Venant (Timoshenko and Goodier).
     """
-    sides = float(positive(length, "length")), float(positive(width, "width"))
+    sides = positive(length, "length"), positive(width, "width")
     return _time(rectangle_torsion_constant(*sides), viscosity, load, start_gap, end_gap)
 
 
@@ -70,11 +69,11 @@ def squeeze_gap(
     1 / h^2 = 1 / h1^2 + 2 F t / (3 eta J); J (m^4) of the outline, pi R^4 / 2 for a disc,
     ``rectangle_torsion_constant`` for a lug. Validity as ``squeeze_time_disc``.
     """
-    t = positive(time, "time", zero=True)
-    shape = float(positive(torsion_constant, "torsion_constant"))
-    eta = float(positive(viscosity, "viscosity"))
-    start = float(positive(start_gap, "start_gap"))
-    return (start**-2 + 2 * float(positive(load, "load")) * t / (3 * eta * shape)) ** -0.5
+    t = positive_array(time, "time", zero=True)
+    shape = positive(torsion_constant, "torsion_constant")
+    eta = positive(viscosity, "viscosity")
+    start = positive(start_gap, "start_gap")
+    return (start**-2 + 2 * positive(load, "load") * t / (3 * eta * shape)) ** -0.5
 
 
 def rectangle_torsion_constant(length: float, width: float) -> float:
@@ -88,8 +87,8 @@ def rectangle_torsion_constant(length: float, width: float) -> float:
 def _time(
     shape: float, viscosity: ArrayLike, load: ArrayLike, start_gap: float, end_gap: ArrayLike
 ) -> Array:
-    eta, force = positive(viscosity, "viscosity"), positive(load, "load")
-    start, end = positive(start_gap, "start_gap"), positive(end_gap, "end_gap")
+    eta, force = positive_array(viscosity, "viscosity"), positive_array(load, "load")
+    start, end = positive_array(start_gap, "start_gap"), positive_array(end_gap, "end_gap")
     if (end > start).any():
         raise InputError(
             "the pad would have to rise", where="end_gap", allowed="at most the start gap"

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ._checks import positive
+from underfoot.core.arrays import Array
+from underfoot.core.checks import positive
 
-Array = NDArray[np.float64]
 _MODES = 40
 
 
@@ -54,11 +53,11 @@ def tapered_wedge(
 
     Source: Reynolds 1886; separation after Michell 1905.
     """
-    h1 = float(positive(leading_gap, "leading_gap"))
-    h0 = float(positive(trailing_gap, "trailing_gap"))
-    m = float(positive(h1 / h0 - 1, "leading_gap"))
-    along, across = float(positive(length, "length")), float(positive(width, "width"))
-    unit = 6 * float(positive(viscosity, "viscosity")) * float(positive(speed, "speed"))
+    h1 = positive(leading_gap, "leading_gap")
+    h0 = positive(trailing_gap, "trailing_gap")
+    m = positive(h1 / h0 - 1, "leading_gap")
+    along, across = positive(length, "length"), positive(width, "width")
+    unit = 6 * positive(viscosity, "viscosity") * positive(speed, "speed")
     unit *= along / h0**2
     modes = _modes(m)
     slenderness = along / across
@@ -88,8 +87,8 @@ def side_leakage(length_over_width: float, taper: float) -> float:
     ``length_over_width`` l / b with l along the motion; ``taper`` m = (h1 - h0) / h0. 0.44 for a
     square pad. Method and source as ``tapered_wedge``.
     """
-    ratio = float(positive(length_over_width, "length_over_width"))
-    modes = _modes(float(positive(taper, "taper")))
+    ratio = positive(length_over_width, "length_over_width")
+    modes = _modes(positive(taper, "taper"))
     half = 0.5 * modes.rates / ratio
     shares = modes.weights * modes.means
     return float((shares * (1 - np.tanh(half) / half)).sum() / shares.sum())
@@ -103,21 +102,21 @@ def wedge_film(
     h0 = l (6 eta u b K eta_s / F)^(1/2); ``taper`` m = (h1 - h0) / h0, largest film at m = 1.19.
     Source as ``tapered_wedge``.
     """
-    m = float(positive(taper, "taper"))
-    along, across = float(positive(length, "length")), float(positive(width, "width"))
-    carried = float(positive(viscosity, "viscosity")) * float(positive(speed, "speed")) * across
+    m = positive(taper, "taper")
+    along, across = positive(length, "length"), positive(width, "width")
+    carried = positive(viscosity, "viscosity") * positive(speed, "speed") * across
     return along * math.sqrt(
         6
         * carried
         * wedge_load_factor(m)
         * side_leakage(along / across, m)
-        / float(positive(load, "load"))
+        / positive(load, "load")
     )
 
 
 def wedge_load_factor(taper: float) -> float:
     """Return K(m) = [ln(1 + m) - 2 m / (2 + m)] / m^2, at most 0.02671 (m = 1.189)."""
-    m = float(positive(taper, "taper"))
+    m = positive(taper, "taper")
     if m < 1e-2:  # series: the bracket loses its digits
         return m / 12 * (1 - 1.5 * m + 1.65 * m**2 - 1.625 * m**3)
     return (math.log1p(m) - 2 * m / (2 + m)) / m**2

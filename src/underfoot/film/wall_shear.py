@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from underfoot.core import InputError
-
-from ._checks import positive
-
-Array = NDArray[np.float64]
+from underfoot.core.arrays import Array
+from underfoot.core.checks import positive
 
 
 def wall_shear(
@@ -32,7 +30,7 @@ def wall_shear(
     Parameters
     ----------
     pressure, gap, fraction
-        (nx, ny) Pa, m, theta; as ``mass_conserving_film`` or ``film_pressure`` give and take them.
+        (nx, ny) Pa, m, theta; as ``film_pressure`` gives them.
         An open gap (inf) has no shear.
     spacing
         Cell size along x, m.
@@ -52,7 +50,7 @@ def wall_shear(
         raise InputError("a value is not finite", where="pressure, fraction or speed")
     if not (h > 0).all():
         raise InputError("the gap is not positive everywhere", where="gap", allowed="above 0, in m")
-    slope = np.gradient(p, float(positive(spacing, "spacing")), axis=0)
-    along = theta * float(positive(viscosity, "viscosity")) * speed / h
+    slope = np.gradient(p, positive(spacing, "spacing"), axis=0)
+    along = theta * positive(viscosity, "viscosity") * speed / h
     push = np.where(np.isfinite(h), 0.5 * np.where(np.isfinite(h), h, 0.0) * slope, 0.0)
     return along - push, along + push

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core import Breach, InputError, Range, RangeError, breaches
+from underfoot.core import Breach, InputError, Range, RangeError, breaches
+from underfoot.core.arrays import scalar_or_array
 
 NAME = "cheng_2008"
 SOURCE = (
@@ -42,7 +43,7 @@ def glycerol_water_viscosity(
     Arrays broadcast; a float comes back for scalars. Cheng states a deviation of at most 5 %
     from the tabulated data for 0 to 100 degC and every concentration.
 
-    Errors
+    Raises
     ------
     RangeError
         Fraction outside 0 to 1, temperature outside 0 to 100 degC (the fit has no meaning there).
@@ -57,7 +58,7 @@ def glycerol_water_viscosity(
     water = 1.790e-3 * np.exp((-1230.0 - celsius) * celsius / (36100.0 + 360.0 * celsius))
     glycerol = 12.100 * np.exp((-1233.0 + celsius) * celsius / (9900.0 + 70.0 * celsius))
     viscosity = water**weight * glycerol ** (1.0 - weight)
-    return float(viscosity) if viscosity.ndim == 0 else viscosity
+    return scalar_or_array(viscosity)
 
 
 def water_viscosity(temperature: ArrayLike) -> Any:
@@ -76,14 +77,14 @@ def glycerol_water_density(fraction: ArrayLike, temperature: ArrayLike, basis: s
     share, celsius = _checked(fraction, temperature, basis)
     mass = share if basis == "mass" else _mass_fraction(share, celsius)
     density = mass * _glycerol_density(celsius) + (1.0 - mass) * _water_density(celsius)
-    return float(density) if density.ndim == 0 else density
+    return scalar_or_array(density)
 
 
 def glycerol_mass_fraction(volume_fraction: ArrayLike, temperature: ArrayLike) -> Any:
     """Return the mass fraction of glycerol for a volume fraction, both 0 to 1."""
     share, celsius = _checked(volume_fraction, temperature, "volume")
     mass = np.asarray(_mass_fraction(share, celsius))
-    return float(mass) if mass.ndim == 0 else mass
+    return scalar_or_array(mass)
 
 
 def glycerol_water_breaches(fraction: ArrayLike, temperature: ArrayLike) -> list[Breach]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..core import InputError, RangeError, SourcedValue, display
+from underfoot.core import InputError, RangeError, SourcedValue, display
+
 from .cheng_2008 import SOURCE as CHENG
 from .cheng_2008 import glycerol_water_density, glycerol_water_viscosity
 from .strobel_2012 import AdhesionBlocking
@@ -146,8 +147,8 @@ def compared_viscosity(
     )
 
 
-def _check(given: SourcedValue, name: str, unit: str) -> None:
-    if given.unit.replace(" ", "") not in (unit, unit.replace("*", "")):
-        raise InputError(f'{name} has the unit "{given.unit}"', where=name, allowed=unit)
-    if given.value is None or not (math.isfinite(given.value) and given.value > 0.0):
-        raise RangeError(f"{name} is {given.value}", where=name, allowed=f"above 0 {unit}")
+def _check(quantity: SourcedValue, name: str, unit: str) -> None:
+    if quantity.unit.replace(" ", "") not in (unit, unit.replace("*", "")):
+        raise InputError(f'{name} has the unit "{quantity.unit}"', where=name, allowed=unit)
+    if quantity.value is None or not (math.isfinite(quantity.value) and quantity.value > 0.0):
+        raise RangeError(f"{name} is {quantity.value}", where=name, allowed=f"above 0 {unit}")

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core import Breach, InputError, Range, SourcedValue, breaches, unknown_name
+from underfoot.core import Breach, InputError, Range, SourcedValue, breaches, unknown_name
+from underfoot.core.arrays import scalar_or_array
 
 NAME = "strobel_2012"
 SOURCE = (
@@ -59,7 +60,7 @@ class AdhesionBlocking:
                 "a force is negative or missing", where="dry_adhesion", allowed="0 N or more"
             )
         result = self.alpha + self.beta * dry
-        return float(result) if result.ndim == 0 else result
+        return scalar_or_array(result)
 
     def lubricated_adhesion_cof(self, dry_adhesion_cof: ArrayLike) -> Any:
         """Return the adhesion part of the COF under the fluid: alpha / 20.9 N + beta COF_dry.
@@ -112,7 +113,7 @@ BLOCKING: Mapping[str, AdhesionBlocking] = MappingProxyType(
 def adhesion_blocking(fluid: str) -> AdhesionBlocking:
     """Return alpha and beta of one of the six fluids of Table 5.
 
-    Errors
+    Raises
     ------
     InputError
         Another fluid: Eq. 26 has no rule from viscosity to alpha and beta.

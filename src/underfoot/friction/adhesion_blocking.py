@@ -9,16 +9,16 @@ from numpy.typing import ArrayLike
 from underfoot.core import Breach, Range, SourcedValue
 from underfoot.fluid import AdhesionBlocking
 
-from ._shared import (
+from .law import (
     PIN_PRESSURE,
     REPORT,
+    FrictionParts,
+    UncertainInputs,
     checked_viscosity,
     coefficient,
     law_breaches,
     proportional_parts,
 )
-from .law import FrictionParts
-from .uncertain_inputs import UncertainInputs
 
 NORMAL_FORCE = 20.9
 """N, the load of the tests behind Eq. 26 (G.3.1)."""
@@ -28,7 +28,7 @@ RANGES = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class AdhesionBlockingLaw(UncertainInputs):
     """Adhesion by Eq. 26 from the dry adhesion of the pair, its measured hysteresis, eta V / h.
 

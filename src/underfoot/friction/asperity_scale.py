@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+from scipy.special import erf
 
-from underfoot.core import InputError, RangeError
-
-if TYPE_CHECKING:
-    from underfoot.surface import IsotropicSpectrum
+from underfoot.core import RangeError
+from underfoot.core.arrays import Array, Mask
+from underfoot.core.checks import positive
+from underfoot.surface import IsotropicSpectrum
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,14 +38,11 @@ class AsperityScale:
 
     def __post_init__(self) -> None:
         for name in ("wavelength", "radius", "slope", "fine_roughness"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0):
-                raise InputError(f"{value:g}", where=name, allowed="a finite number above 0")
+            positive(getattr(self, name), name)
 
     def rougher(self, factor: float) -> AsperityScale:
         """Return the same surface with all heights times ``factor``."""
-        if not (math.isfinite(factor) and factor > 0):
-            raise InputError(f"{factor:g}", where="factor", allowed="a finite number above 0")
+        positive(factor, "factor")
         return replace(
             self,
             radius=self.radius / factor,
@@ -53,23 +50,21 @@ class AsperityScale:
             fine_roughness=self.fine_roughness * factor,
         )
 
-    def contact_fraction(self, relative_pressure: ArrayLike) -> NDArray[np.float64]:
+    def contact_fraction(self, relative_pressure: ArrayLike) -> Array:
         """Return the share of the area on which asperities touch, fine roughness unresolved.
 
         A = erf(sqrt(2) p / (E* slope)) (Persson 2001, elastic); ``relative_pressure`` is p / E*,
         p the nominal contact pressure, E* = E / (1 - nu^2). About 25 to 30 % low at light load.
         """
-        from scipy.special import erf
-
         return erf(math.sqrt(2.0) * np.asarray(relative_pressure, dtype=float) / self.slope)
 
-    def spot_pressure(self, relative_pressure: ArrayLike) -> NDArray[np.float64]:
+    def spot_pressure(self, relative_pressure: ArrayLike) -> Array:
         """Return the mean pressure on the touching asperities over E*: p / (A E*).
 
         At light load it tends to 0.627 times the slope, whatever the load.
         """
-        given = np.maximum(np.asarray(relative_pressure, dtype=float), 1e-9 * self.slope)
-        return given / self.contact_fraction(given)
+        p = np.maximum(np.asarray(relative_pressure, dtype=float), 1e-9 * self.slope)
+        return p / self.contact_fraction(p)
 
 
 def self_affine_scale(
@@ -91,7 +86,7 @@ def self_affine_scale(
     hurst
         0 to 1, below 1.
 
-    Errors
+    Raises
     ------
     RangeError
         A dividing wavelength that is not below the longest wave, a Hurst exponent outside 0 to 1.
@@ -121,7 +116,7 @@ def spectrum_scale(wavelength: float, spectrum: IsotropicSpectrum) -> AsperitySc
 
     Waves beyond the reliable band count as no roughness: divide well within it.
 
-    Errors
+    Raises
     ------
     RangeError
         Fewer than two wave numbers of the reliable band on one side.
@@ -140,7 +135,7 @@ def spectrum_scale(wavelength: float, spectrum: IsotropicSpectrum) -> AsperitySc
         )
     share = spectrum.density * spectrum.area
 
-    def moment(order: int, chosen: NDArray[np.bool_]) -> float:
+    def moment(order: int, chosen: Mask) -> float:
         return float(np.sum((share * q**order)[chosen]))
 
     return AsperityScale(

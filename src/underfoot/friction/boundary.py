@@ -6,27 +6,21 @@ from dataclasses import dataclass, field
 
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError, Range, SourcedValue
+from underfoot.core import Breach, InputError, SourcedValue
 
-from ._shared import (
-    PIN_PRESSURE,
-    REPORT,
+from .law import (
+    PIN_RANGES,
+    FrictionParts,
+    UncertainInputs,
     checked_viscosity,
     coefficient,
     law_breaches,
     proportional_parts,
 )
-from .law import FrictionParts
 from .measured import BoundaryFriction, friction_left
-from .uncertain_inputs import UncertainInputs
-
-RANGES = {
-    "contact pressure": Range(0.0, PIN_PRESSURE, "Pa", f"{REPORT}, G.2.1: one load; lower assumed"),
-    "sliding speed": Range(0.05, 1.0, "m/s", f"{REPORT}, G.2.1"),
-}
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class BoundaryLaw(UncertainInputs):
     """tau = COF_BL p_c, split into hysteresis and adhesion, plus eta V / h.
 
@@ -80,7 +74,7 @@ class BoundaryLaw(UncertainInputs):
         others
             Fluids measured on the same pair.
 
-        Errors
+        Raises
         ------
         InputError
             No boundary friction (as for a dry floor: the report prints none) or no hysteresis.
@@ -89,9 +83,9 @@ class BoundaryLaw(UncertainInputs):
             fluid = "a dry floor" if friction is None else friction.fluid
             raise InputError(
                 f"no boundary friction was measured for {fluid}",
-                where="contaminant.boundary",
+                where="friction.cof_bl",
                 remedy="Give the adhesion and hysteresis coefficients of the pair "
-                "(models.friction = constant), or cof_boundary of the fluid",
+                "(friction.model = constant), or cof_boundary of the fluid",
             )
         notes = []
         if cof_hysteresis is None:
@@ -122,9 +116,9 @@ class BoundaryLaw(UncertainInputs):
     @property
     def cof_parts(self) -> tuple[float, float]:
         """Coefficients of the contact (adhesion, hysteresis); their sum is COF_BL."""
-        whole = coefficient(self.cof_boundary, "cof_boundary")
-        hysteresis = min(coefficient(self.cof_hysteresis, "cof_hysteresis"), whole)
-        return whole - hysteresis, hysteresis
+        boundary = coefficient(self.cof_boundary, "cof_boundary")
+        hysteresis = min(coefficient(self.cof_hysteresis, "cof_hysteresis"), boundary)
+        return boundary - hysteresis, hysteresis
 
     def __call__(
         self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
@@ -139,5 +133,5 @@ class BoundaryLaw(UncertainInputs):
     ) -> list[Breach]:
         """Return what leaves the pin-on-disk tests: pressure (mean seen by the load) and speed."""
         return law_breaches(
-            self.name, RANGES, self.viscosity, contact_pressure, speed, film_thickness
+            self.name, PIN_RANGES, self.viscosity, contact_pressure, speed, film_thickness
         )

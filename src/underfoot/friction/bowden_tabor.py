@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, InputError, SourcedValue
+from underfoot.core.arrays import Array
+from underfoot.core.checks import not_negative, positive
 
-from ._shared import checked, checked_viscosity, law_breaches, viscous_shear
-from .law import FrictionParts
-from .uncertain_inputs import UncertainInputs, not_negative, with_values
+from .law import (
+    FrictionParts,
+    UncertainInputs,
+    checked,
+    checked_viscosity,
+    drawn_value,
+    law_breaches,
+    viscous_shear,
+    with_values,
+)
 
-ContactFraction = Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike]
+ContactFraction = Callable[[Array, Array], ArrayLike]
 """Real over nominal area at (contact pressure Pa, speed m/s)."""
 
 
@@ -47,15 +55,13 @@ class ShearStrength:
     deviation: float | None = None
 
     def __post_init__(self) -> None:
-        for name, value in (("strength", self.strength), ("width", self.width)):
-            if not (math.isfinite(value) and value >= 0):
-                raise InputError(f"{value:g}", where=name, allowed="a finite number, 0 or more")
-        if not (math.isfinite(self.peak_speed) and self.peak_speed > 0):
-            raise InputError(f"{self.peak_speed:g} m/s", where="peak_speed", allowed="above 0")
+        not_negative(self.strength, "strength", "Pa")
+        not_negative(self.width, "width")
+        positive(self.peak_speed, "peak_speed", "m/s")
         if not self.source.strip():
             raise InputError("no source", where="source", remedy="Say where the strength is from")
 
-    def __call__(self, speed: ArrayLike) -> NDArray[np.float64]:
+    def __call__(self, speed: ArrayLike) -> Array:
         """Return the shear strength at ``speed`` (m/s), Pa; at rest that of 1 um/s."""
         moving = np.maximum(np.abs(np.asarray(speed, dtype=float)), 1e-6)
         return self.strength * np.exp(-self.width * np.log10(moving / self.peak_speed) ** 2)
@@ -82,7 +88,7 @@ def shear_strength_from_cof(
     return ShearStrength(cof_adhesion * contact_pressure / real_contact_fraction, source)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class BowdenTaborLaw(UncertainInputs):
     """tau = s(V) A_real/A(p, V) + mu_hysteresis(p, V) p + eta V / h.
 
@@ -110,12 +116,8 @@ class BowdenTaborLaw(UncertainInputs):
 
     def __post_init__(self) -> None:
         checked_viscosity(self.viscosity)
-        if not callable(self.cof_hysteresis) and not (
-            math.isfinite(self.cof_hysteresis) and self.cof_hysteresis >= 0
-        ):
-            raise InputError(
-                f"{self.cof_hysteresis:g}", where="cof_hysteresis", allowed="0 or more"
-            )
+        if not callable(self.cof_hysteresis):
+            not_negative(self.cof_hysteresis, "cof_hysteresis")
 
     @property
     def source(self) -> str:
@@ -138,8 +140,12 @@ class BowdenTaborLaw(UncertainInputs):
         """Return the shear stresses in Pa, with the real contact fraction."""
         pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
         area = np.clip(np.asarray(self.real_contact_fraction(pressure, velocity)), 0.0, 1.0)
-        given: Any = self.cof_hysteresis
-        loss = given(pressure, velocity) if callable(given) else np.full(pressure.shape, given)
+        hysteresis: Any = self.cof_hysteresis
+        loss = (
+            hysteresis(pressure, velocity)
+            if callable(hysteresis)
+            else np.full(pressure.shape, hysteresis)
+        )
         return FrictionParts(
             self.shear_strength(velocity) * area,
             np.asarray(loss) * pressure,
@@ -150,15 +156,15 @@ class BowdenTaborLaw(UncertainInputs):
     @property
     def inputs(self) -> dict[str, SourcedValue]:
         """The shear strength."""
-        given = self.shear_strength
-        return {"shear_strength": SourcedValue(given.strength, "Pa", given.source, given.deviation)}
+        s = self.shear_strength
+        return {"shear_strength": SourcedValue(s.strength, "Pa", s.source, s.deviation)}
 
     def at(self, values: Mapping[str, float]) -> BowdenTaborLaw:
         """Return the law at another shear strength."""
         law = with_values(self, {k: v for k, v in values.items() if k != "shear_strength"})
         if "shear_strength" not in values:
             return law
-        strength = not_negative(values["shear_strength"], self.shear_strength.strength)
+        strength = drawn_value(values["shear_strength"], self.shear_strength.strength)
         return replace(law, shear_strength=replace(self.shear_strength, strength=strength))
 
     def breaches(

@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from underfoot.core import InputError, SourcedValue
 
 from .law import FrictionParts
 from .sampled_cof import SampledCof
 
-Array = NDArray[np.float64]
 NO_SPREAD = "an input of the friction law came without a standard deviation"
 HELD = "spread of the friction law and its inputs, contact and film held"
 
@@ -71,7 +70,7 @@ def cof(
     by partial integration it is sum(p_f dh/dx / 2) dA, the fluid load times half the slope of the
     film under it.
 
-    Errors
+    Raises
     ------
     InputError
         Shapes that differ, values that are not finite, no normal force.
@@ -101,7 +100,7 @@ def cof(
             f"the normal force is {normal:.3g} N", where="contact_pressure", allowed="above 0"
         )
     coefficients = {name: float(array.sum()) * area / normal for name, array in shears.items()}
-    whole = sum(coefficients.values())
+    total = sum(coefficients.values())
 
     def value(name: str, number: float) -> SourcedValue:
         plain = SourcedValue(number, "1", source=source, reason=NO_SPREAD)
@@ -110,11 +109,11 @@ def cof(
         return replace(sampled.sourced(name, plain), note=HELD if name == "cof" else "")
 
     return FrictionCoefficients(
-        cof=value("cof", whole),
+        cof=value("cof", total),
         cof_adhesion=value("adhesion", coefficients["adhesion"]),
         cof_hysteresis=value("hysteresis", coefficients["hysteresis"]),
         cof_viscous=value("viscous", coefficients["viscous"]),
-        friction_force=whole * normal,
+        friction_force=total * normal,
         normal_force=normal,
         fluid_load=fluid_load,
     )

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, InputError, SourcedValue
+from underfoot.core.checks import not_negative
 
-from ._shared import checked_viscosity, law_breaches, proportional_parts
-from .law import FrictionParts
-from .uncertain_inputs import UncertainInputs
+from .law import FrictionParts, UncertainInputs, checked_viscosity, law_breaches, proportional_parts
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class ConstantLaw(UncertainInputs):
     """Adhesion and hysteresis in proportion to the contact pressure: tau = mu p_c; plus eta V / h.
 
@@ -43,10 +41,10 @@ class ConstantLaw(UncertainInputs):
 
     def __post_init__(self) -> None:
         for label in ("cof_adhesion", "cof_hysteresis"):
-            _coefficient(getattr(self, label), label)
+            not_negative(getattr(self, label), label)
         for label in ("adhesion_deviation", "hysteresis_deviation"):
             if getattr(self, label) is not None:
-                _coefficient(getattr(self, label), label)
+                not_negative(getattr(self, label), label)
         checked_viscosity(self.viscosity)
         if not self.source.strip():
             raise InputError(
@@ -84,8 +82,3 @@ class ConstantLaw(UncertainInputs):
     ) -> list[Breach]:
         """Return films below the bound of the viscous part."""
         return law_breaches(self.name, {}, self.viscosity, contact_pressure, speed, film_thickness)
-
-
-def _coefficient(value: float, where: str) -> None:
-    if not (np.isfinite(value) and value >= 0):
-        raise InputError(f"{value:g}", where=where, allowed="a finite number, 0 or more")

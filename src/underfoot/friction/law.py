@@ -1,17 +1,32 @@
-"""What the outsole asks of friction: shear stress, in parts, at every place under the sole."""
+"""What the sole asks of friction: shear stress, in parts, at every place; what all laws share."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from dataclasses import dataclass, fields, replace
+from typing import Any, Protocol, Self, runtime_checkable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, SourcedValue
+from underfoot.core import Breach, InputError, Range, SourcedValue, breaches
+from underfoot.core.arrays import Array
+from underfoot.core.checks import positive
+from underfoot.core.presentation import Presentable, Table
 
-Array = NDArray[np.float64]
+SMALLEST_FILM = 2e-7
+"""m: the viscous part counts no film thinner than this; mean gaps of rough soles are micrometres
+(Rq of the report's soles 4 to 9 um), so the bound acts on no converged result of theirs."""
+REPORT = "final progress report on shoe-floor friction"
+PIN_PRESSURE = 266.1e3
+"""Pa: 20.9 N on a pin of 10 mm, the one load of the report's pin-on-disk studies (G.2.1, G.3.1)."""
+PIN_RANGES = {
+    "contact pressure": Range(0.0, PIN_PRESSURE, "Pa", f"{REPORT}, G.2.1: one load; lower assumed"),
+    "sliding speed": Range(0.05, 1.0, "m/s", f"{REPORT}, G.2.1"),
+}
+"""What the pin-on-disk tests of G.2.1 cover."""
+SMALLEST = 1e-3
+"""Drawn values of a positive input are cut at this share of it: no law knows negative ones."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,3 +92,165 @@ class FrictionLaw(Protocol):
     ) -> list[Breach]:
         """Return what leaves the range on which the law was measured."""
         ...
+
+
+class UncertainInputs(Presentable):
+    """Base of laws whose inputs are fields that hold a ``SourcedValue``.
+
+    ``inputs`` are what sampling draws; ``at`` is the law at one draw. "viscosity" (Pa s) counts
+    too where the law has one: its spread comes with the fluid.
+    """
+
+    __slots__ = ()
+
+    @property
+    def inputs(self) -> dict[str, SourcedValue]:
+        """Inputs by name, each with its standard deviation (or without, when not known)."""
+        return sourced_fields(self)
+
+    @property
+    def error_of_model(self) -> float | None:
+        """Standard deviation of COF that stays with exact inputs; None when not known."""
+        return None
+
+    def at(self, values: Mapping[str, float]) -> Self:
+        """Return the law with ``values`` (SI) in place of some of its inputs."""
+        return with_values(self, values)
+
+    def table(self) -> Table:
+        """Return the inputs of the law with their spread and source."""
+        law: Any = self
+        inputs = dict(law.inputs)
+        viscosity = getattr(law, "viscosity", None)
+        if viscosity is not None and "viscosity" not in inputs:
+            inputs["viscosity"] = SourcedValue(viscosity, "Pa*s")
+        rows = [
+            (name, value.value, value.uncertainty, value.unit, value.assumed, value.source)
+            for name, value in inputs.items()
+        ]
+        rows.append(("error of the law", None, law.error_of_model, "1", False, ""))
+        return Table(
+            f"Friction law {law.name} ({law.source})",
+            ("input", "value", "standard deviation", "unit", "assumed", "source"),
+            rows,
+        )
+
+    def __repr__(self) -> str:
+        law: Any = self
+        values = ", ".join(f"{name} = {value}" for name, value in law.inputs.items())
+        return f"{type(self).__name__}({values or law.name})"[:199]
+
+
+def sourced_fields(law: Any) -> dict[str, SourcedValue]:
+    """Return the fields of a dataclass that hold a number with its spread."""
+    values = {field.name: getattr(law, field.name) for field in fields(law)}
+    return {
+        name: value
+        for name, value in values.items()
+        if isinstance(value, SourcedValue) and value.value is not None
+    }
+
+
+def with_values(law: Any, values: Mapping[str, float]) -> Any:
+    """Return a dataclass with other numbers in its fields, drawn ones not below 0."""
+    changes: dict[str, Any] = {}
+    for name, value in values.items():
+        present = getattr(law, name, None)
+        if isinstance(present, SourcedValue):
+            changes[name] = replace(present, value=drawn_value(value, present.value))
+        elif isinstance(present, float):
+            changes[name] = drawn_value(value, present)
+    return replace(law, **changes) if changes else law
+
+
+def drawn_value(value: float, centre: float | None) -> float:
+    """Return a drawn value, cut where it would turn the sign of a positive one."""
+    return max(float(value), SMALLEST * (centre or 0.0))
+
+
+def checked(
+    contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+) -> tuple[Array, Array, Array]:
+    """Return the arguments of a law as arrays of one shape; the speed as its magnitude."""
+    arrays = {
+        "contact_pressure": np.asarray(contact_pressure, dtype=float),
+        "speed": np.asarray(speed, dtype=float),
+        "film_thickness": np.asarray(film_thickness, dtype=float),
+    }
+    for name, array in arrays.items():
+        if np.isnan(array).any():
+            raise InputError("a value is not a number", where=name)
+    if (arrays["contact_pressure"] < 0).any():
+        raise InputError(
+            f"contact pressure down to {arrays['contact_pressure'].min():.3g} Pa",
+            where="contact_pressure",
+            allowed="0 or more",
+        )
+    pressure, velocity, film = np.broadcast_arrays(*arrays.values())
+    return pressure, np.abs(velocity), film
+
+
+def viscous_shear(viscosity: float | None, speed: Array, film_thickness: Array) -> Array:
+    """Return eta V / h in Pa, the film taken as at least ``SMALLEST_FILM``; 0 without a fluid."""
+    if viscosity is None:
+        return np.zeros_like(film_thickness)
+    return viscosity * speed / np.maximum(film_thickness, SMALLEST_FILM)
+
+
+def proportional_parts(
+    adhesion: float,
+    hysteresis: float,
+    viscosity: float | None,
+    contact_pressure: ArrayLike,
+    speed: ArrayLike,
+    film_thickness: ArrayLike,
+) -> FrictionParts:
+    """Return the shear stresses (Pa) of two constant coefficients of the contact and eta V / h."""
+    pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
+    return FrictionParts(
+        adhesion * pressure, hysteresis * pressure, viscous_shear(viscosity, velocity, film)
+    )
+
+
+def law_breaches(
+    closure: str,
+    ranges: Mapping[str, Range],
+    viscosity: float | None,
+    contact_pressure: ArrayLike,
+    speed: ArrayLike,
+    film_thickness: ArrayLike,
+) -> list[Breach]:
+    """Return the breaches of a law.
+
+    A range of "contact pressure" is held against the mean contact pressure that the load sees
+    (sum p^2 / sum p): single cells may go above it.
+    """
+    pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
+    total = float(pressure.sum())
+    values: dict[str, ArrayLike] = {"sliding speed": velocity}
+    if total > 0:
+        values["contact pressure"] = float((pressure**2).sum()) / total
+    ranges = dict(ranges)
+    if viscosity is not None:
+        ranges["film thickness"] = Range(SMALLEST_FILM, 1.0, "m", "bound of the viscous part")
+        values["film thickness"] = film
+    return breaches(closure, ranges, values)
+
+
+def coefficient(value: SourcedValue, where: str) -> float:
+    """Return the number of a friction coefficient, refused when missing, negative or not finite."""
+    if value.value is None:
+        raise InputError(
+            f"was not measured: {value.reason}",
+            where=where,
+            remedy="Give a measured value of your own, or choose another friction law",
+        )
+    if not (np.isfinite(value.value) and value.value >= 0):
+        raise InputError(f"{value.value:g}", where=where, allowed="a finite number, 0 or more")
+    return value.value
+
+
+def checked_viscosity(viscosity: float | None) -> None:
+    """Refuse a viscosity that is not positive; None is no fluid."""
+    if viscosity is not None:
+        positive(viscosity, "viscosity", "Pa s")

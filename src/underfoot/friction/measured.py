@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from underfoot.core import InputError, SourcedValue
+from underfoot.core.checks import positive
 
 AT_BOUND = 0.01
 """A fitted COF_asymptote below this lies at the bound of the fit (the report's 0.001 for water and
@@ -46,12 +47,7 @@ class BoundaryFriction:
     load: SourcedValue | None = None
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.viscosity) and self.viscosity > 0):
-            raise InputError(
-                f"{self.viscosity:g} Pa s is not positive",
-                where=f"{self.fluid}.viscosity",
-                allowed="a finite number above 0",
-            )
+        positive(self.viscosity, f"{self.fluid}.viscosity", "Pa s")
 
 
 def friction_left(measured: Sequence[BoundaryFriction]) -> SourcedValue:
@@ -60,29 +56,30 @@ def friction_left(measured: Sequence[BoundaryFriction]) -> SourcedValue:
     Only fluids whose asymptote was reached count (see ``AT_BOUND``). The uncertainty is the
     largest of theirs, not reduced by averaging: they share sole, floor and device.
 
-    Errors
+    Raises
     ------
     InputError
         No fluid with a fitted asymptote.
     """
-    found = [
+    asymptotes = [
         m.cof_asymptote
         for m in measured
         if m.cof_asymptote is not None and (m.cof_asymptote.value or 0.0) >= AT_BOUND
     ]
-    if not found:
+    if not asymptotes:
         raise InputError(
             "no fluid was measured up to its friction at high speed",
             where="cof_hysteresis",
             remedy="Give the hysteresis coefficient of the pair",
         )
-    deviations = [f.uncertainty for f in found if f.uncertainty is not None]
+    deviations = [a.uncertainty for a in asymptotes if a.uncertainty is not None]
+    complete = len(deviations) == len(asymptotes)
     return SourcedValue(
-        float(np.mean([f.value for f in found if f.value is not None])),
+        float(np.mean([a.value for a in asymptotes if a.value is not None])),
         "1",
-        source="; ".join(dict.fromkeys(f.source for f in found)),
-        uncertainty=max(deviations) if len(deviations) == len(found) else None,
-        reason="" if len(deviations) == len(found) else "a measurement came without one",
+        source="; ".join(dict.fromkeys(a.source for a in asymptotes)),
+        uncertainty=max(deviations) if complete else None,
+        reason="" if complete else "a measurement came without one",
         assumed=True,
         note="Friction that stays at high speed, taken as hysteresis",
     )
@@ -94,7 +91,7 @@ def viscous_decay(measured: Sequence[BoundaryFriction]) -> SourcedValue:
     One constant makes COF a function of viscosity times speed (Fig. 16 of the report). The
     uncertainty is the scatter between the fluids.
 
-    Errors
+    Raises
     ------
     InputError
         Fewer than two fluids with a fit.
@@ -139,15 +136,12 @@ def boundary_friction_at(
     fluid
         Name of the fluid, for reports.
 
-    Errors
+    Raises
     ------
     InputError
         Fewer than two fluids, different pairs, a fluid without COF_BL, viscosity not positive.
     """
-    if not (math.isfinite(viscosity) and viscosity > 0):
-        raise InputError(
-            f"{viscosity:g} Pa s is not positive", where="viscosity", allowed="above 0"
-        )
+    positive(viscosity, "viscosity", "Pa s")
     if len(measured) < 2 or len({m.pair for m in measured}) != 1:
         raise InputError(
             f"{len(measured)} fluids on {len({m.pair for m in measured})} pairs",

@@ -8,31 +8,27 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError, Range, SourcedValue
+from underfoot.core import Breach, InputError, SourcedValue
+from underfoot.core.arrays import scalar_or_array
 
-from ._shared import (
-    PIN_PRESSURE,
+from .law import (
+    PIN_RANGES,
     REPORT,
+    FrictionParts,
+    UncertainInputs,
     checked,
     checked_viscosity,
     coefficient,
     law_breaches,
     viscous_shear,
 )
-from .law import FrictionParts
 from .measured import AT_BOUND, BoundaryFriction, boundary_friction_at, friction_left, viscous_decay
-from .uncertain_inputs import UncertainInputs
 
 SOURCE = (
     f"Moore, Menezes, Lovell, Beschorner, J. Tribology 134 (2012) 041104; {REPORT}, G.2, Eq. 17"
 )
-RANGES = {
-    "contact pressure": Range(0.0, PIN_PRESSURE, "Pa", f"{REPORT}, G.2.1: one load; lower assumed"),
-    "sliding speed": Range(0.05, 1.0, "m/s", f"{REPORT}, G.2.1"),
-}
-
 LEFT_OUT_DEVIATION = 0.051
 """Root mean square error of COF when ``stribeck_law_at`` predicts each of the report's six fluids
 from the other five, at the 11 speeds."""
@@ -46,11 +42,11 @@ def stribeck_cof(
     ``speed`` and ``tau_hydro`` in m/s; fitted from 0.05 to 1 m/s at 266.1 kPa on a pin of 10 mm.
     """
     decay = np.exp(-np.abs(np.asarray(speed, dtype=float)) / tau_hydro)
-    found = cof_asymptote + (cof_boundary - cof_asymptote) * decay
-    return float(found) if found.ndim == 0 else found
+    cof = cof_asymptote + (cof_boundary - cof_asymptote) * decay
+    return scalar_or_array(cof)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class StribeckLaw(UncertainInputs):
     """tau = COF(V) p_c with COF(V) of Eq. 17, plus eta V / h.
 
@@ -111,7 +107,7 @@ class StribeckLaw(UncertainInputs):
         fluid's own asymptote lies at the bound of its fit, that of ``others`` on the same pair is
         taken (``friction_left``): it moves friction between the parts, not their sum.
 
-        Errors
+        Raises
         ------
         InputError
             No fit of Eq. 17 for this fluid (75 % glycerol and canola oil have none).
@@ -119,8 +115,8 @@ class StribeckLaw(UncertainInputs):
         if friction.tau_hydro is None or friction.cof_asymptote is None:
             raise InputError(
                 f"Eq. 17 was not fitted for {friction.fluid}",
-                where="contaminant.boundary.tau_hydro",
-                remedy="Choose models.friction = boundary, or give tau_hydro and cof_asymptote",
+                where="friction.tau_hydro",
+                remedy="Choose friction.model = boundary, or give tau_hydro and cof_asymptote",
             )
         notes = [f"Friction was measured on {friction.pair}."] if friction.pair else []
         if friction.cof_boundary.assumed:
@@ -159,11 +155,16 @@ class StribeckLaw(UncertainInputs):
     ) -> FrictionParts:
         """Return the shear stresses in Pa; hysteresis is what is left of COF at high speed."""
         pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
-        whole = self._cof(velocity)
-        left = self.cof_hysteresis or self.cof_asymptote
-        hysteresis = np.minimum(coefficient(left, "cof_hysteresis"), whole)
+        cof = stribeck_cof(
+            velocity,
+            coefficient(self.cof_boundary, "cof_boundary"),
+            coefficient(self.tau_hydro, "tau_hydro"),
+            coefficient(self.cof_asymptote, "cof_asymptote"),
+        )
+        left = coefficient(self.cof_hysteresis or self.cof_asymptote, "cof_hysteresis")
+        hysteresis = np.minimum(left, cof)
         return FrictionParts(
-            (whole - hysteresis) * pressure,
+            (cof - hysteresis) * pressure,
             hysteresis * pressure,
             viscous_shear(self.viscosity, velocity, film),
         )
@@ -173,13 +174,8 @@ class StribeckLaw(UncertainInputs):
     ) -> list[Breach]:
         """Return what leaves the pin-on-disk tests: pressure (mean seen by the load) and speed."""
         return law_breaches(
-            self.name, RANGES, self.viscosity, contact_pressure, speed, film_thickness
+            self.name, PIN_RANGES, self.viscosity, contact_pressure, speed, film_thickness
         )
-
-    def _cof(self, speed: NDArray[np.float64]) -> NDArray[np.float64]:
-        boundary, asymptote = self.cof_boundary.value, self.cof_asymptote.value
-        decay = np.exp(-speed / coefficient(self.tau_hydro, "tau_hydro"))
-        return (asymptote or 0.0) + ((boundary or 0.0) - (asymptote or 0.0)) * decay
 
 
 def stribeck_law_at(

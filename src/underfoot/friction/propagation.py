@@ -7,9 +7,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from scipy.special import ndtri
 
 from underfoot.core import InputError, SourcedValue
+from underfoot.core.arrays import Array
 
 LOGNORMAL_ABOVE = 1.0 / 3.0
 """Relative spread from which a positive quantity is drawn from a log-normal: a normal one would
@@ -38,17 +39,17 @@ class Propagated:
         (samples, ...) the results, and (samples,) what was drawn of each input.
     """
 
-    value: NDArray[np.float64]
-    deviation: NDArray[np.float64]
-    low: NDArray[np.float64]
-    high: NDArray[np.float64]
+    value: Array
+    deviation: Array
+    low: Array
+    high: Array
     confidence: float
     samples: int
     seed: int
     share: Mapping[str, float]
     left_out: tuple[str, ...]
-    draws: NDArray[np.float64]
-    drawn: Mapping[str, NDArray[np.float64]]
+    draws: Array
+    drawn: Mapping[str, Array]
 
 
 def propagated(
@@ -81,7 +82,7 @@ def propagated(
     shares
         False leaves out which input causes how much: it takes draws of each input alone.
 
-    Errors
+    Raises
     ------
     InputError
         An input without a value, fewer than 100 samples, a result that is not finite.
@@ -91,19 +92,19 @@ def propagated(
     if not 0 < confidence < 1:
         raise InputError(f"{confidence:g}", where="confidence", allowed="above 0, below 1")
     centre: dict[str, float] = {}
-    for name, given in inputs.items():
-        if given.value is None or not math.isfinite(given.value):
-            raise InputError(f"has no value: {given.reason}", where=name)
-        centre[name] = given.value
+    for name, quantity in inputs.items():
+        if quantity.value is None or not math.isfinite(quantity.value):
+            raise InputError(f"has no value: {quantity.reason}", where=name)
+        centre[name] = quantity.value
     generator = np.random.default_rng(seed)
     drawn = {
-        name: _draws(given.value or 0.0, given.uncertainty, samples, generator)
-        for name, given in inputs.items()
-        if given.uncertainty
+        name: _draws(quantity.value or 0.0, quantity.uncertainty, samples, generator)
+        for name, quantity in inputs.items()
+        if quantity.uncertainty
     }
     value = _result(function, centre)
     points = ({k: float(draws[i]) for k, draws in drawn.items()} for i in range(samples))
-    whole = np.array([_result(function, {**centre, **point}) for point in points])
+    results = np.array([_result(function, {**centre, **point}) for point in points])
     variance = {}
     for name, draws in drawn.items() if shares else ():
         few = draws[: max(100, samples // 5)]
@@ -111,15 +112,15 @@ def propagated(
         variance[name] = float(np.mean(np.var(alone, axis=0, ddof=1)))
     if model_deviation:
         shift = generator.normal(0.0, model_deviation, samples)
-        whole = whole + shift.reshape(-1, *([1] * value.ndim))
+        results = results + shift.reshape(-1, *([1] * value.ndim))
         if shares:
             variance["model"] = model_deviation**2
     total = sum(variance.values())
     tail = 0.5 * (1 - confidence)
-    low, high = np.quantile(whole, [tail, 1 - tail], axis=0)
+    low, high = np.quantile(results, [tail, 1 - tail], axis=0)
     return Propagated(
         value=value,
-        deviation=np.std(whole, axis=0, ddof=1),
+        deviation=np.std(results, axis=0, ddof=1),
         low=low,
         high=high,
         confidence=confidence,
@@ -127,16 +128,14 @@ def propagated(
         seed=seed,
         share={name: (part / total if total > 0 else 0.0) for name, part in variance.items()},
         left_out=tuple(name for name in inputs if name not in drawn),
-        draws=whole,
+        draws=results,
         drawn=drawn,
     )
 
 
 def _draws(
     value: float, deviation: float | None, samples: int, generator: np.random.Generator
-) -> NDArray[np.float64]:
-    from scipy.special import ndtri
-
+) -> Array:
     spread = deviation or 0.0
     strata = (generator.permutation(samples) + generator.random(samples)) / samples
     normal = ndtri(np.clip(strata, 1e-12, 1 - 1e-12))
@@ -148,12 +147,12 @@ def _draws(
 
 def _result(
     function: Callable[[Mapping[str, float]], object], values: Mapping[str, float]
-) -> NDArray[np.float64]:
-    found = np.asarray(function(values), dtype=float)
-    if not np.isfinite(found).all():
+) -> Array:
+    result = np.asarray(function(values), dtype=float)
+    if not np.isfinite(result).all():
         raise InputError(
             "the result is not finite for a draw of the inputs",
             where="propagated",
             remedy="Check the spreads: " + ", ".join(f"{k} = {v:.3g}" for k, v in values.items()),
         )
-    return found
+    return result

@@ -7,15 +7,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from underfoot.core import SourcedValue
+from underfoot.core.arrays import Array, Mask
 
-from ._shared import SMALLEST_FILM
-from .law import FrictionLaw, FrictionParts
+from .law import SMALLEST_FILM, FrictionLaw, FrictionParts
 from .propagation import Propagated, propagated
 
-Array = NDArray[np.float64]
 PARTS = ("adhesion", "hysteresis", "viscous")
 CLASSES = 64
 """Classes of contact pressure that stand for the cells under the sole in the draws."""
@@ -99,8 +98,8 @@ def sampled_cof(
     carried = float(contact.sum()) / load
     pressure, gap, counts, wet_counts = _classes(contact, film, mask)
 
-    def sums(found: FrictionParts, solid: Any, fluid: Any) -> Array:
-        weighted = ((found.adhesion, solid), (found.hysteresis, solid), (found.viscous, fluid))
+    def sums(shear: FrictionParts, solid: Any, fluid: Any) -> Array:
+        weighted = ((shear.adhesion, solid), (shear.hysteresis, solid), (shear.viscous, fluid))
         return np.array([float(np.sum(part * weight)) for part, weight in weighted]) / load
 
     exact = sums(law(contact, speed, film), 1.0, mask)
@@ -116,13 +115,13 @@ def sampled_cof(
         hysteresis = min(hysteresis, solid)
         return np.array([solid + viscous, solid - hysteresis, hysteresis, viscous])
 
-    found = propagated(
+    spread = propagated(
         parts, inputs, confidence=confidence, samples=samples, seed=seed, shares=False
     )
     return SampledCof(
-        *found.draws.T,
-        share=_shares(found),
-        left_out=found.left_out,
+        *spread.draws.T,
+        share=_shares(spread),
+        left_out=spread.left_out,
         confidence=confidence,
         seed=seed,
     )
@@ -150,9 +149,9 @@ def sampled_points(
 
     def points(values: Mapping[str, float]) -> Array:
         drawn = law.at({k: v for k, v in values.items() if k != MODEL})
-        found = drawn(pressure, speed, film_thickness)
-        solid = (found.adhesion + found.hysteresis) / pressure + values.get(MODEL, 0.0)
-        return np.maximum(solid, 0.0) + found.viscous / pressure
+        shear = drawn(pressure, speed, film_thickness)
+        solid = (shear.adhesion + shear.hysteresis) / pressure + values.get(MODEL, 0.0)
+        return np.maximum(solid, 0.0) + shear.viscous / pressure
 
     return propagated(points, inputs, samples=samples, seed=seed, shares=False)
 
@@ -161,28 +160,28 @@ def _inputs(
     law: FrictionLaw, fluid_inputs: Mapping[str, SourcedValue] | None
 ) -> dict[str, SourcedValue] | None:
     """Return what is drawn: inputs of law and fluid and the law's error; None without spreads."""
-    if any(one.uncertainty is None for one in law.inputs.values()):
+    if any(value.uncertainty is None for value in law.inputs.values()):
         return None
     inputs = {**law.inputs, **(fluid_inputs or {})}
     if law.error_of_model:
         inputs[MODEL] = SourcedValue(0.0, "1", law.source, law.error_of_model)
-    return inputs if any(one.uncertainty for one in inputs.values()) else None
+    return inputs if any(value.uncertainty for value in inputs.values()) else None
 
 
-def _shares(found: Propagated) -> dict[str, float]:
-    cof = found.draws[:, 0]
+def _shares(spread: Propagated) -> dict[str, float]:
+    cof = spread.draws[:, 0]
     if np.std(cof) <= 1e-9 * np.abs(cof).max(initial=0.0):
         return {}
     squares = {
         name: float(np.corrcoef(draws, cof)[0, 1]) ** 2
-        for name, draws in found.drawn.items()
+        for name, draws in spread.drawn.items()
         if np.std(draws) > 0
     }
     total = sum(squares.values())
     return {name: square / total for name, square in squares.items()} if total > 0 else {}
 
 
-def _classes(contact: Array, film: Array, wet: NDArray[np.bool_]) -> tuple[Array, ...]:
+def _classes(contact: Array, film: Array, wet: Mask) -> tuple[Array, ...]:
     """Return pressure, film, number of cells and of wet cells of each class.
 
     Pressure is the mean of a class; the film is such that eta V / h has the class's mean over its

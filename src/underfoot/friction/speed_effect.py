@@ -7,26 +7,24 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, InputError, Range, SourcedValue, breaches
+from underfoot.core.arrays import Array, scalar_or_array
 
-from ._shared import (
+from .law import (
     PIN_PRESSURE,
-    REPORT,
+    PIN_RANGES,
+    FrictionParts,
+    UncertainInputs,
     checked,
     checked_viscosity,
     coefficient,
     law_breaches,
+    sourced_fields,
     viscous_shear,
+    with_values,
 )
-from .law import FrictionParts
-from .uncertain_inputs import UncertainInputs, sourced_fields, with_values
-
-RANGES = {
-    "contact pressure": Range(0.0, PIN_PRESSURE, "Pa", f"{REPORT}, G.2.1: one load; lower assumed"),
-    "sliding speed": Range(0.05, 1.0, "m/s", f"{REPORT}, G.2.1"),
-}
 
 
 @runtime_checkable
@@ -50,7 +48,7 @@ class SpeedEffect(Protocol):
 
     def adhesion_left(
         self, *, viscosity: float | None, speed: ArrayLike, contact_pressure: ArrayLike
-    ) -> NDArray[np.float64]:
+    ) -> Array:
         """Return the share of adhesion left (1 at rest) at Pa s, m/s and Pa, broadcast."""
         ...
 
@@ -71,12 +69,12 @@ def cof_with_speed(
     is below ``cof_hysteresis``.
     """
     left = effect.adhesion_left(viscosity=viscosity, speed=speed, contact_pressure=contact_pressure)
-    floor = min(cof_hysteresis, cof_boundary)
-    found = floor + (cof_boundary - floor) * left
-    return float(found) if np.ndim(found) == 0 else found
+    hysteresis = min(cof_hysteresis, cof_boundary)
+    cof = hysteresis + (cof_boundary - hysteresis) * left
+    return scalar_or_array(cof)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class SpeedEffectLaw(UncertainInputs):
     """tau = (COF_hysteresis + (COF_BL - COF_hysteresis) a) p_c + eta V / h.
 
@@ -101,7 +99,7 @@ class SpeedEffectLaw(UncertainInputs):
     calibrated_product
         Viscosity x speed of the data behind the levels, Pa m; None when not known.
 
-    Errors
+    Raises
     ------
     InputError
         A coefficient that was not measured or is negative, a viscosity that is not positive.
@@ -166,9 +164,10 @@ class SpeedEffectLaw(UncertainInputs):
         own = {k: values[k] for k in self.effect_inputs if k in values}
         if not own:
             return law
-        given: Any = self.effect
-        changed = given.at(own) if hasattr(given, "at") else with_values(given, own)
-        return replace(law, effect=changed)
+        effect: Any = self.effect
+        return replace(
+            law, effect=effect.at(own) if hasattr(effect, "at") else with_values(effect, own)
+        )
 
     def __call__(
         self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
@@ -176,11 +175,13 @@ class SpeedEffectLaw(UncertainInputs):
         """Return the shear stresses in Pa."""
         pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
         boundary = coefficient(self.cof_boundary, "cof_boundary")
-        floor = min(coefficient(self.cof_hysteresis, "cof_hysteresis"), boundary)
-        left = self._left(pressure, velocity)
+        hysteresis = min(coefficient(self.cof_hysteresis, "cof_hysteresis"), boundary)
+        left = self.effect.adhesion_left(
+            viscosity=self.viscosity, speed=velocity, contact_pressure=pressure
+        )
         return FrictionParts(
-            (boundary - floor) * left * pressure,
-            floor * pressure,
+            (boundary - hysteresis) * np.asarray(left) * pressure,
+            hysteresis * pressure,
             viscous_shear(self.viscosity, velocity, film),
         )
 
@@ -188,15 +189,42 @@ class SpeedEffectLaw(UncertainInputs):
         self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
     ) -> list[Breach]:
         """Return what leaves the tests behind the calibration: 0.05 to 1 m/s, up to 266.1 kPa."""
-        found = law_breaches(
-            self.name, RANGES, self.viscosity, contact_pressure, speed, film_thickness
+        outside = law_breaches(
+            self.name, PIN_RANGES, self.viscosity, contact_pressure, speed, film_thickness
         )
         if self.viscosity is None or self.calibrated_product is None:
-            return found
+            return outside
         product = {"viscosity x speed": self.viscosity * np.abs(np.asarray(speed, dtype=float))}
-        return found + breaches(self.name, {"viscosity x speed": self.calibrated_product}, product)
-
-    def _left(self, pressure: NDArray[np.float64], speed: NDArray[np.float64]) -> Any:
-        return self.effect.adhesion_left(
-            viscosity=self.viscosity, speed=speed, contact_pressure=pressure
+        return outside + breaches(
+            self.name, {"viscosity x speed": self.calibrated_product}, product
         )
+
+
+FILM_EXPONENT = 0.65
+"""Film at the fluid's share f of load and stiffness: h = h_full f^-0.65. Eq. 18 has
+h ~ E'^-0.44 w^-0.21, and both E' and w count as multiplied by f."""
+_STEPS = 60
+
+
+def fluid_share(full_film: ArrayLike, dry_gap: ArrayLike) -> Array:
+    """Return the share f of the load that the fluid carries beside exponential roughness.
+
+    1 - f = exp(-(h - h_dry)), h = h_full f^-0.65; lengths in units of the decay length u0 of the
+    roughness' pressure. ``full_film``: the film if the fluid carried all; ``dry_gap`` >= 0: the
+    gap without a fluid. Broadcast; 0 at ``full_film`` 0, towards 1 as it grows.
+
+    Solved by bisection in log f (the left side falls and the right side grows with f).
+    """
+    film, dry = np.broadcast_arrays(
+        np.asarray(full_film, dtype=float), np.asarray(dry_gap, dtype=float)
+    )
+    low = np.full(film.shape, np.log(1e-300))
+    high = np.zeros(film.shape)
+    for _ in range(_STEPS):
+        middle = 0.5 * (low + high)
+        gap = film * np.exp(-FILM_EXPONENT * middle)
+        # roughness carries less than the load's rest: the film is too thick, f too small
+        too_thick = np.exp(-np.clip(gap - dry, -700.0, 700.0)) < -np.expm1(middle)
+        low = np.where(too_thick, middle, low)
+        high = np.where(too_thick, high, middle)
+    return np.where(film > 0, np.exp(0.5 * (low + high)), 0.0)

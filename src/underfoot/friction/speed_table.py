@@ -6,16 +6,25 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, InputError, Range, SourcedValue
+from underfoot.core.arrays import Array
+from underfoot.core.checks import not_negative
+from underfoot.core.presentation import Table
 
-from ._shared import checked, checked_viscosity, law_breaches, viscous_shear
-from .law import FrictionParts
-from .uncertain_inputs import UncertainInputs, with_values
+from .law import (
+    FrictionParts,
+    UncertainInputs,
+    checked,
+    checked_viscosity,
+    law_breaches,
+    viscous_shear,
+    with_values,
+)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class SpeedTableLaw(UncertainInputs):
     """tau = COF(V) p_c from a table, linear in the logarithm of the speed; plus eta V / h.
 
@@ -40,27 +49,27 @@ class SpeedTableLaw(UncertainInputs):
     assumed
         Further assumptions behind the readings, in words.
 
-    Errors
+    Raises
     ------
     InputError
         Arrays that differ in length, speeds that do not rise, values that are negative or missing.
     """
 
-    speed: NDArray[np.float64]
-    cof: NDArray[np.float64]
+    speed: Array
+    cof: Array
     source: str
     cof_hysteresis: float = 0.0
     viscosity: float | None = None
-    cof_deviation: NDArray[np.float64] | None = None
+    cof_deviation: Array | None = None
     pressure: tuple[float, float] | None = None
     assumed: tuple[str, ...] = ()
     name: str = field(default="speed_table", init=False)
 
     def __post_init__(self) -> None:
         for label in ("speed", "cof", "cof_deviation"):
-            given = getattr(self, label)
-            if given is not None:
-                object.__setattr__(self, label, np.asarray(given, dtype=float))
+            values = getattr(self, label)
+            if values is not None:
+                object.__setattr__(self, label, np.asarray(values, dtype=float))
         speed, spread = self.speed, self.cof_deviation
         if speed.ndim != 1 or speed.size < 2 or self.cof.shape != speed.shape:
             raise InputError(
@@ -78,10 +87,7 @@ class SpeedTableLaw(UncertainInputs):
             raise InputError(
                 "a value is negative or missing", where="cof_deviation", allowed="0 or more"
             )
-        if not self.cof_hysteresis >= 0:
-            raise InputError(
-                f"{self.cof_hysteresis:g}", where="cof_hysteresis", allowed="0 or more"
-            )
+        not_negative(self.cof_hysteresis, "cof_hysteresis")
         if not self.source.strip():
             raise InputError("no source", where="source", remedy="Say who measured it, and on what")
         checked_viscosity(self.viscosity)
@@ -96,12 +102,29 @@ class SpeedTableLaw(UncertainInputs):
     ) -> FrictionParts:
         """Return the shear stresses in Pa."""
         pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
-        whole = self._at(velocity, self.cof)
-        floor = np.minimum(self.cof_hysteresis, whole)
+        place = np.log(np.maximum(velocity, self.speed[0]))
+        cof = np.interp(place, np.log(self.speed), self.cof)
+        hysteresis = np.minimum(self.cof_hysteresis, cof)
         return FrictionParts(
-            (whole - floor) * pressure,
-            floor * pressure,
+            (cof - hysteresis) * pressure,
+            hysteresis * pressure,
             viscous_shear(self.viscosity, velocity, film),
+        )
+
+    def table(self) -> Table:
+        """Return the readings."""
+        spread = [None] * self.speed.size if self.cof_deviation is None else self.cof_deviation
+        return Table(
+            f"Friction law {self.name} ({self.source})",
+            ("speed m/s", "COF", "standard deviation"),
+            list(zip(self.speed.tolist(), self.cof.tolist(), spread, strict=True)),
+        )
+
+    def __repr__(self) -> str:
+        low, high = self.cof.min(), self.cof.max()
+        return (
+            f"SpeedTableLaw({self.speed.size} speeds {self.speed[0]:g} to {self.speed[-1]:g} m/s, "
+            f"COF {low:.3g} to {high:.3g}, {self.source[:60]!r})"
         )
 
     @property
@@ -130,7 +153,3 @@ class SpeedTableLaw(UncertainInputs):
         return law_breaches(
             self.name, ranges, self.viscosity, contact_pressure, speed, film_thickness
         )
-
-    def _at(self, speed: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
-        place = np.log(np.maximum(speed, self.speed[0]))
-        return np.interp(place, np.log(self.speed), values)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core import RangeError
+from underfoot.core import RangeError
 
 
 def checked_hardness(shore_a: ArrayLike, *, below: float = np.inf, up_to: float = 100.0) -> Any:
@@ -23,8 +23,3 @@ def checked_hardness(shore_a: ArrayLike, *, below: float = np.inf, up_to: float 
             remedy="A harder material has no Shore A value: enter its modulus",
         )
     return hardness
-
-
-def plain(array: Any) -> Any:
-    """Return a float for a zero-dimensional array, else the array."""
-    return float(array) if np.ndim(array) == 0 else array

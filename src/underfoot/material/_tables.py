@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..core import DataError, InputError, nearest_match, to_si
+from underfoot.core import DataError, InputError, nearest_match, to_si
 
 _NUMBER = re.compile(r"^[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?$")
 _HEAD = re.compile(r"^\s*(.*?)\s*[\[(]\s*([^\])]*?)\s*[\])]\s*$")
@@ -17,7 +17,7 @@ _MISSING = {"", "nan", "na", "n/a", "null", "none", "-", "--", "#n/a"}
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class TestTable:
     """Columns by name as printed, their units ("" where not given) and where they came from."""
 
     columns: dict[str, np.ndarray]
@@ -36,10 +36,10 @@ class Table:
         name = self.named(aliases)
         if name is None:
             return None
-        given = units.get(name) or units.get(what) or self.units[name]
+        unit_text = units.get(name) or units.get(what) or self.units[name]
         values = self.columns[name]
         self._refuse_missing(name, values)
-        return in_si(values, given, unit, where=f"{self.where}, column {name}")
+        return in_si(values, unit_text, unit, where=f"{self.where}, column {name}")
 
     def named(self, aliases: Sequence[str]) -> str | None:
         """Return the heading that is one of ``aliases``; case counts only for short symbols.
@@ -57,8 +57,8 @@ class Table:
         self, aliases: Sequence[str], unit: str, units: Mapping[str, str], what: str
     ) -> np.ndarray:
         """Return ``column``; refuse the file when there is none."""
-        found = self.column(aliases, unit, units, what)
-        if found is None:
+        values = self.column(aliases, unit, units, what)
+        if values is None:
             raise DataError(
                 f"no column for {what} among {', '.join(self.columns)}",
                 where=self.where,
@@ -67,7 +67,7 @@ class Table:
                     (n for n in (nearest_match(c, aliases) for c in self.columns) if n), None
                 ),
             )
-        return found
+        return values
 
     def _refuse_missing(self, name: str, values: np.ndarray) -> None:
         missing = np.flatnonzero(~np.isfinite(values))
@@ -80,15 +80,15 @@ class Table:
             )
 
 
-def in_si(values: np.ndarray, given: str, unit: str, *, where: str) -> np.ndarray:
+def in_si(values: np.ndarray, unit_text: str, unit: str, *, where: str) -> np.ndarray:
     """Return values in the SI ``unit``; refuse a missing or wrong unit."""
-    if given.strip() in ("", "-"):
+    if unit_text.strip() in ("", "-"):
         raise DataError(
-            "no unit is given",
+            "no unit is unit_text",
             where=where,
             allowed=f"a unit of {unit} in the heading, in a row below it, or as an argument",
         )
-    text = given.strip().replace("°C", "degC")
+    text = unit_text.strip().replace("°C", "degC")
     if unit == "rad/s" and text.casefold() in ("hz", "khz", "1/s"):
         factor = 2.0 * np.pi * (1e3 if text.casefold() == "khz" else 1.0)
         return values * factor
@@ -102,13 +102,13 @@ def in_si(values: np.ndarray, given: str, unit: str, *, where: str) -> np.ndarra
     return values * (one - zero) + zero
 
 
-def read_table(path: Path | str) -> Table:
+def read_table(path: Path | str) -> TestTable:
     """Return the first table of a text file with one row of headings.
 
     Separators may be comma, semicolon, tab or blanks; decimal commas are read where commas do
     not separate; a row of units may follow the headings, or units stand in brackets there.
 
-    Errors
+    Raises
     ------
     DataError
         No headings, no numbers, rows of different length, text among the numbers.
@@ -144,7 +144,7 @@ def read_table(path: Path | str) -> Table:
                 remedy=hint,
             )
         columns[place] = [_number(cell, decimal_comma, i, path) for cell in row]
-    return Table(
+    return TestTable(
         {name: columns[:, k] for k, name in enumerate(names)},
         dict(zip(names, units, strict=True)),
         str(path),

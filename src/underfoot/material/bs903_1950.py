@@ -5,9 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from numpy.typing import ArrayLike
+from scipy.special import erfinv
 
-from ..core import Breach, Range, breaches
-from ._hardness import checked_hardness, plain
+from underfoot.core import Breach, Range, breaches
+from underfoot.core.arrays import scalar_or_array
+
+from ._hardness import checked_hardness
 
 NAME = "bs903_1950"
 SOURCE = "BS 903:1950; S = 100 erf(3.186e-4 E^(1/2)), E in Pa, as quoted by Gent (1958) and later"
@@ -23,15 +26,13 @@ def youngs_modulus_bs903(shore_a: ArrayLike) -> Any:
     Better than Gent's relation below about 40 and above 80, because both ends are bounded by
     experiment. ``shore_a`` of any shape, 0 <= S < 100.
 
-    Errors
+    Raises
     ------
     RangeError
         Hardness outside 0 to below 100.
     """
-    from scipy.special import erfinv
-
     hardness = checked_hardness(shore_a, below=100.0)
-    return plain((erfinv(hardness / 100.0) / 3.186e-4) ** 2)
+    return scalar_or_array((erfinv(hardness / 100.0) / 3.186e-4) ** 2)
 
 
 def bs903_breaches(shore_a: ArrayLike) -> list[Breach]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core import DataError, InputError
+from underfoot.core import DataError, InputError
 
 SOURCE = "Grant report G.1.1, Eq. 13-16 (test method of its reference 39)"
 PRINTED_TRAVEL = 0.18
@@ -53,7 +53,7 @@ def compression_moduli(
         (2 T thick) is compressed by 10 %, 0.2 T, and F_0.02 is read at 0.02 T. If F_0.02 is read
         at 2 % of the pair it is 0.16.
 
-    Errors
+    Raises
     ------
     InputError
         Sizes not positive, forces not in the order F_0.02 <= F_inf <= F_0.
@@ -97,7 +97,7 @@ def compression_forces(
     largest force; F_inf the mean over the last tenth of the record after it. Unloading has to be
     cut off. ``time`` s ascending, ``displacement`` m, ``force`` N, compression positive, (n,).
 
-    Errors
+    Raises
     ------
     DataError
         Missing values, no hold after the peak, a ramp that does not pass 2 %.

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core import DataError
+from underfoot.core import DataError
 
 
 @dataclass(frozen=True, slots=True, eq=False)

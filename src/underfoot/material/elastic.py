@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core import RangeError
+from underfoot.core import RangeError
 
 
 def shear_modulus(youngs_modulus: Any, poisson_ratio: float) -> Any:

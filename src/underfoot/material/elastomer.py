@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core import InputError
+from underfoot.core import InputError
+
 from . import elastic
 from .spectrum import RelaxationSpectrum
 

@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core import Breach, Range, RangeError, breaches
-from ._hardness import checked_hardness, plain
+from underfoot.core import Breach, Range, RangeError, breaches
+from underfoot.core.arrays import scalar_or_array
+
+from ._hardness import checked_hardness
 
 NAME = "gent_1958"
 SOURCE = (
@@ -35,20 +37,20 @@ def youngs_modulus_gent(shore_a: ArrayLike) -> Any:
     a static one (the durometer is read after seconds) and carries tens of percent of uncertainty:
     a relaxation or dynamic test is better.
 
-    Errors
+    Raises
     ------
     RangeError
         Hardness outside 0 to below 100.
     """
     hardness = checked_hardness(shore_a, below=100.0)
     modulus = 0.0981e6 * (56.0 + 7.62336 * hardness) / (0.137505 * (254.0 - 2.54 * hardness))
-    return plain(modulus)
+    return scalar_or_array(modulus)
 
 
 def shore_a_gent(youngs_modulus: ArrayLike) -> Any:
     """Return the Shore A hardness at which ``youngs_modulus_gent`` gives ``youngs_modulus`` (Pa).
 
-    Errors
+    Raises
     ------
     RangeError
         A modulus below that of Shore A 0 (0.157 MPa), or not finite.
@@ -62,7 +64,7 @@ def shore_a_gent(youngs_modulus: ArrayLike) -> Any:
             allowed=f"{lowest:.3g} Pa or more",
         )
     ratio = modulus * 0.137505 / 0.0981e6
-    return plain(np.maximum((254.0 * ratio - 56.0) / (7.62336 + 2.54 * ratio), 0.0))
+    return scalar_or_array(np.maximum((254.0 * ratio - 56.0) / (7.62336 + 2.54 * ratio), 0.0))
 
 
 def gent_breaches(shore_a: ArrayLike) -> list[Breach]:

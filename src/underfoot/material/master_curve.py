@@ -8,7 +8,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from ..core import DataError, InputError, RangeError
+from underfoot.core import DataError, InputError, RangeError
+
 from ._kernels.shift import best_shift
 from .curves import DynamicSweep, RelaxationCurve
 from .shift_laws import ArrheniusShift, WlfShift, fit_arrhenius, fit_wlf
@@ -115,7 +116,7 @@ def dynamic_master_curve(
         its own scatter. Where the two disagree (resonance of the instrument, a material that
         is not thermorheologically simple), E' is the safer one.
 
-    Errors
+    Raises
     ------
     InputError
         Another ``shift_by``.

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ..core import InputError, RangeError
+from underfoot.core import InputError, RangeError
+
 from .spectrum import RelaxationSpectrum
 
 

@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ..core import DataError, InputError, to_si
-from ._tables import Table, read_table
+from underfoot.core import DataError, InputError, to_si
+
+from ._tables import TestTable, read_table
 from .curves import DynamicSweep, RelaxationCurve
 from .elastomer import young_from_shear
 from .spectrum import RelaxationSpectrum
@@ -35,18 +36,18 @@ def read_dynamic(path: Path | str, *, units: Mapping[str, str] | None = None) ->
     other make a sweep). Units stand in the headings, in the row below, or in ``units`` by column
     name. The temperature of a sweep is the mean of its rows.
 
-    Errors
+    Raises
     ------
     DataError
         Columns, units or values missing; values at or below zero; the file unreadable.
     """
-    table, given = read_table(path), dict(units or {})
-    w = table.required(FREQUENCY, "rad/s", given, "frequency")
-    storage = table.required(STORAGE, "Pa", given, "storage modulus")
-    loss = table.required(LOSS, "Pa", given, "loss modulus")
+    table, column_units = read_table(path), dict(units or {})
+    w = table.required(FREQUENCY, "rad/s", column_units, "frequency")
+    storage = table.required(STORAGE, "Pa", column_units, "storage modulus")
+    loss = table.required(LOSS, "Pa", column_units, "loss modulus")
     return [
         DynamicSweep(w[rows], storage[rows], loss[rows], temperature, source=table.where)
-        for rows, temperature in _sets(table, given, w.size)
+        for rows, temperature in _sets(table, column_units, w.size)
     ]
 
 
@@ -58,16 +59,16 @@ def read_relaxation(
     Columns: time, relaxation modulus, and temperature and ``Set`` as in ``read_dynamic``. Rows
     of a set may run from late to early as a whole; otherwise times have to ascend.
 
-    Errors
+    Raises
     ------
     DataError
         Columns, units or values missing; times neither ascending nor descending.
     """
-    table, given = read_table(path), dict(units or {})
-    time = table.required(TIME, "s", given, "time")
-    modulus = table.required(RELAX, "Pa", given, "relaxation modulus")
+    table, column_units = read_table(path), dict(units or {})
+    time = table.required(TIME, "s", column_units, "time")
+    modulus = table.required(RELAX, "Pa", column_units, "relaxation modulus")
     curves = []
-    for rows, temperature in _sets(table, given, time.size):
+    for rows, temperature in _sets(table, column_units, time.size):
         t, e = time[rows], modulus[rows]
         if t.size > 1 and np.all(np.diff(t) < 0.0):
             t, e = t[::-1], e[::-1]
@@ -95,7 +96,7 @@ def read_prony(
     ``instantaneous_modulus`` as text with unit, optional ``poisson_ratio`` and ``source``, and
     ``[[term]]`` tables with ``relaxation_time`` and ``modulus`` (text with unit) or ``fraction``.
 
-    Errors
+    Raises
     ------
     DataError
         Nothing to fix the level by, fractions that sum to more than one, columns missing.
@@ -105,8 +106,8 @@ def read_prony(
     path = Path(path)
     if path.suffix.casefold() == ".toml":
         return _prony_toml(path, poisson_ratio)
-    table, given = read_table(path), dict(units or {})
-    tau = table.required(TAU, "s", given, "relaxation time")
+    table, column_units = read_table(path), dict(units or {})
+    tau = table.required(TAU, "s", column_units, "relaxation time")
     exact = set(table.columns)
     fraction_names = [name for name in FRACTION if name in exact]
     term_names = [name for name in TERM if name in exact]
@@ -114,7 +115,7 @@ def read_prony(
     if fraction_names:
         fractions, terms = table.columns[fraction_names[0]], None
     elif term_names:
-        fractions, terms = None, table.required(term_names[:1], "Pa", given, "term modulus")
+        fractions, terms = None, table.required(term_names[:1], "Pa", column_units, "term modulus")
     else:
         raise DataError(
             f"no column of terms among {', '.join(table.columns)}",
@@ -242,7 +243,7 @@ def _key(item: Mapping[str, Any], key: str, path: Path, number: int) -> Any:
 
 
 def _sets(
-    table: Table, units: Mapping[str, str], count: int
+    table: TestTable, units: Mapping[str, str], count: int
 ) -> list[tuple[np.ndarray, float | None]]:
     kelvin = table.column(TEMPERATURE, "K", units, "temperature")
     label = table.named(SET)
@@ -255,5 +256,5 @@ def _sets(
         groups = [np.sort(group) for group in np.split(order, cuts)]
     else:
         groups = [np.arange(count)]
-    found = [(rows, None if kelvin is None else float(kelvin[rows].mean())) for rows in groups]
-    return sorted(found, key=lambda pair: pair[1] if pair[1] is not None else 0.0)
+    sets = [(rows, None if kelvin is None else float(kelvin[rows].mean())) for rows in groups]
+    return sorted(sets, key=lambda pair: pair[1] if pair[1] is not None else 0.0)

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..core import InputError
+from underfoot.core import InputError
+
 from ._kernels import maxwell
 from .spectrum import RelaxationSpectrum
 
@@ -34,7 +35,7 @@ def reduced(
     a decade of terms beyond each end; faster terms act as part of the last one, slower ones as
     part of the equilibrium modulus.
 
-    Errors
+    Raises
     ------
     InputError
         Range not ascending, fewer than one term a decade, no loss in the range.

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from ..core import unknown_name
+from underfoot.core import unknown_name
+
 from .elastomer import Elastomer, young_from_shear
 from .single_exponential import single_exponential_spectrum
 
@@ -29,7 +30,7 @@ def report_elastomer(name: str) -> Elastomer:
     bulk modulus follows from nu = 0.499; Table 2's 2180 MPa for rubber is ten times what that
     rule gives (neolite's 9324 MPa obeys it).
 
-    Errors
+    Raises
     ------
     InputError
         Another name.

@@ -6,8 +6,10 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from ..core import Breach, Range, breaches
-from ._hardness import checked_hardness, plain
+from underfoot.core import Breach, Range, breaches
+from underfoot.core.arrays import scalar_or_array
+
+from ._hardness import checked_hardness
 
 NAME = "ruess"
 SOURCE = (
@@ -27,13 +29,13 @@ def youngs_modulus_ruess(shore_a: ArrayLike) -> Any:
 
     ``shore_a`` of any shape, 0 <= S < 100; best from 30 to 60 (``ruess_breaches`` tells).
 
-    Errors
+    Raises
     ------
     RangeError
         Hardness outside 0 to below 100.
     """
     hardness = checked_hardness(shore_a, below=100.0)
-    return plain(1e6 * 10.0 ** (0.0235 * hardness - 0.6403))
+    return scalar_or_array(1e6 * 10.0 ** (0.0235 * hardness - 0.6403))
 
 
 def ruess_breaches(shore_a: ArrayLike) -> list[Breach]:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core import DataError, RangeError
-from ._hardness import plain
+from underfoot.core import DataError, RangeError
+from underfoot.core.arrays import scalar_or_array
 
 GAS_CONSTANT = 8.314462618
 """J/(mol K), CODATA 2018."""
@@ -32,7 +32,7 @@ class WlfShift:
     def log10_shift_factor(self, temperature: ArrayLike) -> Any:
         """Return log10 a_T for temperatures in K, any shape.
 
-        Errors
+        Raises
         ------
         RangeError
             At or below T_ref - C2, where the law has its pole.
@@ -44,11 +44,11 @@ class WlfShift:
                 where="temperature",
                 allowed=f"above {self.reference_temperature - self.c2:g} K, the pole of this WLF",
             )
-        return plain(-self.c1 * away / (self.c2 + away))
+        return scalar_or_array(-self.c1 * away / (self.c2 + away))
 
     def shift_factor(self, temperature: ArrayLike) -> Any:
         """Return a_T: times at T are a_T times those at the reference temperature."""
-        return plain(10.0 ** np.asarray(self.log10_shift_factor(temperature)))
+        return scalar_or_array(10.0 ** np.asarray(self.log10_shift_factor(temperature)))
 
     def __str__(self) -> str:
         return f"WLF C1 {self.c1:.4g}, C2 {self.c2:.4g} K, residual {self.rms:.2g} decades"
@@ -71,11 +71,11 @@ class ArrheniusShift:
                 f"temperature {np.min(t):g} K", where="temperature", allowed="above 0 K"
             )
         factor = self.activation_energy / (GAS_CONSTANT * np.log(10.0))
-        return plain(factor * (1.0 / t - 1.0 / self.reference_temperature))
+        return scalar_or_array(factor * (1.0 / t - 1.0 / self.reference_temperature))
 
     def shift_factor(self, temperature: ArrayLike) -> Any:
         """Return a_T: times at T are a_T times those at the reference temperature."""
-        return plain(10.0 ** np.asarray(self.log10_shift_factor(temperature)))
+        return scalar_or_array(10.0 ** np.asarray(self.log10_shift_factor(temperature)))
 
     def __str__(self) -> str:
         return (
@@ -106,10 +106,10 @@ def fit_wlf(
     grid = np.linspace(np.log(1.0), np.log(3000.0), 200)
     best = int(np.argmin([solved(float(g))[0] for g in grid]))
     bounds = (grid[max(best - 1, 0)], grid[min(best + 1, grid.size - 1)])
-    found: Any = minimize_scalar(
+    optimum: Any = minimize_scalar(
         lambda g: solved(float(g))[0], bounds=bounds, method="bounded", options={"xatol": 1e-10}
     )
-    cost, c1, c2 = solved(float(found.x))
+    cost, c1, c2 = solved(float(optimum.x))
     tested = (float(t.min()), float(t.max()))
     return WlfShift(c1, c2, float(reference_temperature), float(np.sqrt(cost / t.size)), tested)
 

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core import InputError, SourcedValue
+from underfoot.core import InputError, SourcedValue
+
 from .curves import checked_curve
 from .spectrum import RelaxationSpectrum
 from .spectrum_fit import quality
@@ -94,13 +95,13 @@ def fit_single_exponential(time: ArrayLike, modulus: ArrayLike) -> SingleExponen
     cost = np.array([_moduli(t, y, tau)[1] for tau in np.exp(grid)])
     best = int(np.argmin(cost))
     low, high = grid[max(best - 1, 0)], grid[min(best + 1, grid.size - 1)]
-    found: Any = minimize_scalar(
+    optimum: Any = minimize_scalar(
         lambda x: _moduli(t, y, float(np.exp(x)))[1],
         bounds=(low, high),
         method="bounded",
         options={"xatol": 1e-10},
     )
-    tau = float(np.exp(found.x))
+    tau = float(np.exp(optimum.x))
     (einf, drop), rss = _moduli(t, y, tau)
     errors, reason = _errors(t, y, einf, drop, tau, rss)
     model = einf + drop * np.exp(-t / tau)

@@ -8,11 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core import InputError
+from underfoot.core import InputError, display
+from underfoot.core.arrays import scalar_or_array
+from underfoot.core.presentation import Presentable, Table
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class RelaxationSpectrum:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class RelaxationSpectrum(Presentable):
     """Linear viscoelastic Young's modulus E(t) = E_inf + sum E_i exp(-t / tau_i).
 
     Parameters
@@ -31,7 +33,7 @@ class RelaxationSpectrum:
     The same object serves for a shear modulus: then every modulus it returns is one of shear
     (``young_from_shear`` and ``shear_from_young`` convert).
 
-    Errors
+    Raises
     ------
     InputError
         Negative or non-finite moduli or times, arrays of different length, all moduli zero.
@@ -67,6 +69,21 @@ class RelaxationSpectrum:
     def __len__(self) -> int:
         return self.term_moduli.size
 
+    def __repr__(self) -> str:
+        low, high = self.equilibrium_modulus, self.instantaneous_modulus
+        return (
+            f"RelaxationSpectrum({len(self)} terms, {display(low, 'Pa')} at rest to "
+            f"{display(high, 'Pa')} at once, {self.source[:60]!r})"
+        )
+
+    def table(self) -> Table:
+        """Return the terms."""
+        rows: list[tuple[object, float, float]] = [("at rest", np.inf, self.equilibrium_modulus)]
+        terms = zip(self.relaxation_times.tolist(), self.term_moduli.tolist(), strict=True)
+        rows += [(number, time, modulus) for number, (time, modulus) in enumerate(terms, start=1)]
+        columns = ("term", "relaxation time s", "modulus Pa")
+        return Table(f"Relaxation spectrum ({self.source or 'no source'})", columns, rows)
+
     @property
     def instantaneous_modulus(self) -> float:
         """E(0) = E_inf + sum E_i, Pa."""
@@ -80,7 +97,7 @@ class RelaxationSpectrum:
         result = np.full(t.shape, self.equilibrium_modulus)
         for modulus, relaxation_time in zip(self.term_moduli, self.relaxation_times, strict=True):
             result += modulus * np.exp(-t / relaxation_time)
-        return float(result) if result.ndim == 0 else result
+        return scalar_or_array(result)
 
     def complex_modulus(self, angular_frequency: ArrayLike) -> Any:
         """Return E*(w) = E_inf + sum E_i (i w tau_i) / (1 + i w tau_i), Pa, complex.
@@ -120,7 +137,7 @@ class RelaxationSpectrum:
         modulus: Any = np.asarray(self.complex_modulus(angular_frequency))
         with np.errstate(divide="ignore", invalid="ignore"):
             result = modulus.imag / modulus.real
-        return float(result) if result.ndim == 0 else result
+        return scalar_or_array(result)
 
     def scaled(self, factor: float, *, source: str | None = None) -> RelaxationSpectrum:
         """Return the spectrum with every modulus times ``factor`` (> 0)."""

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core import InputError
+from underfoot.core import InputError
+
 from ._kernels import maxwell
 from .curves import checked_curve
 from .spectrum import RelaxationSpectrum
@@ -138,7 +139,7 @@ def fit_relaxation(
 
     Frequencies from 1 / longest to 1 / shortest time are taken as measured.
 
-    Errors
+    Raises
     ------
     DataError
         Times not ascending, values missing, negative or zero, fewer than four points.
@@ -184,7 +185,7 @@ def fit_dynamic(
     storage_modulus, loss_modulus
         Pa, above 0, (n,).
 
-    Errors
+    Raises
     ------
     DataError
         Values missing, negative or zero, fewer than four points.

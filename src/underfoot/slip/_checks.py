@@ -1,42 +1,116 @@
-"""Checks of coefficients of friction."""
+"""Checks of coefficients of friction; the logistic curve and its mean over persons."""
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from abc import abstractmethod
+from typing import Any
 
-from underfoot.core import InputError, RangeError
+import numpy as np
+from numpy.typing import ArrayLike
+
+from underfoot.core import Breach, InputError, Range, RangeError, breaches
+from underfoot.core.arrays import Array, scalar_or_array
+from underfoot.core.presentation import Presentable, Table
 
 LARGEST_ACOF = 5.0
+_HALF_WIDTH = 9.0
+_NODES = 2001
 
 
-def available(acof: ArrayLike) -> NDArray[np.float64]:
+def available(acof: ArrayLike) -> Array:
     """Return available friction as an array; refuse what no sole on a floor can have."""
-    array = np.asarray(acof, dtype=float)
+    return _within(acof, LARGEST_ACOF, "acof")
+
+
+def required(rcof: ArrayLike, where: str = "rcof") -> Array:
+    """Return required friction as an array; refuse what no walking needs."""
+    return _within(rcof, 1.0, where)
+
+
+def deviation(value: ArrayLike, where: str) -> Array:
+    """Return a standard deviation of friction as an array; refuse a negative one."""
+    return _within(value, 1.0, where)
+
+
+def _within(value: ArrayLike, largest: float, where: str) -> Array:
+    array = np.asarray(value, dtype=float)
     if not np.isfinite(array).all():
-        raise InputError("a value is not a finite number", where="acof")
-    if ((array < 0) | (array > LARGEST_ACOF)).any():
+        raise InputError("a value is not a finite number", where=where)
+    if ((array < 0) | (array > largest)).any():
         raise RangeError(
-            f"{array.min():g} to {array.max():g}", where="acof", allowed=f"0 to {LARGEST_ACOF:g}"
+            f"{array.min():g} to {array.max():g}", where=where, allowed=f"0 to {largest:g}"
         )
     return array
 
 
-def required(rcof: ArrayLike, where: str = "rcof") -> NDArray[np.float64]:
-    """Return required friction as an array; refuse what no walking needs."""
-    array = np.asarray(rcof, dtype=float)
-    if not np.isfinite(array).all():
-        raise InputError("a value is not a finite number", where=where)
-    if ((array < 0) | (array > 1)).any():
-        raise RangeError(f"{array.min():g} to {array.max():g}", where=where, allowed="0 to 1")
-    return array
+class PresentableModel(Presentable):
+    """How a slip model presents itself: the probability over ACOF - RCOF."""
+
+    __slots__ = ()
+
+    def table(self) -> Table:
+        """Return the probability of a slip for persons of RCOF 0.2 at ACOF 0 to 0.4."""
+        model: Any = self
+        acof = np.linspace(0.0, 0.4, 17)
+        rows = zip(acof.tolist(), (acof - 0.2).tolist(), model(acof, 0.2).tolist(), strict=True)
+        columns = ("ACOF", "ACOF - RCOF", "probability of a slip")
+        return Table(f"Slip model {model.name} ({model.source})", columns, list(rows))
+
+    def __repr__(self) -> str:
+        model: Any = self
+        return f"{type(self).__name__}({model.source})"[:199]
 
 
-def deviation(value: ArrayLike, where: str) -> NDArray[np.float64]:
-    """Return a standard deviation; refuse a negative one."""
-    array = np.asarray(value, dtype=float)
-    if not np.isfinite(array).all():
-        raise InputError("a value is not a finite number", where=where)
-    if ((array < 0) | (array > 1)).any():
-        raise RangeError(f"{array.min():g} to {array.max():g}", where=where, allowed="0 to 1")
-    return array
+class LogisticModel(PresentableModel):
+    """P = logistic(slope (ACOF - RCOF - x50)); a subclass has ``log_odds_slope`` and x50."""
+
+    __slots__ = ()
+    name: str
+    fifty_percent_at: float
+
+    @property
+    @abstractmethod
+    def log_odds_slope(self) -> float:
+        """Change of the log odds per unit of ACOF - RCOF; negative."""
+
+    @property
+    @abstractmethod
+    def tested(self) -> Range:
+        """ACOF - RCOF of the study."""
+
+    def __call__(self, acof: ArrayLike, rcof: ArrayLike) -> Any:
+        """Return the probability of a slip for persons of known RCOF (arrays broadcast)."""
+        return scalar_or_array(logistic(self._log_odds(available(acof), required(rcof))))
+
+    def population(self, acof: ArrayLike, rcof_mean: ArrayLike, rcof_sd: ArrayLike) -> Any:
+        """Return the mean probability over RCOF ~ normal(mean, sd) (arrays broadcast)."""
+        a, mean, sd = np.broadcast_arrays(
+            available(acof), required(rcof_mean, "rcof_mean"), deviation(rcof_sd, "rcof_sd")
+        )
+        spread = -self.log_odds_slope * sd
+        return scalar_or_array(normal_mean_of_logistic(self._log_odds(a, mean), spread))
+
+    def breaches(self, acof: ArrayLike, rcof: ArrayLike) -> list[Breach]:
+        """Return whether ACOF - RCOF leaves that of the study (``tested``)."""
+        difference = np.asarray(acof, dtype=float) - np.asarray(rcof, dtype=float)
+        return breaches(self.name, {"ACOF - RCOF": self.tested}, {"ACOF - RCOF": difference})
+
+    def _log_odds(self, acof: Any, rcof: Any) -> Any:
+        return self.log_odds_slope * (acof - rcof - self.fifty_percent_at)
+
+
+def logistic(log_odds: Array) -> Array:
+    """Return 1 / (1 + exp(-log_odds)) without overflow."""
+    return 0.5 * (1.0 + np.tanh(0.5 * log_odds))
+
+
+def normal_mean_of_logistic(mean: Array, deviation: Array) -> Array:
+    """Return the mean of ``logistic`` over normally distributed log odds.
+
+    Trapezoidal rule over nine standard deviations, which converges exponentially for smooth,
+    decaying integrands; with deviations of up to 100 log odds it is exact to 1e-10.
+    """
+    z = np.linspace(-_HALF_WIDTH, _HALF_WIDTH, _NODES)
+    weight = np.exp(-0.5 * z**2)
+    weight /= weight.sum()
+    return logistic(mean[..., None] + deviation[..., None] * z) @ weight

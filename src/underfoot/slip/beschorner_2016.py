@@ -4,15 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
 
-import numpy as np
-from numpy.typing import ArrayLike
+from underfoot.core import InputError, Range
 
-from underfoot.core import Breach, InputError, Range, breaches
-
-from ._checks import available, deviation, required
-from ._logistic import logistic, normal_mean_of_logistic
+from ._checks import LogisticModel
 from .report_g6 import FIFTY_PERCENT_AT
 
 SOURCE = (
@@ -25,8 +20,8 @@ RISKS = (0.03, 0.95)
 """Predicted risks of the subjects with the lowest and the highest RCOF."""
 
 
-@dataclass(frozen=True, slots=True)
-class Beschorner2016:
+@dataclass(frozen=True, slots=True, repr=False)
+class Beschorner2016(LogisticModel):
     """P = 1 / (1 + exp(-s (RCOF - ACOF + x50))), s = ln(1.7) / 0.01 = 53.1 per unit of RCOF.
 
     The study gives how the odds grow with RCOF (31 subjects), without ACOF and without the RCOF
@@ -64,30 +59,22 @@ class Beschorner2016:
         """Change of the log odds per unit of RCOF."""
         return math.log(self.odds_ratio) / 0.01
 
-    def __call__(self, acof: ArrayLike, rcof: ArrayLike) -> Any:
-        """Return the probability of a slip for persons of known RCOF (arrays broadcast)."""
-        found = logistic(self._log_odds(available(acof), required(rcof)))
-        return float(found) if np.ndim(found) == 0 else found
+    @property
+    def log_odds_slope(self) -> float:
+        """Change of the log odds per unit of ACOF - RCOF."""
+        return -self.slope
 
-    def population(self, acof: ArrayLike, rcof_mean: ArrayLike, rcof_sd: ArrayLike) -> Any:
-        """Return the mean probability over RCOF ~ normal(mean, sd) (arrays broadcast)."""
-        a, mean, sd = np.broadcast_arrays(
-            available(acof), required(rcof_mean, "rcof_mean"), deviation(rcof_sd, "rcof_sd")
-        )
-        found = normal_mean_of_logistic(self._log_odds(a, mean), self.slope * sd)
-        return float(found) if np.ndim(found) == 0 else found
+    @property
+    def tested(self) -> Range:
+        """ACOF - RCOF at which the predicted risk is that of the study's subjects, 3 to 95 %.
 
-    def breaches(self, acof: ArrayLike, rcof: ArrayLike) -> list[Breach]:
-        """Return whether the predicted risk leaves that of the study's subjects (3 to 95 %)."""
-        low, high = (math.log(risk / (1 - risk)) / self.slope for risk in RISKS)
-        tested = Range(
-            -high + self.fifty_percent_at,
-            -low + self.fifty_percent_at,
+        A risk P belongs to ACOF - RCOF = x50 - ln(P / (1 - P)) / slope: the highest risk to the
+        lowest difference.
+        """
+        lowest, highest = (math.log(risk / (1 - risk)) / self.slope for risk in RISKS)
+        return Range(
+            self.fifty_percent_at - highest,
+            self.fifty_percent_at - lowest,
             "1",
             f"{SOURCE}: predicted risks of 95 % and 3 %",
         )
-        difference = np.asarray(acof, dtype=float) - np.asarray(rcof, dtype=float)
-        return breaches(self.name, {"ACOF - RCOF": tested}, {"ACOF - RCOF": difference})
-
-    def _log_odds(self, acof: Any, rcof: Any) -> Any:
-        return self.slope * (rcof - acof + self.fifty_percent_at)

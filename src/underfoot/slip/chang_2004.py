@@ -7,18 +7,21 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.special import ndtr
 
 from underfoot.core import Breach
+from underfoot.core.arrays import scalar_or_array
 
-from ._checks import available, deviation, required
+from ._checks import PresentableModel, available, deviation, required
 
-SOURCE = "Chang, A statistical model to estimate the probability of slip and fall incidents, " + (
+SOURCE = (
+    "Chang, A statistical model to estimate the probability of slip and fall incidents, "
     "Safety Science 42 (2004) 779-789"
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Chang2004:
+@dataclass(frozen=True, slots=True, repr=False)
+class Chang2004(PresentableModel):
     """P = Phi((mean RCOF - ACOF) / sd of RCOF): required against available friction, no curve.
 
     A person of known RCOF slips if RCOF > ACOF (probability 1/2 if equal). With a normally
@@ -34,19 +37,17 @@ class Chang2004:
 
     def __call__(self, acof: ArrayLike, rcof: ArrayLike) -> Any:
         """Return 0, 1/2 or 1 for persons of known RCOF (arrays broadcast)."""
-        found = np.heaviside(required(rcof) - available(acof), 0.5)
-        return float(found) if np.ndim(found) == 0 else found
+        return scalar_or_array(np.heaviside(required(rcof) - available(acof), 0.5))
 
     def population(self, acof: ArrayLike, rcof_mean: ArrayLike, rcof_sd: ArrayLike) -> Any:
         """Return Phi((mean - ACOF) / sd) (arrays broadcast)."""
-        from scipy.special import ndtr
-
         a, mean, sd = np.broadcast_arrays(
             available(acof), required(rcof_mean, "rcof_mean"), deviation(rcof_sd, "rcof_sd")
         )
         spread = np.where(sd > 0, sd, 1.0)
-        found = np.where(sd > 0, ndtr((mean - a) / spread), np.heaviside(mean - a, 0.5))
-        return float(found) if np.ndim(found) == 0 else found
+        return scalar_or_array(
+            np.where(sd > 0, ndtr((mean - a) / spread), np.heaviside(mean - a, 0.5))
+        )
 
     def breaches(self, acof: ArrayLike, rcof: ArrayLike) -> list[Breach]:
         """Return nothing: the model was held against no study."""

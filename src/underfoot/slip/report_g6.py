@@ -4,15 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
 
-import numpy as np
-from numpy.typing import ArrayLike
+from underfoot.core import InputError, Range
 
-from underfoot.core import Breach, InputError, Range, breaches
-
-from ._checks import available, deviation, required
-from ._logistic import logistic, normal_mean_of_logistic
+from ._checks import LogisticModel
 
 SOURCE = "final progress report on shoe-floor friction, G.6.2 and G.6.3"
 SLOPE = -49.2
@@ -22,8 +17,8 @@ TESTED = Range(-0.111, 0.044, "1", f"{SOURCE}: predicted risks of 92.5 % and 0.6
 (computed with the published slope and 50 % point)."""
 
 
-@dataclass(frozen=True, slots=True)
-class ReportG6:
+@dataclass(frozen=True, slots=True, repr=False)
+class ReportG6(LogisticModel):
     """P = 1 / (1 + exp(-slope (ACOF - RCOF - x50))), slope -49.2, x50 -0.06.
 
     From unexpected slips of 29 young adults on vinyl with 50 % glycerol, three outsoles of one
@@ -57,23 +52,12 @@ class ReportG6:
         if not math.isfinite(self.fifty_percent_at):
             raise InputError("is not finite", where="fifty_percent_at")
 
-    def __call__(self, acof: ArrayLike, rcof: ArrayLike) -> Any:
-        """Return the probability of a slip for persons of known RCOF (arrays broadcast)."""
-        found = logistic(self._log_odds(available(acof), required(rcof)))
-        return float(found) if np.ndim(found) == 0 else found
+    @property
+    def log_odds_slope(self) -> float:
+        """Change of the log odds per unit of ACOF - RCOF."""
+        return self.slope
 
-    def population(self, acof: ArrayLike, rcof_mean: ArrayLike, rcof_sd: ArrayLike) -> Any:
-        """Return the mean probability over RCOF ~ normal(mean, sd) (arrays broadcast)."""
-        a, mean, sd = np.broadcast_arrays(
-            available(acof), required(rcof_mean, "rcof_mean"), deviation(rcof_sd, "rcof_sd")
-        )
-        found = normal_mean_of_logistic(self._log_odds(a, mean), -self.slope * sd)
-        return float(found) if np.ndim(found) == 0 else found
-
-    def breaches(self, acof: ArrayLike, rcof: ArrayLike) -> list[Breach]:
-        """Return whether ACOF - RCOF leaves that of the study."""
-        difference = np.asarray(acof, dtype=float) - np.asarray(rcof, dtype=float)
-        return breaches(self.name, {"ACOF - RCOF": TESTED}, {"ACOF - RCOF": difference})
-
-    def _log_odds(self, acof: Any, rcof: Any) -> Any:
-        return self.slope * (acof - rcof - self.fifty_percent_at)
+    @property
+    def tested(self) -> Range:
+        """ACOF - RCOF of the pairs of subject and outsole in the study."""
+        return TESTED

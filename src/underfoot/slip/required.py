@@ -15,7 +15,7 @@ _SOURCE = (
 
 
 @dataclass(frozen=True, slots=True)
-class RequiredFriction:
+class RcofPopulation:
     """Normally distributed RCOF of the persons concerned.
 
     Normal fits the RCOF of single feet in 85.5 % of cases (Chang et al. 2012, 50 walkers).
@@ -44,5 +44,5 @@ class RequiredFriction:
             )
 
 
-ADULTS_LEVEL_WALKING = RequiredFriction(mean=0.20, sd=0.03, source=_SOURCE, assumed=True)
+ADULTS_LEVEL_WALKING = RcofPopulation(mean=0.20, sd=0.03, source=_SOURCE, assumed=True)
 """Adults on level floor, rounded: see docs/physics/slip_probability.md."""

@@ -1,15 +1,36 @@
 """Published studies run again: our numbers beside the printed ones, with a verdict for each."""
 
-from .registry import STUDIES, Study, study
-from .verdict import ComparedLine, Erratum, Verdict, compared_range, compared_sign
+from .figure import Figure, Layer, Panel
+from .runner import Computed, Options, StudyResult, Table, run_all, run_study
+from .statements import STUDIES, Claim, Kind, Statement, Study, read_study, study
+from .summary import headline, read_results, summary_markdown, write_summary
+from .verdict import Judgement, Quantity, Verdict, counts, judge, judged
 
 __all__ = [
     "STUDIES",
-    "ComparedLine",
-    "Erratum",
+    "Claim",
+    "Computed",
+    "Figure",
+    "Judgement",
+    "Kind",
+    "Layer",
+    "Options",
+    "Panel",
+    "Quantity",
+    "Statement",
     "Study",
+    "StudyResult",
+    "Table",
     "Verdict",
-    "compared_range",
-    "compared_sign",
+    "counts",
+    "headline",
+    "judge",
+    "judged",
+    "read_results",
+    "read_study",
+    "run_all",
+    "run_study",
     "study",
+    "summary_markdown",
+    "write_summary",
 ]

@@ -1,94 +1,118 @@
-"""Grant report G.3: adhesion left under fluids in boundary lubrication (Eq. 26, Table 5)."""
+"""Report G.3: adhesion left under fluids in boundary lubrication (Eq. 26, Table 5)."""
 
 from __future__ import annotations
 
-import time
-from collections.abc import Mapping
-
 import numpy as np
 
-from underfoot.core import Progress, silent
 from underfoot.core.catalogue import Catalogue
+from underfoot.fluid import BLOCKING
+from underfoot.friction import self_affine_scale
+from underfoot.friction.asperity_ehl import STYLUS_RESOLUTION
+from underfoot.material import youngs_modulus_gent
 
-from .pin_study import PinLine, PinStudy, PinTable
-from .verdict import Erratum, Verdict
+from .figure import Figure, Panel, grouped_bars, names_as_ticks
+from .runner import Computed, Options, Table
+from .verdict import Quantity
 
-RANGES = {
-    "polyurethane": "lubricated_adhesion_polyurethane",
-    "hard rubber": "lubricated_adhesion_hard_rubber",
-    "soft rubber": "lubricated_adhesion_soft_rubber",
-}
 SOLES = {
     "polyurethane": "polyurethane_40a",
     "soft rubber": "rubber_60a",
     "hard rubber": "rubber_70a",
 }
 FLOORS = {"vinyl": "vinyl_g3", "marble": "marble_g3"}
-RQ_PER_RA = np.sqrt(np.pi / 2)
-ERRATA = (Erratum("G.3.1, tiles", "35 mm thick", "not used", "vinyl tiles are about 3.5 mm thick"),)
-NOTES = (
-    "dry adhesion and hysteresis are shown in figures only; they are not read off",
-    "for each sole the dry adhesion that brings Eq. 26 nearest to its printed range is looked for: "
-    "the best the model can do, so an error above 1.05 N can't be blamed on the dry adhesion",
-    "the printed ranges are of means over both floors, the model's errors of single tests",
-    "Rq is taken as 1.25 Ra (Gaussian heights), modulus from Shore A by Gent, Hurst exponent 0.8, "
-    "waves from 0.8 mm down to 2.5 um",
-)
+RQ_PER_RA = float(np.sqrt(np.pi / 2))
+CONTACT_PRESSURE = 266.1e3
 
 
-def run(*, progress: Progress = silent) -> PinStudy:
-    """Return Eq. 26 held against the printed ranges, and real contact area against the order."""
-    from underfoot.fluid import BLOCKING
-
-    started = time.perf_counter()
+def compute(options: Options) -> Computed:
+    """Return Eq. 26 at its best beside the printed ranges, and real contact area of the pairs."""
     catalogue = Catalogue.load()
     published = catalogue.entry("published", "boundary_g3")
-    mean_error = published.sourced("mean_error", "N").value
-    assert mean_error is not None
-    ranges = {name: published.numbers(path, "N") for name, path in RANGES.items()}
-    fitted = {name: _nearest((found[0], found[1])) for name, found in ranges.items()}
-    progress("contact area", 0.5, None)
-    area = _contact_area(catalogue)
-    table5 = PinTable(
-        "eq26",
-        "Adhesion left under each fluid by Eq. 26, N at 20.9 N, at the dry adhesion that fits best",
-        ("fluid", *(f"{name} ({fitted[name][0]:.1f} N dry)" for name in RANGES)),
-        tuple(
-            (fluid, *(float(b.lubricated_adhesion(fitted[name][0])) for name in RANGES))
-            for fluid, b in BLOCKING.items()
+    left: dict[str, np.ndarray] = {}
+    quantities: dict[str, Quantity] = {}
+    dry: dict[str, float] = {}
+    for sole in SOLES:
+        name = sole.replace(" ", "_")
+        low, high = published.numbers(f"lubricated_adhesion_{name}", "N")
+        dry[sole] = nearest_dry_adhesion(low, high)
+        left[sole] = np.array([float(b.lubricated_adhesion(dry[sole])) for b in BLOCKING.values()])
+        quantities[f"eq26.{name}.lowest"] = Quantity.of(left[sole].min(), "N")
+        quantities[f"eq26.{name}.highest"] = Quantity.of(left[sole].max(), "N")
+    options.progress("contact area", 0.5)
+    area = contact_areas(catalogue)
+    by_sole = [float(np.mean([area[sole, floor] for floor in FLOORS])) for sole in SOLES]
+    quantities["contact_area"] = Quantity.of(by_sole, names=tuple(SOLES))
+    alpha = {fluid: float(blocking.alpha) for fluid, blocking in BLOCKING.items()}
+    beta = {fluid: float(blocking.beta) for fluid, blocking in BLOCKING.items()}
+    rest = [value for name, value in alpha.items() if name not in ("water", "canola oil")]
+    # the middle of an order that names both ends only: nearest to being out of it
+    ends = (alpha["water"] - max(rest), min(rest) - alpha["canola oil"])
+    middle = max(rest) if ends[0] < ends[1] else min(rest)
+    quantities["alpha"] = Quantity.of(
+        [alpha["water"], middle, alpha["canola oil"]], names=("water", "other fluids", "canola oil")
+    )
+    quantities["beta"] = Quantity.of(
+        [
+            min(value for name, value in beta.items() if name.startswith("glycerol")),
+            max(value for name, value in beta.items() if not name.startswith("glycerol")),
+        ],
+        names=("glycerols", "other fluids"),
+    )
+    return Computed(
+        quantities,
+        (
+            Table(
+                "eq26",
+                "Adhesion left under each fluid by Eq. 26, N at 20.9 N, at the dry adhesion that "
+                "fits best",
+                ("fluid", *(f"{sole} ({dry[sole]:.1f} N dry)" for sole in SOLES)),
+                tuple(
+                    (fluid, *(float(left[sole][i]) for sole in SOLES))
+                    for i, fluid in enumerate(BLOCKING)
+                ),
+            ),
+            Table(
+                "contact_area",
+                "Share of real contact at 266.1 kPa (Persson 2001), which times one shear strength "
+                "would be the dry adhesion",
+                ("sole", *FLOORS),
+                tuple((sole, *(area[sole, floor] for floor in FLOORS)) for sole in SOLES),
+            ),
+        ),
+        {
+            "fig22_contact_area": _bars(
+                {floor: [area[sole, floor] for sole in SOLES] for floor in FLOORS},
+                [*SOLES],
+                "real over apparent contact",
+                "Fig. 22: in its place the share of real contact",
+            ),
+            "fig24_adhesion": _bars(
+                {sole: left[sole].tolist() for sole in SOLES},
+                [fluid.replace("_", " ") for fluid in BLOCKING],
+                "adhesion (N)",
+                "Fig. 24: adhesion left under each fluid by Eq. 26",
+            ),
+        },
+        (
+            f"Eq. 26 with Table 5 leaves at least {alpha['water']:.2f} N under water and "
+            f"{alpha['canola oil']:.2f} N under canola oil on every pair, whatever the dry "
+            "adhesion: alpha and beta are means over soles that behave differently (R2 0.49).",
+            "Its use is a fluid's rank and a rough size; for one pair, measured friction goes "
+            "first.",
         ),
     )
-    areas = PinTable(
-        "contact_area",
-        "Share of real contact at 266.1 kPa (Persson 2001), which times one shear strength would "
-        "be the dry adhesion",
-        ("sole", *FLOORS),
-        tuple((sole, *(area[sole, floor] for floor in FLOORS)) for sole in SOLES),
-    )
-    progress("done", 1.0, None)
-    return PinStudy(
-        "g3", _lines(ranges, fitted, mean_error, area), (table5, areas),
-        _conclusions(fitted, mean_error), ERRATA, NOTES, time.perf_counter() - started,
-    )  # fmt: skip
 
 
-def _nearest(printed: tuple[float, float]) -> tuple[float, float, tuple[float, float]]:
-    """Return (dry adhesion, largest error of the ends, range) of Eq. 26 nearest to a range, N."""
-    from underfoot.fluid import BLOCKING
-
+def nearest_dry_adhesion(lowest: float, highest: float) -> float:
+    """Return the dry adhesion (N) at which Eq. 26 over six fluids comes nearest to a range (N)."""
     dry = np.linspace(0.0, 30.0, 3001)
     left = np.array([b.lubricated_adhesion(dry) for b in BLOCKING.values()])
-    low, high = left.min(axis=0), left.max(axis=0)
-    error = np.maximum(np.abs(low - printed[0]), np.abs(high - printed[1]))
-    best = int(np.argmin(error))
-    return float(dry[best]), float(error[best]), (float(low[best]), float(high[best]))
+    error = np.maximum(np.abs(left.min(axis=0) - lowest), np.abs(left.max(axis=0) - highest))
+    return float(dry[int(np.argmin(error))])
 
 
-def _contact_area(catalogue: Catalogue) -> dict[tuple[str, str], float]:
-    from underfoot.friction import self_affine_scale
-    from underfoot.friction.asperity_ehl import STYLUS_RESOLUTION
-    from underfoot.material import youngs_modulus_gent
-
+def contact_areas(catalogue: Catalogue) -> dict[tuple[str, str], float]:
+    """Return the share of real contact of each sole on each floor."""
     found = {}
     for sole, entry_name in SOLES.items():
         entry = catalogue.entry("material", entry_name)
@@ -97,82 +121,12 @@ def _contact_area(catalogue: Catalogue) -> dict[tuple[str, str], float]:
             other = catalogue.entry("floor", floor_name)
             ra = [e.sourced("roughness.ra", "m").value or 0.0 for e in (entry, other)]
             scale = self_affine_scale(
-                STYLUS_RESOLUTION, rq=float(RQ_PER_RA * np.hypot(ra[0], ra[1])), longest_wave=0.8e-3
+                STYLUS_RESOLUTION, rq=RQ_PER_RA * float(np.hypot(ra[0], ra[1])), longest_wave=0.8e-3
             )
-            found[sole, floor] = float(scale.contact_fraction(266.1e3 / modulus))
+            found[sole, floor] = float(scale.contact_fraction(CONTACT_PRESSURE / modulus))
     return found
 
 
-def _lines(
-    ranges: Mapping[str, tuple[float, ...]],
-    fitted: Mapping[str, tuple[float, float, tuple[float, float]]],
-    mean_error: float,
-    area: Mapping[tuple[str, str], float],
-) -> tuple[PinLine, ...]:
-    from underfoot.fluid import BLOCKING
-
-    lines = []
-    for name, printed in ranges.items():
-        dry, error, ours = fitted[name]
-        lines.append(
-            PinLine(
-                f"adhesion over six fluids, {name}", "G.3.2",
-                f"{printed[0]:.2f} to {printed[1]:.2f} N", f"{ours[0]:.2f} to {ours[1]:.2f} N",
-                Verdict.WITHIN_SCATTER if error <= mean_error else Verdict.DISAGREES,
-                f"best dry adhesion {dry:.1f} N; off by {error:.2f} N, the report's own mean "
-                f"error is {mean_error:.2f} N",
-            )
-        )  # fmt: skip
-    alpha = {fluid: blocking.alpha for fluid, blocking in BLOCKING.items()}
-    beta = {fluid: blocking.beta for fluid, blocking in BLOCKING.items()}
-    highest, lowest = max(alpha, key=alpha.__getitem__), min(alpha, key=alpha.__getitem__)
-    lines.append(
-        PinLine(
-            "adhesion blocked least and most", "G.3.2", "least in water, most in canola oil",
-            f"alpha highest in {highest}, lowest in {lowest}",
-            Verdict.REPRODUCED if (highest, lowest) == ("water", "canola oil")
-            else Verdict.DISAGREES,
-            "Table 5",
-        )
-    )  # fmt: skip
-    glycerols = [value for fluid, value in beta.items() if fluid.startswith("glycerol")]
-    rest = [value for fluid, value in beta.items() if not fluid.startswith("glycerol")]
-    lines.append(
-        PinLine(
-            "dependence on dry adhesion", "G.3.2", "highest among the glycerols",
-            f"beta {min(glycerols):.3f} to {max(glycerols):.3f}, others at most {max(rest):.3f}",
-            Verdict.REPRODUCED if min(glycerols) > max(rest) else Verdict.DISAGREES, "Table 5",
-        )
-    )  # fmt: skip
-    mean = {sole: np.mean([area[sole, floor] for floor in FLOORS]) for sole in SOLES}
-    order = sorted(mean, key=mean.__getitem__, reverse=True)
-    agrees = order[0] == "hard rubber" and order[-1] == "polyurethane"
-    lines.append(
-        PinLine(
-            "dry adhesion: order of the soles", "G.3.2", "hard rubber highest, polyurethane lowest",
-            "real contact area: " + " > ".join(order),
-            Verdict.REPRODUCED if agrees else Verdict.DISAGREES,
-            "shear strength times area with one strength for all soles does not hold: the harder "
-            "rubber is smoother, but not by enough; strength must differ with the compound",
-        )
-    )  # fmt: skip
-    lines.append(
-        PinLine(
-            "R2 of Eq. 26; dry adhesion and hysteresis by pair", "Fig. 22, 23, Table 5", "0.49",
-            "-", Verdict.NOT_AVAILABLE, "the readings are shown in figures only",
-        )
-    )  # fmt: skip
-    return tuple(lines)
-
-
-def _conclusions(
-    fitted: Mapping[str, tuple[float, float, tuple[float, float]]], mean_error: float
-) -> tuple[str, ...]:
-    beyond = [name for name, (_, error, _) in fitted.items() if error > mean_error]
-    return (
-        "Eq. 26 with Table 5 leaves at least 4.33 N under water and 1.76 N under canola oil on "
-        f"every pair. The printed ranges of {' and '.join(beyond) or 'no sole'} lie further off "
-        f"than the report's mean error of {mean_error:.2f} N whatever the dry adhesion: alpha and "
-        "beta are means over soles that behave differently (R2 0.49).",
-        "Its use is a fluid's rank and a rough size; for one pair, measured friction goes first.",
-    )
+def _bars(groups: dict[str, list[float]], names: list[str], label: str, title: str) -> Figure:
+    panel = Panel(grouped_bars(groups), y_label=label, x_ticks=names_as_ticks(names))
+    return Figure((panel,), title, size=(8.2, 4.2))

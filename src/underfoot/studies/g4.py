@@ -1,175 +1,643 @@
-"""Grant report G.4: fluid pressure under six shoes in two fluids on the slip tester."""
+"""Report G.4: fluid pressure under six shoes in two fluids on the slip tester."""
 
 from __future__ import annotations
 
-import time
+import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
 
-from underfoot.core import Progress, silent
+import numpy as np
+from numpy.typing import NDArray
 
-from .g4_conditions import (
-    DepthRow,
-    Reading,
-    at_lower_force,
-    conditions,
-    depth_series,
-    reading,
-    sensitivities,
+from underfoot.case import Case
+from underfoot.compute.run import run
+from underfoot.core import ConvergenceError, Progress, display, silent
+from underfoot.core.catalogue import Catalogue
+from underfoot.questions.outcomes import Outcome, outcomes
+from underfoot.questions.sampled import sampled
+from underfoot.questions.sensitivity import OpenInput, Sensitivity, open_inputs, sensitivity
+from underfoot.trials.statistics import analysis_of_variance
+
+from .figure import (
+    OURS,
+    PRINTED,
+    SECOND,
+    Figure,
+    Layer,
+    Panel,
+    line,
+    names_as_ticks,
+    numbers,
+    points,
 )
-from .g4_judged import Judged, judged
-from .g4_lines import all_lines, threshold
-from .g4_tables import conditions_table, depth_table, inputs_table, lower_table
-from .study_result import StudyResult
-from .verdict import Erratum
+from .runner import Computed, Options, Table, part
+from .verdict import Quantity
 
-if TYPE_CHECKING:
-    from underfoot.assess.sensitivity import Sensitivity
-
+KINDS = ("work", "athletic")
+TREADS = ("untreaded", "half_tread", "full_tread")
+FLUIDS = {"glycerol": "glycerol_90pct", "detergent": "detergent"}
+FLOOR, SETUP = "vinyl_g4", "slip_tester_g4"
+FINER = 0.7
+"""Spacing of the finest grid over the default one."""
+SMALL = 5.0
+"""N: what the report calls negligible."""
+LOWER_FORCE, LOWER_FORCE_ABOVE = 250.0, 0.11
+"""N, and the COF above which the tester of the report pressed with no more (G.4.1)."""
 DEPTHS = (0.0, 0.1e-3, 0.2e-3, 0.3e-3, 0.5e-3, 0.8e-3, 1.5e-3, 2.0e-3, 3.0e-3)
 QUICK_DEPTHS = (0.0, 0.3e-3, 0.8e-3, 1.5e-3, 3.0e-3)
-ERRATA = (
-    Erratum("G.4.2, first sentence", "untreated shoes", "untreaded shoes", "no shoe was treated"),
-    Erratum(
-        "G.4.2, last sentence", "medium or full tread", "half or full tread",
-        "Table 6 and Fig. 28 know half tread only",
-    ),
-    Erratum(
-        "G.4.2, p < 0.01", "three terms of an analysis of variance", "the signs and sizes",
-        "the twelve printed loads alone do not give these p; what was repeated is not said",
-    ),
-)  # fmt: skip
-ASSUMPTIONS = (
-    "One heel for all six shoes (slip_tester_heel): 75 x 70 mm, rear radius 33 mm, ground flat at "
-    "10 degrees over the rear 30 mm, edges rounded by 2 mm, 25 mm of one rubber on a stiff last. "
-    "The report prints no shape.",
-    "Plan form: a last's heel is about a quarter of its length, the heel of a men's size 9 65 to "
-    "75 mm wide inside. It was 60 x 60 mm before; loads and peaks of both were computed.",
-    "Lugs of 5 mm in a grid (those of G.5); arc channel of the untreaded athletic shoe 4 mm wide, "
-    "1 mm deep, 20 mm from the back: not printed.",
-    "interface.roughness_beyond_cutoff = 2: chosen on one reading, the untreaded work shoe in "
-    "glycerol, with an earlier compliance and heel, and not changed since. The stylus sees no "
-    "waves beyond 0.8 mm.",
-    "Rq 1.25 Ra, modulus from Shore A (Gent), starting film 50 um, load at 30 ms, read at 120 ms.",
-    "Inlet of 10 mm: a pocket of one pressure that does not change the film.",
-    "Nothing is set for one condition alone.",
+DECIDING = (
+    "shoe.heel.facet_angle",
+    "interface.roughness_beyond_cutoff",
+    "motion.start_film",
+    "shoe.tread.lug_width",
 )
+"""Open inputs that are varied under treaded shoes: the others move readings near 0 by less."""
+LOAD, TRUE_LOAD, PEAK = "fluid_load_sensor", "fluid_load", "peak_fluid_pressure_sensor"
+LEAST = {LOAD: 0.01, TRUE_LOAD: 0.01, PEAK: 100.0}
+"""N, Pa: smaller readings are none."""
+
+Array = NDArray[np.float64]
 
 
-def run(
-    *, quick: bool = False, processes: int | None = None, progress: Progress = silent
-) -> StudyResult:
-    """Return the twelve conditions beside the report, with bands from what it leaves open.
+@dataclass(frozen=True)
+class Condition:
+    """One shoe in one fluid."""
 
-    Parameters
-    ----------
-    quick
-        The quick grid, no bands under treaded shoes, fewer depths.
-    processes
-        For the variants behind the bands; None takes the cores, at most 4.
-    progress
-        Sees every condition; variants are kept on disk, so that a run stopped early goes on.
+    kind: str
+    tread: str
+    fluid: str
+
+    @property
+    def path(self) -> str:
+        """Beginning of the names of its quantities."""
+        return f"{self.kind}.{self.tread}.{self.fluid}"
+
+    @property
+    def name(self) -> str:
+        """As a reader sees it."""
+        return f"{self.kind}, {self.tread.replace('_', ' ')}, {self.fluid}"
+
+    @property
+    def untreaded(self) -> bool:
+        """Whether the tread is ground off."""
+        return self.tread == "untreaded"
+
+    @cached_property
+    def case(self) -> Case:
+        """The case: catalogue entries only, nothing set for this condition alone."""
+        return Case.from_mapping(
+            {
+                "file_version": 1,
+                "name": self.name,
+                "shoe": {"from": f"{self.kind}_shoe_{self.tread}"},
+                "floor": {"from": FLOOR},
+                "contaminant": {"from": FLUIDS[self.fluid]},
+                "motion": {"from": SETUP},
+                "sensor": {"from": SETUP},
+            }
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reading:
+    """What one condition gave on grids from coarse to fine, and the finest one's map.
+
+    ``x``, ``y`` and ``pressure`` (len(x), len(y)) in m and Pa as the tracks in the middle position
+    see them, ``outline`` (n, 2) of the plan form; ``draws`` of each number over the open inputs.
     """
-    started, process = time.perf_counter(), time.process_time()
-    readings: list[Reading] = []
+
+    condition: Condition
+    levels: tuple[tuple[float, Outcome], ...]
+    x: Array
+    y: Array
+    pressure: Array
+    outline: Array
+    draws: Mapping[str, Array]
+
+    @property
+    def outcome(self) -> Outcome:
+        """On the finest grid."""
+        return self.levels[-1][1]
+
+    @property
+    def place(self) -> tuple[float, float]:
+        """Where the highest reading lies: from the back of the heel, and left of the middle, m."""
+        top = np.unravel_index(int(self.pressure.argmax()), self.pressure.shape)
+        return float(self.x[top[0]]), float(self.y[top[1]])
+
+    def number(self, name: str) -> float:
+        """Return a scalar of the finest grid in SI."""
+        return self.outcome.number(name)
+
+    def band(self, name: str) -> tuple[float | None, float | None]:
+        """Return the central 95 % of the draws, which holds the value itself."""
+        if name not in self.draws:
+            return None, None
+        low, high = np.percentile(self.draws[name], [2.5, 97.5])
+        return min(float(low), self.number(name)), max(float(high), self.number(name))
+
+    def quantity(self, name: str, unit: str) -> Quantity:
+        """Return a scalar with its grids and its distribution over the open inputs."""
+        levels = [(spacing, outcome.number(name)) for spacing, outcome in self.levels]
+        return Quantity.of(self.number(name), unit, draws=self.draws.get(name), levels=levels)
+
+
+def conditions() -> list[Condition]:
+    """Return the twelve: work and athletic shoe, three depths of tread, two fluids."""
+    return [Condition(kind, t, fluid) for kind in KINDS for t in TREADS for fluid in FLUIDS]
+
+
+def compute(options: Options) -> Computed:
+    """Return the twelve conditions on three grids, with bands from what the report leaves open.
+
+    ``quick``: the coarse grid alone, no bands under treaded shoes, fewer depths. Variants are kept
+    on disk, so that a run stopped early goes on.
+    """
     plan = conditions()
-    for number, one in enumerate(plan):
-        progress(one.name, 0.3 * number / len(plan))
-        readings.append(reading(one, quick=quick))
-
-    def later(stage: str, fraction: float, residual: float | None = None) -> None:
-        progress(stage, 0.3 + 0.6 * fraction, residual)
-
     varied, lost = sensitivities(
-        [one for one in plan if one.untreaded or not quick], processes=processes, progress=later
+        [one for one in plan if one.untreaded or not options.quick],
+        processes=options.processes,
+        progress=part(options.progress, 0.0, 0.5),
     )
-    progress("Tread depth and lower force", 0.9)
-    depths = depth_series(QUICK_DEPTHS if quick else DEPTHS, processes=processes)
-    lower = at_lower_force(readings, processes=processes)
-    numerics = plan[0].case.numerics
-    refinement = 1.0 if quick else numerics.quick_grid_spacing / numerics.grid_spacing
-    results = [
-        judged(one, varied.get(one.condition.name), refinement=refinement) for one in readings
+    readings = []
+    for number, one in enumerate(plan):
+        options.progress(one.name, 0.5 + 0.35 * number / len(plan))
+        readings.append(reading(one, varied.get(one.name), quick=options.quick))
+    options.progress("Tread depth and lower force", 0.9)
+    depths = depth_series(QUICK_DEPTHS if options.quick else DEPTHS, processes=options.processes)
+    lower = at_lower_force(readings, processes=options.processes)
+    by = {one.condition.path: one for one in readings}
+    untreaded = [by[f"{kind}.untreaded.glycerol"] for kind in KINDS]
+    drawn = {"fig29_maps": map_figure(untreaded), "fig30_loads": load_figure(readings)}
+    drawn["tread_depth"] = depth_figure(depths)
+    tables = [conditions_table(readings), lower_table(readings, lower), depth_table(depths)]
+    for one in untreaded:
+        found = varied[one.condition.name]
+        tables.append(inputs_table(one.condition, found))
+        drawn[f"open_inputs_{one.condition.kind}"] = inputs_figure(one.condition, found)
+    return Computed(
+        quantities(by, depths),
+        tuple(tables),
+        drawn,
+        conclusions(readings, varied, depths),
+        tuple(f"Not computed, not in a band: {each}." for each in lost),
+    )
+
+
+def reading(condition: Condition, varied: Sensitivity | None, *, quick: bool = False) -> Reading:
+    """Return what a condition gives on the quick grid, or on quick, default and finer ones."""
+    numerics = condition.case.numerics
+    spacings = [numerics.quick_grid_spacing]
+    if not quick:
+        spacings += [numerics.grid_spacing, FINER * numerics.grid_spacing]
+    levels = []
+    result = None
+    for spacing in spacings:
+        result = run(condition.case.replace("numerics.grid_spacing", f"{spacing!r} m"))
+        levels.append((spacing, Outcome.of(result)))
+    assert result is not None
+    fields = result.fields
+    draws = {} if varied is None else {name: _draws(name, levels[-1][1], varied) for name in LEAST}
+    return Reading(
+        condition,
+        tuple(levels),
+        fields["sensor_x"].values,
+        fields["sensor_y"].values,
+        fields["sensor_pressure"].values,
+        np.column_stack([fields["outline_x"].values, fields["outline_y"].values]),
+        draws,
+    )
+
+
+def _draws(name: str, outcome: Outcome, varied: Sensitivity) -> Array:
+    """Return draws of a number over open inputs and place of the tracks, about the finest grid."""
+    value, spread = outcome.number(name), outcome.spread(name)
+    factors = [1.0 + spread / value] if value > LEAST[name] and spread > 0 else []
+    most = 500.0
+    if name == PEAK:  # no pocket reads more than the highest pressure under the sole
+        ends = [end for effect in varied.effects for end in (effect.low, effect.high)]
+        highest = [one.number("peak_fluid_pressure") for one in (outcome, varied.nominal, *ends)]
+        most = max(value * (1.0 + 1e-6), float(np.nanmax(highest)))
+    return sampled(varied, name, value=value, factors=factors, least=LEAST[name], most=most)
+
+
+def inputs_of(condition: Condition) -> list[OpenInput]:
+    """Return the open inputs that are varied: all of an untreaded shoe, the deciding ones else."""
+    found = open_inputs(condition.case)
+    return found if condition.untreaded else [one for one in found if one.path in DECIDING]
+
+
+def sensitivities(
+    chosen: list[Condition], *, processes: int | None = 1, progress: Progress = silent
+) -> tuple[dict[str, Sensitivity], list[str]]:
+    """Return what the open inputs do to each condition, by its name, and what gave no result.
+
+    On the quick grid. An end at which the contact can't be solved takes its input out of the band.
+    """
+    found: dict[str, Sensitivity] = {}
+    lost: list[str] = []
+    for number, one in enumerate(chosen):
+        progress(f"Open inputs: {one.name}", number / len(chosen))
+        inputs = inputs_of(one)
+        try:
+            found[one.name] = sensitivity(one.case, inputs=inputs, processes=processes)
+            continue
+        except ConvergenceError:
+            whole = sensitivity(one.case, inputs=[])
+        for each in inputs:  # what is solved already comes from the cache
+            try:
+                more = sensitivity(one.case, inputs=[each], processes=processes)
+                whole = replace(whole, effects=(*whole.effects, *more.effects))
+            except ConvergenceError:
+                lost.append(f"{one.name}: {each.path}")
+        found[one.name] = whole
+    return found, lost
+
+
+def at_lower_force(readings: Sequence[Reading], *, processes: int | None = 1) -> dict[str, Outcome]:
+    """Return the conditions above COF 0.11 at 250 N, where the tester gave no more; by name."""
+    high = [one.condition for one in readings if one.number("cof") > LOWER_FORCE_ABOVE]
+    cases = [one.case.replace("motion.normal_force", f"{LOWER_FORCE} N") for one in high]
+    found = outcomes(cases, quick=True, processes=processes)
+    return {one.name: each for one, each in zip(high, found, strict=True)}
+
+
+def depth_series(
+    depths: Sequence[float], *, processes: int | None = 1
+) -> list[tuple[float, Outcome]]:
+    """Return the half-treaded work shoe in glycerol with its tread at other depths (m).
+
+    One compound, one roughness and one set of channels, so that the depth alone changes; on the
+    quick grid. A depth of 0 is the shoe without channels.
+    """
+    base = Condition("work", "half_tread", "glycerol").case
+    cases = [
+        base.replace("shoe.tread.depth", f"{depth!r} m")
+        if depth > 0
+        else base.replace("shoe.tread.pattern", "none")
+        for depth in depths
     ]
-    progress("done", 1.0)
-    return StudyResult(
-        "g4",
-        all_lines(results, depths),
-        (
-            conditions_table(results),
-            lower_table(results, lower),
-            *(inputs_table(one, varied[one.name]) for one in plan if one.printed_load is not None),
-            depth_table(depths),
-        ),
-        conclusions(results, varied, depths),
-        ERRATA,
-        _notes(results, lost, quick),
-        ASSUMPTIONS,
-        time.perf_counter() - started,
-        time.process_time() - process,
-        {"results": tuple(results), "varied": varied, "depths": tuple(depths)},
+    found = outcomes(cases, quick=True, processes=processes)
+    return list(zip(depths, found, strict=True))
+
+
+def threshold(depths: Sequence[tuple[float, Outcome]]) -> tuple[float, float] | None:
+    """Return the two neighbouring depths (m) between which the sensor's load falls below 5 N."""
+    loads = [(depth, outcome.number(LOAD)) for depth, outcome in sorted(depths, key=lambda d: d[0])]
+    for (shallow, before), (deep, _) in pairwise(loads):
+        if before >= SMALL and all(load < SMALL for depth, load in loads if depth >= deep):
+            return shallow, deep
+    return None
+
+
+def quantities(
+    by: Mapping[str, Reading], depths: Sequence[tuple[float, Outcome]]
+) -> dict[str, Quantity]:
+    """Return every quantity of the study by name."""
+    found: dict[str, Quantity] = {}
+    for path, one in by.items():
+        found[f"{path}.load"] = one.quantity(LOAD, "N")
+        found[f"{path}.peak"] = one.quantity(PEAK, "Pa")
+
+    def difference(first: str, second: str) -> Quantity:
+        a, b = by[first], by[second]
+        levels = [
+            (spacing, last.number(LOAD) - before.number(LOAD))
+            for (spacing, last), (_, before) in zip(b.levels, a.levels, strict=True)
+        ]
+        return Quantity.of(levels[-1][1], "N", levels=levels)
+
+    for kind in KINDS:
+        bare, half, full = (f"{kind}.{tread}.glycerol" for tread in TREADS)
+        found[f"{kind}.tread_step"] = difference(bare, half)
+        found[f"{kind}.half_to_full"] = difference(half, full)
+        thin = f"{kind}.untreaded.detergent"
+        found[f"{kind}.viscosity_step"] = difference(thin, bare)
+        found[f"{kind}.viscosity_step_half_tread"] = difference(
+            f"{kind}.half_tread.detergent", half
+        )
+    work, athletic = (by[f"{kind}.untreaded.glycerol"] for kind in KINDS)
+    found["work.place"] = Quantity.of(work.place[0], "m")
+    found["athletic.ahead_of_channel"] = Quantity.of(
+        athletic.place[0] - channel_at(athletic, athletic.place[1]), "m"
     )
+    deep = [outcome.number(LOAD) for depth, outcome in depths if 1.5e-3 <= depth <= 3e-3]
+    found["depth.change"] = Quantity.of(max(deep) - min(deep), "N")
+    limit = threshold(depths)
+    found["depth.threshold"] = (
+        Quantity.none("no depth that was computed brings it below 5 N", "m")
+        if limit is None
+        else Quantity.of(limit[1], "m")
+    )
+    loads = [one.number(LOAD) for one in by.values()]
+    if all(math.isfinite(load) for load in loads):
+        p = variance_p([one.condition for one in by.values()], loads)
+        for term, name in (("tread", "tread"), ("fluid", "fluid"), ("fluid:tread", "interaction")):
+            found[f"p.{name}"] = (
+                Quantity.of(p[term]) if term in p else Quantity.none("the loads do not scatter")
+            )
+    else:
+        found |= {f"p.{n}": Quantity.of(math.nan) for n in ("tread", "fluid", "interaction")}
+    return found
+
+
+def channel_at(one: Reading, y: float) -> float:
+    """Return where the arc channel's middle line lies at y (m), from the back of the heel."""
+    tread = one.condition.case.shoe.tread
+    assert tread is not None
+    arc = tread.arc_channel
+    assert arc is not None
+    return arc.position + arc.radius - math.sqrt(max(arc.radius**2 - y**2, 0.0))
+
+
+def variance_p(chosen: Sequence[Condition], loads: Sequence[float]) -> dict[str, float]:
+    """Return p of tread, fluid and their interaction ("fluid:tread"); the shoes are repeats."""
+    table = analysis_of_variance(
+        list(loads),
+        {"fluid": [one.fluid for one in chosen], "tread": [one.tread for one in chosen]},
+        ("fluid", "tread", "fluid:tread"),
+    )
+    return {row.term: row.p for row in table.rows if row.p is not None}
 
 
 def conclusions(
-    results: Sequence[Judged], varied: Mapping[str, Sensitivity], depths: Sequence[DepthRow]
+    readings: Sequence[Reading],
+    varied: Mapping[str, Sensitivity],
+    depths: Sequence[tuple[float, Outcome]],
 ) -> tuple[str, ...]:
     """Return what the study says, in sentences."""
-    right = sum(one.right for one in results)
-    said = [f"{right} of {len(results)} conditions lie on the report's side of 5 N by the sensor."]
-    doubtful = [
-        f"{one.condition.name} ({one.probability:.2f})"
-        for one in results
-        if one.probability is not None and one.probability < 0.95
-    ]
-    if doubtful:
-        said.append(f"The open inputs leave that side uncertain for: {'; '.join(doubtful)}.")
-    treaded = [one for one in results if not one.condition.untreaded]
-    most = max(treaded, key=lambda one: one.true_load.value)
-    said.append(
-        f"The sensor does not see the film under lugs: up to {most.true_load.value:.0f} N "
-        f"({most.condition.name}), of which it reads {most.load.value:.1f} N. "
+    treaded = [one for one in readings if not one.condition.untreaded]
+    most = max(treaded, key=lambda one: one.number(TRUE_LOAD))
+    said = [
+        f"The sensor does not see the film under lugs: up to {most.number(TRUE_LOAD):.0f} N "
+        f"({most.condition.name}), of which it reads {most.number(LOAD):.1f} N. "
         "'Below 5 N' is a statement on the sensor."
-    )
-    for one in results:
-        if one.condition.printed_load is None or one.condition.name not in varied:
-            continue
-        ranks = (
-            (label, varied[one.condition.name].ranked(name)[0])
-            for name, label in (
-                ("fluid_load_sensor", "load"), ("peak_fluid_pressure_sensor", "peak"),
+    ]
+    for one in readings:
+        if one.condition.untreaded and one.condition.fluid == "glycerol":
+            found = varied[one.condition.name]
+            ranks = [
+                (label, found.ranked(name)[0]) for name, label in ((LOAD, "load"), (PEAK, "peak"))
+            ]
+            said.append(
+                f"{one.condition.name}: "
+                + ", ".join(f"the {label} depends most on {e.path}" for label, e in ranks)
+                + "."
             )
-        )  # fmt: skip
+    limit = threshold(depths)
+    if limit is not None:
         said.append(
-            f"{one.condition.name}: "
-            + ", ".join(f"{label} hangs most on {effect.path}" for label, effect in ranks)
-            + "."
-        )
-    found = threshold(depths)
-    if found is not None:
-        said.append(
-            f"Tread of {1e3 * found[1]:g} mm is enough to bring the sensor below 5 N, "
-            f"{1e3 * found[0]:g} mm is not (lugs of 5 mm, channels of 2.4 mm)."
+            f"Tread of {1e3 * limit[1]:g} mm is enough to bring the sensor below 5 N, "
+            f"{1e3 * limit[0]:g} mm is not (lugs of 5 mm, channels of 2.4 mm)."
         )
     return tuple(said)
 
 
-def _notes(results: Sequence[Judged], lost: Sequence[str], quick: bool) -> tuple[str, ...]:
-    spacing = results[0].condition.case.numerics
-    grid = spacing.quick_grid_spacing if quick else spacing.grid_spacing
-    notes = [
-        f"grid of {1e3 * grid:g} mm; 500 N in all twelve, as the printed loads; 250 N beside it",
-        "bands: each open input at one standard deviation to either side on the quick grid, taken "
-        "as factors that multiply and drawn together (20 000 draws, normal, held at the computed "
-        "ends, loads below 500 N, peaks below the highest film pressure computed); grid and place "
-        "of the tracks drawn with them",
-        "treaded shoes: facet angle, roughness, starting film and lug width are varied"
-        if not quick
-        else "quick: no bands under treaded shoes, no grid error in the others",
-        "places: 10 mm between tracks; the assumed heel is the same on both sides",
+def conditions_table(readings: Sequence[Reading]) -> Table:
+    """Return loads, peaks, places and COF of the twelve, with bands, on the finest grid."""
+    rows = []
+    for one in readings:
+        x, y = one.place
+        peak = one.number(PEAK) > 1e3  # no place for a peak that is none
+        bands = [one.band(name) for name in (LOAD, TRUE_LOAD, PEAK)]
+        rows.append(
+            (
+                one.condition.name,
+                one.number(LOAD),
+                *bands[0],
+                one.number(TRUE_LOAD),
+                *bands[1],
+                one.number(PEAK) / 1e3,
+                *(None if v is None else v / 1e3 for v in bands[2]),
+                1e3 * x if peak else None,
+                1e3 * y if peak else None,
+                one.number("cof"),
+                *(level.number(LOAD) for _, level in one.levels),
+                *(level.number(PEAK) / 1e3 for _, level in one.levels),
+                str(one.outcome.status),
+            )
+        )
+    grids = [f"{1e3 * spacing:.2g} mm" for spacing, _ in readings[0].levels]
+    columns = (
+        "condition",
+        "sensor N",
+        "low",
+        "high",
+        "under the sole N",
+        "true low",
+        "true high",
+        "peak kPa",
+        "peak low",
+        "peak high",
+        "peak from back mm",
+        "peak left of middle mm",
+        "COF",
+        *(f"N at {grid}" for grid in grids),
+        *(f"kPa at {grid}" for grid in grids),
+        "status",
+    )
+    return Table(
+        "conditions",
+        "Six shoes in two fluids on the finest grid: sensor's and true load, peak "
+        "and its place, COF; central 95 % of what is open; load and peak on every grid",
+        columns,
+        tuple(rows),
+    )
+
+
+def lower_table(readings: Sequence[Reading], lower: Mapping[str, Outcome]) -> Table:
+    """Return the readings at 250 N."""
+    rows = [
+        (name, *(lower[name].number(key) for key in (LOAD, TRUE_LOAD, "cof")))
+        for name in (one.condition.name for one in readings)
+        if name in lower
     ]
-    notes += [f"not computed, not in a band: {each}" for each in lost]
-    for one in results:
-        if not one.reading.outcome.usable:
-            notes.append(f"{one.condition.name}: {one.reading.outcome.status}")
-    return tuple(notes)
+    return Table(
+        "lower_force",
+        "The same at 250 N where COF is above 0.11, as the tester was run (G.4.1; quick grid)",
+        ("condition", "sensor N", "under the sole N", "COF"),
+        tuple(rows),
+    )
+
+
+def inputs_table(condition: Condition, found: Sensitivity) -> Table:
+    """Return what each open input does to load and peak of one condition."""
+    rows = [
+        (
+            effect.path,
+            display(effect.low_value, effect.unit),
+            display(effect.high_value, effect.unit),
+            *(end.number(LOAD) for end in (effect.low, effect.high)),
+            *(end.number(PEAK) / 1e3 for end in (effect.low, effect.high)),
+            effect.reason,
+        )
+        for effect in found.ranked(PEAK)
+    ]
+    return Table(
+        f"open_inputs_{condition.kind}",
+        f"What one standard deviation of each open input does ({condition.name}; quick grid, where "
+        f"the sensor reads {found.nominal.number(LOAD):.0f} N and "
+        f"{found.nominal.number(PEAK) / 1e3:.0f} kPa)",
+        ("input", "low", "high", "N at low", "N at high", "kPa at low", "kPa at high", "why open"),
+        tuple(rows),
+    )
+
+
+def depth_table(depths: Sequence[tuple[float, Outcome]]) -> Table:
+    """Return readings against depth of tread."""
+    return Table(
+        "tread_depth",
+        "Work shoe of 71 Shore A in glycerol, lugs of 5 mm, channels of 2.4 mm; quick grid",
+        ("depth mm", "sensor N", "under the sole N", "peak by sensor kPa", "COF"),
+        tuple(
+            (
+                1e3 * depth,
+                one.number(LOAD),
+                one.number(TRUE_LOAD),
+                one.number(PEAK) / 1e3,
+                one.number("cof"),
+            )
+            for depth, one in depths
+        ),
+    )
+
+
+def map_figure(readings: Sequence[Reading]) -> Figure:
+    """Return Fig. 29: fluid pressure as seven tracks read it, heel's back at the bottom."""
+    panels = []
+    published = Catalogue.load().entry("published", "slip_tester_g4")
+    for one in readings:
+        shoe = f"{one.condition.kind}_shoe_untreaded_glycerol"
+        load, peak = (
+            published.sourced(f"{name}_{shoe}", unit).value or 0.0
+            for name, unit in (("fluid_load", "N"), ("peak_pressure", "Pa"))
+        )
+        x, y = one.place
+        # left of the shoe on the left: the axis across is turned
+        layers = (
+            Layer("map", numbers(1e3 * one.y), numbers(1e3 * one.x), numbers(one.pressure.T / 1e3)),  # type: ignore[arg-type]
+            Layer(
+                "outline",
+                numbers(1e3 * one.outline[:, 1]),
+                numbers(1e3 * one.outline[:, 0]),
+                colour="white",
+            ),
+            points([1e3 * y], [1e3 * x], colour="white", marker="o"),
+        )
+        panels.append(
+            Panel(
+                layers,
+                "across, left positive (mm)",
+                "from the back of the heel (mm)",
+                f"{one.condition.kind} shoe: {one.number(LOAD):.0f} N, peak "
+                f"{one.number(PEAK) / 1e3:.0f} kPa\n(report {load:.0f} N, {peak / 1e3:.0f} kPa)",
+                x_limits=(1e3 * float(one.y.max()) + 5, 1e3 * float(one.y.min()) - 5),
+                y_limits=(-8.0, min(1e3 * float(one.x.max()), 60.0)),
+                legend="",
+            )
+        )
+    return Figure(
+        tuple(panels),
+        "Fig. 29: untreaded shoes in glycerol, seven tracks 10 mm apart; ring: highest reading",
+        columns=2,
+        size=(4.4, 5.2),
+        share_y=True,
+        colour_bar="fluid pressure read by a 10 mm inlet (kPa)",
+    )
+
+
+def load_figure(readings: Sequence[Reading]) -> Figure:
+    """Return Fig. 30: load by the sensor with its 95 % band, report's values and 5 N beside it."""
+    published = Catalogue.load().entry("published", "slip_tester_g4")
+    panels = []
+    for kind in KINDS:
+        layers: list[Layer] = []
+        for fluid, side, colour in (("glycerol", -0.2, OURS), ("detergent", 0.2, "#9db8d2")):
+            some = [r for r in readings if (r.condition.kind, r.condition.fluid) == (kind, fluid)]
+            bands = [one.band(LOAD) for one in some]
+            has = all(low is not None for low, _ in bands)
+            layers.append(
+                Layer(
+                    "bars",
+                    [TREADS.index(r.condition.tread) + side for r in some],
+                    [r.number(LOAD) for r in some],
+                    label=fluid,
+                    colour=colour,
+                    width=0.36,
+                    low=[low or 0.0 for low, _ in bands] if has else (),
+                    high=[high or 0.0 for _, high in bands] if has else (),
+                )
+            )
+        printed = published.sourced(f"fluid_load_{kind}_shoe_untreaded_glycerol", "N").value or 0.0
+        layers.append(points([-0.2], [printed], "report", colour=PRINTED, marker="D"))
+        layers.append(
+            Layer(
+                "level", (), [SMALL], label="report: all others below", colour=PRINTED, style="--"
+            )
+        )
+        ticks = tuple((v, f"{v:g}") for v in (0, 1, 5, 10, 50, 100, 500))
+        panels.append(
+            Panel(
+                tuple(layers),
+                "",
+                "load read by the sensor (N)",
+                f"{kind} shoe",
+                y_scale="symlog",
+                y_limits=(0.0, 700.0),
+                y_ticks=ticks,
+                x_ticks=names_as_ticks([tread.replace("_", " ") for tread in TREADS]),
+            )
+        )
+    return Figure(
+        tuple(panels),
+        "Fig. 30: tread, fluid and the load that the sensor reads, of 500 N",
+        columns=2,
+        size=(4.8, 4.2),
+        share_y=True,
+        legend_below=True,
+    )
+
+
+def depth_figure(depths: Sequence[tuple[float, Outcome]]) -> Figure:
+    """Return load against depth of tread: by the sensor and under the sole."""
+    depth = [1e3 * each for each, _ in depths]
+    layers = (
+        Layer("span", (), low=[1.5], high=[3.0], label="report: no change", colour="0.9"),
+        line(
+            depth,
+            [one.number(TRUE_LOAD) for _, one in depths],
+            "under the sole",
+            colour=SECOND,
+            marker="s",
+        ),
+        line(depth, [one.number(LOAD) for _, one in depths], "by the 10 mm sensor", marker="o"),
+        Layer("level", (), [SMALL], label="5 N", colour=PRINTED, style="--"),
+    )
+    panel = Panel(
+        layers,
+        "depth of tread (mm)",
+        "load carried by the fluid (N)",
+        y_limits=(-6.0, None),
+        x_limits=(-0.05, None),
+    )
+    return Figure((panel,), "Half-treaded work shoe in glycerol, 500 N, 0.7 m/s", size=(6.6, 4.2))
+
+
+def inputs_figure(condition: Condition, found: Sensitivity, count: int = 8) -> Figure:
+    """Return what one standard deviation of the open inputs does to load and peak."""
+    panels = []
+    for name, label, scale in ((LOAD, "load by the sensor (N)", 1.0), (PEAK, "peak (kPa)", 1e-3)):
+        effects = found.ranked(name)[:count][::-1]
+        nominal = found.nominal.number(name) * scale
+        layers = [Layer("limit", [nominal], colour="0.4", label="nominal")]
+        for end, colour in (("low", SECOND), ("high", OURS)):
+            values = [getattr(effect, end).number(name) * scale for effect in effects]
+            layers.append(
+                points(values, range(len(effects)), f"{end} end", colour=colour, marker="o")
+            )
+        names = [effect.path.split(".")[-1].replace("_", " ") for effect in effects]
+        panels.append(Panel(tuple(layers), label, y_ticks=names_as_ticks(names)))
+    title = f"{condition.name}: one standard deviation of each open input (quick grid)"
+    return Figure(tuple(panels), title, columns=2, size=(5.2, 3.8))

@@ -1,23 +1,28 @@
-"""Grant report G.5: pressure and speed in unexpected slips, untreaded against treaded."""
+"""Report G.5: pressure and speed in unexpected slips, untreaded against treaded."""
 
 from __future__ import annotations
 
-import time
-from typing import TYPE_CHECKING, Any
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from underfoot.core import Progress, silent
+from underfoot.case import Case
+from underfoot.compute.slips import slips
+from underfoot.core import content_hash
 from underfoot.core.catalogue import Catalogue
+from underfoot.questions.outcomes import program_hash
+from underfoot.slip.dynamics import ReducedSole, SlipStudy
+from underfoot.trials.statistics.linear import all_subsets
 
-from .g5_lines import g5_conclusions, g5_lines, g5_tables
-from .study_result import StudyResult
-from .verdict import Erratum
-
-if TYPE_CHECKING:
-    from underfoot.case import Case
-    from underfoot.slip.dynamics import SlipStudy
+from .figure import GREY, OURS, PRINTED, SECOND, Figure, Layer, Panel, line, points
+from .runner import Computed, Options, Table, kept, named, part
+from .verdict import Quantity
 
 Array = NDArray[np.float64]
 SHOES = {
@@ -26,30 +31,23 @@ SHOES = {
 }
 COUNTS = {"untreaded": 11, "treaded": 6}
 """Persons whose heel crossed the sensors (G.5.2)."""
-SAMPLES = 2000
-ERRATA = (
-    Erratum(
-        "G.5.3", "2.5 mm of tread was sufficient", "2.4 mm",
-        "the shoes of G.5.1 have a tread of 2.4 mm",
-    ),
-)  # fmt: skip
-NOTES = (
-    "one parameter set, that of the slip tester (G.4): heel, interface, friction law, floor, "
-    "fluid; nothing was fitted to G.5",
-    "bands: 95 % of the means that studies with as many persons as the report's would find "
-    "(drawn from the simulated population)",
-    "heel marker and sensors are simulated and judged by the same functions as recordings",
-)
+GRIDS, QUICK_GRID = ("1.4 mm", "1 mm"), "2 mm"
+DRAWS = 2000
+PREDICTORS = ("row", "lateral", "speed")
+UNITS = {"peak_speed": "m/s", "peak_pressure": "Pa", "duration": "s"}
+PRINTED_POINTS = {
+    shoe: (f"peak_pressure_{shoe}", f"peak_slipping_speed_over_sensors_{shoe}") for shoe in SHOES
+}
+COLOUR = {"untreaded": OURS, "treaded": "#2e7d4f"}
 
 
-def slip_case(name: str, *, quick: bool = False) -> Case:
+def slip_case(name: str, *, grid: str = GRIDS[-1], quick: bool = False) -> Case:
     """Return the case of a shoe of G.5, "untreaded" or "treaded"; that of the examples.
 
-    ``quick`` takes 24 persons, fewer full slips behind the reduced model and untreaded a grid of
+    ``quick`` takes 24 persons, fewer full slips behind the reduced model and, untreaded, a grid of
     2 mm.
     """
-    from underfoot.case import Case
-
+    people = {"subjects": 24, "fit_runs": 8, "test_runs": 2} if quick else {"subjects": 40}
     mapping: dict[str, Any] = {
         "file_version": 1,
         "name": f"Human slips, {name}, 90 % glycerol",
@@ -58,86 +56,150 @@ def slip_case(name: str, *, quick: bool = False) -> Case:
         "contaminant": {"from": "glycerol_90pct"},
         "motion": {"from": "slip_tester_g4"},
         "sensor": {"from": "human_slip_g5"},
-        "slip": {"subjects": 40},
+        "slip": people,
     }
-    if quick:
-        mapping["slip"] = {"subjects": 24, "fit_runs": 8, "test_runs": 2}
-        if name == "untreaded":
-            mapping["numerics"] = {"quick_grid_spacing": "2 mm"}
+    if quick and name == "untreaded":
+        grid = QUICK_GRID
+    if grid != GRIDS[-1]:
+        mapping["numerics"] = {"quick_grid_spacing": grid}
     return Case.from_mapping(mapping)
 
 
-def run(
-    *,
-    quick: bool = False,
-    processes: int | None = 1,
-    seed: int = 0,
-    progress: Progress = silent,
-) -> StudyResult:
-    """Return the slips on both shoes beside the printed ones.
+def compute(options: Options) -> Computed:
+    """Return the slips on both shoes, each population on two grids of the sole.
 
-    Parameters
-    ----------
-    quick
-        See ``slip_case``.
-    processes
-        2 or None: both shoes at the same time.
-    seed
-        Of the draws behind the bands.
+    The full slips behind the reduced model are kept in the cache: a stopped run goes on.
     """
-    started, used = time.perf_counter(), time.process_time()
-    if processes != 1:
-        _kept(quick, progress)
-    found = {}
-    for number, name in enumerate(SHOES):
-
-        def told(
-            stage: str, fraction: float, residual: float | None = None, n: int = number, s=name
-        ) -> None:
-            progress(f"{s}: {stage}", (n + fraction) / len(SHOES), residual)
-
-        found[name] = _slips(slip_case(name, quick=quick), told)
-    published = Catalogue.load().entry("published", "human_slips_g5")
-    bands = {name: study_bands(found[name], COUNTS[name], seed=seed) for name in SHOES}
-    passages = found["untreaded"].sensor_passages()
-    lines = g5_lines(found, bands, published, passages)
-    progress("done", 1.0, None)
-    return StudyResult(
-        "g5", lines, g5_tables(found, bands, passages, published),
-        g5_conclusions(found, passages), ERRATA, NOTES, _assumptions(found),
-        time.perf_counter() - started, time.process_time() - used,
-        {"slips": found, "passages": passages, "bands": bands},
-    )  # fmt: skip
-
-
-def study_bands(
-    study: SlipStudy, count: int, *, samples: int = SAMPLES, seed: int = 0
-) -> dict[str, tuple[float, float]]:
-    """Return 2.5 and 97.5 % points of what studies of ``count`` crossing persons would find.
-
-    Means of peak speed (m/s), peak pressure (Pa) and duration (s), the correlation of the first
-    two, and the last row over the first.
-    """
-    crossed = np.array([one.seen.crossed for one in study.subjects])
-    columns = {
-        name: study.of(name)[crossed] for name in ("peak_speed", "peak_pressure", "duration")
+    grids = GRIDS[-1:] if options.quick else GRIDS
+    cases = {
+        (shoe, grid): slip_case(shoe, grid=grid, quick=options.quick)
+        for grid in grids
+        for shoe in SHOES
     }
-    rows = np.array([one.seen.row_peaks for one in study.subjects if one.seen.crossed])
-    nothing = (float("nan"), float("nan"))
-    if crossed.sum() < 2:
-        return dict.fromkeys((*columns, "correlation", "last_over_first"), nothing)
+    if options.processes != 1:
+        keys = [content_hash(case.hash, program_hash()) for case in cases.values()]
+        for number, _ in enumerate(
+            kept("g5_filled-1", fill_cache, list(cases.values()), keys, processes=2)
+        ):
+            options.progress("full slips", 0.8 * (number + 1) / len(cases))
+    found: dict[tuple[str, str], SlipStudy] = {}
+    for number, (key, case) in enumerate(cases.items()):
+        share = (0.8 + 0.04 * number, 0.8 + 0.04 * (number + 1))
+        if options.processes == 1:
+            share = (number / len(cases), (number + 1) / len(cases))
+        found[key] = slips(case, progress=named(part(options.progress, *share), ", ".join(key)))
+    fine = {shoe: found[shoe, grids[-1]] for shoe in SHOES}
+    levels = {
+        shoe: [(1e-3 * float(grid.split()[0]), numbers_of(found[shoe, grid])) for grid in grids]
+        for shoe in SHOES
+    }
+    draws = {shoe: population_draws(fine[shoe], COUNTS[shoe], seed=options.seed) for shoe in SHOES}
+    bare = fine["untreaded"]
+    passages = bare.sensor_passages()
+    population = bare.population
+    return Computed(
+        quantities(levels, draws),
+        tables(fine, levels, draws),
+        figures(fine, passages),
+        conclusions(fine, passages),
+        assumptions=(
+            f"{population.effective_mass:.3g} of the body moves with the heel (not printed, not "
+            "measured).",
+            f"RCOF {population.rcof.mean:.2f} ± {population.rcof.sd:.2f}, heel speed at contact "
+            f"{population.heel_speed.mean:.2f} ± {population.heel_speed.sd:.2f} m/s: not printed.",
+            *bare.setting.friction.assumptions,
+        ),
+    )
+
+
+def fill_cache(case: Case) -> dict[str, Any]:
+    """Compute the full slips of a case, which stay in the cache."""
+    slips(case)
+    return {"done": np.array(True)}
+
+
+def crossing(study: SlipStudy) -> list[Any]:
+    """Return the persons whose heel crossed the sensors."""
+    return [one for one in study.subjects if one.seen.crossed]
+
+
+def numbers_of(study: SlipStudy) -> dict[str, float]:
+    """Return every judged number of a population, nan where there is none."""
+    crossed = crossing(study)
+    found = {name: _mean([getattr(one.seen, name) for one in crossed]) for name in UNITS}
+    found["slipped"] = study.slipped()[0]
+    found["correlation"] = math.nan if (r := study.correlation()) is None else r
+    rows = study.rows()
+    found["last_row_change"] = float(rows[-1] / rows[0] - 1.0) if rows[0] > 0 else math.nan
+    return found | regressions(_passages(study, crossed))
+
+
+def _mean(values: Sequence[float | None]) -> float:
+    known = [v for v in values if v is not None and math.isfinite(v)]
+    return float(np.mean(known)) if known else math.nan
+
+
+def _passages(study: SlipStudy, persons: Sequence[Any]) -> dict[str, Array]:
+    return replace(study, subjects=tuple(persons)).sensor_passages()
+
+
+def regressions(passages: Mapping[str, Array]) -> dict[str, float]:
+    """Return slopes and adjusted R2 of Table 7; nan where too few sensors were passed."""
+    names = [f"r2_{'_'.join(s)}" for s in (*((p,) for p in PREDICTORS), PREDICTORS)]
+    if passages["peak"].size < 6 or any(np.ptp(passages[p]) == 0 for p in PREDICTORS):
+        return dict.fromkeys(("slope_lateral", "slope_speed", *names), math.nan)
+    subsets = all_subsets(passages["peak"], {name: passages[name] for name in PREDICTORS})
+    found = {f"r2_{'_'.join(one.predictors)}": float(one.adjusted_r_squared) for one in subsets}
+    for name in ("lateral", "speed"):
+        found[f"slope_{name}"] = float(np.polyfit(passages[name], passages["peak"], 1)[0])
+    return found
+
+
+def population_draws(
+    study: SlipStudy, count: int, *, draws: int = DRAWS, seed: int = 0
+) -> dict[str, Array]:
+    """Return what studies of ``count`` crossing persons would find, (draws,) each.
+
+    Persons are drawn from the simulated population with replacement; shares from all of it.
+    """
     generator = np.random.default_rng(seed)
-    drawn = generator.integers(int(crossed.sum()), size=(samples, count))
-    found = {name: _points(_row_means(values[drawn])) for name, values in columns.items()}
-    speed, pressure = columns["peak_speed"][drawn], columns["peak_pressure"][drawn]
-    found["correlation"] = _points(correlations(speed, pressure))
-    if rows.size:
+    everybody = np.array([one.seen.slipped for one in study.subjects], float)
+    drawn_all = generator.integers(everybody.size, size=(draws, count))
+    found: dict[str, Array] = {"slipped": everybody[drawn_all].mean(axis=1)}
+    persons = crossing(study)
+    if len(persons) < 2:
+        return found
+    drawn = generator.integers(len(persons), size=(draws, count))
+    columns = {
+        name: np.array(
+            [math.nan if (v := getattr(one.seen, name)) is None else v for one in persons], float
+        )
+        for name in UNITS
+    }
+    for name, values in columns.items():
+        found[name] = _row_means(values[drawn])
+    found["correlation"] = correlations(
+        columns["peak_speed"][drawn], columns["peak_pressure"][drawn]
+    )
+    rows = np.array([one.seen.row_peaks for one in persons if one.seen.row_peaks])
+    if len(rows) == len(persons):
         means = rows[drawn].mean(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
-            found["last_over_first"] = _points(means[:, -1] / means[:, 0])
-    else:
-        found["last_over_first"] = nothing
+            found["last_row_change"] = means[:, -1] / means[:, 0] - 1.0
+    each = [_passages(study, [one]) for one in persons]
+    table = [
+        regressions({key: np.concatenate([each[i][key] for i in row]) for key in each[0]})
+        for row in drawn[: draws // 5]
+    ]
+    for name in table[0]:
+        found[name] = np.array([one[name] for one in table])
     return found
+
+
+def _row_means(values: Array) -> Array:
+    known = np.isfinite(values)
+    with np.errstate(invalid="ignore"):
+        return np.where(known, values, 0.0).sum(axis=1) / known.sum(axis=1)
 
 
 def correlations(x: Array, y: Array) -> Array:
@@ -148,55 +210,338 @@ def correlations(x: Array, y: Array) -> Array:
         return (a * b).sum(axis=1) / np.sqrt((a * a).sum(axis=1) * (b * b).sum(axis=1))
 
 
-def _row_means(values: Array) -> Array:
-    known = np.isfinite(values)
-    with np.errstate(invalid="ignore"):
-        return np.where(known, values, 0.0).sum(axis=1) / known.sum(axis=1)
+def quantities(
+    levels: Mapping[str, Sequence[tuple[float, Mapping[str, float]]]],
+    draws: Mapping[str, Mapping[str, Array]],
+) -> dict[str, Quantity]:
+    """Return every quantity of the study by name, with both grids and what small studies find."""
+    units = {**UNITS, "slope_lateral": "Pa/m", "slope_speed": "Pa*s/m"}
+    found = {}
+    for shoe, grids in levels.items():
+        for name, value in grids[-1][1].items():
+            if name.startswith("r2_") and name != "r2_row_lateral_speed":
+                continue
+            steps = [(spacing, each[name]) for spacing, each in grids]
+            found[f"{shoe}.{name}"] = Quantity.of(
+                value, units.get(name, "1"), draws=draws[shoe].get(name), levels=steps
+            )
+        found[f"{shoe}.r2_all"] = found.pop(f"{shoe}.r2_row_lateral_speed")
+        single = [f"r2_{name}" for name in ("lateral", "row", "speed")]
+        drawn = [draws[shoe][name] for name in single if name in draws[shoe]]
+        chance = (
+            float(np.mean((drawn[0] > drawn[1]) & (drawn[1] > drawn[2])))
+            if len(drawn) == 3
+            else None
+        )
+        found[f"{shoe}.r2_single"] = Quantity.of(
+            [grids[-1][1][name] for name in single],
+            names=("lateral", "row", "speed"),
+            chance=chance,
+        )
+    bare, tread = (levels[shoe] for shoe in SHOES)
+    ratios = [
+        (spacing, b["peak_pressure"] / a["peak_pressure"])
+        for (spacing, a), (_, b) in zip(bare, tread, strict=True)
+    ]
+    found["pressure_ratio"] = Quantity.of(ratios[-1][1], levels=ratios)
+    return found
 
 
-def _points(values: Array) -> tuple[float, float]:
-    values = values[np.isfinite(values)]
-    if not values.size:
-        return float("nan"), float("nan")
-    low, high = np.percentile(values, [2.5, 97.5])
-    return float(low), float(high)
-
-
-def _slips(case: Case, progress: Progress) -> SlipStudy:
-    from underfoot.case.build_slip import slips
-
-    return slips(case, progress=progress)
-
-
-def _kept(quick: bool, progress: Progress) -> None:
-    """Let both shoes run at the same time; their full slips are found in the cache afterwards."""
-    from concurrent.futures import ProcessPoolExecutor, as_completed
-    from multiprocessing import get_context
-
-    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
-        jobs = [pool.submit(_fill, name, quick) for name in SHOES]
-        try:
-            for number, job in enumerate(as_completed(jobs)):
-                progress("Slips on both shoes", 0.45 * (number + 1), None)
-                job.exception()  # what failed is met again, and said, by the run itself
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-
-
-def _fill(name: str, quick: bool) -> None:
-    _slips(slip_case(name, quick=quick), silent)
-
-
-def _assumptions(found: dict[str, SlipStudy]) -> tuple[str, ...]:
-    study = found["untreaded"]
-    people = study.population
+def tables(
+    found: Mapping[str, SlipStudy],
+    levels: Mapping[str, Sequence[tuple[float, Mapping[str, float]]]],
+    draws: Mapping[str, Mapping[str, Array]],
+) -> tuple[Table, ...]:
+    """Return the population's numbers, the rows of sensors, the grids, and Table 7 beside ours."""
+    scales = {
+        "peak_speed": ("m/s", 1.0),
+        "peak_pressure": ("kPa", 1e3),
+        "duration": ("ms", 1e-3),
+        "slipped": ("share", 1.0),
+        "correlation": ("", 1.0),
+    }
+    rows = []
+    for shoe in found:
+        for name, (unit, scale) in scales.items():
+            values = levels[shoe][-1][1][name]
+            band = (
+                np.nanpercentile(draws[shoe][name], [2.5, 97.5]) / scale
+                if name in draws[shoe]
+                else (math.nan, math.nan)
+            )
+            grids = (each[name] / scale for _, each in levels[shoe])
+            cells = (values / scale, *band, *grids)
+            rows.append((shoe, f"{name.replace('_', ' ')} {unit}".strip(), *map(_number, cells)))
+    published = Catalogue.load().entry("published", "human_slips_g5")
+    keys = {"row": "sprwd", "lateral": "ml", "speed": "irss"}
+    ours = {
+        tuple(n.split("_")[1:]): v for n, v in levels["untreaded"][-1][1].items() if n[:3] == "r2_"
+    }
     return (
-        f"{people.effective_mass:.3g} of the body moves with the heel (not printed, not measured).",
-        "Heel shape, and everything else of the interface, as in G.4 (assumed there).",
-        f"RCOF {people.rcof.mean:.2f} ± {people.rcof.sd:.2f}, heel speed at contact "
-        f"{people.heel_speed.mean:.2f} ± {people.heel_speed.sd:.2f} m/s: not printed.",
-        "Load and drive are those of recorded dry walking: nobody reacts to the slip.",
-        "The shoe angle at landing is held through the slip.",
-        *study.setting.friction.assumptions,
+        Table(
+            "population",
+            "Persons whose heel crossed the sensors: mean, 95 % of the mean of as "
+            "many as the report had, and the mean on each grid",
+            (
+                "shoe",
+                "quantity",
+                "mean",
+                "low",
+                "high",
+                *(f"{1e3 * spacing:g} mm" for spacing, _ in levels["untreaded"]),
+            ),
+            tuple(rows),
+        ),
+        Table(
+            "rows",
+            "Mean peak of each row of sensors, kPa",
+            ("shoe", "first", "second", "third"),
+            tuple((shoe, *(float(p) / 1e3 for p in s.rows())) for shoe, s in found.items()),
+        ),
+        Table(
+            "table7",
+            "Adjusted R2 of the peak pressure at single sensors, untreaded",
+            ("predictors", "printed", "ours"),
+            tuple(
+                (
+                    ", ".join(names),
+                    published.sourced(f"adjusted_r2.{'_'.join(keys[n] for n in names)}", "1").value,
+                    _number(value),
+                )
+                for names, value in ours.items()
+            ),
+        ),
     )
+
+
+def _number(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def conclusions(found: Mapping[str, SlipStudy], passages: Mapping[str, Array]) -> tuple[str, ...]:
+    """Return what the comparison says."""
+    bare, tread = found["untreaded"], found["treaded"]
+    speeds = [bare.peak_speed_at(share) for share in (0.06, 0.114, 0.17)]
+    words = " / ".join("-" if v is None else f"{v:.2f}" for v in speeds)
+    pressures = [numbers_of(one)["peak_pressure"] / 1e3 for one in (bare, tread)]
+    return (
+        f"Treaded: {100 * tread.slipped()[0]:.0f} % slip here, nobody in the report.",
+        f"Untreaded: {100 * bare.slipped()[0]:.0f} % slip. Tread takes the fluid pressure at the "
+        f"sensors from {pressures[0]:.0f} to {pressures[1]:.1f} kPa with nothing else changed.",
+        f"Mean peak speed untreaded if 0.06 / 0.114 / 0.17 of the body moved: {words} m/s.",
+        f"{passages['peak'].size} passages of a heel over a sensor stand behind Table 7.",
+    )
+
+
+def figures(found: Mapping[str, SlipStudy], passages: Mapping[str, Array]) -> dict[str, Figure]:
+    """Return Fig. 32 to 35."""
+    bare = found["untreaded"]
+    drawn = {"fig33_speed_pressure": _speed_pressure_figure(found)}
+    run = bare.representative
+    if run is not None:
+        drawn["fig32_slip"] = _slip_figure(bare)
+    if passages["peak"].size:
+        drawn["fig34_effects"] = _effects_figure(passages)
+    if bare.sole is not None and bare.sole.viscosity:
+        drawn["fig35_wedge_squeeze"] = _wedge_squeeze_figure(bare.sole, passages)
+    return drawn
+
+
+def _slip_figure(study: SlipStudy) -> Figure:
+    """Return the representative slip: speeds, loads, and sensors of the middle column."""
+    from underfoot.slip.dynamics import array_pressures
+
+    run = study.representative
+    assert run is not None
+    motion = run.motion
+    time = 1e3 * motion.time
+    seen = array_pressures(motion, run.maps, study.array)
+    middle = study.array.columns // 2
+    rows = tuple(
+        line(
+            time,
+            seen[:, i, middle] / 1e3,
+            f"row {i + 1}",
+            colour=(OURS, "#2e86ab", SECOND, GREY)[i % 4],
+        )
+        for i in range(study.array.rows)
+    )
+    return Figure(
+        (
+            Panel((line(time, motion.speed, "heel"),), "time (ms)", "slipping speed (m/s)"),
+            Panel(
+                (
+                    line(time, motion.normal, "on the shoe", colour=GREY),
+                    line(time, motion.fluid_load, "on the film"),
+                    line(time, motion.friction, "friction", colour=PRINTED),
+                ),
+                "time (ms)",
+                "force (N)",
+            ),
+            Panel(rows, "time (ms)", "pressure at the sensors (kPa)"),
+        ),
+        "Fig. 32: a slip over the sensors, untreaded, computed",
+        columns=3,
+        size=(3.8, 3.2),
+    )
+
+
+def _speed_pressure_figure(found: Mapping[str, SlipStudy]) -> Figure:
+    published = Catalogue.load().entry("published", "human_slips_g5")
+    layers: list[Layer] = []
+    for shoe, study in found.items():
+        crossed = crossing(study)
+        r = study.correlation()
+        label = f"{shoe}, computed" + ("" if r is None else f" (r = {r:.2f})")
+        layers.append(
+            points(
+                [one.seen.peak_pressure / 1e3 for one in crossed],
+                [one.seen.peak_speed for one in crossed],
+                label,
+                colour=COLOUR[shoe],
+                marker="o",
+            )
+        )
+        pressure, speed = (
+            published.sourced(name, unit)
+            for name, unit in zip(PRINTED_POINTS[shoe], ("Pa", "m/s"), strict=True)
+        )
+        x, y = (pressure.value or 0.0) / 1e3, speed.value or 0.0
+        dx, dy = (pressure.uncertainty or 0.0) / 1e3, speed.uncertainty or 0.0
+        layers.append(
+            points(
+                [x],
+                [y],
+                f"{shoe}, report (mean ± sd)",
+                colour=PRINTED,
+                low=[y - dy],
+                high=[y + dy],
+                marker="Ds"[shoe == "treaded"],
+            )
+        )
+        layers.append(line([x - dx, x + dx], [y, y], colour=PRINTED))
+    panel = Panel(
+        tuple(layers),
+        "peak pressure at the sensors (kPa)",
+        "peak slipping speed (m/s)",
+        x_limits=(0.0, None),
+        y_limits=(0.0, None),
+    )
+    return Figure(
+        (panel,), "Fig. 33: peak speed against peak pressure (report: r = 0.87)", size=(6.4, 4.6)
+    )
+
+
+def _effects_figure(passages: Mapping[str, Array]) -> Figure:
+    peak = passages["peak"] / 1e3
+    panels = []
+    for name, factor, label in (
+        ("speed", 1.0, "A: speed as the heel passes (m/s)"),
+        ("lateral", 1e3, "B: distance from the heel's middle (mm)"),
+    ):
+        x = passages[name] * factor
+        layers = [points(x, peak, marker=".")]
+        if np.ptp(x) > 0:
+            slope, level = np.polyfit(x, peak, 1)
+            ends = np.array([x.min(), x.max()])
+            layers.append(line(ends, level + slope * ends, colour="0.25"))
+        panels.append(
+            Panel(tuple(layers), label, "peak pressure of a sensor (kPa)", y_limits=(0.0, None))
+        )
+    rows = np.unique(passages["row"])
+    values = [peak[passages["row"] == n] for n in rows]
+    mean, spread = (np.array([f(v) for v in values]) for f in (np.mean, np.std))
+    layer = points(rows, mean, low=mean - spread, high=mean + spread, marker="o")
+    ticks = tuple((float(n), f"{n:.0f}") for n in rows)
+    panels.append(Panel((layer,), "C: row of sensors (mean ± sd)", x_ticks=ticks))
+    return Figure(
+        tuple(panels),
+        "Fig. 34: what the pressure at a sensor follows, untreaded, computed",
+        columns=3,
+        size=(3.6, 3.4),
+        share_y=True,
+    )
+
+
+def _wedge_squeeze_figure(sole: ReducedSole, passages: Mapping[str, Array]) -> Figure:
+    """Return film load against dwell time, viscosity, lateral distance and speed (500 N)."""
+    time, longer = np.linspace(0.0, 0.3, 601), np.linspace(0.0, 3.0, 6001)
+    fluids = ((219e-3, "-"), (20e-3, "--"), (1.89e-3, ":"))
+    share: Callable[[Array], Array] = lambda load: load / 5.0  # noqa: E731, % of 500 N
+
+    def at(sole: ReducedSole, speed: float, instant: float) -> float:
+        return float(held_load(sole, time, speed)[np.searchsorted(time, instant)])
+
+    dwell, fast = [], []
+    speeds = np.linspace(0.0, 3.0, 31)
+    for viscosity, style in fluids:
+        thin, label = replace(sole, viscosity=viscosity), f"{1e3 * viscosity:g} mPa s"
+        load = share(held_load(thin, longer, 0.5))
+        dwell.append(line(1e3 * longer[1:], load[1:], label, style=style))
+        at_speed = share(np.array([at(thin, float(v), 0.2) for v in speeds]))
+        fast.append(line(speeds, at_speed, label, style=style))
+    viscosities = np.geomspace(1e-3, 0.5, 25)
+    thick = [
+        line(
+            1e3 * viscosities,
+            share(np.array([at(replace(sole, viscosity=float(v)), 0.5, t) for v in viscosities])),
+            f"0.5 m/s, after {1e3 * t:.0f} ms",
+            style=style,
+        )
+        for t, style in ((0.05, "--"), (0.2, "-"))
+    ]
+    middle, level = [], []
+    for low, high in pairwise(np.arange(0.0, 0.05, 0.005)):
+        inside = (passages["lateral"] >= low) & (passages["lateral"] < high)
+        if inside.any():
+            middle.append(500 * (low + high))
+            level.append(passages["peak"][inside].mean() / 1e3)
+    whole = (0.0, 100.0)
+    return Figure(
+        (
+            Panel(
+                tuple(dwell),
+                "dwell time at 0.5 m/s (ms)",
+                "load on the film (%)",
+                x_scale="log",
+                x_limits=(1.0, 3000.0),
+                y_limits=whole,
+            ),
+            Panel(
+                tuple(thick),
+                "viscosity (mPa s)",
+                "load on the film (%)",
+                x_scale="log",
+                y_limits=whole,
+            ),
+            Panel(
+                (line(middle, level, marker="o"),),
+                "distance from the heel's middle (mm)",
+                "sensor's peak (kPa)",
+                y_limits=(0.0, None),
+            ),
+            Panel(
+                tuple(fast),
+                "sliding speed, held for 200 ms (m/s)",
+                "load on the film (%)",
+                y_limits=whole,
+            ),
+        ),
+        "Fig. 35: wedge and squeeze, untreaded heel under 500 N, computed",
+        columns=2,
+        size=(5.2, 3.2),
+    )
+
+
+def held_load(sole: ReducedSole, time: Array, speed: float, force: float = 500.0) -> Array:
+    """Return the film's load (n,) N under a force and speed that are held from contact on."""
+    motion = SimpleNamespace(
+        time=time,
+        normal=np.full(time.size, force),
+        drive=np.zeros(time.size),
+        shoe_angle=np.full(time.size, sole.shoe_angle),
+        speed=np.full(time.size, speed),
+        walker=SimpleNamespace(moving_mass=8.0),
+    )
+    load, _ = sole.carried_at(motion)  # type: ignore[arg-type]
+    return np.asarray(load)

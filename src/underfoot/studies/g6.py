@@ -1,109 +1,391 @@
-"""Grant report G.6: friction of three outsoles in 50 % glycerol, and who slips on them."""
+"""Report G.6: friction of three outsoles in 50 % glycerol, and who slips on them."""
 
 from __future__ import annotations
 
-import time
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from underfoot.core import Progress, silent
-
-from .g6_people import (
-    PRINTED_ACOF,
-    PRINTED_RISK,
-    QUICK_SUBJECTS,
-    SUBJECTS,
-    Slips,
-    implied_differences,
-    population_risk,
-    precision_of_published,
-    risk_by_rcof,
-    slips,
+from underfoot.calibrate import pin_on_disk
+from underfoot.case import Case
+from underfoot.case.friction import measured_fluids
+from underfoot.compute.slips import slip_population, slip_sensors, slip_setting
+from underfoot.core import DataError, Progress, silent
+from underfoot.core.catalogue import Catalogue
+from underfoot.friction import (
+    SpeedTableLaw,
+    self_affine_scale,
+    shear_strength_from_cof,
+    stribeck_cof,
 )
-from .g6_soles import ASSUMPTIONS, LAWS, SOLES, SoleFriction, sole_frictions
-from .pin_study import PinLine, PinTable
-from .study_result import StudyResult
-from .verdict import Erratum, Verdict
+from underfoot.friction.asperity_ehl import STYLUS_RESOLUTION
+from underfoot.questions.outcomes import Outcome, outcomes
+from underfoot.slip import ADULTS_LEVEL_WALKING as ADULTS
+from underfoot.slip import MODELS, ReportG6, slip_model
+from underfoot.slip.dynamics import cof_table, slip_study
+from underfoot.trials.risk_curves import risk_curve
+from underfoot.trials.statistics.logistic import logistic_regression
 
-BAND = (0.159, 0.182)
-PRESSURE_BELOW = 10e3
-SLIP_RATE, SLOPE, HALF = 0.29, -49.2, -0.06
-ERRATA = (
-    Erratum(
-        "G.6.3, other studies' 50 % points", "0.16 and -0.11", "-0.11; the other is not used",
-        "-0.06 is said to lie within them, so the first sign is doubtful",
-    ),
-    Erratum("G.6, heading", "Scientific Report #4", "G.6", "the fourth report is G.4"),
-)  # fmt: skip
-PEOPLE = (
-    "RCOF 0.20 ± 0.03, normal: derived from the report's own printed risks "
-    "(docs/physics/slip_probability.md), so risks at the printed friction test the report's "
-    "consistency, not a prediction.",
-    "ACOF of the medium outsole: 0.159 as the hard one's, from which it is indistinguishable.",
-    "Slips step by step: packaged gait of dry walking, 0.114 of the body moves with the heel, "
-    "nobody reacts, no film.",
+from .figure import (
+    OURS,
+    PRINTED,
+    Figure,
+    Layer,
+    Panel,
+    grouped_bars,
+    line,
+    names_as_ticks,
+    numbers,
+    points,
 )
-NOTES = (
-    "friction: mean over the 200 ms after 250 N, at 0.3 m/s and 7 deg; band: hardness ± 5 Shore A "
-    "(assumed); ± : the law's own standard deviation",
-    "the printed ± of Fig. 36 and the readings of Fig. 37 are in figures only",
-    "precision of the printed logistic: 52 trials drawn from it, fitted again, 200 times",
-)
+from .runner import Computed, Options, Table, part
+from .verdict import Quantity
+
+Array = NDArray[np.float64]
+SOLES: dict[str, float] = {"hard": 70.0, "medium": 60.0, "soft": 50.0}
+"""Shore A, assumed: the report prints no hardness."""
+HARDNESS_BAND = 5.0
+"""Shore A to either side of each, assumed."""
+LAWS: dict[str, str] = {
+    "stribeck": "Eq. 17 of the pin as it is",
+    "asperity_ehl": "films at asperities",
+    "bowden_tabor": "real contact area",
+}
+SETUP, FLUID = "whole_shoe_g6", "glycerol_50pct"
+WINDOW = (0.2, 0.3, 0.4)
+"""Beginning, middle and end of the averaging window after first contact, s (G.6.1)."""
+PRINTED_ACOF = {"hard": 0.159, "medium": 0.159, "soft": 0.182}
+"""G.6.3; that of the medium outsole is not printed, but "indistinguishable" from the hard one."""
+PRINTED_RISK = {"hard": 0.54, "medium": 0.42, "soft": 0.077}
+PRINTED_SLOPE, PRINTED_HALF = -49.2, -0.06
+TRIALS = 52
+"""29 persons, two slips each, less 6 that did not hit the plate cleanly (G.6.1)."""
+SUBJECTS, QUICK_SUBJECTS = 200, 60
+STEPS = {
+    "constant": "ACOF as printed, at every speed",
+    "falling": "ACOF as printed, falling with speed",
+}
+SOLE_COLOURS = ("#e08a2e", "#e8c93c", "#c9c3b0")
+"""Nearly those of the report's Fig. 36."""
 
 
-def run(
-    *,
-    quick: bool = False,
-    processes: int | None = 1,
-    seed: int = 0,
-    progress: Progress = silent,
-) -> StudyResult:
-    """Return friction, pressures and slips of the three outsoles beside the printed ones.
+@dataclass(frozen=True, slots=True)
+class SoleFriction:
+    """One sole under the tester of G.6 by one law; ``cof`` is the window's mean.
+
+    ``deviation`` is the law's own standard deviation (nan: none known); ``low`` and ``high`` are
+    the COF at the hardness band's ends, ``coarse`` is on the quick grid (nan: not run).
+    """
+
+    sole: str
+    law: str
+    shore: float
+    cof: float
+    coarse: float
+    deviation: float
+    low: float
+    high: float
+    sensor_pressure: tuple[float, ...]
+    film_share: float
+
+    @property
+    def spread(self) -> float:
+        """Standard deviation of the law and of the hardness (its band as one)."""
+        own = 0.0 if math.isnan(self.deviation) else self.deviation
+        return math.hypot(own, 0.5 * (self.high - self.low))
+
+
+@dataclass(frozen=True, slots=True)
+class Logistic:
+    """A fitted logistic in ACOF - RCOF: slope and 50 % point with 95 % bounds (nan: none)."""
+
+    slope: float
+    slope_low: float
+    slope_high: float
+    half: float
+    half_error: float
+
+
+@dataclass(frozen=True, slots=True)
+class Slips:
+    """Steps of one population on three outsoles.
+
+    ``acof``, ``rcof``, ``slipped`` (n,) are of all steps; ``share`` of each outsole.
+    """
+
+    acof: Array
+    rcof: Array
+    slipped: Array
+    share: dict[str, float]
+    fit: Logistic
+
+
+def compute(options: Options) -> Computed:
+    """Return friction, pressures and slips of the three outsoles.
+
+    ``quick``: coarse grid, the middle of the averaging window alone, fewer persons.
+    """
+    quick, progress = options.quick, options.progress
+    frictions = sole_frictions(
+        quick=quick, processes=options.processes, progress=part(progress, 0.0, 0.7)
+    )
+    steps = {
+        name: slips(
+            PRINTED_ACOF,
+            own_speed=name == "falling",
+            subjects=QUICK_SUBJECTS if quick else SUBJECTS,
+            progress=part(progress, 0.7 + 0.1 * k, 0.8 + 0.1 * k),
+        )
+        for k, name in enumerate(STEPS)
+    }
+    progress("Precision of the printed logistic", 0.9)
+    drawn = precision_of_published(draws=60 if quick else 200, seed=options.seed)
+    return Computed(
+        quantities(frictions, steps, quick=quick, seed=options.seed),
+        (_friction_table(frictions), _risk_table(frictions), _step_table(steps)),
+        {
+            "fig36_outsoles": outsole_figure(frictions, steps),
+            "fig37_logistic": logistic_figure(steps, drawn),
+        },
+        _conclusions(frictions, steps, drawn),
+    )
+
+
+def sole_case(shore: float, law: str) -> Case:
+    """Return the case of one outsole (Shore A) under one friction law."""
+    mapping: dict[str, Any] = {
+        "file_version": 1,
+        "name": f"Outsole of {shore:g} Shore A, 50 % glycerol",
+        "shoe": {
+            "from": "slip_tester_heel",
+            "material": {"shore_a": shore},
+            "roughness": {"ra": "7.24 um", "cutoff": "0.8 mm"},
+            "tread": {
+                "pattern": "grid",
+                "depth": "3 mm",
+                "lug_width": "3.6 mm",
+                "channel_width": "2.4 mm",
+            },
+        },
+        "floor": {"from": "vinyl_g4"},
+        "contaminant": {"from": FLUID},
+        "motion": {"from": SETUP},
+        "sensor": {"from": "human_slip_g5"},
+        "models": {"friction": law},
+    }
+    if law == "bowden_tabor":
+        strength, left = pin_strength()
+        mapping["interface"] = {"shear_strength": f"{strength!r} Pa", "hysteresis_cof": left}
+    return Case.from_mapping(mapping)
+
+
+def pin_strength() -> tuple[float, float]:
+    """Return shear strength (Pa) under the fluid at the tester's speed, and what is hysteresis.
+
+    The adhesion that Eq. 17 leaves on the pin at 0.3 m/s, over the pin's real contact area. The
+    pin's asperities follow from its roughness by the rules that the sole's follow from.
+    """
+    catalogue = Catalogue.load()
+    pin = pin_on_disk(catalogue)
+    own = next(one for one in measured_fluids(catalogue) if one.fluid == FLUID)
+    assert own.tau_hydro is not None
+    assert own.cof_asymptote is not None
+    left = float(own.cof_asymptote.value or 0.0)
+    cof = float(stribeck_cof(0.3, own.cof_boundary.value or 0.0, own.tau_hydro.value or 0.0, left))
+    rules = sole_case(60.0, "stribeck")
+    factor, longest, hurst = (
+        float(rules.value(f"interface.{name}"))
+        for name in ("roughness_beyond_cutoff", "longest_wave", "hurst")
+    )
+    scale = self_affine_scale(
+        STYLUS_RESOLUTION,
+        rq=factor * float(np.hypot(pin.sole_rq, pin.floor_rq)),
+        longest_wave=longest,
+        hurst=min(hurst, 0.99),
+    )
+    share = float(scale.contact_fraction(pin.pressure / pin.modulus))
+    source = "final progress report on shoe-floor friction, G.2.2"
+    return shear_strength_from_cof(cof - left, pin.pressure, share, source).strength, left
+
+
+def sole_frictions(
+    *, quick: bool, processes: int | None = 1, progress: Progress = silent
+) -> list[SoleFriction]:
+    """Return the three soles by the three laws: 54 cases (27 with ``quick``)."""
+    times = WINDOW[1:2] if quick else WINDOW
+    plan = [(sole, law, shore) for law in LAWS for sole, shore in SOLES.items()]
+    cases, middles = [], []
+    for _, law, shore in plan:
+        base = sole_case(shore, law)
+        cases += [base.replace("motion.duration", f"{time!r} s") for time in times]
+        middle = f"{WINDOW[1]!r} s"
+        cases += [
+            sole_case(shore + side * HARDNESS_BAND, law).replace("motion.duration", middle)
+            for side in (1, -1)
+        ]
+        middles.append(base.replace("motion.duration", middle))
+    found = outcomes(
+        cases,
+        quick=quick,
+        processes=processes,
+        progress=part(progress, 0.0, 0.8),
+        stage="Whole-shoe friction",
+    )
+    coarse: Sequence[Outcome | None] = (
+        [None] * len(plan)
+        if quick
+        else outcomes(
+            middles,
+            quick=True,
+            processes=processes,
+            progress=part(progress, 0.8, 1.0),
+            stage="Coarse grid",
+        )
+    )
+    width = len(times) + 2
+    return [
+        _friction(*one, found[i * width : (i + 1) * width], coarse[i]) for i, one in enumerate(plan)
+    ]
+
+
+def _friction(
+    sole: str, law: str, shore: float, found: list[Outcome], coarse: Outcome | None
+) -> SoleFriction:
+    window, ends = found[:-2], [one.number("cof") for one in found[-2:]]
+    values = np.array([one.number("cof") for one in window])
+    weights = np.array([1.0, 4.0, 1.0]) / 6 if values.size == 3 else np.ones(1)
+    middle = window[len(window) // 2]
+    mean = float(weights @ values)
+    pressure = max(one.number("peak_fluid_pressure_sensor") for one in window)
+    coarser = () if coarse is None else (coarse.number("peak_fluid_pressure_sensor"),)
+    return SoleFriction(
+        sole,
+        law,
+        shore,
+        mean,
+        math.nan if coarse is None else mean + coarse.number("cof") - middle.number("cof"),
+        middle.spread("cof"),
+        min(ends),
+        max(ends),
+        (*coarser, pressure),
+        middle.number("fluid_load") / middle.number("normal_force"),
+    )
+
+
+def population_risk(acof: float) -> dict[str, float]:
+    """Return the share of the default population that slips by each published model."""
+    return {
+        name: float(slip_model(name).population(acof, ADULTS.mean, ADULTS.sd)) for name in MODELS
+    }
+
+
+def risk_by_rcof(count: int = 29) -> tuple[float, float, float]:
+    """Return the risk of the lowest, median and highest RCOF of ``count`` persons, by the report's
+    logistic, mean over the three outsoles with their printed ACOF.
+
+    Lowest and highest are the expected extremes of normal values (0.20 ± 0.03).
+    """
+    from scipy.stats import norm
+
+    z = np.linspace(-8, 8, 4001)
+    highest = np.gradient(norm.cdf(z) ** count, z)
+    reach = float(np.trapezoid(z * highest, z)) * ADULTS.sd
+    rcof = np.array([ADULTS.mean - reach, ADULTS.mean, ADULTS.mean + reach])
+    found = np.mean([ReportG6()(acof, rcof) for acof in PRINTED_ACOF.values()], axis=0)
+    return float(found[0]), float(found[1]), float(found[2])
+
+
+def implied_differences() -> dict[str, float]:
+    """Return ACOF - RCOF behind the printed risks 0.6, 21 and 92.5 %, and the slope of the log
+    odds with ACOF alone between the printed slip rates (per unit)."""
+
+    def logit(p: float) -> float:
+        return math.log(p / (1 - p))
+
+    found = {
+        name: PRINTED_HALF + logit(p) / PRINTED_SLOPE
+        for name, p in (("lowest", 0.006), ("median", 0.21), ("highest", 0.925))
+    }
+    return found | {"acof_slope": (logit(0.06) - logit(0.41)) / (0.182 - 0.159)}
+
+
+def precision_of_published(*, draws: int = 200, seed: int = 0) -> tuple[Array, Array]:
+    """Return slopes and 50 % points (draws,) of studies as large as G.6 if its logistic were true.
+
+    People 0.20 ± 0.03, printed ACOF; a study whose data separate is fitted with Firth's penalty.
+    """
+    generator = np.random.default_rng(seed)
+    levels = np.array(list(PRINTED_ACOF.values()))
+    model, found = ReportG6(), []
+    while len(found) < draws:
+        acof = levels[generator.integers(3, size=TRIALS)]
+        rcof = np.clip(generator.normal(ADULTS.mean, ADULTS.sd, TRIALS), 0.0, 1.0)
+        slipped = generator.random(TRIALS) < model(acof, rcof)
+        if slipped.any() and not slipped.all():
+            fit = fitted_logistic(acof - rcof, slipped)
+            found.append((fit.slope, fit.half))
+    slopes, halves = np.array(found).T
+    return slopes, halves
+
+
+def fitted_logistic(difference: Array, slipped: Array) -> Logistic:
+    """Return the logistic of slips in ACOF - RCOF; separated data by Firth's penalty."""
+    outcome = slipped.astype(int)
+    try:
+        fit = logistic_regression(outcome, {"difference": difference})
+    except DataError:
+        fit = logistic_regression(outcome, {"difference": difference}, method="firth")
+    slope = fit.coefficients[1]
+    curve = risk_curve(fit)
+    low, high = (math.nan if v is None else float(v) for v in (slope.low, slope.high))
+    return Logistic(slope.estimate, low, high, curve.half, curve.half_error)
+
+
+def slips(
+    acof: Mapping[str, float], *, own_speed: bool, subjects: int, progress: Progress = silent
+) -> Slips:
+    """Return computed steps of one population on three outsoles.
 
     Parameters
     ----------
-    quick
-        Coarse grid, the middle of the averaging window alone, fewer persons.
-    processes
-        Cases computed at the same time; None takes the cores.
-    seed
-        Of the drawn studies behind the printed logistic's precision.
+    acof
+        Friction of each outsole under the tester.
+    own_speed
+        Friction falls with the slipping speed as on the pin (Eq. 17), scaled to ``acof`` at the
+        tester's 0.3 m/s; otherwise it is ``acof`` at every speed.
+    subjects
+        Persons, each on all three outsoles.
+
+    Notes
+    -----
+    The film is left out (under the tester it carries about 2 % of the load, see the table):
+    friction then depends on speed alone and the fast model has no error of its own.
     """
-    started, used = time.perf_counter(), time.process_time()
-
-    def part(low: float, high: float) -> Progress:
-        def told(stage: str, fraction: float, residual: float | None = None) -> None:
-            progress(stage, low + (high - low) * fraction, residual)
-
-        return told
-
-    frictions = sole_frictions(quick=quick, processes=processes, progress=part(0.0, 0.7))
-    subjects = QUICK_SUBJECTS if quick else SUBJECTS
-    steps = {
-        "ACOF as printed, at every speed": slips(
-            PRINTED_ACOF, own_speed=False, subjects=subjects, progress=part(0.7, 0.8)
-        ),
-        "ACOF as printed, falling with speed": slips(
-            PRINTED_ACOF, own_speed=True, subjects=subjects, progress=part(0.8, 0.9)
-        ),
-    }
-    progress("Precision of the printed logistic", 0.9, None)
-    drawn = precision_of_published(draws=60 if quick else 200, seed=seed)
-    lines = (
-        *_friction_lines(frictions),
-        *_risk_lines(frictions, steps),
-        *_logistic_lines(steps, drawn),
-        *MISSING,
+    case = sole_case(SOLES["medium"], "stribeck").replace(
+        {"slip.mass_mean": "76.7 kg", "slip.mass_sd": "20 kg"}
     )
-    tables = (_friction_table(frictions), _risk_table(frictions), _step_table(steps))
-    progress("done", 1.0, None)
-    return StudyResult(
-        "g6", lines, tables, _conclusions(frictions, steps, drawn), ERRATA, NOTES,
-        (*ASSUMPTIONS, *PEOPLE), time.perf_counter() - started, time.process_time() - used,
-        {"frictions": frictions, "steps": steps, "drawn": drawn, "printed_acof": PRINTED_ACOF,
-         "printed_risk": PRINTED_RISK},
-    )  # fmt: skip
+    setting = replace(slip_setting(case), viscosity=None)
+    population = slip_population(case, subjects=subjects)
+    speed, shape = cof_table(setting.friction, 2.5e5)
+    at_tester = float(np.interp(0.3, speed, shape))
+    every, share = [], {}
+    for number, (sole, level) in enumerate(acof.items()):
+        progress(f"Slips on the {sole} outsole", number / len(acof), None)
+        cofs = shape * (level / at_tester) if own_speed else np.full(speed.size, level)
+        law = SpeedTableLaw(speed[1:], cofs[1:], source=f"{sole} outsole")
+        study = slip_study(
+            replace(setting, friction=law, key=""), population, array=slip_sensors(case)
+        )
+        fell = np.array([one.seen.slipped for one in study.subjects])
+        rcof = np.array([one.walker.rcof for one in study.subjects])
+        share[sole] = float(fell.mean())
+        every.append((np.full(fell.size, level), rcof, fell))
+    levels, rcof, fell = (np.concatenate(column) for column in zip(*every, strict=True))
+    return Slips(levels, rcof, fell, share, fitted_logistic(levels - rcof, fell))
 
 
 def of_law(frictions: Sequence[SoleFriction], law: str) -> dict[str, SoleFriction]:
@@ -111,190 +393,103 @@ def of_law(frictions: Sequence[SoleFriction], law: str) -> dict[str, SoleFrictio
     return {one.sole: one for one in frictions if one.law == law}
 
 
-def _friction_lines(frictions: Sequence[SoleFriction]) -> list[PinLine]:
-    lines = []
-    for law, words in LAWS.items():
-        soles = of_law(frictions, law)
-        cofs = [soles[name].cof for name in SOLES]
-        least, most = min(cofs), max(cofs)
-        spread = float(np.nanmax([0.0, *(one.deviation for one in soles.values())]))
-        inside = least >= BAND[0] - 5e-4 and most <= BAND[1] + 5e-4
-        reach = spread or max(0.5 * (one.high - one.low) for one in soles.values())
-        near = all(cof - reach <= BAND[1] and cof + reach >= BAND[0] for cof in cofs)
-        off = max(BAND[0] - least, most - BAND[1], 0.0)
-        lines.append(
-            PinLine(
-                f"whole-shoe ACOF of the three outsoles: {words}", "G.6.3", "0.159 to 0.182",
-                f"{least:.3f} to {most:.3f}" + (f" (± {spread:.3f})" if spread else ""),
-                Verdict.REPRODUCED if inside
-                else Verdict.WITHIN_SCATTER if near
-                else Verdict.DISAGREES,
-                _why(law), "inside" if off <= 5e-4 else f"up to {off:.3f} beyond",
-            )
-        )  # fmt: skip
+def quantities(
+    frictions: Sequence[SoleFriction], steps: Mapping[str, Slips], *, quick: bool, seed: int
+) -> dict[str, Quantity]:
+    """Return every quantity of the study by name."""
+    numerics = sole_case(60.0, "stribeck").numerics
+    spacings = (numerics.quick_grid_spacing, numerics.grid_spacing)
+    spacings = spacings[:1] if quick else spacings
+    found: dict[str, Quantity] = {}
     for law in LAWS:
         soles = of_law(frictions, law)
-        order = soles["soft"].cof - soles["hard"].cof
-        same = abs(order) < 1e-3
-        agrees = soles["soft"].cof > soles["medium"].cof > soles["hard"].cof and not same
-        lines.append(
-            PinLine(
-                f"order soft > medium >= hard: {law}", "G.6.2", "soft highest",
-                "no difference" if same
-                else " > ".join(sorted(soles, key=lambda name: -soles[name].cof)),
-                Verdict.REPRODUCED if agrees else Verdict.DISAGREES,
-                _order(law), f"soft - hard {order:+.3f}, printed +0.023",
+        for sole, one in soles.items():
+            values = (one.cof,) if quick else (one.coarse, one.cof)
+            levels = list(zip(spacings, values, strict=True))
+            acof = Quantity.of(one.cof, deviation=one.spread, levels=levels)
+            found[f"acof.{law}.{sole}"] = acof
+            draws = np.random.default_rng(seed).normal(one.cof, one.spread, 400)
+            risks = [population_risk(max(float(v), 0.0))["report_g6"] for v in draws]
+            found[f"risk.{law}.{sole}"] = Quantity.of(
+                population_risk(one.cof)["report_g6"], draws=risks
             )
-        )  # fmt: skip
-    highest = max(one.sensor_pressure for one in frictions)
-    lines.append(
-        PinLine(
-            "under-shoe fluid pressure, slip tester", "G.6.2", "below 10 kPa",
-            f"at most {highest / 1e3:.2g} kPa",
-            Verdict.REPRODUCED if highest < PRESSURE_BELOW else Verdict.DISAGREES,
-            f"4 mm sensor; the film carries at most "
-            f"{100 * max(one.film_share for one in frictions):.1f} % of the load",
+        hard, soft = soles["hard"], soles["soft"]
+        # the pin's own error is common to both soles: the hardness alone moves their difference
+        spread = 0.5 * math.hypot(hard.high - hard.low, soft.high - soft.low)
+        ends = [
+            (h, s) for h, s in zip((hard.coarse, hard.cof), (soft.coarse, soft.cof), strict=True)
+        ]
+        levels = list(zip(spacings, [s - h for h, s in (ends[1:] if quick else ends)], strict=True))
+        found[f"softer.{law}"] = Quantity.of(
+            soft.cof - hard.cof, deviation=spread or None, levels=levels
         )
-    )  # fmt: skip
-    return lines
+        found[f"order.{law}"] = Quantity.of([soft.cof, hard.cof], names=("soft", "hard"))
+    pressures = np.max([one.sensor_pressure for one in frictions], axis=0)
+    found["sensor_pressure"] = Quantity.of(
+        pressures[-1], "Pa", levels=list(zip(spacings, pressures.tolist(), strict=True))
+    )
+    for sole, acof in PRINTED_ACOF.items():
+        found[f"risk.printed.{sole}"] = Quantity.of(population_risk(acof)["report_g6"])
+    for name, risk in zip(("lowest", "median", "highest"), risk_by_rcof(), strict=True):
+        found[f"risk.rcof.{name}"] = Quantity.of(risk)
+    for name, one in steps.items():
+        count = one.slipped.size // len(one.share)
+        shares = {**one.share, "all": float(np.mean(list(one.share.values())))}
+        for sole, share in shares.items():
+            trials = count * (len(one.share) if sole == "all" else 1)
+            spread = math.sqrt(max(share * (1 - share), 1.0 / trials) / trials)
+            found[f"steps.{name}.{sole}"] = Quantity.of(share, deviation=spread)
+        spread = (one.fit.slope_high - one.fit.slope_low) / (2 * 1.96)
+        found[f"slope.{name}"] = Quantity.of(one.fit.slope, deviation=spread)
+        found[f"half.{name}"] = Quantity.of(one.fit.half, deviation=one.fit.half_error)
+    return found
 
 
-def _why(law: str) -> str:
-    return {
-        "stribeck": "friction of one polyurethane pin at 0.3 m/s, carried over unchanged; its tau "
-        "is printed as 0.19 ± 0.17 m/s, hence the wide spread",
-        "asperity_ehl": "calibrated on the pin (2 MPa); stiffer soles get thinner films at their "
-        "asperities, so friction rises with hardness and leaves the band",
-        "bowden_tabor": "adhesion of the pin scaled by real contact area, hysteresis of the pin "
-        "for all: one shear strength for all compounds is assumed",
-    }[law]
-
-
-def _order(law: str) -> str:
-    return {
-        "stribeck": "the law knows no sole",
-        "asperity_ehl": "the film at asperities thickens as the modulus falls faster than contact "
-        "grows; real contact area is not in this law",
-        "bowden_tabor": "more real contact on a softer sole: the cause the report gives (G.6.3); "
-        "G.3 found the opposite order dry, so the strength of the compound must matter too",
-    }[law]
-
-
-def _risk_lines(frictions: Sequence[SoleFriction], steps: dict[str, Slips]) -> list[PinLine]:
-    lines = []
-    area = of_law(frictions, "bowden_tabor")
-    for name, printed in PRINTED_RISK.items():
-        at_printed = population_risk(PRINTED_ACOF[name])["report_g6"]
-        own = population_risk(area[name].cof)["report_g6"]
-        ends = sorted(
-            population_risk(end)["report_g6"] for end in (area[name].low, area[name].high)
-        )
-        off = at_printed - printed
-        lines.append(
-            PinLine(
-                f"slip risk, {name} outsole, by the report's logistic over the population", "G.6.2",
-                f"{100 * printed:.3g} %",
-                f"{100 * at_printed:.0f} % at the printed ACOF; {100 * own:.0f} % "
-                f"({100 * ends[0]:.0f} to {100 * ends[1]:.0f} %) at ours",
-                Verdict.REPRODUCED if abs(off) < 0.05
-                else Verdict.WITHIN_SCATTER if _likely(at_printed, printed)
-                else Verdict.TREND_ONLY,
-                "the printed risks are of the model in ACOF alone: from 0.159 to 0.182 its log "
-                f"odds change with a slope of {implied_differences()['acof_slope']:.0f}, the "
-                "report's own model in ACOF - RCOF has -49.2; both can't hold for one population",
-                f"{100 * off:+.0f} points at the printed ACOF",
-            )
-        )  # fmt: skip
-    for label, found in steps.items():
-        whole = float(np.mean(list(found.share.values())))
-        words = ", ".join(f"{name} {100 * share:.0f} %" for name, share in found.share.items())
-        lines.append(
-            PinLine(
-                f"share of steps that slip, computed step by step: {label}", "G.6.2", "29 %",
-                f"{100 * whole:.0f} %",
-                Verdict.REPRODUCED if abs(whole - SLIP_RATE) < 0.05
-                else Verdict.WITHIN_SCATTER if _likely(whole, SLIP_RATE, 52)
-                else Verdict.TREND_ONLY,
-                f"{words} (observed 41 % at 0.159, 6 % at 0.182); no parameter was fitted to slips",
-                f"{100 * (whole - SLIP_RATE):+.0f} points",
-            )
-        )  # fmt: skip
-    lowest, middle, highest = risk_by_rcof()
-    off = np.abs(np.array([lowest - 0.03, middle - 0.26, highest - 0.83]))
-    lines.append(
-        PinLine(
-            "risk at the lowest, median and highest RCOF", "G.6.2", "3, 26, 83 %",
-            f"{100 * lowest:.0f}, {100 * middle:.0f}, {100 * highest:.0f} %",
-            Verdict.REPRODUCED if off.max() < 0.05 else Verdict.TREND_ONLY,
-            "consistency only: mean and spread of RCOF were derived from these and the risks in "
-            "ACOF - RCOF; expected extremes of 29 persons",
-            f"{100 * (lowest - 0.03):+.0f}, {100 * (middle - 0.26):+.0f}, "
-            f"{100 * (highest - 0.83):+.0f} points",
-        )
-    )  # fmt: skip
-    return lines
-
-
-def _likely(ours: float, printed: float, trials: int = 17) -> bool:
-    """Whether a share of ``printed`` among ``trials`` is within 1.96 deviations of ``ours``."""
-    return abs(ours - printed) <= 1.96 * float(np.sqrt(max(ours * (1 - ours), 0.01) / trials))
-
-
-def _logistic_lines(steps: dict[str, Slips], drawn: tuple[np.ndarray, np.ndarray]) -> list[PinLine]:
-    slope = np.percentile(drawn[0], [2.5, 97.5])
-    half = np.percentile(drawn[1], [2.5, 97.5])
-    lines = []
-    for label, found in steps.items():
-        fit = found.fit
-        overlap = fit.slope_low <= slope[1] and fit.slope_high >= slope[0]
-        close = half[0] <= fit.half <= half[1]
-        lines += [
-            PinLine(
-                f"slope of the log odds in ACOF - RCOF: {label}", "G.6.3",
-                "-49.2 (others -41.2 to -45.1, -54.7)",
-                f"{fit.slope:.0f} ({fit.slope_low:.0f} to {fit.slope_high:.0f})",
-                Verdict.REPRODUCED if fit.slope_low <= SLOPE <= fit.slope_high
-                else Verdict.WITHIN_SCATTER if overlap
-                else Verdict.TREND_ONLY if fit.slope < 0 and fit.slope_high < 0
-                else Verdict.DISAGREES,
-                f"no standard error is printed; 52 trials would give {slope[0]:.0f} to "
-                f"{slope[1]:.0f} if -49.2 were true",
-                f"{fit.slope - SLOPE:+.0f}",
-            ),
-            PinLine(
-                f"ACOF - RCOF at which half slip: {label}", "G.6.3", "-0.06",
-                f"{fit.half:.3f} ± {fit.half_error:.3f}",
-                Verdict.WITHIN_SCATTER if close
-                else Verdict.TREND_ONLY if fit.half < 0
-                else Verdict.DISAGREES,
-                f"52 trials would give {half[0]:.3f} to {half[1]:.3f} if -0.06 were true; below 0 "
-                "since a short need of friction moves the heel less than 0.2 m/s",
-                f"{fit.half - HALF:+.3f}",
-            ),
-        ]  # fmt: skip
-    return lines
-
-
-def _friction_table(frictions: Sequence[SoleFriction]) -> PinTable:
-    return PinTable(
+def _friction_table(frictions: Sequence[SoleFriction]) -> Table:
+    return Table(
         "whole_shoe_acof",
         "ACOF under the slip tester of G.6; low and high: hardness ± 5 Shore A",
-        ("law", "outsole", "Shore A", "ACOF", "±", "low", "high", "sensor Pa", "load on film"),
+        (
+            "law",
+            "outsole",
+            "Shore A",
+            "ACOF",
+            "±",
+            "low",
+            "high",
+            "coarse grid",
+            "sensor Pa",
+            "load on film",
+        ),
         tuple(
-            (one.law, one.sole, one.shore, one.cof, one.deviation, one.low, one.high,
-             one.sensor_pressure, one.film_share)
+            (
+                one.law,
+                one.sole,
+                one.shore,
+                one.cof,
+                _number(one.deviation),
+                one.low,
+                one.high,
+                _number(one.coarse),
+                one.sensor_pressure[-1],
+                one.film_share,
+            )
             for one in frictions
         ),
-    )  # fmt: skip
+    )
 
 
-def _risk_table(frictions: Sequence[SoleFriction]) -> PinTable:
-    rows = []
-    for name, acof in PRINTED_ACOF.items():
-        rows.append(("printed", name, acof, *population_risk(acof).values()))
-    for one in frictions:
-        rows.append((one.law, one.sole, one.cof, *population_risk(one.cof).values()))
-    return PinTable(
+def _number(value: float) -> float | None:
+    return None if math.isnan(value) else value
+
+
+def _risk_table(frictions: Sequence[SoleFriction]) -> Table:
+    rows = [
+        ("printed", name, acof, *population_risk(acof).values())
+        for name, acof in PRINTED_ACOF.items()
+    ]
+    rows += [(one.law, one.sole, one.cof, *population_risk(one.cof).values()) for one in frictions]
+    return Table(
         "slip_risk",
         "Share of a population with RCOF 0.20 ± 0.03 that slips, by published models",
         ("ACOF from", "outsole", "ACOF", *population_risk(0.17)),
@@ -302,25 +497,31 @@ def _risk_table(frictions: Sequence[SoleFriction]) -> PinTable:
     )
 
 
-def _step_table(steps: dict[str, Slips]) -> PinTable:
-    return PinTable(
+def _step_table(steps: Mapping[str, Slips]) -> Table:
+    return Table(
         "slips",
         "Steps computed one by one",
         ("friction", *SOLES, "all", "slope", "slope low", "slope high", "half slip at"),
         tuple(
-            (label, *(found.share[name] for name in SOLES),
-             float(np.mean(list(found.share.values()))), found.fit.slope, found.fit.slope_low,
-             found.fit.slope_high, found.fit.half)
-            for label, found in steps.items()
+            (
+                STEPS[name],
+                *(one.share[sole] for sole in SOLES),
+                float(np.mean(list(one.share.values()))),
+                one.fit.slope,
+                one.fit.slope_low,
+                one.fit.slope_high,
+                one.fit.half,
+            )
+            for name, one in steps.items()
         ),
-    )  # fmt: skip
+    )
 
 
 def _conclusions(
-    frictions: Sequence[SoleFriction], steps: dict[str, Slips], drawn: tuple[np.ndarray, np.ndarray]
+    frictions: Sequence[SoleFriction], steps: Mapping[str, Slips], drawn: tuple[Array, Array]
 ) -> tuple[str, ...]:
     area = of_law(frictions, "bowden_tabor")
-    constant, falling = steps.values()
+    constant, falling = (steps[name] for name in STEPS)
     low, high = np.percentile(drawn[0], [2.5, 97.5])
     return (
         "The level of the whole shoes' friction follows from a pin: "
@@ -338,23 +539,85 @@ def _conclusions(
     )
 
 
-MISSING = (
-    PinLine(
-        "second slip rarer than the first", "G.6.2", "p < 0.05", "-", Verdict.NOT_AVAILABLE,
-        "people adapt; the model has no learning",
-    ),
-    PinLine(
-        "RCOF is the same on all outsoles", "G.6.2", "no effect", "-", Verdict.NOT_AVAILABLE,
-        "RCOF is an input here",
-    ),
-    PinLine(
-        "risk at the lowest, median and highest ACOF - RCOF", "G.6.2", "0.6, 21, 92.5 %", "-",
-        Verdict.NOT_AVAILABLE,
-        "used as input: they give ACOF - RCOF of 0.044, -0.033 and -0.111 through the printed "
-        "curve; the pairs themselves are not printed",
-    ),
-    PinLine(
-        "50 % points of other studies", "G.6.3", "0.16 and -0.11", "-", Verdict.NOT_AVAILABLE,
-        "sign of the first doubtful; their data are not in the report",
-    ),
-)  # fmt: skip
+def outsole_figure(frictions: Sequence[SoleFriction], steps: Mapping[str, Slips]) -> Figure:
+    """Return slip risk (left) and friction (right) of the outsoles, printed and by each law."""
+    risks = {
+        sole: [100 * PRINTED_RISK[sole], *(100 * s.share[sole] for s in steps.values())]
+        for sole in SOLES
+    }
+    laws = {law: of_law(frictions, law) for law in LAWS}
+    acof, low, high = (
+        {sole: [getattr(laws[law][sole], name) for law in LAWS] for sole in SOLES}
+        for name in ("cof", "low", "high")
+    )
+    band = Layer(
+        "span",
+        low=[0.159],
+        high=[0.182],
+        label="report, hard to soft",
+        colour=PRINTED,
+        style="horizontal",
+    )
+    names = [
+        "report",
+        *(label.replace("ACOF as printed, ", "computed,\n") for label in STEPS.values()),
+    ]
+    return Figure(
+        (
+            Panel(
+                grouped_bars(risks, colours=SOLE_COLOURS),
+                y_label="steps that slip (%)",
+                x_ticks=names_as_ticks(names),
+            ),
+            Panel(
+                (band, *grouped_bars(acof, colours=SOLE_COLOURS, low=low, high=high)),
+                y_label="available friction (ACOF)",
+                x_ticks=names_as_ticks([*LAWS.values()]),
+                y_limits=(0.0, None),
+            ),
+        ),
+        "Fig. 36: slip risk and friction by outsole; bars on the right: hardness ± 5 Shore A",
+        columns=2,
+        size=(5.4, 4.0),
+    )
+
+
+def logistic_figure(steps: Mapping[str, Slips], drawn: tuple[Array, Array]) -> Figure:
+    """Return simulated slips over ACOF - RCOF with fitted and printed logistic curves."""
+    panels = []
+    for name, one in steps.items():
+        difference = one.acof - one.rcof
+        noise = np.random.default_rng(0).uniform(-0.02, 0.02, difference.size)
+        x = np.linspace(min(difference.min(), -0.13), max(difference.max(), 0.06), 201)
+        curves = _curve(x[:, None], drawn[0][None, :], drawn[1][None, :])
+        low, high = np.percentile(curves, [2.5, 97.5], axis=1)
+        layers = (
+            points(difference, one.slipped + noise, colour="0.6", marker="."),
+            Layer(
+                "band",
+                numbers(x),
+                low=numbers(low),
+                high=numbers(high),
+                colour=PRINTED,
+                label="52 trials of that curve, 95 %",
+            ),
+            line(x, _curve(x, PRINTED_SLOPE, PRINTED_HALF), "report: slope -49.2", colour=PRINTED),
+            line(
+                x,
+                _curve(x, one.fit.slope, one.fit.half),
+                f"steps: slope {one.fit.slope:.0f}",
+                colour=OURS,
+            ),
+        )
+        panels.append(Panel(layers, "ACOF - RCOF", "chance of a slip", STEPS[name]))
+    return Figure(
+        tuple(panels),
+        "Fig. 37 C: computed slips and logistic curves",
+        columns=2,
+        size=(5.2, 3.8),
+        share_y=True,
+    )
+
+
+def _curve(x: Any, slope: Any, half: Any) -> Array:
+    return 0.5 * (1 + np.tanh(0.5 * slope * (x - half)))

@@ -1,165 +1,372 @@
-"""How a computed range stands against a printed one, by rules that are the same everywhere."""
+"""The one place where a computed quantity is judged against a printed statement.
+
+The rules are the same for every study; no study holds a threshold of its own.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
-from underfoot.core import InputError
+import numpy as np
+from numpy.typing import ArrayLike
 
-ROUNDING = 0.005
-"""Half a percentage point: what a printed whole percentage leaves open."""
+from underfoot.core import InputError, unknown_name
+
+from .statements import Claim, Kind, Statement
+
+MORE_LIKELY_THAN_NOT = 0.5
+GRID_SHARE = 1.0 / 3.0
+"""Part of the tolerance that the last refinement of the grid may move a value by."""
+QUANTILES = np.linspace(0.0, 1.0, 401)
 
 
 class Verdict(StrEnum):
-    """How our numbers stand against the printed ones."""
+    """How our quantity stands against the printed one."""
 
-    REPRODUCED = "reproduced"
-    WITHIN_SCATTER = "within scatter"
+    AGREES = "agrees"
+    OVERLAPS = "overlaps"
     TREND_ONLY = "trend only"
     DISAGREES = "disagrees"
-    NOT_AVAILABLE = "can't be had"
+    NOT_CONVERGED = "not converged"
+    NOT_COMPARABLE = "not comparable"
 
     @property
     def rule(self) -> str:
         """Return what the verdict means."""
         return {
-            Verdict.REPRODUCED: "all our values lie in the printed range",
-            Verdict.WITHIN_SCATTER: "our range and the printed range overlap",
-            Verdict.TREND_ONLY: "same sign in every pair, another size",
-            Verdict.DISAGREES: "another sign or no effect, in some pair at least",
-            Verdict.NOT_AVAILABLE: "not printed, or beyond what the model can give",
+            Verdict.AGREES: "every value of ours lies within the tolerance of the printed one, and "
+            "is more likely inside than outside where a probability is known",
+            Verdict.OVERLAPS: "our 95 % interval (or our values over the conditions) reaches into "
+            "the tolerance of the printed one",
+            Verdict.TREND_ONLY: "a change of the printed sign in every condition, of another size",
+            Verdict.DISAGREES: "none of these",
+            Verdict.NOT_CONVERGED: "no two grids whose values differ by less than a third of the "
+            "tolerance, and no steady approach to extrapolate",
+            Verdict.NOT_COMPARABLE: "no number is printed, or the model has no such quantity",
         }[self]
 
 
 @dataclass(frozen=True, slots=True)
-class Erratum:
-    """Where the printed text was not taken as it stands."""
-
-    where: str
-    printed: str
-    used: str
-    why: str
-
-
-@dataclass(frozen=True, slots=True)
-class ComparedLine:
-    """One printed statement beside ours.
+class Quantity:
+    """A computed quantity, SI.
 
     Parameters
     ----------
-    series
-        Which of our parameter sets.
-    quantity, condition
-        What, and between what.
-    source
-        Section or figure.
-    printed
-        (lowest, highest) as fractions, or None where only words are printed.
-    printed_text
-        As a reader sees it.
-    ours
-        Fractions, one for each pair of conditions; empty when not available.
-    verdict, reason
-        The outcome and why it is so.
+    values
+        One number, or one for each condition that the printed range runs over.
+    unit
+        SI unit.
+    quantiles
+        Of its distribution at ``QUANTILES``; empty where none is known.
+    levels
+        (spacing in m, values) of the same numbers on grids from coarse to fine.
+    on_grid
+        True for a solver's number: without two grids it can't be judged.
+    names, chance
+        Of the values, for an order, and the probability of the printed order where it is known.
+    missing
+        Why there is no number; ``unconverged`` where the solver did not end.
     """
 
-    series: str
-    quantity: str
-    condition: str
-    source: str
-    printed: tuple[float, float] | None
-    printed_text: str
-    ours: tuple[float, ...]
-    verdict: Verdict
-    reason: str
+    values: tuple[float, ...]
+    unit: str
+    quantiles: tuple[float, ...] = ()
+    levels: tuple[tuple[float, tuple[float, ...]], ...] = ()
+    on_grid: bool = False
+    names: tuple[str, ...] = ()
+    chance: float | None = None
+    missing: str = ""
+    unconverged: bool = False
+
+    @classmethod
+    def of(
+        cls,
+        values: float | Sequence[float] | np.ndarray,
+        unit: str = "1",
+        *,
+        deviation: float | None = None,
+        draws: ArrayLike | None = None,
+        levels: Sequence[tuple[float, ArrayLike]] | None = None,
+        names: Sequence[str] = (),
+        chance: float | None = None,
+    ) -> Quantity:
+        """Return a quantity; a ``deviation`` stands for a normal distribution, ``draws`` for any.
+
+        ``levels`` (also empty) mark a number that a grid enters. Values that are not finite make
+        the quantity missing, not converged.
+        """
+        numbers = tuple(float(v) for v in np.atleast_1d(np.asarray(values, dtype=float)))
+        if not numbers or not np.isfinite(numbers).all():
+            return cls((), unit, missing="the solver gave no result", unconverged=True)
+        quantiles: tuple[float, ...] = ()
+        if draws is not None:
+            finite = np.asarray(draws, dtype=float)
+            finite = finite[np.isfinite(finite)]
+            if finite.size:
+                quantiles = tuple(float(q) for q in np.quantile(finite, QUANTILES))
+        elif deviation is not None and deviation > 0.0:
+            from scipy.stats import norm
+
+            places = np.clip(QUANTILES, 1e-4, 1.0 - 1e-4)
+            quantiles = tuple(float(q) for q in numbers[0] + deviation * norm.ppf(places))
+        grids = tuple(
+            (float(h), tuple(np.atleast_1d(np.asarray(v, float)).tolist())) for h, v in levels or ()
+        )
+        return cls(numbers, unit, quantiles, grids, levels is not None, tuple(names), chance)
+
+    @classmethod
+    def none(cls, reason: str, unit: str = "1") -> Quantity:
+        """Return a quantity that the model does not have, with the reason."""
+        return cls((), unit, missing=reason)
 
     @property
-    def ours_text(self) -> str:
-        """Our range as a reader sees it."""
-        return percent_range(self.ours)
+    def interval(self) -> tuple[float, float]:
+        """Central 95 %, joined with the values over the conditions."""
+        ends = list(self.values)
+        if self.quantiles:
+            ends += np.interp([0.025, 0.975], QUANTILES, self.quantiles).tolist()
+        return (min(ends), max(ends)) if ends else (math.nan, math.nan)
 
-    def as_dict(self) -> dict[str, object]:
+    def probability(self, low: float, high: float) -> float | None:
+        """Return the probability that it lies from ``low`` to ``high``; None where not known."""
+        if not self.quantiles:
+            return None
+        below = np.interp([low, high], self.quantiles, QUANTILES, left=0.0, right=1.0)
+        return float(below[1] - below[0])
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data for JSON."""
+        return {name: getattr(self, name) for name in self.__slots__}
+
+    @classmethod
+    def from_dict(cls, content: Mapping[str, Any]) -> Quantity:
+        """Return the quantity that ``as_dict`` wrote."""
+        plain: dict[str, Any] = {
+            k: tuple(v) if isinstance(v, list) else v for k, v in content.items()
+        }
+        plain["levels"] = tuple((h, tuple(v)) for h, v in plain["levels"])
+        return cls(**plain)
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """A statement with its verdict; texts in the printed unit."""
+
+    statement: Statement
+    verdict: Verdict
+    ours: str
+    difference: str
+    probability: float | None
+    reason: str
+
+    def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON and CSV."""
+        s = self.statement
         return {
-            "series": self.series,
-            "quantity": self.quantity,
-            "condition": self.condition,
-            "source": self.source,
-            "printed": self.printed_text,
-            "ours": self.ours_text,
+            "statement": s.name,
+            "text": s.text,
+            "place": s.place,
+            "kind": str(s.kind),
+            "of": s.of,
+            "printed": s.printed,
+            "tolerance": s.tolerance_reason,
+            "ours": self.ours,
+            "difference": self.difference,
             "verdict": str(self.verdict),
+            "probability": self.probability,
             "reason": self.reason,
         }
 
 
-def percent_range(values: Iterable[float]) -> str:
-    """Return "-29 to -16 %" for fractions, rounded to whole percentages; "-" where one is NaN."""
-    given = list(values)
-    if not given or any(value != value for value in given):
-        return "-"
-    each = [round(100.0 * value) for value in given]
-    low, high = min(each), max(each)
-    return f"{low:+d} %" if low == high else f"{low:+d} to {high:+d} %"
+@dataclass(frozen=True, slots=True)
+class GridValue:
+    """A value freed of its grid: ``error`` of an extrapolation, ``note`` on how it was taken."""
+
+    value: float
+    error: float = 0.0
+    converged: bool = True
+    note: str = ""
 
 
-def compared_range(printed: tuple[float, float], ours: Iterable[float]) -> Verdict:
-    """Return the verdict on changes (fractions) against the range that is printed.
+def grid_value(levels: Sequence[tuple[float, float]], tolerance: float) -> GridValue:
+    """Return the value of the finest grid, or its extrapolation, or that it did not converge.
 
-    Errors
+    Converged where the last refinement moved it by less than a third of the ``tolerance``.
+    Elsewhere the first-order Richardson value with the distance to the finest grid as its error,
+    where three grids approach it from one side in shrinking steps.
+    """
+    if len(levels) < 2:
+        return GridValue(levels[-1][1] if levels else math.nan, 0.0, False, "one grid only")
+    (coarse, before), (fine, last) = levels[-2:]
+    step = last - before
+    if abs(step) < GRID_SHARE * tolerance:
+        return GridValue(last)
+    if len(levels) > 2:
+        earlier = before - levels[-3][1]
+        if step * earlier > 0.0 and abs(step) < abs(earlier):
+            error = abs(step) / (coarse / fine - 1.0)
+            value = last + math.copysign(error, step)
+            return GridValue(value, error, True, "Richardson value of three grids")
+    return GridValue(last, 0.0, False, f"the last refinement moved it by {step:+.3g}")
+
+
+def judge(statement: Statement, quantities: Mapping[str, Quantity]) -> Judgement:
+    """Return the verdict on one statement.
+
+    Raises
     ------
     InputError
-        A printed range whose ends are exchanged.
+        A quantity that the study does not compute, or one of another unit.
     """
-    low, high = printed
-    if low > high:
-        raise InputError(f"{low:g} to {high:g}", where="printed", allowed="lowest first")
-    values = list(ours)
-    if not values or any(value != value for value in values):
-        return Verdict.NOT_AVAILABLE
-    least, most = min(values), max(values)
-    if least >= low - ROUNDING and most <= high + ROUNDING:
-        return Verdict.REPRODUCED
-    if least <= high + ROUNDING and most >= low - ROUNDING:
-        return Verdict.WITHIN_SCATTER
-    upwards = low >= 0.0 and least > ROUNDING
-    downwards = high <= 0.0 and most < -ROUNDING
-    return Verdict.TREND_ONLY if upwards or downwards else Verdict.DISAGREES
-
-
-def compared_sign(printed: int, ours: Iterable[float]) -> Verdict:
-    """Return the verdict on changes (fractions) where only a direction (+1 or -1) is printed."""
-    values = list(ours)
-    if not values or any(value != value for value in values):
-        return Verdict.NOT_AVAILABLE
-    agrees = all(printed * value > ROUNDING for value in values)
-    return Verdict.REPRODUCED if agrees else Verdict.DISAGREES
-
-
-def compared_mean(
-    printed: float, deviation: float, count: int, ours: float, *, trend: bool | None = None
-) -> Verdict:
-    """Return the verdict on a mean against a printed mean with its standard deviation.
-
-    Reproduced within 1.96 standard errors of the printed mean, within scatter within one standard
-    deviation of it. Beyond, ``trend`` says whether the direction against a second condition holds;
-    None where there is none.
-
-    Errors
-    ------
-    InputError
-        A negative deviation, fewer than two values behind the mean.
-    """
-    if deviation < 0 or count < 2:
+    if statement.not_comparable:
+        return _judgement(statement, Verdict.NOT_COMPARABLE, statement.not_comparable)
+    if statement.quantity not in quantities:
+        raise unknown_name("quantity", statement.quantity, quantities, where=statement.name)
+    quantity = quantities[statement.quantity]
+    if quantity.missing:
+        verdict = Verdict.NOT_CONVERGED if quantity.unconverged else Verdict.NOT_COMPARABLE
+        return _judgement(statement, verdict, quantity.missing)
+    if quantity.unit != statement.si_unit:
         raise InputError(
-            f"{deviation:g} of {count}", where="printed", allowed="a deviation of two or more"
+            f"{quantity.unit}", where=statement.name, allowed=f"{statement.si_unit or '1'}"
         )
-    if ours != ours:
-        return Verdict.NOT_AVAILABLE
-    off = abs(ours - printed)
-    if off <= 1.96 * deviation / count**0.5:
-        return Verdict.REPRODUCED
-    if off <= deviation:
-        return Verdict.WITHIN_SCATTER
-    return Verdict.TREND_ONLY if trend else Verdict.DISAGREES
+    if statement.claim is Claim.ORDER:
+        return _judged_order(statement, quantity)
+    low, high = statement.accepted
+    values, error, note = list(quantity.values), 0.0, ""
+    if quantity.on_grid:
+        on_grids = [
+            grid_value(
+                [(spacing, level[i]) for spacing, level in quantity.levels],
+                _allowed_error(statement, value),
+            )
+            for i, value in enumerate(values)
+        ]
+        note = next((one.note for one in on_grids if not one.converged), "")
+        if note:
+            return _judgement(statement, Verdict.NOT_CONVERGED, note, quantity)
+        values, error = [one.value for one in on_grids], max(one.error for one in on_grids)
+        note = next((one.note for one in on_grids if one.note), "")
+    chance = quantity.probability(low, high)
+    ours_low, ours_high = quantity.interval
+    ours_low, ours_high = min(ours_low, *values) - error, max(ours_high, *values) + error
+    if min(values) - error >= low and max(values) + error <= high:
+        likely = chance is None or chance >= MORE_LIKELY_THAN_NOT
+        verdict = Verdict.AGREES if likely else Verdict.OVERLAPS
+    elif ours_low <= high and ours_high >= low:
+        verdict = Verdict.OVERLAPS
+    elif statement.effect and all(
+        statement.effect * value > statement.tolerance for value in values
+    ):
+        verdict = Verdict.TREND_ONLY
+    else:
+        verdict = Verdict.DISAGREES
+    return _judgement(statement, verdict, note, quantity, values, chance)
+
+
+def _allowed_error(statement: Statement, value: float) -> float:
+    """Return what a third of must not be exceeded: half the accepted interval's width, or the
+    distance to its one edge."""
+    low, high = statement.accepted
+    if math.isfinite(low) and math.isfinite(high):
+        return 0.5 * (high - low)
+    return abs(value - (low if math.isfinite(low) else high))
+
+
+def _judged_order(statement: Statement, quantity: Quantity) -> Judgement:
+    """Return the verdict on an order: the sign of each step from one name to the next."""
+    by_name = dict(zip(quantity.names, quantity.values, strict=True))
+    steps = [
+        by_name[a] - by_name[b] for a, b in zip(statement.names, statement.names[1:], strict=False)
+    ]
+    chance = quantity.chance
+    holds = all(step > statement.tolerance for step in steps)
+    if holds and (chance is None or chance >= MORE_LIKELY_THAN_NOT):
+        verdict = Verdict.AGREES
+    elif chance is not None and chance > 0.025:
+        verdict = Verdict.OVERLAPS
+    else:
+        verdict = Verdict.DISAGREES
+    ordered = sorted(by_name, key=lambda name: -by_name[name])
+    ours = " > ".join(f"{name} {by_name[name]:.3g}" for name in ordered)
+    return _judgement(statement, verdict, "", chance=chance, ours=ours)
+
+
+def judged(statements: Iterable[Statement], quantities: Mapping[str, Quantity]) -> list[Judgement]:
+    """Return the verdicts of a study."""
+    return [judge(one, quantities) for one in statements]
+
+
+def counts(judgements: Iterable[Judgement]) -> dict[Verdict, int]:
+    """Return how many *independent* statements got each verdict; no other kind is counted."""
+    found = dict.fromkeys(Verdict, 0)
+    for one in judgements:
+        if one.statement.kind is Kind.INDEPENDENT:
+            found[one.verdict] += 1
+    return found
+
+
+def tables_by_kind(judgements: Sequence[Judgement]) -> list[tuple[Kind, list[Judgement]]]:
+    """Return the statements of each kind that there is, independent ones first."""
+    groups = [(kind, [j for j in judgements if j.statement.kind is kind]) for kind in Kind]
+    return [(kind, some) for kind, some in groups if some]
+
+
+def _judgement(
+    statement: Statement,
+    verdict: Verdict,
+    note: str,
+    quantity: Quantity | None = None,
+    values: Sequence[float] = (),
+    chance: float | None = None,
+    ours: str = "",
+) -> Judgement:
+    difference = ""
+    if quantity is not None:
+        shown = list(values or quantity.values)
+        interval = quantity.interval if quantity.quantiles else None
+        ours = values_text(shown, statement, interval)
+        low, high = statement.accepted
+        beyond = [v - (low if v < low else high) for v in shown if not low <= v <= high]
+        if beyond and verdict is not Verdict.NOT_CONVERGED:
+            farthest = max(beyond, key=abs) / statement.factor
+            unit = "points" if statement.unit == "%" else statement.unit
+            difference = f"{farthest:+.2g} {unit}".strip()
+    parts = [note]
+    if chance is not None:
+        parts.append(f"probability of agreement {_chance(chance)}")
+    parts.append(statement.remark)
+    reason = "; ".join(part for part in parts if part)
+    return Judgement(statement, verdict, ours or "-", difference, chance, reason)
+
+
+def values_text(
+    values: Sequence[float], statement: Statement, interval: tuple[float, float] | None = None
+) -> str:
+    """Return values and their 95 % interval in the statement's printed unit."""
+    signed = statement.effect or statement.claim in (Claim.RISES, Claim.FALLS)
+    sign = "+" if signed else ""
+
+    def number(value: float) -> str:
+        scaled = value / statement.factor
+        if statement.unit == "%":
+            whole = f"{scaled:{sign}.0f}"
+            return "0" if whole in ("-0", "+0") else whole
+        digits = f"{scaled:{sign}.0f}" if abs(scaled) >= 100 else f"{scaled:{sign}.3g}"
+        return "0" if digits in ("-0", "+0") else digits
+
+    low, high = number(min(values)), number(max(values))
+    text = low if low == high else f"{low} to {high}"
+    if interval is not None:
+        text += f" ({number(interval[0])} to {number(interval[1])})"
+    return f"{text} {statement.unit}".strip()
+
+
+def _chance(value: float) -> str:
+    if value > 0.995:
+        return "above 0.99"
+    return "below 0.01" if value < 0.005 else f"{value:.2f}"

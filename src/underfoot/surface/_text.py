@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..core import DataError, InputError, to_si
+from underfoot.core import DataError, InputError, to_si
 
 MISSING = {"", "nan", "na", "n/a", "null", "none", "-", "--", "***", "bad", "no data", "1.#qnan"}
 _LENGTH = re.compile(
@@ -34,9 +34,9 @@ class TextNumbers:
         such as "Length 12.5 mm" says nothing about the columns.
         """
         for line in reversed(self.header[-2:]):
-            found = _LENGTH.findall(line)
-            if found and not re.search(r"\d", line):
-                return found
+            units = _LENGTH.findall(line)
+            if units and not re.search(r"\d", line):
+                return units
         return []
 
 
@@ -45,7 +45,7 @@ def read_numbers(path: Path | str) -> TextNumbers:
 
     Separators comma, semicolon, tab or blanks; decimal commas where commas do not separate.
 
-    Errors
+    Raises
     ------
     DataError
         No such file, a binary file, no numbers, rows of different length.

@@ -6,7 +6,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..core import RangeError
+from underfoot.core import RangeError
+from underfoot.core.units import metres
+
 from ._kernels.numbers import slope
 from .filter import long_waves, short_waves
 from .height_map import HeightMap
@@ -55,7 +57,7 @@ def areal_roughness(
 
     Sdq = sqrt(mean(z_x^2 + z_y^2)), see ``rms_slope``.
 
-    Errors
+    Raises
     ------
     RangeError
         Short cut-off below what the measurement resolves.
@@ -68,9 +70,9 @@ def areal_roughness(
     )
     if short_cutoff is not None and short_cutoff < limit.wavelength * (1.0 - 1e-9):
         raise RangeError(
-            f"short cut-off {short_cutoff:g} m is below what was measured",
+            f"short cut-off {metres(short_cutoff)} is below what was measured",
             where="short_cutoff",
-            allowed=f"{limit.wavelength:.4g} m or more ({limit.reason})",
+            allowed=f"{metres(limit.wavelength)} or more ({limit.reason})",
         )
     rough = surface if surface.periodic else levelled(surface, 1)
     if short_cutoff is not None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..core import InputError
+from underfoot.core import InputError
+from underfoot.core.units import metres
+
 from .height_map import HeightMap
 from .prepare import levelled
 from .profile import Profile
@@ -18,7 +20,7 @@ def autocorrelation(
     Line or plane are removed from surfaces that are not periodic; their value at a lag is the
     mean over the pairs that exist, up to half the length. Periodic ones are continued.
 
-    Errors
+    Raises
     ------
     InputError
         A flat surface.
@@ -47,7 +49,7 @@ def correlation_length(
 
     1/e by default; 0.2 is the level of Sal in ISO 25178-2.
 
-    Errors
+    Raises
     ------
     InputError
         Level outside 0 to 1, or not reached within half the length.
@@ -58,7 +60,7 @@ def correlation_length(
     below = np.flatnonzero(value <= level)
     if below.size == 0:
         raise InputError(
-            f"the autocorrelation stays above {level:g} up to {lag[-1]:g} m",
+            f"the autocorrelation stays above {level:g} up to {metres(lag[-1])}",
             where="correlation_length",
             remedy="Measure a longer part, or filter the waviness away",
         )

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..core import DataError, InputError
+from underfoot.core import DataError, InputError
+from underfoot.core.units import metres
+
 from ._kernels.gaussian import mean_line, weights
 from .height_map import check_length
 from .prepare import Surface
@@ -29,7 +31,7 @@ def long_waves(surface: Surface, cutoff: float, ends: str = "drop") -> Surface:
     - "periodic": the surface is continued by itself; only for surfaces that say they are
       periodic.
 
-    Errors
+    Raises
     ------
     InputError
         Another ``ends``; "periodic" for a surface that is not; cut-off below two spacings.
@@ -54,16 +56,16 @@ def _split(surface: Surface, cutoff: float, ends: str) -> tuple[Surface, Surface
         raise InputError("the surface is not periodic", where="ends", allowed="drop or regression")
     if cutoff < 2.0 * surface.spacing * (1.0 - 1e-9):
         raise InputError(
-            f"cut-off {cutoff:g} m on a spacing of {surface.spacing:g} m",
+            f"cut-off {metres(cutoff)} on a spacing of {metres(surface.spacing)}",
             where="cutoff",
-            allowed=f"at least two spacings, {2.0 * surface.spacing:g} m",
+            allowed=f"at least two spacings, {metres(2.0 * surface.spacing)}",
         )
     lost = weights(surface.spacing, cutoff, 0.5).size // 2 if ends == "drop" else 0
     for n in surface.heights.shape:
         if n - 2 * lost < 2 or n * surface.spacing < cutoff * (1.0 - 1e-9):
             raise DataError(
-                f"a length of {n * surface.spacing:.4g} m is too short for the cut-off "
-                f"{cutoff:g} m",
+                f"a length of {metres(n * surface.spacing)} is too short for the cut-off "
+                f"{metres(cutoff)}",
                 where="cutoff",
                 allowed=f"more than {(2.0 if ends == 'drop' else 1.0) * cutoff:g} m",
                 remedy='Take a shorter cut-off, a longer measurement, or ends="regression"',
@@ -76,7 +78,7 @@ def _split(surface: Surface, cutoff: float, ends: str) -> tuple[Surface, Surface
     short = surface.heights[inner] - long
     changes: dict[str, object] = {} if ends == "periodic" else {"periodic": False}
     name = "ISO 16610-21" if isinstance(surface, Profile) else "ISO 16610-61"
-    how = f"Gaussian filter ({name}), cut-off {cutoff:g} m, ends: {ends}"
+    how = f"Gaussian filter ({name}), cut-off {metres(cutoff)}, ends: {ends}"
     return (
         surface.changed(long, f"long waves kept, {how}", **changes),
         surface.changed(short, f"short waves kept, {how}", **changes),

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..core import InputError, RangeError
+from underfoot.core import InputError, RangeError
+from underfoot.core.units import metres
+
 from .height_map import HeightMap, check_length
 from .self_affine import random_phases
 from .spectrum import IsotropicSpectrum
@@ -22,7 +24,7 @@ def surface_from_spectrum(
 
     ``shape`` points along x and y, ``spacing`` m, ``seed``: same seed, same surface.
 
-    Errors
+    Raises
     ------
     RangeError
         No wave of the grid lies within the spectrum.
@@ -50,8 +52,8 @@ def surface_from_spectrum(
     band = (q >= first * (1.0 - 1e-9)) & (q <= last * (1.0 + 1e-9)) & (q > 0.0)
     if not band.any():
         raise RangeError(
-            f"waves of {2 * np.pi / q_known[-1]:.4g} m to {2 * np.pi / q_known[0]:.4g} m on a "
-            f"grid of {nx} x {ny} points {spacing:g} m apart",
+            f"waves of {metres(2 * np.pi / q_known[-1])} to {metres(2 * np.pi / q_known[0])} on a "
+            f"grid of {nx} x {ny} points {metres(spacing)} apart",
             where="spacing",
             remedy="Take a grid that holds some of these waves",
         )
@@ -63,7 +65,7 @@ def surface_from_spectrum(
     total = float(np.sum(spectrum.density[use] * spectrum.area[use]))
     shortest, longest = 2.0 * np.pi / q[band].max(), 2.0 * np.pi / q[band].min()
     note = (
-        f"generated from a spectrum, wavelengths {shortest:.4g} m to {longest:.4g} m, "
+        f"generated from a spectrum, wavelengths {metres(shortest)} to {metres(longest)}, "
         f"{100.0 * float(np.mean(heights**2)) / total:.3g} % of its mean square height, "
         f"periodic, nothing extrapolated, seed {seed}"
     )

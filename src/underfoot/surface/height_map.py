@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..core import InputError
+from underfoot.core import InputError
+from underfoot.core.units import metres
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,7 +30,7 @@ class HeightMap:
     processing
         What was done to the heights, in order.
 
-    Errors
+    Raises
     ------
     InputError
         Missing heights, not two-dimensional, fewer than 2 points a side, spacing not positive.
@@ -99,4 +100,4 @@ def check_heights(heights: np.ndarray) -> None:
 def check_length(name: str, value: float) -> None:
     """Refuse a length that is not a positive number."""
     if not (np.isfinite(value) and value > 0.0):
-        raise InputError(f"{name} {value:g} m", where=name, allowed="a length above 0 m")
+        raise InputError(f"{name} {metres(value)}", where=name, allowed="a length above 0 m")

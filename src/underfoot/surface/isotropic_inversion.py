@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..core import InputError
+from underfoot.core import InputError
+
 from .spectrum import IsotropicSpectrum, ProfileSpectrum
 
 POINTS_PER_DECADE = 12
@@ -21,7 +22,7 @@ def isotropic_from_profile(spectrum: ProfileSpectrum) -> IsotropicSpectrum:
     minimum is the least change). Beyond the last wave number the power law of the last half
     decade is taken on. The notes say so.
 
-    Errors
+    Raises
     ------
     InputError
         Less than half a decade of reliable wave numbers.

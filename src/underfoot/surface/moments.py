@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..core import InputError
+from underfoot.core import InputError
+
 from .spectrum import IsotropicSpectrum, ProfileSpectrum
 
 
@@ -55,7 +56,7 @@ def spectral_moments(
     From a profile spectrum m_n = 2 int q^n C dq; from an isotropic one
     m_n = int cos^n(phi) q^n C d^2q, so m0, m2 / 2 and 3 m4 / 8 of the radial integrals.
 
-    Errors
+    Raises
     ------
     InputError
         No wave number in the band, or no roughness there.
@@ -85,7 +86,7 @@ def asperities(moments: SpectralMoments) -> Asperities:
     density = m4 / (6 pi sqrt(3) m2), radius = 3 sqrt(pi) / (8 sqrt(m4)),
     height_sd^2 = (1 - 0.8968 / alpha) m0, mean_height = 4 sqrt(m0 / (pi alpha)).
 
-    Errors
+    Raises
     ------
     InputError
         alpha below 1.5: not an isotropic random surface.

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..core import InputError
+from underfoot.core import InputError
+from underfoot.core.units import metres
+
 from .height_map import HeightMap, check_length
 
 
@@ -13,7 +15,7 @@ def sinusoidal(
 ) -> HeightMap:
     """Return a wave along x: heights amplitude cos(2 pi x / wavelength), periodic.
 
-    Errors
+    Raises
     ------
     InputError
         Wavelength that does not fit into the length a whole number of times.
@@ -22,7 +24,7 @@ def sinusoidal(
     _check(nx, spacing, wavelength, "x")
     x = spacing * np.arange(nx)
     line = amplitude * np.cos(2.0 * np.pi * x / wavelength)
-    note = f"wave of amplitude {amplitude:g} m and wavelength {wavelength:g} m along x"
+    note = f"wave of amplitude {metres(amplitude)} and wavelength {metres(wavelength)} along x"
     return _pattern(np.repeat(line[:, None], ny, axis=1), spacing, wavelength, note)
 
 
@@ -40,7 +42,7 @@ def checkerboard(
     valleys, as linear elements that are moved up and down at every other node make it: grant
     report G.1.1). Periodic.
 
-    Errors
+    Raises
     ------
     InputError
         Wavelength that does not fit into both lengths a whole number of times, another form.
@@ -57,7 +59,10 @@ def checkerboard(
             return np.cos(2.0 * np.pi * phase)
         return 4.0 * np.abs(np.mod(phase, 1.0) - 0.5) - 1.0
 
-    note = f"{form} checkerboard, peak to valley {peak_to_valley:g} m, wavelength {wavelength:g} m"
+    note = (
+        f"{form} checkerboard, peak to valley {metres(peak_to_valley)}, "
+        f"wavelength {metres(wavelength)}"
+    )
     heights = 0.5 * peak_to_valley * np.outer(one(nx), one(ny))
     return _pattern(heights, spacing, wavelength if form == "cosine" else None, note)
 
@@ -84,14 +89,14 @@ def _check(n: int, spacing: float, wavelength: float, axis: str) -> None:
     whole = max(round(waves), 1)
     if abs(waves - whole) > 1e-6 * whole:
         raise InputError(
-            f"{waves:.6g} waves of {wavelength:g} m in {n * spacing:g} m along {axis}",
+            f"{waves:.6g} waves of {metres(wavelength)} in {metres(n * spacing)} along {axis}",
             where="wavelength",
             allowed="a whole number of waves, so that the surface is periodic",
-            nearest=f"{n * spacing / whole:.6g} m",
+            nearest=f"{metres(n * spacing / whole)}",
         )
     if wavelength < 2.0 * spacing * (1.0 - 1e-9):
         raise InputError(
-            f"wavelength {wavelength:g} m on a spacing of {spacing:g} m",
+            f"wavelength {metres(wavelength)} on a spacing of {metres(spacing)}",
             where="wavelength",
-            allowed=f"at least two spacings, {2.0 * spacing:g} m",
+            allowed=f"at least two spacings, {metres(2.0 * spacing)}",
         )

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..core import InputError
+from underfoot.core import InputError
+from underfoot.core.units import metres
+
 from .height_map import HeightMap
 from .prepare import levelled
 
@@ -23,7 +25,7 @@ def periodised(surface: HeightMap, method: str = "taper", *, share: float = 0.1)
 
     What was done, with the rms height before and after, stands in ``processing``.
 
-    Errors
+    Raises
     ------
     InputError
         Another method; ``share`` outside 0 to 0.5.
@@ -35,19 +37,20 @@ def periodised(surface: HeightMap, method: str = "taper", *, share: float = 0.1)
     flat = levelled(surface, 1)
     z = flat.heights
     if method == "mirror":
-        whole = np.concatenate([z, z[::-1]], axis=0)
-        whole = np.concatenate([whole, whole[:, ::-1]], axis=1)
+        closed = np.concatenate([z, z[::-1]], axis=0)
+        closed = np.concatenate([closed, closed[:, ::-1]], axis=1)
         note = "made periodic by mirroring along both axes"
     else:
         if not 0.0 < share <= 0.5:
             raise InputError(
                 f"share {share:g}", where="share", allowed="above 0, at most 0.5 of a side"
             )
-        whole = z * np.outer(*(_fade(n, share) for n in z.shape))
+        closed = z * np.outer(*(_fade(n, share) for n in z.shape))
         note = f"made periodic by a cosine taper over {100 * share:g} % of each side"
     return flat.changed(
-        whole,
-        f"{note}; rms height {np.std(z):.4g} m before, {np.std(whole):.4g} m after",
+        closed,
+        f"{note}; rms height {metres(float(np.std(z)))} before, "
+        f"{metres(float(np.std(closed)))} after",
         periodic=True,
     )
 

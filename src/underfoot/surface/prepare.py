@@ -7,7 +7,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core import DataError, InputError
+from underfoot.core import DataError, InputError
+
 from .height_map import HeightMap
 from .profile import Profile
 
@@ -21,7 +22,7 @@ def filled(heights: ArrayLike, *, largest_share: float = 0.05) -> tuple[np.ndarr
     nearest one at the rim. More than ``largest_share`` missing is refused: the result would be
     invented.
 
-    Errors
+    Raises
     ------
     DataError
         Too many heights missing.
@@ -45,11 +46,11 @@ def filled(heights: ArrayLike, *, largest_share: float = 0.05) -> tuple[np.ndarr
         from scipy.interpolate import griddata
 
         known = np.argwhere(~missing)
-        wanted = np.argwhere(missing)
-        values = griddata(known, z[~missing], wanted, method="linear")
+        gaps = np.argwhere(missing)
+        values = griddata(known, z[~missing], gaps, method="linear")
         rim = ~np.isfinite(values)
         if rim.any():
-            values[rim] = griddata(known, z[~missing], wanted[rim], method="nearest")
+            values[rim] = griddata(known, z[~missing], gaps[rim], method="nearest")
         z[missing] = values
     return z, f"{count} of {z.size} missing heights interpolated"
 
@@ -60,7 +61,7 @@ def levelled(surface: Surface, degree: int = 1) -> Surface:
     0 removes the mean, 1 the line or plane, 2 and more also a curved form; on a map all terms up
     to the total degree.
 
-    Errors
+    Raises
     ------
     InputError
         Degree negative, or more coefficients than heights.

@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core import DataError, InputError
+from underfoot.core import DataError, InputError
+from underfoot.core.units import metres
+
 from .height_map import check_heights, check_length
 
 
@@ -32,7 +34,7 @@ class Profile:
     processing
         What was done to the heights, in order.
 
-    Errors
+    Raises
     ------
     InputError
         Missing heights, not one-dimensional, spacing not positive.
@@ -75,7 +77,7 @@ class Profile:
     def section(self, start: float, end: float) -> Profile:
         """Return the part with start <= x <= end (m from the first point).
 
-        Errors
+        Raises
         ------
         InputError
             A part outside the profile or with fewer than two points.
@@ -84,12 +86,14 @@ class Profile:
         inside = (x >= start - slack) & (x <= end + slack)
         if start < -slack or end > x[-1] + 0.5 * self.spacing + slack or inside.sum() < 2:
             raise InputError(
-                f"part from {start:g} m to {end:g} m",
+                f"part from {metres(start)} to {metres(end)}",
                 where="section",
-                allowed=f"within 0 m to {x[-1]:g} m, two points or more",
+                allowed=f"within 0 m to {metres(x[-1])}, two points or more",
             )
         return self.changed(
-            self.heights[inside], f"cut to {start:g} m to {end:g} m", periodic=False
+            self.heights[inside],
+            f"cut to {metres(start)} to {metres(end)}",
+            periodic=False,
         )
 
     def changed(self, heights: np.ndarray, done: str, **changes: object) -> Profile:
@@ -118,7 +122,7 @@ def profile_from_positions(
     then heights are interpolated linearly to an even grid with as many points, and the profile
     says so.
 
-    Errors
+    Raises
     ------
     DataError
         Positions missing, not ascending, uneven without ``resample``, heights missing.
@@ -140,7 +144,7 @@ def profile_from_positions(
     if np.any(steps <= 0.0) and not (np.all(steps >= 0.0) and rounding > 0.0):
         i = int(np.flatnonzero(steps <= 0.0)[0])
         raise DataError(
-            f"position {i + 2} ({x[i + 1]:g} m) does not follow {x[i]:g} m",
+            f"position {i + 2} ({metres(x[i + 1])}) does not follow {metres(x[i])}",
             where=source or "profile",
             allowed="ascending positions",
         )
@@ -152,13 +156,13 @@ def profile_from_positions(
         note = ()
         if off > 0.01 * spacing:
             note = (
-                f"positions, rounded in print to {2.0 * rounding:.3g} m, taken as even: "
-                f"{spacing:.6g} m",
+                f"positions, rounded in print to {metres(2.0 * rounding)}, taken as even: "
+                f"{metres(spacing)}",
             )
         return Profile(z, float(spacing), tip_radius=tip_radius, source=source, processing=note)
     if not resample:
         raise DataError(
-            f"positions are uneven: up to {off:.3g} m off a grid of {spacing:.3g} m",
+            f"positions are uneven: up to {metres(off)} off a grid of {metres(spacing)}",
             where=source or "profile",
             remedy="Ask for resampling (resample=True); the result then says so",
         )
@@ -170,7 +174,7 @@ def profile_from_positions(
         tip_radius=tip_radius,
         source=source,
         processing=(
-            f"resampled linearly to an even spacing of {even[1] - even[0]:.4g} m "
-            f"(positions were up to {off:.3g} m off)",
+            f"resampled linearly to an even spacing of {metres(even[1] - even[0])} "
+            f"(positions were up to {metres(off)} off)",
         ),
     )

@@ -7,10 +7,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core import DataError, InputError, RangeError
+from underfoot.core import DataError, InputError, RangeError
+from underfoot.core.units import metres
+
 from ._kernels.numbers import curvature, element_spacing, slope
 from .filter import long_waves, short_waves
 from .height_map import check_heights
+from .prepare import levelled
 from .profile import Profile
 from .resolution import shortest_derivable_wavelength
 
@@ -131,7 +134,7 @@ def profile_roughness(
     RSm counts profile elements whose hill and dale both exceed 10 % of Rz, between upward
     crossings of the mean line.
 
-    Errors
+    Raises
     ------
     InputError
         Unknown standard, fewer than one section, short cut-off not below the long one.
@@ -150,9 +153,9 @@ def profile_roughness(
     if rough.heights.size < wanted:
         lost = profile.length - rough.heights.size * profile.spacing
         raise DataError(
-            f"the profile is {profile.length:.4g} m long, of which the filter uses {lost:.3g} m",
+            f"the profile is {metres(profile.length)} long, the filter uses {metres(lost)} of it",
             where="profile",
-            allowed=f"{sections} sections of {long_cutoff:g} m and what the filter uses",
+            allowed=f"{sections} sections of {metres(long_cutoff)} and what the filter uses",
             remedy='Take fewer sections, a shorter cut-off, or ends="regression"',
         )
     start = (rough.heights.size - wanted) // 2
@@ -226,29 +229,27 @@ def _check(
     limit = shortest_derivable_wavelength(profile)
     if long_cutoff < 2.0 * limit.wavelength:
         raise RangeError(
-            f"long cut-off {long_cutoff:g} m",
+            f"long cut-off {metres(long_cutoff)}",
             where="long_cutoff",
-            allowed=f"at least twice the resolution of {limit.wavelength:.4g} m ({limit.reason})",
+            allowed=f"at least twice the resolution of {metres(limit.wavelength)} ({limit.reason})",
         )
     if short_cutoff is None:
         return
     if not short_cutoff < long_cutoff:
         raise InputError(
-            f"short cut-off {short_cutoff:g} m",
+            f"short cut-off {metres(short_cutoff)}",
             where="short_cutoff",
-            allowed=f"below {long_cutoff:g} m",
+            allowed=f"below {metres(long_cutoff)}",
         )
     if short_cutoff < limit.wavelength * (1.0 - 1e-9):
         raise RangeError(
-            f"short cut-off {short_cutoff:g} m is below what was measured",
+            f"short cut-off {metres(short_cutoff)} is below what was measured",
             where="short_cutoff",
-            allowed=f"{limit.wavelength:.4g} m or more ({limit.reason})",
+            allowed=f"{metres(limit.wavelength)} or more ({limit.reason})",
         )
 
 
 def _without_line(profile: Profile) -> Profile:
-    from .prepare import levelled
-
     return levelled(profile, 1)
 
 

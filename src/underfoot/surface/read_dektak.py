@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..core import DataError
+from underfoot.core import DataError
+
 from ._text import length_factor
 from .profile import Profile, profile_from_positions
 
@@ -38,7 +39,7 @@ def read_dektak(path: Path | str) -> tuple[Profile, tuple[InstrumentResult, ...]
     Spacing and tip radius come from the header; printed positions are rounded and only checked
     against it.
 
-    Errors
+    Raises
     ------
     DataError
         No such file, another format, heights missing.
@@ -66,12 +67,12 @@ def read_dektak(path: Path | str) -> tuple[Profile, tuple[InstrumentResult, ...]
             ) from None
     x, z = np.array(rows).T
     radius = next((line for line in lines[:start] if line.startswith("Stylus")), "")
-    found = re.search(r"Radius:\s*(.*)", radius)
+    match = re.search(r"Radius:\s*(.*)", radius)
     profile = profile_from_positions(
         x * lateral,
         z * vertical,
         rounding=0.05 * lateral,
-        tip_radius=_length(found.group(1), str(path)) if found else None,
+        tip_radius=_length(match.group(1), str(path)) if match else None,
         source=str(path),
     )
     return profile, _results(lines[:start], str(path))

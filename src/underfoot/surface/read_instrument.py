@@ -8,8 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from ..core import DataError, MissingExtraError
-from ._text import length_factor
+from underfoot.core import DataError
+from underfoot.core.optional import optional_module
+from underfoot.core.units import metres
+
+from ._text import length_factor, read_numbers
 from .height_map import HeightMap
 from .prepare import filled
 from .profile import Profile, profile_from_positions
@@ -31,7 +34,7 @@ def read_instrument(
     Formats: those of SurfaceTopography (SDF, X3P, SUR, PLUX, OPD, OPDx, AL3D, VK4, DATX, Nanoscope,
     Gwyddion and others). ``length_unit`` is needed where the file has none.
 
-    Errors
+    Raises
     ------
     MissingExtraError
         SurfaceTopography is not installed.
@@ -42,16 +45,11 @@ def read_instrument(
     path = Path(path)
     if not path.is_file():
         raise DataError("there is no such file", where=str(path))
-    try:
-        import SurfaceTopography
-    except ImportError:
-        raise MissingExtraError(
-            "SurfaceTopography", "instruments", "Reading this instrument's format"
-        ) from None
+    package = optional_module("SurfaceTopography", "instruments", "Reading this format")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            topography: Any = SurfaceTopography.read_topography(str(path))
+            topography: Any = package.read_topography(str(path))
             heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
             positions = topography.positions() if topography.dim == 1 else None
     except Exception as error:  # its readers raise many kinds
@@ -94,7 +92,7 @@ def read_instrument(
     ]
     if abs(spacings[0] / spacings[1] - 1.0) > 0.005:
         raise DataError(
-            f"cells of {spacings[0]:.4g} m by {spacings[1]:.4g} m",
+            f"cells of {metres(spacings[0])} by {metres(spacings[1])}",
             where=str(path),
             allowed="square cells",
             remedy="Export with the same spacing along x and y",
@@ -120,8 +118,6 @@ def read_surface(path: Path | str, **settings: Any) -> Profile | HeightMap:
     if is_dektak(path):
         return read_dektak(path)[0]
     if path.suffix.casefold() in TEXT:
-        from ._text import read_numbers
-
         columns = read_numbers(path).rows.shape[1]
         return read_profile(path, **settings) if columns <= 2 else read_map(path, **settings)
     return read_instrument(path, **settings)

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..core import DataError
+from underfoot.core import DataError
+from underfoot.core.units import metres
+
 from ._text import TextNumbers, length_factor, read_numbers
 from .height_map import HeightMap
 from .prepare import filled
@@ -30,7 +32,7 @@ def read_profile(
     heights are refused unless ``fill_missing`` (then up to 5 % are interpolated). Both are said
     in ``processing``.
 
-    Errors
+    Raises
     ------
     DataError
         Unreadable, units missing, positions uneven, heights missing.
@@ -86,7 +88,7 @@ def read_map(
     with square cells. Units come from the heading unless given: the first for x and y, the last
     for z.
 
-    Errors
+    Raises
     ------
     DataError
         Unreadable, units missing, no full grid, cells not square, heights missing.
@@ -98,8 +100,7 @@ def read_map(
     to_height = _factor(height_unit, units[-1:], data, 0)
     if data.rows.shape[1] == 3 and data.rows.shape[0] > 3:
         to_length = _factor(length_unit, units[:1], data, 1)
-        heights, found = _grid(data, to_length)
-        spacing = found
+        heights, spacing = _grid(data, to_length)
     elif data.rows.shape[1] < 2:
         raise DataError(
             "one column only", where=data.where, remedy="A profile is read with read_profile"
@@ -133,8 +134,8 @@ def _grid(data: TextNumbers, to_length: float) -> tuple[np.ndarray, float]:
         off = np.abs(values - levels[0] - place * step).max()
         if off > max(0.01 * step, rounding * (1.0 + 1e-6)):
             raise DataError(
-                f"{name} is uneven: up to {off * to_length:.3g} m off a grid of "
-                f"{step * to_length:.3g} m",
+                f"{name} is uneven: up to {metres(off * to_length)} off a grid of "
+                f"{metres(step * to_length)}",
                 where=data.where,
                 remedy="Export the measurement on a regular grid",
             )
@@ -142,7 +143,7 @@ def _grid(data: TextNumbers, to_length: float) -> tuple[np.ndarray, float]:
         spacings.append(step * to_length)
     if abs(spacings[0] / spacings[1] - 1.0) > 0.005:
         raise DataError(
-            f"cells of {spacings[0]:.4g} m by {spacings[1]:.4g} m",
+            f"cells of {metres(spacings[0])} by {metres(spacings[1])}",
             where=data.where,
             allowed="square cells",
             remedy="Export with the same spacing along x and y",
@@ -172,8 +173,8 @@ def _complete(
             where=data.where,
             remedy="Ask for interpolation (fill_missing=True); the result then says so",
         )
-    whole, note = filled(heights)
-    return whole, (note,)
+    complete, note = filled(heights)
+    return complete, (note,)
 
 
 def _refuse_one_for_all(
@@ -189,15 +190,15 @@ def _refuse_one_for_all(
         )
 
 
-def _factor(given: str | None, found: list[str], data: TextNumbers, which: int) -> float:
+def _factor(unit: str | None, heading_units: list[str], data: TextNumbers, which: int) -> float:
     name = ("height_unit", "length unit")[which]
-    if given is not None:
-        return length_factor(given, name)
-    if not found:
+    if unit is not None:
+        return length_factor(unit, name)
+    if not heading_units:
         raise DataError(
             "no unit of length in the heading",
             where=data.where,
             allowed="for example: x [mm]; z [um]",
             remedy=f"Give the {name.replace('_', ' ')}",
         )
-    return length_factor(found[0], data.where)
+    return length_factor(heading_units[0], data.where)

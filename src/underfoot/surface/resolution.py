@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from underfoot.core.units import metres
+
 from .height_map import HeightMap
 from .profile import Profile
 
@@ -52,7 +54,7 @@ def shortest_derivable_wavelength(surface: Profile | HeightMap) -> Resolution:
 def _sampling(surface: Profile | HeightMap, points: int) -> Resolution:
     return Resolution(
         points * surface.spacing,
-        f"{points} points to a wave at a spacing of {surface.spacing:.4g} m",
+        f"{points} points to a wave at a spacing of {metres(surface.spacing)}",
     )
 
 

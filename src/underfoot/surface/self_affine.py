@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..core import InputError, RangeError
+from underfoot.core import InputError, RangeError
+from underfoot.core.units import metres
+
 from .height_map import HeightMap, check_length
 
 
@@ -48,7 +50,7 @@ def self_affine(
         Stretch of the pattern along x relative to y: 3 gives ridges along the sliding direction
         three times longer than wide. Cut-offs then hold along y.
 
-    Errors
+    Raises
     ------
     RangeError, InputError
         Wavelengths that the grid can't hold or in the wrong order, Hurst exponent outside 0 to 1.
@@ -74,8 +76,8 @@ def self_affine(
     heights = random_phases(amplitude, (nx, ny), seed)
     heights *= rms_height / np.sqrt(np.mean(heights**2))
     note = (
-        f"generated self-affine, Hurst {hurst:g}, wavelengths {short_cutoff:g} m to "
-        f"{long_cutoff:g} m, roll-off {turn:g} m, anisotropy {anisotropy:g}, seed {seed}"
+        f"generated self-affine, Hurst {hurst:g}, wavelengths {metres(short_cutoff)} to "
+        f"{metres(long_cutoff)}, roll-off {metres(turn)}, anisotropy {anisotropy:g}, seed {seed}"
     )
     return HeightMap(
         heights,
@@ -121,7 +123,9 @@ def _check(
     ):
         check_length(name, value)
     if not (np.isfinite(rms_height) and rms_height >= 0.0):
-        raise InputError(f"rms height {rms_height:g} m", where="rms_height", allowed="0 m or more")
+        raise InputError(
+            f"rms height {metres(rms_height)}", where="rms_height", allowed="0 m or more"
+        )
     if not 0.0 <= hurst <= 1.0:
         raise RangeError(f"Hurst exponent {hurst:g}", where="hurst", allowed="0 to 1")
     if not (np.isfinite(anisotropy) and anisotropy > 0.0):
@@ -129,20 +133,20 @@ def _check(
     side, slack = min(nx, ny) * spacing, 1e-9
     if long_cutoff > side * (1.0 + slack):
         raise RangeError(
-            f"longest wavelength {long_cutoff:g} m on a side of {side:g} m",
+            f"longest wavelength {metres(long_cutoff)} on a side of {metres(side)}",
             where="long_cutoff",
-            allowed=f"at most {side:g} m",
+            allowed=f"at most {metres(side)}",
             remedy="Take more points, or a shorter longest wavelength",
         )
     if short_cutoff < 2.0 * spacing * (1.0 - slack):
         raise RangeError(
-            f"shortest wavelength {short_cutoff:g} m on a grid of {spacing:g} m",
+            f"shortest wavelength {metres(short_cutoff)} on a grid of {metres(spacing)}",
             where="short_cutoff",
-            allowed=f"at least two grid spacings, {2.0 * spacing:g} m",
+            allowed=f"at least two grid spacings, {metres(2.0 * spacing)}",
         )
     if not short_cutoff <= turn <= long_cutoff * (1.0 + slack):
         raise RangeError(
-            f"roll-off {turn:g} m",
+            f"roll-off {metres(turn)}",
             where="roll_off",
-            allowed=f"between the cut-offs {short_cutoff:g} m and {long_cutoff:g} m",
+            allowed=f"between the cut-offs {metres(short_cutoff)} and {metres(long_cutoff)}",
         )

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..core import InputError
+from underfoot.core import InputError
+
 from .height_map import HeightMap, check_heights
 from .prepare import levelled
 from .profile import Profile

@@ -1,9 +1,11 @@
 """Measurements: files to trials, trials to the numbers the field publishes."""
 
+from .array_pressures import SensorArrayReading, sensor_array_reading
 from .available import ACOF_WINDOWS, available_friction, available_frictions, mean_friction
 from .axes import Axes, axes_of, axis_name, axis_vector, heel_candidates, heel_of
 from .describe import Description, described, described_file
-from .events import Stance, body_mass, contacts, stances
+from .edits import EditError
+from .events import body_mass, body_weight, stances
 from .filters import FILTERS, FORCE_FILTER, MARKER_FILTER, LowPass, low_passed, velocity
 from .gait import (
     DEFINITIONS,
@@ -11,9 +13,12 @@ from .gait import (
     RequiredFriction,
     required_friction,
     required_frictions,
+    stance_frictions,
 )
+from .gait_context import GaitContext, foot_angle, gait_context, stance_curves
 from .heel import HeelMotion, SlipDefinition, contact_from_heel, heel_motion
-from .measurement import Measurement, mean_of
+from .measurement import Flag, Measurement, mean_of
+from .outcome import Outcome, OutcomeLimits
 from .plates import finished_plate
 from .pressures import (
     Passage,
@@ -34,9 +39,20 @@ from .readers import (
     read_trial,
     read_trials,
 )
-from .sensor_array import SensorArrayReading, sensor_array_reading
+from .slip_course import SlipCourse, slip_course
 from .slips import Slip, slip, slip_of
-from .trial import Channel, Edit, Event, Marker, Plate, Trial, file_checksum, joined
+from .stance import Stance, contacts
+from .trial import (
+    Channel,
+    Edit,
+    Event,
+    Marker,
+    Plate,
+    PlateAccuracy,
+    Trial,
+    file_checksum,
+    joined,
+)
 
 __all__ = [
     "ACOF_WINDOWS",
@@ -48,13 +64,19 @@ __all__ = [
     "Channel",
     "Description",
     "Edit",
+    "EditError",
     "Event",
+    "Flag",
+    "GaitContext",
     "HeelMotion",
     "LowPass",
     "Marker",
     "Measurement",
+    "Outcome",
+    "OutcomeLimits",
     "Passage",
     "Plate",
+    "PlateAccuracy",
     "PlateColumns",
     "Profile",
     "Pulse",
@@ -64,6 +86,7 @@ __all__ = [
     "SensorArrayReading",
     "Sheet",
     "Slip",
+    "SlipCourse",
     "SlipDefinition",
     "Stance",
     "Trial",
@@ -73,12 +96,15 @@ __all__ = [
     "axis_name",
     "axis_vector",
     "body_mass",
+    "body_weight",
     "contact_from_heel",
     "contacts",
     "described",
     "described_file",
     "file_checksum",
     "finished_plate",
+    "foot_angle",
+    "gait_context",
     "heel_candidates",
     "heel_motion",
     "heel_of",
@@ -99,7 +125,10 @@ __all__ = [
     "sensor_array_reading",
     "sensor_rows",
     "slip",
+    "slip_course",
     "slip_of",
+    "stance_curves",
+    "stance_frictions",
     "stances",
     "velocity",
 ]

@@ -13,7 +13,7 @@ from underfoot.core import DataError, InputError
 from .axes import axes_of
 from .filters import LowPass, low_passed
 from .gait import SHEARS
-from .measurement import Measurement
+from .measurement import Measurement, caution
 from .plates import baseline_words
 from .trial import Plate, Trial
 
@@ -77,7 +77,7 @@ def mean_friction(
     ratio = across / part
     flags = ()
     if part.min() < 0.9 * target:
-        flags = (f"the normal force falls to {part.min():.0f} N in the window",)
+        flags = (caution(f"the normal force falls to {part.min():.0f} N in the window"),)
     error = _standard_error(ratio)
     return Measurement(
         name,

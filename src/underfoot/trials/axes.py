@@ -6,17 +6,19 @@ import re
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 
 from underfoot.core import InputError
 
 from .plates import plate_axes, up_from_normal
+from .ramp import LEVEL, Ramp
 from .trial import Marker, Plate, Trial
 
 WALKING_SPEED = 0.3  # m/s; slower than that nobody walks
-TREADMILL = "shear force; the centre of pressure moves backward: a treadmill"
 _NAMES = "xyz"
+_TOE = re.compile(r"toe$|mt[12]$|toe[ _.\-]?[lr]?$", re.IGNORECASE)
 _HEEL = re.compile(r"heel|hee$|cal$|calc|talon|ferse|hiel", re.IGNORECASE)
 _NOT_HEEL = re.compile(r"force|moment|angle|power|grf|scale", re.IGNORECASE)
 _NOT_SIDE = re.compile(r"^(lat|lateral|low|lower|rear|med|medial)[ _.\-]|[ _.\-]?(lat|rear)$", re.I)
@@ -24,17 +26,39 @@ _LEFT = re.compile(r"^(l|left|izq|esq|gauche)[ _.\-]?|[ _.\-](l|left|izq)$|izq",
 _RIGHT = re.compile(r"^(r|right|der|dro|droit)[ _.\-]?|[ _.\-](r|right|der)$|der", re.IGNORECASE)
 
 
+class DirectionSource(StrEnum):
+    """What told the walking direction of a step."""
+
+    GIVEN = "given"
+    MARKERS = "markers"
+    PRESSURE = "centre of pressure"
+    TREADMILL = "treadmill"
+    SHEAR = "shear alone"
+    NONE = "unknown"
+
+
+@dataclass(frozen=True, slots=True)
+class Direction:
+    """Walking direction of a step: unit vector (3,) or None, its source, and words about it."""
+
+    vector: np.ndarray | None = None
+    source: DirectionSource = DirectionSource.NONE
+    words: str = ""
+
+
 @dataclass(frozen=True, slots=True)
 class Axes:
     """Directions in laboratory axes and how each was found.
 
     ``up`` and ``walking`` are unit vectors (3,); ``walking`` is None when nothing tells it.
+    ``ramp`` is the slope of the walkway.
     """
 
     up: np.ndarray
     up_from: str
     walking: np.ndarray | None
     walking_from: str
+    ramp: Ramp = LEVEL
 
     @property
     def across(self) -> np.ndarray | None:
@@ -65,7 +89,13 @@ def axis_name(vector: np.ndarray | None) -> str:
     return "(" + ", ".join(f"{component:.2f}" for component in vector) + ")"
 
 
-def axes_of(trial: Trial, *, vertical: str | None = None, walking: str | None = None) -> Axes:
+def axes_of(
+    trial: Trial,
+    *,
+    vertical: str | None = None,
+    walking: str | None = None,
+    ramp: Ramp = LEVEL,
+) -> Axes:
     """Return the axes of a trial: from overrides, plates, then markers.
 
     Vertical: the normal of the plates' corners; else the axis that carries the load; else the
@@ -77,17 +107,21 @@ def axes_of(trial: Trial, *, vertical: str | None = None, walking: str | None = 
     else:
         up, how = _up(trial)
     if walking:
-        return Axes(up, how, _flat(axis_vector(walking, "walking"), up), "given")
+        return Axes(up, how, _flat(axis_vector(walking, "walking"), up), "given", ramp)
     path = marker_velocity(trial, -np.inf, np.inf, up)
     speed = 0.0 if path is None else float(np.linalg.norm(path))
     if path is not None and speed > WALKING_SPEED:
-        return Axes(up, how, path / speed, f"path of the markers ({speed:.2f} m/s)")
+        return Axes(up, how, path / speed, f"path of the markers ({speed:.2f} m/s)", ramp)
     reason = "no markers" if path is None else f"markers move at {speed:.2f} m/s only"
-    return Axes(up, how, None, f"not found: {reason}")
+    return Axes(up, how, None, f"not found: {reason}", ramp)
 
 
-def marker_velocity(trial: Trial, begin: float, end: float, up: np.ndarray) -> np.ndarray | None:
-    """Return the horizontal velocity (3,) of the middle of the markers between two times (m/s).
+def marker_velocity(
+    trial: Trial, begin: float, end: float, up: np.ndarray | None
+) -> np.ndarray | None:
+    """Return the velocity (3,) of the middle of the markers between two times (m/s).
+
+    In the plane of the floor; with its vertical part when ``up`` is None.
 
     The median over the markers of their mean velocities, so that a swinging limb or a few lost
     markers don't count. None with fewer than three markers seen.
@@ -103,36 +137,40 @@ def marker_velocity(trial: Trial, begin: float, end: float, up: np.ndarray) -> n
     if len(found) < 3:
         return None
     middle = np.median(found, axis=0)
-    return middle - (middle @ up) * up
+    return middle if up is None else middle - (middle @ up) * up
 
 
 def walking_direction(
     trial: Trial, plate: Plate, start: int, stop: int, up: np.ndarray, walking: str | None = None
-) -> tuple[np.ndarray | None, str]:
-    """Return the walking direction (3,) during a stance and how it was found.
+) -> Direction:
+    """Return the walking direction during a stance and how it was found.
 
     In this order: the override, the markers during the first half of the stance, the path of
     the centre of pressure (heel to toe), the shear force (braking first, then driving). A centre
     of pressure that moves against the shear's direction is carried by a treadmill's belt.
     """
     if walking:
-        return _flat(axis_vector(walking, "walking"), up), "given"
+        return Direction(_flat(axis_vector(walking, "walking"), up), DirectionSource.GIVEN, "given")
     time = plate.start + np.array([start, (start + stop) / 2.0]) / plate.rate
     path = marker_velocity(trial, float(time[0]), float(time[1]), up)
     speed = 0.0 if path is None else float(np.linalg.norm(path))
     if path is not None and speed > WALKING_SPEED:
-        return path / speed, f"markers in this step ({speed:.2f} m/s)"
+        words = f"markers in this step ({speed:.2f} m/s)"
+        return Direction(path / speed, DirectionSource.MARKERS, words)
     step, swing = _pressure_path(plate, start, stop, up), _shear_swing(plate, start, stop, up)
     length, size = float(np.linalg.norm(step)), float(np.linalg.norm(swing))
     if length > 0.2 and size > 10.0 and step @ swing < 0:
-        return swing / size, TREADMILL
+        words = "shear force; the centre of pressure moves backward: a treadmill"
+        return Direction(swing / size, DirectionSource.TREADMILL, words)
     if path is not None:
-        return None, f"the markers move at {speed:.2f} m/s only"
+        return Direction(words=f"the markers move at {speed:.2f} m/s only")
     if length > 0.05:
-        return step / length, f"centre of pressure, {1e3 * length:.0f} mm heel to toe"
+        words = f"centre of pressure, {1e3 * length:.0f} mm heel to toe"
+        return Direction(step / length, DirectionSource.PRESSURE, words)
     if size > 10.0:
-        return swing / size, "shear force, braking before driving"
-    return None, "nothing tells it"
+        words = "shear force, braking before driving"
+        return Direction(swing / size, DirectionSource.SHEAR, words)
+    return Direction(words="nothing tells it")
 
 
 def _pressure_path(plate: Plate, start: int, stop: int, up: np.ndarray) -> np.ndarray:
@@ -162,20 +200,27 @@ def heel_candidates(trial: Trial, heels: Mapping[str, str] | None = None) -> dic
 
     ``heels`` (from a profile) names them and wins. The best-seen candidates come first.
 
-    Errors
+    Raises
     ------
     DataError
         A marker named in ``heels`` is not in the trial.
     """
-    found: dict[str, list[str]] = {"left": [], "right": [], "unknown": []}
-    for side, name in (heels or {}).items():
-        trial.marker(name)
-        found[side] = [name]
     if heels:
-        return found
+        given = {side: [name] for side, name in heels.items() if trial.marker(name)}
+        return {"left": [], "right": [], "unknown": [], **given}
+    return _by_side(trial, _HEEL)
+
+
+def toe_candidates(trial: Trial) -> dict[str, list[str]]:
+    """Return the markers that may be toes by side, as ``heel_candidates`` does."""
+    return _by_side(trial, _TOE)
+
+
+def _by_side(trial: Trial, pattern: re.Pattern[str]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {"left": [], "right": [], "unknown": []}
     for name, marker in trial.markers.items():
         plain = name.rsplit(":", 1)[-1].strip()
-        if not _HEEL.search(plain) or _NOT_HEEL.search(plain) or marker.missing.all():
+        if not pattern.search(plain) or _NOT_HEEL.search(plain) or marker.missing.all():
             continue
         sided = _NOT_SIDE.sub("", plain)
         side = "left" if _LEFT.search(sided) else "right" if _RIGHT.search(sided) else "unknown"

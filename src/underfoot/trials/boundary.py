@@ -9,11 +9,16 @@ import numpy as np
 
 from underfoot.core import DataError
 
-from .measurement import Measurement
-from .statistics.anova import AnovaTable, analysis_of_variance
-from .statistics.design import predictor
-from .statistics.linear import LinearModel, linear_model
-from .statistics.tukey import Comparison, tukey_hsd
+from .measurement import Measurement, remark
+from .statistics import (
+    AnovaTable,
+    Comparison,
+    LinearModel,
+    analysis_of_variance,
+    linear_model,
+    predictor,
+    tukey_hsd,
+)
 
 _SAID = {
     "hysteresis": "friction with the blocking oil, all adhesion taken as blocked (Eq. 23)",
@@ -172,7 +177,7 @@ def _difference(name: str, first: Measurement, second: Measurement) -> Measureme
         error = float(np.hypot(first.uncertainty, second.uncertainty))
     flags = ()
     if value < 0:
-        flags = ("negative: the oil does not block more adhesion than this condition",)
+        flags = (remark("negative: the oil does not block more adhesion than this condition"),)
     return Measurement(
         name,
         value,

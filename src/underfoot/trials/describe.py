@@ -12,11 +12,12 @@ import numpy as np
 
 from underfoot.core import InputError
 
-from .axes import Axes, axes_of, axis_name, heel_candidates
+from .axes import Axes, DirectionSource, axes_of, axis_name, heel_candidates
 from .gait import DEFINITIONS, RcofDefinition, RequiredFriction, required_frictions
 from .measurement import mean_of
+from .ramp import LEVEL, Ramp
 from .readers import Profile, read_profile, read_trials
-from .trial import Plate, Trial, joined
+from .trial import Edit, Plate, Trial, joined
 
 _SHOWN = 12
 
@@ -39,12 +40,13 @@ class Description:
             "checksum": self.trial.checksum,
             "settings": dict(self.trial.settings),
             "notes": list(self.trial.notes),
-            "edits": [f"{e.what}: {e.before} -> {e.after} ({e.why})" for e in self.trial.edits],
+            "edits": [_edit_words(e) for e in self.trial.edits],
             "axes": {
                 "vertical": axis_name(self.axes.up),
                 "vertical_from": self.axes.up_from,
                 "walking": axis_name(self.axes.walking),
                 "walking_from": self.axes.walking_from,
+                "surface": self.axes.ramp.words,
             },
             "plates": [_plate_data(plate) for plate in self.trial.plates],
             "markers": list(self.trial.markers),
@@ -69,6 +71,7 @@ class Description:
         lines += ["", "Axes"]
         lines.append(f"  vertical {axis_name(self.axes.up)} ({self.axes.up_from})")
         lines.append(f"  walking  {axis_name(self.axes.walking)} ({self.axes.walking_from})")
+        lines.append(f"  surface  {self.axes.ramp.words}")
         lines += self._plates() + self._markers() + self._channels()
         if trial.events:
             lines += ["", "Events in the file"]
@@ -78,7 +81,7 @@ class Description:
             lines += ["", "Notes", *(f"  - {note}" for note in trial.notes)]
         if trial.edits:
             lines += ["", "Edits"]
-            lines += [f"  - {e.what}: {e.before} -> {e.after} ({e.why})" for e in trial.edits]
+            lines += [f"  - {_edit_words(e)}" for e in trial.edits]
         return "\n".join(lines)
 
     def _plates(self) -> list[str]:
@@ -92,7 +95,7 @@ class Description:
             seconds = len(plate.force) / plate.rate
             lines.append(f"  {plate.name}: {plate.kind}, {plate.rate:g} Hz, {seconds:.2f} s")
             lines.append(f"    baseline {_baseline(plate)}")
-            lines += [f"    ! {note}" for note in plate.notes]
+            lines += [f"    ! {note}" for note in (*plate.flags, *plate.notes)]
         return lines
 
     def _markers(self) -> list[str]:
@@ -128,24 +131,34 @@ class Description:
         for step in self.steps:
             stance = step.stance
             head = (
-                f"  {stance.contact:7.3f} s  {stance.plate}, {1e3 * stance.duration:.0f} ms, peak "
-                f"{stance.peak:.0f} N, {stance.side} foot, walking {axis_name(stance.walking)}"
+                f"  {stance.number:2d}  {stance.contact:7.3f} s  {stance.plate}, "
+                f"{1e3 * stance.duration:.0f} ms, peak {stance.peak:.0f} N, {stance.side} foot, "
+                f"walking {axis_name(stance.walking)}"
             )
             lines.append(head)
-            if stance.walking is not None and not stance.walking_from.startswith("markers"):
-                lines.append(f"             walking direction from {stance.walking_from}")
-            value = step.measurement.value
-            if value is None:
-                lines.append(f"             rejected: {step.measurement.reason}")
+            if (
+                stance.walking is not None
+                and stance.direction.source is not DirectionSource.MARKERS
+            ):
+                lines.append(f"             walking direction from {stance.direction.words}")
+            own = step.measurement
+            if own.value is None:
+                lines.append(f"             rejected: {own.reason}")
             else:
                 after = 1e3 * (step.peak_time - stance.contact)
                 lines.append(
-                    f"             accepted: RCOF {value:.3f}, {after:.0f} ms after contact"
+                    f"             {step.verdict}: RCOF {own.value:.3f} ± "
+                    f"{own.uncertainty or 0:.3f}, {after:.0f} ms after contact"
                 )
             lines += [f"             ! {flag}" for flag in step.measurement.flags]
         good = [step.measurement for step in self.steps if step.measurement.estimated]
+        doubtful = sum(bool(one.caution_flags) for one in good)
         if len(good) > 1:
-            lines.append(f"  mean of {len(good)}: {mean_of(good)}")
+            mean = mean_of(good)
+            lines.append(
+                f"  RCOF mean {mean.value:.3f}, SD {mean.spread:.3f} between {len(good)} steps "
+                f"({doubtful} with a caution), standard error {mean.uncertainty:.3f}"
+            )
         if good:
             lines += ["", "Conventions behind RCOF"]
             lines += [f"  {key}: {value}" for key, value in self.conventions.items()]
@@ -159,6 +172,7 @@ def described(
     vertical: str | None = None,
     walking: str | None = None,
     profile: Profile | None = None,
+    ramp: Ramp = LEVEL,
 ) -> Description:
     """Return the description of a trial.
 
@@ -170,14 +184,14 @@ def described(
     profile = profile or Profile()
     definition = definition or DEFINITIONS["default"]
     vertical, walking = vertical or profile.vertical, walking or profile.walking
-    axes = axes_of(trial, vertical=vertical, walking=walking)
+    axes = axes_of(trial, vertical=vertical, walking=walking, ramp=ramp)
     steps = required_frictions(trial, definition, axes=axes, walking=walking, heels=profile.heels)
     return Description(
         trial,
         axes,
         heel_candidates(trial, profile.heels),
         tuple(steps),
-        definition.conventions(),
+        {**definition.conventions(), "surface": ramp.words},
     )
 
 
@@ -190,6 +204,7 @@ def described_file(
     vertical: str | None = None,
     walking: str | None = None,
     subtract_baseline: bool = True,
+    ramp: Ramp = LEVEL,
 ) -> tuple[Description, ...]:
     """Return the descriptions of the trials in a file (one a step for tribometer logs).
 
@@ -199,8 +214,10 @@ def described_file(
         A second file of the same recording (.forces beside .trc); needs one trial in each.
     definition
         A name in ``DEFINITIONS``.
+    ramp
+        Slope of the walkway, and the axes in which its plates measure.
 
-    Errors
+    Raises
     ------
     DataError
         The file can't be read.
@@ -226,6 +243,7 @@ def described_file(
             vertical=vertical,
             walking=walking,
             profile=profile,
+            ramp=ramp,
         )
         for trial in trials
     )
@@ -240,6 +258,13 @@ def _baseline(plate: Plate) -> str:
         f"{name} {value:.1f}" for name, value in zip("xyz", plate.baseline, strict=True)
     )
     return f"{numbers} N, mean of {plate.baseline_samples} unloaded samples, subtracted"
+
+
+def _edit_words(edit: Edit) -> str:
+    value = (
+        f" {edit.value:g} s" if isinstance(edit.value, float) else f" {edit.value or ''}".rstrip()
+    )
+    return f"{edit.step_words}: {edit.what}{value} ({edit.why})"
 
 
 def _some(names: Sequence[str], most: int = _SHOWN) -> str:
@@ -257,7 +282,7 @@ def _plate_data(plate: Plate) -> dict[str, Any]:
         "baseline": None if plate.baseline is None else [float(v) for v in plate.baseline],
         "baseline_samples": plate.baseline_samples,
         "corners": None if plate.corners is None else plate.corners.tolist(),
-        "notes": list(plate.notes),
+        "notes": [*map(str, plate.flags), *plate.notes],
     }
 
 
@@ -271,8 +296,10 @@ def _stance_data(step: RequiredFriction) -> dict[str, Any]:
         "side": stance.side,
         "heel": stance.heel,
         "walking": axis_name(stance.walking),
-        "walking_from": stance.walking_from,
+        "walking_from": stance.direction.words,
+        "number": stance.number,
         "accepted": stance.accepted,
+        "verdict": step.verdict,
         "reason": stance.reason,
         "peak_time": None if math.isnan(step.peak_time) else step.peak_time,
         "rcof": step.measurement.as_dict(),

@@ -2,73 +2,33 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .axes import TREADMILL, Axes, axes_of, heel_candidates, walking_direction
-from .baseline import runs
+from .axes import Axes, DirectionSource, axes_of, heel_candidates, walking_direction
+from .edits import TOGETHER, edited_contacts
 from .plates import plate_axes
+from .stance import CONTACT_FORCE, Stance, contacts
 from .trial import Plate, Trial
 
-CONTACT_FORCE = 20.0  # N
 _SHORTEST, _LONGEST = 0.35, 1.5  # s; runners are below, standing and two feet above
-_TOGETHER = 0.1  # s; two contacts of a walk begin half a second apart
 _FOOT_LENGTH, _FOOT_WIDTH = 0.36, 0.14  # m, the most that the centre of pressure of one foot moves
-_GRAVITY = 9.80665
+GRAVITY = 9.80665
 _OUTSIDE = 0.05  # m; the marker sits behind the shoe, so a heel at the edge is a little outside
+_STILL = 0.5  # s of quiet standing that give body weight
+_STILL_SD, _STILL_SHEAR = 0.015, 0.03  # of the weight; walking varies by 20 % and pushes by 15 %
 
 
 @dataclass(frozen=True, slots=True)
-class Stance:
-    """One contact with one plate; ``reason`` says why it is no step, and is empty when it is.
+class BodyWeight:
+    """Body weight (N) and where it comes from; ``standing`` when the record itself shows it."""
 
-    ``start`` and ``stop`` are sample numbers of the plate (stop excluded), ``contact`` and
-    ``toe_off`` the times (s). ``walking`` is the direction (3,) or None.
-    """
-
-    plate: str
-    start: int
-    stop: int
-    contact: float
-    toe_off: float
-    peak: float
-    reason: str = ""
-    side: str = "unknown"
-    heel: str = ""
-    walking: np.ndarray | None = None
-    walking_from: str = ""
-    flags: tuple[str, ...] = ()
-
-    @property
-    def accepted(self) -> bool:
-        """True when the contact is one whole step."""
-        return not self.reason
-
-    @property
-    def duration(self) -> float:
-        """Length of the contact (s)."""
-        return self.toe_off - self.contact
-
-
-def contacts(
-    vertical: np.ndarray, rate: float, threshold: float = CONTACT_FORCE
-) -> list[tuple[int, int]]:
-    """Return (start, stop) of the stretches in which a plate is stood on, shape of samples.
-
-    A stretch begins where the vertical force (n,), N, passes ``threshold`` and counts when it
-    lasts 30 ms and reaches five times the threshold; interruptions below 20 ms are bridged.
-    """
-    loaded = np.nan_to_num(vertical, nan=0.0) > threshold
-    for start, stop in runs(~loaded):
-        if start > 0 and stop < len(loaded) and stop - start < 0.02 * rate:
-            loaded[start:stop] = True
-    return [
-        (start, stop)
-        for start, stop in runs(loaded)
-        if stop - start >= 0.03 * rate and np.nanmax(vertical[start:stop]) > 5.0 * threshold
-    ]
+    newtons: float
+    source: str
+    standing: bool = False
 
 
 def stances(
@@ -84,40 +44,64 @@ def stances(
     Rejected are contacts cut by the record, too short or too long, two that begin together (a
     jump, or one foot on two plates), two feet on one plate, partial hits, impacts, saturated
     plates, samples without numbers, and contacts without a braking phase or while nobody walks.
+    The trial's edits are applied first.
+
+    Raises
+    ------
+    EditError
+        An edit names no contact, changes nothing or contradicts another.
     """
     axes = axes or axes_of(trial)
-    found: list[tuple[Plate, Stance]] = []
-    for plate in trial.plates:
-        if not plate.usable:
-            continue
+    plates = {plate.name: plate for plate in trial.plates if plate.usable}
+    found: list[Stance] = []
+    for plate in plates.values():
         vertical = plate.force @ axes.up
         for start, stop in contacts(vertical, plate.rate, threshold):
-            direction, how = walking_direction(trial, plate, start, stop, axes.up, walking)
-            found.append(
-                (
-                    plate,
-                    Stance(
-                        plate.name,
-                        start,
-                        stop,
-                        plate.start + start / plate.rate,
-                        plate.start + stop / plate.rate,
-                        float(np.nanmax(vertical[start:stop])),
-                        walking=direction,
-                        walking_from=how,
-                    ),
-                )
-            )
-    found.sort(key=lambda pair: pair[1].contact)
-    whole = [s.peak for _, s in found]
-    judged = []
-    for plate, stance in found:
+            time = plate.start + np.array([start, stop]) / plate.rate
+            peak = float(np.nanmax(vertical[start:stop]))
+            found.append(Stance(plate.name, start, stop, float(time[0]), float(time[1]), peak))
+    found.sort(key=lambda stance: stance.contact)
+    found = [replace(stance, number=i) for i, stance in enumerate(found, start=1)]
+    located = []
+    for stance in found:
+        plate = plates[stance.plate]
+        way = walking_direction(trial, plate, stance.start, stance.stop, axes.up, walking)
+        stance = replace(stance, direction=way)
         side, heel = _foot(trial, plate, stance, axes, heels)
-        stance = replace(stance, side=side, heel=heel)
-        others = [s for _, s in found if s is not stance and s.plate != stance.plate]
-        reason = _reason(trial, plate, stance, others, whole, axes, heels)
+        located.append(replace(stance, side=side, heel=heel))
+    if trial.edits:
+        located = edited_contacts(located, trial, axes.up)
+        located = [_relocated(s, trial, plates[s.plate], axes, walking, heels) for s in located]
+    weight = body_weight(trial, axes)
+    judged = []
+    for stance in located:
+        others = [s for s in located if s.plate != stance.plate and not s.reason]
+        peaks = [s.peak for s in located]
+        reason = stance.reason or _reason(
+            trial, plates[stance.plate], stance, others, peaks, axes, heels, weight
+        )
         judged.append(replace(stance, reason=reason))
     return judged
+
+
+def _relocated(
+    stance: Stance,
+    trial: Trial,
+    plate: Plate,
+    axes: Axes,
+    walking: str | None,
+    heels: Mapping[str, str] | None,
+) -> Stance:
+    """Return an edited contact with direction and heel of its new limits."""
+    if not stance.by_hand or stance.reason:
+        return stance
+    way = walking_direction(trial, plate, stance.start, stance.stop, axes.up, walking)
+    stance = replace(stance, direction=way)
+    if "side" in stance.by_hand:
+        names = heel_candidates(trial, heels)[stance.side]
+        return replace(stance, heel=names[0] if names else "")
+    side, heel = _foot(trial, plate, stance, axes, heels)
+    return replace(stance, side=side, heel=heel)
 
 
 def _reason(
@@ -128,35 +112,35 @@ def _reason(
     peaks: list[float],
     axes: Axes,
     heels: Mapping[str, str] | None,
+    weight: BodyWeight | None,
 ) -> str:
     part = plate.force[stance.start : stance.stop]
     vertical = part @ axes.up
-    if stance.start == 0:
+    if stance.start == 0 and "contact" not in stance.by_hand:
         return "begins before the record"
     if stance.stop == len(plate.force):
         return "ends after the record"
     if not np.isfinite(part).all():
         return "samples without a number"
-    if any("saturated" in note for note in plate.notes):
+    if plate.saturated:
         return "the plate is saturated"
     if stance.duration < _SHORTEST:
         return f"lasts {1e3 * stance.duration:.0f} ms: too short for a walking step"
     if stance.duration > _LONGEST:
         return f"lasts {stance.duration:.2f} s: standing, or more than one foot"
-    near = [o for o in others if abs(o.contact - stance.contact) < _TOGETHER]
+    near = [o for o in others if abs(o.contact - stance.contact) < TOGETHER]
     if near:
         gap = 1e3 * abs(near[0].contact - stance.contact)
         return f"begins {gap:.0f} ms from one on {near[0].plate}: one foot on both, or a jump"
-    mass = body_mass(trial)
-    expected = mass * _GRAVITY if mass else 0.9 * float(np.median(peaks))
+    expected = weight.newtons if weight else 0.9 * float(np.median(peaks))
     if stance.peak < 0.7 * expected:
-        of = "body weight" if mass else "the usual peak"
+        of = "body weight" if weight else "the usual peak"
         return f"peak {stance.peak:.0f} N is {100 * stance.peak / expected:.0f} % of {of}: partial"
     ratio = stance.peak / float(vertical.mean())
-    if ratio > 2.2 or (mass and stance.peak > 2.0 * expected):
-        return (
-            f"peak {stance.peak:.0f} N, {ratio:.1f} times the mean: an impact, not a walking step"
-        )
+    if ratio > 2.2 or (weight and stance.peak > 2.0 * expected):
+        times = f"{stance.peak / expected:.1f} times body weight" if weight else ""
+        times = times or f"{ratio:.1f} times the mean"
+        return f"peak {stance.peak:.0f} N, {times}: an impact, not a walking step"
     two = _two_feet(trial, plate, stance, axes, heels)
     if two:
         return two
@@ -164,12 +148,34 @@ def _reason(
     if outside > _OUTSIDE:
         return f"the heel stands {1e3 * outside:.0f} mm outside the plate: a partial hit"
     if stance.walking is None:
-        return f"no walking direction: {stance.walking_from}"
-    along = part @ stance.walking
+        return f"no walking direction: {stance.direction.words}"
+    # Walking up a slope, gravity along the surface hides the braking: it is sought horizontally.
+    along = part @ axes.ramp.gravity(axes.up, stance.walking)[1]
     braking = -float(np.minimum(along[: len(along) // 2], 0.0).sum()) / plate.rate
     if braking < 0.01 * stance.peak * stance.duration:
         return "no braking in its first half: not a heel-first step"
     return ""
+
+
+def no_contact_reason(trial: Trial, axes: Axes) -> str:
+    """Return why a trial has no contact with a force plate: which of four causes it is."""
+    usable = [plate for plate in trial.plates if plate.usable]
+    if usable:
+        peak = max(float(np.nanmax(plate.force @ axes.up, initial=0.0)) for plate in usable)
+        rates = ", ".join(sorted({f"{plate.rate:g} Hz" for plate in usable}))
+        return (
+            f"nobody steps on a force plate: the largest vertical force is {peak:.3g} N and a step "
+            f"needs {5 * CONTACT_FORCE:g} N for 30 ms (at {rates}; is the unit right?)"
+        )
+    problems = [f"{plate.name}: {plate.problem}" for plate in trial.plates if plate.problem]
+    if problems:
+        return "no force plate can be used: " + "; ".join(problems)
+    names = ", ".join(list(trial.channels)[:8])
+    if any("cof" in name.casefold() or "friction" in name.casefold() for name in trial.channels):
+        return f"a log of friction ({names}) without force plates: choose a protocol for testers"
+    if names:
+        return f"no columns are recognised as force plates ({names}): name them in a profile"
+    return "the file holds no force plate"
 
 
 def body_mass(trial: Trial) -> float | None:
@@ -180,6 +186,45 @@ def body_mass(trial: Trial) -> float | None:
         return None
 
 
+def body_weight(trial: Trial, axes: Axes | None = None) -> BodyWeight | None:
+    """Return the body weight: from the mass in the settings, else from quiet standing, else None.
+
+    Quiet standing: half a second in which the vertical forces of all plates together vary by less
+    than 1.5 % and push across by less than 3 % (on plates that measure along a ramp of angle a:
+    across by the tangent of a, and the weight is normal force / cos a); the heaviest such level
+    counts.
+    """
+    mass = body_mass(trial)
+    if mass is not None:
+        return BodyWeight(mass * GRAVITY, f"{mass:g} kg")
+    axes = axes or axes_of(trial)
+    up, ramp = axes.up, axes.ramp
+    tilt = abs(ramp.angle) if ramp.plate_frame == "surface" else 0.0
+    usable = [plate for plate in trial.plates if plate.usable]
+    if not usable or len({(p.rate, len(p.force), p.start) for p in usable}) > 1:
+        return None
+    force = np.nan_to_num(np.sum([plate.force for plate in usable], axis=0))
+    count = round(_STILL * usable[0].rate)
+    if len(force) < 2 * count:
+        return None
+    normal = force @ up
+    across = force - np.outer(normal, up)
+
+    def rolling(values: np.ndarray) -> np.ndarray:
+        total = np.concatenate(([0.0], np.cumsum(values)))
+        return (total[count:] - total[:-count]) / count
+
+    mean = rolling(normal)
+    spread = np.sqrt(np.maximum(rolling(normal**2) - mean**2, 0.0))
+    push = np.sqrt(sum(rolling(across[:, i]) ** 2 for i in range(3)))
+    push = np.abs(push - mean * math.tan(tilt))
+    still = (mean > 200.0) & (spread < _STILL_SD * mean) & (push < _STILL_SHEAR * mean)
+    if not still.any():
+        return None
+    newtons = float(mean[still].max()) / math.cos(tilt)
+    return BodyWeight(newtons, "standing in this record", standing=True)
+
+
 def _two_feet(
     trial: Trial, plate: Plate, stance: Stance, axes: Axes, heels: Mapping[str, str] | None
 ) -> str:
@@ -187,7 +232,11 @@ def _two_feet(
     if "left" in seen and "right" in seen:
         return "both heels are on the plate"
     place = plate.centre_of_pressure
-    if place is None or stance.walking is None or stance.walking_from == TREADMILL:
+    if (
+        place is None
+        or stance.walking is None
+        or stance.direction.source is DirectionSource.TREADMILL
+    ):
         return ""
     vertical = plate.force[stance.start : stance.stop] @ axes.up
     firm = vertical > 0.2 * stance.peak

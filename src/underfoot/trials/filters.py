@@ -7,6 +7,7 @@ friction by up to 0.02, so a filter is always named in full.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -72,7 +73,7 @@ def low_passed(values: np.ndarray, rate: float, low_pass: LowPass) -> np.ndarray
     cutoff = low_pass.cutoff
     if low_pass.kind.endswith("corrected"):
         cutoff = min(cutoff / _TWO_PASSES, 0.49 * rate)
-    sections = signal.butter(order, cutoff, fs=rate, output="sos")
+    sections = _sections(order, cutoff, rate)
     if low_pass.kind.endswith("one-pass"):
         rest = signal.sosfilt_zi(sections)
         rest = rest.reshape(rest.shape + (1,) * (values.ndim - 1)) * values[0]
@@ -81,6 +82,14 @@ def low_passed(values: np.ndarray, rate: float, low_pass: LowPass) -> np.ndarray
         raise DataError(f"{len(values)} samples are too few to filter", allowed="30 or more")
     padding = min(len(values) - 1, max(15, round(rate / low_pass.cutoff)))
     return signal.sosfiltfilt(sections, values, axis=0, padlen=padding)
+
+
+@lru_cache(maxsize=64)
+def _sections(order: int, cutoff: float, rate: float) -> np.ndarray:
+    """Second-order sections of a Butterworth filter: their design takes longer than their use."""
+    from scipy import signal
+
+    return np.asarray(signal.butter(order, cutoff, fs=rate, output="sos"))
 
 
 def velocity(positions: np.ndarray, rate: float, low_pass: LowPass) -> np.ndarray:

@@ -4,18 +4,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
 from underfoot.core import DataError, InputError, unknown_name
+from underfoot.core.presentation import Presentable, Table
 
-from .axes import Axes, axes_of
-from .events import Stance, body_mass, stances
-from .filters import FORCE_FILTER, LowPass, low_passed
-from .measurement import Measurement
-from .plates import baseline_words, plate_named
-from .trial import Trial
+from .axes import Axes, DirectionSource, axes_of
+from .events import body_weight, stances
+from .filters import FILTERS, FORCE_FILTER, LowPass, low_passed
+from .measurement import Flag, Measurement, remark
+from .outcome import Outcome
+from .plates import baseline_words, plate_axes, plate_named, up_from_normal
+from .plausibility import (
+    baseline_error,
+    other_foot_flags,
+    rcof_flags,
+    step_flags,
+)
+from .slips import Slip, slip_of
+from .stance import Stance
+from .trial import Plate, Trial
 
 PEAKS = {
     "largest-local-maximum": "largest local maximum",
@@ -27,7 +38,7 @@ SHEARS = {
     "resultant": "resultant of both shear components",
     "anterior-posterior": "shear along the walking direction only",
 }
-GRAVITY = 9.80665
+_TILT = math.radians(1.0)  # plates are levelled better than that; it shifts the ratio by 0.017
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,12 +111,13 @@ DEFINITIONS: dict[str, RcofDefinition] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class RequiredFriction:
+@dataclass(frozen=True, slots=True, repr=False)
+class RequiredFriction(Presentable):
     """Required friction of one stance, with what a figure needs.
 
     ``time`` (n,), ``ratio`` (n,) and ``normal`` (n,) cover the stance; ``peak_time`` and
-    ``gate_time`` are NaN when there is no value.
+    ``gate_time`` are NaN when there is no value. ``slip`` is what the heel did, None without its
+    marker.
     """
 
     measurement: Measurement
@@ -115,6 +127,40 @@ class RequiredFriction:
     normal: np.ndarray
     peak_time: float = math.nan
     gate_time: float = math.nan
+    slip: Slip | None = None
+
+    @property
+    def verdict(self) -> str:
+        """ "accepted", "caution" (a flag matters) or "rejected"."""
+        if self.measurement.value is None:
+            return "rejected"
+        return "caution" if self.measurement.caution_flags else "accepted"
+
+    def __repr__(self) -> str:
+        value = self.measurement.value
+        number = self.measurement.reason[:60] if value is None else f"RCOF {value:.3f}"
+        return f"<RequiredFriction {self.stance.label}: {number}, {self.verdict}>"
+
+    def headline(self) -> tuple[str, ...]:
+        """Return the step's RCOF or why it has none."""
+        return (f"{self.stance.label}: {self.verdict}.", *self.measurement.headline())
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return the flags of the number that matter, in words."""
+        return self.measurement.cautions()
+
+    def table(self) -> Table:
+        """Return the step with its number, flags and conventions."""
+        stance, own = self.stance, self.measurement.table()
+        rows: list[tuple[Any, ...]] = [
+            ("verdict", self.verdict),
+            ("contact (s)", stance.contact),
+            ("toe off (s)", stance.toe_off),
+            ("foot", stance.side),
+            ("peak force (N)", stance.peak),
+            ("peak of the ratio (s after contact)", self.peak_time - stance.contact),
+        ]
+        return Table(f"RCOF, {stance.label}", ("", ""), [*rows, *own.rows])
 
 
 def required_friction(
@@ -123,12 +169,22 @@ def required_friction(
     definition: RcofDefinition | None = None,
     *,
     axes: Axes | None = None,
+    heels: Mapping[str, str] | None = None,
+    checked: bool = True,
 ) -> RequiredFriction:
     """Return the required friction (RCOF) of one stance: a peak of shear over normal force.
 
-    A rejected stance gives "not estimated" with the reason of its rejection.
+    A rejected stance gives "not estimated" with the reason of its rejection, and so does a step
+    whose heel slides: there the ratio is the available friction. The uncertainty holds the
+    baseline, the readings of the filter's name and the plate's specification.
 
-    Errors
+    Parameters
+    ----------
+    checked
+        Look whether the heel slides and whether signals and result are plausible; without it only
+        the number is taken.
+
+    Raises
     ------
     InputError
         The filter does not fit the sampling rate.
@@ -142,53 +198,68 @@ def required_friction(
     said = {
         **definition.conventions(),
         "baseline": baseline_words(plate),
-        "walking direction": stance.walking_from,
+        "walking direction": stance.direction.words,
+        "surface": _surface_words(axes, stance),
     }
     empty = np.empty(0)
+    slip: Slip | None = None
 
     def without(reason: str) -> RequiredFriction:
         missing = Measurement.not_estimated("rcof", reason, conventions=said)
-        return RequiredFriction(missing, stance, empty, empty, empty)
+        return RequiredFriction(missing, stance, empty, empty, empty, slip=slip)
 
     if not stance.accepted or stance.walking is None:
         return without(stance.reason or "no walking direction")
-    try:
-        force = low_passed(plate.force, plate.rate, definition.filter)
-    except DataError as error:
-        return without(error.what)
-    force = force[stance.start : stance.stop]
-    normal = force @ axes.up
-    shear = force - np.outer(normal, axes.up)
-    along = shear @ stance.walking
-    size = np.linalg.norm(shear, axis=1) if definition.shear == "resultant" else np.abs(along)
+    if checked and stance.heel:
+        slip = slip_of(trial, stance, axes=axes, heels=heels)
+        if slip.slides:
+            speed, way = slip.peak_speed.value or 0.0, 1e3 * (slip.distance.value or 0.0)
+            return without(
+                f"the heel slides at {speed:.2f} m/s over {way:.0f} mm: the ratio is available "
+                "friction (ACOF), not required"
+            )
+    weight = body_weight(trial, axes)
     gate = definition.gate
     if definition.gate_body_weight is not None:
-        mass = body_mass(trial)
-        if mass is None:
+        if weight is None:
             return without("the gate is a share of body weight and the mass is not known")
-        gate = definition.gate_body_weight * mass * GRAVITY
-    ratio = np.where(normal > 1.0, size / np.maximum(normal, 1.0), np.nan)
+        gate = definition.gate_body_weight * weight.newtons
+    surface = axes.ramp.surface(axes.up, stance.walking)
+    try:
+        curves = _curves(plate, stance, definition, surface)
+    except DataError as error:
+        return without(error.what)
+    normal, ratio, along = curves
     time = plate.start + np.arange(stance.start, stance.stop) / plate.rate
     passed = np.flatnonzero(normal > gate)
     if not len(passed):
         return without(f"the normal force never passes {gate:.0f} N")
-    allowed = _allowed(definition, normal, along, gate)
-    at = _peak(definition, ratio, allowed)
+    at = _peak(definition, ratio, _allowed(definition, normal, along, gate))
     if at is None:
         return without(f"no {PEAKS[definition.peak]} while the gate is passed")
-    flags = tuple(note for note in plate.notes if "baseline" in note) + stance.flags
+    value = float(ratio[at])
+    flags = plate.flags + stance.flags + _tilt_flags(plate, stance, axes)
     after = 1e3 * (at - passed[0]) / plate.rate
     if after < 2.0:
-        flags += (f"the peak lies {after:.0f} ms after the gate: the gate may have made it",)
+        flags += (
+            remark(f"the peak lies {after:.0f} ms after the gate: the gate may have made it"),
+        )
+    uncertainty, parts = None, "not estimated"
+    if checked:
+        flags += step_flags(trial, stance, axes, definition.filter, weight, heels)
+        flags += rcof_flags(value, axes.ramp) + _sliding_flags(slip)
+        uncertainty, parts = _uncertainty(plate, stance, definition, surface, gate, at, curves)
     measurement = Measurement(
         "rcof",
-        float(ratio[at]),
-        reason="one step has no scatter: average several",
-        flags=flags,
-        conventions=said,
+        value,
+        "1",
+        uncertainty,
+        "" if checked else "not asked for",
+        flags=tuple(dict.fromkeys(flags)),
+        conventions={**said, "uncertainty": parts},
     )
     return RequiredFriction(
-        measurement, stance, time, ratio, normal, float(time[at]), float(time[passed[0]])
+        measurement, stance, time, ratio, normal, float(time[at]), float(time[passed[0]]), slip
     )
 
 
@@ -203,7 +274,123 @@ def required_frictions(
     """Return the required friction of every stance of a trial, rejected ones with the reason."""
     axes = axes or axes_of(trial, walking=walking)
     found = stances(trial, axes=axes, walking=walking, heels=heels)
-    return [required_friction(trial, stance, definition, axes=axes) for stance in found]
+    return stance_frictions(trial, found, definition, axes=axes, heels=heels)
+
+
+def stance_frictions(
+    trial: Trial,
+    found: list[Stance],
+    definition: RcofDefinition | None = None,
+    *,
+    axes: Axes,
+    heels: Mapping[str, str] | None = None,
+) -> list[RequiredFriction]:
+    """Return the required friction of the stances given, each compared with the others."""
+    steps = [required_friction(trial, s, definition, axes=axes, heels=heels) for s in found]
+    values = [(s.stance, s.measurement.value) for s in steps if s.measurement.value is not None]
+    out = []
+    for step in steps:
+        own = step.measurement
+        if own.value is not None:
+            more = other_foot_flags(step.stance, own.value, values)
+            step = replace(step, measurement=replace(own, flags=own.flags + more))
+        out.append(step)
+    return out
+
+
+def _surface_words(axes: Axes, stance: Stance) -> str:
+    if stance.direction.source is DirectionSource.TREADMILL:
+        return f"treadmill ({axes.ramp.words})"
+    return axes.ramp.words
+
+
+def _tilt_flags(plate: Plate, stance: Stance, axes: Axes) -> tuple[Flag, ...]:
+    """Caution where the plate's corners slope along the walk and the ramp says otherwise.
+
+    Forces of a plate with corners stand in laboratory axes.
+    """
+    if plate.corners is None or stance.walking is None:
+        return ()
+    normal = up_from_normal(plate_axes(plate.corners)[:, 2])
+    slope = math.atan2(-float(normal @ stance.walking), float(normal @ axes.up))
+    stated = axes.ramp.angle if axes.ramp.plate_frame == "horizontal" else 0.0
+    if abs(slope - stated) <= _TILT:
+        return ()
+    words = (
+        f"the plate's corners slope by {math.degrees(slope):.1f} deg along the walk and its forces "
+        f"are taken as on a slope of {math.degrees(stated):.1f} deg: is the ramp given rightly?"
+    )
+    return (Flag("plate slope", words, True, abs(slope - stated), _TILT, "rad"),)
+
+
+def _curves(
+    plate: Plate,
+    stance: Stance,
+    definition: RcofDefinition,
+    surface: tuple[np.ndarray, np.ndarray],
+    around: float = np.inf,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return normal force, ratio and shear along the walk over the stance, (n,) each.
+
+    ``surface`` holds normal and forward tangent of the walking surface. The filter sees ``around``
+    seconds of record before and after the stance.
+    """
+    margin = int(min(around * plate.rate, len(plate.force)))
+    begin = max(0, stance.start - margin)
+    force = low_passed(plate.force[begin : stance.stop + margin], plate.rate, definition.filter)
+    force = force[stance.start - begin : stance.stop - begin]
+    up, forward = surface
+    normal = force @ up
+    shear = force - np.outer(normal, up)
+    along = shear @ forward
+    size = np.linalg.norm(shear, axis=1) if definition.shear == "resultant" else np.abs(along)
+    return normal, np.where(normal > 1.0, size / np.maximum(normal, 1.0), np.nan), along
+
+
+def _uncertainty(
+    plate: Plate,
+    stance: Stance,
+    definition: RcofDefinition,
+    surface: tuple[np.ndarray, np.ndarray],
+    gate: float,
+    at: int,
+    curves: tuple[np.ndarray, np.ndarray, np.ndarray],
+) -> tuple[float, str]:
+    """Return the standard uncertainty of one step's RCOF, and its parts in words.
+
+    Baseline: the largest effect of the unloaded level before or after the step. Filter: the range
+    between the four filters that "4th order Butterworth" can mean, as a rectangle. Plate: gain of
+    shear and of normal force, and crosstalk, each a rectangle of its specification.
+    """
+    normal, ratio, _ = curves
+    value = float(ratio[at])
+    third = math.sqrt(3.0)
+    accuracy = plate.accuracy
+    plate_part = math.hypot(math.sqrt(2.0) * accuracy.gain * value, accuracy.crosstalk) / third
+    baseline = baseline_error(plate, stance, surface[0], float(normal[at]), value)
+    readings = [value]
+    if definition.filter.kind != "none":
+        for kind in FILTERS:
+            if kind in ("none", definition.filter.kind):
+                continue
+            other = replace(definition, filter=replace(definition.filter, kind=kind))
+            load, curve, push = _curves(plate, stance, other, surface, 0.2)
+            top = _peak(other, curve, _allowed(other, load, push, gate))
+            if top is not None:
+                readings.append(float(curve[top]))
+    filtering = (max(readings) - min(readings)) / math.sqrt(12.0)
+    words = (
+        f"baseline {baseline:.4f}, readings of the filter's name {filtering:.4f}, plate "
+        f"{plate_part:.4f} (gain {100 * accuracy.gain:g} %, crosstalk {100 * accuracy.crosstalk:g} "
+        f"%, {accuracy.source})"
+    )
+    return math.hypot(baseline, filtering, plate_part), words
+
+
+def _sliding_flags(slip: Slip | None) -> tuple[Flag, ...]:
+    if slip is None or slip.outcome is not Outcome.MICROSLIP:
+        return ()
+    return tuple(flag for flag in slip.peak_speed.flags if flag.name == "speed against distance")
 
 
 def _allowed(

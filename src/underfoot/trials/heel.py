@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 
@@ -22,6 +23,8 @@ DERIVATIVES = {
     "savitzky-golay": "Savitzky-Golay derivative, 3rd order, window of the same cutoff",
 }
 SLIP_SPEED = 0.2  # m/s, the grant report's (G.6.1)
+_JUMP = 0.01  # m off the path of the frames around it; no marker does that for a frame or two
+_AROUND = 3  # frames to each side that a jump is judged by
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +96,9 @@ class HeelMotion:
 
     ``speed`` (n,) is in the plane asked for; ``noise`` is the standard deviation of the raw
     marker about the smoothed path (m) and ``speed_noise`` what it makes of the speed (m/s).
-    ``filled`` (n,) marks bridged frames; positions in longer gaps are NaN.
+    ``filled`` (n,) marks bridged frames; positions in longer gaps are NaN. ``jumps`` (n,) marks
+    frames that leapt off the path or lay at zero and were taken as missing;
+    ``acceleration_noise`` is what the noise makes of the speed's rate of change (m/s^2).
     """
 
     time: np.ndarray
@@ -103,6 +108,28 @@ class HeelMotion:
     filled: np.ndarray
     noise: float
     speed_noise: float
+    jumps: np.ndarray
+    acceleration_noise: float = 0.0
+
+
+def marker_jumps(positions: np.ndarray) -> np.ndarray:
+    """Return True for frames (n,) in which a marker (n, 3) leaps off its path or lies at zero.
+
+    A leap: more than 10 mm and six robust standard deviations from the median of the seven frames
+    around it. Exact zeros are what some systems write for a lost marker.
+    """
+    jumps = (positions == 0.0).all(axis=1)
+    known = np.flatnonzero(np.isfinite(positions).all(axis=1) & ~jumps)
+    if len(known) <= 2 * _AROUND:
+        return jumps
+    path = positions[known]
+    windows = np.lib.stride_tricks.sliding_window_view(path, 2 * _AROUND + 1, axis=0)
+    middle = path[_AROUND:-_AROUND]
+    away = np.linalg.norm(middle - np.median(windows, axis=2), axis=1)
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(away, _AROUND, mode="edge"), 7)
+    usual = 1.4826 * np.median(around, axis=1)
+    jumps[known[_AROUND:-_AROUND][away > np.maximum(_JUMP, 6.0 * usual)]] = True
+    return jumps
 
 
 def heel_motion(
@@ -110,7 +137,7 @@ def heel_motion(
 ) -> HeelMotion:
     """Return the smoothed path, velocity and speed of a heel marker.
 
-    Errors
+    Raises
     ------
     InputError
         The frames are not equally spaced, or the filter does not fit the rate.
@@ -118,7 +145,9 @@ def heel_motion(
     definition = definition or SlipDefinition()
     if marker.times is not None:
         raise InputError("frames are not equally spaced", where="marker")
-    path, filled = bridged(marker.positions, round(definition.longest_gap * marker.rate))
+    jumps = marker_jumps(marker.positions)
+    seen_path = np.where(jumps[:, None], np.nan, marker.positions)
+    path, filled = bridged(seen_path, round(definition.longest_gap * marker.rate))
     position = np.full(path.shape, np.nan)
     velocity = np.full(path.shape, np.nan)
     residuals: list[np.ndarray] = []
@@ -136,12 +165,13 @@ def heel_motion(
         residuals.append(np.diff(path[start:stop] - smooth, axis=0)[~filled[start + 1 : stop]])
     noise = 0.0
     if residuals and sum(map(len, residuals)) > 3:
-        jumps = np.abs(np.concatenate(residuals))
-        noise = 1.4826 * float(np.median(jumps)) / math.sqrt(2.0)
+        steps = np.abs(np.concatenate(residuals))
+        noise = 1.4826 * float(np.median(steps)) / math.sqrt(2.0)
     seen_velocity = velocity
     if definition.plane == "horizontal":
         seen_velocity = velocity - np.outer(velocity @ up, up)
     speed = np.linalg.norm(seen_velocity, axis=1)
+    gain, rate_gain = _noise_gains(marker.rate, definition)
     return HeelMotion(
         marker.time,
         position,
@@ -149,7 +179,9 @@ def heel_motion(
         speed,
         filled,
         noise,
-        noise * _noise_gain(marker, definition),
+        noise * gain,
+        jumps,
+        noise * rate_gain,
     )
 
 
@@ -201,8 +233,10 @@ def _half_window(rate: float, cutoff: float) -> int:
     return max(2, round((4.0 * rate / (2.0 * cutoff) + 4.6) / 3.2))
 
 
-def _noise_gain(marker: Marker, definition: SlipDefinition) -> float:
-    """Standard deviation of the speed for unit white noise of the marker, per axis (1/s)."""
-    impulse = np.zeros(max(201, 4 * round(marker.rate / definition.filter.cutoff) + 1))
+@lru_cache(maxsize=16)
+def _noise_gains(rate: float, definition: SlipDefinition) -> tuple[float, float]:
+    """Standard deviation of speed (1/s) and acceleration (1/s^2) for unit white noise an axis."""
+    impulse = np.zeros(max(201, 4 * round(rate / definition.filter.cutoff) + 1))
     impulse[len(impulse) // 2] = 1.0
-    return float(np.linalg.norm(_smoothed(impulse, marker.rate, definition)[1]))
+    speed = _smoothed(impulse, rate, definition)[1]
+    return float(np.linalg.norm(speed)), float(np.linalg.norm(np.gradient(speed, 1 / rate)))

@@ -4,16 +4,57 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
 
 from underfoot.core import InputError, display
+from underfoot.core.presentation import Presentable, Table
 
 
 @dataclass(frozen=True, slots=True)
-class Measurement:
+class Flag:
+    """Something a reader must know beside a number.
+
+    Parameters
+    ----------
+    name
+        Name of the check, for example ``"baseline drift"``.
+    words
+        What was seen, as a clause.
+    matters
+        True when the number needs caution: the step and its file are then no longer "accepted".
+    measured, limit
+        What was seen and what is allowed, in ``unit``; None where the check has no number.
+    source
+        Where the limit comes from.
+    """
+
+    name: str
+    words: str
+    matters: bool = True
+    measured: float | None = None
+    limit: float | None = None
+    unit: str = ""
+    source: str = ""
+
+    def __str__(self) -> str:
+        return self.words
+
+
+def caution(words: str) -> Flag:
+    """Return a flag that makes a number a caution."""
+    return Flag("caution", words)
+
+
+def remark(words: str) -> Flag:
+    """Return a flag that is told and changes no verdict."""
+    return Flag("remark", words, matters=False)
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Measurement(Presentable):
     """One measured number, or the reason why there is none.
 
     Parameters
@@ -25,17 +66,20 @@ class Measurement:
     unit
         SI unit, ``"1"`` when dimensionless.
     uncertainty
-        Standard deviation in ``unit``; None when not estimated (then ``reason`` says why).
+        Standard uncertainty of ``value`` in ``unit`` (of a mean: its standard error); None when
+        not estimated (then ``reason`` says why).
     reason
         Why the value or its uncertainty is missing.
     n
         Number of samples, steps or trials behind the value.
     flags
-        Cautions a reader must see beside the number.
+        What a reader must see beside the number; those that matter make it a caution.
     conventions
         The choices that made the number (filter, gate, definition ...), in words.
+    spread
+        Standard deviation between the ``n`` values of a mean; None for a single number.
 
-    Errors
+    Raises
     ------
     ValueError
         A value that is not finite, a negative uncertainty, or no value and no reason.
@@ -47,8 +91,9 @@ class Measurement:
     uncertainty: float | None = None
     reason: str = ""
     n: int = 1
-    flags: tuple[str, ...] = ()
+    flags: tuple[Flag, ...] = ()
     conventions: Mapping[str, str] = field(default_factory=dict)
+    spread: float | None = None
 
     def __post_init__(self) -> None:
         if self.value is None:
@@ -72,7 +117,7 @@ class Measurement:
         *,
         unit: str = "1",
         n: int = 0,
-        flags: tuple[str, ...] = (),
+        flags: tuple[Flag, ...] = (),
         conventions: Mapping[str, str] | None = None,
     ) -> Measurement:
         """Return a measurement without a value, saying why."""
@@ -85,13 +130,44 @@ class Measurement:
         """True when there is a value."""
         return self.value is not None
 
+    def headline(self) -> tuple[str, ...]:
+        """Return the number with unit and uncertainty, or why there is none."""
+        return (str(self).split(" [")[0],)
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return the flags that matter, in words."""
+        return tuple(flag.words for flag in self.caution_flags)
+
+    @property
+    def caution_flags(self) -> tuple[Flag, ...]:
+        """The flags that make the number a caution."""
+        return tuple(flag for flag in self.flags if flag.matters)
+
+    def __repr__(self) -> str:
+        return f"<Measurement {str(self)[:180]}>"
+
     def __str__(self) -> str:
         if self.value is None:
             return f"{self.name}: not estimated ({self.reason})"
         text = f"{self.name}: {display(self.value, self.unit)}"
-        if self.uncertainty is not None:
+        if self.spread is not None:
+            text += f" (mean of {self.n}, SD {display(self.spread, self.unit, 2)})"
+        elif self.uncertainty is not None:
             text += f" ± {display(self.uncertainty, self.unit, 2)}"
-        return text + (f" [{'; '.join(self.flags)}]" if self.flags else "")
+        return text + (f" [{'; '.join(map(str, self.flags))}]" if self.flags else "")
+
+    def table(self) -> Table:
+        """Return value, uncertainty, flags and conventions, a row each."""
+        rows: list[tuple[str, Any]] = [
+            ("value", self.value if self.value is not None else f"not estimated: {self.reason}"),
+            ("unit", self.unit),
+            ("standard uncertainty", self.uncertainty),
+            ("n", self.n),
+        ]
+        if self.spread is not None:
+            rows.append(("standard deviation", self.spread))
+        rows += [("caution" if flag.matters else "remark", flag.words) for flag in self.flags]
+        return Table(self.name, ("", ""), [*rows, *self.conventions.items()])
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON and tables."""
@@ -102,17 +178,18 @@ class Measurement:
             "uncertainty": self.uncertainty,
             "reason": self.reason,
             "n": self.n,
-            "flags": list(self.flags),
+            "flags": [asdict(flag) for flag in self.flags],
             "conventions": dict(self.conventions),
+            "spread": self.spread,
         }
 
 
 def mean_of(measurements: Sequence[Measurement], name: str | None = None) -> Measurement:
-    """Return the mean of several measurements with its standard error, sd / sqrt(n).
+    """Return the mean of several measurements: standard error sd / sqrt(n), and the sd as spread.
 
     Those without a value are left out and counted in a flag. Conventions must agree.
 
-    Errors
+    Raises
     ------
     InputError
         Nothing given, or different units or conventions.
@@ -120,7 +197,7 @@ def mean_of(measurements: Sequence[Measurement], name: str | None = None) -> Mea
     if not measurements:
         raise InputError("nothing to average", where="mean_of")
     first = measurements[0]
-    ignored = ("baseline", "walking direction")
+    ignored = ("baseline", "walking direction", "uncertainty")
     kept = {k: v for k, v in first.conventions.items() if k not in ignored}
     for other in measurements:
         theirs = {k: v for k, v in other.conventions.items() if k not in ignored}
@@ -129,19 +206,20 @@ def mean_of(measurements: Sequence[Measurement], name: str | None = None) -> Mea
     values = np.array([m.value for m in measurements if m.value is not None])
     name = name or first.name
     lost = len(measurements) - len(values)
-    flags = (f"{lost} of {len(measurements)} without a value are left out",) if lost else ()
+    flags = (remark(f"{lost} of {len(measurements)} without a value are left out"),) if lost else ()
     if not len(values):
         return Measurement.not_estimated(
             name, first.reason, unit=first.unit, flags=flags, conventions=kept
         )
-    deviation = float(values.std(ddof=1) / math.sqrt(len(values))) if len(values) > 1 else None
+    spread = float(values.std(ddof=1)) if len(values) > 1 else None
     return Measurement(
         name,
         float(values.mean()),
         first.unit,
-        deviation,
-        "" if deviation is not None else "a single value has no scatter",
+        None if spread is None else spread / math.sqrt(len(values)),
+        "a single value has no scatter" if spread is None else "",
         len(values),
         flags,
         {**kept, "uncertainty": "standard error of the mean"},
+        spread,
     )

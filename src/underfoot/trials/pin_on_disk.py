@@ -9,7 +9,7 @@ import numpy as np
 
 from underfoot.core import DataError
 
-from .measurement import Measurement
+from .measurement import Measurement, caution
 from .steady import steady_window
 from .trial import Channel, Trial
 
@@ -100,7 +100,7 @@ def friction_point(
         uncertainty=error,
         reason="" if error is not None else "too few samples for a scatter",
         n=len(values),
-        flags=tuple(flags),
+        flags=tuple(map(caution, flags)),
         conventions=said,
     )
     return FrictionPoint(

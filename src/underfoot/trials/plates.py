@@ -7,7 +7,8 @@ import numpy as np
 from underfoot.core import DataError
 
 from .baseline import SHEAR_WARNING, enough, saturated, unloaded
-from .trial import Plate, Trial
+from .measurement import Flag, remark
+from .trial import Plate, PlateAccuracy, Trial
 
 KINDS = {
     1: "type 1 (force, centre of pressure, free moment)",
@@ -27,7 +28,7 @@ def plate_axes(corners: np.ndarray) -> np.ndarray:
     Corner 1 lies at +x +y of the plate, 2 at -x +y, 3 at -x -y, 4 at +x -y (c3d.org); x is kept,
     y made normal to it, z = x cross y (down into the floor in a plate wired as the format says).
 
-    Errors
+    Raises
     ------
     DataError
         Corners missing or without area.
@@ -42,6 +43,30 @@ def plate_axes(corners: np.ndarray) -> np.ndarray:
         raise DataError("the plate's corners enclose no area")
     x, z = x / lengths[0], z / lengths[2]
     return np.column_stack((x, np.cross(z, x), z))
+
+
+def ordered_corners(corners: np.ndarray) -> tuple[np.ndarray, bool]:
+    """Return the corners (4, 3) in the format's order, and True when they had to be re-ordered.
+
+    Some systems write them crossed (1, 2, 4, 3). Corner 1 keeps its place, the one farthest from
+    it becomes corner 3, and of the other two that one becomes corner 2 which makes the plate's z
+    axis point into the floor.
+    """
+    if corners.shape != (4, 3) or not np.isfinite(corners).all():
+        return corners, False
+    opposite = int(np.argmax(np.linalg.norm(corners - corners[0], axis=1)))
+    if opposite in (0, 2):
+        return corners, False
+    others = [i for i in (1, 2, 3) if i != opposite]
+    for second, fourth in (others, others[::-1]):
+        order = corners[[0, second, opposite, fourth]]
+        try:
+            z = plate_axes(order)[:, 2]
+        except DataError:
+            continue
+        if z[int(np.argmax(np.abs(z)))] < 0:
+            return order, True
+    return corners, False
 
 
 def channel_forces(
@@ -61,7 +86,7 @@ def channel_forces(
     calibration
         Shape (6, 6), type 4 only.
 
-    Errors
+    Raises
     ------
     DataError
         Type or number of channels not supported.
@@ -116,6 +141,8 @@ def finished_plate(
     raw: np.ndarray | None = None,
     kind: str = "",
     notes: tuple[str, ...] = (),
+    flags: tuple[Flag, ...] = (),
+    accuracy: PlateAccuracy | None = None,
     subtract_baseline: bool = True,
 ) -> Plate:
     """Return the plate with sign checked, baseline subtracted and centre of pressure worked out.
@@ -130,20 +157,20 @@ def finished_plate(
         Channels before any arithmetic (n, k), searched for saturation.
     """
     force = np.array(force, dtype=float)
-    said = list(notes)
+    seen = list(flags)
     lost = ~np.isfinite(force).all(axis=1)
     if lost.any():
-        said.append(f"{int(lost.sum())} samples without a number")
+        seen.append(Flag("missing samples", f"{int(lost.sum())} samples without a number"))
     vertical = force @ up
     with_load = vertical[np.isfinite(vertical)]
     if with_load.size and _upside_down(with_load):
         force, vertical = -force, -vertical
         moment = None if moment is None else -moment
-        said.append("signs reversed: the file holds the force on the plate")
+        seen.append(remark("signs reversed: the file holds the force on the plate"))
     baseline, samples = None, 0
     empty = unloaded(vertical, rate)
     if not subtract_baseline:
-        said.append("baseline not subtracted: switched off")
+        seen.append(remark("baseline not subtracted: switched off"))
     elif enough(empty):
         baseline, samples = force[empty].mean(axis=0), int(empty.sum())
         force = force - baseline
@@ -151,19 +178,24 @@ def finished_plate(
             moment = moment - moment[empty].mean(axis=0)
         across = float(np.linalg.norm(baseline - (baseline @ up) * up))
         if across > SHEAR_WARNING:
-            said.append(f"shear baseline of {across:.1f} N was subtracted")
+            seen.append(remark(f"shear baseline of {across:.1f} N was subtracted"))
     else:
-        said.append("baseline not subtracted: the plate is never unloaded for long enough")
+        seen.append(
+            Flag("baseline", "baseline not subtracted: the plate is never unloaded for long enough")
+        )
     channels = force if raw is None else raw
-    if any(saturated(channels[:, i], rate) for i in range(channels.shape[1])):
-        said.append("saturated: a channel stays at its extreme value")
+    cut = any(saturated(channels[:, i], rate) for i in range(channels.shape[1]))
+    if cut:
+        seen.append(Flag("saturated", "saturated: a channel stays at its extreme value"))
     peak = float(np.nanmax(np.abs(force @ up), initial=0.0))
     if peak > _IMPLAUSIBLE:
-        said.append(f"peak vertical force {peak:.0f} N is implausible: is the unit right?")
+        words = f"peak vertical force {peak:.0f} N is implausible: is the unit right?"
+        seen.append(Flag("size", words, True, peak, _IMPLAUSIBLE, "N"))
     elif 0.05 < peak < _LOADED:
-        said.append(f"never loaded beyond {peak:.1f} N: unused, or is the unit right?")
+        words = f"never loaded beyond {peak:.1f} N: unused, or is the unit right?"
+        seen.append(Flag("size", words, True, peak, _LOADED, "N"))
     elif peak <= 0.05:
-        said.append("never loaded")
+        seen.append(remark("never loaded"))
     if centre_of_pressure is None and moment is not None and corners is not None:
         centre_of_pressure = _centre_of_pressure(force, moment, up, corners.mean(axis=0))
     return Plate(
@@ -177,7 +209,10 @@ def finished_plate(
         baseline=baseline,
         baseline_samples=samples,
         kind=kind,
-        notes=tuple(said),
+        notes=notes,
+        saturated=cut,
+        flags=tuple(seen),
+        accuracy=accuracy or PlateAccuracy(),
     )
 
 
@@ -189,7 +224,7 @@ def refused_plate(name: str, problem: str, *, rate: float = 0.0, kind: str = "")
 def plate_named(trial: Trial, name: str) -> Plate:
     """Return the plate called ``name``.
 
-    Errors
+    Raises
     ------
     DataError
         There is none.

@@ -12,7 +12,7 @@ from underfoot.core import InputError
 
 from .baseline import runs, saturated
 from .heel import HeelMotion
-from .measurement import Measurement
+from .measurement import Flag, Measurement, remark
 from .trial import Channel
 
 BASELINE_SAMPLES = 500  # fewer let noise pass 5 standard deviations in 1 % of empty records
@@ -115,17 +115,17 @@ def pressure_pulse(
         return without(f'the unit of the channel is "{channel.unit}", not a pressure')
     if len(quiet) < 20:
         return without(f"{len(quiet)} samples before contact are no baseline (500 wanted)")
-    flags: tuple[str, ...] = ()
+    flags: tuple[Flag, ...] = ()
     if len(quiet) < BASELINE_SAMPLES:
-        flags = (f"baseline of {len(quiet)} samples: 500 keep false alarms at 0.1 %",)
+        flags = (remark(f"baseline of {len(quiet)} samples: 500 keep false alarms at 0.1 %"),)
     mean, deviation = float(quiet.mean()), float(quiet.std(ddof=1))
     inside = (time >= contact) & (time <= (until if until is not None else time[-1]))
     if not (inside & np.isfinite(values)).any():
         return without("no samples after contact")
     if np.isnan(values[inside]).any():
-        flags += (f"{int(np.isnan(values[inside]).sum())} samples without a number",)
+        flags += (remark(f"{int(np.isnan(values[inside]).sum())} samples without a number"),)
     if saturated(values, channel.rate):
-        flags += ("the sensor is saturated: the peak is a lower bound",)
+        flags += (remark("the sensor is saturated: the peak is a lower bound"),)
     over = np.where(inside, values - mean, np.nan)
     top = int(np.nanargmax(over))
     limit = definition.deviations * deviation
@@ -138,7 +138,7 @@ def pressure_pulse(
             "Pa",
             deviation,
             n=len(quiet),
-            flags=(*flags, "within the noise: never above the threshold"),
+            flags=(*flags, remark("within the noise: never above the threshold")),
             conventions=said,
         )
         reason = f"never above the threshold of {limit:.0f} Pa"
@@ -148,7 +148,7 @@ def pressure_pulse(
         return Pulse(sensor, peak, none, mean, deviation, float(time[top]))
     first, last = stretches[0][0], stretches[-1][1] - 1
     if last == np.flatnonzero(inside)[-1]:
-        flags += ("still above the threshold when the search ends",)
+        flags += (remark("still above the threshold when the search ends"),)
     step = 1.0 / channel.rate
     return Pulse(
         sensor,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ KINDS = {
     "human_slip": "human slips",
     "gait": "walking",
     "relaxation": "compression relaxation",
+    "readings": "readings of a machine",
 }
 # What rules can be about, with the SI unit.
 QUANTITIES = {
@@ -103,6 +104,11 @@ class Protocol:
         given = self.method[key].given
         return tuple(str(item) for item in (given if isinstance(given, list | tuple) else [given]))
 
+    def with_settings(self, settings: Mapping[str, object]) -> Protocol:
+        """Return the protocol with settings of its method replaced."""
+        changed = {key: Leaf(value, source="command line") for key, value in settings.items()}
+        return replace(self, method={**self.method, **changed})
+
     @property
     def key(self) -> str:
         """Return a hash of all that decides the numbers."""
@@ -125,7 +131,7 @@ class Protocol:
 def protocol(name: str, folders: Iterable[Path | str] = ()) -> Protocol:
     """Return a protocol of the catalogue (built in, or from a user's folders).
 
-    Errors
+    Raises
     ------
     InputError
         Unknown name (with the nearest one), kind, quantity or severity; a limit without unit.

@@ -8,7 +8,7 @@ import numpy as np
 
 from underfoot.core import DataError, InputError
 
-from .measurement import Measurement
+from .measurement import Flag, Measurement, caution
 from .trial import Trial
 
 FORCE = ("force", "load", "normal force", "fz", "axial force")
@@ -154,10 +154,14 @@ def relaxation_reading(
     noise = _noise(f[peak:end])
     still = float(np.polyfit(np.linspace(0, 1, len(tail)), tail, 1)[0])
     fall = float(f[peak] - final)
-    flags: tuple[str, ...] = ()
+    flags: tuple[Flag, ...] = ()
     if fall > 0 and abs(still) > max(0.02 * fall, 3 * noise / np.sqrt(len(tail))):
         share = 100 * abs(still) / fall
-        flags = (f"still falling by {share:.0f} % of the relaxation in the last tenth of the hold",)
+        flags = (
+            caution(
+                f"still falling by {share:.0f} % of the relaxation in the last tenth of the hold"
+            ),
+        )
     said = {"sign": "compression positive", "zero": "force before contact subtracted"}
     return RelaxationReading(
         Measurement("force at 2 %", low_force, "N", noise, conventions=said),

@@ -8,7 +8,7 @@ import numpy as np
 
 from underfoot.core import InputError
 
-from .statistics.logistic import LogisticFit
+from .statistics import ClusteredFit, LogisticFit
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,19 +53,20 @@ class RiskCurve:
 
 
 def risk_curve(
-    fit: LogisticFit, x: np.ndarray | None = None, *, confidence: float = 0.95
+    fit: LogisticFit | ClusteredFit, x: np.ndarray | None = None, *, confidence: float = 0.95
 ) -> RiskCurve:
     """Return the risk curve of a logistic fit with one predictor, with a pointwise band.
 
     The band is symmetric on the logit: eta +- z sqrt(var(b0) + 2 x cov + x^2 var(b1)). It covers
-    the curve, not single persons.
+    the curve, not single persons. With errors by person (``clustered_logistic``) it is as wide as
+    the number of persons asks for.
 
     Parameters
     ----------
     x
         Where to evaluate, shape (m,); by default where the risk runs from 0.5 % to 99.5 %.
 
-    Errors
+    Raises
     ------
     InputError
         A fit with several predictors, or a slope of zero.

@@ -9,16 +9,26 @@ from dataclasses import dataclass
 import numpy as np
 
 from .axes import Axes, axes_of, heel_of, walking_direction
-from .events import Stance
 from .heel import HeelMotion, SlipDefinition, heel_motion
-from .measurement import Measurement
+from .measurement import Flag, Measurement, caution
+from .outcome import Outcome, OutcomeLimits
 from .plates import plate_named
+from .stance import Stance
 from .trial import Marker, Trial
+
+FALSE_ALARMS = "up to 0.23 m/s and 16 mm in 34 steps of dry walking"
+_WIDTH = math.sqrt(math.log(2.0) / 2.0) / math.pi
+"""Standard deviation of the Gaussian whose gain is one half at 1 Hz (s): the filters here halve
+at their cutoff."""
 
 
 @dataclass(frozen=True, slots=True)
 class Slip:
-    """One contact of a heel, judged. ``slipped`` is None when it can't be told."""
+    """One contact of a heel, judged. ``slipped`` (by speed) is None when it can't be told.
+
+    ``outcome`` is the class by distance, ``way`` the direction of the slide: forward, backward or
+    sideways, empty when the heel stays.
+    """
 
     contact: float
     start: Measurement
@@ -29,6 +39,13 @@ class Slip:
     slipped: bool | None
     motion: HeelMotion | None = None
     peak_time: float = math.nan
+    outcome: Outcome | None = None
+    way: str = ""
+
+    @property
+    def slides(self) -> bool:
+        """True when the heel slid further than a microslip: forces are then available friction."""
+        return self.outcome in (Outcome.SLIDE, Outcome.LONG_SLIDE)
 
 
 def slip(
@@ -39,11 +56,13 @@ def slip(
     walking: np.ndarray | None = None,
     leaves: float | None = None,
     definition: SlipDefinition | None = None,
-    flags: tuple[str, ...] = (),
+    limits: OutcomeLimits | None = None,
+    flags: tuple[Flag, ...] = (),
 ) -> Slip:
     """Return the slip (or its absence) after a heel contact.
 
-    Slip start is the first local minimum of the heel's speed after contact; the peak slipping
+    Slip start is the first local minimum of the heel's speed after contact, less the shift that
+    the filter gives a minimum between unlike sides; the peak slipping
     speed is the largest speed between it and the second local minimum, the moment the foot
     leaves the plate, the heel lifts by 30 mm, or the record ends, whichever is first. Distance
     is the displacement of the heel in the floor's plane between start and end.
@@ -99,7 +118,9 @@ def slip(
     minima = _minima(motion.speed, first, last, reach, definition.prominence)
     if len(minima) and minima[0] < first:
         early = 1e3 * (contact - motion.time[minima[0]])
-        flags += (f"the speed's minimum lies {early:.0f} ms before contact: the filter's blur",)
+        flags += (
+            caution(f"the speed's minimum lies {early:.0f} ms before contact: the filter's blur"),
+        )
     if not len(minima):
         return without(f"the heel's speed has no local minimum after contact until {ended}", motion)
     begin = int(minima[0])
@@ -108,37 +129,101 @@ def slip(
     top = begin + int(np.argmax(motion.speed[begin : stop + 1]))
     peak = float(motion.speed[top])
     said["search ends"] = by
-    if motion.filled[first : stop + 1].any():
-        count = int(motion.filled[first : stop + 1].sum())
-        flags += (f"{count} frames of the heel marker were bridged",)
+    approach = slice(max(0, first - 2 * reach), stop + 1)
+    leapt = int(motion.jumps[approach].sum())
+    if leapt:
+        words = f"{leapt} frames of the heel marker leap off its path: taken as missing"
+        flags += (Flag("marker jumps", words, True, leapt, 0.0, "1"),)
+    count = int((motion.filled & ~motion.jumps)[first : stop + 1].sum())
+    if count:
+        flags += (caution(f"{count} frames of the heel marker were bridged"),)
     later = motion.speed[stop : last + 1]
     if len(later) and peak <= definition.threshold < float(np.nanmax(later)):
-        flags += (f"the heel reaches {float(np.nanmax(later)):.2f} m/s after the search's end",)
+        flags += (
+            caution(f"the heel reaches {float(np.nanmax(later)):.2f} m/s after the search's end"),
+        )
     if walking is not None and motion.velocity[top] @ walking < -0.5 * peak and peak > 0.05:
-        flags += ("the heel moves backward at its peak speed",)
+        flags += (caution("the heel moves backward at its peak speed"),)
     if top == stop and len(minima) < 2:
-        flags += (f"the speed still grows when the search ends: {by}",)
+        flags += (caution(f"the speed still grows when the search ends: {by}"),)
     moved = motion.position[stop] - motion.position[begin]
     moved = moved - (moved @ up) * up
-    frame = 1.0 / marker.rate
-    said["uncertainty"] = "marker noise through the filter; the filter's own bias is not in it"
+    distance = float(np.linalg.norm(moved))
+    outcome = (limits or OutcomeLimits()).outcome(distance)
+    slipped = peak > definition.threshold
+    if slipped != (outcome in (Outcome.SLIDE, Outcome.LONG_SLIDE)):
+        words = (
+            f"slip by speed ({peak:.2f} m/s, {peak - definition.threshold:.2f} m/s above the rule) "
+            if slipped
+            else f"no slip by speed ({peak:.2f} m/s) "
+        )
+        words += f"but {outcome} by distance ({1e3 * distance:.0f} mm)"
+        if slipped:
+            words += f": a false alarm of the rule looks like this ({FALSE_ALARMS})"
+        flags += (Flag("speed against distance", words, True, peak, definition.threshold, "m/s"),)
+    start, start_uncertainty, shift = _slip_start(motion, begin, definition.filter.cutoff)
+    said["slip start"] += f", less {1e3 * shift:.1f} ms that the filter shifts it"
+    said["uncertainty"] = "marker noise through the filter; for the start, the filter's shift too"
 
     def value(name: str, number: float, unit: str, sd: float) -> Measurement:
         return Measurement(name, number, unit, sd, flags=flags, conventions=said)
 
     return Slip(
         contact=contact,
-        start=value("slip start", _instant(motion, begin), "s", frame / math.sqrt(12.0)),
+        start=value("slip start", start, "s", start_uncertainty),
         end=float(motion.time[stop]),
         peak_speed=value("peak slipping speed", peak, "m/s", motion.speed_noise),
-        distance=value(
-            "slip distance", float(np.linalg.norm(moved)), "m", math.sqrt(2.0) * motion.noise
-        ),
+        distance=value("slip distance", distance, "m", math.sqrt(2.0) * motion.noise),
         margin=value("slip margin", peak - definition.threshold, "m/s", motion.speed_noise),
-        slipped=peak > definition.threshold,
+        slipped=slipped,
         motion=motion,
         peak_time=float(motion.time[top]),
+        outcome=outcome,
+        way=_way(moved, walking, up) if outcome is not Outcome.NO_SLIP else "",
     )
+
+
+def _way(moved: np.ndarray, walking: np.ndarray | None, up: np.ndarray) -> str:
+    """Direction of a slide against the walk: within 45 degrees of it, of its opposite, or not."""
+    if walking is None:
+        return ""
+    along, across = float(moved @ walking), float(abs(moved @ np.cross(up, walking)))
+    if across > abs(along):
+        return "sideways"
+    return "forward" if along > 0 else "backward"
+
+
+def _slip_start(motion: HeelMotion, begin: int, cutoff: float) -> tuple[float, float, float]:
+    """Return the start of a slip, its standard uncertainty and the filter's shift (s).
+
+    A filter of width w moves the minimum between steep braking and slow speeding up towards the
+    slower side. For two parabolas of curvature ratio r the shift z w solves
+    phi + z Phi = r (phi - z (1 - Phi)); for a sharp corner of slope ratio r, Phi(z) = r / (1 + r).
+    The ratio is that of the rises three widths to either side. The parabolas' shift is taken off;
+    the corner's bounds it (triangular distribution). Further: the frame's rounding, and the noise
+    of the acceleration over the curvature at the minimum.
+    """
+    from scipy.special import ndtr, ndtri
+
+    width = _WIDTH / cutoff
+    here = _instant(motion, begin)
+    rate = 1.0 / (motion.time[1] - motion.time[0])
+    low, before, after = np.interp(
+        [here, here - 3 * width, here + 3 * width], motion.time, motion.speed
+    )
+    bend = float(np.sum(motion.speed[begin - 1 : begin + 2] * [1.0, -2.0, 1.0])) * rate**2
+    frame = 1.0 / rate / math.sqrt(12.0)
+    noise = motion.acceleration_noise / bend if bend > 0 else width
+    if not np.isfinite(before + after):
+        return here, math.hypot(frame, width), 0.0
+    left, right = max(before - low, 1e-6), max(after - low, 1e-6)
+    corner = width * float(ndtri(np.clip(left / (left + right), 1e-4, 1 - 1e-4)))
+    z = np.linspace(-4.0, 4.0, 8001)
+    density = np.exp(-0.5 * z**2) / math.sqrt(2.0 * math.pi)
+    slope = right * (density + z * ndtr(z)) - left * (density - z * (1.0 - ndtr(z)))
+    shift = width * float(np.interp(0.0, slope, z))
+    shape = (corner - shift) / math.sqrt(6.0)
+    return here - shift, math.hypot(frame, min(noise, width), shape), shift
 
 
 def slip_of(
@@ -147,6 +232,7 @@ def slip_of(
     *,
     axes: Axes | None = None,
     definition: SlipDefinition | None = None,
+    limits: OutcomeLimits | None = None,
     heels: Mapping[str, str] | None = None,
 ) -> Slip:
     """Return the slip after a contact with a force plate, by the heel of that foot.
@@ -158,16 +244,20 @@ def slip_of(
     plate = plate_named(trial, stance.plate)
     walking = stance.walking
     if walking is None:
-        walking, _ = walking_direction(trial, plate, stance.start, stance.stop, axes.up)
+        walking = walking_direction(trial, plate, stance.start, stance.stop, axes.up).vector
     marker = trial.marker(stance.heel) if stance.heel else heel_of(trial, stance.side, heels)
-    flags = (f"not a clean step: {stance.reason}",) if stance.reason else ()
+    flags = (caution(f"not a clean step: {stance.reason}"),) if stance.reason else ()
+    up = axes.up
+    if walking is not None:
+        up, walking = axes.ramp.surface(up, walking)  # a heel slides along the surface
     return slip(
         marker,
         stance.contact,
-        up=axes.up,
+        up=up,
         walking=walking,
         leaves=stance.toe_off,
         definition=definition,
+        limits=limits,
         flags=flags,
     )
 

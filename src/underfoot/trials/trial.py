@@ -1,4 +1,4 @@
-"""One recording as read: channels, plates, markers, events, where it came from, what was edited."""
+"""One recording as read: channels, plates, markers, events, where it came from, its edits."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from typing import TypeVar
 
 import numpy as np
 
-from underfoot.core import DataError, nearest_match
+from underfoot.core import DataError, InputError, nearest_match, unknown_name
+from underfoot.core.presentation import Presentable, Table
+
+from .measurement import Flag
 
 _T = TypeVar("_T")
 
@@ -78,6 +81,29 @@ class Marker:
 
 
 @dataclass(frozen=True, slots=True)
+class PlateAccuracy:
+    """Limits of a force plate's errors, as in its data sheet.
+
+    Parameters
+    ----------
+    gain
+        Largest relative error of a force component.
+    crosstalk
+        Largest shear that a vertical force makes by itself, as a share of it.
+    source
+        Where both come from.
+    """
+
+    gain: float = 0.01
+    crosstalk: float = 0.01
+    source: str = "assumed: usual limits of data sheets, from memory, not verified"
+
+    def __post_init__(self) -> None:
+        if not (0 <= self.gain < 1 and 0 <= self.crosstalk < 1):
+            raise InputError("gain and crosstalk are shares", where="accuracy", allowed="0 to 1")
+
+
+@dataclass(frozen=True, slots=True)
 class Plate:
     """One force plate: the force of the floor **on the foot**, in the laboratory's axes.
 
@@ -104,7 +130,13 @@ class Plate:
     problem
         Why this plate can't be used; empty when it can.
     notes
-        Cautions: a large baseline, saturated samples ...
+        What reading assumed: units, ZERO ...
+    saturated
+        True when a channel is cut flat at its extreme.
+    flags
+        What a reader must know: baseline, saturation, unlikely size ...
+    accuracy
+        What the plate's specification says about its errors.
     """
 
     name: str
@@ -119,6 +151,9 @@ class Plate:
     kind: str = ""
     problem: str = ""
     notes: tuple[str, ...] = ()
+    saturated: bool = False
+    flags: tuple[Flag, ...] = ()
+    accuracy: PlateAccuracy = PlateAccuracy()
 
     @property
     def time(self) -> np.ndarray:
@@ -141,19 +176,62 @@ class Event:
     source: str = "found"
 
 
+EDITS = ("contact", "toe off", "exclude", "side", "plate")
+
+
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """One manual change, kept with the trial."""
+    """A change by hand to one step.
 
+    Parameters
+    ----------
+    step
+        Number of the contact as ``describe`` prints it (int), or a time within it (float, s).
+    what
+        One of ``EDITS``.
+    value
+        New time (s) for "contact" and "toe off"; "left" or "right"; the plate's name; None for
+        "exclude".
+    why
+        The reason; it goes to the edit log.
+    where
+        File and line of the edit, for messages.
+
+    Raises
+    ------
+    InputError
+        An unknown kind of edit, a value that does not fit it, no reason.
+    """
+
+    step: int | float
     what: str
-    before: str
-    after: str
+    value: float | str | None
     why: str
+    where: str = "edit"
+
+    def __post_init__(self) -> None:
+        if self.what not in EDITS:
+            raise unknown_name("edit", self.what, EDITS, where=self.where)
+        if not self.why.strip():
+            raise InputError("an edit by hand needs its reason", where=self.where)
+        if self.what in ("contact", "toe off") and not isinstance(self.value, float):
+            raise InputError(f"{self.what} needs a time", where=self.where, allowed='as "3.06 s"')
+        if self.what == "side" and self.value not in ("left", "right"):
+            raise unknown_name("side", str(self.value), ("left", "right"), where=self.where)
+        if self.what == "plate" and not self.value:
+            raise InputError("plate needs the name of a plate", where=self.where)
+        if self.what == "exclude" and self.value not in (None, ""):
+            raise InputError(f'exclude takes no value, not "{self.value}"', where=self.where)
+
+    @property
+    def step_words(self) -> str:
+        """The step as the edit names it."""
+        return f"step {self.step}" if isinstance(self.step, int) else f"step at {self.step:g} s"
 
 
-@dataclass(frozen=True, slots=True)
-class Trial:
-    """One recording. Frozen: changes return a new trial and are written to ``edits``.
+@dataclass(frozen=True, slots=True, repr=False)
+class Trial(Presentable):
+    """One recording. Frozen: changes return a new trial.
 
     Parameters
     ----------
@@ -170,9 +248,9 @@ class Trial:
     notes
         What reading found or did: units converted, duplicates renamed, plates refused.
     events
-        Events written in the file or set by hand.
+        Events written in the file.
     edits
-        The edit log.
+        Changes by hand; ``stances`` applies them.
     settings
         Facts of the header as text (set load, step type, subject mass in kg ...).
     """
@@ -191,7 +269,7 @@ class Trial:
     def channel(self, *names: str) -> Channel:
         """Return the first channel that has one of ``names`` (capitals and blanks ignored).
 
-        Errors
+        Raises
         ------
         DataError
             None of them is there: names what is, and the nearest match.
@@ -207,7 +285,7 @@ class Trial:
     def marker(self, *names: str) -> Marker:
         """Return the first marker that has one of ``names`` (capitals and blanks ignored).
 
-        Errors
+        Raises
         ------
         DataError
             None of them is there: names what is, and the nearest match.
@@ -220,18 +298,35 @@ class Trial:
                 return self.markers[folded[_folded(name)]]
         raise missing("marker", names, self.markers, self.name)
 
-    def with_event(self, event: Event, *, why: str) -> Trial:
-        """Return the trial with ``event`` set by hand in place of those of its name and side."""
-        same = [e for e in self.events if (e.name, e.side) == (event.name, event.side)]
-        others = tuple(e for e in self.events if e not in same)
-        before = ", ".join(f"{e.time:.6f} s ({e.source})" for e in same) or "absent"
-        edit = Edit(f"event {event.name} {event.side}".strip(), before, f"{event.time:.6f} s", why)
-        moved = replace(event, source="set by hand")
-        return replace(self, events=(*others, moved), edits=(*self.edits, edit))
+    def with_edits(self, *edits: Edit) -> Trial:
+        """Return the trial with further edits; ``stances`` applies them or raises."""
+        return replace(self, edits=(*self.edits, *edits))
 
     def with_notes(self, *notes: str) -> Trial:
         """Return the trial with further notes."""
         return replace(self, notes=(*self.notes, *notes))
+
+    def __repr__(self) -> str:
+        parts = [f"{len(self.plates)} plates", f"{len(self.markers)} markers"]
+        parts += [f"{len(self.channels)} channels", f"{len(self.events)} events"]
+        parts += [f"{len(self.edits)} edits"] if self.edits else []
+        return f"<Trial {self.name[:80]}: {self.source[:40]}, {', '.join(parts)}>"
+
+    def table(self) -> Table:
+        """Return plates, markers and channels: kind, samples, rate, remarks."""
+        rows = [
+            ("plate", p.name, len(p.force), p.rate, p.problem or "; ".join(map(str, p.flags)))
+            for p in self.plates
+        ]
+        rows += [
+            ("marker", name, len(m.positions), m.rate, f"{int(m.missing.sum())} frames missing")
+            for name, m in self.markers.items()
+        ]
+        rows += [
+            ("channel", name, len(c.values), c.rate, c.unit or "unit not known")
+            for name, c in self.channels.items()
+        ]
+        return Table(self.name, ("kind", "name", "samples", "rate (Hz)", "remarks"), rows)
 
 
 def joined(first: Trial, second: Trial) -> Trial:

@@ -51,13 +51,13 @@ def best_shift(
     costs = [common_polynomial_cost(float(s), x, y, x_other, y_other)[0] for s in grid]
     i = int(np.argmin(costs))
     bounds = (grid[max(i - 1, 0)], grid[min(i + 1, grid.size - 1)])
-    found: Any = minimize_scalar(
+    optimum: Any = minimize_scalar(
         lambda s: common_polynomial_cost(float(s), x, y, x_other, y_other)[0],
         bounds=bounds,
         method="bounded",
         options={"xatol": 1e-9},
     )
-    shift = float(found.x)
+    shift = float(optimum.x)
     cost, free = common_polynomial_cost(shift, x, y, x_other, y_other)
     variance = cost / max(free, 1)
     step = 0.02 * (high - low)

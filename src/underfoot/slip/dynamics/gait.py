@@ -6,14 +6,14 @@ import csv
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import InputError
+from underfoot.core.arrays import Array
 
-Array = NDArray[np.float64]
 COLUMNS = ("time_s", "normal_per_body_weight", "shear_ratio", "foot_angle_deg")
 LEAST_LOAD = 0.05  # of body weight: below, the ratio of two small forces is noise
 GATE = 0.15  # of body weight (100 N of 70 kg): RCOF counts above it, as in the report's G.6.1
@@ -43,7 +43,7 @@ class GaitHistory:
     source
         Recording, licence and how body weight was found.
 
-    Errors
+    Raises
     ------
     InputError
         Arrays that don't match, times that don't rise, values that are not finite, a negative
@@ -63,10 +63,10 @@ class GaitHistory:
     def __post_init__(self) -> None:
         where = f"history {self.name}"
         for label in ("time", "normal", "ratio", "foot_angle"):
-            given = getattr(self, label)
-            if given is None:
+            values = getattr(self, label)
+            if values is None:
                 continue
-            values = np.asarray(given, dtype=float)
+            values = np.asarray(values, dtype=float)
             object.__setattr__(self, label, values)
             if values.ndim != 1 or values.size < 5 or values.shape != np.shape(self.time):
                 raise InputError(
@@ -197,12 +197,10 @@ def history_text(history: GaitHistory, notes: dict[str, str]) -> str:
 
 def packaged_histories() -> tuple[GaitHistory, ...]:
     """Return the steps that come with the package: real dry walking of six laboratories."""
-    from importlib.resources import files
-
     folder = files("underfoot") / "data" / "gait"
-    found = sorted((f for f in folder.iterdir() if f.name.endswith(".csv")), key=lambda f: f.name)
+    tables = sorted((f for f in folder.iterdir() if f.name.endswith(".csv")), key=lambda f: f.name)
     return tuple(
-        history_from_lines(f.read_text(encoding="utf-8").splitlines(), f.name[:-4]) for f in found
+        history_from_lines(f.read_text(encoding="utf-8").splitlines(), f.name[:-4]) for f in tables
     )
 
 

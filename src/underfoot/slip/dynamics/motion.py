@@ -5,20 +5,34 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import InputError, Progress, Status, silent
+from underfoot.core.arrays import Array
 
 from .walker import Walker
 
-Array = NDArray[np.float64]
 STEP = 8e-3
-"""s, longest step of the foot's motion (see docs/physics/slip_dynamics.md for its error)."""
+"""s, longest step of the foot's motion."""
 MOST_SWEEPS = 60
-STILL = 1e-9  # m/s
+STILL, SLIDING = 1e-9, 1e-6  # m/s: a foot at rest, and one that still slides at the end
+
+
+COLUMNS = (
+    "time",
+    "speed",
+    "distance",
+    "normal",
+    "drive",
+    "friction",
+    "fluid_load",
+    "shoe_angle",
+    "work_in",
+    "dissipated",
+)
+"""Arrays of a ``SlipMotion``, in their order."""
 
 
 class Instant(Protocol):
@@ -81,17 +95,14 @@ class SlipMotion:
     @property
     def still_sliding(self) -> bool:
         """True when the foot still slides at the end."""
-        return bool(self.speed[-1] > 1e-6)
+        return bool(self.speed[-1] > SLIDING)
 
     @property
     def peak_speed(self) -> float:
         """Largest speed after the first minimum of the speed, m/s (no filter, no marker)."""
-        low = (
-            int(np.argmax(np.diff(self.speed) > 1e-12))
-            if (np.diff(self.speed) > 1e-12).any()
-            else -1
-        )
-        return float(self.speed[low:].max())
+        rising = np.flatnonzero(np.diff(self.speed) > 1e-12)
+        first_minimum = int(rising[0]) if rising.size else -1
+        return float(self.speed[first_minimum:].max())
 
 
 def slip_motion(
@@ -100,7 +111,7 @@ def slip_motion(
     *,
     step: float = STEP,
     model: str = "full",
-    seen: Callable[[float, Instant], None] | None = None,
+    observe: Callable[[float, Instant], None] | None = None,
     progress: Progress = silent,
 ) -> SlipMotion:
     """Return the motion of a foot that lands on the floor and slides, or does not.
@@ -119,10 +130,10 @@ def slip_motion(
         Fresh, unloaded.
     step
         Longest step, s.
-    seen
+    observe
         Called with the time and the contact after every step.
 
-    Errors
+    Raises
     ------
     InputError
         A step that is not positive or longer than a tenth of the history.
@@ -152,8 +163,8 @@ def slip_motion(
         if not instant.usable:
             status = Status.NOT_CONVERGED
             break
-        if seen is not None:
-            seen(float(times[i + 1]), instant)
+        if observe is not None:
+            observe(float(times[i + 1]), instant)
         if i == 0 and normal > 0:
             # the floor has not been asked yet: as much friction for each newton as a step later
             friction = instant.friction(speed) * float(normals[0]) / normal
@@ -161,30 +172,43 @@ def slip_motion(
             instant, speed, duration / (2 * mass), begin - friction, drive
         )
         moved = 0.5 * (speed + new) * duration
-        asked = 0.5 * (begin + drive)
+        mean_drive = 0.5 * (begin + drive)
+        work_in += mean_drive * moved
         # what friction really took, also when the foot came to rest within the step
-        given = asked - mass * (new - speed) / duration
-        work_in += asked * moved
-        dissipated += given * moved
+        dissipated += (mean_drive - mass * (new - speed) / duration) * moved
         acceleration = (drive - friction_now) / mass if new > 0 else 0.0
         distance += moved
         speed, friction, begin = new, friction_now, drive
         rows.append(
-            (float(times[i + 1]), speed, distance, normal, drive, friction, instant.fluid_load,
-             float(angles[i + 1]), work_in, dissipated)
-        )  # fmt: skip
+            (
+                float(times[i + 1]),
+                speed,
+                distance,
+                normal,
+                drive,
+                friction,
+                instant.fluid_load,
+                float(angles[i + 1]),
+                work_in,
+                dissipated,
+            )
+        )
         progress("Slipping", float(times[i + 1]) / end, None)
         if speed <= STILL and times[i + 1] > over:
             break
-    columns = np.array(rows).T
-    notes = ()
-    if status is Status.CONVERGED and speed > 1e-6:
-        notes = (
-            f"still sliding at {speed:.2f} m/s when the history of {end:.2f} s ends: distance is "
-            "a lower bound",
-        )
-    time, v, x, n, d, ff, wf, angle, win, diss = columns
-    return SlipMotion(walker, time, v, x, n, d, ff, wf, angle, win, diss, status, model, notes)
+    notes = still_sliding_notes(speed, end) if status is Status.CONVERGED else ()
+    columns: Any = np.array(rows).T  # in the order of the fields
+    return SlipMotion(walker, *columns, status=status, model=model, notes=notes)
+
+
+def still_sliding_notes(speed: float, end: float) -> tuple[str, ...]:
+    """Return the caution about a foot that still slides (m/s) when its history ends (s)."""
+    if speed <= SLIDING:
+        return ()
+    return (
+        f"still sliding at {speed:.2f} m/s when the history of {end:.2f} s ends: distance is a "
+        "lower bound",
+    )
 
 
 def _new_speed(
@@ -210,21 +234,21 @@ def _new_speed(
         return 0.0, min(max(drive, 0.0), most)
     friction = instant.friction(high)
     at_high = excess(high, friction)
-    found, side = high, 0
+    new, side = high, 0
     for _ in range(MOST_SWEEPS):
         if at_high - at_low <= 0:
             break
-        found = (low * at_high - high * at_low) / (at_high - at_low)
-        friction = instant.friction(found)
-        value = excess(found, friction)
+        new = (low * at_high - high * at_low) / (at_high - at_low)
+        friction = instant.friction(new)
+        value = excess(new, friction)
         if abs(value) < 1e-12 or high - low < 1e-12:
             break
         if value < 0:
-            low, at_low = found, value
+            low, at_low = new, value
             at_high = 0.5 * at_high if side < 0 else at_high
             side = -1
         else:
-            high, at_high = found, value
+            high, at_high = new, value
             at_low = 0.5 * at_low if side > 0 else at_low
             side = 1
-    return found, friction
+    return new, friction

@@ -4,22 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from enum import StrEnum
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from underfoot.core import InputError
+from underfoot.core.arrays import Array
+from underfoot.trials.measurement import Measurement
+from underfoot.trials.outcome import Outcome, OutcomeLimits
+from underfoot.trials.pressures import pressure_pulse
+from underfoot.trials.slips import Slip, slip
+from underfoot.trials.trial import Channel, Marker
 
 from .motion import SlipMotion
-from .sensors import SensorArray
+from .sensors import FloorSensors
 
-if TYPE_CHECKING:
-    from underfoot.trials.measurement import Measurement
-    from underfoot.trials.slips import Slip
-
-Array = NDArray[np.float64]
 RATE = 250.0  # Hz of the marker
 PRESSURE_RATE = 1000.0  # Hz of the sensors
 BEFORE = 0.8  # s of record before contact
@@ -31,46 +28,11 @@ BASELINE_SD = 240.0  # Pa, report G.5.1
 UP, WALK = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
 
 
-class Outcome(StrEnum):
-    """What happened to the step, by the distance slipped."""
-
-    NO_SLIP = "no slip"
-    MICROSLIP = "microslip"
-    SLIDE = "slide"
-    SLIP = "slip"
-
-
-@dataclass(frozen=True, slots=True)
-class OutcomeLimits:
-    """Distances (m) up to which a step counts as no slip, microslip and slide.
-
-    30 and 100 mm: Leamon and Li 1990 (from memory, not verified; the four classes are those of
-    Liu et al. 2013, PLoS ONE 8:e68989). 13 mm: the most that a heel moved in the recorded steps of
-    dry walking between slip start and slip end (assumed).
-    """
-
-    no_slip: float = 0.013
-    microslip: float = 0.03
-    slide: float = 0.10
-
-    def __post_init__(self) -> None:
-        if not 0 < self.no_slip < self.microslip < self.slide:
-            raise InputError("limits do not rise", where="slip.limits")
-
-    def outcome(self, distance: float) -> Outcome:
-        """Return the class of a distance in m."""
-        if distance <= self.no_slip:
-            return Outcome.NO_SLIP
-        if distance <= self.microslip:
-            return Outcome.MICROSLIP
-        return Outcome.SLIDE if distance <= self.slide else Outcome.SLIP
-
-
 @dataclass(frozen=True, slots=True)
 class ObservedSlip:
     """A slip as a laboratory would report it; SI.
 
-    ``start`` and ``duration`` are None where they can't be told. ``distance`` is the way from
+    ``start`` and ``duration`` are None where they are not estimated. ``distance`` is the way from
     contact to the end of the slip; ``peak_speed`` that of ``trials.slip`` (report G.5.1, G.6.1),
     0 when the heel has no speed peak after its first minimum. ``row_peaks`` (rows,) are the
     highest readings of each row.
@@ -118,9 +80,6 @@ def heel_marker(motion: SlipMotion) -> tuple[Array, Array]:
 
 def judged(motion: SlipMotion) -> Slip:
     """Return the slip as ``trials.slip`` finds it in the simulated heel marker."""
-    from underfoot.trials.slips import slip
-    from underfoot.trials.trial import Marker
-
     frames, positions = heel_marker(motion)
     marker = Marker(positions, RATE, start=float(frames[0]), note="simulated")
     return slip(marker, 0.0, up=UP, walking=WALK)
@@ -129,7 +88,7 @@ def judged(motion: SlipMotion) -> Slip:
 def observed(
     motion: SlipMotion,
     pressures: Array | None,
-    array: SensorArray,
+    array: FloorSensors,
     *,
     limits: OutcomeLimits | None = None,
     seed: int = 0,
@@ -141,12 +100,12 @@ def observed(
     taken by ``trials.pressure_pulse``.
     """
     limits = limits or OutcomeLimits()
-    found = judged(motion)
-    peak = found.peak_speed.value
-    flags = found.peak_speed.flags
+    recorded = judged(motion)
+    peak = recorded.peak_speed.value
+    flags = tuple(flag.words for flag in recorded.peak_speed.flags)
     if peak is None:
-        flags = (*flags, f"no peak: {found.peak_speed.reason}")
-    end = found.end if math.isfinite(found.end) else float(motion.time[-1])
+        flags = (*flags, f"no peak: {recorded.peak_speed.reason}")
+    end = recorded.end if math.isfinite(recorded.end) else float(motion.time[-1])
     distance = float(np.interp(end, motion.time, motion.distance))
     rows: tuple[float, ...] = ()
     duration = None
@@ -157,10 +116,10 @@ def observed(
     inside = abs(motion.walker.lateral) <= 0.5 * (array.columns - 1) * array.spacing
     return ObservedSlip(
         peak_speed=peak or 0.0,
-        start=found.start.value,
+        start=recorded.start.value,
         distance=distance,
         outcome=limits.outcome(distance),
-        slipped=bool(found.slipped),
+        slipped=bool(recorded.slipped),
         peak_pressure=highest,
         row_peaks=rows,
         duration=duration,
@@ -173,9 +132,6 @@ def _pulses(
     motion: SlipMotion, pressures: Array, seed: int
 ) -> tuple[tuple[float, ...], float | None, float]:
     """Return peaks by row, duration at the sensor of the highest peak, and that peak."""
-    from underfoot.trials.pressures import pressure_pulse
-    from underfoot.trials.trial import Channel
-
     generator = np.random.default_rng(seed)
     times = np.arange(-BEFORE, float(motion.time[-1]) + 0.05, 1 / PRESSURE_RATE)
     peaks = np.zeros(pressures.shape[1:])

@@ -5,21 +5,23 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import InputError
+from underfoot.core.arrays import Array
+from underfoot.core.constants import GRAVITY
+from underfoot.trials.axes import Axes, axes_of, marker_velocity
+from underfoot.trials.events import body_mass
+from underfoot.trials.filters import low_passed
+from underfoot.trials.gait import RcofDefinition, RequiredFriction, required_frictions
+from underfoot.trials.heel import heel_motion
+from underfoot.trials.plates import plate_named
+from underfoot.trials.readers import read_trial
+from underfoot.trials.trial import Marker, Trial
 
 from .gait import LEAST_LOAD, GaitHistory
 
-if TYPE_CHECKING:
-    from underfoot.trials.axes import Axes
-    from underfoot.trials.gait import RequiredFriction
-    from underfoot.trials.trial import Marker, Trial
-
-GRAVITY = 9.80665
 DUTY = 0.62  # stance over stride of level walking (assumed, textbook value)
 RATE = 200.0  # Hz of the tables
 FLAT = (0.3, 0.5)  # share of the stance in which the foot lies flat
@@ -37,27 +39,24 @@ def recorded_histories(path: Path | str, *, mass: float | None = None) -> list[G
         Of the person, kg; None takes the file's, else body weight is estimated as mean normal
         force of the stance x 2 x 0.62 (two stances of 62 % of a stride carry it together).
 
-    Errors
+    Raises
     ------
     InputError
         No accepted step; the reasons are listed.
     """
-    from underfoot.trials.gait import required_frictions
-    from underfoot.trials.readers import read_trial
-
     trial = read_trial(Path(path))
     steps = required_frictions(trial)
-    found = [
+    histories = [
         step_history(trial, step, mass=mass, name=f"{Path(path).stem} {step.stance.plate}")
         for step in steps
         if step.measurement.value is not None
     ]
-    if not found:
+    if not histories:
         reasons = [s.stance.reason or s.measurement.reason for s in steps] or ["no contact"]
         raise InputError(
             "no step can be used: " + "; ".join(dict.fromkeys(reasons)), where=str(path)
         )
-    return found
+    return histories
 
 
 def step_history(
@@ -68,12 +67,6 @@ def step_history(
     Foot angle: from the line heel marker to toe marker (or first or second metatarsal head of the
     same side), against its angle while the foot lies flat (30 to 50 % of stance).
     """
-    from underfoot.trials.axes import axes_of
-    from underfoot.trials.events import body_mass
-    from underfoot.trials.filters import low_passed
-    from underfoot.trials.gait import RcofDefinition
-    from underfoot.trials.plates import plate_named
-
     axes, stance = axes_of(trial), step.stance
     assert stance.walking is not None  # an RCOF has one
     plate = plate_named(trial, stance.plate)
@@ -102,11 +95,9 @@ def step_history(
 
 
 def _heel(
-    trial: Trial, step: RequiredFriction, axes: Axes, time: NDArray[np.float64]
-) -> tuple[float | None, NDArray[np.float64] | None]:
+    trial: Trial, step: RequiredFriction, axes: Axes, time: Array
+) -> tuple[float | None, Array | None]:
     """Return the heel's speed at contact and the foot's angle at ``time``, where recorded."""
-    from underfoot.trials.heel import heel_motion
-
     stance = step.stance
     heel = trial.marker(stance.heel) if stance.heel else None
     if heel is None or stance.walking is None:
@@ -134,10 +125,9 @@ def _toe_of(trial: Trial, heel: str) -> Marker | None:
 
 
 def _walking_speed(trial: Trial, begin: float, end: float, axes: Axes) -> float | None:
-    from underfoot.trials.axes import marker_velocity
 
-    found = marker_velocity(trial, begin, end, axes.up)
-    if found is None or not np.isfinite(found).all():
+    velocity = marker_velocity(trial, begin, end, axes.up)
+    if velocity is None or not np.isfinite(velocity).all():
         return None
-    speed = float(np.linalg.norm(found))
+    speed = float(np.linalg.norm(velocity))
     return speed if 0.3 < speed < 3 else None

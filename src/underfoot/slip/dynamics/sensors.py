@@ -4,22 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import map_coordinates
 
 from underfoot.core import InputError
+from underfoot.core.arrays import Array
+from underfoot.sole_contact.reading import _pocket_pressure, _rim
+from underfoot.sole_contact.sole_state import SoleState
 
 from .motion import SlipMotion
 from .walker import Walker
 
-if TYPE_CHECKING:
-    from underfoot.outsole.sole_state import SoleState
-
-    from .kept_runs import FullRun
-
-Array = NDArray[np.float64]
 MAP_X: NDArray[np.float64] = np.linspace(-10e-3, 90e-3, 51)
 MAP_Y: NDArray[np.float64] = np.linspace(-36e-3, 36e-3, 37)
 """m, places in the sole's frame (x from its rear end) at which a sensor's reading is kept."""
@@ -28,7 +26,7 @@ SHOWN = 0.02  # of the load on the film: below it a map says nothing about shape
 
 
 @dataclass(frozen=True, slots=True)
-class SensorArray:
+class FloorSensors:
     """Sensors in rows across the walk; the report's G.5.1: 3 x 3, 30 mm apart, 4 mm inlets.
 
     Row 0 is met first. The heel lands ``Walker.landing`` behind it.
@@ -58,8 +56,6 @@ def sensor_map(state: SoleState, inlet_diameter: float) -> Array:
 
     The pocket of ``outsole.floor_sensor_reading``.
     """
-    from underfoot.outsole.reading import _pocket_pressure, _rim
-
     if not (state.fluid_pressure > 0).any():
         return np.zeros((MAP_X.size, MAP_Y.size))
     spacing = state.spacing
@@ -71,6 +67,20 @@ def sensor_map(state: SoleState, inlet_diameter: float) -> Array:
         np.clip(state.film_thickness, SMALLEST_GAP, GAP_CAP) ** 3,
         GAP_CAP**3,
     )
+
+
+class MappedRun(Protocol):
+    """A full slip with the readings in the sole's frame; ``full_model.FullRun`` is one."""
+
+    @property
+    def motion(self) -> SlipMotion:
+        """How the foot moved."""
+        ...
+
+    @property
+    def maps(self) -> NDArray[np.float32]:
+        """Readings (n, len(MAP_X), len(MAP_Y)) at ``motion.time``, Pa."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +101,7 @@ class PressureShape:
         return np.maximum(shape, 0.0) * motion.fluid_load[:, None, None]
 
 
-def pressure_shape(runs: Sequence[FullRun], shoe_angle: float) -> PressureShape:
+def pressure_shape(runs: Sequence[MappedRun], shoe_angle: float) -> PressureShape:
     """Return the shape of the film's pressure as sensors see it, from full runs."""
     rows, values, weights = [], [], []
     for run in runs:
@@ -114,27 +124,25 @@ def pressure_shape(runs: Sequence[FullRun], shoe_angle: float) -> PressureShape:
     return PressureShape(fit.reshape(blank.shape), shoe_angle)
 
 
-def array_pressures(motion: SlipMotion, maps: NDArray[np.floating], array: SensorArray) -> Array:
+def array_pressures(motion: SlipMotion, maps: NDArray[np.floating], array: FloorSensors) -> Array:
     """Return the pressure (n, rows, columns) in Pa that each sensor reads at ``motion.time``.
 
     ``maps`` (n, len(MAP_X), len(MAP_Y)): readings in the sole's frame at these times. A sensor
     outside the maps reads 0.
     """
-    from scipy.ndimage import map_coordinates
-
     x, y = array.places(motion.walker)
     count = motion.time.size
-    found = np.zeros((count, array.rows, array.columns))
+    pressures = np.zeros((count, array.rows, array.columns))
     ahead = x[None, :] - motion.distance[:, None]
     along = (ahead - MAP_X[0]) / (MAP_X[1] - MAP_X[0])
     across = (y - MAP_Y[0]) / (MAP_Y[1] - MAP_Y[0])
     which = np.broadcast_to(np.arange(count, dtype=float)[:, None], along.shape)
     for j, place in enumerate(across):
         at = np.stack([which, along, np.full(along.shape, place)])
-        found[:, :, j] = map_coordinates(
+        pressures[:, :, j] = map_coordinates(
             np.asarray(maps, dtype=float), at, order=1, mode="constant", cval=0.0
         )
-    return found
+    return pressures
 
 
 def _shape_columns(motion: SlipMotion, shoe_angle: float) -> Array:

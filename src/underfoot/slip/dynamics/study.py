@@ -7,20 +7,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import Cache, ConvergenceError, Progress, SourcedValue, Status, silent
+from underfoot.core.arrays import Array
 
-from .fitting import ReducedFit, cof_table, design, fitted_reduced
-from .kept_runs import ROOM, FullRun, full_runs
-from .motion import STEP, SlipMotion
+from .full_model import ROOM, FullRun, Setting, full_runs
+from .motion import COLUMNS, STEP, SlipMotion
 from .observation import ObservedSlip, Outcome, OutcomeLimits, observed
-from .reduced import NAMES, ReducedSole
-from .sensors import PressureShape, SensorArray, array_pressures, pressure_shape
-from .sole_contact import Setting
+from .reduced_model import NAMES, ReducedFit, ReducedSole, cof_table, design, fitted_reduced
+from .sensors import FloorSensors, PressureShape, array_pressures, pressure_shape
 from .walker import Population, Walker
 
-Array = NDArray[np.float64]
 Z95 = 1.959963984540054
 FIT_RUNS, HELD_OUT = 12, 4
 
@@ -45,7 +42,7 @@ class SlipStudy:
 
     setting: Setting
     population: Population
-    array: SensorArray
+    array: FloorSensors
     subjects: tuple[SubjectSlip, ...]
     full: bool
     fit: ReducedFit | None
@@ -57,19 +54,20 @@ class SlipStudy:
     sole: ReducedSole | None = None
 
     def shares(self) -> dict[Outcome, tuple[float, float, float]]:
-        """Return share, lower and upper 95 % bound (Wilson) of each outcome.
+        """Return share, lower and upper 95 % bound (Wilson) of each class of distance slipped.
 
         A single person has no band: nan.
         """
         count = len(self.subjects)
-        found = {}
-        for outcome in Outcome:
-            hits = sum(s.seen.outcome is outcome for s in self.subjects)
-            found[outcome] = (hits / count, *_wilson(hits, count))
-        return found
+        hits = {name: sum(s.seen.outcome is name for s in self.subjects) for name in Outcome}
+        return {name: (n / count, *_wilson(n, count)) for name, n in hits.items()}
 
     def slipped(self) -> tuple[float, float, float]:
-        """Return the share of peak slipping speeds above 0.2 m/s (G.6.1) with its 95 % bounds."""
+        """Return the share of steps that slip, and its 95 % bounds (Wilson).
+
+        A step slips when the heel's peak speed after its first minimum exceeds 0.2 m/s (G.6.1,
+        ``trials.SlipDefinition``): the one definition of a slip in the package.
+        """
         hits = sum(s.seen.slipped for s in self.subjects)
         return (hits / len(self.subjects), *_wilson(hits, len(self.subjects)))
 
@@ -145,7 +143,7 @@ class SlipStudy:
 
         Peak speed, peak pressure and duration are of those whose heel crossed the sensors.
         """
-        found: dict[str, float | None] = {}
+        numbers: dict[str, float | None] = {}
         for name, unit in (
             ("peak_speed", "m/s"),
             ("distance", "m"),
@@ -153,30 +151,30 @@ class SlipStudy:
             ("duration", "s"),
         ):
             value = self.mean(name, unit, crossed=True)
-            found[name], found[f"{name}_sd"] = value.value, value.uncertainty
+            numbers[name], numbers[f"{name}_sd"] = value.value, value.uncertainty
         share, low, high = self.slipped()
-        found |= {"slipped": share, "slipped_low": low, "slipped_high": high}
-        for outcome, (share, _, _) in self.shares().items():
-            found[str(outcome).replace(" ", "_")] = share
-        found["correlation"] = self.correlation()
+        numbers |= {"slipped": share, "slipped_low": low, "slipped_high": high}
+        for name, (share, _, _) in self.shares().items():
+            numbers[str(name).replace(" ", "_")] = share
+        numbers["correlation"] = self.correlation()
         rows = self.rows()
-        found["last_over_first_row"] = float(rows[-1] / rows[0]) if rows[0] > 0 else None
-        found["crossed"] = float(np.mean([s.seen.crossed for s in self.subjects]))
-        return {k: None if v is None or math.isnan(v) else v for k, v in found.items()}
+        numbers["last_over_first_row"] = float(rows[-1] / rows[0]) if rows[0] > 0 else None
+        numbers["crossed"] = float(np.mean([s.seen.crossed for s in self.subjects]))
+        return {k: None if v is None or math.isnan(v) else v for k, v in numbers.items()}
 
     def rows(self) -> Array:
         """Return the mean peak (rows,) of each row of sensors over those who crossed, Pa."""
-        found = [s.seen.row_peaks for s in self.subjects if s.seen.crossed and s.seen.row_peaks]
-        if not found:
+        peaks = [s.seen.row_peaks for s in self.subjects if s.seen.crossed and s.seen.row_peaks]
+        if not peaks:
             return np.full(self.array.rows, math.nan)
-        return np.mean(np.array(found), axis=0)
+        return np.mean(np.array(peaks), axis=0)
 
 
 def slip_study(
     setting: Setting,
     population: Population,
     *,
-    array: SensorArray | None = None,
+    array: FloorSensors | None = None,
     full: bool = False,
     fit_runs: int = FIT_RUNS,
     held_out: int = HELD_OUT,
@@ -191,12 +189,12 @@ def slip_study(
     population, tested on ``held_out`` others, and run for everybody; with ``full`` everybody goes
     through the full model. Full slips are kept in the cache: a stopped study goes on.
 
-    Errors
+    Raises
     ------
     ConvergenceError
         Too few full slips could be solved to fit to.
     """
-    array = array or SensorArray()
+    array = array or FloorSensors()
     cache = cache or Cache(ROOM)
     walkers = population.walkers()
     if setting.viscosity is None:
@@ -204,10 +202,10 @@ def slip_study(
     options = {"inlet_diameter": array.inlet_diameter, "step": step, "cache": cache}
 
     def part(low: float, high: float) -> Progress:
-        def told(stage: str, fraction: float, residual: float | None = None) -> None:
+        def report(stage: str, fraction: float, residual: float | None = None) -> None:
             progress(stage, low + (high - low) * fraction, residual)
 
-        return told
+        return report
 
     if full:
         runs = full_runs(setting, walkers, progress=progress, **options)
@@ -219,9 +217,18 @@ def slip_study(
             for i, r in enumerate(good)
         ]
         return SlipStudy(
-            setting, population, array, tuple(subjects), True, None, None,
-            _nearest(good, subjects), tuple(good), _breaches(setting, good), len(runs) - len(good),
-        )  # fmt: skip
+            setting,
+            population,
+            array,
+            tuple(subjects),
+            True,
+            None,
+            None,
+            _nearest(good, subjects),
+            tuple(good),
+            _breaches(setting, good),
+            len(runs) - len(good),
+        )
     people = design(population, fit_runs + held_out)
     runs = full_runs(setting, people, progress=part(0.0, 0.8), **options)
     good = [r for r in runs if r.motion.status is Status.CONVERGED]
@@ -234,19 +241,30 @@ def slip_study(
     used = [r for r in good if not any(r is t for t in tested)]
     rows = [row for r in used for row in r.area_rows()]
     fit = fitted_reduced(
-        setting, [r.motion for r in used], [r.motion for r in tested], rows,
+        setting,
+        [r.motion for r in used],
+        [r.motion for r in tested],
+        rows,
         progress=part(0.8, 0.93),
-    )  # fmt: skip
+    )
     shape = pressure_shape(used, setting.shoe_angle)
     subjects = _reduced_subjects(fit.sole, shape, walkers, array, limits)
     chosen = walkers[_middle(subjects)]
-    shown = full_runs(setting, [chosen], progress=part(0.95, 1.0), **options)
+    middle_run = full_runs(setting, [chosen], progress=part(0.95, 1.0), **options)
     return SlipStudy(
-        setting, population, array, tuple(subjects), False, fit,
+        setting,
+        population,
+        array,
+        tuple(subjects),
+        False,
+        fit,
         _pressure_error(shape, fit.sole, tested, array),
-        shown[0] if shown[0].motion.status is Status.CONVERGED else None,
-        tuple(good), _breaches(setting, good), len(runs) - len(good), fit.sole,
-    )  # fmt: skip
+        middle_run[0] if middle_run[0].motion.status is Status.CONVERGED else None,
+        tuple(good),
+        _breaches(setting, good),
+        len(runs) - len(good),
+        fit.sole,
+    )
 
 
 _REMEDY = "Use a finer grid, a thicker start film, or a narrower population"
@@ -256,22 +274,22 @@ def _reduced_subjects(
     sole: ReducedSole,
     shape: PressureShape,
     walkers: Sequence[Walker],
-    array: SensorArray,
+    array: FloorSensors,
     limits: OutcomeLimits | None,
 ) -> list[SubjectSlip]:
-    found = []
+    subjects = []
     for i, walker in enumerate(walkers):
         motion = sole.motion(walker)
         thin = _thinned(motion)
         pressures = array_pressures(thin, shape.maps(thin), array)
-        found.append(_subject(thin, pressures, array, limits, i))
-    return found
+        subjects.append(_subject(thin, pressures, array, limits, i))
+    return subjects
 
 
 def _dry_study(
     setting: Setting,
     population: Population,
-    array: SensorArray,
+    array: FloorSensors,
     walkers: Sequence[Walker],
     limits: OutcomeLimits | None,
 ) -> SlipStudy:
@@ -292,7 +310,7 @@ def _dry_study(
 def _subject(
     motion: SlipMotion,
     pressures: Array | None,
-    array: SensorArray,
+    array: FloorSensors,
     limits: OutcomeLimits | None,
     seed: int,
 ) -> SubjectSlip:
@@ -303,24 +321,20 @@ def _subject(
 def _thinned(motion: SlipMotion, every: int = 4) -> SlipMotion:
     """Return the motion at every fourth instant: what drawings and sensors need."""
     keep = np.unique(np.append(np.arange(0, motion.time.size, every), motion.time.size - 1))
-    names = (
-        "time", "speed", "distance", "normal", "drive", "friction", "fluid_load", "shoe_angle",
-        "work_in", "dissipated",
-    )  # fmt: skip
-    return replace(motion, **{name: getattr(motion, name)[keep] for name in names})
+    return replace(motion, **{name: getattr(motion, name)[keep] for name in COLUMNS})
 
 
 def _pressure_error(
-    shape: PressureShape, sole: ReducedSole, tested: Sequence[FullRun], array: SensorArray
+    shape: PressureShape, sole: ReducedSole, tested: Sequence[FullRun], array: FloorSensors
 ) -> float | None:
     """Return the root-mean-square relative error of the peak reading on held-out full runs."""
     errors = []
     for run in tested:
         true = float(array_pressures(run.motion, run.maps, array).max())
         own = sole.motion(run.motion.walker)
-        found = float(array_pressures(own, shape.maps(own), array).max())
+        reading = float(array_pressures(own, shape.maps(own), array).max())
         if true > 1e3:
-            errors.append(found / true - 1)
+            errors.append(reading / true - 1)
     return float(np.sqrt(np.mean(np.square(errors)))) if errors else None
 
 
@@ -354,9 +368,9 @@ def _breaches(setting: Setting, runs: Sequence[FullRun]) -> tuple[str, ...]:
     if not moving.size:
         return ()
     extremes = np.array([run.extremes for run in runs])
-    found = setting.friction.breaches(
+    outside = setting.friction.breaches(
         contact_pressure=extremes[:, 0].max(),
         speed=np.array([moving.min(), moving.max()]),
         film_thickness=max(float(extremes[:, 1].min()), 1e-9),
     )
-    return tuple(dict.fromkeys(str(breach) for breach in found))
+    return tuple(dict.fromkeys(str(breach) for breach in outside))

@@ -6,25 +6,15 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import InputError
+from underfoot.core.arrays import Array
+from underfoot.core.constants import GRAVITY
 
 from .gait import GaitHistory, packaged_histories
 
-Array = NDArray[np.float64]
-GRAVITY = 9.80665
 REFERENCE_SPEED = 1.35
 """m/s, mean walking speed of the recorded steps that know it; taken for those that don't."""
-
-
-@dataclass(frozen=True, slots=True)
-class Demand:
-    """What the body asks of the foot at an instant: load (N), drive (N) and shoe angle (rad)."""
-
-    normal: float
-    drive: float
-    shoe_angle: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +44,7 @@ class Walker:
     recorded_angle
         Let the shoe angle fall as in the history (where it has one) instead of holding it.
 
-    Errors
+    Raises
     ------
     InputError
         A mass that is not positive, an RCOF outside 0 to 1, a negative heel speed.
@@ -91,11 +81,12 @@ class Walker:
     @property
     def step(self) -> GaitHistory:
         """The history as this person walks it: own RCOF, own length."""
-        asked = self.history.asking(self.rcof)
+        scaled = self.history.asking(self.rcof)
         if self.walking_speed is None:
-            return asked
-        own = self.history.walking_speed or REFERENCE_SPEED
-        return asked.lasting(self.history.duration * own / self.walking_speed)
+            return scaled
+        recorded_speed = self.history.walking_speed or REFERENCE_SPEED
+        # the same step length: a faster walker is over the foot in less time
+        return scaled.lasting(self.history.duration * recorded_speed / self.walking_speed)
 
     def demands(self, times: Array) -> tuple[Array, Array, Array]:
         """Return load (N), drive r F (N) and shoe angle (rad) at times since contact (s)."""
@@ -186,18 +177,18 @@ class Population:
         """Return one person."""
         generator = np.random.default_rng([self.seed, index])
 
-        def one(spread: Spread) -> float:
+        def drawn(spread: Spread) -> float:
             return float(spread.draw(1, generator)[0])
 
         return Walker(
             history=self.histories[int(generator.integers(len(self.histories)))],
-            mass=one(self.mass),
-            rcof=one(self.rcof),
-            walking_speed=one(self.walking_speed),
-            heel_speed=one(self.heel_speed),
-            shoe_angle=one(self.shoe_angle),
+            mass=drawn(self.mass),
+            rcof=drawn(self.rcof),
+            walking_speed=drawn(self.walking_speed),
+            heel_speed=drawn(self.heel_speed),
+            shoe_angle=drawn(self.shoe_angle),
             landing=float(generator.uniform(*self.landing)),
-            lateral=one(self.lateral),
+            lateral=drawn(self.lateral),
             effective_mass=self.effective_mass,
             recorded_angle=self.recorded_angle,
             name=f"subject {index + 1}",

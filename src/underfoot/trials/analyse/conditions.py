@@ -1,22 +1,302 @@
-"""What a laboratory noted about its files: a table with a column "file"."""
+"""Which files of a folder are trials, and what the laboratory noted about each."""
 
 from __future__ import annotations
 
 import csv
 import io
-import warnings
+import os
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from underfoot.core import DataError, InputError, MissingExtraError, units, unknown_name
+from underfoot.core import (
+    DataError,
+    InputError,
+    nearest_match,
+    units,
+)
 
+from ..readers import SUFFIXES
+from ..readers.sheet import is_workbook, workbook_rows
 from ..readers.text import decoded, is_number, name_and_unit
 from ..readers.unit_factors import si_unit
 
 NAMES = ("conditions.csv", "conditions.xlsx")
+REPORT_MARK = "analysis.txt"  # stands in the folder of a report, which holds no trials
+PERSON = ("subject", "person", "participant", "proband", "volunteer", "vp", "id")
+# Names of conditions that number trials: never factors of a test.
+NUMBERS = ("n", "no", "nr", "trial", "number", "rep", "repeat", "repetition", "run", "take")
+_NOT_TRIALS = re.compile(
+    r"(conditions|edits|truth|synthetic|notes?|notizen|read[-_ ]?me|liesmich|licen[cs]e|protocol"
+    r"|todo|session[-_ ]?metadata)([-_ .].*)?$",
+    re.IGNORECASE,
+)
+_PERSON_FOLDER = re.compile(
+    r"(s|p|vp|sub|subj|subject|person|participant|proband|id)[-_ ]?0*\d+\w?$", re.IGNORECASE
+)
+_FORCES = (".forces", ".mot", ".sto")
 
 
-def conditions_of(folder: Path, given: Path | None = None) -> dict[str, dict[str, Any]]:
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """Files that belong to one recording; ``name`` is the path below the folder of the study."""
+
+    name: str
+    paths: tuple[Path, ...]
+    conditions: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class StudyFolder:
+    """The recordings of a folder and of those below it; ``notes`` name files left aside."""
+
+    recordings: tuple[Recording, ...]
+    notes: tuple[str, ...]
+
+
+def study_folder(
+    folder: Path,
+    *,
+    conditions: Path | None = None,
+    names: str = "",
+    merge_spelling: bool = False,
+) -> StudyFolder:
+    """Return the recordings in a folder with their conditions.
+
+    Conditions come from tables (``conditions.csv`` or ``.xlsx`` in the folder or beside the
+    files), from names by a pattern, or else from the folders: a level whose folders are called
+    like ``S01`` or ``subject 7`` names the person, another level with several folders is a
+    condition called "folder".
+
+    Parameters
+    ----------
+    conditions
+        Another table of conditions.
+    names
+        Regular expression with named groups, searched in each path below ``folder`` without its
+        ending, such as ``S(?P<subject>\\d+)_(?P<shoe>[a-z]+)_(?P<n>\\d+)``.
+    merge_spelling
+        Take spellings that differ in capitals, blanks, "-" or "_" as one; else they are refused.
+
+    Raises
+    ------
+    InputError
+        No such folder, no trial file, a wrong table or pattern, a file that two sources describe
+        differently, a condition in several spellings.
+    """
+    groups, notes = _groups(folder)
+    labels = [_label(group[0], folder) for group in groups]
+    own: list[dict[str, Any]] = [dict(_session(group[0], folder)) for group in groups]
+    for label, found in zip(labels, _from_names(labels, names), strict=True):
+        _add(own[labels.index(label)], found, label)
+    members = {_label(p, folder): i for i, group in enumerate(groups) for p in group}
+    for table, below in _tables(folder, conditions):
+        for file, found in conditions_of(below, table).items():
+            label = named_file(file, list(members), _label(below, folder))
+            if label is None:
+                notes.append(f"{file}: in {table.name}, but there is no such file")
+                continue
+            _add(own[members[label]], found, label)
+    _same_spelling(own, merge_spelling)
+    recordings = tuple(
+        Recording(label, tuple(group), noted)
+        for label, group, noted in zip(labels, groups, own, strict=True)
+    )
+    return StudyFolder(tuple(sorted(recordings, key=lambda r: r.name)), tuple(notes))
+
+
+def named_file(name: str, labels: Sequence[str], below: str = ".") -> str | None:
+    """Return the one file that a table names, by its path or by its bare name; None if absent.
+
+    Raises
+    ------
+    InputError
+        The bare name stands for several files.
+    """
+    plain = name.replace("\\", "/")
+    inside = plain if below in (".", "") else f"{below}/{plain}"
+    if inside in labels:
+        return inside
+    same = [label for label in labels if label.rsplit("/", 1)[-1] == plain]
+    if len(same) > 1:
+        raise InputError(
+            f'"{name}" names {len(same)} files: {", ".join(same[:4])}',
+            where="file",
+            remedy="Write the folder too",
+        )
+    return same[0] if same else None
+
+
+def _label(path: Path, folder: Path) -> str:
+    return path.relative_to(folder).as_posix()
+
+
+def _groups(folder: Path) -> tuple[list[list[Path]], list[str]]:
+    """Return trial files, markers joined with the forces of the same name, and notes."""
+    if not folder.is_dir():
+        raise InputError(f"there is no folder {folder}", where="FOLDER")
+    trials: list[Path] = []
+    notes: list[str] = []
+    for place, below, files in os.walk(folder):
+        if REPORT_MARK in files and Path(place) != folder:
+            below.clear()
+            notes.append(f"{_label(Path(place), folder)}: holds a report, left aside")
+            continue
+        below[:] = sorted(name for name in below if not name.startswith("."))
+        for name in sorted(files):
+            path = Path(place) / name
+            ending = path.suffix.casefold()
+            if name.startswith(".") or ending == ".toml" or name == REPORT_MARK:
+                continue
+            if _NOT_TRIALS.match(path.stem) and ending not in (".c3d", ".trc"):
+                if not re.match("conditions|edits|truth|synthetic|session", name, re.IGNORECASE):
+                    notes.append(f"{_label(path, folder)}: notes by its name, not a trial")
+            elif ending in SUFFIXES:
+                trials.append(path)
+            else:
+                text = "not a measurement file by its ending, left aside"
+                notes.append(f"{_label(path, folder)}: {text}")
+    if not trials:
+        raise InputError(
+            f"the folder {folder} holds no trial file",
+            where="FOLDER",
+            allowed=", ".join(SUFFIXES),
+        )
+    markers = {_stem(path): path for path in trials if path.suffix.casefold() == ".trc"}
+    partners = {p for p in trials if p.suffix.casefold() in _FORCES and _stem(p) in markers}
+    return [
+        [path, *sorted(p for p in partners if markers[_stem(p)] == path)]
+        for path in trials
+        if path not in partners
+    ], notes
+
+
+def _stem(path: Path) -> Path:
+    """Path without ending; OpenCap keeps markers and motions of one trial in two folders."""
+    place = path.parent
+    if place.name == "MarkerData":
+        place = place.parent
+    elif place.name == "Kinematics" and place.parent.name == "OpenSimData":
+        place = place.parent.parent
+    return place / path.stem
+
+
+def _session(path: Path, folder: Path) -> dict[str, Any]:
+    """Return person and mass of an OpenCap session (sessionMetadata.yaml above the file)."""
+    for place in path.parents:
+        meta = place / "sessionMetadata.yaml"
+        if meta.is_file():
+            text = meta.read_text(encoding="utf-8", errors="replace")
+            pairs = dict(re.findall(r"^(\w+):[ \t]*['\"]?([^'\"\n#]+)", text, re.MULTILINE))
+            noted: dict[str, Any] = {"subject": str(pairs.get("subjectID", place.name)).strip()}
+            mass = pairs.get("mass_kg", "").strip()
+            if is_number(mass):
+                noted["mass"] = float(mass)
+            return noted
+        if place == folder:
+            break
+    return {}
+
+
+def _from_names(labels: Sequence[str], names: str) -> list[dict[str, Any]]:
+    if not names:
+        return _from_folders(labels)
+    try:
+        pattern = re.compile(names)
+    except re.error as error:
+        raise InputError(f"the pattern of names is wrong: {error}", where="names") from error
+    if not pattern.groupindex:
+        raise InputError(
+            "the pattern of names has no named group",
+            where="names",
+            allowed=r"for example S(?P<subject>\d+)_(?P<shoe>[a-z]+)_(?P<n>\d+)",
+        )
+    matches = [pattern.search(label.rsplit(".", 1)[0]) for label in labels]
+    without = [label for label, match in zip(labels, matches, strict=True) if match is None]
+    if without:
+        raise InputError(
+            f"{len(without)} of {len(labels)} names do not match the pattern {names}",
+            where="names",
+            allowed=f"names such as the first one that fails: {without[0]}",
+            remedy="Correct the pattern, rename the files, or note conditions in conditions.csv",
+        )
+    return [
+        {key.casefold(): value for key, value in match.groupdict().items() if value}
+        for match in matches
+        if match
+    ]
+
+
+def _from_folders(labels: Sequence[str]) -> list[dict[str, Any]]:
+    parents = [label.split("/")[:-1] for label in labels]
+    noted: list[dict[str, Any]] = [{} for _ in labels]
+    depth = min(map(len, parents))
+    for level in range(depth):
+        values = [p[level] for p in parents]
+        if len(set(values)) < 2 and not _PERSON_FOLDER.match(values[0]):
+            continue
+        person = all(_PERSON_FOLDER.match(value) for value in values)
+        name = "subject" if person else f"folder {level + 1}" if level else "folder"
+        for own, value in zip(noted, values, strict=True):
+            own.setdefault(name, value)
+    return noted
+
+
+def _tables(folder: Path, given: Path | None) -> list[tuple[Path, Path]]:
+    """Return tables of conditions with the folder that their file names start from."""
+    if given is not None:
+        return [(given, folder)]
+    tables = []
+    for place, below, files in os.walk(folder):
+        below[:] = sorted(name for name in below if not name.startswith("."))
+        tables += [(Path(place) / name, Path(place)) for name in NAMES if name in files][:1]
+    return tables
+
+
+def _add(own: dict[str, Any], found: Mapping[str, Any], label: str) -> None:
+    for key, value in found.items():
+        if own.get(key, value) != value:
+            raise InputError(
+                f'{key} is "{own[key]}" by one source and "{value}" by another',
+                where=label,
+                remedy="Correct the table of conditions, the names or the folders",
+            )
+        own[key] = value
+
+
+def _same_spelling(noted: Sequence[dict[str, Any]], merge: bool) -> None:
+    for key in dict.fromkeys(k for own in noted for k in own):
+        spellings: dict[str, Counter[str]] = {}
+        for own in noted:
+            if isinstance(own.get(key), str):
+                plain = re.sub(r"[\s_-]+", "", own[key]).casefold()
+                spellings.setdefault(plain, Counter())[own[key]] += 1
+        for counts in spellings.values():
+            if len(counts) < 2:
+                continue
+            written = ", ".join(f'"{text}" ({n} files)' for text, n in counts.most_common())
+            if not merge:
+                raise InputError(
+                    f"{key} is written {written}",
+                    where="conditions",
+                    remedy="Write it one way, or take the spellings as one with --merge-spelling",
+                )
+            usual = counts.most_common(1)[0][0]
+            for own in noted:
+                if own.get(key) in counts:
+                    own[key] = usual
+
+
+def person_condition(conditions: Iterable[Mapping[str, Any]], preferred: str = "") -> str:
+    """Return the name of the condition that says which person a file is of, or nothing."""
+    names = {name for noted in conditions for name in noted}
+    return next((n for n in (preferred, *PERSON) if n in names), "")
+
+
+def conditions_of(folder: Path, table: Path | None = None) -> dict[str, dict[str, Any]]:
     """Return the noted conditions by file name: numbers in SI where a unit is written, else text.
 
     The first line holds the headings, with units in brackets: ``file, shoe, viscosity (cP)``. A
@@ -25,19 +305,19 @@ def conditions_of(folder: Path, given: Path | None = None) -> dict[str, dict[str
     Parameters
     ----------
     folder
-        Searched for ``conditions.csv`` or ``conditions.xlsx`` when ``given`` is None.
+        Searched for ``conditions.csv`` or ``conditions.xlsx`` when ``table`` is None.
 
-    Errors
+    Raises
     ------
     InputError
         The table has no column "file", names a file twice, or can't be read.
     """
-    path = given
+    path = table
     if path is None:
         path = next((folder / name for name in NAMES if (folder / name).is_file()), None)
     if path is None:
         return {}
-    rows = [row for row in _rows(path) if any(cell for cell in row)]
+    rows = [row for row in table_rows(path) if any(cell for cell in row)]
     heads = [name_and_unit(cell) for cell in rows[0]] if rows else []
     names = [name.casefold() for name, _ in heads]
     if "file" not in names:
@@ -45,71 +325,40 @@ def conditions_of(folder: Path, given: Path | None = None) -> dict[str, dict[str
             'the table of conditions has no column "file"',
             where=path.name,
             allowed=", ".join(names) or "headings in the first line",
+            nearest=nearest_match("file", names),
         )
     columns = {
         name: _column([row[i] if i < len(row) else "" for row in rows[1:]], unit, path.name, name)
         for i, (name, (_, unit)) in enumerate(zip(names, heads, strict=True))
         if name and name != "file"
     }
-    found: dict[str, dict[str, Any]] = {}
+    # A person called 1, 2, 3 is a name, not a number.
+    for name in set(columns) & set(PERSON):
+        columns[name] = [row[names.index(name)] if names.index(name) < len(row) else ""
+                         for row in rows[1:]]  # fmt: skip
+    noted: dict[str, dict[str, Any]] = {}
     at = names.index("file")
     for number, row in enumerate(rows[1:]):
         file = row[at] if at < len(row) else ""
         if not file:
             continue
-        if file in found:
+        if file in noted:
             raise InputError(f'"{file}" is named twice', where=path.name)
-        found[file] = {n: c[number] for n, c in columns.items() if c[number] not in ("", None)}
-    return found
+        noted[file] = {n: c[number] for n, c in columns.items() if c[number] not in ("", None)}
+    return noted
 
 
-EVENTS = ("heel contact", "toe off")
-
-
-def edits_of(folder: Path) -> dict[str, list[tuple[str, float, str]]]:
-    """Return the events to be set by hand, by file: (event, time in s, why).
-
-    Read from ``edits.csv`` (or ``.xlsx``) with the columns file, event, time (s), why. Every edit
-    needs its reason: it goes to the edit log of the report.
-
-    Errors
-    ------
-    InputError
-        A column missing, an unknown event, a time that is no number, or no reason.
-    """
-    path = next((folder / n for n in ("edits.csv", "edits.xlsx") if (folder / n).is_file()), None)
-    if path is None:
-        return {}
-    rows = [row for row in _rows(path) if any(row)]
-    heads = [name_and_unit(cell) for cell in rows[0]] if rows else []
-    names = [name.casefold() for name, _ in heads]
-    for needed in ("file", "event", "time", "why"):
-        if needed not in names:
-            raise InputError(f'the edits have no column "{needed}"', where=path.name)
-    at = {name: names.index(name) for name in ("file", "event", "time", "why")}
-    factor, _ = _to_si(heads[at["time"]][1], f"{path.name}, column time")
-    found: dict[str, list[tuple[str, float, str]]] = {}
-    for number, row in enumerate(rows[1:], start=2):
-        cells = {name: row[i] if i < len(row) else "" for name, i in at.items()}
-        where = f"{path.name}, line {number}"
-        event, time = cells["event"].casefold(), cells["time"].replace(",", ".")
-        if event not in EVENTS:
-            raise unknown_name("event", cells["event"], EVENTS, where=where)
-        if not is_number(time):
-            raise InputError(f'the time "{cells["time"]}" is no number', where=where)
-        if not cells["why"]:
-            raise InputError("an event set by hand needs its reason", where=where)
-        found.setdefault(cells["file"], []).append((event, float(time) * factor, cells["why"]))
-    return found
-
-
-def _rows(path: Path) -> list[list[str]]:
+def table_rows(path: Path) -> list[list[str]]:
+    """Return the cells of a CSV or XLSX table, row by row; errors as `InputError`."""
     try:
         data = path.read_bytes()
     except OSError as error:
         raise InputError(f"can't be read: {error.strerror or error}", where=str(path)) from error
-    if data[:4] == b"PK\x03\x04":
-        return _xlsx_rows(data, path.name)
+    if is_workbook(data):
+        try:
+            return workbook_rows(data, path.name)
+        except DataError as error:
+            raise InputError(error.what, where=path.name) from error
     try:
         text = decoded(data, path.name)
     except DataError as error:
@@ -118,21 +367,6 @@ def _rows(path: Path) -> list[list[str]]:
     delimiter = max(",;\t", key=first.count)
     lines = csv.reader(io.StringIO(text), delimiter=delimiter)
     return [[cell.strip() for cell in row] for row in lines]
-
-
-def _xlsx_rows(data: bytes, where: str) -> list[list[str]]:
-    try:
-        import openpyxl
-    except ImportError as error:
-        raise MissingExtraError("openpyxl", "trials", "reading a spreadsheet") from error
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            book = openpyxl.load_workbook(io.BytesIO(data), read_only=True, data_only=True)
-            rows = list(book.worksheets[0].iter_rows(values_only=True))
-    except Exception as error:
-        raise InputError(f"is no spreadsheet ({error})", where=where) from error
-    return [["" if cell is None else str(cell).strip() for cell in row] for row in rows]
 
 
 def _column(cells: list[str], unit: str, where: str, name: str) -> list[Any]:

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
 
 from ..measurement import Measurement
 from ..protocols import Protocol
+from ..trial import Trial
 
 ACCEPTED, CAUTION, REFUSED = "accepted", "caution", "refused"
 _POINTS = 400
+MEAN_OF_STEPS = "mean of the steps"  # the item that stands for all steps of a file
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +41,10 @@ class FileResult:
     conditions
         What the laboratory noted about the file.
     edits
-        Events set by hand: what, before, after, why.
+        The edit log: step, what, before, after, rcof before and after, why.
+    steps
+        One entry per contact with a plate: number, plate, side, contact, toe off, RCOF or the
+        reason of its rejection, verdict, flags, and the gait around it.
     """
 
     file: str
@@ -51,7 +56,8 @@ class FileResult:
     facts: Mapping[str, float] = field(default_factory=dict)
     curves: Mapping[str, Any] = field(default_factory=dict)
     conditions: Mapping[str, Any] = field(default_factory=dict)
-    edits: tuple[Mapping[str, str], ...] = ()
+    edits: tuple[Mapping[str, Any], ...] = ()
+    steps: tuple[Mapping[str, Any], ...] = ()
 
     @property
     def usable(self) -> bool:
@@ -60,7 +66,7 @@ class FileResult:
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
-        return asdict(self)
+        return {one.name: getattr(self, one.name) for one in fields(self)}
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> FileResult:
@@ -69,6 +75,7 @@ class FileResult:
         plain["reasons"] = tuple(plain["reasons"])
         plain["measurements"] = tuple(plain["measurements"])
         plain["edits"] = tuple(plain["edits"])
+        plain["steps"] = tuple(plain["steps"])
         return cls(**plain)
 
 
@@ -85,7 +92,8 @@ class Draft:
         self.curves: dict[str, Any] = {}
         self.cautions: list[str] = []
         self.refusals: list[str] = []
-        self.edits: list[dict[str, str]] = []
+        self.edits: list[dict[str, Any]] = []
+        self.steps: list[dict[str, Any]] = []
 
     def add(self, item: str, measurement: Measurement, *, main: str = "") -> None:
         """Keep a number; ``main`` names it as the file's own number of that kind."""
@@ -115,8 +123,9 @@ class Draft:
             if broken:
                 (self.refusals if rule.severity == "refuse" else self.cautions).append(broken)
         for entry in self.measurements:
-            if entry["name"] in protocol_flags(protocol):
-                self.cautions += [f"{entry['item']}: {flag}" for flag in entry["flags"]]
+            self.cautions += [
+                f"{entry['item']}: {flag['words']}" for flag in entry["flags"] if flag["matters"]
+            ]
         verdict = REFUSED if self.refusals else CAUTION if self.cautions else ACCEPTED
         return FileResult(
             self.file,
@@ -129,19 +138,17 @@ class Draft:
             self.curves,
             self.conditions,
             tuple(self.edits),
+            tuple(self.steps),
         )
 
 
-def protocol_flags(protocol: Protocol) -> tuple[str, ...]:
-    """Return the measurements whose flags make a file a caution."""
-    return {
-        "human_slip": ("peak slipping speed",),
-        "gait": (),
-        "pin_on_disk": ("cof",),
-        "boundary": ("cof",),
-        "slip_tester": ("cof",),
-        "relaxation": ("final force",),
-    }[protocol.kind]
+def rates(trial: Trial, draft: Draft) -> None:
+    """Note the sampling rates of forces and markers, which rules are about."""
+    found = [plate.rate for plate in trial.plates if plate.usable]
+    if found:
+        draft.facts["force_rate"] = float(min(found))
+    if trial.markers:
+        draft.facts["marker_rate"] = float(next(iter(trial.markers.values())).rate)
 
 
 def _rounded(value: float) -> float | None:

@@ -6,37 +6,29 @@ import json
 import os
 import tempfile
 from collections.abc import Mapping
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from underfoot.core import InputError, Progress, UnderfootError, content_hash, silent
+from underfoot.core import Progress, UnderfootError, content_hash, silent
+from underfoot.core.pool import available_processors, in_processes
 from underfoot.core.provenance import version
 
+from ..edits import EditError
 from ..protocols import Protocol
-from ..readers import SUFFIXES, Profile, read_profile, read_trials
-from ..trial import Event, Trial, file_checksum, joined
-from .conditions import conditions_of, edits_of
+from ..readers import Profile, read_profile, read_trials, with_channels
+from ..trial import Edit, Trial, file_checksum, joined
+from .conditions import person_condition, study_folder
+from .edit_table import edits_of
 from .file_result import REFUSED, Draft, FileResult
-from .kinds import analysed_trial
+from .kinds import STEP_KINDS, analysed_trial
+from .long_tables import curve_table, step_tables
 from .methods import methods_paragraphs
+from .readings import reading_results
+from .steps import check_ramp
 from .study import Study, study_of
 from .tables import Table, edit_table, file_table, measurement_table
 
-NOT_TRIALS = (
-    "conditions.csv",
-    "conditions.xlsx",
-    "edits.csv",
-    "edits.xlsx",
-    "truth.csv",
-    "synthetic.txt",
-    "readme.txt",
-    "license.txt",
-    "licence.txt",
-)
-_FORCES = (".forces", ".mot", ".sto")
 _STEP = "#"
 
 
@@ -55,13 +47,20 @@ class FolderAnalysis:
     notes: tuple[str, ...]
 
     @property
+    def person(self) -> str:
+        """Name of the condition that says whom a file is of, or nothing."""
+        return person_condition((f.conditions for f in self.files), self.protocol.text("subject"))
+
+    @property
     def tables(self) -> tuple[Table, ...]:
-        """All tables: files, study, tests, measurements."""
+        """All tables: files, study, tests, edits, steps, curves over stance, measurements."""
         tests = (finding.table for finding in self.study.findings)
         edits = edit_table(self.files)
         log = () if edits is None else (edits,)
         files = file_table(self.files)
-        return (files, *self.study.tables, *tests, *log, measurement_table(self.files))
+        curves = curve_table(self.files)
+        steps = (*step_tables(self.files), *(() if curves is None else (curves,)))
+        return (files, *self.study.tables, *tests, *log, *steps, measurement_table(self.files))
 
 
 def analyse_folder(
@@ -70,11 +69,13 @@ def analyse_folder(
     *,
     profile: Path | None = None,
     conditions: Path | None = None,
+    names: str = "",
+    merge_spelling: bool = False,
     store: Path | None = None,
     processes: int | None = None,
     progress: Progress = silent,
 ) -> FolderAnalysis:
-    """Return the analysis of every trial file in a folder (not in folders below it).
+    """Return the analysis of every trial file in a folder and in the folders below it.
 
     A file that can't be read or analysed is refused with its reason and the rest goes on. The
     same files, protocol, profile and conditions give the same result, whatever the number of
@@ -86,6 +87,8 @@ def analyse_folder(
         What columns, axes and markers are called; by default ``profile.toml`` in the folder.
     conditions
         What was noted about the files; by default ``conditions.csv`` or ``.xlsx`` in the folder.
+    names, merge_spelling
+        Pattern of file names and what spellings count as one; see ``study_folder``.
     store
         Folder that keeps the result of each file: an interrupted run goes on where it stopped.
     processes
@@ -94,146 +97,144 @@ def analyse_folder(
     Errors
     ------
     InputError
-        No such folder, no trial file in it, a wrong profile or table of conditions.
+        No such folder, no trial file in it, a wrong profile, ramp or table of conditions.
+    EditError
+        An edit by hand that names no step, changes nothing or contradicts another.
     """
     folder = Path(folder)
-    groups, aside = _trial_files(folder)
+    check_ramp(protocol)
+    study_files = study_folder(
+        folder,
+        conditions=conditions,
+        names=names or protocol.text("names"),
+        merge_spelling=merge_spelling,
+    )
     profile_path = profile or (
         folder / "profile.toml" if (folder / "profile.toml").is_file() else None
     )
-    read = read_profile(profile_path) if profile_path else Profile()
-    noted = conditions_of(folder, conditions)
-    edits = edits_of(folder)
-    names = {path.name for group in groups for path in group}
-    notes = [f"{name}: noted in the conditions, but there is no such file" for name in noted
-             if name not in names]  # fmt: skip
-    notes += aside
+    read = with_channels(
+        read_profile(profile_path) if profile_path else Profile(),
+        protocol.text("friction"),
+        protocol.text("normal"),
+        where=f"protocol {protocol.name}",
+    )
+    edits = edits_of(folder, [recording.name for recording in study_files.recordings])
     base = content_hash(protocol.key, _profile_key(profile_path), version(), _code_version())
-    jobs = []
-    for group in groups:
-        own = next((noted[path.name] for path in group if path.name in noted), {})
-        by_hand = [edit for path in group for edit in edits.get(path.name, [])]
-        place = None if store is None else str(store)
-        jobs.append((tuple(map(str, group)), own, by_hand, read, protocol, base, place))
-    results = _run(jobs, processes or os.cpu_count() or 1, progress)
+    place = None if store is None else str(store)
+    jobs = [
+        (
+            recording.name,
+            tuple(map(str, recording.paths)),
+            dict(recording.conditions),
+            edits.get(recording.name, []),
+            read,
+            protocol,
+            base,
+            place,
+        )
+        for recording in study_files.recordings
+    ]
+    results = _run(jobs, processes or available_processors(), progress)
     files = tuple(sorted((one for part in results for one in part), key=lambda one: one.file))
     study = study_of(files, protocol)
     methods = tuple(methods_paragraphs(files, protocol, study, version()))
-    return FolderAnalysis(protocol, files, study, methods, tuple(notes))
+    return FolderAnalysis(protocol, files, study, methods, study_files.notes)
 
 
 def _run(jobs: list[tuple[Any, ...]], processes: int, progress: Progress) -> list[list[FileResult]]:
-    done: list[list[FileResult]] = []
-    processes = min(processes, len(jobs))
-    if processes <= 1 or len(jobs) < 4:
-        for job in jobs:
-            done.append(_job(job))
-            progress("analysing files", len(done) / len(jobs))
-        return done
-    size = max(1, min(16, len(jobs) // (4 * processes)))
-    try:
-        with _pool(processes) as pool:
-            try:
-                for result in pool.map(_job, jobs, chunksize=size):
-                    done.append(result)
-                    progress("analysing files", len(done) / len(jobs))
-            except BaseException:
-                pool.shutdown(cancel_futures=True)
-                raise
-    except BrokenProcessPool:
-        return _one_by_one(jobs, done, progress)
-    return done
+    count = processes if len(jobs) >= 4 else 1  # a process takes longer to start than a file
+    stage = "analysing files"
+    answers = in_processes(_job, jobs, count, progress=progress, stage=stage, died=_died)
+    return [results for _, results in answers]
 
 
-def _one_by_one(
-    jobs: list[tuple[Any, ...]], done: list[list[FileResult]], progress: Progress
-) -> list[list[FileResult]]:
-    """Go on after a process died: find the file that kills it, and refuse that one alone."""
-    if not _processes_work():
-        # A script without its "if __name__" guard can't start processes: do the work here.
-        for job in jobs[len(done) :]:
-            done.append(_job(job))
-            progress("analysing files", len(done) / len(jobs))
-        return done
-    pool = _pool(1)
-    try:
-        for job in jobs[len(done) :]:
-            try:
-                done.append(pool.submit(_job, job).result())
-            except BrokenProcessPool:
-                pool = _pool(1)
-                name = Path(job[0][0]).name
-                reason = "the process that analysed it ended without an answer"
-                done.append([FileResult(name, "", REFUSED, (reason,))])
-            progress("analysing files", len(done) / len(jobs))
-    finally:
-        pool.shutdown(cancel_futures=True)
-    return done
-
-
-def _pool(processes: int) -> ProcessPoolExecutor:
-    import multiprocessing
-
-    # Fresh processes: a forked one can inherit locks of numerical libraries' threads.
-    context = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(processes, mp_context=context, initializer=_quiet)
-
-
-def _processes_work() -> bool:
-    try:
-        with _pool(1) as pool:
-            return pool.submit(os.getpid).result() > 0
-    except BrokenProcessPool:
-        return False
-
-
-def _quiet() -> None:
-    """One thread each: the processes share the processors already."""
-    from threadpoolctl import threadpool_limits
-
-    threadpool_limits(1)
+def _died(job: tuple[Any, ...]) -> list[FileResult]:
+    reason = "the process that analysed it ended without an answer"
+    return [FileResult(job[0], "", REFUSED, (reason,))]
 
 
 def _job(job: tuple[Any, ...]) -> list[FileResult]:
-    paths, noted, edits, profile, protocol, base, store = job
+    name, paths, noted, edits, profile, protocol, base, store = job
     files = [Path(path) for path in paths]
-    name = files[0].name
     try:
         checksums = [file_checksum(path) for path in files]
     except OSError as error:
         reason = f"can't be read: {error.strerror or error}"
         return [FileResult(name, "", REFUSED, (reason,), conditions=noted)]
-    key = content_hash(base, checksums, [path.name for path in files], noted, edits)
+    key = content_hash(
+        base, checksums, name, [p.name for p in files], noted, list(map(repr, edits))
+    )
     kept = _load(store, key)
     if kept is not None:
         return kept
-    results = _analysed(files, checksums[0], noted, edits, profile, protocol)
+    results = _analysed(name, files, checksums[0], noted, edits, profile, protocol)
     _keep(store, key, results)
     return results
 
 
 def _analysed(
+    name: str,
     files: list[Path],
     checksum: str,
     noted: Mapping[str, Any],
-    edits: list[tuple[str, float, str]],
+    edits: list[Edit],
     profile: Profile,
     protocol: Protocol,
 ) -> list[FileResult]:
-    name = files[0].name
-    try:
-        trials = list(read_trials(files[0], profile))
-        for other in files[1:]:
-            trials = [joined(trials[0], read_trials(other, profile)[0])]
-    except UnderfootError as error:
-        return [FileResult(name, checksum, REFUSED, (str(error),), conditions=noted)]
+    if protocol.kind == "readings":
+        try:
+            return reading_results(name, files[0], checksum, noted, protocol)
+        except UnderfootError as error:
+            return [FileResult(name, checksum, REFUSED, (str(error),), conditions=noted)]
+    notes: list[str] = []
+    trials: list[Trial] = []
+    refusals: list[str] = []
+    for file in files:
+        try:
+            read = read_trials(file, profile)
+        except UnderfootError as error:
+            refusals.append(str(error))
+            continue
+        if not trials:
+            trials = list(read)
+        elif len(trials) == len(read) == 1:
+            trials = [joined(trials[0], read[0])]
+        else:
+            notes.append(f"{file.name} holds {len(read)} trials: not joined")
+    if not trials:
+        return [FileResult(name, checksum, REFUSED, tuple(refusals), conditions=noted)]
+    notes += [f"left out: {reason}" for reason in refusals]
+    if protocol.kind not in STEP_KINDS:
+        _check_whole_edits(edits, len(trials), protocol)
     results = []
+    mass = noted.get("mass")
     for number, trial in enumerate(trials, start=1):
-        for event, time, why in edits:
-            trial = trial.with_event(Event(event, time), why=why)
+        if isinstance(mass, float):
+            trial = replace(trial, settings={**trial.settings, "body mass (kg)": f"{mass:g}"})
+        if protocol.kind in STEP_KINDS:
+            trial = trial.with_edits(*edits)
+        else:
+            trial = trial.with_edits(*(edit for edit in edits if edit.step == number))
         label = name if len(trials) == 1 else f"{name} {_STEP}{number}"
-        results.append(_one(trial, label, checksum, noted, profile, protocol))
+        results.append(_one(trial, label, checksum, noted, profile, protocol, notes))
     return results
+
+
+def _check_whole_edits(edits: list[Edit], trials: int, protocol: Protocol) -> None:
+    """Where a file holds runs and no steps, an edit can only exclude a run by its number."""
+    for i, edit in enumerate(edits):
+        if edit.what != "exclude":
+            raise EditError(
+                f"the protocol {protocol.name} has no steps: {edit.what} changes nothing",
+                where=edit.where,
+                allowed="exclude",
+            )
+        if edit.step not in range(1, trials + 1):
+            raise EditError(
+                f"there is no {edit.step_words}", where=edit.where, allowed=f"1 to {trials}"
+            )
+        if any(edit.step == other.step for other in edits[:i]):
+            raise EditError(f"{edit.step_words} is excluded twice", where=edit.where)
 
 
 def _one(
@@ -243,52 +244,27 @@ def _one(
     noted: Mapping[str, Any],
     profile: Profile,
     protocol: Protocol,
+    notes: list[str],
 ) -> FileResult:
     draft = Draft(label, noted)
     draft.checksum = checksum
+    draft.cautions += notes
     try:
         analysed_trial(trial, draft, protocol, profile)
+    except EditError as error:
+        raise EditError(
+            f"{label}: {error.what}",
+            where=error.where,
+            allowed=error.allowed,
+            nearest=error.nearest,
+            remedy=error.remedy,
+        ) from error
     except UnderfootError as error:
-        draft.refusals.append(_plain(error))
+        draft.refusals.append(str(error))
     except Exception as error:
         # One odd file must not end the work on hundreds of others; the cause is kept.
         draft.refusals.append(f"the analysis failed ({type(error).__name__}: {error})")
     return draft.finished(protocol)
-
-
-def _trial_files(folder: Path) -> tuple[list[list[Path]], list[str]]:
-    """Return trial files, markers joined with the forces of the same name, and files set aside."""
-    if not folder.is_dir():
-        raise InputError(f"there is no folder {folder}", where="FOLDER")
-    aside, found = [], []
-    for path in sorted(folder.iterdir()):
-        if not path.is_file() or path.name.startswith("."):
-            continue
-        if path.name.casefold() in NOT_TRIALS or path.suffix.casefold() == ".toml":
-            continue
-        if path.suffix.casefold() in SUFFIXES:
-            found.append(path)
-        else:
-            aside.append(f"{path.name}: not a measurement file by its ending, left aside")
-    if not found:
-        raise InputError(
-            f"the folder {folder} holds no trial file",
-            where="FOLDER",
-            allowed=", ".join(SUFFIXES),
-        )
-    markers = {path.stem: path for path in found if path.suffix.casefold() == ".trc"}
-    partners = {p for p in found if p.suffix.casefold() in _FORCES and p.stem in markers}
-    groups = []
-    for path in found:
-        if path in partners:
-            continue
-        same = [p for p in sorted(partners) if path == markers.get(p.stem)]
-        groups.append([path, *same])
-    return groups, aside
-
-
-def _plain(error: UnderfootError) -> str:
-    return str(error)
 
 
 def _profile_key(path: Path | None) -> str:
@@ -297,7 +273,7 @@ def _profile_key(path: Path | None) -> str:
 
 def _code_version() -> str:
     """Raise this when the numbers of a file change, so that stored results are made again."""
-    return "1"
+    return "2"
 
 
 def _load(store: str | None, key: str) -> list[FileResult] | None:
@@ -316,5 +292,5 @@ def _keep(store: str | None, key: str, results: list[FileResult]) -> None:
     Path(store).mkdir(parents=True, exist_ok=True)
     handle, part = tempfile.mkstemp(dir=store, suffix=".part")
     with os.fdopen(handle, "w", encoding="utf-8") as stream:
-        json.dump([one.as_dict() for one in results], stream)
+        stream.write(json.dumps([one.as_dict() for one in results]))  # faster than json.dump
     os.replace(part, Path(store) / f"{key}.json")

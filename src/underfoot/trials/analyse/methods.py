@@ -1,13 +1,21 @@
-"""The methods paragraph, written from what was done."""
+"""The methods paragraphs, written from what was done to each file and plate."""
 
 from __future__ import annotations
 
+import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from ..protocols import KINDS, Protocol
+from ..stance import CONTACT_FORCE
 from .file_result import CAUTION, REFUSED, FileResult
+from .steps import protocol_ramp
 from .study import Study
+
+_PLUS_MINUS = (
+    "On screen ± is the standard uncertainty of a number (of a mean: its standard error). Tables "
+    "name SD (standard deviation) and SE (standard error), and intervals by their level."
+)
 
 
 def methods_paragraphs(
@@ -22,24 +30,76 @@ def methods_paragraphs(
         f"{n - counts[REFUSED]} gave usable numbers, {counts[CAUTION]} of them with cautions; "
         f"{counts[REFUSED]} {'was' if counts[REFUSED] == 1 else 'were'} refused."
     )
-    paragraphs = [first]
+    paragraphs = [first, *_selection(files)]
     conventions = _conventions(files)
     conventions += [_DONE[table.name] for table in study.tables if table.name in _DONE]
     if conventions:
         paragraphs.append(" ".join(conventions))
+    if protocol.kind in ("gait", "human_slip"):
+        paragraphs.append(_surface(files, protocol))
     if protocol.rules:
-        words = "; ".join(rule.words() for rule in protocol.rules)
-        paragraphs.append(f"Rules checked on every trial: {words}.")
+        rules = "; ".join(rule.words() for rule in protocol.rules)
+        paragraphs.append(f"Rules checked on every trial: {rules}.")
     if study.findings:
         titles = "; ".join(dict.fromkeys(finding.title for finding in study.findings))
         paragraphs.append(
             f"Statistics: {titles}. Alpha is 0.05; intervals cover 95 %. Factors were coded to "
             "sum to zero."
         )
+    paragraphs.append(_PLUS_MINUS)
     assumed = protocol.assumptions()
     if assumed:
         paragraphs.append("Set here and not by the source: " + "; ".join(assumed) + ".")
     return paragraphs
+
+
+def _surface(files: Sequence[FileResult], protocol: Protocol) -> str:
+    """Return the surface walked on: level, a ramp with its resolution of forces, a treadmill."""
+    ramp = protocol_ramp(protocol)
+    named = protocol.text("surface")
+    text = f"Surface: {named}, {ramp.words}." if named else f"Surface: {ramp.words}."
+    if ramp.angle:
+        text += " Normal force and shear are those normal and tangential to the walking surface" + (
+            ", resolved from the plates' horizontal and vertical forces by the angle of the ramp."
+            if ramp.plate_frame == "horizontal"
+            else "; body weight in standing is their normal force over the cosine of the angle."
+        )
+    steps = [
+        m for one in files for m in one.measurements if m["name"] == "rcof" and m["conventions"]
+    ]
+    belts = sum(m["conventions"].get("surface", "").startswith("treadmill") for m in steps)
+    if belts:
+        text += (
+            f" {belts} contacts were on a treadmill, recognised by the centre of pressure that the "
+            "belt carries backward; its forces are those of steady walking only while the belt "
+            "keeps its speed."
+        )
+    return text
+
+
+def _selection(files: Sequence[FileResult]) -> list[str]:
+    """Return how contacts were found and which were rejected for what, with counts."""
+    steps = [step for one in files for step in one.steps]
+    if not steps:
+        return []
+    counts = Counter(str(step["verdict"]) for step in steps)
+    reasons = Counter(
+        re.sub(r"\d[\d.]*", "…", str(step["reason"]).split(";")[0].split(":")[0])
+        for step in steps
+        if step["verdict"] == "rejected" and step["reason"]
+    )
+    used = counts["accepted"] + counts["caution"]
+    text = (
+        f"A contact is a stance with more than {CONTACT_FORCE:g} N of normal force. Of "
+        f"{len(steps)} contacts {used} were used ({counts['caution']} with a caution)"
+    )
+    if reasons:
+        listed = "; ".join(f"{reason} ({n})" for reason, n in reasons.most_common())
+        text += f" and {len(steps) - used} rejected: {listed}"
+    by_hand = sum(bool(step.get("by_hand")) for step in steps)
+    if by_hand:
+        text += f". {by_hand} were changed by hand, see the log of edits"
+    return [text + "."]
 
 
 _TOLD = {
@@ -82,24 +142,6 @@ _SENTENCES = {
 }
 
 
-def _general(key: str, value: str) -> str:
-    """Leave the numbers of a single file out of a convention."""
-    if key == "baseline" and "unloaded samples" in value:
-        return "mean force of the unloaded plate subtracted"
-    return value
-
-
-def _sentence(name: str, said: dict[str, str]) -> str:
-    """Return a sentence for a paper, or nothing when a convention it needs was not recorded."""
-    for key, sentence in _SENTENCES.items():
-        if key == name or key.startswith(f"{name} "):
-            try:
-                return sentence.format_map(said)
-            except KeyError:
-                continue
-    return ""
-
-
 _DONE = {
     "stribeck": (
         "COF against speed was fitted with COF = asymptote + (COF_BL - asymptote) exp(-v / tau) by "
@@ -119,31 +161,92 @@ _DONE = {
 }
 
 
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+# What differs from file to file without being a choice: it stands with each number.
+_PRIVATE = ("search ends", "sign", "uncertainty")
+
+
 def _conventions(files: Sequence[FileResult]) -> list[str]:
-    """Return one sentence for each quantity: the conventions that all or most files share."""
-    seen: dict[str, Counter[tuple[tuple[str, str], ...]]] = {}
-    # Per-file values (baselines, events) are in the table of measurements, not in the methods.
-    private = {"walking direction", "search ends", "sign", "uncertainty"}
+    """Return one sentence for each quantity; where files or plates differ, each way with counts."""
+    numbers: dict[str, list[tuple[str, Mapping[str, str]]]] = {}
     for one in files:
         for m in one.measurements:
-            shared = tuple(
-                (key, _general(key, value))
-                for key, value in m["conventions"].items()
-                if key not in private
-            )
-            average = m["item"] == "mean of the steps"
-            if shared and m["value"] is not None and m["name"] in _TOLD and not average:
-                seen.setdefault(m["name"], Counter())[shared] += 1
-    sentences, told = [], set()
-    for name, kinds in seen.items():
-        most, count = kinds.most_common(1)[0]
-        if most in told or (name == "pressure duration" and "peak pressure" in seen):
+            if (
+                m["value"] is not None
+                and m["name"] in _TOLD
+                and m["conventions"]
+                and m["item"] != "mean of the steps"
+            ):
+                place = f"{one.file}, {m['item']}"
+                numbers.setdefault(m["name"], []).append((place, m["conventions"]))
+    sentences: list[str] = []
+    for name, made in numbers.items():
+        if (name == "pressure duration" and "peak pressure" in numbers) or (
+            name == "peak force" and "final force" in numbers
+        ):
             continue
-        if name == "peak force" and "final force" in seen:
-            continue
-        told.add(most)
-        words = "; ".join(f"{key}: {value}" for key, value in most)
-        sentence = _sentence(name, dict(most)) or f"{_TOLD[name]}: {words}."
-        rest = sum(kinds.values()) - count
-        sentences.append(sentence + (f" {rest} numbers of it were made otherwise." if rest else ""))
+        keys = list(dict.fromkeys(k for _, c in made for k in c if k not in _PRIVATE))
+        choices = {key: _choices(key, made) for key in keys}
+        sentence = _sentence(name, choices)
+        if not sentence:
+            listed = "; ".join(f"{key}: {value}" for key, value in choices.items())
+            sentence = f"{_TOLD[name]}: {listed}."
+        elif "walking direction" in choices:
+            sentence += f" Walking direction: {choices['walking direction']}."
+        if sentence not in sentences:
+            sentences.append(sentence)
     return sentences
+
+
+def _choices(key: str, made: Sequence[tuple[str, Mapping[str, str]]]) -> str:
+    """Return the value that all numbers share, or every value with its numbers."""
+    places: dict[str, list[str]] = {}
+    for place, conventions in made:
+        places.setdefault(_general(key, conventions.get(key, "not recorded")), []).append(place)
+    # Values that differ in their numbers alone are one choice, with the range of each number.
+    alike: dict[str, list[str]] = {}
+    for value in places:
+        alike.setdefault(_NUMBER.sub("…", value), []).append(value)
+    if len(alike) == 1:
+        return _with_ranges(next(iter(alike.values())))
+    places = {
+        _with_ranges(values): [place for value in values for place in places[value]]
+        for values in alike.values()
+    }
+    parts = []
+    for value, where in sorted(places.items(), key=lambda item: -len(item[1])):
+        files = sorted({place.rsplit(", ", 1)[0] for place in where})
+        named = ": " + ", ".join(files) if len(files) <= 3 else f" in {len(files)} files"
+        parts.append(f"{value} ({len(where)} of {len(made)}{named})")
+    return "; ".join(parts)
+
+
+def _with_ranges(values: Sequence[str]) -> str:
+    """Return one text of several that differ in numbers: "3 ms" and "9 ms" give "3 to 9 ms"."""
+    columns = list(zip(*(_NUMBER.findall(value) for value in values), strict=True))
+    ranges = []
+    for column in columns:
+        low, high = min(column, key=float), max(column, key=float)
+        ranges.append(low if low == high else f"{low} to {high}")
+    pieces = _NUMBER.split(values[0])
+    return "".join(a + b for a, b in zip(pieces, [*ranges, ""], strict=True))
+
+
+def _general(key: str, value: str) -> str:
+    """Leave the numbers of a single file out of a convention."""
+    if key == "baseline" and "unloaded samples" in value:
+        return "mean force of the unloaded plate subtracted"
+    if key in ("baseline", "walking direction"):
+        return re.sub(r"\s*\([^)]*\)", "", value)
+    return value
+
+
+def _sentence(name: str, choices: Mapping[str, str]) -> str:
+    """Return a sentence for a paper, or nothing when a convention it needs was not recorded."""
+    for key, sentence in _SENTENCES.items():
+        if key == name or key.startswith(f"{name} "):
+            try:
+                return sentence.format_map(choices)
+            except KeyError:
+                continue
+    return ""

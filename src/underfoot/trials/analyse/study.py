@@ -11,14 +11,27 @@ import numpy as np
 from underfoot.core import UnderfootError
 
 from ..boundary import alpha_beta, friction_split
-from ..master_curve import master_curve
+from ..floor_classes import class_scheme, cof_of_pendulum
+from ..pressure_map import PressureScan, pressure_map
 from ..protocols import Protocol
-from ..slip_tester import PressureScan, pressure_map
+from ..statistics import precision
 from ..stribeck_fit import METHODS as FIT_METHODS
 from ..stribeck_fit import StribeckFit, stribeck_fit
+from ..viscosity_speed_curve import master_curve
+from .conditions import NUMBERS, person_condition
 from .file_result import FileResult
-from .study_tests import Finding, anova_finding, slip_findings
-from .tables import Table, group_table, scaled
+from .study_tests import Finding, comparison_findings, persons_of, slip_findings
+from .tables import (
+    Table,
+    condition_table,
+    counted_steps,
+    decimals_of,
+    mean_and_interval,
+    number_columns,
+    quantity_name,
+    scaled,
+    steps_table,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,17 +57,15 @@ def study_of(files: Sequence[FileResult], protocol: Protocol) -> Study:
         "human_slip": _human_slip,
         "gait": _gait,
         "relaxation": _relaxation,
+        "readings": _readings,
     }
     if not usable:
         return Study(notes=("no usable file",))
     try:
         return makers[protocol.kind](usable, protocol)
-    except Exception as error:
+    except UnderfootError as error:
         # The numbers of the files are worth having even when they don't fit together.
-        reason = (
-            error.what if isinstance(error, UnderfootError) else f"{type(error).__name__}: {error}"
-        )
-        return Study(notes=(f"nothing could be said over all files: {reason}",))
+        return Study(notes=(f"no result over all files: {error.what}",))
 
 
 def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
@@ -118,7 +129,8 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
         shown[name] = kept
         if len({g for g, _ in kept}) > 1:
             factor = protocol.text("compare", keys[0] if keys else "group")
-            made = anova_finding(name, [v for _, v in kept], {factor: [g for g, _ in kept]})
+            groups_of = {factor: [g for g, _ in kept]}
+            made = comparison_findings(name, [v for _, v in kept], groups_of)
             lost = len(values) - len(kept)
             if lost and made:
                 text = f"{lost} of {len(values)} series left out: not identified, or no good fit"
@@ -187,7 +199,7 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
             ("adhesion", split.adhesion),
             *((f"adhesion with {k}", m) for k, m in split.lubricated_adhesion.items()),
         ):
-            rows.append((*pair, name, m.value, m.uncertainty, m.n, "; ".join(m.flags)))
+            rows.append((*pair, name, m.value, m.uncertainty, m.n, "; ".join(map(str, m.flags))))
         for fluid, m in split.lubricated_adhesion.items():
             fluids.append(fluid)
             dry_adhesions.append(split.adhesion.value or 0.0)
@@ -234,7 +246,7 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
 def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
     keys = [key for key in protocol.words("group") if any(key in f.conditions for f in files)]
     tables, notes, maps = [], [], []
-    table = group_table(files, tuple(keys), ("cof",))
+    table = condition_table(files, tuple(keys), ("cof",), person=_sample(files))
     if table:
         tables.append(table)
     rows = []
@@ -264,7 +276,7 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
                 1e3 * (found.peak_lateral.value or 0.0),
                 100 * found.outer_share,
                 None if found.half_spacing_change is None else 100 * found.half_spacing_change,
-                "; ".join(found.load.flags),
+                "; ".join(map(str, found.load.flags)),
                 found.load.conventions.get("inlet", ""),
             )
         )
@@ -306,62 +318,173 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
             for k in keys
             if len({str(f.conditions[k]) for f in labelled}) > 1
         }
-        findings += anova_finding("cof", [f.main["cof"] for f in labelled], factors)
+        findings += comparison_findings("cof", [f.main["cof"] for f in labelled], factors)
     return Study(tuple(tables), tuple(findings), {"maps": maps}, tuple(notes))
 
 
 def _human_slip(files: list[FileResult], protocol: Protocol) -> Study:
     keys = tuple(k for k in protocol.words("compare") if any(k in f.conditions for f in files))
-    numbers = ("rcof", "acof", "peak_slipping_speed", "slip", "peak_pressure")
-    present = tuple(n for n in numbers if any(n in f.main for f in files))
-    tables = []
+    numbers = ("slip", "rcof", "acof", "peak_slipping_speed", "slip_distance", "peak_pressure")
+    person = person_condition((f.conditions for f in files), protocol.text("subject"))
+    tables = [condition_table(files, (), numbers, person=person)]
     for key in keys:
-        table = group_table(files, (key,), present)
-        if table:
-            title = f"Means by {key}"
-            tables.append(Table(f"groups_{key}", title, table.columns, table.rows, table.notes))
+        name = f"conditions_{key}"
+        tables.append(condition_table(files, (key,), numbers, person=person, name=name))
     findings, curves, notes = slip_findings(files, protocol, keys)
-    return Study(tuple(tables), tuple(findings), curves, tuple(notes))
+    # The table of all trials says nothing that one by conditions does not.
+    made = [table for table in tables[1:] or tables if table]
+    return Study((*made, steps_table(files)), tuple(findings), curves, tuple(notes))
 
 
 def _gait(files: list[FileResult], protocol: Protocol) -> Study:
-    compare = protocol.words("compare") or tuple(
-        dict.fromkeys(k for f in files for k, v in f.conditions.items() if isinstance(v, str))
-    )
     with_rcof = [f for f in files if "rcof" in f.main]
-    factors = {
-        key: [str(f.conditions[key]) for f in with_rcof]
-        for key in compare
-        if all(key in f.conditions for f in with_rcof)
-        and 1 < len({str(f.conditions[key]) for f in with_rcof}) < len(with_rcof)
-    }
-    table = group_table(files, tuple(factors), ("rcof",))
-    findings = anova_finding("rcof", [f.main["rcof"] for f in with_rcof], factors)
-    steps = tuple(
-        (
-            f.file,
-            m["item"],
-            m["value"],
-            m["reason"] if m["value"] is None else "",
-            "; ".join(m["flags"]),
+    person = person_condition((f.conditions for f in files), protocol.text("subject"))
+    factors = _factors(with_rcof, protocol.words("compare"), person)
+    numbers = tuple(dict.fromkeys(["rcof", *(name for f in files for name in f.main)]))
+    persons = persons_of(with_rcof, person)
+    findings = comparison_findings("rcof", [f.main["rcof"] for f in with_rcof], factors, persons)
+    tables = [condition_table(with_rcof, tuple(factors), numbers, person=person)]
+    if len(factors) > 1:
+        tables += [
+            condition_table(with_rcof, (key,), numbers, person=person, name=f"conditions_{key}")
+            for key in factors
+        ]
+    if person:
+        tables.append(_person_table(with_rcof, tuple(factors), person))
+    return Study((*(t for t in tables if t), steps_table(files)), tuple(findings))
+
+
+def _factors(
+    files: Sequence[FileResult], compare: Sequence[str], person: str
+) -> dict[str, list[str]]:
+    """Return the conditions to be tested: named by the protocol, or all that group the files."""
+    keys = tuple(compare) or tuple(
+        dict.fromkeys(
+            key
+            for f in files
+            for key, value in f.conditions.items()
+            if isinstance(value, str) and key != person and key not in NUMBERS
         )
-        for f in files
-        for m in f.measurements
-        if m["item"].startswith("step ")
     )
-    listed = Table(
-        "steps",
-        "Required friction of every step, rejected ones with the reason",
-        ("file", "step", "RCOF", "rejected because", "flags"),
-        steps,
-    )
-    return Study((table, listed) if table else (listed,), tuple(findings))
+    factors = {
+        key: [str(f.conditions[key]) for f in files]
+        for key in keys
+        if all(key in f.conditions for f in files)
+    }
+    return {k: v for k, v in factors.items() if 1 < len(set(v)) < max(len(files), 2)}
+
+
+def _person_table(files: Sequence[FileResult], factors: tuple[str, ...], person: str) -> Table:
+    groups: dict[tuple[str, ...], list[FileResult]] = {}
+    for f in files:
+        key = (str(f.conditions.get(person, f.file)), *(str(f.conditions[k]) for k in factors))
+        groups.setdefault(key, []).append(f)
+    rows = tuple(
+        (*key, float(np.mean([f.main["rcof"] for f in own])), len(own),
+         sum(map(counted_steps, own)))
+        for key, own in sorted(groups.items())
+    )  # fmt: skip
+    columns = (person, *factors, "RCOF", "trials", "steps")
+    note = "Mean of the trials' means; these are the values that the tests compare."
+    return Table("persons", "Persons", columns, rows, (note,), {"RCOF": 4})
 
 
 def _relaxation(files: list[FileResult], protocol: Protocol) -> Study:
     key = protocol.text("compare", "material")
-    table = group_table(files, (key,), ("force_2_percent", "peak_force", "final_force"))
+    keys = (key,) if any(key in f.conditions for f in files) else ()
+    forces = ("force_2_percent", "peak_force", "final_force")
+    table = condition_table(files, keys, forces, person=_sample(files))
     return Study((table,) if table else ())
+
+
+def _readings(files: list[FileResult], protocol: Protocol) -> Study:
+    """Return means by sample with their classes, and the precision over operators or machines."""
+    quantity = next(q for q in ("ptv", "angle", "cof") if any(q in f.main for f in files))
+    keys = tuple(k for k in protocol.words("group") if any(k in f.conditions for f in files))
+    keys = keys or tuple(
+        dict.fromkeys(k for f in files for k, v in f.conditions.items() if isinstance(v, str))
+    )
+    name = protocol.text("classes")
+    scheme = class_scheme(name) if name else None
+    rows = []
+    for f in files:
+        m = f.measurements[0]
+        low = high = None
+        if m["spread"] is not None:
+            _, _, low, high = mean_and_interval(np.array(f.curves["readings"]))
+        cells: list[Any] = [f.file, *(f.conditions.get(k) for k in keys)]
+        cells += [m["n"], m["value"], m["spread"], low, high]
+        if quantity == "ptv":
+            cells.append(cof_of_pendulum(float(m["value"])))
+        if scheme is not None:
+            ends = {scheme.class_of(v) for v in (low, high) if v is not None}
+            own = scheme.class_of(float(m["value"]))
+            cells.append(own)
+            cells.append(", ".join(sorted(ends - {own})) or None)
+        rows.append(tuple(cells))
+    columns = ["file", *keys, "readings", *number_columns(quantity)]
+    columns += ["COF from PTV"] if quantity == "ptv" else []
+    columns += ["class", "interval reaches"] if scheme is not None else []
+    notes = [
+        "SD and 95 % interval (t) of the readings of one sample: they hold repeatability only."
+    ]
+    if scheme is not None:
+        notes.append(f"Classes: {scheme.title}. {scheme.source[0].upper()}{scheme.source[1:]}.")
+    spreads = [f.measurements[0]["uncertainty"] for f in files]
+    places = max((decimals_of(u) for u in spreads if u), default=2)
+    decimals = {**dict.fromkeys(number_columns(quantity), places), "COF from PTV": 3}
+    title = f"Samples, {quantity_name(quantity)}"
+    tables = [Table("samples", title, tuple(columns), tuple(rows), tuple(notes), decimals)]
+    for by in ("laboratory", "operator", "machine"):
+        tables += _precision(files, by, quantity, keys)
+    return Study(tuple(tables))
+
+
+def _precision(
+    files: Sequence[FileResult], by: str, quantity: str, keys: tuple[str, ...]
+) -> list[Table]:
+    """Return repeatability and reproducibility of each floor over laboratories or operators."""
+    groups: dict[tuple[str, ...], dict[str, list[float]]] = {}
+    others = [k for k in keys if k != by]
+    for f in files:
+        if by in f.conditions:
+            level = tuple(str(f.conditions.get(k, "")) for k in others)
+            groups.setdefault(level, {})[str(f.conditions[by])] = f.curves["readings"]
+    rows, tests = [], []
+    for level, readings in groups.items():
+        try:
+            found = precision(readings)
+        except UnderfootError:
+            continue
+        rows.append(
+            (*level, found.laboratories, found.n, found.mean, found.repeatability,
+             found.reproducibility, found.repeatability_limit, found.reproducibility_limit)
+        )  # fmt: skip
+        tests += [
+            f"{', '.join(level) or 'all'}: {test.name}, {by} {test.laboratory}, {test.verdict} "
+            f"({test.statistic:.3f}; 5 % {test.critical_5_percent:.3f}, 1 % "
+            f"{test.critical_1_percent:.3f})"
+            for test in found.outliers
+            if test.verdict != "correct"
+        ]
+    if not rows:
+        return []
+    name = quantity_name(quantity)
+    columns = (*others, {"laboratory": "laboratories"}.get(by, by + "s"), "readings", name, "s_r",
+               "s_R", "r = 2.8 s_r", "R = 2.8 s_R")  # fmt: skip
+    notes = (
+        f"Repeatability s_r and reproducibility s_R over each {by} (ISO 5725-2); nothing left out.",
+        *(tests or ("Cochran's and Grubbs' tests name no straggler or outlier.",)),
+    )
+    title = f"Repeatability and reproducibility by {by}"
+    places = max(decimals_of(row[-3]) for row in rows)
+    return [Table(f"precision_{by}", title, columns, tuple(rows), notes,
+                  dict.fromkeys(columns[-5:], places))]  # fmt: skip
+
+
+def _sample(files: Sequence[FileResult]) -> str:
+    """Return the condition that names what was tested, where readings repeat it."""
+    return next((n for n in ("sample", "specimen") if any(n in f.conditions for f in files)), "")
 
 
 def _grouped(

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from .conditions import person_condition
 from .file_result import FileResult
 
 Cell = str | float | int | None
@@ -14,21 +15,27 @@ Cell = str | float | int | None
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Rows under headings; ``notes`` stand below. ``name`` is a file name without ending."""
+    """Rows under headings; ``notes`` stand below. ``name`` is a file name without ending.
+
+    ``decimals`` are those a reader should see, by column, after the uncertainty; files keep all.
+    """
 
     name: str
     title: str
     columns: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
     notes: tuple[str, ...] = ()
+    decimals: Mapping[str, int] = field(default_factory=dict)
 
 
 # Name in words, unit shown, and what an SI value is multiplied by for it.
-_WORDS: dict[str, tuple[str, str, float]] = {
+_NAMES: dict[str, tuple[str, str, float]] = {
     "rcof": ("RCOF", "", 1.0),
     "acof": ("ACOF", "", 1.0),
     "acof_minus_rcof": ("ACOF - RCOF", "", 1.0),
     "cof": ("COF", "", 1.0),
+    "ptv": ("PTV", "", 1.0),
+    "angle": ("angle", "deg", 1.0),
     "cof_bl": ("COF_BL", "", 1.0),
     "tau_hydro": ("tau_hydro", "m/s", 1.0),
     "cof_asymptote": ("COF_asymptote", "", 1.0),
@@ -47,20 +54,20 @@ _WORDS: dict[str, tuple[str, str, float]] = {
 }
 
 
-def words(name: str) -> str:
+def quantity_name(name: str) -> str:
     """Return a quantity's name as people write it."""
-    return _WORDS.get(name, (name.replace("_", " "), "", 1.0))[0]
+    return _NAMES.get(name, (name.replace("_", " "), "", 1.0))[0]
 
 
 def heading(name: str) -> str:
     """Return a column heading with its unit."""
-    text, unit, _ = _WORDS.get(name, (name.replace("_", " "), "", 1.0))
+    text, unit, _ = _NAMES.get(name, (name.replace("_", " "), "", 1.0))
     return f"{text} ({unit})" if unit else text
 
 
 def scaled(name: str, value: float | None) -> float | None:
     """Return an SI value in the unit of its heading."""
-    return None if value is None else value * _WORDS.get(name, ("", "", 1.0))[2]
+    return None if value is None else value * _NAMES.get(name, ("", "", 1.0))[2]
 
 
 def file_table(files: Iterable[FileResult]) -> Table:
@@ -86,13 +93,15 @@ def file_table(files: Iterable[FileResult]) -> Table:
 
 def measurement_table(files: Iterable[FileResult]) -> Table:
     """Return one row per number with uncertainty, reason, flags and conventions."""
-    rows = []
+    files, rows = list(files), []
+    person = person_condition(one.conditions for one in files)
     for one in files:
         for m in one.measurements:
             conventions = "; ".join(f"{key}: {value}" for key, value in m["conventions"].items())
             rows.append(
                 (
                     one.file,
+                    str(one.conditions.get(person, "")),
                     m["item"],
                     m["name"],
                     m["value"],
@@ -100,12 +109,14 @@ def measurement_table(files: Iterable[FileResult]) -> Table:
                     m["uncertainty"],
                     m["reason"],
                     m["n"],
-                    "; ".join(m["flags"]),
+                    "yes" if any(flag["matters"] for flag in m["flags"]) else "",
+                    "; ".join(flag["words"] for flag in m["flags"]),
                     conventions,
                 )
             )
     columns = (
         "file",
+        "person",
         "item",
         "quantity",
         "value",
@@ -113,6 +124,7 @@ def measurement_table(files: Iterable[FileResult]) -> Table:
         "standard uncertainty",
         "not estimated because",
         "n",
+        "caution",
         "flags",
         "conventions",
     )
@@ -120,41 +132,177 @@ def measurement_table(files: Iterable[FileResult]) -> Table:
 
 
 def edit_table(files: Iterable[FileResult]) -> Table | None:
-    """Return the edit log: every event that was set by hand, or None."""
-    rows = tuple(
-        (one.file, e["what"], e["before"], e["after"], e["why"]) for one in files for e in one.edits
-    )
+    """Return the edit log: every edit by hand with event and number before and after, or None."""
+    keys = ("step", "what", "before", "after", "quantity", "number before", "number after", "why")
+    rows = tuple((one.file, *(e[key] for key in keys)) for one in files for e in one.edits)
     if not rows:
         return None
-    return Table("edits", "Events set by hand", ("file", "what", "before", "after", "why"), rows)
+    return Table("edits", "Edits by hand", ("file", *keys), rows)
 
 
-def group_table(
-    files: Iterable[FileResult], keys: tuple[str, ...], numbers: tuple[str, ...]
-) -> Table | None:
-    """Return mean, standard deviation and n of the main numbers by group of conditions."""
-    groups: dict[tuple[str, ...], list[FileResult]] = {}
-    for one in files:
-        if one.usable and all(key in one.conditions for key in keys):
-            groups.setdefault(tuple(str(one.conditions[k]) for k in keys), []).append(one)
-    if not groups or not keys:
-        return None
+# Column, entry of the step and decimals that a reader sees.
+_STEP_COLUMNS = (
+    ("step", "item", None),
+    ("side", "side", None),
+    ("contact (s)", "contact", 3),
+    ("RCOF", "rcof", 3),
+    ("RCOF standard uncertainty", "rcof_uncertainty", 3),
+    ("walking speed (m/s)", "walking_speed", 2),
+    ("slip", "outcome", None),
+    ("verdict", "verdict", None),
+    ("reason", "reason", None),
+    ("cautions", "cautions", None),
+    ("by hand", "by_hand", None),
+)
+
+
+def steps_table(files: Iterable[FileResult]) -> Table:
+    """Return one row for each contact with a plate, rejected ones with the reason."""
     rows = []
-    for group, members in groups.items():
-        cells: list[Cell] = [*group, len(members)]
-        for name in numbers:
-            values = np.array([scaled(name, m.main[name]) for m in members if name in m.main])
-            cells.append(float(values.mean()) if len(values) else None)
-            if name != "slip":
-                cells.append(float(values.std(ddof=1)) if len(values) > 1 else None)
-        rows.append(tuple(cells))
-    columns = [*keys, "files"]
-    for name in numbers:
-        columns += ["share of slips"] if name == "slip" else [heading(name), f"sd {words(name)}"]
-    return Table(
-        "groups",
-        "Means by " + ", ".join(keys),
-        tuple(columns),
+    for one in files:
+        for step in one.steps:
+            values = [step.get(key) for _, key, _ in _STEP_COLUMNS]
+            texts = ["; ".join(map(str, v)) if isinstance(v, list | tuple) else v for v in values]
+            rows.append((one.file, *texts))
+    table = Table(
+        "steps",
+        "Every contact, rejected ones with the reason",
+        ("file", *(column for column, _, _ in _STEP_COLUMNS)),
         tuple(rows),
-        ("Refused files are left out; sd is the standard deviation between files.",),
+        ("All that is known of a step is in tables/steps_wide.csv and steps_long.csv.",),
+        {column: places for column, _, places in _STEP_COLUMNS if places is not None},
+    )
+    return _without_empty(table, ("file", "step", "RCOF", "verdict", "reason", "cautions"))
+
+
+def condition_table(
+    files: Iterable[FileResult],
+    keys: tuple[str, ...],
+    numbers: tuple[str, ...],
+    *,
+    person: str = "",
+    name: str = "conditions",
+) -> Table | None:
+    """Return mean, SD and 95 % interval of numbers by conditions, persons counted once in each.
+
+    Trials of a person are averaged first, so that SD and interval are those between persons (the
+    interval is t times SD / sqrt(persons)). Without a condition that names the persons (``person``)
+    files take their place, and the table says so. The slip is a share, with persons who slipped.
+    """
+    usable = [f for f in files if f.usable and all(key in f.conditions for key in keys)]
+    numbers = tuple(n for n in numbers if any(n in f.main for f in usable))
+    if not usable or not numbers:
+        return None
+    groups: dict[tuple[str, ...], list[FileResult]] = {(): usable}
+    if keys:
+        groups = {}
+        for one in usable:
+            groups.setdefault(tuple(str(one.conditions[k]) for k in keys), []).append(one)
+        if len(groups) > 1:
+            groups[("all", *("" for _ in keys[1:]))] = usable
+    unit = "persons" if person else "files"
+    rows = []
+    errors: dict[str, list[float]] = {}
+    for group, members in groups.items():
+        people = [str(m.conditions.get(person, m.file)) if person else m.file for m in members]
+        steps = sum(counted_steps(m) for m in members)
+        cells: list[Cell] = [*group, len(set(people)), len(members), steps or None]
+        for number in numbers:
+            values: dict[str, list[float]] = {}
+            for one, who in zip(members, people, strict=True):
+                if number in one.main:
+                    values.setdefault(who, []).append(float(scaled(number, one.main[number]) or 0))
+            means = np.array([np.mean(v) for v in values.values()])
+            if number == "slip":
+                trials = [x for v in values.values() for x in v]
+                cells += [
+                    float(np.mean(trials)) if trials else None,
+                    int(sum(max(v) > 0 for v in values.values())),
+                ]
+                continue
+            mean, spread, low, high = mean_and_interval(means)
+            cells += [mean, spread, low, high]
+            if spread:
+                errors.setdefault(number, []).append(spread / np.sqrt(len(means)))
+        rows.append(tuple(cells))
+    columns = [
+        *keys,
+        unit,
+        "trials" if person or any(f.steps for f in usable) else "readings",
+        "steps",
+    ]
+    for number in numbers:
+        columns += (
+            ["share of trials with a slip", f"{unit} who slipped"]
+            if number == "slip"
+            else number_columns(number)
+        )
+    notes = [
+        f"Mean, SD and 95 % interval (t) between {unit}"
+        + (", each person's trials averaged first." if person else ".")
+    ]
+    if not person and len(usable) > 1:
+        notes.append(
+            "No condition names the persons or samples: every file counts as one. Where files "
+            'repeat a person, note it ("subject" in conditions.csv, or a pattern of names).'
+        )
+    decimals = {
+        column: decimals_of(float(np.median(values)))
+        for number, values in errors.items()
+        for column in number_columns(number)
+    }
+    title = "By " + ", ".join(keys) if keys else "All trials"
+    return _without_empty(
+        Table(name, title, tuple(columns), tuple(rows), tuple(notes), decimals), keys
+    )
+
+
+def number_columns(name: str) -> list[str]:
+    """Return the headings of mean, SD and interval of a quantity."""
+    text, unit, _ = _NAMES.get(name, (name.replace("_", " "), "", 1.0))
+    tail = f" ({unit})" if unit else ""
+    return [f"{text}{tail}", f"{text} SD{tail}", f"{text} 95 % low", f"{text} 95 % high"]
+
+
+def mean_and_interval(
+    values: np.ndarray,
+) -> tuple[float | None, float | None, float | None, float | None]:
+    """Return mean, SD and the 95 % interval of the mean; None where there are too few values."""
+    from scipy.stats import t
+
+    if not len(values):
+        return None, None, None, None
+    mean = float(values.mean())
+    if len(values) < 2:
+        return mean, None, None, None
+    spread = float(values.std(ddof=1))
+    reach = float(t.ppf(0.975, len(values) - 1) * spread / np.sqrt(len(values)))
+    return mean, spread, mean - reach, mean + reach
+
+
+def counted_steps(one: FileResult) -> int:
+    """Return the number of steps of a file that gave a required friction."""
+    return sum(
+        m["name"] == "rcof" and m["value"] is not None and str(m["item"]).startswith("step ")
+        for m in one.measurements
+    )
+
+
+def decimals_of(uncertainty: float) -> int:
+    """Return the decimals that show two digits of an uncertainty."""
+    if not uncertainty > 0:
+        return 3
+    return int(np.clip(1 - np.floor(np.log10(uncertainty)), 0, 8))
+
+
+def _without_empty(table: Table, keys: tuple[str, ...]) -> Table:
+    filled = [
+        i
+        for i, name in enumerate(table.columns)
+        if name in keys or any(row[i] not in (None, "") for row in table.rows)
+    ]
+    return replace(
+        table,
+        columns=tuple(table.columns[i] for i in filled),
+        rows=tuple(tuple(row[i] for i in filled) for row in table.rows),
     )

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 
 from underfoot.core import DataError, UnderfootError
 
 from ..trial import Trial
-from .profile import PlateColumns, Profile, profile_from, read_profile
-from .sheet import Sheet, read_sheet
+from .profile import PlateColumns, Profile, profile_from, read_profile, with_channels
+from .sheet import Sheet, is_workbook, read_sheet
+from .text import utf16_of
 
 __all__ = [
     "PlateColumns",
@@ -22,36 +24,63 @@ __all__ = [
     "read_sheet",
     "read_trial",
     "read_trials",
+    "with_channels",
 ]
 
-SUFFIXES = (".c3d", ".trc", ".mot", ".sto", ".forces", ".txt", ".csv", ".tsv", ".dat", ".xlsx")
+SUFFIXES = (
+    ".c3d", ".trc", ".mot", ".sto", ".forces", ".txt", ".csv", ".tsv", ".dat", ".xlsx", ".xls",
+    ".mat", ".json", ".asc", ".fgt", ".asf",
+)  # fmt: skip
 _LARGEST = 2_000_000_000  # bytes; a recording of hours stays far below
+# Format: module, function, and what it takes besides data, path and checksum.
+_READERS: dict[str, tuple[str, str, tuple[str, ...]]] = {
+    "C3D": ("c3d", "read_c3d", ("subtract_baseline",)),
+    "TRC": ("trc", "read_trc", ()),
+    "Cortex": ("cortex_forces", "read_cortex_forces", ("subtract_baseline",)),
+    "CETR": ("cetr", "read_cetr", ()),
+    "PCS": ("pcs", "read_pcs", ()),
+    "motion": ("motion", "read_motion", ("subtract_baseline",)),
+    "BioWare": ("bioware", "read_bioware", ("subtract_baseline",)),
+    "Qualisys": ("qualisys", "read_qualisys", ("subtract_baseline",)),
+    "Vicon": ("vicon_csv", "read_vicon_csv", ("subtract_baseline",)),
+    "JSON": ("pose_json", "read_pose_json", ()),
+    "MATLAB": ("matlab", "read_matlab", ("profile", "subtract_baseline")),
+    "Pedar": ("insoles", "read_pedar", ()),
+    "F-Scan": ("insoles", "read_fscan", ()),
+    "table": ("columns", "read_columns", ("profile", "subtract_baseline")),
+}
 
 
 def file_format(data: bytes, path: Path) -> str:
     """Return the format of a file from its first bytes: the name's ending only breaks ties."""
-    head = data[:4096]
+    head, suffix = data[:4096], path.suffix.casefold()
     # "P" as second letter happens in text too: a C3D header holds binary zeros.
     signed = len(data) > 1 and data[1] == 0x50 and 0 < data[0] < 128
-    if path.suffix.casefold() == ".c3d" or (signed and b"\0" in head):
+    wide = utf16_of(data)
+    if suffix == ".c3d" or (signed and b"\0" in head and not wide):
         return "C3D"
-    if head[:4] == b"PK\x03\x04":
+    if is_workbook(data):
         return "table"
-    text = head.decode("latin-1").lstrip("ï»¿").casefold()
-    if text.startswith("pathfiletype"):
-        return "TRC"
-    if "[force data]" in text[:100]:
-        return "Cortex"
-    if "cetr" in text[:200]:
-        return "CETR"
-    if "test data file" in text.split("\n", 1)[0]:
-        return "PCS"
-    if "endheader" in text or path.suffix.casefold() in (".mot", ".sto"):
-        return "motion"
-    if any(line.startswith("abs time") for line in text.splitlines()):
-        return "BioWare"
-    suffix = path.suffix.casefold()
-    return {".trc": "TRC", ".forces": "Cortex"}.get(suffix, "table")
+    if head.startswith((b"MATLAB 5.0", b"MATLAB 7.3", b"\x89HDF")) or suffix == ".mat":
+        return "MATLAB"
+    text = head[: len(head) // 2 * 2].decode(wide or "latin-1", "replace")
+    text = text.lstrip("\ufeffï»¿").casefold()
+    lines = text.splitlines() or [""]
+    found = {
+        "TRC": text.startswith("pathfiletype"),
+        "Cortex": "[force data]" in text[:100],
+        "CETR": "cetr" in text[:200],
+        "PCS": "test data file" in lines[0],
+        "Qualisys": text.startswith(("no_of_frames", "no_of_samples")),
+        "Vicon": lines[0].strip(' ,"') in ("devices", "trajectories", "model outputs", "joints"),
+        "F-Scan": text.startswith("data_type") or (suffix == ".asf" and "rows" in text),
+        "Pedar": any(line.startswith("time[secs]") for line in lines),
+        "JSON": suffix == ".json" or text.lstrip().startswith("{"),
+        "motion": "endheader" in text or suffix in (".mot", ".sto"),
+        "BioWare": any(line.startswith("abs time") for line in lines),
+    }
+    by_suffix = {".trc": "TRC", ".forces": "Cortex", ".fgt": "Pedar"}
+    return next((name for name, yes in found.items() if yes), by_suffix.get(suffix, "table"))
 
 
 def read_trials(
@@ -62,13 +91,14 @@ def read_trials(
     Parameters
     ----------
     path
-        C3D, TRC, MOT/STO, Cortex .forces, BioWare text, CETR or PCS log, CSV or XLSX.
+        C3D, TRC, MOT/STO, Cortex .forces, BioWare text, Qualisys TSV, Vicon CSV, MATLAB, JSON of
+        pose systems, Pedar or F-Scan text, CETR or PCS log, CSV, XLSX or XLS.
     profile
         What the columns, axes and heels are called: a ``Profile`` or a TOML file.
     subtract_baseline
         Subtract the mean force of the unloaded samples from each plate.
 
-    Errors
+    Raises
     ------
     DataError
         The file can't be read as any of these, with the reason.
@@ -97,7 +127,16 @@ def read_trials(
             remedy="Export the file again; if it opens elsewhere, please report it",
         ) from error
     settings = {} if profile.body_mass is None else {"body mass (kg)": f"{profile.body_mass:g}"}
-    return tuple(replace(t, settings={**t.settings, **settings}) for t in trials)
+    return tuple(
+        replace(
+            trial,
+            settings={**trial.settings, **settings},
+            plates=trial.plates
+            if profile.accuracy is None
+            else tuple(replace(plate, accuracy=profile.accuracy) for plate in trial.plates),
+        )
+        for trial in trials
+    )
 
 
 def read_trial(
@@ -109,7 +148,7 @@ def read_trial(
 ) -> Trial:
     """Return the one trial in a file, or trial number ``step`` (from 1) of several.
 
-    Errors
+    Raises
     ------
     DataError
         As ``read_trials``; or several trials and no ``step``.
@@ -146,34 +185,10 @@ def _read(
     data: bytes, path: Path, checksum: str, profile: Profile, subtract: bool
 ) -> tuple[Trial, ...]:
     kind = file_format(data, path)
-    if kind == "C3D":
-        from .c3d import read_c3d
-
-        return (read_c3d(data, path, checksum, subtract_baseline=subtract),)
-    if kind == "TRC":
-        from .trc import read_trc
-
-        return (read_trc(data, path, checksum),)
-    if kind == "Cortex":
-        from .cortex_forces import read_cortex_forces
-
-        return (read_cortex_forces(data, path, checksum, subtract_baseline=subtract),)
-    if kind == "CETR":
-        from .cetr import read_cetr
-
-        return read_cetr(data, path, checksum)
-    if kind == "PCS":
-        from .pcs import read_pcs
-
-        return read_pcs(data, path, checksum)
-    if kind == "motion":
-        from .motion import read_motion
-
-        return (read_motion(data, path, checksum, subtract_baseline=subtract),)
-    if kind == "BioWare" and not profile.plates:
-        from .bioware import read_bioware
-
-        return (read_bioware(data, path, checksum, subtract_baseline=subtract),)
-    from .columns import read_columns
-
-    return (read_columns(data, path, checksum, profile, subtract_baseline=subtract),)
+    if kind == "BioWare" and profile.plates:
+        kind = "table"
+    module, function, takes = _READERS[kind]
+    options = {"profile": profile, "subtract_baseline": subtract}
+    reader = getattr(import_module(f".{module}", __package__), function)
+    trials = reader(data, path, checksum, **{name: options[name] for name in takes})
+    return trials if isinstance(trials, tuple) else (trials,)

@@ -8,11 +8,13 @@ import numpy as np
 
 from underfoot.core import DataError
 
+from ..measurement import Flag
 from ..plates import (
     CHANNELS,
     KINDS,
     channel_forces,
     finished_plate,
+    ordered_corners,
     plate_axes,
     refused_plate,
     up_from_normal,
@@ -36,7 +38,7 @@ def read_c3d(data: bytes, path: Path, checksum: str, *, subtract_baseline: bool 
 
     A plate that can't be worked out is kept with its reason; the rest of the file is read.
 
-    Errors
+    Raises
     ------
     DataError
         Not a C3D file, truncated or damaged.
@@ -151,7 +153,10 @@ def _plate(
                 if columns.max() >= raw.analog.shape[1]
                 else "it names a channel below 1"
             )
-        corners = _corners(raw, index) * scale
+        corners, crossed = ordered_corners(_corners(raw, index) * scale)
+        flags = (
+            (Flag("corners", "its corners come in crossed order: re-ordered"),) if crossed else ()
+        )
         axes = plate_axes(corners)
         origin = _column(raw.numbers("FORCE_PLATFORM", "ORIGIN"), index, "ORIGIN") * scale
         if origin.shape != (3,) or not np.isfinite(origin).all():
@@ -183,6 +188,7 @@ def _plate(
             raw=signals,
             kind=words,
             notes=tuple(notes),
+            flags=flags,
             subtract_baseline=subtract,
         )
     except DataError as error:

@@ -10,7 +10,7 @@ import numpy as np
 
 from underfoot.core import DataError, nearest_match
 
-from ..plates import finished_plate, plate_axes, up_from_normal
+from ..plates import finished_plate, plate_axes, refused_plate, up_from_normal
 from ..trial import Channel, Marker, Plate, Trial
 from .profile import PlateColumns, Profile
 from .sheet import Sheet, sheet_from
@@ -34,7 +34,7 @@ def read_columns(
     With ``profile`` its columns are used; what it does not name is recognised: time, force
     triples (Fx, Fy, Fz with any ending), marker triples (name_x, name_y, name_z).
 
-    Errors
+    Raises
     ------
     DataError
         No table, no time and no rate, a column of the profile missing, unknown unit.
@@ -46,28 +46,39 @@ def read_columns(
         delimiter=profile.delimiter,
         header_line=profile.header_line,
     )
+    kinds = {b"PK\x03\x04": "XLSX table", b"\xd0\xcf\x11\xe0": "XLS table"}
+    source = kinds.get(data[:4], "text table")
+    return trial_from_sheet(
+        sheet, checksum, profile, source=source, subtract_baseline=subtract_baseline
+    )
+
+
+def trial_from_sheet(
+    sheet: Sheet, checksum: str, profile: Profile, *, source: str, subtract_baseline: bool = True
+) -> Trial:
+    """Return the trial in named columns; errors as ``read_columns``."""
     notes = list(sheet.notes)
     if sheet.texts:
         notes.append(f"columns that hold text are left out: {', '.join(list(sheet.texts)[:6])}")
     rate, start, times = _time(sheet, profile, notes)
     channels = _channels(sheet, profile, rate, start, times)
     plates: list[Plate] = []
-    for name, columns in _plate_columns(sheet, profile, notes).items():
+    for name, columns in _plate_columns(sheet, profile, notes, plates).items():
         if times is not None:
             notes.append("samples are not equally spaced: no plates were made")
             break
         plates.append(_plate(name, columns, sheet, rate, start, profile, subtract_baseline))
     markers = {}
     for name, (triple, unit) in _marker_columns(sheet, profile, notes).items():
-        factor = _factor(unit, "m", f"{path.name}, marker {name}")
+        factor = _factor(unit, "m", f"{sheet.name}, marker {name}")
         positions = np.column_stack([_column(sheet, c) for c in triple]) * factor
         markers[name] = Marker(positions, rate, start, times)
     return Trial(
-        path.name,
+        sheet.name,
         channels=channels,
         plates=tuple(plates),
         markers=markers,
-        source="XLSX table" if data[:4] == b"PK\x03\x04" else "text table",
+        source=source,
         checksum=checksum,
         notes=tuple(notes),
     )
@@ -167,7 +178,10 @@ def _channels(
     return found
 
 
-def _plate_columns(sheet: Sheet, profile: Profile, notes: list[str]) -> dict[str, PlateColumns]:
+def _plate_columns(
+    sheet: Sheet, profile: Profile, notes: list[str], plates: list[Plate]
+) -> dict[str, PlateColumns]:
+    """Columns of the plates; triples whose unit is no force become refused plates."""
     if profile.plates:
         return dict(profile.plates)
     groups: dict[tuple[str, str], dict[str, str]] = {}
@@ -183,7 +197,9 @@ def _plate_columns(sheet: Sheet, profile: Profile, notes: list[str]) -> dict[str
         units = {_unit_of(sheet, triple[axis]) for axis in "xyz"}
         known = [si_unit(unit) for unit in units if unit]
         if len(units) > 1 or any(unit is None or unit[0] != "N" for unit in known):
-            notes.append(f"{triple['x']}, {triple['y']}, {triple['z']}: not one unit of force")
+            written = ", ".join(sorted(f'"{unit}"' for unit in units))
+            names = f"{triple['x']}, {triple['y']}, {triple['z']}"
+            plates.append(refused_plate(names, f"{written} is not one known unit of force"))
             continue
         unit = units.pop()
         if not unit:
@@ -208,9 +224,16 @@ def _plate(
 ) -> Plate:
     where = f"{sheet.name}, plate {name}"
     turn = -1.0 if columns.force_is == "on the plate" else 1.0
-    factor = _factor(columns.unit, "N", where) * turn
-    force = np.column_stack([_column(sheet, c) for c in columns.force])
-    force = force * factor * np.asarray(columns.sign)
+    rows = len(next(iter(sheet.numbers.values())))
+    force = np.column_stack(
+        [
+            _column(sheet, c) * _force_factor(sheet, c, columns.unit, where)
+            if c
+            else np.zeros(rows)
+            for c in columns.force
+        ]
+    )
+    force = force * turn * np.asarray(columns.sign)
     length = _factor(columns.length_unit, "m", where)
     corners = None if columns.corners is None else np.array(columns.corners) * length
     place = None
@@ -227,6 +250,12 @@ def _plate(
         kind="columns " + ", ".join(columns.force),
         subtract_baseline=subtract_baseline and profile.subtract_baseline,
     )
+
+
+def _force_factor(sheet: Sheet, column: str, unit: str, where: str) -> float:
+    """Factor to N: the unit of the profile, else the one in the heading, else N."""
+    written = unit or _unit_of(sheet, column) or "N"
+    return _factor(written, "N", where)
 
 
 def _up(force: np.ndarray, corners: np.ndarray | None, profile: Profile) -> np.ndarray:

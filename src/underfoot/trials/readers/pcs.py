@@ -27,7 +27,7 @@ def read_pcs(data: bytes, path: Path, checksum: str) -> tuple[Trial, ...]:
 
     Columns that repeat the first two appear once; empty columns are left out.
 
-    Errors
+    Raises
     ------
     DataError
         Not a PCS log, truncated, or no step holds a table.
@@ -81,6 +81,11 @@ def _step(
     rows = [line for line in lines[at + 1 : stop] if is_number(line.split("\t", 1)[0])]
     numbers, odd = table(rows, "\t", len(labels), name, first_line=at + 2, ignored=ignored)
     notes: list[str] = []
+    filled = sum(line.count("\t") > 8 and bool(line.strip()) for line in lines[at + 1 : stop])
+    if filled > len(rows):
+        notes.append(
+            f"{filled - len(rows)} rows do not begin with a number (as #REF!) and are left out"
+        )
     columns = [
         i
         for i, x in enumerate(labels)

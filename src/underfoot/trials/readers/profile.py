@@ -4,21 +4,22 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from underfoot.core import InputError, nearest_match
+from underfoot.core import InputError, nearest_match, to_si
 
+from ..trial import PlateAccuracy
 from .unit_factors import known_units, si_unit
 
 
 @dataclass(frozen=True, slots=True)
 class PlateColumns:
-    """Columns of one force plate in a table."""
+    """Columns of one force plate in a table; an empty name in ``force`` means no such channel."""
 
     force: tuple[str, str, str]
-    unit: str = "N"
+    unit: str = ""
     force_is: str = "on the foot"
     sign: tuple[float, float, float] = (1.0, 1.0, 1.0)
     centre_of_pressure: tuple[str, str, str] | None = None
@@ -50,12 +51,13 @@ class Profile:
     heels: Mapping[str, str] = field(default_factory=dict)
     body_mass: float | None = None
     sensors: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    accuracy: PlateAccuracy | None = None
 
 
 def read_profile(path: Path) -> Profile:
     """Return the profile in a TOML file.
 
-    Errors
+    Raises
     ------
     InputError
         Not TOML, an unknown key or unit, a wrong type; names the key and the nearest match.
@@ -72,8 +74,8 @@ def read_profile(path: Path) -> Profile:
 
 def profile_from(data: Mapping[str, Any], *, where: str = "profile") -> Profile:
     """Return the profile in plain data (the parsed TOML); errors as ``read_profile``."""
-    top = ("name", "file", "channels", "plates", "markers", "axes", "heel", "subject", "sensors")
-    _known(data, top, where)
+    parts = "name file channels plates markers axes heel subject sensors accuracy"
+    _known(data, tuple(parts.split()), where)
     file = _part(data, "file", where)
     _known(
         file,
@@ -121,6 +123,7 @@ def profile_from(data: Mapping[str, Any], *, where: str = "profile") -> Profile:
             _quantity(subject["mass"], "kg", f"{where}.subject.mass") if "mass" in subject else None
         ),
         sensors=_sensors(_part(data, "sensors", where), f"{where}.sensors"),
+        accuracy=_accuracy(_part(data, "accuracy", where), f"{where}.accuracy"),
     )
 
 
@@ -164,8 +167,6 @@ def _unit(text: object, dimension: str, where: str) -> str:
 
 
 def _quantity(value: object, unit: str, where: str) -> float:
-    from underfoot.core import to_si
-
     number = to_si(value, unit, where=where)
     if number <= 0:
         raise InputError(f"{value!r} is not positive", where=where)
@@ -200,9 +201,10 @@ def _numbers(value: object, where: str) -> tuple[float, float, float]:
 
 
 def _plate(value: object, where: str) -> PlateColumns:
-    if not isinstance(value, Mapping) or "force" not in value:
+    if not isinstance(value, Mapping):
         raise InputError("a plate needs its force columns", where=where)
-    _known(value, tuple(PlateColumns.__dataclass_fields__), where)
+    _known(value, (*PlateColumns.__dataclass_fields__, "friction", "normal"), where)
+    force = _force_columns(value, where)
     force_is = value.get("force_is", "on the foot")
     if force_is not in ("on the foot", "on the plate"):
         raise InputError(
@@ -216,8 +218,8 @@ def _plate(value: object, where: str) -> PlateColumns:
         for key in ("centre_of_pressure", "moment")
     }
     return PlateColumns(
-        force=_three(value["force"], f"{where}.force"),
-        unit=_unit(value.get("unit", "N"), "N", f"{where}.unit"),
+        force=force,
+        unit=_unit(value["unit"], "N", f"{where}.unit") if "unit" in value else "",
         force_is=force_is,
         sign=_numbers(value.get("sign", [1, 1, 1]), f"{where}.sign"),
         centre_of_pressure=three["centre_of_pressure"],
@@ -229,6 +231,52 @@ def _plate(value: object, where: str) -> PlateColumns:
     )
 
 
+def _force_columns(value: Mapping[str, Any], where: str) -> tuple[str, str, str]:
+    """Return the columns of x, y, z; ``friction`` and ``normal`` are a machine's x and z."""
+    two = {"friction", "normal"} & set(value)
+    if ("force" in value) == bool(two):
+        raise InputError(
+            "a plate needs its force columns",
+            where=where,
+            allowed='force = ["Fx", "Fy", "Fz"], or friction = "..." and normal = "..."',
+        )
+    if two:
+        names = [value.get("friction"), "", value.get("normal")]
+        if not all(isinstance(name, str) for name in names) or not (names[0] and names[2]):
+            raise InputError("friction and normal are two columns, both named", where=where)
+        force = _three(names, where)
+    else:
+        force = _three(value["force"], f"{where}.force")
+    columns = [name for name in force if name]
+    if len(set(columns)) < len(columns):
+        twice = next(name for name in columns if columns.count(name) > 1)
+        raise InputError(
+            f'the column "{twice}" is named twice: its force would count twice',
+            where=where,
+            remedy='Leave a missing channel empty, or write friction = "..." and normal = "..."',
+        )
+    return force
+
+
+def with_channels(profile: Profile, friction: str, normal: str, *, where: str) -> Profile:
+    """Return the profile with the two channels of a tester that a protocol names.
+
+    Raises
+    ------
+    InputError
+        One channel only, the same twice, or the profile names plates too.
+    """
+    if not friction and not normal:
+        return profile
+    if profile.plates:
+        raise InputError(
+            "the protocol and the profile both name force columns", where=where,
+            remedy="Name them in one place",
+        )  # fmt: skip
+    columns = _plate({"friction": friction, "normal": normal}, where)
+    return replace(profile, plates={"tester": columns})
+
+
 def _marker(value: object, where: str) -> tuple[tuple[str, str, str], str]:
     if not isinstance(value, Mapping) or "columns" not in value:
         raise InputError("a marker needs its three columns", where=where)
@@ -237,6 +285,19 @@ def _marker(value: object, where: str) -> tuple[tuple[str, str, str], str]:
         _three(value["columns"], f"{where}.columns"),
         _unit(value.get("unit", "m"), "m", f"{where}.unit"),
     )
+
+
+def _accuracy(part: Mapping[str, Any], where: str) -> PlateAccuracy | None:
+    """Specification of the plates: gain and crosstalk as shares ("0.5 %"), and its source."""
+    if not part:
+        return None
+    _known(part, ("gain", "crosstalk", "source"), where)
+    standard = PlateAccuracy()
+    shares = [
+        to_si(part[key], "1", where=f"{where}.{key}") if key in part else getattr(standard, key)
+        for key in ("gain", "crosstalk")
+    ]
+    return PlateAccuracy(shares[0], shares[1], str(part.get("source", "profile")))
 
 
 def _sensors(part: Mapping[str, Any], where: str) -> dict[str, tuple[float, float, float]]:

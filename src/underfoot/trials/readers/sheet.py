@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import io
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 
-from underfoot.core import DataError, MissingExtraError
+from underfoot.core import DataError
 
 from .text import (
     decoded,
@@ -68,7 +69,7 @@ def read_sheet(
     header_line
         Line (from 1) of the column names; found when not given.
 
-    Errors
+    Raises
     ------
     DataError
         Can't be read, no table, or ragged beyond repair.
@@ -92,8 +93,8 @@ def sheet_from(
     """Return the table in a file's bytes; see ``read_sheet``."""
     where = path.name
     notes: list[str] = []
-    if data[:4] == b"PK\x03\x04":
-        rows = _workbook_rows(data, where, sheet)
+    if is_workbook(data):
+        rows = workbook_rows(data, where, sheet)
         table = _layout(rows, header_line, where)
         return _sheet(rows, table, rows[table.first :], None, where, notes)
     lines = lines_of(decoded(data, where))
@@ -262,30 +263,27 @@ def _point(cell: str) -> str:
     return changed if is_number(changed) else cell
 
 
-def _workbook_rows(data: bytes, where: str, sheet: str | None) -> list[list[str]]:
-    try:
-        from openpyxl import load_workbook
-    except ImportError as error:
-        raise MissingExtraError("openpyxl", "trials", "reading XLSX files") from error
+def is_workbook(data: bytes) -> bool:
+    """True for the bytes of an XLSX or XLS file."""
+    return data[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
+
+
+def workbook_rows(data: bytes, where: str, sheet: str | None = None) -> list[list[str]]:
+    """Return the cells of one sheet of an XLSX or XLS file as text, the first sheet by default.
+
+    Raises
+    ------
+    DataError
+        Damaged, too large, or no such sheet.
+    """
+    read = _xlsx if data[:4] == b"PK\x03\x04" else _xls
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # styles and extensions that do not matter here
-            book = load_workbook(BytesIO(data), read_only=True, data_only=True)
-        names = book.sheetnames
-        if not names:
-            raise DataError("the workbook has no sheet", where=where)
-        if sheet is not None and sheet not in names:
-            raise DataError(f'no sheet named "{sheet}"', where=where, allowed=", ".join(names))
-        rows: list[list[str]] = []
-        cells = 0
-        for row in book[sheet or names[0]].iter_rows(values_only=True):
-            cells += len(row)
-            if cells > _MOST_CELLS:
-                raise DataError("the sheet is larger than any recording", where=where)
-            rows.append(["" if cell is None else str(cell).strip() for cell in row])
+            rows = read(data, where, sheet)
     except DataError:
         raise
-    except Exception as error:  # openpyxl raises whatever its parsers raise on damaged files
+    except Exception as error:  # both packages raise whatever their parsers meet
         raise DataError(
             f"the workbook is damaged ({type(error).__name__})",
             where=where,
@@ -294,3 +292,38 @@ def _workbook_rows(data: bytes, where: str, sheet: str | None) -> list[list[str]
     while rows and not any(rows[-1]):
         rows.pop()
     return rows
+
+
+def _xlsx(data: bytes, where: str, sheet: str | None) -> list[list[str]]:
+    from openpyxl import load_workbook
+
+    book = load_workbook(BytesIO(data), read_only=True, data_only=True)
+    name = _sheet_name(book.sheetnames, sheet, where)
+    return _texts(book[name].iter_rows(values_only=True), where)
+
+
+def _xls(data: bytes, where: str, sheet: str | None) -> list[list[str]]:
+    import xlrd
+
+    book = xlrd.open_workbook(file_contents=data, on_demand=True, logfile=io.StringIO())
+    table = book.sheet_by_name(_sheet_name(book.sheet_names(), sheet, where))
+    return _texts((table.row_values(i) for i in range(table.nrows)), where)
+
+
+def _sheet_name(names: Sequence[str], sheet: str | None, where: str) -> str:
+    if not names:
+        raise DataError("the workbook has no sheet", where=where)
+    if sheet is not None and sheet not in names:
+        raise DataError(f'no sheet named "{sheet}"', where=where, allowed=", ".join(names))
+    return sheet or names[0]
+
+
+def _texts(rows: Iterable[Sequence[object]], where: str) -> list[list[str]]:
+    texts: list[list[str]] = []
+    cells = 0
+    for row in rows:
+        cells += len(row)
+        if cells > _MOST_CELLS:
+            raise DataError("the sheet is larger than any recording", where=where)
+        texts.append(["" if cell is None else str(cell).strip() for cell in row])
+    return texts

@@ -16,16 +16,17 @@ _NUMBER = re.compile(r"^\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?\s*$")
 
 
 def decoded(data: bytes, where: str) -> str:
-    """Return the text of a file: UTF-8, UTF-16 with mark, else Latin-1.
+    """Return the text of a file: UTF-8, UTF-16, else Latin-1.
 
-    Errors
+    Raises
     ------
     DataError
         Binary content.
     """
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+    wide = utf16_of(data)
+    if wide:
         try:
-            text = data.decode("utf-16")
+            text = data.decode(wide)
         except UnicodeDecodeError as error:
             raise DataError("damaged UTF-16 text", where=where) from error
     else:
@@ -40,6 +41,18 @@ def decoded(data: bytes, where: str) -> str:
             remedy="Export it again as text",
         )
     return text
+
+
+def utf16_of(data: bytes) -> str:
+    """Return the name of the encoding when a file is UTF-16 (with or without its mark), or ""."""
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return "utf-16"
+    head = data[:400]
+    if len(head) > 20 and not any(head[1::2]) and all(head[::2]):
+        return "utf-16-le"
+    if len(head) > 20 and not any(head[::2]) and all(head[1::2]):
+        return "utf-16-be"
+    return ""
 
 
 def lines_of(text: str) -> list[str]:
@@ -97,7 +110,7 @@ def table(
     Empty cells become NaN, decimal commas are understood, short rows are filled with NaN;
     ``ignored`` columns hold text and become NaN.
 
-    Errors
+    Raises
     ------
     DataError
         A cell that is no number, a row longer than the header, no rows.
@@ -183,7 +196,7 @@ def _number(cell: str, where: str) -> float:
 def number_after(line: str, where: str, delimiter: str = "=") -> float:
     """Return the number behind ``delimiter`` in a header line.
 
-    Errors
+    Raises
     ------
     DataError
         There is none.
@@ -222,7 +235,7 @@ def unique_names(labels: Sequence[str], kind: str, notes: list[str]) -> list[str
 def rate_of(times: np.ndarray, where: str) -> tuple[float, float, np.ndarray | None]:
     """Return (rate, start, times or None) of a time column; times only when unequally spaced.
 
-    Errors
+    Raises
     ------
     DataError
         Times missing, not increasing or fewer than two.

@@ -16,7 +16,7 @@ from .unit_factors import si_unit
 def read_trc(data: bytes, path: Path, checksum: str) -> Trial:
     """Return the markers of a TRC file as a trial.
 
-    Errors
+    Raises
     ------
     DataError
         Not a TRC file, truncated, or inconsistent with its own header.
@@ -31,7 +31,11 @@ def read_trc(data: bytes, path: Path, checksum: str) -> Trial:
     labels = [cell for cell in split(lines[3], "\t")[2:] if cell]
     if not labels:
         raise DataError("no marker is named", where=f"{where}, line 4")
-    _agrees(header, "NumMarkers", len(labels), where)
+    announced = header.get("NumMarkers", "")
+    if announced.isdigit() and int(announced) < len(labels):
+        notes.append(f"NumMarkers is {announced}, the labels name {len(labels)}: all are read")
+    else:
+        _agrees(header, "NumMarkers", len(labels), where)
     first = _first_row(lines, where)
     rows = [line.rstrip(" \t") for line in lines[first:]]
     rows = [row for row in rows if row]

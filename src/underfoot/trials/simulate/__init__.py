@@ -1,6 +1,7 @@
 """Made-up measurements with known truth, clearly synthetic, for trying out and testing."""
 
-from .folder import KINDS, NOTICE, simulated_folder, slip_truth, walk_c3d
+from .c3d_file import NOTICE, walk_c3d
+from .folder import KINDS, simulated_folder, slip_truth
 from .tester import ScanTruth, scan_columns
 from .walk import Defects, SlipTruth, WalkRecording, walk_with_slip
 

@@ -9,6 +9,14 @@ import numpy as np
 
 from underfoot.core import InputError
 
+from .walk import MARKER_RATE, RATE, WalkRecording
+
+NOTICE = (
+    "SYNTHETIC DATA. Nothing in this folder was measured: every file was computed by "
+    "'underfoot trials simulate' from the values in truth.csv, for trying out and testing the "
+    "analysis. Do not publish, mix with measurements, or take as a reference.\n"
+)
+
 _INTEL = 84
 
 
@@ -18,6 +26,13 @@ def c3d_bytes(
     analog: Mapping[str, tuple[np.ndarray, str]],
     analog_rate: float,
     plates: Sequence[tuple[np.ndarray, np.ndarray, Sequence[str]]],
+    *,
+    events: Sequence[tuple[str, str, float]] = (),
+    mass: float = 0.0,
+    software: str = "underfoot trials simulate",
+    description: str = "synthetic",
+    first_frame: int = 1,
+    frames: int | None = None,
 ) -> bytes:
     """Return a C3D file (Intel, floating point).
 
@@ -29,8 +44,16 @@ def c3d_bytes(
         Values (n * analog_rate / marker_rate,) and the unit to be written.
     plates
         Corners (4, 3) in m, origin (3,) in m, and the six channel names, each.
+    events
+        Label ("Foot Strike"), context ("Left") and time (s), each.
+    mass
+        Of the person (kg); zero leaves it out.
+    first_frame
+        Number of the first frame: time 0 is that of frame 1.
+    frames
+        Number of frames, where there are no markers.
 
-    Errors
+    Raises
     ------
     InputError
         Rates that are no whole multiple, or lengths that do not fit.
@@ -38,7 +61,7 @@ def c3d_bytes(
     Source: the C3D file format, c3d.org.
     """
     per_frame = round(analog_rate / marker_rate)
-    frames = len(next(iter(markers.values())))
+    frames = len(next(iter(markers.values()))) if frames is None else frames
     if abs(per_frame * marker_rate - analog_rate) > 1e-9 or frames > 65535:
         raise InputError("analog rate must be a multiple of the marker rate", where="c3d")
     if any(len(values) != frames * per_frame for values, _ in analog.values()):
@@ -55,7 +78,7 @@ def c3d_bytes(
                 ("RATE", _floats([marker_rate])),
                 ("UNITS", _texts(["mm"], single=True)),
                 ("LABELS", _texts(list(markers))),
-                ("DESCRIPTIONS", _texts(["synthetic"] * len(markers))),
+                ("DESCRIPTIONS", _texts([description] * len(markers))),
             ],
         ),
         (
@@ -68,7 +91,7 @@ def c3d_bytes(
                 ("OFFSET", _integers([0] * len(names), vector=True)),
                 ("UNITS", _texts([analog[name][1] for name in names])),
                 ("LABELS", _texts(names)),
-                ("DESCRIPTIONS", _texts(["synthetic"] * len(names))),
+                ("DESCRIPTIONS", _texts([description] * len(names))),
             ],
         ),
         (
@@ -81,12 +104,22 @@ def c3d_bytes(
                 ("ORIGIN", _array(np.array([1e3 * origin for _, origin, _ in plates]))),
                 (
                     "CHANNEL",
-                    _integer_table([[names.index(c) + 1 for c in chosen] for *_, chosen in plates]),
+                    _integer_table([[names.index(c) + 1 for c in own] for *_, own in plates]),
                 ),
             ],
         ),
-        ("MANUFACTURER", [("SOFTWARE", _texts(["underfoot trials simulate"], single=True))]),
+        ("MANUFACTURER", [("SOFTWARE", _texts([software], single=True))]),
     ]
+    if not plates:
+        groups = [group for group in groups if group[0] != "FORCE_PLATFORM"]
+    if mass:
+        groups.append(("PROCESSING", [("Bodymass", _floats([mass]))]))
+    if events:
+        labels, contexts, times = (list(part) for part in zip(*events, strict=True))
+        minutes = np.array([[time // 60.0, time % 60.0] for time in times])
+        content = [("USED", _integers([len(events)])), ("CONTEXTS", _texts(contexts))]
+        content += [("LABELS", _texts(labels)), ("TIMES", _array(minutes))]
+        groups.append(("EVENT", content))
     body = _parameters(groups)
     blocks = -(-(len(body) + 4) // 512)
     first_data = 2 + blocks
@@ -99,8 +132,8 @@ def c3d_bytes(
         0x50,
         len(markers),
         len(names) * per_frame,
-        1,
-        frames,
+        first_frame,
+        first_frame + frames - 1,
         0,
         -1.0,
         first_data,
@@ -146,7 +179,8 @@ def _integers(values: Sequence[int], *, vector: bool = False) -> bytes:
 
 def _integer_table(rows: Sequence[Sequence[int]]) -> bytes:
     flat = [value for row in rows for value in row]
-    return _content(2, [len(rows[0]), len(rows)], struct.pack(f"<{len(flat)}h", *flat))
+    shape = [len(rows[0]), len(rows)] if rows else [0, 0]
+    return _content(2, shape, struct.pack(f"<{len(flat)}h", *flat))
 
 
 def _floats(values: Sequence[float], *, vector: bool = False) -> bytes:
@@ -159,10 +193,32 @@ def _array(values: np.ndarray) -> bytes:
 
 
 def _texts(values: Sequence[str], *, single: bool = False) -> bytes:
-    width = max(len(value) for value in values)
-    content = b"".join(value.ljust(width).encode("ascii") for value in values)
+    width = max(1, *(len(value) for value in values)) if values else 1
+    content = b"".join(value.ljust(width).encode("ascii", "replace") for value in values)
     return _content(-1, [width] if single else [width, len(values)], content)
 
 
 def _content(kind: int, dimensions: list[int], data: bytes) -> bytes:
     return struct.pack("<bB", kind, len(dimensions)) + bytes(dimensions) + data
+
+
+def walk_c3d(recording: WalkRecording) -> bytes:
+    """Return a recording as a C3D file with two type-2 plates and the pressures in kPa."""
+    analog: dict[str, tuple[np.ndarray, str]] = {}
+    plates = []
+    origin = np.array([0.0, 0.0, -0.04])
+    for number, (force, centre, corners) in enumerate(
+        zip(recording.force, recording.centre, recording.corners, strict=True), start=1
+    ):
+        axes = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
+        in_plate = force @ axes.T
+        lever = (centre - corners.mean(axis=0)) @ axes.T + origin
+        moment = np.cross(lever, in_plate)
+        names = [f"{letter}{number}" for letter in ("Fx", "Fy", "Fz", "Mx", "My", "Mz")]
+        for i in range(3):
+            analog[names[i]] = (in_plate[:, i], "N")
+            analog[names[3 + i]] = (1e3 * moment[:, i], "Nmm")
+        plates.append((corners, origin, names))
+    for name, values in recording.pressures.items():
+        analog[name] = (1e-3 * values, "kPa")
+    return c3d_bytes(recording.markers, MARKER_RATE, analog, RATE, plates)

@@ -10,21 +10,20 @@ import numpy as np
 
 from underfoot.core import Progress, silent, unknown_name
 
-from .c3d_file import c3d_bytes
+from .activities import ACTIVITIES, activity, activity_c3d
+from .c3d_file import NOTICE, walk_c3d
+from .study import simulated_study
 from .tester import SENSOR, ScanTruth, scan_columns
 from .tribometer import disk_run, relaxation
-from .walk import DURATION, MARKER_RATE, RATE, Defects, SlipTruth, WalkRecording, walk_with_slip
+from .walk import DURATION, Defects, SlipTruth, walk_with_slip
 
-NOTICE = (
-    "SYNTHETIC DATA. Nothing in this folder was measured: every file was computed by "
-    "'underfoot trials simulate' from the values in truth.csv, for trying out and testing the "
-    "analysis. Do not publish, mix with measurements, or take as a reference.\n"
-)
 KINDS = {
     "slips": "human slips over a sensor array (G.5, G.6), C3D",
+    "study": "walking of persons in three shoes, conditions in the file names, C3D",
     "tester": "slip-tester scans over one pressure sensor (G.4), CSV",
     "pin_on_disk": "COF against speed with six fluids (G.2), CSV",
     "relaxation": "compression relaxation tests (G.1), CSV",
+    "activities": "walking, and jumps, runs, stairs, turns that are no level step, C3D",
 }
 # Report G.2: viscosity (cP), COF_BL, tau (m/s), asymptote; flat ones as their mean COF.
 _FLUIDS = {
@@ -61,8 +60,8 @@ def simulated_folder(
     kind
         A key of ``KINDS``.
     count
-        Trials for "slips" and "relaxation"; repeats of the whole series for "pin_on_disk";
-        scans per shoe for "tester".
+        Trials for "slips" and "relaxation"; persons for "study"; repeats of the whole series for
+        "pin_on_disk"; scans per shoe for "tester".
 
     Errors
     ------
@@ -73,9 +72,11 @@ def simulated_folder(
 
     makers: dict[str, Callable[[Path, int, np.random.Generator, Progress], list[Path]]] = {
         "slips": _slips,
+        "study": _study,
         "tester": _tester,
         "pin_on_disk": _pin_on_disk,
         "relaxation": _relaxation,
+        "activities": _activities,
     }
     if kind not in makers:
         raise unknown_name("kind of data", kind, KINDS, where="simulate")
@@ -131,28 +132,6 @@ def slip_truth(number: int, seed: int) -> tuple[SlipTruth, Defects, dict[str, st
     return truth, defects, conditions
 
 
-def walk_c3d(recording: WalkRecording) -> bytes:
-    """Return a recording as a C3D file with two type-2 plates and the pressures in kPa."""
-    analog: dict[str, tuple[np.ndarray, str]] = {}
-    plates = []
-    origin = np.array([0.0, 0.0, -0.04])
-    for number, (force, centre, corners) in enumerate(
-        zip(recording.force, recording.centre, recording.corners, strict=True), start=1
-    ):
-        axes = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
-        in_plate = force @ axes.T
-        lever = (centre - corners.mean(axis=0)) @ axes.T + origin
-        moment = np.cross(lever, in_plate)
-        names = [f"{letter}{number}" for letter in ("Fx", "Fy", "Fz", "Mx", "My", "Mz")]
-        for i in range(3):
-            analog[names[i]] = (in_plate[:, i], "N")
-            analog[names[3 + i]] = (1e3 * moment[:, i], "Nmm")
-        plates.append((corners, origin, names))
-    for name, values in recording.pressures.items():
-        analog[name] = (1e-3 * values, "kPa")
-    return c3d_bytes(recording.markers, MARKER_RATE, analog, RATE, plates)
-
-
 def _slips(out: Path, count: int, rng: np.random.Generator, progress: Progress) -> list[Path]:
     paths, conditions, truths = [], [], []
     seed = int(rng.integers(2**32))
@@ -177,6 +156,22 @@ def _slips(out: Path, count: int, rng: np.random.Generator, progress: Progress) 
     lines += [f"{n} = [{1e3 * x:g}, {1e3 * y:g}, {1e3 * z:g}]" for n, (x, y, z) in sensors.items()]
     (out / "profile.toml").write_text("\n".join(lines) + "\n", encoding="utf-8")
     _tables(out, conditions, truths)
+    return paths
+
+
+def _study(out: Path, count: int, rng: np.random.Generator, progress: Progress) -> list[Path]:
+    return simulated_study(out, persons=count, seed=int(rng.integers(2**32)), progress=progress)
+
+
+def _activities(out: Path, count: int, rng: np.random.Generator, progress: Progress) -> list[Path]:
+    paths, truths = [], []
+    for number, (name, words) in enumerate(ACTIVITIES.items(), start=1):
+        path = out / f"{name}.c3d"
+        path.write_bytes(activity_c3d(activity(name, rng)))
+        paths.append(path)
+        truths.append({"file": path.name, "activity": words})
+        progress("writing made-up activities", number / len(ACTIVITIES))
+    _tables(out, truths, truths)
     return paths
 
 

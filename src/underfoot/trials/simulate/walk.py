@@ -160,7 +160,7 @@ def _plate_corners(begin: float) -> np.ndarray:
     )
 
 
-def _cosine(time: np.ndarray, knots: list[tuple[float, float]]) -> np.ndarray:
+def raised_cosines(time: np.ndarray, knots: list[tuple[float, float]]) -> np.ndarray:
     """Return raised cosines through (time, value) knots: every knot is an extreme or a level."""
     out = np.full(len(time), knots[0][1])
     for (t0, v0), (t1, v1) in pairwise(knots):
@@ -174,7 +174,7 @@ def _slipping_heel(time: np.ndarray, landing: np.ndarray, truth: SlipTruth) -> n
     start = SLIP_CONTACT + truth.slip_start
     peak = start + truth.rise
     end = peak + truth.fall
-    speed = _cosine(
+    speed = raised_cosines(
         time,
         [
             (SLIP_CONTACT - 0.45, 0.0),
@@ -194,7 +194,7 @@ def _slipping_heel(time: np.ndarray, landing: np.ndarray, truth: SlipTruth) -> n
     x += landing[0] - x[at]
     y += landing[1] - y[at]
     lift = end + 0.12
-    z = 0.02 + _cosine(
+    z = 0.02 + raised_cosines(
         time,
         [
             (SLIP_CONTACT - 0.45, 0.0),
@@ -209,20 +209,21 @@ def _slipping_heel(time: np.ndarray, landing: np.ndarray, truth: SlipTruth) -> n
 
 
 def _walking_heel(time: np.ndarray, landing: np.ndarray, contact: float) -> np.ndarray:
-    speed = _cosine(
+    # A heel turns about the ball of the foot: it rises by centimetres before it goes forward.
+    speed = raised_cosines(
         time,
         [
             (contact - 0.45, 0.0),
             (contact - 0.25, 4.2),
             (contact + 0.03, 0.02),
-            (contact + 0.35, 0.03),
+            (contact + 0.43, 0.03),
             (contact + 0.65, 4.4),
             (contact + 0.95, 0.0),
         ],
     )
     x = np.cumsum(speed) / RATE
     x += landing[0] - x[int(np.searchsorted(time, contact))]
-    z = 0.02 + _cosine(
+    z = 0.02 + raised_cosines(
         time,
         [
             (contact - 0.45, 0.0),
@@ -267,7 +268,7 @@ def _slip_step(
     """Return force and centre of pressure while sliding at ``truth.acof``."""
     end = truth.slip_start + truth.rise + truth.fall + 0.15
     weight = truth.mass * 9.80665
-    normal = weight * _cosine(
+    normal = weight * raised_cosines(
         time - SLIP_CONTACT,
         [(0.0, 0.0), (0.1, 0.8), (max(0.55, end) - 0.1, 0.75), (max(0.6, end), 0.0)],
     )

@@ -63,10 +63,10 @@ class Design:
 
     def without(self, *terms: str) -> np.ndarray:
         """Return the matrix without the columns of ``terms``."""
-        kept = np.ones(self.matrix.shape[1], dtype=bool)
+        columns = np.ones(self.matrix.shape[1], dtype=bool)
         for term in terms:
-            kept[self.slices[term]] = False
-        return self.matrix[:, kept]
+            columns[self.slices[term]] = False
+        return self.matrix[:, columns]
 
     def rows(self, values: Mapping[str, np.ndarray]) -> np.ndarray:
         """Return model rows (m, p) for predictor values (level numbers or numbers), each (m,)."""
@@ -90,20 +90,38 @@ def crossed(*names: str, order: int | None = None) -> tuple[str, ...]:
     )
 
 
-def predictor(name: str, values: Sequence[object] | np.ndarray, *, kind: str = "") -> Predictor:
+def predictor(
+    name: str,
+    values: Sequence[object] | np.ndarray | Predictor,
+    *,
+    kind: str = "",
+    rows: np.ndarray | None = None,
+) -> Predictor:
     """Return a factor for text (or ``kind="factor"``), a covariate for numbers.
 
     Levels stand in the order of their first appearance, so that tables read as the data do.
 
-    Errors
+    Parameters
+    ----------
+    rows
+        Which values count, shape (n,) of bool; all by default.
+
+    Raises
     ------
     InputError
         A factor with one level, a covariate that is not finite or constant.
     """
+    if isinstance(values, Predictor):
+        if rows is None or rows.all():
+            return values
+        kind = "factor" if values.is_factor else "covariate"
+        values = [values.levels[i] for i in values.values] if values.is_factor else values.values
     if not kind:
         kind = "covariate" if np.asarray(values).dtype.kind in "fiu" else "factor"
+    if rows is not None and not rows.all():
+        values = [value for value, row in zip(values, rows, strict=True) if row]
     if kind == "factor":
-        named = [_level(value) for value in values]
+        named = [f"{v:g}" if isinstance(v, float | np.floating) else str(v) for v in values]
         levels = tuple(dict.fromkeys(named))
         if len(levels) < 2:
             raise InputError(
@@ -124,7 +142,7 @@ def predictor(name: str, values: Sequence[object] | np.ndarray, *, kind: str = "
 def design(predictors: Mapping[str, Predictor], terms: Sequence[str]) -> Design:
     """Return the model matrix of ``terms``, factors coded to sum to zero.
 
-    Errors
+    Raises
     ------
     InputError
         A term names no predictor, or appears twice.
@@ -167,9 +185,3 @@ def _product(names: Sequence[str], coded: Mapping[str, np.ndarray]) -> np.ndarra
     for name in names[1:]:
         block = (block[:, :, None] * coded[name][:, None, :]).reshape(len(block), -1)
     return block
-
-
-def _level(value: object) -> str:
-    if isinstance(value, float | np.floating):
-        return f"{float(value):g}"
-    return str(value)

@@ -1,31 +1,43 @@
-"""Linear least squares with the pieces that analysis of variance and comparisons need."""
+"""Linear models: analysis of variance, least-squares means, Tukey's comparisons, subsets.
+
+Least squares is that of statsmodels; designs are built here (``design``), because formula
+packages reorder the terms of a type I analysis and drop empty cells in silence.
+"""
 
 from __future__ import annotations
 
+import warnings as python_warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import Any, Protocol
 
 import numpy as np
 
-from underfoot.core import DataError, InputError
+from underfoot.core import DataError, InputError, unknown_name
 
-from .design import Design, Predictor, crossed, design, empty_cells, predictor
+from .design import Design, Predictor, crossed, design, empty_cells, parts, predictor
+
+TYPES = {
+    1: "type I (sequential)",
+    2: "type II (each term after all terms that do not contain it)",
+    3: "type III (each term after all others, factors coded to sum to zero)",
+}
+EXACT = 1e-18  # share of the variation left over below which a fit is exact, rounding aside
 
 
 @dataclass(frozen=True, slots=True)
 class LinearModel:
-    """A fitted linear model.
+    """A least-squares fit.
 
     Parameters
     ----------
-    coefficients
-        Shape (p,), sum-to-zero coding.
-    covariance
-        Shape (p, p); pseudo-inverse when columns depend on each other.
+    coefficients, covariance
+        Shapes (p,) and (p, p), sum-to-zero coding; pseudo-inverse of dependent columns.
     residual_sum, residual_df
         Residual sum of squares and its degrees of freedom.
     warnings
-        Empty cells, dropped rows, dependent columns.
+        Rows left out, empty cells, dependent columns, an exact fit.
     """
 
     response_name: str
@@ -48,6 +60,13 @@ class LinearModel:
         return float(np.sum((self.response - self.response.mean()) ** 2))
 
     @property
+    def exact(self) -> bool:
+        """True when nothing but rounding is left over: F and p then mean nothing."""
+        return self.residual_sum <= EXACT * max(
+            self.total_sum, float(self.response @ self.response)
+        )
+
+    @property
     def r_squared(self) -> float:
         """Share of the variation the model describes."""
         return 1.0 - self.residual_sum / self.total_sum
@@ -61,6 +80,33 @@ class LinearModel:
     def fitted(self) -> np.ndarray:
         """Fitted values, shape (n,)."""
         return self.design.matrix @ self.coefficients
+
+    def df(self, factor: str) -> float:
+        """Return the degrees of freedom of comparisons between levels of ``factor``."""
+        return self.residual_df
+
+
+class Comparable(Protocol):
+    """What comparisons need of a model: ``LinearModel`` and ``MixedModel`` have it."""
+
+    @property
+    def design(self) -> Design:
+        """Coded predictors."""
+        ...
+
+    @property
+    def coefficients(self) -> np.ndarray:
+        """Shape (p,)."""
+        ...
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """Shape (p, p)."""
+        ...
+
+    def df(self, factor: str) -> float:
+        """Return the degrees of freedom of comparisons between levels of ``factor``."""
+        ...
 
 
 def linear_model(
@@ -81,11 +127,37 @@ def linear_model(
     terms
         For example ``("shoe", "fluid", "shoe:fluid")``; all crossed by default.
 
-    Errors
+    Raises
     ------
     DataError
         Lengths differ, a constant response, or no degrees of freedom left for the residual.
     """
+    y, built, warnings = model_data(response, predictors, terms, name)
+    rank = int(np.linalg.matrix_rank(built.matrix))
+    if rank < built.matrix.shape[1] and not any("empty cells" in text for text in warnings):
+        warnings.append("predictors depend on each other: single coefficients have no meaning")
+    if len(y) - rank < 1:
+        raise DataError(
+            f"{len(y)} observations for {rank} parameters leave nothing to estimate the scatter",
+            where=name,
+            remedy="Drop interactions or measure more",
+        )
+    fit = _least_squares(y, built.matrix)
+    model = LinearModel(
+        name, y, built, fit.params, fit.cov_params(), float(fit.ssr), int(fit.df_resid), ()
+    )
+    if model.exact:
+        warnings.append("the model fits the data exactly: no scatter is left for a test")
+    return replace(model, warnings=tuple(warnings))
+
+
+def model_data(
+    response: Sequence[float] | np.ndarray,
+    predictors: Mapping[str, Sequence[object] | np.ndarray | Predictor],
+    terms: Sequence[str] | None,
+    name: str,
+) -> tuple[np.ndarray, Design, list[str]]:
+    """Return complete responses, the design and warnings of empty cells (``linear_model``)."""
     y = np.asarray(response, dtype=float)
     if not predictors:
         raise InputError("a model needs at least one predictor", where=name)
@@ -93,54 +165,300 @@ def linear_model(
         length = len(column.values if isinstance(column, Predictor) else column)
         if length != len(y):
             raise DataError(f"{length} values for {len(y)} responses", where=key)
-    kept = np.isfinite(y)
+    complete = np.isfinite(y)
     warnings: list[str] = []
-    if not kept.all():
-        warnings.append(f"{int((~kept).sum())} rows without a response were left out")
-    ready = {key: _ready(key, column, kept) for key, column in predictors.items()}
+    if not complete.all():
+        warnings.append(f"{int((~complete).sum())} rows without a response were left out")
+    ready = {key: predictor(key, column, rows=complete) for key, column in predictors.items()}
     terms = crossed(*ready) if terms is None else tuple(terms)
     built = design(ready, terms)
-    y = y[kept]
     for term in terms:
         cells = empty_cells(ready, term)
         if cells:
-            shown = "; ".join(cells[:4]) + (" ..." if len(cells) > 4 else "")
+            some = "; ".join(cells[:4]) + (" ..." if len(cells) > 4 else "")
             warnings.append(
-                f"{term}: empty cells ({shown}); type III tests of lower terms depend on the "
+                f"{term}: empty cells ({some}); type III tests of lower terms depend on the "
                 "coding and least-squares means can't all be estimated"
             )
-    matrix = built.matrix
-    rank = int(np.linalg.matrix_rank(matrix))
-    if rank < matrix.shape[1] and not any("empty cells" in text for text in warnings):
-        warnings.append("predictors depend on each other: single coefficients have no meaning")
-    df = len(y) - rank
-    if df < 1:
-        raise DataError(
-            f"{len(y)} observations for {rank} parameters leave nothing to estimate the scatter",
-            where=name,
-            remedy="Drop interactions or measure more",
-        )
+    y = y[complete]
     if np.ptp(y) == 0:
         raise DataError("the response is constant", where=name)
-    coefficients = np.linalg.lstsq(matrix, y, rcond=None)[0]
-    rss = float(np.sum((y - matrix @ coefficients) ** 2))
-    covariance = np.linalg.pinv(matrix.T @ matrix) * (rss / df)
-    return LinearModel(name, y, built, coefficients, covariance, rss, df, tuple(warnings))
+    return y, built, warnings
 
 
-def residual_sum(matrix: np.ndarray, response: np.ndarray) -> tuple[float, int]:
-    """Return the residual sum of squares and the rank of a least-squares fit."""
-    solution, _, rank, _ = np.linalg.lstsq(matrix, response, rcond=None)
-    return float(np.sum((response - matrix @ solution) ** 2)), int(rank)
+def _least_squares(y: np.ndarray, matrix: np.ndarray) -> Any:
+    from statsmodels.regression.linear_model import OLS
+
+    with python_warnings.catch_warnings():
+        # Dependent columns are in the model's own warnings, with the cells that cause them.
+        python_warnings.simplefilter("ignore")
+        return OLS(y, matrix).fit()
 
 
-def _ready(
-    name: str, column: Sequence[object] | np.ndarray | Predictor, kept: np.ndarray
-) -> Predictor:
-    if isinstance(column, Predictor):
-        if kept.all():
-            return column
-        kind = "factor" if column.is_factor else "covariate"
-        values = [column.levels[i] for i in column.values] if column.is_factor else column.values
-        return predictor(name, [v for v, k in zip(values, kept, strict=True) if k], kind=kind)
-    return predictor(name, [v for v, k in zip(column, kept, strict=True) if k])
+@dataclass(frozen=True, slots=True)
+class AnovaRow:
+    """One term: sum of squares, degrees of freedom, F and p (None for the residual).
+
+    ``error_df`` are the degrees of freedom of its error.
+    """
+
+    term: str
+    sum_of_squares: float
+    df: int
+    f: float | None = None
+    p: float | None = None
+    error_df: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class AnovaTable:
+    """Analysis of variance; ``rows`` holds the terms, then the residual."""
+
+    model: LinearModel
+    ss_type: int
+    rows: tuple[AnovaRow, ...]
+    warnings: tuple[str, ...]
+
+    @property
+    def title(self) -> str:
+        """Name of the table with its type of sums of squares."""
+        return f"Analysis of variance of {self.model.response_name}, {TYPES[self.ss_type]}"
+
+    def __getitem__(self, term: str) -> AnovaRow:
+        return next(row for row in self.rows if row.term == term)
+
+    def __str__(self) -> str:
+        lines = [self.title, f"{'term':<28}{'sum of squares':>16}{'df':>5}{'F':>12}{'p':>12}"]
+        for row in self.rows:
+            tail = "" if row.f is None or row.p is None else f"{row.f:>12.4g}{row.p:>12.4g}"
+            lines.append(f"{row.term:<28}{row.sum_of_squares:>16.6g}{row.df:>5}{tail}")
+        return "\n".join([*lines, *(f"Warning: {text}" for text in self.warnings)])
+
+
+def analysis_of_variance(
+    response: Sequence[float] | np.ndarray,
+    predictors: Mapping[str, Sequence[object] | np.ndarray | Predictor],
+    terms: Sequence[str] | None = None,
+    *,
+    ss_type: int = 3,
+    name: str = "response",
+) -> AnovaTable:
+    """Return the analysis of variance (or covariance) of a linear model.
+
+    Type I adds the terms in the order given; type II tests each term after all terms that do not
+    contain it; type III after all others, which is right only with factors coded to sum to zero,
+    as here. JMP, SPSS and SAS report type III. A covariate in an interaction is not centred: the
+    factor's type III test is then about the covariate at zero, and a warning says so.
+
+    Parameters
+    ----------
+    response, predictors, terms
+        As for ``linear_model``.
+    ss_type
+        1, 2 or 3.
+
+    Raises
+    ------
+    InputError
+        Another type, or as for ``linear_model``.
+
+    Source: J. Fox, Applied Regression Analysis and Generalized Linear Models, ch. 8.
+    """
+    from scipy import stats
+
+    if ss_type not in TYPES:
+        raise InputError(f"sums of squares of type {ss_type}", where="ss_type", allowed="1, 2, 3")
+    model = linear_model(response, predictors, terms, name=name)
+    built, y = model.design, model.response
+    warnings = list(model.warnings)
+    if ss_type == 3:
+        for term in built.terms:
+            slopes = [n for n in parts(term) if not built.predictors[n].is_factor]
+            if len(parts(term)) > 1 and slopes:
+                warnings.append(
+                    f"{term}: type III tests of the terms inside it are about {slopes[0]} = 0; "
+                    "centre the covariate to test at its mean"
+                )
+    rows = []
+    for number, term in enumerate(built.terms):
+        others = {
+            1: built.terms[number + 1 :],
+            2: [t for t in built.terms if t != term and set(parts(term)) < set(parts(t))],
+            3: (),
+        }[ss_type]
+        full = _least_squares(y, built.without(*others))
+        reduced = _least_squares(y, built.without(term, *others))
+        ss, df = max(float(reduced.ssr - full.ssr), 0.0), int(reduced.df_resid - full.df_resid)
+        if df == 0 or model.exact:
+            rows.append(AnovaRow(term, ss, df))
+            continue
+        f = ss / df / model.residual_mean_square
+        p = float(stats.f.sf(f, df, model.residual_df))
+        rows.append(AnovaRow(term, ss, df, f, p, model.residual_df))
+    rows.append(AnovaRow("residual", model.residual_sum, model.residual_df))
+    return AnovaTable(model, ss_type, tuple(rows), tuple(warnings))
+
+
+@dataclass(frozen=True, slots=True)
+class AdjustedMean:
+    """Least-squares mean of one level: the other factors weigh equally, covariates at mean."""
+
+    level: str
+    mean: float
+    standard_error: float
+    n: int
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Difference ``first`` - ``second`` with its simultaneous interval and adjusted p."""
+
+    first: str
+    second: str
+    difference: float
+    standard_error: float
+    t: float
+    p: float
+    low: float
+    high: float
+
+
+def least_squares_means(model: Comparable, factor: str) -> list[AdjustedMean]:
+    """Return the least-squares mean of each level of ``factor``.
+
+    Predictions on the grid of all levels, averaged with equal weights over the other factors,
+    covariates at their mean. In unbalanced data they differ from the plain means of the groups.
+
+    Raises
+    ------
+    InputError
+        No such factor in the model.
+    """
+    rows, counts, levels = _mean_rows(model.design, factor)
+    means = rows @ model.coefficients
+    errors = np.sqrt(np.einsum("ij,jk,ik->i", rows, model.covariance, rows))
+    return [
+        AdjustedMean(level, float(m), float(e), int(n))
+        for level, m, e, n in zip(levels, means, errors, counts, strict=True)
+    ]
+
+
+def tukey_hsd(model: Comparable, factor: str, *, confidence: float = 0.95) -> list[Comparison]:
+    """Return all pairwise differences of least-squares means, adjusted after Tukey and Kramer.
+
+    p = P(Q > sqrt(2) |t|) with Q the studentized range of k means and the degrees of freedom of
+    the model (JMP and R's emmeans do the same; a one-way Tukey test on a factorial experiment
+    uses another mean square). Exact when balanced, conservative otherwise.
+
+    Raises
+    ------
+    InputError
+        No such factor; a confidence outside 0 to 1.
+    DataError
+        The model leaves no scatter.
+    """
+    from scipy.stats import studentized_range
+
+    if not 0 < confidence < 1:
+        raise InputError(f"confidence {confidence}", where="confidence", allowed="between 0 and 1")
+    if isinstance(model, LinearModel) and model.exact:
+        raise DataError("the model fits the data exactly: no scatter", where=factor)
+    rows, _, levels = _mean_rows(model.design, factor)
+    k, df = len(levels), model.df(factor)
+    critical = float(studentized_range.ppf(confidence, k, df)) / np.sqrt(2.0)
+    comparisons = []
+    for i, j in combinations(range(k), 2):
+        contrast = rows[i] - rows[j]
+        difference = float(contrast @ model.coefficients)
+        error = float(np.sqrt(contrast @ model.covariance @ contrast))
+        t = difference / error
+        p = float(np.clip(studentized_range.sf(np.sqrt(2.0) * abs(t), k, df), 0.0, 1.0))
+        low, high = difference - critical * error, difference + critical * error
+        comparisons.append(
+            Comparison(levels[i], levels[j], difference, error, t, p, float(low), float(high))
+        )
+    return comparisons
+
+
+def letters(comparisons: list[Comparison], *, alpha: float = 0.05) -> dict[str, str]:
+    """Return letters for the levels: levels that share one do not differ at ``alpha``.
+
+    Insert-and-absorb of Piepho, J. Comput. Graph. Stat. 13 (2004) 456. The first letter goes to
+    the group that holds the largest mean.
+    """
+    height: dict[str, float] = {}
+    for c in comparisons:
+        height[c.first] = height.get(c.first, 0.0) + c.difference
+        height[c.second] = height.get(c.second, 0.0) - c.difference
+    order = sorted(height, key=lambda level: -height[level])
+    groups = [set(order)]
+    for c in comparisons:
+        if c.p >= alpha:
+            continue
+        split: list[set[str]] = []
+        for group in groups:
+            both = {c.first, c.second} <= group
+            split += [group - {c.first}, group - {c.second}] if both else [group]
+        groups = [
+            g
+            for i, g in enumerate(split)
+            if not any(g < other or (g == other and j < i) for j, other in enumerate(split))
+        ]
+    groups.sort(key=lambda group: [order.index(x) for x in sorted(group, key=order.index)])
+    return {
+        level: "".join(
+            "abcdefghijklmnopqrstuvwxyz"[i] for i, group in enumerate(groups) if level in group
+        )
+        for level in order
+    }
+
+
+def _mean_rows(built: Design, factor: str) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
+    factors = {name: p for name, p in built.predictors.items() if p.is_factor}
+    if factor not in factors:
+        raise unknown_name("factor", factor, factors, where="Tukey")
+    shape = [len(p.levels) for p in factors.values()]
+    grid = np.indices(shape).reshape(len(shape), -1)
+    values = dict(zip(factors, grid, strict=True))
+    for name, p in built.predictors.items():
+        if not p.is_factor:
+            values[name] = np.full(grid.shape[1], p.values.mean())
+    rows = built.rows(values)
+    levels = factors[factor].levels
+    means = np.array([rows[values[factor] == i].mean(axis=0) for i in range(len(levels))])
+    return means, np.bincount(factors[factor].values, minlength=len(levels)), levels
+
+
+@dataclass(frozen=True, slots=True)
+class Subset:
+    """One subset of predictors, main effects only."""
+
+    predictors: tuple[str, ...]
+    r_squared: float
+    adjusted_r_squared: float
+    parameters: int
+
+
+def all_subsets(
+    response: Sequence[float] | np.ndarray,
+    predictors: Mapping[str, Sequence[object] | np.ndarray | Predictor],
+) -> list[Subset]:
+    """Return R^2 and adjusted R^2 of all non-empty subsets (the report's Table 7), smallest first.
+
+    An ordinal variable enters as a factor (text; k - 1 parameters) or as a trend (numbers; one).
+    The largest of many adjusted R^2 is optimistic: it was picked.
+
+    Raises
+    ------
+    InputError
+        More than ten predictors; otherwise as ``linear_model``.
+    """
+    if len(predictors) > 10:
+        raise InputError(f"{len(predictors)} predictors", where="predictors", allowed="ten at most")
+    subsets = []
+    for size in range(1, len(predictors) + 1):
+        for names in combinations(predictors, size):
+            model = linear_model(response, {name: predictors[name] for name in names}, names)
+            columns = model.design.matrix.shape[1]
+            subsets.append(Subset(names, model.r_squared, model.adjusted_r_squared, columns))
+    return subsets

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+
+from underfoot.core.optional import njit
 
 # places of the constants in the parameter vector
 AREA, AREA_POWER, AREA_ANGLE = 0, 1, 2

@@ -1,1 +1,0 @@
-"""Compiled loops of the block's finite elements."""

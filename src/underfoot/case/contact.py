@@ -1,0 +1,251 @@
+"""Slots of the contact: hardness to modulus, rough contact, compliance of the sole, film."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from underfoot.core import Breach, Cache, SourcedValue
+
+from .context import Context
+from .section import Option
+
+if TYPE_CHECKING:
+    from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
+    from underfoot.shoe import SoleMap
+    from underfoot.sole_contact.compliance import Compliance
+
+HARDNESS_SPREAD = 0.3
+"""Relative standard deviation of a modulus from hardness (assumed: tens of percent)."""
+TABLE_CELLS, TABLE_SURFACES, TABLE_WAVES = 128, 4, 4
+"""Contact table: cells along a side, surfaces, longest waves along a side."""
+TABLE_PRESSURES = (1e3, 2e6)
+"""Contact table: lowest and highest nominal pressure, Pa."""
+
+
+class HardnessOption(Option):
+    """Young's modulus from Shore A hardness, where none was measured."""
+
+    slot: ClassVar[str] = "hardness"
+    usual: ClassVar[str | None] = "gent"
+
+    @abstractmethod
+    def build(self, shore_a: float) -> tuple[SourcedValue, list[Breach]]:
+        """Return Young's modulus, Pa, and what leaves the range of the relation."""
+
+    def _sourced(self, modulus: float, shore_a: float) -> SourcedValue:
+        return SourcedValue(
+            modulus,
+            "Pa",
+            source=f"{self.source} from Shore A {shore_a:g}",
+            uncertainty=HARDNESS_SPREAD * modulus,
+            note="static modulus from hardness, good to tens of percent",
+        )
+
+
+class GentHardness(HardnessOption):
+    """Gent 1958."""
+
+    name: ClassVar[str] = "gent"
+    source: ClassVar[str] = "Gent 1958"
+
+    def build(self, shore_a: float) -> tuple[SourcedValue, list[Breach]]:
+        """Return Young's modulus, Pa, and what leaves the range of the relation."""
+        from underfoot import material
+
+        modulus = float(material.youngs_modulus_gent(shore_a))
+        return self._sourced(modulus, shore_a), material.gent_breaches(shore_a)
+
+
+class RuessHardness(HardnessOption):
+    """Ruess."""
+
+    name: ClassVar[str] = "ruess"
+    source: ClassVar[str] = "Ruess"
+
+    def build(self, shore_a: float) -> tuple[SourcedValue, list[Breach]]:
+        """Return Young's modulus, Pa, and what leaves the range of the relation."""
+        from underfoot import material
+
+        modulus = float(material.youngs_modulus_ruess(shore_a))
+        return self._sourced(modulus, shore_a), material.ruess_breaches(shore_a)
+
+
+class RoughContactOption(Option):
+    """How the rough interface carries load and lets fluid through."""
+
+    slot: ClassVar[str] = "rough_contact"
+    usual: ClassVar[str | None] = "exponential"
+
+    @abstractmethod
+    def build(self, context: Context) -> PressureGapLaw:
+        """Return the law of pressure and permeability against the mean gap."""
+
+
+class ExponentialContact(RoughContactOption):
+    """One formula, no flow factor."""
+
+    name: ClassVar[str] = "exponential"
+    source: ClassVar[str] = "Persson 2007, low-load form"
+
+    def build(self, context: Context) -> PressureGapLaw:
+        """Return the law of pressure and permeability against the mean gap."""
+        from underfoot.rough_contact import ExponentialLaw
+
+        return ExponentialLaw(context.youngs_modulus, context.poisson_ratio, context.rq_value)
+
+
+class ContactTableOption(RoughContactOption):
+    """Self-affine surfaces of the interface's Rq in sliding contact with the outsole's rubber, with
+    the flow factors of their own gaps; computed once and cached.
+    """
+
+    name: ClassVar[str] = "contact_table"
+    source: ClassVar[str] = "sliding rough contact by boundary elements"
+    reads: ClassVar[tuple[str, ...]] = (
+        "interface.hurst",
+        "interface.longest_wave",
+        "interface.shortest_wave",
+    )
+
+    def build(self, context: Context) -> PressureGapLaw:
+        """Return the law of pressure and permeability against the mean gap."""
+        from underfoot.rough_contact import ContactTable
+        from underfoot.surface import self_affine
+
+        rq, waves = context.rq_value, context.interface
+        side = TABLE_WAVES * waves.longest_wave
+        spacing = min(side / TABLE_CELLS, waves.shortest_wave / 2)
+        cells = 2 * math.ceil(side / spacing / 2)
+        surfaces = [
+            self_affine(
+                cells, side / cells, rq, waves.hurst, waves.longest_wave, waves.shortest_wave, seed
+            )
+            for seed in range(TABLE_SURFACES)
+        ]
+        speed = context.motion.speed
+        table = ContactTable.from_surfaces(
+            surfaces,
+            context.rubber(),
+            np.geomspace(*TABLE_PRESSURES, 14),
+            np.array([0.5 * speed, speed, 2.0 * speed]),
+            poisson_ratio=context.poisson_ratio,
+            cache=Cache("contact_table"),
+            description=f"self-affine interface, Rq {rq * 1e6:.3g} um",
+            progress=context.progress,
+        )
+        return table.law(speed)
+
+
+class ComplianceOption(Option):
+    """How the sole gives way under pressure."""
+
+    slot: ClassVar[str] = "compliance"
+    usual: ClassVar[str | None] = "layered"
+
+    @abstractmethod
+    def build(self, context: Context, sole: SoleMap) -> Compliance:
+        """Return the map from pressure to deflection on the grid of ``sole``."""
+
+
+def _layers(context: Context) -> dict[str, Any]:
+    layers, midsole = context.shoe.sole, context.shoe.sole.midsole
+    return {
+        "modulus": context.youngs_modulus,
+        "poisson_ratio": context.poisson_ratio,
+        "thickness": layers.outsole_thickness,
+        "shoe_angle": context.motion.shoe_angle,
+        "midsole_modulus": midsole and midsole.modulus,
+        "midsole_thickness": midsole and midsole.thickness,
+        **({"midsole_poisson_ratio": midsole.poisson_ratio} if midsole else {}),
+    }
+
+
+class LayeredCompliance(ComplianceOption):
+    """Endless layers with free edges, by convolution."""
+
+    name: ClassVar[str] = "layered"
+    source: ClassVar[str] = "outsole layer with free edges"
+
+    def build(self, context: Context, sole: SoleMap) -> Compliance:
+        """Return the map from pressure to deflection on the grid of ``sole``."""
+        from underfoot.sole_contact.compliance import layered_compliance
+
+        return layered_compliance(sole, **_layers(context))
+
+
+class FiniteElementCompliance(ComplianceOption):
+    """The real shape of sole, lugs and rim, condensed once and kept in the cache."""
+
+    name: ClassVar[str] = "finite_element"
+    source: ClassVar[str] = "linear finite elements, condensed to the sole's surface"
+
+    def build(self, context: Context, sole: SoleMap) -> Compliance:
+        """Return the map from pressure to deflection on the grid of ``sole``."""
+        from underfoot.sole_contact.finite_element import finite_element_compliance
+
+        return finite_element_compliance(
+            sole,
+            **_layers(context),
+            cache=Cache("sole_compliance-1"),
+            progress=context.progress,
+        )
+
+
+class HalfSpaceCompliance(ComplianceOption):
+    """Elastic half-space, for comparison."""
+
+    name: ClassVar[str] = "half_space"
+    source: ClassVar[str] = "Boussinesq half-space"
+
+    def build(self, context: Context, sole: SoleMap) -> Compliance:
+        """Return the map from pressure to deflection on the grid of ``sole``."""
+        from underfoot.sole_contact.compliance import half_space_compliance
+
+        return half_space_compliance(
+            (sole.x.size, sole.y.size),
+            sole.spacing,
+            modulus=context.youngs_modulus,
+            poisson_ratio=context.poisson_ratio,
+        )
+
+
+class FilmOption(Option):
+    """Fluid film between sole and floor."""
+
+    slot: ClassVar[str] = "film"
+    usual: ClassVar[str | None] = "reynolds"
+
+    @abstractmethod
+    def build(self, context: Context) -> float | None:
+        """Return the viscosity of the film, Pa s; None where the fluid builds up no pressure."""
+
+    @property
+    def closure(self) -> str:
+        """The equation, for the provenance."""
+        return self.source
+
+
+class ReynoldsFilm(FilmOption):
+    """Reynolds equation with cavitation, wedge and squeeze."""
+
+    name: ClassVar[str] = "reynolds"
+    source: ClassVar[str] = "Reynolds equation with cavitation, wedge and squeeze (Eq. 4, 5)"
+
+    def build(self, context: Context) -> float | None:
+        """Return the viscosity of the film, Pa s; None on a dry floor."""
+        return context.viscosity_value
+
+
+class NoFilm(FilmOption):
+    """The fluid changes friction only; it builds up no pressure (as if it drained at once)."""
+
+    name: ClassVar[str] = "none"
+    source: ClassVar[str] = "none: the fluid builds up no pressure"
+
+    def build(self, context: Context) -> float | None:
+        """Return None."""
+        return None

@@ -1,0 +1,81 @@
+"""Slot for the fluid on the floor: its viscosity as measured, or glycerol in water."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import Annotated, ClassVar, Literal
+
+from underfoot.core import Breach, SourcedValue
+
+from .quantity import Quantity, Viscosity, default, required
+from .section import Option
+
+Fraction = Annotated[float, Quantity("1", 0.0, 1.0)]
+Temperature = Annotated[float, Quantity("K", 250.0, 450.0)]
+
+
+class ContaminantSection(Option):
+    """Fluid on the floor."""
+
+    slot: ClassVar[str] = "contaminant"
+    usual: ClassVar[str | None] = "measured"
+
+    pool_depth: Annotated[float, Quantity("m", 1e-6, 0.05)] = default(
+        0.6e-3,
+        "0.6 mm",
+        "final progress report on shoe-floor friction, G.6.1 (150 ml on 0.4 m x 0.6 m)",
+    )
+
+    @abstractmethod
+    def build(self) -> SourcedValue:
+        """Return the dynamic viscosity, Pa s."""
+
+    def breaches(self) -> list[Breach]:
+        """Return what leaves the range on which a viscosity relation was tested."""
+        return []
+
+
+class MeasuredFluid(ContaminantSection):
+    """Fluid of known viscosity."""
+
+    name: ClassVar[str] = "measured"
+    source: ClassVar[str] = "viscosity as given"
+
+    viscosity: Viscosity = required(
+        "dynamic viscosity as measured",
+        missing="neither a viscosity nor a share of glycerol is given",
+        remedy='Write viscosity = "219 cP", or glycerol_fraction = "90 %" with its basis. Without '
+        'one only a measured friction applies: contaminant = "none" with friction.model = '
+        '"constant" or "table", and no film',
+    )
+
+    def build(self) -> SourcedValue:
+        """Return the dynamic viscosity, Pa s."""
+        return self.sourced("viscosity")
+
+
+class GlycerolWater(ContaminantSection):
+    """Glycerol in water; the viscosity follows from share and temperature."""
+
+    name: ClassVar[str] = "glycerol_water"
+    source: ClassVar[str] = "Cheng 2008"
+    chosen_by: ClassVar[tuple[str, ...]] = ("glycerol_fraction",)
+
+    glycerol_fraction: Fraction
+    fraction_basis: Literal["mass", "volume"] = required(
+        missing="is missing: the same percentage by mass and by volume differs by half in viscosity"
+    )
+    temperature: Temperature = default(293.15, "20 degC", "room temperature", assumed=True)
+
+    def build(self) -> SourcedValue:
+        """Return the dynamic viscosity, Pa s."""
+        from underfoot.fluid import glycerol_water
+
+        mixture = glycerol_water(self.glycerol_fraction, self.temperature, self.fraction_basis)
+        return mixture.viscosity
+
+    def breaches(self) -> list[Breach]:
+        """Return what leaves the range on which the relation was tested."""
+        from underfoot.fluid import glycerol_water_breaches
+
+        return glycerol_water_breaches(self.glycerol_fraction, self.temperature)

@@ -1,0 +1,532 @@
+"""Slot ``friction``: the local friction law of sole, floor and fluid, one class a law."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from underfoot.core import InputError, RangeError, SourcedValue
+from underfoot.core.catalogue import Catalogue
+
+from .context import Context
+from .quantity import Force, Friction, Pressure, Quantity, Speed, Viscosity, required
+from .section import CaseView, Option, Section
+from .tables import as_written, table_columns, table_source
+
+if TYPE_CHECKING:
+    from underfoot.friction import AsperityScale, BoundaryFriction, FrictionLaw, SpeedEffectLaw
+
+PIN = ("setup", "pin_on_disk_g2")
+"""Catalogue entry of the pin whose readings the laws of a mechanism are calibrated on."""
+RIVAL_DEVIATION = {"mean_film_sharing": 0.095, "viscoelastic_area": 0.241}
+"""Root mean square error of COF of five fluids predicted blind from 50 % glycerol with their COF_BL
+(docs/studies/g2.md); what stands behind ``asperity_ehl`` is in ``friction.asperity_ehl``."""
+SAME_VISCOSITY = 0.01
+"""Relative difference up to which two viscosities are the same fluid."""
+COLUMNS = {
+    "speed": ("m/s", ("speed", "sliding speed", "velocity")),
+    "cof": ("1", ("cof", "coefficient of friction", "friction coefficient")),
+    "sd": ("1", ("sd", "cof sd", "standard deviation", "cof standard deviation")),
+    "pressure": ("Pa", ("pressure", "contact pressure")),
+    "viscosity": ("Pa*s", ("viscosity",)),
+}
+
+
+class FrictionOption(Option):
+    """Local friction law: shear stress at contact pressure, speed and film.
+
+    A law of your own is a class derived from this one, with ``name``, its fields and ``build``.
+    """
+
+    slot: ClassVar[str] = "friction"
+    usual: ClassVar[str | None] = "stribeck"
+    dry: ClassVar[bool] = False
+    """Whether the law holds without a fluid."""
+
+    @abstractmethod
+    def build(self, context: Context) -> FrictionLaw:
+        """Return the law."""
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield a dry floor under a law of films."""
+        if case.contaminant is None and not self.dry:
+            yield InputError(
+                "a dry case needs a measured coefficient of friction",
+                where=f"{where}.{self.key}",
+                remedy="No publication of the catalogue prints one: measure it and write "
+                'friction.model = "constant" and friction.cof = 0.8 (and hysteresis_cof, its '
+                "hysteresis part)",
+            )
+
+
+class _Measured(FrictionOption):
+    """What was measured with the fluid: COF_BL, its pair, and the hysteresis part."""
+
+    hysteresis_cof: Friction | None = Field(
+        default=None, description="hysteresis part, if measured"
+    )
+    cof_bl: Friction | None = Field(
+        default=None, description="COF in boundary lubrication (Eq. 17)"
+    )
+    pair: str | None = Field(default=None, description="sole and floor it was measured on")
+
+    def _optional(self, name: str) -> SourcedValue | None:
+        return None if getattr(self, name, None) is None else self.sourced(name)
+
+    def measured(self, context: Context) -> BoundaryFriction | None:
+        """Return what was measured with the case's own fluid, if anything."""
+        from underfoot.friction import BoundaryFriction
+
+        viscosity = context.viscosity_value
+        if viscosity is None or self.cof_bl is None:
+            return None
+        return BoundaryFriction(
+            fluid=context.fluid,
+            pair=self.pair or "",
+            viscosity=viscosity,
+            cof_boundary=self.sourced("cof_bl"),
+            tau_hydro=self._optional("tau_hydro"),
+            cof_asymptote=self._optional("cof_asymptote"),
+        )
+
+
+class BoundaryOption(_Measured):
+    """COF_BL at every speed."""
+
+    name: ClassVar[str] = "boundary"
+    source: ClassVar[str] = "boundary friction of the pair and fluid"
+
+    def build(self, context: Context) -> FrictionLaw:
+        """Return the law."""
+        from underfoot.friction import BoundaryLaw, boundary_friction_at
+
+        others, own = measured_fluids(context.catalogue), self.measured(context)
+        if own is None:
+            own = boundary_friction_at(_viscosity(context), others, fluid=context.fluid)
+        return BoundaryLaw.measured(
+            own, cof_hysteresis=self._optional("hysteresis_cof"), others=others
+        )
+
+
+class StribeckOption(_Measured):
+    """The measured fall with speed (Eq. 17) where the fluid has the fit, the measured mean over
+    speeds where the report found no fall, and the curve of viscosity times speed for a fluid that
+    was not measured.
+    """
+
+    name: ClassVar[str] = "stribeck"
+    source: ClassVar[str] = "friction of the pair and fluid as measured at the speed"
+
+    tau_hydro: Speed | None = Field(default=None, description="decay speed (Eq. 17)")
+    cof_asymptote: Friction | None = Field(default=None, description="COF at high speed (Eq. 17)")
+
+    def build(self, context: Context) -> FrictionLaw:
+        """Return the law."""
+        from underfoot.friction import BoundaryLaw, StribeckLaw, stribeck_law_at
+
+        others, own = measured_fluids(context.catalogue), self.measured(context)
+        hysteresis = self._optional("hysteresis_cof")
+        if own is None:
+            return stribeck_law_at(_viscosity(context), others, fluid=context.fluid)
+        if own.tau_hydro is None or own.cof_asymptote is None:
+            return BoundaryLaw.measured(own, cof_hysteresis=hysteresis, others=others)
+        return StribeckLaw.measured(own, cof_hysteresis=hysteresis, others=others)
+
+
+class AdhesionBlockingOption(FrictionOption):
+    """Dry adhesion less what the fluid blocks (Eq. 26), plus hysteresis."""
+
+    name: ClassVar[str] = "adhesion_blocking"
+    source: ClassVar[str] = "Strobel et al. 2012 (Eq. 26)"
+    _remedy: ClassVar[str] = (
+        "Without it choose asperity_ehl or stribeck, which need the fluid's viscosity alone, or "
+        "constant with a measured friction"
+    )
+
+    dry_adhesion_cof: Friction = required("adhesion part dry, measured", remedy=_remedy)
+    hysteresis_cof: Friction = required("hysteresis part, measured", remedy=_remedy)
+    alpha: Annotated[float, Quantity("N", 0.0, 1e4)] = required(
+        "adhesion independent of the pair (Eq. 26)", remedy=_remedy
+    )
+    beta: Annotated[float, Quantity("1", 0.0, 1.0)] = required(
+        "share of dry adhesion left (Eq. 26)", remedy=_remedy
+    )
+    load: Force | None = Field(default=None, description="load at which alpha was measured")
+    pair: str | None = Field(default=None, description="sole and floor it was measured on")
+
+    def build(self, context: Context) -> FrictionLaw:
+        """Return the law."""
+        from underfoot.fluid import AdhesionBlocking
+        from underfoot.friction import AdhesionBlockingLaw
+
+        return AdhesionBlockingLaw(
+            AdhesionBlocking(self.alpha, self.beta, self.sourced("alpha").source),
+            self.sourced("dry_adhesion_cof"),
+            self.sourced("hysteresis_cof"),
+            _viscosity(context),
+        )
+
+
+class ConstantOption(FrictionOption):
+    """One coefficient of friction as measured on this pair and floor."""
+
+    name: ClassVar[str] = "constant"
+    source: ClassVar[str] = "given in the case"
+    dry: ClassVar[bool] = True
+
+    cof: Friction = required("measured coefficient of friction, all parts")
+    hysteresis_cof: Friction | None = Field(default=None, description="its hysteresis part")
+
+    def build(self, context: Context) -> FrictionLaw:
+        """Return the law."""
+        from underfoot.friction import ConstantLaw
+
+        hysteresis, sourced = self.hysteresis_cof or 0.0, self.sourced("cof")
+        return ConstantLaw(
+            self.cof - hysteresis,
+            hysteresis,
+            sourced.source,
+            context.viscosity_value,
+            sourced.uncertainty,
+        )
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield a hysteresis part above the whole."""
+        if (self.hysteresis_cof or 0.0) > self.cof:
+            yield RangeError(
+                f"{self.hysteresis_cof:g} is more than the whole",
+                where=f"{where}.hysteresis_cof",
+                allowed=f"at most {self.cof:g} (friction.cof)",
+            )
+
+
+class _Mechanism(_Measured):
+    """Law of a mechanism that makes friction fall with speed."""
+
+    reads: ClassVar[tuple[str, ...]] = ("interface.hurst", "interface.longest_wave")
+    tau_hydro: Speed | None = Field(
+        default=None, description="decay speed (Eq. 17): with it, cof_bl is a limit at low speed"
+    )
+
+    def _asperity_law(self, context: Context) -> SpeedEffectLaw:
+        from underfoot.friction import asperity_ehl_law
+        from underfoot.friction.asperity_ehl import STYLUS_RESOLUTION
+
+        return asperity_ehl_law(
+            _scale(context, STYLUS_RESOLUTION),
+            modulus=context.youngs_modulus,
+            poisson_ratio=context.poisson_ratio,
+            viscosity=_viscosity(context),
+            friction=self.measured(context),
+            cof_hysteresis=self._optional("hysteresis_cof"),
+            fine_roughness=self._optional("fine_roughness"),
+            modulus_deviation=context.modulus.uncertainty,
+            roughness_deviation=context.rq_deviation,
+        )
+
+    def _rival(self, effect: Any, context: Context) -> FrictionLaw:
+        from underfoot.friction import SpeedEffectLaw
+
+        law = self._asperity_law(context)
+        return SpeedEffectLaw(
+            effect,
+            law.cof_boundary,
+            law.cof_hysteresis,
+            _viscosity(context),
+            RIVAL_DEVIATION[self.name],
+            law.assumed,
+        )
+
+
+class AsperityEhlOption(_Mechanism):
+    """Films at single asperities."""
+
+    name: ClassVar[str] = "asperity_ehl"
+    source: ClassVar[str] = "films at single asperities, calibrated on the report's fluids"
+
+    fine_roughness: Annotated[float, Quantity("m", 1e-10, 1e-4)] | None = Field(
+        default=None,
+        description="roughness finer than a stylus sees; default: the one calibrated on the "
+        "report's fluids",
+    )
+
+    def build(self, context: Context) -> FrictionLaw:
+        """Return the law."""
+        return self._asperity_law(context)
+
+
+class MeanFilmSharingOption(_Mechanism):
+    """The film of the report's pin against the floor's roughness, on top of which the film under
+    the shoe acts; levels of ``asperity_ehl``.
+    """
+
+    name: ClassVar[str] = "mean_film_sharing"
+    source: ClassVar[str] = "load shared with the mean film of a pin"
+
+    def build(self, context: Context) -> FrictionLaw:
+        """Return the law."""
+        from underfoot.friction import MeanFilmSharing
+
+        pin = context.catalogue.entry(*PIN)
+        rq = context.floor.roughness.rq_or_estimate
+        if rq is None:
+            raise InputError(
+                "the floor's own roughness is not given",
+                where="floor.roughness.rq",
+                remedy="Give it, or choose friction.model = asperity_ehl",
+            )
+        effect = MeanFilmSharing(
+            radius=pin.sourced("method.reduced_radius", "m").value or 0.0,
+            normal_force=pin.sourced("method.normal_force", "N").value or 0.0,
+            effective_modulus=2 * context.plane_strain_modulus,
+            rq=rq,
+            stiffness=context.plane_strain_modulus,
+        )
+        return self._rival(effect, context)
+
+
+class ViscoelasticAreaOption(_Mechanism):
+    """Contact area that falls as the compound stiffens with speed; levels of ``asperity_ehl``."""
+
+    name: ClassVar[str] = "viscoelastic_area"
+    source: ClassVar[str] = "contact area from the compound's relaxation spectrum"
+    reads: ClassVar[tuple[str, ...]] = (*_Mechanism.reads, "interface.shortest_wave")
+
+    def build(self, context: Context) -> FrictionLaw:
+        """Return the law."""
+        from underfoot.friction import ViscoelasticArea, modulus_exponent
+
+        rubber, wave = context.rubber(), context.interface.shortest_wave
+        rest = ViscoelasticArea(0.0).rest_speed
+        fast = max(context.motion.speed, 2 * rest)
+        exponent = modulus_exponent(
+            rubber.complex_modulus, 2 * math.pi * rest / wave, 2 * math.pi * fast / wave
+        )
+        return self._rival(ViscoelasticArea(exponent), context)
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield a compound without relaxation spectrum too."""
+        yield from super().problems(case, where)
+        if case.shoe.material.relaxation is None:
+            yield InputError(
+                "a relaxation spectrum is missing: without it the contact area has no speed",
+                where="shoe.material.relaxation",
+                remedy="Give the spectrum of the compound, or choose friction.model = "
+                '"asperity_ehl" or "stribeck"',
+            )
+
+
+class BowdenTaborOption(FrictionOption):
+    """Shear strength times real contact area, at the interface's shortest wave.
+
+    The area is that of elastic contact on the self-affine interface down to
+    ``interface.shortest_wave`` (Persson 2001); finer waves would lower it further.
+    """
+
+    name: ClassVar[str] = "bowden_tabor"
+    source: ClassVar[str] = "Bowden and Tabor; Persson 2001, elastic contact area"
+    dry: ClassVar[bool] = True
+    reads: ClassVar[tuple[str, ...]] = (
+        "interface.hurst",
+        "interface.longest_wave",
+        "interface.shortest_wave",
+    )
+
+    shear_strength: Annotated[float, Quantity("Pa", 0.0, 1e9)] = required(
+        "of the real contact",
+        remedy="Take it from a measured adhesion: COF times pressure over the share of real "
+        'contact, as shear_strength = "0.3 MPa"',
+    )
+    hysteresis_cof: Friction | None = Field(
+        default=None, description="hysteresis part, if measured"
+    )
+
+    def build(self, context: Context) -> FrictionLaw:
+        """Return the law."""
+        from underfoot.friction import BowdenTaborLaw, ShearStrength
+
+        stiffness = context.plane_strain_modulus
+        scale = _scale(context, context.interface.shortest_wave)
+        sourced = self.sourced("shear_strength")
+        return BowdenTaborLaw(
+            ShearStrength(self.shear_strength, sourced.source, deviation=sourced.uncertainty),
+            lambda pressure, _speed: scale.contact_fraction(np.asarray(pressure) / stiffness),
+            self.hysteresis_cof or 0.0,
+            context.viscosity_value,
+            contact_source="Persson 2001, elastic contact area",
+        )
+
+
+class FrictionReading(Section):
+    """One reading of a user's own friction table."""
+
+    speed: Speed
+    cof: Friction
+    sd: Friction | None = None
+    pressure: Pressure | None = None
+    viscosity: Viscosity | None = None
+
+
+class TableOption(FrictionOption):
+    """A user's own readings over speed.
+
+    Repeated speeds are averaged; their scatter joins the standard deviation. Readings under
+    another viscosity than the case's (or several) count at equal viscosity x speed, as the report
+    finds for its fluids (Fig. 16); the law's assumptions say so.
+    """
+
+    name: ClassVar[str] = "table"
+    source: ClassVar[str] = "readings given in the case"
+    dry: ClassVar[bool] = True
+    replaced: ClassVar[tuple[str, ...]] = ("table_file",)
+
+    table_file: str | None = Field(
+        default=None,
+        description="file (CSV, XLSX) with columns speed, cof and, where known, sd, pressure, "
+        "viscosity; the path counts from the case file's folder",
+    )
+    readings: tuple[FrictionReading, ...] = required(
+        "the same readings written in the case",
+        missing='are missing for friction.model = "table"',
+        remedy='Write friction.table_file = "law.csv" (columns speed, cof, and sd where known), or '
+        'choose "constant"',
+    )
+    readings_source: str | None = Field(default=None, description="who read them, and on what")
+    hysteresis_cof: Friction | None = Field(
+        default=None, description="hysteresis part, if measured"
+    )
+
+    @classmethod
+    def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+        """Return the table with the readings of its file."""
+        name = table.get("table_file")
+        name = getattr(getattr(name, "leaf", None), "given", name)
+        if not isinstance(name, str):
+            return table
+        if "readings" in table:
+            raise InputError(
+                "a table and readings are given",
+                where=f"{where}.table_file",
+                remedy="Keep table_file or readings",
+            )
+        readings, source = read_friction_table(folder / name, f"{where}.table_file")
+        return {"readings_source": source, **table, "readings": readings}
+
+    def build(self, context: Context) -> FrictionLaw:
+        """Return the law."""
+        from underfoot.friction import SpeedTableLaw
+
+        readings, viscosity = self.readings, context.viscosity_value
+        speed = np.array([reading.speed for reading in readings])
+        cof = np.array([reading.cof for reading in readings])
+        sd = np.array([np.nan if r.sd is None else r.sd for r in readings])
+        fluids = np.array([np.nan if r.viscosity is None else r.viscosity for r in readings])
+        pressures = [r.pressure for r in readings if r.pressure is not None]
+        notes = []
+        if viscosity is not None and np.isfinite(fluids).all():
+            ratio = fluids / viscosity
+            if (np.abs(ratio - 1) > SAME_VISCOSITY).any():
+                speed = speed * ratio
+                notes.append("Readings under another viscosity count at equal viscosity x speed.")
+        speeds, group = np.unique(np.round(speed, 12), return_inverse=True)
+        counts = np.bincount(group)
+        mean = np.bincount(group, cof) / counts
+        scatter = np.bincount(group, (cof - mean[group]) ** 2) / np.maximum(counts - 1, 1)
+        deviation = None
+        if np.isfinite(sd).all():
+            deviation = np.sqrt(np.bincount(group, sd**2) / counts + scatter)
+        elif (counts > 1).all():
+            deviation = np.sqrt(scatter)
+        if self.hysteresis_cof is None:
+            notes.append("All of the friction read counts as adhesion.")
+        return SpeedTableLaw(
+            speeds,
+            mean,
+            source=self.readings_source or self.source,
+            cof_hysteresis=self.hysteresis_cof or 0.0,
+            viscosity=viscosity,
+            cof_deviation=deviation,
+            pressure=(min(pressures), max(pressures)) if pressures else None,
+            assumed=tuple(notes),
+        )
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield readings at one speed only."""
+        if len({reading.speed for reading in self.readings}) < 2:
+            yield InputError(
+                "of one speed only" if self.readings else "are missing",
+                where=f"{where}.readings",
+                allowed="readings at two or more speeds",
+                remedy='Add readings, or choose friction.model = "constant"',
+            )
+
+
+def read_friction_table(path: Path, where: str) -> tuple[list[dict[str, str | float]], str]:
+    """Return the readings of a table (CSV, XLSX) as a case file writes them, and their source.
+
+    Columns ``speed`` and ``cof``; optional ``sd``, ``pressure``, ``viscosity``; units stand in the
+    heading, as ``speed (m/s)``, else SI. A line ``# source: ...`` above says where they come from.
+
+    Raises
+    ------
+    InputError
+        No file, no table, a column missing, a value missing or negative.
+    """
+    read = table_columns(path, COLUMNS, where, needed=("speed", "cof"), lowest=0.0)
+    return as_written(read, COLUMNS), table_source(path)
+
+
+def measured_fluids(catalogue: Catalogue) -> tuple[BoundaryFriction, ...]:
+    """Return every fluid of the catalogue whose own boundary friction was measured."""
+    from underfoot.friction import BoundaryFriction
+
+    fluids = []
+    for name in catalogue.names("fluid"):
+        entry = catalogue.entry("fluid", name)
+        leaf = entry.values.get("boundary.cof_bl")
+        if leaf is None or leaf.assumed or entry.parents or "boundary.pair" not in entry.values:
+            continue
+        optional = {
+            key: entry.sourced(f"boundary.{key}", unit)
+            for key, unit in (("tau_hydro", "m/s"), ("cof_asymptote", "1"))
+            if f"boundary.{key}" in entry.values
+        }
+        viscosity = entry.sourced("viscosity", "Pa*s").value
+        assert viscosity is not None
+        fluids.append(
+            BoundaryFriction(
+                fluid=name,
+                pair=entry.text("boundary.pair"),
+                viscosity=viscosity,
+                cof_boundary=entry.sourced("boundary.cof_bl", "1"),
+                **optional,
+            )
+        )
+    return tuple(fluids)
+
+
+def _viscosity(context: Context) -> float:
+    viscosity = context.viscosity_value
+    if viscosity is None:
+        raise InputError("this law needs a fluid", where="contaminant")
+    return viscosity
+
+
+def _scale(context: Context, shortest: float) -> AsperityScale:
+    """Return the asperities of sole and floor: self-affine from the interface's effective Rq, its
+    longest wave and its Hurst exponent, down to ``shortest`` (m).
+    """
+    from underfoot.friction import self_affine_scale
+
+    return self_affine_scale(
+        shortest,
+        rq=context.rq_value,
+        longest_wave=context.interface.longest_wave,
+        hurst=min(context.interface.hurst, 0.99),
+    )

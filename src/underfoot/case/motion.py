@@ -1,0 +1,234 @@
+"""Slot for what the foot does, and the section for the sensors in the floor."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from underfoot.core import InputError, RangeError, display, to_si
+
+from .quantity import Flag, Force, Length, Quantity, Speed, default
+from .section import CaseView, Option, Section, origin_of
+from .tables import as_written, table_columns
+
+if TYPE_CHECKING:
+    from underfoot.sole_contact.motion_history import MotionHistory
+
+_TESTER = "final progress report on shoe-floor friction, G.4.1"
+_mm = 1e-3
+ShoeAngle = Annotated[float, Quantity("rad", math.radians(-30), math.radians(60))]
+Time = Annotated[float, Quantity("s", 0.0, 60.0, open_low=True)]
+Instant = Annotated[float, Quantity("s", 0.0, 60.0)]
+AnySpeed = Annotated[float, Quantity("m/s", -20.0, 20.0)]
+AnyForce = Annotated[float, Quantity("N", 0.0, 1e4)]
+Count = Annotated[int, Field(ge=1, le=200, strict=True)]
+COLUMNS = {
+    "time": ("s", ("time", "t")),
+    "normal_force": ("N", ("normal force", "force", "load", "vertical force")),
+    "speed": ("m/s", ("speed", "sliding speed", "velocity")),
+    "shoe_angle": ("rad", ("shoe angle", "angle", "foot angle")),
+}
+SLOWEST = 1e-3
+"""m/s, speed at the end below which ``motion.speed`` says this much."""
+
+
+class Motion(Option):
+    """How the heel meets the floor."""
+
+    slot: ClassVar[str] = "motion"
+    usual: ClassVar[str | None] = "held"
+
+    speed: Speed
+    normal_force: Force
+    shoe_angle: ShoeAngle = Field(description="toe up positive")
+    force_rise_time: Time = default(0.03, "30 ms", _TESTER)
+    duration: Time = default(0.12, "0.12 s", "90 ms of sliding under full load", assumed=True)
+    start_film: Annotated[float, Quantity("m", 1e-6, 0.01)] = default(
+        50e-6, "50 um", "lowest point above the floor when loading starts", assumed=True
+    )
+
+    @property
+    def to_steady_state(self) -> bool:
+        """Whether the result is the steady state."""
+        return False
+
+    @property
+    def end_time(self) -> float:
+        """When the result is taken, s."""
+        return max(self.duration, self.force_rise_time)
+
+    def build(self) -> MotionHistory | None:
+        """Return the history that the shoe follows; None when load and speed are held."""
+        return None
+
+
+class HeldMotion(Motion):
+    """One load and speed held."""
+
+    name: ClassVar[str] = "held"
+
+    steady: Flag = default(False, False, "the result is taken at the end of the duration")
+
+    @property
+    def to_steady_state(self) -> bool:
+        """Whether the result is the steady state."""
+        return self.steady
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield an end before the load."""
+        if self.duration < self.force_rise_time:
+            yield RangeError(
+                f"{display(self.duration, 's')} ends before the force has risen",
+                where=f"{where}.duration",
+                allowed=f"at least {display(self.force_rise_time, 's')} (motion.force_rise_time)",
+                remedy=f'Write motion.duration = "{self.force_rise_time * 1e3 + 90:.0f} ms"',
+            )
+
+
+class MotionPoint(Section):
+    """One instant of a history; straight lines lead from one to the next."""
+
+    time: Instant
+    normal_force: AnyForce
+    speed: AnySpeed = Field(description="of the shoe, forward positive")
+    shoe_angle: ShoeAngle | None = Field(
+        default=None, description="toe up positive; default: motion.shoe_angle"
+    )
+
+
+class MotionFromHistory(Motion):
+    """A history of load, speed and shoe angle; the result is its last instant."""
+
+    name: ClassVar[str] = "history"
+    chosen_by: ClassVar[tuple[str, ...]] = ("history", "history_points")
+    replaced: ClassVar[tuple[str, ...]] = ("history",)
+
+    history: str | None = Field(
+        default=None,
+        description="file (CSV, XLSX) with columns time, normal_force, speed and, where it turns, "
+        "shoe_angle; the path counts from the case file's folder",
+    )
+    history_points: tuple[MotionPoint, ...] = Field(
+        description="the same points written in the case"
+    )
+
+    @classmethod
+    def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+        """Return the table with the points of its file, and what the last point says."""
+        table = dict(table)
+        name, points = _plain(table.get("history")), _plain(table.get("history_points"))
+        if isinstance(name, str):
+            if points is not None:
+                raise InputError(
+                    "a table and points are given",
+                    where=f"{where}.history",
+                    remedy="Keep history or history_points",
+                )
+            points = read_motion_table(folder / name, f"{where}.history")
+            table["history_points"] = points
+        if isinstance(points, list) and points and isinstance(points[-1], dict):
+            last = points[-1]
+            force = last.get("normal_force")
+            if isinstance(force, str) and to_si(force, "N", where=f"{where}.history_points") < 1.0:
+                raise InputError(
+                    f"the history ends with {force}",
+                    where=f"{where}.{'history_points' if name is None else 'history'}",
+                    allowed="1 N or more at the end, where the result is taken",
+                )
+            for key, point in (("normal_force", "normal_force"), ("duration", "time")):
+                if point in last:
+                    table.setdefault(key, last[point])
+            table.setdefault("force_rise_time", table.get("duration", "30 ms"))
+            if isinstance(last.get("speed"), str):
+                speed = abs(to_si(last["speed"], "m/s", where=f"{where}.history_points"))
+                table.setdefault("speed", f"{max(speed, SLOWEST):.12g} m/s")
+            if "shoe_angle" in last:
+                table.setdefault("shoe_angle", last["shoe_angle"])
+        return table
+
+    def build(self) -> MotionHistory | None:
+        """Return the history that the shoe follows."""
+        from underfoot.sole_contact.motion_history import MotionHistory
+
+        points = self.history_points
+        angle = self.shoe_angle
+        return MotionHistory(
+            np.array([point.time for point in points]),
+            np.array([point.normal_force for point in points]),
+            np.array([point.speed for point in points]),
+            np.array([angle if p.shoe_angle is None else p.shoe_angle for p in points]),
+        )
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield a history that is none, or that ends elsewhere than the motion says."""
+        listed = f"{where}.{'history' if self.history else 'history_points'}"
+        try:
+            history = self.build()
+        except InputError as error:
+            yield InputError(error.what, where=listed, allowed=error.allowed, remedy=error.remedy)
+            return
+        assert history is not None
+        if abs(history.time[-1] - self.duration) > 1e-9:
+            yield InputError(
+                f"the history lasts {display(float(history.time[-1]), 's')}",
+                where=f"{where}.duration",
+                remedy="Leave motion.duration out: the history says it",
+            )
+        if abs(history.normal_force[-1] - self.normal_force) > 1e-6:
+            yield InputError(
+                f"the history ends with {history.normal_force[-1]:g} N",
+                where=f"{where}.normal_force",
+                remedy="Leave motion.normal_force out: the history says it",
+            )
+
+
+def read_motion_table(path: Path, where: str) -> list[dict[str, str | float]]:
+    """Return the points of a table (CSV, XLSX) as a case file writes them.
+
+    Columns ``time``, ``normal_force``, ``speed`` and, where the shoe turns, ``shoe_angle``; units
+    stand in the heading, as ``time (ms)``, else SI.
+
+    Raises
+    ------
+    InputError
+        No file, no table, a column or value missing, fewer than two rows.
+    """
+    read = table_columns(path, COLUMNS, where, needed=("time", "normal_force", "speed"))
+    if read["time"].size < 2:
+        raise InputError(
+            f"{path.name} has {read['time'].size} rows", where=where, allowed="2 or more"
+        )
+    return as_written(read, COLUMNS)
+
+
+class FloorArray(Section):
+    """Sensors that stay in place in the floor."""
+
+    rows: Count = Field(description="along the walking direction (G.5.1: 3)")
+    columns: Count = Field(description="across (G.5.1: 3)")
+    spacing: Length = Field(description="between rows and between columns (G.5.1: 30 mm)")
+    inlet_diameter: Length = Field(description="of each sensor (G.5.1: 4 mm)")
+    position: Annotated[float, Quantity("m", -5.0, 5.0)] | None = Field(
+        default=None,
+        description="of the first row, ahead of the shoe's rear end at time 0; default: the shoe "
+        "has the array under its middle at the end",
+    )
+
+
+class Sensor(Section):
+    """Fluid-pressure sensors in the floor: the scans of one, and an array that stays in place."""
+
+    inlet_diameter: Length = default(10 * _mm, "10 mm", _TESTER)
+    scan_spacing: Length = default(10 * _mm, "10 mm", _TESTER)
+    scans: Count = default(7, 7, _TESTER)
+    array: FloorArray | None = None
+
+
+def _plain(given: Any) -> Any:
+    origin = origin_of(given)
+    return given if origin is None else origin.leaf.given

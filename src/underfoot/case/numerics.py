@@ -1,0 +1,33 @@
+"""Section for grid, tolerance and limits of the computation."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from .quantity import Flag, Quantity, default
+from .section import Section
+
+_mm = 1e-3
+Spacing = Annotated[float, Quantity("m", 5e-5, 0.005)]
+Tolerance = Annotated[float, Quantity("1", 1e-10, 0.1)]
+
+
+class Numerics(Section):
+    """Grid and tolerance."""
+
+    grid_spacing: Spacing = default(
+        0.6 * _mm, "0.6 mm", "four cells in the narrowest channel of the report"
+    )
+    quick_grid_spacing: Spacing = default(1.0 * _mm, "1 mm", "for a first look")
+    seed: Annotated[int, Field(ge=0, le=2**31, strict=True)] = default(
+        0, 0, "of the draws behind the intervals; the same seed gives the same numbers"
+    )
+    tolerance: Tolerance = default(1e-4, 1e-4, "relative imbalance of volume and load")
+    grid_check: Flag = default(
+        False, False, "one grid; true solves the quick one too and estimates the grid's error"
+    )
+    most_memory: Annotated[float, Quantity("B", 2e8, 1e13)] = default(
+        2e9, "2 GB", "a run that would take more is refused before it starts"
+    )

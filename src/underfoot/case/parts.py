@@ -1,0 +1,180 @@
+"""The sections of a case together, and their dotted paths."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+from typing import Any
+
+from pydantic import Field
+from pydantic.fields import FieldInfo
+
+from underfoot.core import InputError, unknown_name
+
+from .contact import ComplianceOption, FilmOption, HardnessOption, RoughContactOption
+from .contaminant import ContaminantSection
+from .friction import FrictionOption
+from .motion import Motion, Sensor
+from .numerics import Numerics
+from .people import Risk, Walkers
+from .section import Option, Section, section_in, unit_of
+from .shoe import Shoe
+from .surfaces import Floor, Interface
+from .versions import current_path
+
+FILE_VERSION = 2
+"""Version of the case files that this package writes; it reads older ones."""
+CATALOGUE_SECTIONS: dict[str, tuple[str, str]] = {
+    "shoe": ("shoe", ""),
+    "shoe.material": ("material", ""),
+    "shoe.roughness": ("material", "roughness"),
+    "floor": ("floor", ""),
+    "contaminant": ("fluid", ""),
+    "motion": ("setup", "motion"),
+    "sensor": ("setup", "sensor"),
+    "risk": ("setup", "risk"),
+}
+"""Sections that can be taken ``from`` the catalogue: kind of entry and its sub-table."""
+
+
+def _usual() -> Any:
+    return Field(default={}, validate_default=True)
+
+
+class CaseParts(Section):
+    """Everything one computation needs."""
+
+    name: str = "case"
+    description: str = ""
+    shoe: Shoe
+    floor: Floor
+    contaminant: ContaminantSection | None = Field(description='"none" for a dry floor')
+    motion: Motion
+    interface: Interface = _usual()
+    hardness: HardnessOption | None = _usual()
+    rough_contact: RoughContactOption = _usual()
+    film: FilmOption = _usual()
+    compliance: ComplianceOption = _usual()
+    friction: FrictionOption = _usual()
+    numerics: Numerics = Numerics()
+    sensor: Sensor = Sensor()
+    risk: Risk = _usual()
+    slip: Walkers = Walkers()
+
+
+def fields(model: type[Section] = CaseParts, prefix: str = "") -> Iterator[tuple[str, FieldInfo]]:
+    """Yield every value of a section tree with its dotted path; of a slot, those of all options."""
+    if issubclass(model, Option) and not model.name:
+        seen: set[str] = set()
+        for option in model.known().values():
+            for path, field in fields(option, prefix):
+                if path not in seen:
+                    seen.add(path)
+                    yield path, field
+        return
+    for name, field in model.model_fields.items():
+        section = section_in(field)
+        if section is None:
+            yield f"{prefix}{name}", field
+        else:
+            yield from fields(section, f"{prefix}{name}.")
+
+
+def slots(model: type[Section] = CaseParts, prefix: str = "") -> Iterator[tuple[str, type[Option]]]:
+    """Yield every slot of a section tree with its dotted path."""
+    if issubclass(model, Option) and not model.name:
+        seen = {}
+        for option in model.known().values():
+            seen |= dict(slots(option, prefix))
+        yield from seen.items()
+        return
+    for name, field in model.model_fields.items():
+        section = section_in(field)
+        if section is not None:
+            if issubclass(section, Option):
+                yield f"{prefix}{name}", section
+            yield from slots(section, f"{prefix}{name}.")
+
+
+@lru_cache(maxsize=1)
+def _field_table(_count: int) -> dict[str, FieldInfo]:
+    return dict(fields())
+
+
+@lru_cache(maxsize=1)
+def _slot_table(_count: int) -> dict[str, type[Option]]:
+    return dict(slots())
+
+
+def slot_table() -> dict[str, type[Option]]:
+    """Return every slot by its dotted path."""
+    return _slot_table(Option.count())
+
+
+def field_at(path: str) -> FieldInfo | None:
+    """Return the field at a dotted path, or None; the first option of a slot that has it."""
+    path = current_path(path)
+    field = _field_table(Option.count()).get(path)
+    if field is None and path not in keys():
+        for slot in slot_table().values():
+            slot.options()  # those of other packages
+        field = _field_table(Option.count()).get(path)
+    return field
+
+
+def keys() -> dict[str, type[Option]]:
+    """Return the dotted path of the key that names the option of each slot."""
+    return {f"{path}.{slot.key}": slot for path, slot in slot_table().items()}
+
+
+def paths() -> list[str]:
+    """Return every dotted path that a case file may set, sections included."""
+    leaves = [*(path for path, _ in fields()), *keys()]
+    sections = {path.rsplit(".", depth)[0] for path in leaves for depth in (1, 2, 3)}
+    return sorted({*leaves, *sections})
+
+
+def unit_at(path: str) -> str:
+    """Return the SI unit of the value at a dotted path, ``"1"`` for words."""
+    path = current_path(path)
+    field = field_at(path)
+    if field is None:
+        if path in keys():
+            return "1"
+        raise unknown_path(path)
+    return unit_of(field)
+
+
+def sections_at(path: str) -> list[type[Section]]:
+    """Return the sections that may stand at a dotted path: of a slot, every option."""
+    models: list[type[Section]] = [CaseParts]
+    for part in path.split(".") if path else []:
+        if part.isdigit():
+            continue
+        below: list[type[Section]] = []
+        for model in models:
+            field = model.model_fields.get(part)
+            section = None if field is None else section_in(field)
+            if section is None:
+                continue
+            if issubclass(section, Option) and not section.name:
+                below += section.known().values()
+            else:
+                below.append(section)
+        models = list(dict.fromkeys(below))
+    return models
+
+
+def path_kind(path: str) -> str:
+    """Return "section" or "value"; refuse unknown paths."""
+    path = path.removesuffix(".from") if path.endswith(".from") else path
+    if field_at(path) is not None or path in keys():
+        return "value"
+    if sections_at(path):
+        return "section"
+    raise unknown_path(path)
+
+
+def unknown_path(path: str) -> InputError:
+    """Return the error for a path that is none, with the nearest one."""
+    return unknown_name("path", path, paths())

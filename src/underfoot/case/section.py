@@ -1,0 +1,428 @@
+"""What every section of a case is: frozen fields that know where they come from; slots.
+
+A *slot* is one choice of the case (its friction law, its tread pattern). It is a class derived from
+``Option`` that names the slot; each option is a class derived from that one, with its own fields,
+checks, sources and ``build``. Defining the class is all that a new option takes.
+"""
+
+from __future__ import annotations
+
+import types
+import typing
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib import import_module, metadata
+from pathlib import Path
+from typing import Any, ClassVar, Protocol, Self
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    GetCoreSchemaHandler,
+    ModelWrapValidatorHandler,
+    PrivateAttr,
+    ValidationError,
+    ValidationInfo,
+    model_validator,
+)
+from pydantic.fields import FieldInfo
+from pydantic_core import CoreSchema, InitErrorDetails, core_schema
+
+from underfoot.core import InputError, SourcedValue, to_si, unknown_name
+from underfoot.core.leaves import INHERITED, Leaf
+
+from .quantity import Quantity, default_of, refusal
+
+GIVEN, CATALOGUE, DEFAULT = "given", "catalogue", "default"
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where one value comes from, and the value (SI) that this is true of."""
+
+    kind: str
+    """given, catalogue or default"""
+    leaf: Leaf
+    entry: str = ""
+    value: Any = None
+    uncertainty: float | None = None
+
+
+class CaseView(Protocol):
+    """The sections of a case, for checks that look beyond their own section."""
+
+    shoe: Any
+    floor: Any
+    contaminant: Any
+    motion: Any
+    interface: Any
+    numerics: Any
+    friction: Any
+
+
+class Section(BaseModel):
+    """Base of all sections: frozen, SI floats inside, each value with its origin.
+
+    A value may be given with what a reader must know to trust it: as ``SourcedValue`` or as a
+    mapping with ``value`` and any of ``uncertainty``, ``source``, ``assumed``, ``verified``,
+    ``note``.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    uncounted: ClassVar[tuple[str, ...]] = ()
+    """Fields that a hash leaves out, such as the path of a file whose checksum counts."""
+    replaced: ClassVar[tuple[str, ...]] = ()
+    """Fields that name a file whose content is a field beside them."""
+
+    _origins: dict[str, Origin] = PrivateAttr(default_factory=dict)
+    _entry: str = PrivateAttr(default="")
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _with_origins(
+        cls, given: Any, handler: ModelWrapValidatorHandler[Self], info: ValidationInfo
+    ) -> Self:
+        entry = given._entry if isinstance(given, Section) else ""
+        if isinstance(given, Section):
+            given = given.tree()
+        if not isinstance(given, Mapping):
+            return handler(given)
+        origins = {key: found for key, item in given.items() if (found := origin_of(item))}
+        plain = {
+            key: origins[key].leaf.given if key in origins else item for key, item in given.items()
+        }
+        if issubclass(cls, Option):
+            plain.pop(cls.key, None)
+        section = handler(plain)
+        section._origins = {key: cls._bound(section, key, found) for key, found in origins.items()}
+        section._entry = entry
+        return section
+
+    @classmethod
+    def _bound(cls, section: Section, key: str, origin: Origin) -> Origin:
+        """Return the origin tied to the value that the section holds."""
+        field, written = cls.model_fields.get(key), origin.leaf.uncertainty
+        if field is None:
+            return origin
+        uncertainty = None
+        if written is not None:
+            unit = unit_of(field)
+            try:
+                plain = isinstance(written, float | int) and unit == "1"
+                uncertainty = float(written) if plain else to_si(written, unit, where="")
+                if uncertainty < 0:
+                    raise InputError(f"{written} is negative", allowed="0 or more")
+            except InputError as error:
+                raise _at(cls, (key, "uncertainty"), error, written) from error
+        return replace(origin, value=getattr(section, key), uncertainty=uncertainty)
+
+    def tree(self) -> dict[str, Any]:
+        """Return what was set, sub-sections and values, each value with its origin if it has one.
+
+        Giving it to the class again makes an equal section.
+        """
+        tree: dict[str, Any] = {}
+        if isinstance(self, Option) and (self.key in self._origins or self.name != self.usual):
+            tree[self.key] = self._origins.get(self.key, self.name)
+        for name in type(self).model_fields:
+            value = getattr(self, name)
+            if isinstance(value, Section):
+                tree[name] = value
+            elif name in self.model_fields_set:
+                origin = self._origins.get(name)
+                tree[name] = origin if origin is not None and origin.value == value else value
+        return tree
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return the section with other values, checked; what is unchanged keeps its origin."""
+        new = type(self).model_validate({**self.tree(), **(update or {})})
+        new._entry = self._entry
+        return new
+
+    def origin(self, name: str) -> Origin | None:
+        """Return where a value comes from; "given" where it isn't what its origin stands for."""
+        if isinstance(self, Option) and name == self.key:
+            leaf = Leaf(self.name, source=self.source)
+            return self._origins.get(name, Origin(DEFAULT, leaf, value=self.name))
+        value = getattr(self, name)
+        origin = self._origins.get(name)
+        if origin is not None and origin.value == value:
+            return origin
+        if value is None or isinstance(value, Section):
+            return None
+        field = type(self).model_fields[name]
+        known = default_of(field)
+        if known is not None and name not in self.model_fields_set:
+            leaf = Leaf(known.text, source=known.source, assumed=known.assumed)
+            return Origin(DEFAULT, leaf, value=value)
+        if name not in self.model_fields_set:
+            return None
+        return Origin(GIVEN, Leaf(plain_text(value, unit_of(field))), value=value)
+
+    def sourced(self, name: str) -> SourcedValue:
+        """Return a number of the section with its uncertainty, source and marks."""
+        value, unit = getattr(self, name), unit_of(type(self).model_fields[name])
+        if value is None:
+            return SourcedValue(None, unit, reason="not given in the case")
+        if not isinstance(value, float | int):
+            raise InputError(f"{name} is no number", allowed="the path of a quantity")
+        origin = self.origin(name)
+        if origin is None:
+            return SourcedValue(float(value), unit, source="case")
+        leaf = origin.leaf
+        source = leaf.source or ("given in the case" if origin.kind == GIVEN else origin.kind)
+        return SourcedValue(
+            float(value),
+            unit,
+            source=source + ("" if leaf.verified else " (from memory, not verified)"),
+            uncertainty=origin.uncertainty,
+            assumed=leaf.assumed,
+            note="; ".join(part for part in (leaf.note, leaf.erratum) if part),
+        )
+
+    @classmethod
+    def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+        """Return the section's table with what it takes from files; paths count from ``folder``."""
+        return table
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield what does not fit together; ``where`` is the section's path in the case."""
+        return iter(())
+
+
+class Option(Section):
+    """One choice of a slot, with everything that belongs to it."""
+
+    slot: ClassVar[str] = ""
+    """Name of the slot and of the entry-point group ``underfoot.<slot>`` of other packages."""
+    key: ClassVar[str] = "model"
+    """Key by which a file names the option."""
+    usual: ClassVar[str | None] = None
+    """Option of the slot when none is named; None makes the choice required."""
+    name: ClassVar[str] = ""
+    source: ClassVar[str] = ""
+    """Paper, equation or reason behind the option."""
+    chosen_by: ClassVar[tuple[str, ...]] = ()
+    """Keys that choose this option when none is named."""
+    reads: ClassVar[tuple[str, ...]] = ()
+    """Paths of other sections that only some options read; nobody else lets them be given."""
+
+    _known: ClassVar[dict[str, dict[str, type[Option]]]] = {}
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        name = cls.__dict__.get("name")
+        if not name:
+            return
+        present = cls._known.setdefault(cls.slot, {})
+        other = present.get(name)
+        if other is not None and other.__module__.startswith("underfoot."):
+            raise InputError(
+                f'the {cls.slot} option "{name}" is defined by Underfoot',
+                where=f"{cls.__module__}.{cls.__qualname__}",
+                remedy="Give the class another name",
+            )
+        if missing := sorted(cls.__abstractmethods__):
+            raise InputError(
+                f'the {cls.slot} option "{name}" does not define {", ".join(missing)}',
+                where=f"{cls.__module__}.{cls.__qualname__}",
+                remedy=f"Define it as the other options of {cls.slot} do",
+            )
+        present[name] = cls
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        if cls.name:
+            return handler(source)
+        return core_schema.with_info_plain_validator_function(cls._validated)
+
+    @classmethod
+    def _validated(cls, given: Any, info: ValidationInfo) -> Option:
+        return cls.pick(given).model_validate(
+            {cls.key: given} if isinstance(given, str) else given, context=info.context
+        )
+
+    @classmethod
+    def options(cls) -> dict[str, type[Option]]:
+        """Return the options of the slot by name, those of other packages too."""
+        for name, address in _entry_points().get(f"underfoot.{cls.slot}", {}).items():
+            if name not in cls.known():
+                cls._load(address)
+        return dict(cls.known())
+
+    @classmethod
+    def known(cls) -> dict[str, type[Option]]:
+        """Return the options of the slot whose classes are defined by now."""
+        return cls._known.get(cls.slot, {})
+
+    @classmethod
+    def count(cls) -> int:
+        """Return how many options all slots have: what is derived from them goes by it."""
+        return sum(map(len, cls._known.values()))
+
+    @classmethod
+    def pick(cls, given: Any) -> type[Option]:
+        """Return the class of the option that ``given`` names, or that its keys choose."""
+        if isinstance(given, cls):
+            return type(given)
+        if isinstance(given, str):
+            given = {cls.key: given}
+        if not isinstance(given, Mapping):
+            allowed = f"one of {', '.join(cls.options())}, or a section with its own keys"
+            raise refusal("input", InputError(f"{given!r} can't be used here", allowed=allowed))
+        origin = origin_of(given.get(cls.key))
+        name = given.get(cls.key) if origin is None else origin.leaf.given
+        if name is None:
+            keys = {key for key, value in given.items() if value is not None}
+            chosen = (o for o in cls.known().values() if keys & set(o.chosen_by))
+            option = next(chosen, None) or cls.known().get(cls.usual or "")
+            if option is None:
+                error = InputError("is missing", allowed=", ".join(cls.options()))
+                raise _at(cls, (cls.key,), error, given)
+            return option
+        option = cls.known().get(str(name))
+        if option is not None:
+            return option
+        _entry_points.cache_clear()  # a package may have been installed since
+        try:
+            return cls._load(name) if ":" in str(name) else _named(cls.options(), str(name))
+        except InputError as error:
+            raise _at(cls, (cls.key,), error, name) from error
+
+    @classmethod
+    def _load(cls, address: str) -> type[Option]:
+        """Return the option at ``module:Class``, of another package or of the user's own."""
+        module, _, name = address.partition(":")
+        try:
+            found = getattr(import_module(module), name)
+        except (ImportError, AttributeError, ValueError) as error:
+            raise InputError(
+                f'"{address}" can\'t be imported ({error})',
+                allowed="module:Class of a module on Python's path",
+                remedy="Set PYTHONPATH to the folder of the module",
+            ) from error
+        slot = next((base for base in cls.__mro__ if "slot" in base.__dict__), cls)
+        if not (isinstance(found, type) and issubclass(found, slot) and found.name):
+            raise InputError(
+                f'"{address}" is no option of {cls.slot}',
+                allowed=f"a class derived from {slot.__module__}.{slot.__qualname__} with a name",
+            )
+        return found
+
+    def __repr__(self) -> str:
+        shown = [f"{name}={getattr(self, name)!r}" for name in sorted(self.model_fields_set)]
+        return f"{type(self).__name__}({', '.join(shown)})"
+
+
+@cache
+def _entry_points() -> dict[str, dict[str, str]]:
+    """Return name and address of the options of other packages, by group."""
+    groups: dict[str, dict[str, str]] = {}
+    for distribution in metadata.distributions():
+        for entry in distribution.entry_points:
+            if entry.group.startswith("underfoot."):
+                groups.setdefault(entry.group, {})[entry.name] = entry.value
+    return groups
+
+
+def _named(options: Mapping[str, type[Option]], name: str) -> type[Option]:
+    if name not in options:
+        error = unknown_name("choice", name, options)
+        raise InputError(error.what, allowed=", ".join(options), nearest=error.nearest)
+    return options[name]
+
+
+def _at(cls: type[Section], path: tuple[str, ...], error: InputError, given: Any) -> Exception:
+    details = InitErrorDetails(type=refusal("input", error), loc=path, input=given)
+    return ValidationError.from_exception_data(cls.__name__, [details])
+
+
+def origin_of(item: Any) -> Origin | None:
+    """Return the origin that a given value carries; None for a plain value."""
+    if isinstance(item, Origin):
+        return item
+    if isinstance(item, SourcedValue):
+        uncertainty = item.uncertainty
+        leaf = Leaf(
+            plain_text(item.value, item.unit),
+            source=item.source,
+            uncertainty=None if uncertainty is None else plain_text(uncertainty, item.unit),
+            assumed=item.assumed,
+            note=item.note,
+        )
+        return Origin(GIVEN, leaf)
+    if isinstance(item, Mapping) and "value" in item:
+        marks = {name: item[name] for name in (*INHERITED, "erratum") if name in item}
+        return Origin(GIVEN, Leaf(item["value"], uncertainty=item.get("uncertainty"), **marks))
+    return None
+
+
+def plain_text(value: Any, unit: str) -> Any:
+    """Return an SI value as a file writes it: exact, with its unit."""
+    if isinstance(value, bool) or not isinstance(value, float | int) or unit == "1":
+        return value
+    return f"{value!r} {unit}"
+
+
+@cache
+def _section_in(annotation: Any) -> type[Section] | None:
+    if isinstance(annotation, type) and issubclass(annotation, Section):
+        return annotation
+    if typing.get_origin(annotation) in (typing.Union, types.UnionType, typing.Annotated):
+        parts = (_section_in(part) for part in typing.get_args(annotation))
+        return next((part for part in parts if part is not None), None)
+    return None
+
+
+def section_in(field: FieldInfo) -> type[Section] | None:
+    """Return the section (or slot) that a field holds, or None for a value."""
+    return _section_in(field.annotation)
+
+
+def item_section(field: FieldInfo) -> type[Section] | None:
+    """Return the section of which a field holds a list, or None."""
+    parts = [field.annotation, *typing.get_args(field.annotation)]
+    lists = [part for part in parts if typing.get_origin(part) is tuple]
+    found = [_section_in(item) for part in lists for item in typing.get_args(part)]
+    return next((item for item in found if item is not None), None)
+
+
+def marks_of(field: FieldInfo) -> list[Any]:
+    """Return the marks (such as the unit) annotated on a field."""
+    return [*field.metadata, *_marks_in(field.annotation)]
+
+
+def _marks_in(annotation: Any) -> list[Any]:
+    marks = list(getattr(annotation, "__metadata__", ()))
+    for part in typing.get_args(annotation):
+        marks += _marks_in(part)
+    return marks
+
+
+def quantity_of(field: FieldInfo) -> Quantity | None:
+    """Return the unit and range of a field; None for words, counts and switches."""
+    return next((mark for mark in marks_of(field) if isinstance(mark, Quantity)), None)
+
+
+_UNITS: dict[int, tuple[FieldInfo, str]] = {}
+
+
+def unit_of(field: FieldInfo) -> str:
+    """Return the SI unit of a field, ``"1"`` for words."""
+    known = _UNITS.get(id(field))
+    if known is None or known[0] is not field:
+        quantity = quantity_of(field)
+        known = _UNITS[id(field)] = (field, "1" if quantity is None else quantity.unit)
+    return known[1]
+
+
+def walk(section: Section, path: str = "") -> Iterator[tuple[str, Section]]:
+    """Yield every section below one, with its dotted path."""
+    for name in type(section).model_fields:
+        value = getattr(section, name)
+        if isinstance(value, Section):
+            here = f"{path}.{name}" if path else name
+            yield here, value
+            yield from walk(value, here)

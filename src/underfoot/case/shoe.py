@@ -1,0 +1,201 @@
+"""Sections for the shoe: compound, surface, shape or outsole file, tread, wear, layers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+from underfoot.core import InputError, RangeError, display
+
+from .quantity import Flag, Length, Quantity, default
+from .section import CATALOGUE, CaseView, Section, origin_of
+from .sole import SolePlan, TreadPattern
+from .surfaces import SurfaceRoughness
+from .tables import existing_file
+from .wear import Wear
+
+Modulus = Annotated[float, Quantity("Pa", 1e4, 1e12)]
+TermModulus = Annotated[float, Quantity("Pa", 0.0, 1e12, open_low=True)]
+RelaxationTime = Annotated[float, Quantity("s", 0.0, 1e12, open_low=True)]
+Hardness = Annotated[float, Quantity("1", 0.0, 100.0, open_low=True)]
+Poisson = Annotated[float, Quantity("1", 0.0, 0.5)]
+Density = Annotated[float, Quantity("kg/m^3", 10.0, 3e4)]
+Direction = Literal["auto", "flip", "+x", "-x", "+y", "-y", "+z", "-z"]
+_mm = 1e-3
+_READ = "read from the file; underfoot check tells what and how"
+
+
+class RelaxationTerm(Section):
+    """One Maxwell element: shear modulus that decays with a time constant."""
+
+    shear_modulus: TermModulus
+    time: RelaxationTime
+
+
+class Relaxation(Section):
+    """Relaxation spectrum G(t) = equilibrium + sum of terms exp(-t / time)."""
+
+    equilibrium_shear_modulus: TermModulus
+    terms: tuple[RelaxationTerm, ...]
+
+
+class Material(Section):
+    """Outsole compound. A measured modulus goes before one from hardness."""
+
+    shore_a: Hardness | None = Field(default=None, description="Shore A hardness")
+    modulus: Modulus | None = Field(default=None, description="measured Young's modulus")
+    poisson_ratio: Poisson = default(0.49, 0.49, "rubber, nearly incompressible", assumed=True)
+    bulk_modulus: Modulus | None = None
+    density: Density | None = None
+    relaxation: Relaxation | None = None
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield a compound without stiffness."""
+        if self.shore_a is None and self.modulus is None:
+            yield InputError(
+                "neither hardness nor modulus is given",
+                where=where,
+                remedy='Write shore_a = 68 (a durometer reading) or modulus = "5 MPa"',
+            )
+        if self.modulus is None and self.shore_a is not None and self.shore_a >= 100:
+            yield RangeError(
+                "Shore A 100 has no finite modulus",
+                where=f"{where}.shore_a",
+                allowed="below 100",
+                remedy='Write modulus = "50 MPa" from a measurement instead',
+            )
+
+
+class Midsole(Section):
+    """Soft layer between outsole and the stiff foot."""
+
+    modulus: Modulus
+    thickness: Length
+    poisson_ratio: Poisson = default(0.3, 0.3, "foam", assumed=True)
+
+
+class SoleLayers(Section):
+    """What carries the tread: outsole layer and midsole on a stiff foot."""
+
+    outsole_thickness: Length = default(25 * _mm, "25 mm", "assumption", assumed=True)
+    midsole: Midsole | None = None
+
+    @property
+    def thickness(self) -> float:
+        """Outsole and midsole together, m."""
+        return self.outsole_thickness + (self.midsole.thickness if self.midsole else 0.0)
+
+
+class OutsoleFile(Section):
+    """Outsole from a file in place of heel and tread; ``underfoot outsole inspect`` reads one."""
+
+    uncounted: ClassVar[tuple[str, ...]] = ("file",)  # the checksum tells which outsole it is
+
+    file: str = Field(
+        description="STEP, STL, OBJ or PLY; the path counts from the case file's folder"
+    )
+    sha256: str | None = Field(
+        default=None, description="checksum of the file that is meant; another file is refused"
+    )
+    unit: Literal["auto", "mm", "cm", "m", "inch"] = default("auto", "auto", _READ)
+    down: Direction = default("auto", "auto", _READ)
+    forward: Direction = default("auto", "auto", _READ)
+    foot: Literal["auto", "left", "right"] = default("auto", "auto", _READ)
+    mirror: Flag = default(False, False, "the shoe that the file shows, not the other of the pair")
+    region: Literal["whole", "heel", "forepart"] = default(
+        "whole", "whole", "all of the file; the part far from the floor is trimmed"
+    )
+    region_length: Length | None = Field(
+        default=None, description="of the region; default: rear 30 %, front 45 % of a whole sole"
+    )
+    map_spacing: Annotated[float, Quantity("m", 2e-5, 0.002)] = default(
+        0.25 * _mm, "0.25 mm", "of the height map, finer than the grid of the solver"
+    )
+    reach: Length = default(
+        12 * _mm, "12 mm", "parts of the tilted sole higher above the floor are trimmed off"
+    )
+
+    @classmethod
+    def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+        """Return the table with the full path and the checksum of the file."""
+        from underfoot.core.files import checksum
+
+        name, meant = _plain(table.get("file")), _plain(table.get("sha256"))
+        if not isinstance(name, str):
+            return table
+        path = (folder / name).resolve()
+        existing_file(path, f"{where}.file")
+        try:
+            present = checksum(path)
+        except OSError as error:
+            raise InputError(
+                f"{path} can't be read ({error.strerror})", where=f"{where}.file"
+            ) from error
+        if isinstance(meant, str) and meant.lower() != present:
+            raise InputError(
+                f"{path.name} is not the file that the case means: its checksum is "
+                f"{present[:12]}..., not {meant[:12]}...",
+                where=f"{where}.file",
+                remedy="Bring back that file, or remove sha256 to take this one",
+            )
+        return {**table, "file": str(path), "sha256": present}
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield directions on one axis and a map coarser than the grid."""
+        down, forward = self.down, self.forward
+        if down[0] in "+-" and forward[0] in "+-" and down[1] == forward[1]:
+            yield InputError(
+                f"down {down} and forward {forward} lie on one axis",
+                where=f"{where}.forward",
+                allowed="two different axes of the file",
+            )
+        finest = min(case.numerics.grid_spacing, case.numerics.quick_grid_spacing)
+        if self.map_spacing > finest * (1 + 1e-9):
+            yield RangeError(
+                f"{display(self.map_spacing, 'm')} is coarser than the solver's grid",
+                where=f"{where}.map_spacing",
+                allowed=f"at most {display(finest, 'm')}",
+            )
+
+
+class Shoe(Section):
+    """Shoe: compound, surface, shape (or outsole file), tread, wear, layers."""
+
+    material: Material
+    roughness: SurfaceRoughness
+    outsole: OutsoleFile | None = None
+    heel: SolePlan | None = Field(default={}, validate_default=True)
+    tread: TreadPattern | None
+    wear: Wear = Field(default={}, validate_default=True)
+    sole: SoleLayers = SoleLayers()
+
+    @classmethod
+    def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+        """Return the table without heel and tread where a file gives the outsole."""
+        outsole = table.get("outsole")
+        if outsole is None:
+            return {key: item for key, item in table.items() if key != "outsole"}
+        for part in ("heel", "tread"):
+            if table.get(part) and not from_catalogue(table[part]):
+                raise InputError(
+                    f"is not used: the outsole comes from {_plain(outsole.get('file'))}",
+                    where=f"{where}.{part}",
+                    remedy=f"Remove [shoe.{part}], or shoe.outsole.file",
+                )
+        return {**table, "heel": None, "tread": None}
+
+
+def from_catalogue(item: Any) -> bool:
+    """Return whether a value, or every value of a table, is one of the catalogue."""
+    if isinstance(item, dict):
+        return all(from_catalogue(value) for value in item.values())
+    origin = origin_of(item)
+    return origin is not None and origin.kind == CATALOGUE
+
+
+def _plain(given: Any) -> Any:
+    origin = origin_of(given)
+    return given if origin is None else origin.leaf.given

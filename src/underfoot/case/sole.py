@@ -1,0 +1,415 @@
+"""Slots for the sole's geometry: plan form, rear profile and tread pattern."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+from underfoot.core import InputError, RangeError, display
+
+from .quantity import Angle, Depth, LargeRadius, Length, Quantity, Rounding, default
+from .section import CaseView, Option, Section
+
+if TYPE_CHECKING:
+    from underfoot.shoe import Profile, Tread
+    from underfoot.shoe.shape import SoleShape
+
+_ASSUMED = "assumption"
+_mm = 1e-3
+_CELLS = 2.0  # across a channel or lug: fewer and its width is wrong by half or more
+Turn = Annotated[float, Quantity("rad", -math.pi, math.pi)]
+
+
+class RearProfile(Option):
+    """Profile of the sole's rear."""
+
+    slot: ClassVar[str] = "profile"
+    usual: ClassVar[str | None] = "facet"
+
+    @abstractmethod
+    def build(self) -> Profile:
+        """Return the profile as geometry."""
+
+
+class FlatRear(RearProfile):
+    """Flat to the rear end."""
+
+    name: ClassVar[str] = "flat"
+
+    def build(self) -> Profile:
+        """Return the profile as geometry."""
+        from underfoot.shoe import Flat
+
+        return Flat()
+
+
+class FacetRear(RearProfile):
+    """Ground flat at an angle."""
+
+    name: ClassVar[str] = "facet"
+    source: ClassVar[str] = _ASSUMED
+
+    angle: Angle = Field(description="between facet and sole")
+    length: Length = Field(description="along the sole, from the rear")
+
+    def build(self) -> Profile:
+        """Return the profile as geometry."""
+        from underfoot.shoe import Facet, Flat
+
+        return Facet(self.angle, self.length) if self.angle else Flat()
+
+
+class RockerRear(RearProfile):
+    """Rounded upwards to the rear."""
+
+    name: ClassVar[str] = "rocker"
+
+    radius: LargeRadius = Field(description="radius along x")
+    start: Length = Field(description="from the rear end")
+
+    def build(self) -> Profile:
+        """Return the profile as geometry."""
+        from underfoot.shoe import Rocker
+
+        return Rocker(self.radius, self.start)
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield a start beyond the radius."""
+        if self.start >= self.radius:
+            yield RangeError(
+                f"{display(self.start, 'm')} reaches beyond the rocker's radius",
+                where=f"{where}.start",
+                allowed=f"below {display(self.radius, 'm')} (radius)",
+            )
+
+
+class SolePlan(Option):
+    """Heel or whole sole in its own frame: x from the rear end towards the toe."""
+
+    slot: ClassVar[str] = "plan"
+    key: ClassVar[str] = "plan"
+    usual: ClassVar[str | None] = "heel"
+
+    length: Length = default(60 * _mm, "60 mm", _ASSUMED, assumed=True)
+    width: Length = default(60 * _mm, "60 mm", _ASSUMED, assumed=True)
+    profile: RearProfile = Field(default={}, validate_default=True)
+    edge_radius: Rounding = default(2 * _mm, "2 mm", _ASSUMED, assumed=True)
+    crown_radius: LargeRadius | None = Field(
+        default=None, description="radius of a sole bulged across"
+    )
+
+    @property
+    def widest(self) -> float:
+        """Largest width, m."""
+        return self.width
+
+    @abstractmethod
+    def build(self, tread: TreadPattern, outsole_thickness: float) -> SoleShape:
+        """Return the new sole with its tread."""
+
+    def _common(self, tread: TreadPattern, outsole_thickness: float) -> dict[str, Any]:
+        from underfoot.shoe import ArcChannel
+
+        arc = tread.arc_channel
+        return {
+            "outsole_thickness": outsole_thickness,
+            "edge_radius": self.edge_radius,
+            "crown_radius": self.crown_radius,
+            "tread": tread.build(),
+            "arc_channel": arc and ArcChannel(arc.position, arc.radius, arc.width, arc.depth),
+        }
+
+
+class HeelPlan(SolePlan):
+    """Heel alone, which carries a slip tester."""
+
+    name: ClassVar[str] = "heel"
+    source: ClassVar[str] = "the heel carries the slip tester"
+
+    rear_radius: Rounding = default(28 * _mm, "28 mm", _ASSUMED, assumed=True)
+    front_radius: Rounding = default(0.0, "0 mm", "the heel goes on into the shoe")
+
+    def build(self, tread: TreadPattern, outsole_thickness: float) -> SoleShape:
+        """Return the new heel with its tread."""
+        from underfoot.shoe import Heel
+
+        return Heel(
+            length=self.length,
+            width=self.width,
+            rear_radius=self.rear_radius,
+            front_radius=self.front_radius,
+            profile=self.profile.build(),
+            **self._common(tread, outsole_thickness),
+        )
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield radii that do not fit the plan form."""
+        limit = min(self.width, self.length) / 2
+        for name in ("rear_radius", "front_radius", "edge_radius"):
+            if getattr(self, name) > limit:
+                yield RangeError(
+                    f"{display(getattr(self, name), 'm')} does not fit the plan form",
+                    where=f"{where}.{name}",
+                    allowed=f"at most {display(limit, 'm')} (half of the smaller of length and "
+                    "width)",
+                )
+
+
+class WholePlan(SolePlan):
+    """Whole sole with waist and ball."""
+
+    name: ClassVar[str] = "sole"
+
+    side: Literal["left", "right"] = default("right", "right", "which foot, seen from above")
+    waist_width: Length = Field(description="at its narrowest")
+    ball_width: Length = Field(description="across the ball")
+    toe_spring: Rounding | None = Field(default=None, description="how far the tip is up")
+    toe_start: Length | None = Field(
+        default=None, description="where the toe begins to rise, from the rear end"
+    )
+    reach: Length = default(
+        12 * _mm, "12 mm", "parts of the tilted sole higher above the floor are trimmed off"
+    )
+
+    @property
+    def widest(self) -> float:
+        """Largest width, m."""
+        return max(self.width, self.ball_width)
+
+    def build(self, tread: TreadPattern, outsole_thickness: float) -> SoleShape:
+        """Return the new sole with its tread."""
+        from underfoot.shoe.parametric import ShoeOutline, ToeSpring, WholeSole
+
+        toe = None
+        if self.toe_spring and self.toe_start:
+            toe = ToeSpring(self.toe_spring, self.toe_start, self.length)
+        return WholeSole(
+            ShoeOutline(self.length, self.width, self.waist_width, self.ball_width, self.side),
+            rear_profile=self.profile.build(),
+            toe_spring=toe,
+            **self._common(tread, outsole_thickness),
+        )
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield half a toe spring."""
+        if (self.toe_spring is None) != (self.toe_start is None):
+            missing = "toe_spring" if self.toe_spring is None else "toe_start"
+            yield InputError(
+                "a toe spring needs both its height and where it starts",
+                where=f"{where}.{missing}",
+            )
+
+
+class ArcChannel(Section):
+    """One channel that follows the rounded rear of the heel."""
+
+    width: Length
+    depth: Depth
+    position: Length = Field(description="from the rear end, on the centre line")
+    radius: Length = Field(description="of the channel's middle line")
+
+
+class SipeCuts(Section):
+    """Parallel slits in all lugs."""
+
+    width: Length
+    depth: Depth = Field(description="at most the depth of the tread")
+    spacing: Length = Field(description="between the middles of two slits")
+    angle: Turn = default(0.0, "0 deg", "across the shoe")
+
+
+class TreadPattern(Option):
+    """Tread of one pattern; an arc channel may be added."""
+
+    slot: ClassVar[str] = "tread"
+    key: ClassVar[str] = "pattern"
+
+    arc_channel: ArcChannel | None = None
+
+    @property
+    def pattern(self) -> str:
+        """Name of the pattern."""
+        return self.name
+
+    @abstractmethod
+    def build(self) -> Tread | None:
+        """Return the lugs; None for an untreaded sole."""
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield what does not fit the outsole or the grid."""
+        if self.arc_channel is not None:
+            yield from _through(case, self.arc_channel.depth, f"{where}.arc_channel.depth")
+            yield from _resolved(case, f"{where}.arc_channel.width", self.arc_channel.width)
+
+
+class NoTread(TreadPattern):
+    """Sole without tread."""
+
+    name: ClassVar[str] = "none"
+
+    def build(self) -> Tread | None:
+        """Return no lugs."""
+        return None
+
+
+class Lugs(TreadPattern):
+    """Lugs between channels of one width; sipes may be added."""
+
+    depth: Depth
+    lug_width: Length = Field(
+        description="normal to the walls; of circles their diameter, of hexagons flats"
+    )
+    channel_width: Length
+    angle: Turn = default(0.0, "0 deg", "turns the pattern")
+    edge_radius: Rounding = default(0.0, "0 mm", "sharp lug edges", assumed=True)
+    sipes: SipeCuts | None = None
+
+    def build(self) -> Tread | None:
+        """Return the lugs."""
+        from underfoot.shoe import Sipes, Tread
+
+        cuts = self.sipes
+        return Tread(
+            self.name,
+            self.lug_width,
+            self.channel_width,
+            self.depth,
+            self.edge_radius,
+            angle=self.angle,
+            lug_length=getattr(self, "lug_length", None),
+            arm_length=getattr(self, "arm_length", None),
+            sipes=cuts and Sipes(cuts.width, cuts.depth, cuts.spacing, cuts.angle),
+        )
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield what does not fit the outsole, the lug or the grid."""
+        yield from super().problems(case, where)
+        if self.depth == 0.0:
+            yield RangeError(
+                "0 mm is no tread",
+                where=f"{where}.depth",
+                allowed="above 0 mm",
+                remedy='Write pattern = "none" for a sole without tread',
+            )
+        yield from _through(case, self.depth, f"{where}.depth")
+        widths = [
+            name for name in ("lug_width", "channel_width", "lug_length") if hasattr(self, name)
+        ]
+        for name in widths:
+            yield from _resolved(case, f"{where}.{name}", getattr(self, name))
+        smallest = min(self.lug_width, getattr(self, "lug_length", math.inf))
+        rounding = min(self.depth or math.inf, smallest / 2)
+        if self.edge_radius > rounding:
+            yield RangeError(
+                f"{display(self.edge_radius, 'm')} does not fit on the lug",
+                where=f"{where}.edge_radius",
+                allowed=f"at most {display(rounding, 'm')} (the depth and half the lug width)",
+            )
+        if self.sipes is not None:
+            yield from self._sipe_problems(self.sipes, f"{where}.sipes")
+
+    def _sipe_problems(self, cuts: SipeCuts, where: str) -> Iterator[InputError]:
+        if cuts.depth > self.depth * (1 + 1e-9):
+            yield RangeError(
+                f"{display(cuts.depth, 'm')} is deeper than the lug",
+                where=f"{where}.depth",
+                allowed=f"at most {display(self.depth, 'm')} (shoe.tread.depth)",
+            )
+        if cuts.depth == 0.0:
+            yield RangeError("0 mm is no sipe", where=f"{where}.depth", allowed="above 0 mm")
+        if cuts.width >= cuts.spacing / 2:
+            yield RangeError(
+                f"slits of {display(cuts.width, 'm')} leave no lug between them",
+                where=f"{where}.width",
+                allowed=f"below {display(cuts.spacing / 2, 'm')} (half of their spacing)",
+            )
+
+
+class GridTread(Lugs):
+    """Square lugs with channels on all sides."""
+
+    name: ClassVar[str] = "grid"
+
+
+class TransverseTread(Lugs):
+    """Channels across the shoe."""
+
+    name: ClassVar[str] = "transverse"
+
+
+class LongitudinalTread(Lugs):
+    """Channels along the shoe."""
+
+    name: ClassVar[str] = "longitudinal"
+
+
+class BlockTread(Lugs):
+    """Rectangular lugs."""
+
+    name: ClassVar[str] = "blocks"
+
+    lug_length: Length = Field(description="along the shoe")
+
+
+class BarTread(Lugs):
+    """Bars."""
+
+    name: ClassVar[str] = "bars"
+
+
+class ChevronTread(Lugs):
+    """Chevrons."""
+
+    name: ClassVar[str] = "chevrons"
+
+    arm_length: Length = Field(description="one arm, measured across the shoe")
+    angle: Turn = default(0.0, "0 deg", "of the arms against the transverse direction")
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield arms along the shoe too."""
+        yield from super().problems(case, where)
+        if abs(self.angle) > math.radians(75):
+            yield RangeError(
+                f"arms at {display(self.angle, 'rad')} run along the shoe",
+                where=f"{where}.angle",
+                allowed="-75 deg to 75 deg for chevrons",
+                remedy='Write pattern = "longitudinal" for channels along the shoe',
+            )
+
+
+class CircleTread(Lugs):
+    """Round studs."""
+
+    name: ClassVar[str] = "circles"
+
+
+class HexagonTread(Lugs):
+    """Hexagonal studs."""
+
+    name: ClassVar[str] = "hexagons"
+
+
+def _through(case: CaseView, depth: float, where: str) -> Iterator[InputError]:
+    thickness = case.shoe.sole.outsole_thickness
+    if depth >= thickness:
+        yield RangeError(
+            f"{display(depth, 'm')} goes through the outsole",
+            where=where,
+            allowed=f"below {display(thickness, 'm')} (shoe.sole.outsole_thickness)",
+        )
+
+
+def _resolved(case: CaseView, path: str, width: float) -> Iterator[InputError]:
+    for name in ("grid_spacing", "quick_grid_spacing"):
+        spacing = getattr(case.numerics, name)
+        if width < _CELLS * spacing * (1 - 1e-9):
+            yield InputError(
+                f"{display(width, 'm')} is too narrow for the grid of {display(spacing, 'm')}",
+                where=path,
+                allowed=f"at least {display(_CELLS * spacing, 'm')} (two cells)",
+                remedy=f'Write numerics.{name} = "{width / 4 * 1e3:.3g} mm" (four cells)',
+            )

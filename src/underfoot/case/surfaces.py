@@ -1,0 +1,190 @@
+"""Sections for the roughness of sole and floor, and for the interface that both make."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from collections.abc import Iterator
+from typing import Annotated, ClassVar
+
+from pydantic import Field
+
+from underfoot.core import InputError, RangeError, SourcedValue, display
+
+from .quantity import Length, Quantity, default
+from .section import CaseView, Option, Section
+
+Roughness = Annotated[float, Quantity("m", 1e-9, 1e-3)]
+Cutoff = Annotated[float, Quantity("m", 1e-6, 0.1)]
+_mm, _um = 1e-3, 1e-6
+RQ_PER_RA = math.sqrt(math.pi / 2)
+"""Rq over Ra of Gaussian heights, 1.253."""
+STEEPEST = 0.5
+"""Largest rms slope of the interface's longest waves (small-slope theory, assumed)."""
+
+
+class SurfaceRoughness(Section):
+    """Roughness numbers of a profile after the cut-off."""
+
+    ra: Roughness | None = Field(default=None, description="mean deviation")
+    rq: Roughness | None = Field(default=None, description="root-mean-square deviation")
+    rz: Roughness | None = Field(default=None, description="mean peak-to-valley height")
+    rp: Roughness | None = Field(default=None, description="highest peak")
+    rt: Roughness | None = Field(default=None, description="total height")
+    cutoff: Cutoff | None = Field(default=None, description="cut-off wavelength of the filter")
+
+    @property
+    def rq_or_estimate(self) -> float | None:
+        """Rq as given, else 1.25 Ra (Gaussian heights: sqrt(pi/2) = 1.253), m; None if unknown."""
+        if self.rq is not None:
+            return self.rq
+        return None if self.ra is None else RQ_PER_RA * self.ra
+
+    @property
+    def rq_uncertainty(self) -> float | None:
+        """Standard deviation of ``rq_or_estimate``, m; None when not given."""
+        if self.rq is not None:
+            return self.sourced("rq").uncertainty
+        spread = self.sourced("ra").uncertainty
+        return None if spread is None else RQ_PER_RA * spread
+
+
+class Floor(Section):
+    """Hard floor."""
+
+    roughness: SurfaceRoughness
+    shore_a: Annotated[float, Quantity("1", 0.0, 100.0, open_low=True)] | None = None
+
+
+class Interface(Option):
+    """What sole and floor make together; the least known part of a case."""
+
+    slot: ClassVar[str] = "interface"
+    usual: ClassVar[str | None] = "composite"
+
+    hurst: Annotated[float, Quantity("1", 0.1, 1.0)] = default(
+        0.8, 0.8, "common for worn and abraded surfaces", assumed=True
+    )
+    longest_wave: Length = default(
+        2 * _mm,
+        "2 mm",
+        "where a roughness that grows as the length to the power 0.8 has doubled "
+        "since the stylus' cut-off of 0.8 mm",
+        assumed=True,
+    )
+    shortest_wave: Annotated[float, Quantity("m", 1e-6, 1e-2)] = default(
+        125 * _um,
+        "0.125 mm",
+        "what a grid of 128 cells holds; sets contact area, hardly the gap",
+        assumed=True,
+    )
+
+    @abstractmethod
+    def rq(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> SourcedValue:
+        """Return Rq of the interface, m."""
+
+    @abstractmethod
+    def rq_deviation(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> float | None:
+        """Return the standard deviation of Rq over itself; None when not given."""
+
+    def _too_rough(self, case: CaseView, where: str) -> Iterator[InputError]:
+        rq = self.rq(case.shoe.roughness, case.floor.roughness).value or 0.0
+        waves = self.longest_wave
+        limits = {
+            f"its waves of up to {display(waves, 'm')} would be steeper than the theory of rough "
+            "contact holds for": STEEPEST * waves / (2 * math.pi)
+        }
+        if case.contaminant is not None:
+            pool = case.contaminant.pool_depth
+            limits[f"its summits (3 Rq) would stand out of {display(pool, 'm')} of fluid"] = (
+                pool / 3
+            )
+        why, limit = min(limits.items(), key=lambda item: item[1])
+        if rq > limit:
+            yield RangeError(
+                f"an Rq of {display(rq, 'm')} is no roughness of a sole on a floor: {why}",
+                where=where,
+                allowed=f"at most {display(limit, 'm')}",
+                remedy="Soles and floors have a few to some tens of micrometres; a deeper pattern "
+                "belongs to shoe.tread",
+            )
+        if self.shortest_wave >= self.longest_wave:
+            yield RangeError(
+                "the shortest wave of the interface is not shorter than the longest",
+                where="interface.shortest_wave",
+                allowed=f"below {display(self.longest_wave, 'm')} (interface.longest_wave)",
+            )
+
+
+class CompositeInterface(Interface):
+    """Rq = f sqrt(Rq_shoe^2 + Rq_floor^2) of the stylus, with f = ``roughness_beyond_cutoff``."""
+
+    name: ClassVar[str] = "composite"
+    source: ClassVar[str] = "composite of the stylus Rq of shoe and floor"
+
+    roughness_beyond_cutoff: Annotated[float, Quantity("1", 1.0, 10.0)] = default(
+        2.0,
+        2.0,
+        "chosen on one reading of the report (G.4, untreaded work shoe in glycerol, 201 N); "
+        "the stylus sees no waves beyond its cut-off of 0.8 mm, the leaking fluid does",
+        assumed=True,
+    )
+
+    def rq(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> SourcedValue:
+        """Return Rq of the interface, m."""
+        ours, theirs = shoe.rq_or_estimate, floor.rq_or_estimate
+        if ours is None or theirs is None:
+            raise InputError("no roughness is given", where="interface.effective_rq")
+        return SourcedValue(
+            self.roughness_beyond_cutoff * math.hypot(ours, theirs),
+            "m",
+            source=f"{self.source}, times {self.roughness_beyond_cutoff:g}",
+            assumed=True,
+            note="the stylus' cut-off hides long waves, through which fluid leaks",
+        )
+
+    def rq_deviation(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> float | None:
+        """Return the standard deviation of Rq over itself; None when neither part has one."""
+        heights = [(part.rq_or_estimate or 0.0, part.rq_uncertainty) for part in (shoe, floor)]
+        squares = math.fsum(rq**2 for rq, _ in heights)
+        known = [rq * spread for rq, spread in heights if spread is not None]
+        return math.hypot(*known) / squares if known and squares > 0 else None
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield an unknown or impossible roughness."""
+        unknown = [
+            p for p in ("shoe", "floor") if getattr(case, p).roughness.rq_or_estimate is None
+        ]
+        for path in unknown:
+            yield InputError(
+                "neither Rq nor Ra is given",
+                where=f"{path}.roughness",
+                remedy=f'Write {path}.roughness.rq = "5 um" (or ra), or interface.effective_rq',
+            )
+        if not unknown:
+            yield from self._too_rough(case, f"{where}.roughness_beyond_cutoff")
+
+
+class MeasuredInterface(Interface):
+    """Rq of the interface as given."""
+
+    name: ClassVar[str] = "measured"
+    source: ClassVar[str] = "given in the case"
+    chosen_by: ClassVar[tuple[str, ...]] = ("effective_rq",)
+
+    effective_rq: Roughness = Field(
+        description="roughness that lets fluid leak and asperities touch"
+    )
+
+    def rq(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> SourcedValue:
+        """Return Rq of the interface, m."""
+        return self.sourced("effective_rq")
+
+    def rq_deviation(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> float | None:
+        """Return the standard deviation of Rq over itself; None when not given."""
+        spread = self.sourced("effective_rq").uncertainty
+        return None if spread is None else spread / self.effective_rq
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield an impossible roughness."""
+        yield from self._too_rough(case, f"{where}.effective_rq")

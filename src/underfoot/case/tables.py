@@ -1,0 +1,137 @@
+"""Tables (CSV, XLSX) beside a case file: friction readings and motion histories, in SI."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core import DataError, InputError, nearest_match, to_si
+
+if TYPE_CHECKING:
+    from underfoot.trials.readers.sheet import Sheet
+
+Array = NDArray[np.float64]
+Columns = Mapping[str, tuple[str, tuple[str, ...]]]
+"""Quantity: SI unit, and the headings by which a column is known."""
+
+
+def existing_file(path: Path, where: str, pattern: str = "*") -> Path:
+    """Return ``path``; an error names the nearest file of ``pattern`` in its folder."""
+    if path.is_file():
+        return path
+    near = [file.name for file in path.parent.glob(pattern)] if path.parent.is_dir() else []
+    raise InputError(
+        f"there is no file {path}",
+        where=where,
+        nearest=nearest_match(path.name, near),
+        remedy="The path counts from the folder of the case file",
+    )
+
+
+def table_columns(
+    path: Path,
+    columns: Columns,
+    where: str,
+    *,
+    needed: tuple[str, ...],
+    lowest: float | None = None,
+) -> dict[str, Array]:
+    """Return the columns of a table in SI; units stand in a heading, as ``speed (mm/s)``.
+
+    Raises
+    ------
+    InputError
+        No file, no table, a column of ``needed`` missing, a value missing or below ``lowest``.
+    """
+    from underfoot.trials.readers.sheet import read_sheet
+
+    existing_file(path, where, "*.csv")
+    try:
+        sheet = read_sheet(path)
+    except DataError as error:
+        raise InputError(f"{path.name}: {error}", where=where) from error
+    optional = [name for name in columns if name not in needed]
+    allowed = f"{', '.join(needed)}; also {', '.join(optional)}"
+    read = {}
+    for name, (unit, headings) in columns.items():
+        values = _column(sheet, unit, headings, f"{where}, {name}")
+        if values is not None:
+            read[name] = values
+        elif name in needed:
+            raise InputError(
+                f'{sheet.name} has no column "{name}" of numbers',
+                where=where,
+                allowed=f"{allowed}. Present: " + ", ".join(sheet.columns[:8]),
+            )
+    for name, values in read.items():
+        wrong = ~np.isfinite(values)
+        if lowest is not None:
+            wrong |= values < lowest
+        for row in np.flatnonzero(wrong)[:1]:
+            state = "missing" if np.isnan(values[row]) else f"{values[row]:g}"
+            raise InputError(
+                f"row {row + 1} of {path.name}: {name} is {state}",
+                where=where,
+                allowed="a number" if lowest is None else f"a number, {lowest:g} or more",
+            )
+    return read
+
+
+def as_written(read: Mapping[str, Array], columns: Columns) -> list[dict[str, str | float]]:
+    """Return the rows of a table as a case file writes them."""
+    count = len(next(iter(read.values()), ()))
+    rows: list[dict[str, str | float]] = []
+    for row in range(count):
+        units = {name: columns[name][0] for name in read}
+        rows.append(
+            {
+                name: float(values[row])
+                if units[name] == "1"
+                else f"{values[row]:.12g} {units[name]}"
+                for name, values in read.items()
+            }
+        )
+    return rows
+
+
+def table_source(path: Path) -> str:
+    """Return what a line ``# source: ...`` at the head of a table says, else the file's name."""
+    try:
+        with path.open(encoding="utf-8-sig") as stream:
+            head = [line for _, line in zip(range(20), stream, strict=False)]
+    except UnicodeDecodeError:  # a spreadsheet
+        return path.name
+    for line in head:
+        name, _, text = line.lstrip("#; ").partition(":")
+        if name.strip().casefold() == "source" and text.strip():
+            return text.strip()
+    return path.name
+
+
+def _column(sheet: Sheet, unit: str, headings: tuple[str, ...], where: str) -> Array | None:
+    from underfoot.trials.readers.unit_factors import si_unit
+
+    plain = {_plain(key): key for key in reversed(list(sheet.numbers))}
+    key = next((plain[heading] for heading in headings if heading in plain), None)
+    if key is None:
+        return None
+    written, factor = sheet.units.get(key, ""), 1.0
+    known = si_unit(written) if written else None
+    if known is not None and unit != "1":
+        if known[0] not in (unit, unit.replace("*", " "), unit.replace("*", "·")):
+            name = where.rpartition(", ")[2]
+            raise InputError(
+                f'{sheet.name}: "{written}" is no unit of {name}', where=where, allowed=unit
+            )
+        factor = known[1]
+    elif written and unit != "1":
+        factor = to_si(f"1 {written}", unit, where=where)
+    return np.asarray(sheet.numbers[key], dtype=float) * factor
+
+
+def _plain(heading: str) -> str:
+    return " ".join(heading.casefold().replace("_", " ").split())

@@ -1,0 +1,150 @@
+"""Slot for the wear of the sole: a plane cut, a patch, or pressure times sliding."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from underfoot.core import InputError, RangeError, display
+
+from .quantity import Angle, Depth, Force, Length, Quantity, default
+from .section import CaseView, Option
+
+if TYPE_CHECKING:
+    from underfoot.shoe.shape import SoleWear
+
+WearAngle = Annotated[float, Quantity("rad", 0.0, math.radians(45))]
+Place = Annotated[float, Quantity("m", -0.2, 0.2)]
+Taper = Annotated[float, Quantity("rad", math.radians(0.5), math.radians(60))]
+WearRate = Annotated[float, Quantity("m^2/N", 1e-20, 1e-6)]
+
+
+class Wear(Option):
+    """How much of the sole is worn away, and how."""
+
+    slot: ClassVar[str] = "wear"
+    key: ClassVar[str] = "mode"
+    usual: ClassVar[str | None] = "plane"
+
+    depth: Depth = default(0.0, "0 mm", "unworn beyond the heel shape given")
+
+    @property
+    def mode(self) -> str:
+        """Name of the option."""
+        return self.name
+
+    @abstractmethod
+    def build(self) -> SoleWear | None:
+        """Return what is worn away as geometry; None where a contact must be solved for it."""
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield wear through the outsole."""
+        thickness = case.shoe.sole.outsole_thickness
+        if self.depth >= thickness:
+            yield RangeError(
+                f"{display(self.depth, 'm')} goes through the outsole",
+                where=f"{where}.depth",
+                allowed=f"below {display(thickness, 'm')} (shoe.sole.outsole_thickness)",
+            )
+
+
+class PlaneWear(Wear):
+    """Ground off at one angle."""
+
+    name: ClassVar[str] = "plane"
+    source: ClassVar[str] = "ground at one angle"
+
+    angle: WearAngle = default(0.0, "0 deg", "even wear")
+
+    def build(self) -> SoleWear | None:
+        """Return the plane."""
+        from underfoot.shoe import WearPlane
+
+        return WearPlane(self.depth, self.angle)
+
+
+class PatchWear(Wear):
+    """A worn patch of given size."""
+
+    name: ClassVar[str] = "patch"
+
+    patch_form: Literal["ellipse", "rectangle"] = default("ellipse", "ellipse", "patch")
+    patch_length: Length = Field(description="along the shoe")
+    patch_width: Length = Field(description="across the shoe")
+    patch_position: Length | None = Field(
+        default=None, description="its middle from the rear end; default: it begins there"
+    )
+    patch_lateral: Place = default(0.0, "0 mm", "its middle on the centre line")
+    patch_taper: Taper = default(
+        math.radians(3), "3 deg", "slope of the wear around it", assumed=True
+    )
+
+    def build(self) -> SoleWear | None:
+        """Return the patch."""
+        from underfoot.shoe.worn import WornPatch
+
+        return WornPatch(
+            depth=self.depth,
+            length=self.patch_length,
+            width=self.patch_width,
+            position=self.patch_position,
+            lateral=self.patch_lateral,
+            form=self.patch_form,
+            taper=self.patch_taper,
+        )
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield a patch larger than the shoe too."""
+        yield from super().problems(case, where)
+        heel = case.shoe.heel
+        if heel is None or self.depth == 0.0:
+            return
+        for name, most in (("patch_length", heel.length), ("patch_width", heel.widest)):
+            if getattr(self, name) > most * (1 + 1e-9):
+                yield RangeError(
+                    f"a worn patch of {display(getattr(self, name), 'm')} is larger than the shoe",
+                    where=f"{where}.{name}",
+                    allowed=f"at most {display(most, 'm')}, the extent of the sole",
+                )
+
+
+class ArchardWear(Wear):
+    """Pressure times sliding, step by step, at three angles of early stance."""
+
+    name: ClassVar[str] = "archard"
+
+    angle: WearAngle = Field(description="shoe angle at which the sole wears, as 12 deg")
+    angle_range: Angle = default(
+        math.radians(10),
+        "10 deg",
+        "the shoe wears at three angles of early stance; their span",
+        assumed=True,
+    )
+    normal_force: Force | None = Field(
+        default=None, description="while wearing; default motion.normal_force"
+    )
+    wear_rate: WearRate = default(
+        3.7500000000000005e-10,  # as the text gives it, to the last digit
+        "0.375 mm^3/(N*m)",
+        "150 mm^3 lost on the abrasive sheet of ISO 4649 (10 N, 40 m), the limit for good soles; "
+        "floors are far gentler, and only the sliding distance depends on it",
+        assumed=True,
+    )
+
+    def build(self) -> SoleWear | None:
+        """Return None: the worn shape comes from solved contacts."""
+        return None
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield an outsole from a file too, whose solid is not known."""
+        yield from super().problems(case, where)
+        if case.shoe.outsole is not None and self.depth > 0:
+            yield InputError(
+                'wear by pressure and sliding (mode = "archard") needs a parametric sole',
+                where=f"{where}.mode",
+                allowed='"plane" or "patch" with an outsole file',
+            )

@@ -1,0 +1,163 @@
+"""Answers on the terminal: one way to compute, write and print for every command."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from textwrap import shorten
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from .guard import say
+
+if TYPE_CHECKING:
+    from underfoot.core import Progress
+    from underfoot.core.presentation import Presentable, Table
+    from underfoot.questions.risk import RiskAssessment
+    from underfoot.report import Written
+    from underfoot.report.writing import Writer
+
+NOT_USABLE = 4
+"""Exit code where a computation did not end with a result."""
+MOST_LINES = 3
+"""Lines of a list of remarks on the terminal; ``--all`` prints all."""
+REMARKS = ("", "Remark", "Source", "Basis", "origin")
+"""Heads of last columns that are set dim: they explain, they are no result."""
+LONGEST_LINE = 110
+NARROWEST = 24
+"""Characters of the last column below which the other columns wrap too."""
+LONGEST_VALUE = 36
+"""Characters of a cell above which the terminal prints it on a line of its own."""
+
+
+def answer(
+    title: str,
+    compute: Callable[[Progress], Presentable],
+    *,
+    out: Path | None = None,
+    overwrite: bool = False,
+    json: bool = False,
+    everything: bool = False,
+    further: Callable[[Any, Path], dict[str, Writer]] | None = None,
+) -> None:
+    """Compute with progress, write ``out`` if given, print; exit with what the result deserves.
+
+    ``further`` returns more data files of the result for the folder ``out``.
+    """
+    from underfoot.core.files import check_writable_folder
+    from underfoot.core.progress import bar
+
+    if out is not None:
+        check_writable_folder(out, overwrite=overwrite)
+    with bar(title) as progress:
+        result = compute(progress)
+    written = None
+    if out is not None:
+        from underfoot.report import write_report
+
+        more = {} if further is None else {"further": further(result, out)}
+        written = write_report(result, out, overwrite=overwrite, **more)
+    finish(result, written, json=json, everything=everything)
+
+
+def finish(
+    result: Presentable,
+    written: Written | None,
+    *,
+    json: bool,
+    everything: bool = False,
+    advice: RiskAssessment | None = None,
+) -> None:
+    """Print an answer as tables or JSON, and where its files are; exit with its code.
+
+    The most effective changes of ``advice`` follow the answer.
+    """
+    from underfoot.report.writing import WRITTEN_IN_PART, json_text
+
+    if json:
+        print(json_text(result, advice=advice), end="")
+    else:
+        show(result, everything=everything)
+        if advice is not None:
+            print(f"\n{advice.table().title}:")
+            for line in advice.change_sentences():
+                print(f"  - {line}")
+    if written is not None:
+        first, *failures = written.lines()
+        if not json:
+            print(f"\n{first}")
+        for failure in failures:
+            say(f"error: {failure}")
+        if failures:
+            say("The results were computed; they are written in part.")
+            raise typer.Exit(WRITTEN_IN_PART)
+    if not result.usable:
+        raise typer.Exit(NOT_USABLE)
+
+
+def show(shown: Presentable, *, everything: bool = False) -> None:
+    """Print headline, cautions, tables and remarks."""
+    from rich.console import Console
+
+    console = Console(highlight=False)
+    console.print(f"\n[bold]{escaped(shown.heading())}[/bold]")
+    for sentence in shown.headline():
+        console.print(sentence, markup=False)
+    for caution in shown.cautions():
+        console.print(f"[yellow]Caution:[/yellow] {escaped(caution)}")
+    for table in shown.tables():
+        if table.rows:
+            console.print()
+            print_table(table, everything=everything)
+    for title, lines in shown.remarks().items():
+        if not lines:
+            continue
+        count = f" ({len(lines)})" if len(lines) > 1 else ""
+        console.print(f"\n{title}{count}:", markup=False)
+        kept = lines if everything else lines[:MOST_LINES]
+        for line in kept:
+            console.print(f"  - {line if everything else shortened(line)}", markup=False)
+        if len(kept) < len(lines):
+            console.print(f"  … {len(lines) - len(kept)} more: --all", markup=False)
+
+
+def shortened(line: str) -> str:
+    """Return a remark without the source or reason in brackets, on one line of a terminal."""
+    return shorten(line.partition(" (")[0], LONGEST_LINE, placeholder=" …")
+
+
+def print_table(table: Table, *, everything: bool = True) -> None:
+    """Print a table; without ``everything`` long remarks in its last column lose their sources."""
+    from rich.console import Console
+    from rich.table import Table as RichTable
+
+    console = Console(highlight=False)
+    if table.title:
+        console.print(table.title, style="bold", markup=False)
+    cells = table.cells()
+    last = len(table.columns) - 1
+    if not everything and last > 1:
+        cells = [
+            [*row[:-1], row[-1] if len(row[-1]) <= LONGEST_VALUE else shortened(row[-1])]
+            for row in cells
+        ]
+    widths = [max(map(len, column)) for column in zip(table.columns, *cells, strict=True)]
+    roomy = sum(widths[:last]) + NARROWEST <= console.width
+    drawn = RichTable(box=None, pad_edge=False, show_header=any(table.columns))
+    for number, name in enumerate(table.columns):
+        remark = number == last and number > 1
+        drawn.add_column(
+            escaped(name),
+            no_wrap=roomy and not remark,
+            overflow="fold",
+            style="dim" if remark and name in REMARKS else None,
+        )
+    for row in cells:
+        drawn.add_row(*map(escaped, row))
+    console.print(drawn)
+
+
+def escaped(text: str) -> str:
+    """Return text with brackets that are not taken for markup."""
+    return text.replace("[", "\\[")

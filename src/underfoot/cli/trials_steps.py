@@ -1,0 +1,145 @@
+"""``underfoot trials edit``, ``definitions`` and ``export``: steps looked at and set by hand."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .guard import say
+from .options import Overwrite
+
+ProfilePath = Annotated[
+    Path | None,
+    typer.Option(
+        help="Profile (TOML) of columns, axes and heels; else profile.toml in the folder.",
+        show_default=False,
+    ),
+]
+
+
+def edit(
+    file: Annotated[Path, typer.Argument(help="Recording with force plates.", show_default=False)],
+    reason: Annotated[str, typer.Option(help="Why; it goes to the edit log.", show_default=False)],
+    step: Annotated[
+        str,
+        typer.Option(
+            help='Number of the step as `describe` prints it, or a time in it, as "3.1 s".',
+            show_default=False,
+        ),
+    ],
+    contact: Annotated[
+        str | None, typer.Option(help='New time of contact, as "3.060 s".', show_default=False)
+    ] = None,
+    toe_off: Annotated[
+        str | None, typer.Option(help='New time of toe off, as "3.65 s".', show_default=False)
+    ] = None,
+    side: Annotated[str | None, typer.Option(help="left or right.", show_default=False)] = None,
+    plate: Annotated[
+        str | None, typer.Option(help='The plate the step is on, as "plate 2".', show_default=False)
+    ] = None,
+    exclude: Annotated[bool, typer.Option("--exclude", help="Leave the step out.")] = False,
+    profile: ProfilePath = None,
+) -> None:
+    """Set an event by hand: old and new number are shown, and edits.csv beside FILE keeps it.
+
+    An edit that names no step, changes nothing or contradicts another is refused.
+    """
+    from underfoot.core import InputError
+    from underfoot.trials.analyse.edit_table import edit_from, edits_of, with_edit_row
+    from underfoot.trials.gait import required_frictions
+    from underfoot.trials.readers import Profile, read_profile, read_trial
+
+    given = {"contact": contact, "toe off": toe_off, "side": side, "plate": plate}
+    changes = [(what, value) for what, value in given.items() if value is not None]
+    if exclude:
+        changes.append(("exclude", ""))
+    if len(changes) != 1:
+        raise InputError(
+            f"{len(changes)} changes at once",
+            where="trials edit",
+            allowed="one of --contact, --toe-off, --side, --plate, --exclude",
+        )
+    what, value = changes[0]
+    own = file.parent / "profile.toml"
+    path = profile or (own if own.is_file() else None)
+    read = read_profile(path) if path else Profile()
+    trial = read_trial(file, read)
+    log = file.parent / "edits.csv"
+    new = edit_from(step, what, value, reason, "this edit")
+    earlier = edits_of(file.parent, [file.name], others=True).get(file.name, [])
+    options = {"walking": read.walking, "heels": read.heels}
+    before = required_frictions(trial.with_edits(*earlier), **options)
+    after = required_frictions(trial.with_edits(*earlier, new), **options)
+    for old, one in zip(before, after, strict=True):
+        if old.stance.by_hand == one.stance.by_hand:
+            continue
+        print(f"{old.stance.label}: {_words(old)} -> {_words(one)}")
+    text = log.read_text(encoding="utf-8-sig") if log.is_file() else ""
+    log.write_text(with_edit_row(text, (file.name, step, what, value, reason)), encoding="utf-8")
+    say(f"written to {log}")
+
+
+def _words(step: object) -> str:
+    from underfoot.trials.gait import RequiredFriction
+
+    assert isinstance(step, RequiredFriction)
+    stance, value = step.stance, step.measurement.value
+    number = f"RCOF {value:.4f}" if value is not None else step.measurement.reason
+    return f"{stance.side}, {stance.contact:.4f} to {stance.toe_off:.4f} s, {number}"
+
+
+def definitions(
+    folder: Annotated[Path, typer.Argument(help="Folder of walking trials.", show_default=False)],
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for both tables (CSV).", show_default=False)
+    ] = None,
+    profile: ProfilePath = None,
+    overwrite: Overwrite = False,
+) -> None:
+    """Show the RCOF of a folder under every definition: what the choice does to the numbers."""
+    from underfoot.core.files import whole_folder
+    from underfoot.core.progress import bar
+    from underfoot.report.trials_report import csv_text
+    from underfoot.trials.analyse.definitions import definition_tables
+
+    with bar("reading trials") as progress:
+        summary, steps = definition_tables(folder, profile=profile, progress=progress)
+    print(f"{'definition':<20} {'steps':>5} {'mean':>7} {'SD':>7} {'change':>8} {'largest':>8}")
+    for name, count, *numbers, _ in summary.rows:
+        cells = ["–" if n is None else f"{n:.4f}" for n in numbers]
+        print(f"{name:<20} {count:>5} {cells[0]:>7} {cells[1]:>7} {cells[2]:>8} {cells[3]:>8}")
+    for note in (*summary.notes, *steps.notes):
+        say(f"note: {note}")
+    if out is not None:
+        with whole_folder(out, overwrite=overwrite) as made:
+            for table in (summary, steps):
+                (made / f"{table.name}.csv").write_text(csv_text(table), encoding="utf-8")
+
+
+def export(
+    file: Annotated[Path, typer.Argument(help="Recording.", show_default=False)],
+    out: Annotated[Path, typer.Option(help="C3D file to be written.", show_default=False)],
+    companion: Annotated[
+        Path | None,
+        typer.Option("--with", help="Second file of the same recording.", show_default=False),
+    ] = None,
+    profile: ProfilePath = None,
+) -> None:
+    """Write a recording as C3D with the contacts found as events, for other software."""
+    from underfoot.core import InputError
+    from underfoot.trials.events import stances
+    from underfoot.trials.export import c3d_with_events
+    from underfoot.trials.readers import Profile, read_profile, read_trial
+    from underfoot.trials.trial import joined
+
+    if out.exists():
+        raise InputError(f"{out} is there already", where="--out", remedy="Choose another name")
+    read = read_profile(profile) if profile else Profile()
+    trial = read_trial(file, read)
+    if companion is not None:
+        trial = joined(trial, read_trial(companion, read))
+    found = stances(trial, walking=read.walking, heels=read.heels)
+    out.write_bytes(c3d_with_events(trial, found))
+    say(f"{sum(s.accepted for s in found)} steps as events in {out}")

@@ -1,0 +1,259 @@
+"""From the motion of a case to contact and film in time, and to histories of what they do."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from underfoot.case import Case
+from underfoot.case.motion import SLOWEST
+from underfoot.core import Progress, SourcedValue, silent
+
+from .sole import file_sole_map
+
+if TYPE_CHECKING:
+    from underfoot.friction import FrictionLaw
+    from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
+    from underfoot.shoe import SoleMap
+    from underfoot.sole_contact import SensorReading
+    from underfoot.sole_contact.compliance import Compliance
+    from underfoot.sole_contact.cost import Cost
+    from underfoot.sole_contact.sensor_array import ArrayReading
+    from underfoot.sole_contact.sole_state import SoleState, SolverSettings
+    from underfoot.sole_contact.solver import SoleContact
+
+READ_STEPS = 24
+"""Instants, spread over the time steps, at which the scans are read for a history."""
+READ_OFFSETS = 3
+"""Lateral places over which such a reading is averaged."""
+
+
+def cost(case: Case, spacing: float) -> Cost:
+    """Return what solving the case on cells of ``spacing`` (m) will take."""
+    from underfoot.sole_contact.cost import solution_cost
+
+    if case.shoe.heel is None:
+        area = file_sole_map(case, case.numerics.quick_grid_spacing).plan_area
+    else:
+        area = case.shoe.heel.length * case.shoe.heel.width
+    return solution_cost(area, spacing)
+
+
+def refuse_too_large(case: Case, spacing: float, where: str) -> None:
+    """Refuse a grid that would take more memory than the case allows."""
+    from underfoot.sole_contact.cost import refuse_too_large
+
+    refuse_too_large(
+        cost(case, spacing),
+        most_memory=case.numerics.most_memory,
+        where=where,
+        spacing=spacing,
+    )
+
+
+def pool_depth(case: Case) -> float:
+    """Return the depth of the fluid on the floor, m; on a dry floor the default, unused."""
+    return 0.6e-3 if case.contaminant is None else case.contaminant.pool_depth
+
+
+def solver_settings(case: Case) -> SolverSettings:
+    """Return how the contact of the case is solved."""
+    from underfoot.sole_contact.sole_state import SolverSettings
+
+    motion = case.motion
+    return SolverSettings(
+        pool_depth=pool_depth(case),
+        start_film=motion.start_film,
+        rise_time=motion.force_rise_time,
+        end_time=motion.end_time,
+        steady=motion.to_steady_state,
+        tolerance=case.numerics.tolerance,
+    )
+
+
+def solved_motion(
+    case: Case,
+    sole: SoleMap,
+    compliance: Compliance,
+    asperities: PressureGapLaw,
+    *,
+    viscosity: float | None,
+    watch: Recorder | None = None,
+    progress: Progress = silent,
+) -> SoleContact:
+    """Return contact and film at the end of the case's motion."""
+    from underfoot.sole_contact.motion_history import solve_history
+    from underfoot.sole_contact.solver import solve_sliding
+
+    motion, history = case.motion, case.motion.build()
+    common: dict[str, Any] = {
+        "viscosity": viscosity,
+        "settings": solver_settings(case),
+        "progress": progress,
+        "watch": watch,
+    }
+    if history is None:
+        return solve_sliding(
+            sole,
+            compliance,
+            asperities,
+            speed=motion.speed,
+            normal_force=motion.normal_force,
+            **common,
+        )
+    return solve_history(
+        sole, compliance, asperities, history, map_angle=motion.shoe_angle, **common
+    )
+
+
+@dataclass
+class Recorder:
+    """Takes down, at every step, the parts of COF and (at some) what the sensors read."""
+
+    case: Case
+    law: FrictionLaw
+    sole: SoleMap
+    viscosity: float | None
+    cof: dict[str, list[float]] = field(default_factory=dict)
+    sensor_load: list[float] = field(default_factory=list)
+    sensor_peak: list[float] = field(default_factory=list)
+    times: list[float] = field(default_factory=list)
+    places: list[float] = field(default_factory=list)
+    array_frames: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
+    _last_read: float = -math.inf
+    _array: ArrayReading | None = None
+
+    def __call__(self, state: SoleState) -> None:
+        """Take down one state."""
+        from underfoot.friction import cof
+
+        speed = max(abs(state.speed), SLOWEST)
+        found = cof(
+            self.law(
+                contact_pressure=state.contact_pressure,
+                speed=speed,
+                film_thickness=state.film_thickness,
+            ),
+            state.contact_pressure,
+            state.fluid_pressure,
+            spacing=state.spacing,
+            wet=state.wet,
+        )
+        for name in ("cof", "cof_adhesion", "cof_hysteresis", "cof_viscous"):
+            value = getattr(found, name).value
+            self.cof.setdefault(name, []).append(math.nan if value is None else value)
+        before = self.times[-1] if self.times else 0.0
+        place = self.places[-1] if self.places else 0.0
+        self.times.append(state.time)
+        self.places.append(place + (state.time - before) * state.speed)
+        self._read(state)
+
+    def _read(self, state: SoleState) -> None:
+        every = self.case.motion.duration / READ_STEPS
+        if self.viscosity is None or state.time < self._last_read + every:
+            self.sensor_load.append(math.nan)
+            self.sensor_peak.append(math.nan)
+        else:
+            read = scanned(self.case, self.sole, state, offsets=READ_OFFSETS)
+            self.sensor_load.append(read.load.value or 0.0)
+            self.sensor_peak.append(read.peak_pressure.value or 0.0)
+            self._last_read = state.time
+        if self.case.sensor.array is not None:
+            # single precision: the frames of a whole history are kept
+            self.array_frames.append(
+                (
+                    state.fluid_pressure.astype(np.float32),
+                    state.film_thickness.astype(np.float32),
+                )
+            )
+
+    def array(self) -> ArrayReading | None:
+        """Return what the array in the floor saw; None where the case has none."""
+        from underfoot.sole_contact.sensor_array import SensorArray, array_reading
+
+        array = self.case.sensor.array
+        if self._array is not None or array is None or len(self.times) < 2:
+            return self._array
+        position = array.position
+        if position is None:
+            middle = float(self.sole.x[self.sole.inside.any(axis=1)].mean())
+            position = self.places[-1] + middle - (array.rows - 1) * array.spacing / 2
+        self._array = array_reading(
+            self.sole.x,
+            self.sole.y,
+            np.array(self.times),
+            np.array(self.places),
+            [frame[0] for frame in self.array_frames],
+            [frame[1] for frame in self.array_frames],
+            SensorArray(array.rows, array.columns, array.spacing, array.inlet_diameter, position),
+        )
+        return self._array
+
+    def array_scalars(self) -> dict[str, SourcedValue]:
+        """Return the array's peaks and duration by name."""
+        read = self.array()
+        if read is None:
+            return {}
+        rows = {f"array_peak_row_{n}": value for n, value in enumerate(read.row_peaks, start=1)}
+        return {"array_peak": read.peak, **rows, "array_duration": read.duration}
+
+
+def scanned(case: Case, sole: SoleMap, state: SoleState, *, offsets: int = 11) -> SensorReading:
+    """Return what the scans of the case read under one state."""
+    from underfoot.sole_contact import floor_sensor_reading
+
+    return floor_sensor_reading(
+        sole.x,
+        sole.y,
+        state.fluid_pressure,
+        state.film_thickness,
+        inlet_diameter=case.sensor.inlet_diameter,
+        scan_spacing=case.sensor.scan_spacing,
+        scans=case.sensor.scans,
+        offsets=offsets,
+    )
+
+
+def history_fields(
+    contact: SoleContact, recorder: Recorder
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the variables and coordinates of a result that go with time."""
+    history = contact.history
+
+    def in_time(values: object, unit: str, name: str) -> tuple[str, object, dict[str, str]]:
+        return ("time", values, {"units": unit, "long_name": name})
+
+    variables: dict[str, Any] = {
+        "load_history": in_time(history.load, "N", "applied load"),
+        "fluid_load_history": in_time(history.fluid_load, "N", "load carried by the fluid"),
+        "approach_history": in_time(history.approach, "m", "approach of the foot"),
+        "speed_history": in_time(history.speed, "m/s", "sliding speed of the shoe"),
+        "shoe_angle_history": in_time(history.shoe_angle, "rad", "shoe angle, toe up positive"),
+        "sensor_load_history": in_time(
+            recorder.sensor_load, "N", "fluid load as the scans read it, nan where not read"
+        ),
+        "sensor_peak_history": in_time(
+            recorder.sensor_peak, "Pa", "highest reading of the scans, nan where not read"
+        ),
+    }
+    words = {
+        "cof": "coefficient of friction",
+        "cof_adhesion": "adhesion part of COF",
+        "cof_hysteresis": "hysteresis part of COF",
+        "cof_viscous": "viscous part of COF",
+    }
+    for name, values in recorder.cof.items():
+        variables[f"{name}_history"] = in_time(values, "1", words[name])
+    coordinates = {"time": in_time(history.time, "s", "time")}
+    read = recorder.array()
+    if read is not None:
+        variables["array_pressure"] = (
+            ("array_time", "array_row", "array_column"),
+            read.pressure,
+            {"units": "Pa", "long_name": "fluid pressure at each sensor of the array"},
+        )
+        coordinates["array_time"] = ("array_time", read.time, {"units": "s"})
+    return variables, coordinates

@@ -1,0 +1,194 @@
+"""The named numbers of a result, each with its spread or the reason why there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from underfoot.case import Case
+from underfoot.core import SourcedValue, Status, display
+
+if TYPE_CHECKING:
+    from underfoot.friction import FrictionCoefficients, SampledCof
+    from underfoot.slip import SlipModel, SlipRisk
+    from underfoot.sole_contact import SensorReading
+    from underfoot.sole_contact.solver import SoleContact
+
+_NOT_ESTIMATED = "heel shape and interface roughness dominate; their spread is not propagated yet"
+CONTACT_SHARE = 1e-3
+"""Contact pressure below this share of the mean pressure doesn't count as contact."""
+_INPUTS = {
+    "cof_boundary": "friction at rest",
+    "cof_hysteresis": "hysteresis",
+    "cof_asymptote": "friction at high speed",
+    "cof_adhesion": "adhesion",
+    "dry_adhesion": "dry adhesion",
+    "tau_hydro": "decay speed",
+    "fine_roughness": "fine roughness",
+    "roughness_factor": "roughness",
+    "shear_strength": "shear strength",
+    "model": "the law itself",
+}
+GRID_ORDER = 1.0
+"""Order of convergence: steps and rims of the film are first order on square cells."""
+GRID_NAMES = ("fluid_load", "fluid_load_sensor", "peak_fluid_pressure_sensor")
+"""Numbers that a grid error is estimated for."""
+
+
+def scalars(
+    case: Case,
+    contact: SoleContact,
+    friction: FrictionCoefficients,
+    sensor: SensorReading,
+    sampled: SampledCof | None = None,
+    model: SlipModel | None = None,
+) -> tuple[dict[str, SourcedValue], SlipRisk]:
+    """Return the numbers of a result by name, and the slip risk behind one of them."""
+    from underfoot.slip import RcofPopulation, slip_risk
+
+    mean, spread = case.sourced("risk.rcof_mean"), case.sourced("risk.rcof_sd")
+    # the case itself lists an assumed required friction, so the risk need not do so again
+    risk = slip_risk(
+        friction.cof,
+        rcof=RcofPopulation(case.risk.rcof_mean, case.risk.rcof_sd, mean.source),
+        model=model or case.risk.build(),
+        samples=None if sampled is None else sampled.cof,
+    )
+    assumed = risk.probability.assumed or mean.assumed or spread.assumed
+
+    def computed(value: float, unit: str, note: str = "") -> SourcedValue:
+        return SourcedValue(
+            value, unit, source="coupled contact and film", reason=_NOT_ESTIMATED, note=note
+        )
+
+    touching = contact.contact_pressure > CONTACT_SHARE * _mean_pressure(contact)
+    under_load = touching | (contact.fluid_pressure > 0)
+    thinnest = None
+    if under_load.any() and case.contaminant is not None:
+        thinnest = float(contact.film_thickness[under_load].min())
+    numbers = {
+        "cof": friction.cof,
+        "cof_adhesion": friction.cof_adhesion,
+        "cof_hysteresis": friction.cof_hysteresis,
+        "cof_viscous": friction.cof_viscous,
+        "normal_force": case.sourced("motion.normal_force"),
+        "fluid_load": computed(contact.fluid_load, "N"),
+        "fluid_load_sensor": sensor.load,
+        "peak_fluid_pressure": computed(float(contact.fluid_pressure.max()), "Pa"),
+        "peak_fluid_pressure_sensor": sensor.peak_pressure,
+        "contact_area": computed(
+            float(np.count_nonzero(touching)) * contact.spacing**2, "m^2", "apparent, on the grid"
+        ),
+        "minimum_film_thickness": computed(thinnest, "m")
+        if thinnest is not None
+        else SourcedValue(None, "m", reason="dry floor: no film"),
+        "slip_probability": replace(
+            risk.probability,
+            assumed=assumed,
+            note="; ".join(
+                f"extrapolated: {one.quantity} = {one.low:.3f} is outside the tested "
+                f"{one.range.low:g} to {one.range.high:g}"
+                for one in risk.breaches
+            ),
+        ),
+    }
+    return numbers, risk
+
+
+def undetermined(case: Case, status: Status) -> dict[str, SourcedValue]:
+    """Return the same names without numbers: what a computation that failed may show."""
+    units = {
+        "fluid_load": "N",
+        "fluid_load_sensor": "N",
+        "peak_fluid_pressure": "Pa",
+        "peak_fluid_pressure_sensor": "Pa",
+        "contact_area": "m^2",
+        "minimum_film_thickness": "m",
+    }
+    names = ("cof", "cof_adhesion", "cof_hysteresis", "cof_viscous", *units, "slip_probability")
+    found = {name: SourcedValue(None, units.get(name, "1"), reason=str(status)) for name in names}
+    return {**found, "normal_force": case.sourced("motion.normal_force")}
+
+
+def regime(contact: SoleContact) -> dict[str, str]:
+    """Return the lubrication regime by the share of the load that the fluid carries."""
+    from underfoot.film import SHARE_LIMITS, lubrication_by_load_share
+
+    low, high = SHARE_LIMITS
+    name = lubrication_by_load_share(min(max(contact.fluid_load / contact.normal_force, 0.0), 1.0))
+    return {
+        "regime": str(name) if name == "full film" else f"{name} lubrication",
+        "regime_rule": f"by load share: below {100 * low:g} % boundary, "
+        f"above {100 * high:g} % full film",
+    }
+
+
+def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
+    """Return in words which inputs the spread of COF comes from, and how it was sampled."""
+    if sampled is None:
+        return {}
+    words = sorted(sampled.share.items(), key=lambda one: -one[1])
+    parts = [f"{_INPUTS.get(name, name)} {share:.0%}" for name, share in words if share >= 0.005]
+    if sampled.left_out:
+        names = ", ".join(_INPUTS.get(name, name) for name in sampled.left_out)
+        parts.append(f"taken as exact: {names}")
+    drawn = f"{sampled.cof.size} draws, seed {sampled.seed}; contact and film as computed"
+    return {"cof_spread_from": ", ".join(parts), "cof_spread_how": drawn}
+
+
+def _mean_pressure(contact: SoleContact) -> float:
+    loaded = np.count_nonzero(contact.total_pressure > 0)
+    return contact.normal_force / max(loaded * contact.spacing**2, contact.spacing**2)
+
+
+def readings(contact: SoleContact, sensor: SensorReading) -> dict[str, float]:
+    """Return the numbers that a grid error is estimated for."""
+    return {
+        "fluid_load": contact.fluid_load,
+        "fluid_load_sensor": sensor.load.value or 0.0,
+        "peak_fluid_pressure_sensor": sensor.peak_pressure.value or 0.0,
+    }
+
+
+def grid_errors(
+    fine: Mapping[str, float], coarse: Mapping[str, float], refinement: float
+) -> dict[str, float]:
+    """Return |fine - coarse| / (r^p - 1): what the fine grid still lacks (Richardson, p = 1).
+
+    ``refinement`` r is coarse over fine spacing, above 1.
+    """
+    return {
+        name: abs(fine[name] - coarse[name]) / (refinement**GRID_ORDER - 1) for name in GRID_NAMES
+    }
+
+
+def with_grid_errors(
+    numbers: Mapping[str, SourcedValue], errors: Mapping[str, float]
+) -> dict[str, SourcedValue]:
+    """Return the numbers with the grid's error in their uncertainty and said in their note."""
+    found = dict(numbers)
+    for name, error in errors.items():
+        value = numbers[name]
+        said = f"grid error about {display(float(f'{error:.2g}'), value.unit)}"
+        # a spread that isn't known stays so: the grid is not what decides it
+        spread = value.uncertainty
+        found[name] = replace(
+            value,
+            uncertainty=None if spread is None else float(np.hypot(spread, error)),
+            note=f"{value.note}; {said}" if value.note else said,
+        )
+    return found
+
+
+def grid_words(
+    numbers: Mapping[str, SourcedValue], errors: Mapping[str, float], fine: float, coarse: float
+) -> str:
+    """Return the remark on the grid for a summary."""
+    parts = [
+        f"{name.replace('_', ' ')} +- {display(float(f'{error:.2g}'), numbers[name].unit)}"
+        for name, error in errors.items()
+    ]
+    return f"{', '.join(parts)} (from {coarse * 1e3:g} and {fine * 1e3:g} mm, first order)"

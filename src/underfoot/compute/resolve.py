@@ -1,0 +1,36 @@
+"""Materials and roughness of a case, resolved once: the context that options build from."""
+
+from __future__ import annotations
+
+from underfoot.case import Case
+from underfoot.case.context import Context
+from underfoot.core import Breach, Progress, SourcedValue, silent
+
+
+def resolved(case: Case, progress: Progress = silent) -> Context:
+    """Return what the options of a case are built from."""
+    modulus, breaches = youngs_modulus(case)
+    return Context(
+        shoe=case.shoe,
+        floor=case.floor,
+        contaminant=case.contaminant,
+        motion=case.motion,
+        interface=case.interface,
+        modulus=modulus,
+        modulus_breaches=tuple(breaches),
+        viscosity=None if case.contaminant is None else case.contaminant.build(),
+        rq=case.effective_rq,
+        rq_deviation=case.interface.rq_deviation(case.shoe.roughness, case.floor.roughness),
+        fluid=case.entries.get("contaminant", "the fluid"),
+        catalogue=case.catalogue,
+        progress=progress,
+    )
+
+
+def youngs_modulus(case: Case) -> tuple[SourcedValue, list[Breach]]:
+    """Return the outsole's Young's modulus: measured, or from hardness by the chosen relation."""
+    material = case.shoe.material
+    if case.hardness is None:
+        return material.sourced("modulus"), []
+    assert material.shore_a is not None  # the case checks that one of the two is there
+    return case.hardness.build(material.shore_a)

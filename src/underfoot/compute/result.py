@@ -1,0 +1,274 @@
+"""What every run returns: scalars with uncertainty, fields, status, breaches and provenance."""
+
+from __future__ import annotations
+
+import csv
+import json
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from underfoot.core import DataError, Provenance, SourcedValue, Status
+from underfoot.core.files import whole_folder
+from underfoot.core.presentation import Presentable, Table, value_text
+
+from . import summary
+
+if TYPE_CHECKING:
+    import xarray
+
+FORMAT = 1
+FIELDS_FILE = "result.nc"
+
+
+class IncompleteOutput(UserWarning):
+    """A file of a result could not be written; the others are on disk."""
+
+
+@dataclass(frozen=True, slots=True)
+class Result(Presentable):
+    """A finished computation of one case.
+
+    Attributes
+    ----------
+    name
+        Name of the case.
+    scalars
+        Named values in SI with uncertainty (or the reason for its absence) and "assumed" marks.
+    labels
+        Named words, such as the lubrication regime.
+    fields
+        Maps and histories as a labelled data set, CF-style names and units.
+    status
+        How the computation ended; anything not ``usable`` is not a result.
+    breaches
+        Inputs outside the range on which a closure was tested, in words.
+    assumptions
+        What no measurement or publication stands behind, in words.
+    provenance
+        Case hash, versions, closures, citations, errata and timings.
+    case_text
+        The complete case as TOML.
+    """
+
+    kind: ClassVar[str] = "result"
+
+    name: str
+    scalars: dict[str, SourcedValue]
+    labels: dict[str, str]
+    fields: xarray.Dataset
+    status: Status
+    breaches: tuple[str, ...]
+    assumptions: tuple[str, ...]
+    provenance: Provenance
+    case_text: str
+
+    def __repr__(self) -> str:
+        cof = value_text("cof", self.scalars["cof"])
+        own = ", ".join(self.provenance.objects)
+        marks = f", {own} given as object" if own else ""
+        return f"<Result {self.name!r:.80}: COF {cof:.60}, {self.status}{marks:.40}>"
+
+    @property
+    def usable(self) -> bool:
+        """Whether the numbers are a result."""
+        return self.status.usable
+
+    def headline(self) -> tuple[str, ...]:
+        """Return COF, load on the film and slip probability in sentences."""
+        return summary.headline(self.status, self.scalars, self.labels)
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return why the headline may not be trusted."""
+        return summary.cautions(
+            self.status,
+            self.scalars,
+            self.breaches,
+            self.assumptions,
+            self.provenance.closures.get("slip", ""),
+        )
+
+    def table(self) -> Table:
+        """Return every quantity with its uncertainty."""
+        return summary.table(self.scalars, self.labels)
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the table of a usable result; numbers that are no result are not printed."""
+        return (self.table(),) if self.usable else ()
+
+    def remarks(self) -> dict[str, Sequence[str]]:
+        """Return notes, tested ranges that were left, and assumptions, the decisive ones first."""
+        return {
+            "Notes": summary.notes(self.labels),
+            "Outside the tested range": self.breaches,
+            "Assumptions": summary.ranked_assumptions(self.assumptions),
+        }
+
+    def value(self, name: str) -> float:
+        """Return a scalar's number; an error when it was not determined or is not a result."""
+        scalar = self.scalars[name]
+        if scalar.value is None:
+            raise DataError(f"{name} was not determined: {scalar.reason}", where=self.name)
+        if not self.status.usable:
+            raise DataError(
+                f"{name} is not a result: {self.status}", where=self.name, remedy=self.status.remedy
+            )
+        return scalar.value
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain data: every scalar an object with value, unit, uncertainty, assumed."""
+        scalars = {name: value.as_dict() for name, value in self.scalars.items()}
+        status = {
+            "value": str(self.status),
+            "unit": None,
+            "uncertainty": None,
+            "reason": self.status.remedy,
+            "assumed": False,
+        }
+        return {
+            "format": FORMAT,
+            "name": self.name,
+            "status": status,
+            **scalars,
+            "labels": self.labels,
+            "breaches": list(self.breaches),
+            "assumptions": list(self.assumptions),
+            "provenance": self.provenance.as_dict(),
+        }
+
+    as_dict = to_dict
+
+    def save(self, folder: Path | str, *, overwrite: bool = False) -> Path:
+        """Write ``folder`` as a whole: case.toml, result.json, summary.csv and result.nc.
+
+        A file that can't be written (a missing package, a full disk) costs no other: a warning
+        says what is missing and why, and the folder holds the rest.
+        """
+        folder = Path(folder)
+        with whole_folder(folder, overwrite=overwrite) as staging:
+            self.write_files(staging)
+        return folder
+
+    def write_files(self, folder: Path) -> None:
+        """Write the result's own files into an existing folder, the fields last."""
+        failures: dict[str, Exception] = {}
+        writers = self.writers()
+        for name, write in writers.items():
+            try:
+                write(folder / name)
+            except (ImportError, OSError, ValueError) as error:
+                (folder / name).unlink(missing_ok=True)
+                failures[name] = error
+        if len(failures) == len(writers):
+            raise next(iter(failures.values()))
+        for name, error in failures.items():
+            remedy = "Free some space or choose another folder"
+            if isinstance(error, ImportError | ValueError):
+                remedy = "Install the missing package (pip install h5netcdf h5py)"
+            message = f"{name} of {self.name} was not written: {error}. {remedy}, and save again."
+            warnings.warn(message, IncompleteOutput, stacklevel=3)
+
+    def writers(self) -> dict[str, Callable[[Path], None]]:
+        """Return the function that writes each of the result's own files."""
+        return {
+            "case.toml": lambda path: _write_text(path, self.case_text),
+            "result.json": lambda path: _write_text(
+                path, json.dumps(self.to_dict(), indent=2, ensure_ascii=False) + "\n"
+            ),
+            "summary.csv": self._write_summary,
+            FIELDS_FILE: self._write_fields,
+        }
+
+    def _write_fields(self, path: Path) -> None:
+        dataset = self.fields.assign_attrs(
+            Conventions="CF-1.11",
+            title=self.name,
+            source=f"underfoot {self.provenance.versions.get('underfoot', '')}".strip(),
+            history=f"{self.provenance.created} computed from case {self.provenance.case_hash}",
+            status=str(self.status),
+        )
+        encoding: dict[Any, dict[str, Any]] = {
+            name: {"zlib": True, "complevel": 4, "shuffle": True}
+            for name, variable in dataset.data_vars.items()
+            if variable.ndim
+        }
+        dataset.to_netcdf(path, engine="h5netcdf", encoding=encoding)
+
+    def _write_summary(self, path: Path) -> None:
+        with path.open("w", newline="", encoding="utf-8") as stream:
+            table = csv.writer(stream)
+            table.writerow("quantity value unit uncertainty low_95 high_95 assumed remark".split())
+            table.writerow(["status", str(self.status), *[""] * 5, self.status.remedy])
+            for name, scalar in self.scalars.items():
+                remark = scalar.note or (scalar.reason if scalar.uncertainty is None else "")
+                table.writerow(
+                    [
+                        name,
+                        "" if scalar.value is None else repr(scalar.value),
+                        scalar.unit,
+                        "" if scalar.uncertainty is None else repr(scalar.uncertainty),
+                        *(("", "") if scalar.interval is None else map(repr, scalar.interval)),
+                        "yes" if scalar.assumed else "no",
+                        remark,
+                    ]
+                )
+
+    @classmethod
+    def load(cls, folder: Path | str) -> Result:
+        """Read a result folder back.
+
+        Raises
+        ------
+        DataError
+            The folder is no result, is damaged or was written by a newer version.
+        """
+        import xarray
+
+        folder = Path(folder)
+        try:
+            stored = json.loads((folder / "result.json").read_text(encoding="utf-8"))
+            case_text = (folder / "case.toml").read_text(encoding="utf-8")
+            fields = xarray.Dataset()
+            if (folder / FIELDS_FILE).exists():
+                with xarray.open_dataset(folder / FIELDS_FILE, engine="h5netcdf") as dataset:
+                    fields = dataset.load()
+            if stored["format"] > FORMAT:
+                raise DataError(
+                    f"written by a newer version (format {stored['format']})",
+                    where=str(folder),
+                    allowed=f"format {FORMAT} or older",
+                    remedy="Update underfoot",
+                )
+            reserved = {"format", "name", "status", "labels", "breaches", "assumptions"}
+            scalars = {
+                name: SourcedValue(**entry)
+                for name, entry in stored.items()
+                if name not in reserved | {"provenance"}
+            }
+            provenance = dict(stored["provenance"])
+            for key in ("citations", "errata"):
+                provenance[key] = tuple(provenance[key])
+            return cls(
+                name=stored["name"],
+                scalars=scalars,
+                labels=stored["labels"],
+                fields=fields,
+                status=Status(stored["status"]["value"]),
+                breaches=tuple(stored["breaches"]),
+                assumptions=tuple(stored["assumptions"]),
+                provenance=Provenance(**provenance),
+                case_text=case_text,
+            )
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise DataError(
+                f"can't be read as a result ({error})",
+                where=str(folder),
+                allowed="a folder with case.toml, result.json and result.nc",
+                remedy="Run the case again with --out",
+            ) from error
+
+
+def _write_text(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8")

@@ -1,0 +1,326 @@
+"""From a case to its result."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Mapping
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from underfoot.case import Case, Option, assumptions
+from underfoot.core import (
+    Breach,
+    InputError,
+    Progress,
+    Provenance,
+    Status,
+    content_hash,
+    silent,
+    unknown_name,
+)
+
+from .contact import Recorder, history_fields, refuse_too_large, scanned, solved_motion
+from .numbers import (
+    grid_errors,
+    grid_words,
+    readings,
+    regime,
+    scalars,
+    spread_origin,
+    undetermined,
+    with_grid_errors,
+)
+from .resolve import resolved
+from .result import Result
+from .sole import compression_breaches, outsole_notes, sole_map
+
+if TYPE_CHECKING:
+    import xarray
+
+    from underfoot.shoe import SoleMap
+    from underfoot.sole_contact import SensorReading
+    from underfoot.sole_contact.solver import SoleContact
+
+OBJECTS = ("friction", "rough_contact", "compliance", "risk")
+"""Slots that take an object of physics in place of an option."""
+
+
+def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objects: Any) -> Result:
+    """Return the friction of a case with everything that explains it.
+
+    Parameters
+    ----------
+    case
+        What to compute.
+    quick
+        Use the coarse grid of the case: a first look.
+    progress
+        Receives stage, fraction and residual; an exception it raises stops the work.
+    objects
+        Slot: what to take in place of the case's option. An option, its name or a mapping changes
+        the case; an object of physics is used as it is: ``friction`` a ``FrictionLaw``,
+        ``rough_contact`` a ``PressureGapLaw``, ``compliance`` a ``Compliance`` on the grid of the
+        run, ``risk`` a ``SlipModel``. ``viscosity`` takes Pa s or text. The result names such
+        objects, and its hash holds them.
+
+    Raises
+    ------
+    InputError
+        A case whose parts don't fit together on this grid, a slot that is none.
+    ConvergenceError
+        Not even the first contact could be solved.
+    """
+    import_module("xarray")  # if it is missing, the run stops before the work, not after it
+
+    from underfoot.friction import cof, sampled_cof
+    from underfoot.sole_contact.edge_peak import peak_pressure
+
+    case, own = _with_objects(case, objects)
+    started = time.perf_counter()
+    spacing = case.numerics.quick_grid_spacing if quick else case.numerics.grid_spacing
+    named = "numerics.quick_grid_spacing" if quick else "numerics.grid_spacing"
+    refuse_too_large(case, spacing, named)
+    context = resolved(case, progress)
+    law = own.get("friction") or case.friction.build(context)
+    slip = own.get("risk") or case.risk.build()
+    sole = sole_map(case, spacing, progress)
+    asperities = own.get("rough_contact") or case.rough_contact.build(context)
+    compliance = own.get("compliance") or case.compliance.build(context, sole)
+    viscosity = case.film.build(context)
+    recorder = Recorder(case, law, sole, viscosity)
+    prepared = time.perf_counter()
+    contact = solved_motion(
+        case,
+        sole,
+        compliance,
+        asperities,
+        viscosity=viscosity,
+        watch=recorder,
+        progress=progress,
+    )
+    solved = time.perf_counter()
+    speed = case.motion.speed
+    local = {
+        "contact_pressure": contact.contact_pressure,
+        "speed": speed,
+        "film_thickness": contact.film_thickness,
+    }
+    parts = law(**local)
+    sampled = sampled_cof(
+        law,
+        contact.contact_pressure,
+        contact.fluid_pressure,
+        contact.film_thickness,
+        speed=speed,
+        wet=contact.wet,
+        fluid_inputs={} if context.viscosity is None else {"viscosity": context.viscosity},
+        seed=case.numerics.seed,
+    )
+    friction = cof(
+        parts,
+        contact.contact_pressure,
+        contact.fluid_pressure,
+        spacing=sole.spacing,
+        wet=contact.wet,
+        sampled=sampled,
+        source=f"{law.name} law: {law.source}",
+    )
+    sensor = scanned(case, sole, contact)
+    numbers, risk, labels = undetermined(case, contact.status), None, {}
+    if contact.status.usable:
+        numbers, risk = scalars(case, contact, friction, sensor, sampled, slip)
+        numbers |= recorder.array_scalars()
+        labels = {**regime(contact), **spread_origin(sampled)}
+        if remark := peak_pressure(sole, contact.total_pressure).remark:
+            labels["edge_peak"] = remark
+        coarse_spacing = case.numerics.quick_grid_spacing
+        if case.numerics.grid_check and not quick and coarse_spacing > spacing:
+            if "compliance" in own:
+                raise InputError(
+                    "an own compliance holds for one grid",
+                    where="numerics.grid_check",
+                    remedy="Set numerics.grid_check = false",
+                )
+            coarse_sole = sole_map(case, coarse_spacing)
+            coarse = solved_motion(
+                case,
+                coarse_sole,
+                case.compliance.build(context, coarse_sole),
+                asperities,
+                viscosity=viscosity,
+                progress=progress,
+            )
+            if coarse.status.usable:
+                there = readings(coarse, scanned(case, coarse_sole, coarse))
+                errors = grid_errors(readings(contact, sensor), there, coarse_spacing / spacing)
+                numbers = with_grid_errors(numbers, errors)
+                labels["grid_error"] = grid_words(numbers, errors, spacing, coarse_spacing)
+    breaches = [
+        *context.modulus_breaches,
+        *sole.breaches,
+        *compression_breaches(case, contact.approach),
+        *asperities.breaches(pressure=contact.contact_pressure.max(), speed=speed),
+        *law.breaches(**local),
+        *(risk.breaches if risk else ()),
+    ]
+    status = contact.status
+    if status is Status.CONVERGED and breaches:
+        status = Status.OUT_OF_RANGE
+    identities = {slot: _identity(item) for slot, item in own.items()}
+    if identities:
+        labels["objects"] = "; ".join(f"{slot}: {text}" for slot, text in identities.items())
+    return Result(
+        name=case.name,
+        scalars=numbers,
+        labels=labels,
+        fields=_fields(
+            sole,
+            contact,
+            sensor,
+            parts.total - np.where(contact.wet, 0.0, parts.viscous),
+            history_fields(contact, recorder),
+        ),
+        status=status,
+        breaches=_texts(breaches),
+        assumptions=tuple(
+            dict.fromkeys(
+                (
+                    *assumptions(case),
+                    *outsole_notes(case),
+                    *law.assumptions,
+                    *(risk.assumptions if risk else ()),
+                    *(
+                        f"{slot}: an object given to run, {text}"
+                        for slot, text in identities.items()
+                    ),
+                )
+            )
+        ),
+        provenance=Provenance.now(
+            content_hash(case.hash, identities)[:32] if identities else case.hash,
+            closures={
+                "friction": law.name,
+                "asperity contact": asperities.name,
+                "film": case.film.closure if case.contaminant else "none: dry floor",
+                "compliance": identities.get("compliance", case.compliance.name),
+                "modulus": context.modulus.source,
+                "slip": slip.name if "risk" in own else case.risk.name,
+                "grid": f"{spacing * 1e3:g} mm",
+            },
+            citations=tuple(
+                dict.fromkeys(
+                    (
+                        law.source,
+                        asperities.source,
+                        context.modulus.source,
+                        numbers["slip_probability"].source,
+                    )
+                )
+            ),
+            errata=_errata(case),
+            timings={
+                "preparation_s": prepared - started,
+                "solution_s": solved - prepared,
+                "evaluation_s": time.perf_counter() - solved,
+            },
+            objects=identities,
+        ),
+        case_text=case.to_toml(complete=True),
+    )
+
+
+def _with_objects(case: Case, objects: Mapping[str, Any]) -> tuple[Case, dict[str, Any]]:
+    """Return the case with the options among the objects, and the objects of physics."""
+    from underfoot.friction import FrictionLaw
+    from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
+
+    own: dict[str, Any] = {}
+    for slot, item in objects.items():
+        if slot == "viscosity":
+            case = case.replace("contaminant.viscosity", item)
+        elif isinstance(item, str | Mapping | Option):
+            case = case.replace(slot, item)
+        elif slot not in OBJECTS:
+            raise unknown_name("slot", slot, (*OBJECTS, "viscosity"), where=f"run(..., {slot}=)")
+        else:
+            own[slot] = item
+    for slot, protocol in (("friction", FrictionLaw), ("rough_contact", PressureGapLaw)):
+        if slot in own and not isinstance(own[slot], protocol):
+            names = [name for name in dir(protocol) if not name.startswith("_")]
+            missing = [name for name in names if not hasattr(own[slot], name)]
+            raise InputError(
+                f"{type(own[slot]).__name__} is no {protocol.__name__}: it has no "
+                + ", ".join(missing or ["__call__"]),
+                where=f"run(..., {slot}=)",
+                allowed=f"an object with {', '.join(names)}",
+            )
+    return case, own
+
+
+def _identity(item: Any) -> str:
+    """Return a text that stands for an object in a hash: its class and what its repr says."""
+    cls = f"{type(item).__module__}.{type(item).__qualname__}"
+    name, text = getattr(item, "name", ""), repr(item)
+    if re.search(r" at 0x[0-9a-f]+", text):  # the repr of no class of its own
+        text = f"{name} (without a repr of its own)".strip()
+    return f"{cls}: {text}"
+
+
+def _texts(breaches: list[Breach]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(str(breach) for breach in breaches))
+
+
+def _errata(case: Case) -> tuple[str, ...]:
+    """Return the notes on printed values that the case uses in corrected form."""
+    return tuple(
+        f"{path}: {origin.leaf.erratum}"
+        for path, origin in case.origins.items()
+        if origin.leaf.erratum
+    )
+
+
+def _fields(
+    sole: SoleMap,
+    contact: SoleContact,
+    sensor: SensorReading,
+    shear: object,
+    in_time: tuple[dict[str, Any], dict[str, Any]],
+) -> xarray.Dataset:
+    import xarray
+
+    def on_sole(values: object, unit: str, name: str) -> tuple[tuple[str, str], object, dict]:
+        return (("x", "y"), values, {"units": unit, "long_name": name})
+
+    histories, times = in_time
+    return xarray.Dataset(
+        {
+            "contact_pressure": on_sole(
+                contact.contact_pressure, "Pa", "asperity contact pressure"
+            ),
+            "fluid_pressure": on_sole(contact.fluid_pressure, "Pa", "fluid pressure"),
+            "film_thickness": on_sole(contact.film_thickness, "m", "mean gap, at most the pool"),
+            "shear_stress": on_sole(shear, "Pa", "shear stress on the sole"),
+            "clearance": on_sole(sole.clearance, "m", "height of the undeformed sole"),
+            "inside": on_sole(sole.inside, "1", "within the plan form"),
+            "land": on_sole(sole.land, "1", "can touch the floor"),
+            "wet": on_sole(contact.wet, "1", "within the film"),
+            "sensor_pressure": (
+                ("sensor_x", "sensor_y"),
+                sensor.pressure,
+                {"units": "Pa", "long_name": "fluid pressure as floor sensors read it"},
+            ),
+            "outline_x": ("outline", sole.outline[:, 0], {"units": "m"}),
+            "outline_y": ("outline", sole.outline[:, 1], {"units": "m"}),
+            **histories,
+        },
+        coords={
+            "x": ("x", sole.x, {"units": "m", "long_name": "along the walking direction"}),
+            "y": ("y", sole.y, {"units": "m", "long_name": "across"}),
+            **times,
+            "sensor_x": ("sensor_x", sensor.x, {"units": "m"}),
+            "sensor_y": ("sensor_y", sensor.scan_y, {"units": "m"}),
+        },
+    )

@@ -1,0 +1,162 @@
+"""From a case to the people who walk on its floor, and their slips."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from underfoot.case import Case
+from underfoot.core import InputError, Progress, silent
+
+from .contact import pool_depth
+from .resolve import resolved
+from .sole import sole_map
+
+if TYPE_CHECKING:
+    from underfoot.slip.dynamics import FloorSensors, GaitHistory, Population, Setting, SlipStudy
+
+
+def slip_setting(case: Case, *, quick: bool = True) -> Setting:
+    """Return shoe, floor and fluid of a case as a slip needs them.
+
+    ``quick`` takes the coarse grid: a slip is some hundred contacts.
+    """
+    from underfoot.slip.dynamics import Setting
+    from underfoot.sole_contact.sole_state import SolverSettings
+
+    spacing = case.numerics.quick_grid_spacing if quick else case.numerics.grid_spacing
+    context, sole = resolved(case), sole_map(case, spacing)
+    return Setting(
+        sole=sole,
+        compliance=case.compliance.build(context, sole),
+        asperities=case.rough_contact.build(context),
+        friction=case.friction.build(context),
+        viscosity=case.film.build(context),
+        settings=SolverSettings(
+            pool_depth=pool_depth(case),
+            start_film=case.motion.start_film,
+            rise_time=case.motion.force_rise_time,
+            tolerance=case.numerics.tolerance,
+        ),
+        shoe_angle=case.motion.shoe_angle,
+        key=f"{case.hash} {spacing:.6g}",
+    )
+
+
+def slip_population(
+    case: Case,
+    *,
+    subjects: int | None = None,
+    histories: Sequence[GaitHistory] | None = None,
+) -> Population:
+    """Return the people of a case; ``histories`` of your own replace the packaged steps.
+
+    Raises
+    ------
+    InputError
+        A required friction outside 0 to 1, landing places in the wrong order.
+    """
+    from underfoot.slip.dynamics import Population, Spread, packaged_histories
+
+    people, risk = case.slip, case.risk
+    if not 0 <= risk.rcof_mean <= 1:
+        raise InputError(f"{risk.rcof_mean:g}", where="risk.rcof_mean", allowed="0 to 1")
+    if people.landing_from > people.landing_to:
+        raise InputError(
+            "lies beyond slip.landing_to", where="slip.landing_from", allowed="at most landing_to"
+        )
+
+    def spread(name: str, sd: str, low: float, high: float, section: str = "slip") -> Spread:
+        mean = case.sourced(f"{section}.{name}")
+        assert mean.value is not None
+        return Spread(
+            mean.value,
+            case.value(f"{section}.{sd}"),
+            min(low, mean.value),
+            max(high, mean.value),
+            mean.source,
+            mean.assumed,
+        )
+
+    angle = case.motion.shoe_angle
+    mass = spread("mass_mean", "mass_sd", 20.0, 200.0)
+    return Population(
+        subjects=people.subjects if subjects is None else subjects,
+        seed=people.seed,
+        histories=tuple(histories) if histories else packaged_histories(),
+        mass=mass,
+        rcof=spread("rcof_mean", "rcof_sd", 0.0, 1.0, "risk"),
+        walking_speed=spread("walking_speed_mean", "walking_speed_sd", 0.5, 2.5),
+        heel_speed=spread("heel_speed_mean", "heel_speed_sd", 0.02, 2.0),
+        shoe_angle=Spread(
+            angle,
+            people.shoe_angle_sd,
+            min(max(angle - math.radians(8), math.radians(1)), angle),
+            angle + math.radians(8),
+            "slip.shoe_angle_sd",
+        ),
+        landing=(people.landing_from, people.landing_to),
+        lateral=Spread(0.0, people.lateral_sd, -0.05, 0.05, "slip.lateral_sd"),
+        effective_mass=people.effective_mass,
+        recorded_angle=people.shoe_angle == "recorded",
+    )
+
+
+def slip_sensors(case: Case) -> FloorSensors:
+    """Return the sensors in the floor of a case."""
+    from underfoot.slip.dynamics import FloorSensors
+
+    people = case.slip
+    return FloorSensors(
+        people.sensor_rows, people.sensor_columns, people.sensor_spacing, people.sensor_inlet
+    )
+
+
+def slips(
+    case: Case,
+    *,
+    subjects: int | None = None,
+    histories: Sequence[GaitHistory] | None = None,
+    full: bool = False,
+    fine: bool = False,
+    progress: Progress = silent,
+) -> SlipStudy:
+    """Return the slips of a case's population: who slips, how fast, how far.
+
+    Parameters
+    ----------
+    case
+        Shoe, floor, fluid and people.
+    subjects
+        How many; the case's by default.
+    histories
+        Steps of your own in place of the packaged ones.
+    full
+        Everybody through the full model instead of the reduced one fitted to it.
+    fine
+        The case's fine grid instead of the coarse one.
+    progress
+        Receives stage, fraction and residual; an exception it raises stops the work, and the
+        slips done so far are found again by the next call.
+
+    Raises
+    ------
+    InputError
+        People who can't be; a sole that does not fit the grid.
+    ConvergenceError
+        Too few slips could be solved.
+    """
+    from underfoot.slip.dynamics import slip_study
+
+    people = case.slip
+    return slip_study(
+        slip_setting(case, quick=not fine),
+        slip_population(case, subjects=subjects, histories=histories),
+        array=slip_sensors(case),
+        full=full,
+        fit_runs=people.fit_runs,
+        held_out=people.test_runs,
+        step=people.time_step,
+        progress=progress,
+    )

@@ -1,0 +1,380 @@
+"""The sole of a case: parametric or from a file, worn, tilted, trimmed and checked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+from pydantic import Field, ValidationError
+
+from underfoot.case import Case, CaseError, Section
+from underfoot.case.case import with_settings
+from underfoot.case.compose import expanded
+from underfoot.case.context import Context
+from underfoot.case.errors import placed, translated
+from underfoot.case.quantity import DOOR, Length, default
+from underfoot.case.section import walk
+from underfoot.case.sole import SolePlan, TreadPattern, WholePlan
+from underfoot.case.text import Places, parsed, read
+from underfoot.case.wear import ArchardWear
+from underfoot.core import (
+    Breach,
+    Cache,
+    ConvergenceError,
+    InputError,
+    Progress,
+    Range,
+    breaches,
+    content_hash,
+    display,
+    silent,
+)
+
+from .resolve import resolved, youngs_modulus
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from underfoot.shoe import SoleMap, SoleSurface
+    from underfoot.shoe.files import FileOutsole, FileSettings
+    from underfoot.shoe.shape import SoleShape, SoleWear
+    from underfoot.shoe.worn import ArchardStep
+
+BOTTOMED = 0.5
+"""Share of the outsole's thickness beyond which the load bottoms it out: refused."""
+LINEAR_STRAIN = Range(0.0, 0.25, "1", "linear elasticity of rubber in compression")
+WEAR_STEP = 0.25e-3
+"""Thickness that Archard wear removes between two contacts, m."""
+
+
+def sole_map(case: Case, spacing: float, progress: Progress = silent) -> SoleMap:
+    """Return the tilted sole of the case on a grid of ``spacing`` (m)."""
+    from underfoot import shoe
+
+    if case.shoe.outsole is not None:
+        return file_sole_map(case, spacing)
+    sole = shoe.heel_map(
+        sole_shape(case, progress), shoe_angle=case.motion.shoe_angle, spacing=spacing
+    )
+    plan = case.shoe.heel
+    return trimmed(sole, plan.reach) if isinstance(plan, WholePlan) else sole
+
+
+def new_sole(case: Case) -> SoleShape:
+    """Return the parametric heel or sole of the case before any wear."""
+    shoe = case.shoe
+    if shoe.heel is None or shoe.tread is None:
+        raise InputError("the outsole comes from a file", where="shoe.outsole.file")
+    return shoe.heel.build(shoe.tread, shoe.sole.outsole_thickness)
+
+
+def sole_shape(case: Case, progress: Progress = silent) -> SoleShape:
+    """Return the parametric heel or sole of the case, worn as it says."""
+    new, wear = new_sole(case), case.shoe.wear
+    if wear.depth == 0:
+        return new
+    removed = wear.build()
+    if removed is None:
+        return _worn(new, archard_state(case, progress=progress).worn)
+    check = getattr(removed, "check_within", None)
+    if check is not None:
+        check(new)
+    return _worn(new, removed)
+
+
+def _worn(new: SoleShape, wear: SoleWear) -> SoleShape:
+    return cast("SoleShape", replace(cast("Any", new), wear=wear))
+
+
+def archard_state(case: Case, *, progress: Progress = silent) -> ArchardStep:
+    """Return the sole of the case worn by pressure and sliding to its wear depth.
+
+    The contact is dry, on the quick grid, at three shoe angles. Every ``WEAR_STEP`` is kept on
+    disk, so that a sole worn further goes on from there.
+    """
+    from underfoot.shoe.worn import ArchardStep, WornMap, archard_wear
+
+    context, new, wear = resolved(case), new_sole(case), case.shoe.wear
+    if not isinstance(wear, ArchardWear):
+        raise InputError(f'mode = "{wear.mode}"', where="shoe.wear.mode", allowed="archard")
+    spacing = case.numerics.quick_grid_spacing
+    force = wear.normal_force or case.motion.normal_force
+    half, middle = wear.angle_range / 2, wear.angle
+    angles = (middle - half, middle, middle + half) if half > 0 else (middle,)
+    identity = (
+        new,
+        list(angles),
+        force,
+        context.youngs_modulus,
+        context.poisson_ratio,
+        context.rq_value,
+        case.shoe.sole.model_dump(),
+        case.rough_contact.name,
+        case.compliance.name,
+        spacing,
+        wear.wear_rate,
+    )
+    store = Cache("archard_wear-2")
+    state: ArchardStep | None = None
+    steps = [*np.arange(WEAR_STEP, wear.depth - 1e-9, WEAR_STEP), wear.depth]
+    for number, depth in enumerate(steps):
+        key = content_hash("archard", *identity, round(float(depth), 9))
+        stored = store.load(key)
+        if stored is not None:
+            worn = WornMap(stored["x"], stored["y"], stored["removed"])
+            state = ArchardStep(worn, float(stored["sliding_distance"]))
+            continue
+        progress("Wearing the sole", number / len(steps))
+        state = archard_wear(
+            new,
+            angles=angles,
+            depth=float(depth),
+            contact=lambda shape, angle: _dry_contact(case, context, shape, angle, force),
+            wear_rate=wear.wear_rate,
+            spacing=spacing,
+            step=WEAR_STEP,
+            begin=state,
+        )
+        worn = state.worn
+        arrays = {"x": worn.x, "y": worn.y, "removed": worn.removed}
+        store.store(key, {**arrays, "sliding_distance": np.array(state.sliding_distance)})
+    assert state is not None
+    return state
+
+
+def _dry_contact(
+    case: Case, context: Context, shape: SoleShape, angle: float, force: float
+) -> tuple[SoleMap, NDArray[np.float64]]:
+    from underfoot.shoe import heel_map
+    from underfoot.sole_contact.solver import SolverSettings, solve_sliding
+
+    sole = heel_map(shape, shoe_angle=angle, spacing=case.numerics.quick_grid_spacing)
+    contact = solve_sliding(
+        sole,
+        case.compliance.build(context, sole),
+        case.rough_contact.build(context),
+        viscosity=None,
+        speed=case.motion.speed,
+        normal_force=force,
+        settings=SolverSettings(tolerance=case.numerics.tolerance),
+    )
+    if not contact.status.usable:
+        raise ConvergenceError(
+            "the dry contact of the worn sole did not converge",
+            history=contact.residuals,
+            where="shoe.wear",
+            remedy="Refine numerics.quick_grid_spacing, or wear at another angle.",
+        )
+    return sole, contact.contact_pressure
+
+
+def file_outsole(case: Case) -> FileOutsole:
+    """Return the outsole in the file of the case, as the case says it is to be read."""
+    from underfoot.shoe.files import FileSettings
+
+    outsole = case.shoe.outsole
+    if outsole is None:
+        raise InputError("the case has no outsole file", where="shoe.outsole.file")
+    settings = FileSettings(
+        unit=outsole.unit,
+        down=outsole.down,
+        forward=outsole.forward,
+        foot=outsole.foot,
+        mirror=outsole.mirror,
+        region=outsole.region,
+        region_length=outsole.region_length,
+        spacing=outsole.map_spacing,
+    )
+    return _read(outsole.file, outsole.sha256 or "", settings)
+
+
+@lru_cache(maxsize=4)
+def _read(path: str, checksum: str, settings: FileSettings) -> FileOutsole:
+    """Read a file once in a process: the checksum is part of the key."""
+    from underfoot.shoe.files import outsole_from_file
+
+    return outsole_from_file(path, settings)
+
+
+def file_surface(case: Case) -> SoleSurface:
+    """Return the bottom of the case's outsole file, worn as the case says."""
+    from underfoot.shoe.worn import worn_surface
+
+    surface, wear = file_outsole(case).surface, case.shoe.wear
+    removed = wear.build() if wear.depth > 0 else None
+    return surface if removed is None else worn_surface(surface, removed)
+
+
+def file_sole_map(case: Case, spacing: float) -> SoleMap:
+    """Return the tilted outsole of the case's file on the solver's grid, trimmed to its reach.
+
+    Raises
+    ------
+    InputError
+        Channels below the grid, a region or unit that doesn't fit, tread deeper than the outsole,
+        nothing under the load.
+    """
+    from underfoot.shoe import surface_map
+
+    surface = file_surface(case)
+    thickness = case.shoe.sole.outsole_thickness
+    deepest = float(np.max(surface.tread_depth))
+    if deepest >= thickness:
+        raise InputError(
+            f"the tread of {surface.name} is {display(deepest, 'm')} deep, the outsole "
+            f"{display(thickness, 'm')} thick",
+            where="shoe.sole.outsole_thickness",
+            allowed=f"above {display(deepest, 'm')}",
+        )
+    assert case.shoe.outsole is not None  # file_surface refuses a case without one
+    sole = trimmed(
+        surface_map(surface, shoe_angle=case.motion.shoe_angle, spacing=spacing),
+        case.shoe.outsole.reach,
+    )
+    check_load(case, sole)
+    return sole
+
+
+def trimmed(sole: SoleMap, reach: float, padding: float = 0.004) -> SoleMap:
+    """Return the map without rows and columns that lie more than ``reach`` (m) above the floor."""
+    near = sole.clearance <= reach
+    margin = max(1, math.ceil(padding / sole.spacing))
+    keep = []
+    for axis in (0, 1):
+        cells = np.nonzero(near.any(axis=1 - axis))[0]
+        keep.append(slice(max(int(cells[0]) - margin, 0), int(cells[-1]) + margin + 1))
+    part = (keep[0], keep[1])
+    return replace(
+        sole,
+        x=sole.x[keep[0]],
+        y=sole.y[keep[1]],
+        clearance=sole.clearance[part],
+        inside=sole.inside[part],
+        land=sole.land[part],
+        tread_depth=sole.tread_depth[part],
+    )
+
+
+def check_load(case: Case, sole: SoleMap) -> None:
+    """Refuse a load that bottoms the sole out, or that meets next to nothing of it.
+
+    A first look without a solver: each place of the land as a spring of its own, F = E / t sum
+    (d - c) dA over the land with clearance c below d, outsole thickness t. This estimate of the
+    approach d is too stiff for a thin layer's middle and too soft for none; refused is d above
+    half the thickness.
+    """
+    thickness = case.shoe.sole.thickness
+    modulus = youngs_modulus(case)[0].value
+    assert modulus is not None
+    force = case.motion.normal_force
+    heights = np.sort(sole.clearance[sole.land])
+    stiffness = modulus / thickness * sole.spacing**2
+    # with the n lowest places in touch: F = k (n d - sum of their clearances)
+    count = np.arange(1, heights.size + 1)
+    approach = (force / stiffness + np.cumsum(heights)) / count
+    reached = np.append(heights[1:], np.inf) >= approach
+    depth = float(approach[int(np.argmax(reached))])
+    if depth <= BOTTOMED * thickness:
+        return
+    area = np.count_nonzero(heights < depth) * sole.spacing**2 * 1e6
+    raise InputError(
+        f"{force:g} N bottoms out the sole: it would press {display(depth, 'm')} into "
+        f"{display(thickness, 'm')} of outsole, on {area:.0f} mm² of land",
+        where="motion.normal_force",
+        allowed=f"an approach of up to {BOTTOMED:.0%} of the outsole's thickness",
+        remedy="Look at the file with: underfoot outsole inspect. Is the right region under the "
+        "load (region, forward, down), is the unit right, does a stray point stand out",
+    )
+
+
+def compression_breaches(case: Case, approach: float) -> list[Breach]:
+    """Return whether the sole was pressed together more than linear elasticity is good for."""
+    name = "compression of the sole (approach / thickness)"
+    strain = max(approach, 0.0) / case.shoe.sole.thickness
+    return breaches("compliance", {name: LINEAR_STRAIN}, {name: strain})
+
+
+def outsole_notes(case: Case) -> list[str]:
+    """Return in words what was found, assumed and repaired in the outsole file; else nothing."""
+    if case.shoe.outsole is None:
+        return []
+    return [f"shoe.outsole: {line}" for line in file_outsole(case).surface.remarks]
+
+
+class OutsoleLayer(Section):
+    """Thickness of the sole."""
+
+    outsole_thickness: Length = default(25e-3, "25 mm", "assumption", assumed=True)
+
+
+class Outsole(Section):
+    """A sole alone: sections ``heel``, ``tread`` and ``sole`` as under ``shoe`` in a case."""
+
+    name: str = "outsole"
+    description: str = ""
+    heel: SolePlan = Field(default={"profile": "flat"}, validate_default=True)
+    tread: TreadPattern
+    sole: OutsoleLayer = OutsoleLayer()
+
+    def shape(self) -> SoleShape:
+        """Return the sole as the solver and the exporter take it."""
+        return self.heel.build(self.tread, self.sole.outsole_thickness)
+
+
+def read_outsole(path: Path | str, settings: Mapping[str, Any] | None = None) -> Outsole:
+    """Return the sole of an outsole file; every value with its unit.
+
+    Raises
+    ------
+    CaseError
+        Everything that is wrong with the file, each with its line.
+    """
+    path, text = Path(path), read(Path(path))
+    places = Places(str(path), text, changed=settings or ())
+    return outsole_from(parsed(text, str(path)), places, settings)
+
+
+def outsole_from(
+    mapping: Mapping[str, Any],
+    places: Places | None = None,
+    settings: Mapping[str, Any] | None = None,
+) -> Outsole:
+    """Return the sole of nested mappings, numbers as text with units."""
+    places = places or Places()
+    if "shoe" in mapping:
+        raise InputError(
+            "this is a case, not an outsole file",
+            where=places("shoe"),
+            remedy="Use the file of a sole alone, or give the case to the command as it is.",
+        )
+    plain = {key: item for key, item in mapping.items() if key in ("name", "description")}
+    parts = {key: item for key, item in mapping.items() if key not in plain}
+    inside = {f"shoe.{path}": value for path, value in (settings or {}).items()}
+    tree = with_settings({"shoe": parts}, inside)["shoe"]
+    tree = {key: expanded(item, f"shoe.{key}") for key, item in tree.items()}
+    try:
+        outsole = Outsole.model_validate({**plain, **tree}, context=DOOR)
+    except ValidationError as error:
+        raise CaseError(translated(error, Outsole, tree, places)) from None
+    view = cast("Any", _Alone(outsole))
+    problems = [p for path, part in walk(outsole) for p in part.problems(view, path)]
+    if problems:
+        raise CaseError([placed(error, places) for error in problems])
+    return outsole
+
+
+class _Alone:
+    """An outsole as the checks of its sections see it: no grid sets its resolution."""
+
+    def __init__(self, outsole: Outsole) -> None:
+        self.shoe = outsole
+        self.numerics = _Fine()
+
+
+class _Fine:
+    grid_spacing = quick_grid_spacing = 0.0

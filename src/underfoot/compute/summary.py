@@ -1,0 +1,188 @@
+"""A result in sentences and table rows: number, unit, uncertainty, then the caution."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from underfoot.core import SourcedValue, Status
+from underfoot.core.presentation import Table, interval_text, percent, value_text
+
+FILM_MATTERS = 0.05
+"""Share of the load carried by the film above which drainage can raise the friction."""
+GAIN_MATTERS = 1.1
+"""Ratio of the COF without the film to the present one above which drainage is worth naming."""
+QUANTITIES: Mapping[str, tuple[str, str]] = {
+    "cof": ("Coefficient of friction", ""),
+    "cof_adhesion": ("  from adhesion", ""),
+    "cof_hysteresis": ("  from hysteresis", ""),
+    "cof_viscous": ("  from shearing the fluid", ""),
+    "fluid_load": ("Load carried by the fluid", "under the whole sole"),
+    "fluid_load_sensor": ("  as floor sensors read it", ""),
+    "peak_fluid_pressure": ("Peak fluid pressure", "anywhere under the sole"),
+    "peak_fluid_pressure_sensor": ("  as a floor sensor reads it", ""),
+    "array_peak": ("  highest in the sensor array", "the sensors stay in the floor"),
+    **{f"array_peak_row_{n}": (f"  row {n} of the array", "") for n in range(1, 10)},
+    "array_duration": ("  pressure lasts in the array", ""),
+    "contact_area": ("Contact area", "where the rough surfaces touch"),
+    "minimum_film_thickness": ("Thinnest film", "mean gap between the surfaces"),
+    "slip_probability": ("Slip probability", "walkers as described in the case"),
+}
+"""Label and remark of each quantity, in the order of the summary; parts are indented."""
+LABELS = {
+    "cof_spread_from": "Uncertainty of the COF",
+    "grid_error": "Discretisation error",
+    "edge_peak": "Caution on pressures",
+    "objects": "Computed with an object in place of the case's option",
+}
+DECISIVE = ("interface", "shoe.heel", "shoe.tread", "shoe.sole", "motion")
+"""Sections whose assumed inputs move the film load most, the most sensitive first."""
+
+
+@dataclass(frozen=True, slots=True)
+class FrictionLimit:
+    """What keeps the friction low.
+
+    ``cof_without_film`` is the COF if the film carried no load and the present friction of the
+    touching part acted everywhere: (COF - viscous part) / (1 - film share). On a dry floor
+    ``film_share`` is nan.
+    """
+
+    film_share: float
+    cof: float
+    cof_without_film: float
+
+    @property
+    def kind(self) -> Literal["film", "boundary", "dry"]:
+        """Return what limits the friction: load on the film, blocked adhesion or the dry pair."""
+        if math.isnan(self.film_share):
+            return "dry"
+        drainage = self.cof_without_film > GAIN_MATTERS * self.cof
+        return "film" if self.film_share > FILM_MATTERS and drainage else "boundary"
+
+    def __str__(self) -> str:
+        if self.kind == "dry":
+            return "The floor is dry: the friction of the dry pair is the limit."
+        if self.kind == "film":
+            return (
+                f"The film carries {100 * self.film_share:.0f} % of the load; without the film the "
+                f"same surfaces would have a COF of about {self.cof_without_film:.2f}."
+            )
+        return (
+            f"The film carries {100 * self.film_share:.0f} % of the load; the limit is the "
+            "adhesion that the fluid blocks where the surfaces touch."
+        )
+
+
+def friction_limit(scalars: Mapping[str, SourcedValue]) -> FrictionLimit:
+    """Return what limits the friction of a usable result."""
+    cof = _number(scalars, "cof")
+    if scalars["minimum_film_thickness"].value is None:
+        return FrictionLimit(math.nan, cof, cof)
+    share = _number(scalars, "fluid_load") / _number(scalars, "normal_force")
+    solid = cof - _number(scalars, "cof_viscous")
+    return FrictionLimit(share, cof, solid / (1.0 - share) if share < 1.0 else math.nan)
+
+
+def headline(
+    status: Status, scalars: Mapping[str, SourcedValue], labels: Mapping[str, str]
+) -> tuple[str, ...]:
+    """Return the answer in up to three sentences: COF, film, slip probability."""
+    if not status.usable:
+        return (f"No result: {status}. {status.remedy}",)
+    cof = scalars["cof"]
+    basis = labels.get("cof_spread_basis", "spread of the friction law alone")
+    known = cof.uncertainty is not None
+    sentences = [f"Available COF {value_text('cof', cof)}{f' ({basis})' if known else ''}."]
+    regime = f" ({labels['regime']})" if "regime" in labels else ""
+    limit = str(friction_limit(scalars))
+    sentences.append(limit.replace(" of the load", f" of the load{regime}", 1))
+    slip = scalars.get("slip_probability")
+    if slip is not None and slip.value is not None:
+        text = value_text("slip_probability", slip)
+        extrapolated = ", extrapolated" if slip.note else ""
+        sentences.append(f"Slip probability {text}{extrapolated}.")
+    return tuple(sentences)
+
+
+def cautions(
+    status: Status,
+    scalars: Mapping[str, SourcedValue],
+    breaches: Sequence[str],
+    assumptions: Sequence[str],
+    slip_model: str = "",
+) -> tuple[str, ...]:
+    """Return why the numbers of a usable result may not be trusted; ``slip_model`` is its name."""
+    if not status.usable:
+        return ()
+    reasons = []
+    slip = scalars.get("slip_probability")
+    if slip is not None and slip.note:
+        reasons.append(f"Slip probability {slip.note}.")
+    models = dict.fromkeys(line.partition(":")[0] for line in breaches)
+    if others := [name for name in models if name != slip_model]:
+        reasons.append(f"Inputs outside the tested range of: {', '.join(others)}.")
+    sections = {line.partition(":")[0] for line in assumptions}
+    open_sections = [name for name in DECISIVE[:2] if name in sections]
+    if open_sections and friction_limit(scalars).kind == "film":
+        named = {"interface": "interface roughness", "shoe.heel": "heel shape"}
+        inputs = " and ".join(named[name] for name in open_sections)
+        reasons.append(
+            f"The film load depends on assumed values ({inputs}) that the ± leaves out; "
+            "underfoot sensitivity gives their effect."
+        )
+    return tuple(reasons)
+
+
+def table(scalars: Mapping[str, SourcedValue], labels: Mapping[str, str]) -> Table:
+    """Return label, value with uncertainty, and remark of every quantity of a result."""
+    rows: list[tuple[str, str, str]] = []
+    for name, (label, remark) in QUANTITIES.items():
+        scalar = scalars.get(name)
+        if scalar is None:
+            continue
+        interval = interval_text(name, scalar)
+        value = value_text(name, scalar)
+        if interval and interval not in value:
+            remark = f"95 %: {interval}"
+        elif not interval:
+            remark = scalar.note or _load_share(scalars, name) or remark
+        rows.append((label, value, remark))
+        if name == "cof_viscous" and "regime" in labels:
+            rows.append(("Lubrication regime", labels["regime"], labels.get("regime_rule", "")))
+    return Table("Results", ("Quantity", "Value", "Remark"), rows)
+
+
+def notes(labels: Mapping[str, str]) -> tuple[str, ...]:
+    """Return the remarks of a result that are sentences, with their title in front."""
+    return tuple(f"{title}: {labels[key]}" for key, title in LABELS.items() if key in labels)
+
+
+def ranked_assumptions(assumptions: Sequence[str]) -> list[str]:
+    """Return the assumptions, those of the sections that move the film load most first.
+
+    The first line of each section precedes its further lines, so that the top of the list names
+    different parts of the case.
+    """
+    sections = [line.partition(":")[0] for line in assumptions]
+    order = {name: number for number, name in enumerate(DECISIVE)}
+
+    def place(k: int) -> tuple[int, bool, int, int]:
+        name = sections[k]
+        return sections[:k].count(name), name not in order, order.get(name, 0), k
+
+    return [assumptions[k] for k in sorted(range(len(sections)), key=place)]
+
+
+def _load_share(scalars: Mapping[str, SourcedValue], name: str) -> str:
+    if name not in ("fluid_load", "fluid_load_sensor"):
+        return ""
+    load, total = scalars[name].value, scalars["normal_force"].value
+    return f"{percent(load / total)} of the load" if load is not None and total else ""
+
+
+def _number(scalars: Mapping[str, SourcedValue], name: str) -> float:
+    value = scalars[name].value
+    return math.nan if value is None else value

@@ -1,0 +1,75 @@
+"""Checks of single inputs: where they stand and what is allowed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .arrays import Array
+from .errors import InputError, unknown_name
+
+
+def positive(value: float, where: str, unit: str = "") -> float:
+    """Return ``value`` as a float; refuse one that is not a finite number above 0."""
+    if not (math.isfinite(value) and value > 0):
+        raise InputError(
+            f"{_text(value, unit)} is not positive",
+            where=where,
+            allowed=f"a finite number above {_text(0, unit)}",
+        )
+    return float(value)
+
+
+def not_negative(value: float, where: str, unit: str = "") -> float:
+    """Return ``value`` as a float; refuse one that is not a finite number of at least 0."""
+    if not (math.isfinite(value) and value >= 0):
+        raise InputError(
+            f"{_text(value, unit)} is negative or not finite",
+            where=where,
+            allowed=f"a finite number, {_text(0, unit)} or more",
+        )
+    return float(value)
+
+
+def between(value: float, low: float, high: float, where: str, allowed: str = "") -> float:
+    """Return ``value``; refuse one outside [low, high], which ``allowed`` says in words."""
+    if not low <= value <= high:
+        raise InputError(
+            f"{value:g} is out of range", where=where, allowed=allowed or f"{low:g} to {high:g}"
+        )
+    return float(value)
+
+
+def positive_array(values: ArrayLike, where: str, *, zero: bool = False) -> Array:
+    """Return ``values`` as an array of finite numbers above 0 (with ``zero``: 0 or more)."""
+    array = np.asarray(values, dtype=float)
+    good = np.isfinite(array) & ((array >= 0) if zero else (array > 0))
+    if array.size == 0 or not good.all():
+        shown = f"{array[~good].flat[0]:g}" if array.size else "an empty array"
+        bound = "of 0 or more" if zero else "above 0"
+        raise InputError(
+            f"{shown} is not a finite number {bound}", where=where, allowed=f"{bound}, in SI"
+        )
+    return array
+
+
+def choice(value: str, allowed: Iterable[str], where: str) -> str:
+    """Return ``value``; refuse a word that is none of ``allowed``, with the nearest one."""
+    allowed = tuple(allowed)
+    if value not in allowed:
+        raise unknown_name(where.rpartition(".")[2].replace("_", " "), value, allowed, where=where)
+    return value
+
+
+def poisson_ratio(value: float, where: str = "poisson_ratio") -> float:
+    """Return Poisson's ratio; refuse one outside 0 to 0.5."""
+    if not 0.0 <= value <= 0.5:
+        raise InputError(f"Poisson's ratio {value:g}", where=where, allowed="0 to 0.5")
+    return float(value)
+
+
+def _text(value: float, unit: str) -> str:
+    return f"{value:g} {unit}".rstrip()

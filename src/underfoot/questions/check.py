@@ -1,0 +1,122 @@
+"""A case before it is computed: values, assumptions, ranges and cost; solves nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from underfoot.case import assumptions
+from underfoot.case.describe import tested_range_breaches
+from underfoot.compute.contact import cost
+from underfoot.compute.resolve import resolved
+from underfoot.compute.sole import outsole_notes
+from underfoot.compute.summary import ranked_assumptions
+from underfoot.core import InputError
+from underfoot.core.presentation import Presentable, Table
+from underfoot.sole_contact.cost import Cost, megabytes
+
+if TYPE_CHECKING:
+    from underfoot.case import Case
+
+USUAL_AREA = 2e-3
+"""m^2: a heel touches on some 20 cm2, for the pressure at which ranges are checked."""
+DEAR = {
+    "finite_element": "The finite-element sole takes up to a minute and 2 GB more, once.",
+    "contact_table": "The contact table takes minutes more, once.",
+    "history": "A history takes several times as long.",
+}
+"""Extra cost of the options that are dear, by their name."""
+
+
+@dataclass(frozen=True, slots=True)
+class CaseCheck(Presentable):
+    """What is known of a case before it is computed."""
+
+    kind: ClassVar[str] = "check"
+
+    case: Case
+    refusal: str
+    breaches: tuple[str, ...]
+    full: Cost
+    quick: Cost
+
+    def __repr__(self) -> str:
+        return f"<CaseCheck of {self.case.name!r:.100}: {self.full.cells} cells>"
+
+    def heading(self) -> str:
+        """Return name and hash."""
+        return f"{self.case.name}  [{self.case.hash[:12]}]"
+
+    def headline(self) -> tuple[str, ...]:
+        """Return what a run will take."""
+        case = self.case
+        options = (case.compliance.name, case.rough_contact.name, case.motion.name)
+        return (
+            f"Cost: {self.full}, on one core; with --quick {self.quick}.",
+            *(DEAR[name] for name in options if name in DEAR),
+        )
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return why a run would be refused."""
+        reasons = [f"A run would be refused: {self.refusal}"] if self.refusal else []
+        limit = self.case.numerics.most_memory
+        if self.full.memory > limit:
+            reasons.append(
+                f"A run would be refused: numerics.most_memory is {megabytes(limit)}; use --quick "
+                "or a coarser numerics.grid_spacing."
+            )
+        return tuple(reasons)
+
+    def table(self) -> Table:
+        """Return every value that is set with its origin."""
+        return self.case.table()
+
+    def remarks(self) -> dict[str, Sequence[str]]:
+        """Return assumptions, ranges that are left, and how an older file was read."""
+        return {
+            "Outside the tested range, as far as it shows before solving": self.breaches,
+            "Assumptions": ranked_assumptions((*assumptions(self.case), *outsole_notes(self.case))),
+            "Read from an older version of case files": tuple(self.case.changes),
+        }
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return values, assumptions, breaches and cost."""
+        keys = ("path", "value", "origin")
+        return {
+            "hash": self.case.hash,
+            "values": [dict(zip(keys, row, strict=True)) for row in self.case.rows()],
+            "assumptions": assumptions(self.case),
+            "breaches": list(self.breaches),
+            "refusal": self.refusal,
+            "changes": list(self.case.changes),
+            "cost": {
+                name: {"cells": cost.cells, "seconds": list(cost.seconds), "bytes": cost.memory}
+                for name, cost in (("full", self.full), ("quick", self.quick))
+            },
+        }
+
+
+def case_check(case: Case) -> CaseCheck:
+    """Return what is known of a case before it is computed."""
+    numerics = case.numerics
+    breaches, refusal = [*tested_range_breaches(case)], ""
+    try:
+        law = case.friction.build(resolved(case))
+        local = {
+            "contact_pressure": np.array([case.motion.normal_force / USUAL_AREA]),
+            "speed": case.motion.speed,
+            "film_thickness": np.full(1, 1e-5),
+        }
+        breaches += map(str, law.breaches(**local))
+    except InputError as error:
+        refusal = str(error)
+    return CaseCheck(
+        case,
+        refusal,
+        tuple(dict.fromkeys(breaches)),
+        cost(case, numerics.grid_spacing),
+        cost(case, numerics.quick_grid_spacing),
+    )

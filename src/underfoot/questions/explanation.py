@@ -1,0 +1,189 @@
+"""Explanation of a formula, an equation of the report, a catalogue entry, a key or a term."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from importlib import import_module
+from typing import Any
+
+from underfoot.case import paths, unit_at
+from underfoot.case.parts import field_at
+from underfoot.case.quantity import default_of
+from underfoot.case.section import quantity_of
+from underfoot.core import display, unknown_name
+from underfoot.core.catalogue import Catalogue
+
+from .terms import TERMS
+
+WIDTH = 80
+"""Characters of a line in a list of formulas."""
+FIRST_SCREEN = 20
+"""Lines of a docstring in the short form."""
+LAST_EQUATION = 27
+"""Of the report; other numbers belong to other papers."""
+ROOMS = (
+    "reference material surface fluid rough_contact film friction shoe sole_contact slip trials"
+).split()
+_EQUATION = re.compile(r"eq(?:uation)?\.?\s*\(?(\d+)\)?", re.IGNORECASE)
+_IN_TEXT = re.compile(r"Eqs?\.\s*\(?(\d+)\)?(?:\s*(to|-|,|and)\s*\(?(\d+)\)?)?")
+_SOURCE = re.compile(r"Source: .*?(?=\n\n|$)", re.DOTALL)
+_SECTION = re.compile(r"\n\n(?=[A-Z][a-z]+\n-{3,})")
+
+
+class Explanation(str):
+    """Text that prints as it reads."""
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def explain(name: str, *, full: bool = False) -> Explanation:
+    """Return what is known under a name, with the package's own catalogue; see ``explanation``."""
+    return Explanation(explanation(name, Catalogue.load(), full=full))
+
+
+def explanation(name: str, catalogue: Catalogue, *, full: bool = False) -> str:
+    """Return what is known under a name: term, catalogue entry, key of case files and formulas.
+
+    The short form of a formula has its equation, tested range and source; ``full`` also its
+    parameters, notes and errors.
+
+    Raises
+    ------
+    InputError
+        An unknown name, with the nearest one.
+    """
+    parts = []
+    if name.casefold() in TERMS:
+        parts.append(f"{name}: {TERMS[name.casefold()]}")
+    if any(entry == name for _, entry in catalogue.entries):
+        parts.append(catalogue.describe(name))
+    if key := _key(name):
+        parts.append(key)
+    closures = dict(_closures())
+    chosen = [name] if name in closures else _named(name, closures)
+    main = [each for each in chosen if name.replace("_", "").casefold() in each.casefold()]
+    if len(chosen) > 1 and len(main) == 1:
+        parts.append(_documented(main[0], closures[main[0]], full=full))
+        chosen = [each for each in chosen if each not in main]
+    elif len(chosen) == 1:
+        parts.append(_documented(chosen[0], closures[chosen[0]], full=full))
+        chosen = []
+    if chosen:
+        width = max(map(len, chosen))
+        lines = [
+            f"  {each:{width}}  {_summary(closures[each], WIDTH - width - 4)}" for each in chosen
+        ]
+        parts.append("Formulas (underfoot explain NAME):\n" + "\n".join(lines))
+    if not parts:
+        names = {*TERMS, *(entry for _, entry in catalogue.entries), *closures, *paths()}
+        raise unknown_name("name", name, names)
+    return "\n\n".join(parts)
+
+
+def _key(path: str) -> str:
+    field = field_at(path)
+    if field is None:
+        keys = [key for key in paths() if key.startswith(path + ".")]
+        return f"{path} holds: {', '.join(keys)}" if keys else ""
+    lines = [f"{path}: {field.description or 'a value of case files'}"]
+    quantity = quantity_of(field)
+    if quantity is not None:
+        unit = unit_at(path)
+        lines.append(f"  unit {unit if unit != '1' else 'none'}, {quantity.allowed()}")
+    default = default_of(field)
+    if default is not None:
+        mark = ", assumed" if default.assumed else ""
+        lines.append(f"  default {default.text} ({default.source}{mark})")
+    return "\n".join(lines)
+
+
+def _closures() -> Iterator[tuple[str, Any]]:
+    """Yield the public functions and classes of the physics."""
+    for room in ROOMS:
+        module = import_module(f"underfoot.{room}")
+        for name in getattr(module, "__all__", ()):
+            item = getattr(module, name)
+            if callable(item):
+                yield name, item
+
+
+def _named(name: str, closures: Mapping[str, Any]) -> list[str]:
+    """Return the formulas of a word, an author or an equation of the report."""
+    equation = _EQUATION.fullmatch(name.strip())
+    if equation is not None:
+        number = int(equation.group(1))
+        return [closure for closure, item in closures.items() if number in equations(item)]
+    word = name.casefold()
+    return [
+        closure
+        for closure, item in closures.items()
+        if word in {*closure.casefold().split("_"), item.__module__.rpartition(".")[2]}
+        or word.replace("_", "") == closure.casefold().replace("_", "")
+    ]
+
+
+def equations(item: Any) -> list[int]:
+    """Return the equations of the report that the docstring of a formula names."""
+    document = inspect.getdoc(item) or ""
+    module = inspect.getdoc(inspect.getmodule(item)) or ""
+    texts = (document.partition("\n\n")[0], document, module)
+    text = next((part for part in texts if _IN_TEXT.search(part)), "")
+    numbers: set[int] = set()
+    for match in _IN_TEXT.finditer(text):
+        first, last = int(match.group(1)), int(match.group(3) or match.group(1))
+        numbers |= {first, last} if match.group(2) == "," else set(range(first, last + 1))
+    return sorted(number for number in numbers if number <= LAST_EQUATION)
+
+
+def _equation_text(numbers: list[int]) -> str:
+    if not numbers:
+        return "not in the report"
+    return "Eq. " + ", ".join(map(str, numbers)) + " of the report"
+
+
+def _summary(item: Any, longest: int) -> str:
+    first = (inspect.getdoc(item) or "not documented").partition("\n\n")[0]
+    text = " ".join(first.split())
+    return text if len(text) <= longest else text[: longest - 2].rstrip() + " …"
+
+
+def _documented(name: str, item: Any, *, full: bool) -> str:
+    try:
+        signature = str(inspect.signature(item)).replace("'", "")
+    except (TypeError, ValueError):
+        signature = ""
+    document = inspect.getdoc(item) or "not documented"
+    heading = f"{item.__module__}.{name}: {_equation_text(equations(item))}"
+    if full:
+        return "\n\n".join([heading, f"{name}{signature}", document, *_origin(item)])
+    paragraphs = _SECTION.split(document)[0].rstrip().split("\n\n")
+    first = [part for part in paragraphs if not part.startswith("Source:")]
+    while len(first) > 1 and len("\n\n".join(first).splitlines()) > FIRST_SCREEN:
+        first.pop()
+    if len(first) < len(paragraphs) and first[-1].endswith(":"):
+        first[-1] += " …"
+    origin = list(_origin(item))
+    if not any("Source:" in part for part in (*origin, *first)):
+        written = _SOURCE.search(document)
+        module = (inspect.getdoc(inspect.getmodule(item)) or "").partition("\n\n")[0]
+        origin.append(written.group(0) if written else f"From: {module}")
+    more = f"Parameters, notes and errors: underfoot explain {name} --all"
+    return "\n\n".join([heading, *first, *origin, more])
+
+
+def _origin(item: Any) -> Iterator[str]:
+    """Yield source and tested ranges of a closure that is a class, as its module holds them."""
+    if not (inspect.isclass(item) and is_dataclass(item)):
+        return
+    source = next((field.default for field in fields(item) if field.name == "source"), None)
+    if isinstance(source, str):
+        yield f"Source: {source}"
+    ranges = getattr(sys.modules[item.__module__], "RANGES", {})
+    for quantity, tested in ranges.items():
+        low, high = display(tested.low, tested.unit), display(tested.high, tested.unit)
+        yield f"Tested: {quantity} {low} to {high} ({tested.source})"

@@ -1,0 +1,500 @@
+"""Predicted COF of a case by a standard test method, and the probability of passing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from underfoot.core import InputError, Progress, SourcedValue, display, silent, unknown_name
+from underfoot.core.presentation import Presentable, Table, percent, value_text
+from underfoot.core.progress import part
+
+from .outcomes import Outcome, outcomes
+from .sensitivity import Band, Sensitivity, sensitivity, variants
+
+if TYPE_CHECKING:
+    from underfoot.case import Case
+    from underfoot.core.catalogue import Entry
+    from underfoot.core.leaves import Leaf
+
+_Z95 = 1.959963984540054
+AS_IN_CASE = "as in the case"
+NICKNAMES = {
+    "iso13287": "en_iso_13287",
+    "iso_13287": "en_iso_13287",
+    "en13287": "en_iso_13287",
+    "f2913": "astm_f2913",
+    "astmf2913": "astm_f2913",
+    "report_slip_tester": "slip_tester_g4",
+    "report_whole_shoe": "whole_shoe_g6",
+}
+KEEPABLE = ("floor", "contaminant", "normal_force", "shoe_angle", "speed")
+
+
+class Basis(StrEnum):
+    """How sure a requirement of a method is, or what was used in its place."""
+
+    VERIFIED = "verified"
+    FROM_MEMORY = "from memory, not verified"
+    ASSUMED = "assumed"
+    OPEN = "left open by the method"
+    DEPARTURE = "departs from the method"
+
+
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """One thing that the method prescribes, what was used, and how sure its source is."""
+
+    name: str
+    required: str
+    used: str
+    basis: Basis
+    source: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """One floor and fluid of the method with the COF predicted for it.
+
+    ``cof`` is the mean over the method's averaging window with the standard deviation of the
+    friction law and of the open inputs; ``low`` and ``high`` bound 95 % of it. ``probability`` is
+    that of ``cof`` at or above ``limit``; None where the method sets no limit or where the COF was
+    not determined.
+    """
+
+    name: str
+    title: str
+    floor: str
+    contaminant: str
+    cof: SourcedValue
+    low: float | None
+    high: float | None
+    limit: SourcedValue | None
+    probability: float | None
+    band: Band | None
+    outcome: Outcome
+    window: tuple[Outcome, ...]
+
+    def __str__(self) -> str:
+        if self.cof.value is None or self.low is None:
+            return f"{self.title}: not determined: {self.cof.reason}."
+        text = (
+            f"{self.title}: COF {value_text('cof', self.cof)} (95 %: {self.low:.2f} to "
+            f"{self.high:.2f}; {self.cof.note})"
+        )
+        if self.probability is None or self.limit is None:
+            return f"{text}; the method sets no limit."
+        return (
+            f"{text}; probability of at least {self.limit.value:g} is {_chance(self.probability)}."
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class MethodPrediction(Presentable):
+    """Prediction of a test by the method, one condition after the other."""
+
+    kind: ClassVar[str] = "test"
+
+    name: str
+    method: str
+    title: str
+    source: str
+    note: str
+    requirements: tuple[Requirement, ...]
+    conditions: tuple[Condition, ...]
+
+    def __repr__(self) -> str:
+        return f"<MethodPrediction of {self.name!r} by {self.method}>"
+
+    @property
+    def usable(self) -> bool:
+        """Whether every condition gave a result."""
+        return all(each.outcome.usable for each in self.conditions)
+
+    def heading(self) -> str:
+        """Return case and method."""
+        return f"{self.name} by {self.title}"
+
+    def headline(self) -> tuple[str, ...]:
+        """Return the prediction of every condition."""
+        return tuple(map(str, self.conditions))
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return what the method does not say and where models were extrapolated."""
+        reasons = []
+        unsure = [each.name for each in self.requirements if each.basis is not Basis.VERIFIED]
+        if unsure:
+            reasons.append(
+                f"{len(unsure)} of {len(self.requirements)} settings are not verified against the "
+                "printed method or depart from it; see the table."
+            )
+        models = dict.fromkeys(line.partition(":")[0] for line in self._breaches())
+        if models:
+            reasons.append(f"Inputs outside the tested range of: {', '.join(models)}.")
+        return tuple(reasons)
+
+    def table(self) -> Table:
+        """Return the conditions with COF, interval, limit and probability of passing."""
+        rows = [
+            (
+                each.title,
+                each.floor,
+                each.contaminant,
+                value_text("cof", each.cof),
+                "" if each.low is None else f"{each.low:.2f} to {each.high:.2f}",
+                "none" if each.limit is None else f"{each.limit.value:g}",
+                "" if each.probability is None else _chance(each.probability),
+            )
+            for each in self.conditions
+        ]
+        heads = (
+            "Condition",
+            "Floor",
+            "Contaminant",
+            "COF",
+            "95 %",
+            "Limit",
+            "Probability of passing",
+        )
+        return Table("Prediction", heads, rows)
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the conditions, and what the method requires beside what was used."""
+        rows = [
+            (
+                each.name,
+                each.required,
+                each.used,
+                f"{each.basis} ({each.source})" if each.source else str(each.basis),
+            )
+            for each in self.requirements
+        ]
+        settings = Table("Settings of the method", ("Setting", "Required", "Used", "Basis"), rows)
+        return self.table(), settings
+
+    def remarks(self) -> dict[str, Sequence[str]]:
+        """Return the note of the method and the tested ranges that were left."""
+        notes = (self.note,) if self.note else ()
+        return {"Notes": notes, "Outside the tested range": self._breaches()}
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything in SI."""
+        return {
+            "method": self.method,
+            "title": self.title,
+            "source": self.source,
+            "requirements": [
+                {
+                    "name": each.name,
+                    "required": each.required,
+                    "used": each.used,
+                    "basis": str(each.basis),
+                    "source": each.source,
+                }
+                for each in self.requirements
+            ],
+            "conditions": [
+                {
+                    "name": each.name,
+                    "title": each.title,
+                    "floor": each.floor,
+                    "contaminant": each.contaminant,
+                    "cof": each.cof.as_dict(),
+                    "interval_95": [each.low, each.high],
+                    "limit": None if each.limit is None else each.limit.as_dict(),
+                    "probability_of_passing": each.probability,
+                    "status": str(each.outcome.status),
+                    "breaches": list(each.outcome.breaches),
+                    "assumptions": list(each.outcome.assumptions),
+                }
+                for each in self.conditions
+            ],
+        }
+
+    def data_tables(self) -> dict[str, Table]:
+        """Return conditions and requirements for other programs."""
+        heads = (
+            "condition floor contaminant cof uncertainty low high limit limit_source "
+            "probability_of_passing status".split()
+        )
+        rows = [
+            (
+                each.title,
+                each.floor,
+                each.contaminant,
+                each.cof.value,
+                each.cof.uncertainty,
+                each.low,
+                each.high,
+                each.limit and each.limit.value,
+                each.limit and each.limit.source,
+                each.probability,
+                str(each.outcome.status),
+            )
+            for each in self.conditions
+        ]
+        required = [(r.name, r.required, r.used, str(r.basis), r.source) for r in self.requirements]
+        return {
+            "conditions": Table("", tuple(heads), rows),
+            "requirements": Table(
+                "", ("requirement", "required", "used", "basis", "source"), required
+            ),
+        }
+
+    def _breaches(self) -> list[str]:
+        return list(dict.fromkeys(b for each in self.conditions for b in each.outcome.breaches))
+
+
+def method_names(case: Case) -> list[str]:
+    """Return the set-ups of the catalogue that a case can be tested by."""
+    names = case.catalogue.names("setup")
+    entries = [case.catalogue.entry("setup", name).values for name in names]
+    return [
+        name
+        for name, values in zip(names, entries, strict=True)
+        if "motion.speed" in values and any(path.startswith("method.") for path in values)
+    ]
+
+
+def method_name(name: str, case: Case) -> str:
+    """Return the set-up that a person means: ``iso13287``, ``report-slip-tester`` ..."""
+    plain = name.strip().lower().replace("-", "_").replace(" ", "_")
+    plain = NICKNAMES.get(plain, plain)
+    known = method_names(case)
+    if plain not in known:
+        raise unknown_name("test method", name, known, where="--method")
+    return plain
+
+
+def method_prediction(
+    case: Case,
+    method: str,
+    *,
+    keep: Sequence[str] = (),
+    with_band: bool = True,
+    quick: bool = False,
+    processes: int | None = 1,
+    progress: Progress = silent,
+) -> MethodPrediction:
+    """Return the COF that a test method would measure on the shoe of a case.
+
+    Parameters
+    ----------
+    case
+        Shoe and models; floor, fluid and motion as far as the method leaves them open.
+    method
+        Name of a set-up in the catalogue, see ``method_name``.
+    keep
+        Parts of the case to keep against the method: any of ``KEEPABLE``; each is listed as a
+        departure from it.
+    with_band
+        Vary the open inputs too (two quick runs each); without it the spread is that of the
+        friction law alone.
+    quick
+        The coarse grid for the prediction itself.
+
+    Notes
+    -----
+    The mean over the averaging window is Simpson's rule on its beginning, middle and end. The
+    probability of passing takes the COF as normally distributed.
+
+    Raises
+    ------
+    InputError
+        An unknown method, a case without what the method leaves open.
+    """
+    for name in keep:
+        if name not in KEEPABLE:
+            raise unknown_name("part of the case to keep", name, KEEPABLE, where="--keep")
+    entry = case.catalogue.entry("setup", method_name(method, case))
+    plan = [
+        (name, *_prepared(case, entry, floor, fluid, keep))
+        for name, floor, fluid in _conditions(entry)
+    ]
+    times = _window(entry)
+    batches = [
+        [tested.replace("motion.duration", time) for time in times] or [tested]
+        for _, tested, _ in plan
+    ]
+    share = 1.0 / (1 + len(plan)) if with_band else 1.0
+    results = outcomes(
+        [each for batch in batches for each in batch],
+        quick=quick,
+        processes=processes,
+        progress=part(progress, 0.0, share),
+        stage="Testing by the method",
+    )
+    conditions, requirements = [], []
+    width = len(batches[0])
+    for number, (name, tested, settings) in enumerate(plan):
+        window = tuple(results[number * width : (number + 1) * width])
+        rest = part(progress, (number + 1) * share, (number + 2) * share)
+        effects = _effects(tested, processes, rest) if with_band else None
+        conditions.append(_condition(entry, name, tested, window, effects))
+        if len(plan) > 1:  # floor and fluid differ from condition to condition
+            settings = [
+                replace(each, name=f"{each.name}, {name.replace('_', ' ')}")
+                if each.name in ("floor", "contaminant")
+                else each
+                for each in settings
+            ]
+        requirements += [each for each in settings if each not in requirements]
+    if times:
+        requirements.append(_window_requirement(entry, times))
+    return MethodPrediction(
+        case.name,
+        entry.name,
+        entry.title,
+        entry.values["motion.speed"].source,
+        entry.note,
+        tuple(requirements),
+        tuple(conditions),
+    )
+
+
+def _effects(case: Case, processes: int | None, progress: Progress) -> Sensitivity:
+    if not variants(case):
+        raise InputError("no open input to vary", where="sensitivity")
+    return sensitivity(case, quick=True, processes=processes, progress=progress)
+
+
+def _conditions(entry: Entry) -> list[tuple[str, Leaf | None, Leaf | None]]:
+    """Return name, floor and fluid of each condition; one without either where none is set."""
+    listed = entry.under("conditions")
+    names = list(dict.fromkeys(path.partition(".")[0] for path in listed))
+    if not names:
+        return [(AS_IN_CASE, None, None)]
+    return [
+        (name, listed.get(f"{name}.floor"), listed.get(f"{name}.contaminant")) for name in names
+    ]
+
+
+def _prepared(
+    case: Case, entry: Entry, floor: Leaf | None, fluid: Leaf | None, keep: Sequence[str]
+) -> tuple[Case, list[Requirement]]:
+    """Return the case under the method, and what the method asked for."""
+    own = case.motion
+    changes: dict[str, object] = {"motion": entry.name}
+    if any(path.startswith("sensor.") for path in entry.values):
+        changes["sensor"] = entry.name
+    settings = []
+    for section, leaf in (("floor", floor), ("contaminant", fluid)):
+        present = case.entries.get(section, "given in the case")
+        if section == "contaminant" and case.contaminant is None:
+            present = "none: dry"
+        if leaf is None:
+            open_leaf = entry.values.get(f"method.{section}")
+            required = "as agreed" if open_leaf is None else str(open_leaf.given)
+            settings.append(Requirement(section, required, f"{present} (of the case)", Basis.OPEN))
+        elif section in keep:
+            used = f"{present} (kept)"
+            settings.append(Requirement(section, str(leaf.given), used, Basis.DEPARTURE))
+        else:
+            changes[section] = str(leaf.given)
+            settings.append(_required(section, str(leaf.given), "as required", leaf))
+    changed = case.replace(changes)
+    kept = {
+        f"motion.{name}": f"{getattr(own, name)!r} {unit}"
+        for name, unit in (("normal_force", "N"), ("shoe_angle", "rad"), ("speed", "m/s"))
+        if name in keep
+    }
+    if kept:
+        changed = changed.replace(kept)
+    for name, unit in (("shoe_angle", "rad"), ("normal_force", "N"), ("speed", "m/s")):
+        leaf = entry.values[f"motion.{name}"]
+        label = name.replace("_", " ")
+        required = f"{leaf.given}" + (f" ({leaf.note})" if leaf.note else "")
+        if name in keep:
+            used = f"{display(getattr(changed.motion, name), unit)} (kept)"
+            settings.append(Requirement(label, required, used, Basis.DEPARTURE))
+        else:
+            settings.append(_required(label, required, "as required", leaf))
+    return changed, settings
+
+
+def _window(entry: Entry) -> tuple[float, ...]:
+    """Return beginning, middle and end of the averaging window after first contact, s."""
+    if "method.averaging_end" not in entry.values:
+        return ()
+    begin = float(entry.sourced("method.averaging_start", "s").value or 0.0)
+    end = float(entry.sourced("method.averaging_end", "s").value or 0.0)
+    if entry.text("method.averaging_from") == "force":
+        rise = float(entry.sourced("motion.force_rise_time", "s").value or 0.0)
+        begin, end = begin + rise, end + rise
+    return begin, 0.5 * (begin + end), end
+
+
+def _window_requirement(entry: Entry, times: tuple[float, ...]) -> Requirement:
+    leaf = entry.values["method.averaging_end"]
+    window = f"{display(times[0], 's')} to {display(times[-1], 's')} after first contact"
+    return _required("averaging window", window, "mean by Simpson's rule", leaf)
+
+
+def _required(name: str, required: str, used: str, leaf: Leaf) -> Requirement:
+    if leaf.assumed:
+        return Requirement(name, required, used, Basis.ASSUMED)
+    basis = Basis.VERIFIED if leaf.verified else Basis.FROM_MEMORY
+    return Requirement(name, required, used, basis, leaf.source)
+
+
+def _condition(
+    entry: Entry, name: str, case: Case, window: tuple[Outcome, ...], effects: Sensitivity | None
+) -> Condition:
+    middle = window[len(window) // 2]
+    limit = None
+    if f"limits.{name}" in entry.values:
+        limit = entry.sourced(f"limits.{name}", "1")
+    title = name.replace("_", " ")
+    if f"conditions.{name}.title" in entry.values:
+        title = entry.text(f"conditions.{name}.title")
+    band = effects.band("cof") if effects is not None and effects.nominal.usable else None
+    failed = next((each for each in window if not each.usable), None)
+    if failed is not None:
+        cof = SourcedValue(None, "1", reason=str(failed.status))
+        low = high = probability = None
+    else:
+        values = [each.number("cof") for each in window]
+        mean = values[0] if len(values) == 1 else (values[0] + 4 * values[1] + values[2]) / 6
+        law = middle.spread("cof")
+        deviation = math.hypot(0.0 if math.isnan(law) else law, band.inputs if band else 0.0)
+        cof = SourcedValue(
+            mean,
+            "1",
+            source=middle.scalars["cof"].source,
+            uncertainty=deviation,
+            note="friction law and open inputs" if band else "friction law alone",
+        )
+        low, high = max(mean - _Z95 * deviation, 0.0), mean + _Z95 * deviation
+        probability = None
+        if limit is not None and limit.value is not None:
+            probability = probability_at_least(mean, deviation, limit.value)
+    return Condition(
+        name,
+        title,
+        case.entries.get("floor", "given in the case"),
+        case.entries.get("contaminant", "given in the case" if case.contaminant else "none: dry"),
+        cof,
+        low,
+        high,
+        limit,
+        probability,
+        band,
+        middle,
+        window,
+    )
+
+
+def probability_at_least(mean: float, deviation: float, limit: float) -> float:
+    """Return P(X >= limit) of a normal X; a step where the deviation is zero."""
+    if deviation == 0:
+        return 1.0 if mean >= limit else 0.0
+    return 0.5 * math.erfc((limit - mean) / (deviation * math.sqrt(2.0)))
+
+
+def _chance(probability: float) -> str:
+    if probability < 0.01:
+        return "below 1 %"
+    return "above 99 %" if probability > 0.99 else percent(probability)

@@ -1,0 +1,188 @@
+"""The numbers of many cases, computed side by side, each only once."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from underfoot.compute.run import run
+from underfoot.compute.summary import ranked_assumptions
+from underfoot.core import Progress, SourcedValue, Status, content_hash, silent
+from underfoot.core.cache import Cache
+from underfoot.core.pool import available_processors, in_processes
+from underfoot.core.progress import part
+
+if TYPE_CHECKING:
+    from underfoot.case import Case
+    from underfoot.compute.result import Result
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """Numbers of one computed case, without its maps; as those of ``compute.result.Result``."""
+
+    name: str
+    case_hash: str
+    scalars: dict[str, SourcedValue]
+    labels: dict[str, str]
+    status: Status
+    remedy: str
+    breaches: tuple[str, ...]
+    assumptions: tuple[str, ...]
+    seconds: float
+
+    @property
+    def usable(self) -> bool:
+        """Whether the numbers are a result."""
+        return self.status.usable
+
+    def number(self, name: str) -> float:
+        """Return a scalar in SI; nan where it was not determined."""
+        value = self.scalars[name].value
+        return float("nan") if value is None or not self.usable else value
+
+    def spread(self, name: str) -> float:
+        """Return a scalar's standard deviation; nan where it was not estimated."""
+        deviation = self.scalars[name].uncertainty
+        return float("nan") if deviation is None or not self.usable else deviation
+
+    def remarks(self) -> dict[str, Sequence[str]]:
+        """Return the assumptions, the decisive ones first, and the tested ranges left."""
+        return {
+            "Outside the tested range": self.breaches,
+            "Assumptions": ranked_assumptions(self.assumptions),
+        }
+
+    @classmethod
+    def of(cls, result: Result) -> Outcome:
+        """Return the numbers of a result."""
+        return cls(
+            result.name,
+            result.provenance.case_hash,
+            dict(result.scalars),
+            dict(result.labels),
+            result.status,
+            result.status.remedy,
+            result.breaches,
+            result.assumptions,
+            float(sum(result.provenance.timings.values())),
+        )
+
+    def as_text(self) -> str:
+        """Return the outcome as JSON."""
+        plain = {
+            "name": self.name,
+            "case_hash": self.case_hash,
+            "scalars": {name: value.as_dict() for name, value in self.scalars.items()},
+            "labels": self.labels,
+            "status": str(self.status),
+            "remedy": self.remedy,
+            "breaches": list(self.breaches),
+            "assumptions": list(self.assumptions),
+            "seconds": self.seconds,
+        }
+        return json.dumps(plain)
+
+    @classmethod
+    def from_text(cls, text: str) -> Outcome:
+        """Return the outcome written by ``as_text``."""
+        plain = json.loads(text)
+        plain["scalars"] = {name: SourcedValue(**v) for name, v in plain["scalars"].items()}
+        plain["status"] = Status(plain["status"])
+        for name in ("breaches", "assumptions"):
+            plain[name] = tuple(plain[name])
+        return cls(**plain)
+
+
+def outcomes(
+    cases: Sequence[Case],
+    *,
+    quick: bool = False,
+    processes: int | None = 1,
+    cached: bool = True,
+    progress: Progress = silent,
+    stage: str = "Computing variants",
+) -> list[Outcome]:
+    """Return the outcome of every case, in order; equal cases are computed once.
+
+    Parameters
+    ----------
+    cases
+        What to compute.
+    quick
+        Use the coarse grid of the cases.
+    processes
+        Cases computed at the same time, each on one thread; None takes the cores, at most 4.
+        With more than one, a script needs ``if __name__ == "__main__":`` around its work.
+    cached
+        Keep outcomes on disk and take them from there. An entry belongs to this code and
+        this catalogue: any change of either computes again.
+    progress
+        Receives the share of cases that are done; an exception it raises stops the work, and
+        what is done stays in the cache.
+
+    Raises
+    ------
+    UnderfootError
+        As ``compute.run`` raises it for the first case that can't be computed at all.
+    """
+    store = Cache("outcomes-1")
+    keys = [_key(case, quick) for case in cases]
+    found: dict[str, Outcome] = {}
+    waiting: dict[str, Case] = {}
+    for key, case in zip(keys, cases, strict=True):
+        stored = store.load(key) if cached and key not in found else None
+        if stored is not None:
+            found[key] = Outcome.from_text(str(stored["outcome"]))
+        elif key not in found:
+            waiting[key] = case
+    unique = len(set(keys))
+    ready = len(found)
+    progress(stage, ready / max(unique, 1))
+    items = [(case, quick) for case in waiting.values()]
+    rest = part(progress, ready / max(unique, 1), 1.0)
+    for index, outcome in in_processes(
+        _computed_alone, items, _workers(processes), progress=rest, stage=stage
+    ):
+        key = list(waiting)[index]
+        found[key] = outcome
+        if cached and outcome.usable:
+            store.store(key, {"outcome": np.array(outcome.as_text())})
+    return [found[key] for key in keys]
+
+
+def _workers(processes: int | None) -> int:
+    """Return how many cases to compute at the same time: by default the processors, at most 4."""
+    return min(available_processors(), 4) if processes is None else processes
+
+
+def _computed_alone(item: tuple[Case, bool]) -> Outcome:
+    case, quick = item
+    return Outcome.of(run(case, quick=quick))
+
+
+def _key(case: Case, quick: bool) -> str:
+    return content_hash(case.hash, quick, program_hash(), _files(case.catalogue.folders))
+
+
+@cache
+def program_hash() -> str:
+    """Return a hash of the package's own text: numbers of another code are not ours."""
+    import underfoot
+
+    return _files((str(Path(str(underfoot.__file__)).parent),))
+
+
+def _files(folders: Sequence[str]) -> str:
+    parts: list[str] = []
+    for folder in folders:
+        for path in sorted(Path(folder).rglob("*")):
+            if path.suffix in (".py", ".toml", ".csv"):
+                parts.append(path.read_text(encoding="utf-8", errors="replace"))
+    return content_hash(*parts)

@@ -1,0 +1,334 @@
+"""Slip probability of a case by every published model, and the effect of possible changes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from underfoot.compute.summary import FrictionLimit, cautions, friction_limit
+from underfoot.core import InputError, Progress, SourcedValue, UnderfootError, silent
+from underfoot.core.presentation import Presentable, Table, percent, value_text
+from underfoot.slip import RcofPopulation, ReportG6, slip_model, slip_risk
+from underfoot.slip.model import MODELS
+from underfoot.slip.risk import needed_acof
+
+from .changes import Change, possible_changes
+from .outcomes import Outcome, outcomes
+
+if TYPE_CHECKING:
+    from underfoot.case import Case
+    from underfoot.slip import SlipModel
+
+QUOTED_SLOPES = (-41.2, -45.1, -54.7)
+_QUOTED = (
+    "slope of another study as quoted in final progress report on shoe-floor friction, G.6.3; "
+    "even odds as in the report"
+)
+MOST_CHANGES = 3
+RARE = 0.2
+"""Slip probability below which people read odds ("1 in 12 steps") more easily than percent."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModelRisk:
+    """Slip probability by one published model, and the ACOF it requires for the target."""
+
+    name: str
+    source: str
+    probability: float
+    low: float | None
+    high: float | None
+    needed_acof: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class ChangeEffect:
+    """A change and the result of the changed case; ``reason`` says why there is none."""
+
+    change: Change
+    outcome: Outcome | None
+    reason: str = ""
+
+    @property
+    def computed(self) -> bool:
+        """Whether the change gave a result."""
+        return self.outcome is not None and self.outcome.usable
+
+    def number(self, name: str) -> float:
+        """Return a number of the changed case; nan where it could not be computed."""
+        return float("nan") if self.outcome is None else self.outcome.number(name)
+
+
+@dataclass(frozen=True, slots=True)
+class RiskAssessment(Presentable):
+    """Slip probability of a case, what limits its friction, and the effect of changes.
+
+    ``missing_friction`` is the COF that is missing for the ``target`` probability: 0 where the
+    friction is sufficient, None where the model of the case cannot reach the target.
+    """
+
+    kind: ClassVar[str] = "risk"
+
+    name: str
+    outcome: Outcome
+    models: tuple[ModelRisk, ...]
+    limit: FrictionLimit
+    target: float
+    missing_friction: float | None
+    changes: tuple[ChangeEffect, ...]
+
+    def __repr__(self) -> str:
+        return f"<RiskAssessment of {self.name!r}: {self.outcome.scalars['slip_probability']}>"
+
+    @property
+    def usable(self) -> bool:
+        """Whether the case itself gave a result."""
+        return self.outcome.usable
+
+    @property
+    def best(self) -> list[ChangeEffect]:
+        """Return the changes that reduce the slip probability, the most effective first."""
+        present = self.outcome.number("slip_probability")
+        useful = [
+            each
+            for each in self.changes
+            if each.computed and each.number("slip_probability") < present
+        ]
+        return sorted(
+            useful, key=lambda each: (each.number("slip_probability"), -each.number("cof"))
+        )
+
+    def headline(self) -> tuple[str, ...]:
+        """Return slip probability, what limits the friction and how much is missing."""
+        if not self.usable:
+            return (f"No result: {self.outcome.status}. {self.outcome.remedy}",)
+        scalars = self.outcome.scalars
+        slip = scalars["slip_probability"]
+        extrapolated = ", extrapolated" if slip.note else ""
+        probability = self.outcome.number("slip_probability")
+        often = f", {odds(probability)}," if probability < RARE else ""
+        sentences = [
+            f"Slip probability {value_text('slip_probability', slip)}{extrapolated}{often} at an "
+            f"available COF of {value_text('cof', scalars['cof'])}.",
+            str(self.limit),
+        ]
+        if self.missing_friction:
+            sentences.append(
+                f"A slip probability of {percent(self.target)} needs a COF higher by "
+                f"{self.missing_friction:.2f}."
+            )
+        elif self.missing_friction == 0.0:
+            sentences.append(
+                f"Friction is sufficient for a slip probability below {percent(self.target)}."
+            )
+        return tuple(sentences)
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return why the probability may not be trusted."""
+        outcome = self.outcome
+        source = outcome.scalars["slip_probability"].source
+        own = next((model.name for model in self.models if model.source == source), "")
+        return cautions(outcome.status, outcome.scalars, outcome.breaches, outcome.assumptions, own)
+
+    def change_sentences(self, most: int = MOST_CHANGES) -> list[str]:
+        """Return the most effective changes with the COF and probability they lead to."""
+        before = f"{self.outcome.number('cof'):.2f}"
+        chance = percent(self.outcome.number("slip_probability"))
+        lines = [
+            f"{each.change.action}: COF {before} to {each.number('cof'):.2f}, slip probability "
+            f"{chance} to {percent(each.number('slip_probability'))}"
+            + (" (extrapolated)" if _note(each) else "")
+            for each in self.best[:most]
+        ]
+        return lines or ["No tested change reduces the slip probability."]
+
+    def table(self) -> Table:
+        """Return every change with what it leads to, the most effective first."""
+        place = {id(each): number for number, each in enumerate(self.best, 1)}
+        rows = []
+        for each in sorted(self.changes, key=lambda one: place.get(id(one), len(self.changes) + 1)):
+            outcome, rank = each.outcome, place.get(id(each))
+            if outcome is None or not each.computed:
+                rows.append(("-", each.change.action, "", "", f"not computed: {each.reason}"))
+                continue
+            texts = [value_text(k, outcome.scalars[k]) for k in ("cof", "slip_probability")]
+            note = "extrapolated" if _note(each) else ""
+            rows.append(("-" if rank is None else f"{rank}.", each.change.action, *texts, note))
+        heads = ("", "Change", "COF", "Slip probability", "")
+        return Table("Most effective changes (each simulated)", heads, rows)
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the changes, and the probability by every model."""
+        rows = [
+            (
+                one.name,
+                percent(one.probability),
+                "not reachable" if one.needed_acof is None else f"{one.needed_acof:.3f}",
+            )
+            for one in self.models
+        ]
+        heads = ("Model", "Slip probability", f"COF needed for {percent(self.target)}")
+        models = Table("Slip probability of the same friction by every model", heads, rows)
+        return (self.table(), models) if self.usable else ()
+
+    def remarks(self) -> dict[str, Sequence[str]]:
+        """Return assumptions and ranges that were left."""
+        return self.outcome.remarks()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything in SI."""
+        film_share = self.limit.film_share
+        return {
+            "cof": self.outcome.scalars["cof"].as_dict(),
+            "slip_probability": self.outcome.scalars["slip_probability"].as_dict(),
+            "limit": {
+                "kind": self.limit.kind,
+                "film_share": None if math.isnan(film_share) else film_share,
+                "cof_without_film": self.limit.cof_without_film,
+            },
+            "target": self.target,
+            "missing_friction": self.missing_friction,
+            "models": [
+                {
+                    "name": one.name,
+                    "source": one.source,
+                    "probability": one.probability,
+                    "interval_95": [one.low, one.high],
+                    "needed_acof": one.needed_acof,
+                }
+                for one in self.models
+            ],
+            "changes": [
+                {
+                    "name": each.change.name,
+                    "action": each.change.action,
+                    "lever": each.change.lever,
+                    "values": dict(each.change.values),
+                    **{
+                        name: each.number(name) if each.computed else None
+                        for name in ("cof", "slip_probability", "fluid_load")
+                    },
+                    "reason": each.reason,
+                }
+                for each in self.changes
+            ],
+        }
+
+    def data_tables(self) -> dict[str, Table]:
+        """Return the changes for other programs."""
+        names = ("name", "lever", "action", "cof", "slip_probability", "fluid_load", "reason")
+        rows = [tuple(change[name] for name in names) for change in self.to_dict()["changes"]]
+        return {"changes": Table("", names, rows)}
+
+
+def risk_assessment(
+    case: Case,
+    *,
+    target: float = 0.05,
+    changes: Sequence[Change] | None = None,
+    quick: bool = True,
+    processes: int | None = 1,
+    progress: Progress = silent,
+) -> RiskAssessment:
+    """Return the slip probability by every model, what limits the friction, and effects of changes.
+
+    Parameters
+    ----------
+    case
+        Shoe, floor, fluid, motion and people.
+    target
+        Slip probability to aim at, for the friction that is missing.
+    changes
+        What to try; None takes ``possible_changes(case)``. Each is computed with the whole model.
+    quick
+        The coarse grid for all, so that differences are between like and like.
+
+    Raises
+    ------
+    InputError
+        ``target`` outside (0, 1); a case that can't be computed.
+    """
+    if not 0 < target < 1:
+        raise InputError(f"{target:g}", where="target", allowed="above 0 and below 1")
+    tried = list(possible_changes(case) if changes is None else changes)
+    variants: list[Case] = []
+    reasons: dict[int, str] = {}
+    for number, change in enumerate(tried):
+        try:
+            variants.append(case.replace(change.values))
+        except UnderfootError as error:
+            reasons[number] = str(error)
+    computed = outcomes(
+        [case, *variants],
+        quick=quick,
+        processes=processes,
+        progress=progress,
+        stage="Simulating changes",
+    )
+    present, rest = computed[0], iter(computed[1:])
+    effects = []
+    for number, change in enumerate(tried):
+        outcome = None if number in reasons else next(rest)
+        failed = outcome is not None and not outcome.usable
+        reason = str(outcome.status) if outcome is not None and failed else reasons.get(number, "")
+        effects.append(ChangeEffect(change, outcome, reason))
+    return RiskAssessment(
+        case.name,
+        present,
+        model_risks(case, present.scalars["cof"], target) if present.usable else (),
+        friction_limit(present.scalars) if present.usable else FrictionLimit(*[math.nan] * 3),
+        target,
+        _missing(case, present, target),
+        tuple(effects),
+    )
+
+
+def model_risks(case: Case, acof: SourcedValue, target: float) -> tuple[ModelRisk, ...]:
+    """Return the slip probability by each published model, and the ACOF for ``target``."""
+    models: list[tuple[str, str, SlipModel]] = []
+    for name in MODELS:
+        model = slip_model(name)
+        models.append((name, model.source, model))
+    for slope in QUOTED_SLOPES:
+        models.append((f"slope {slope:g}", _QUOTED, ReportG6(slope=slope)))
+    rcof = RcofPopulation(case.risk.rcof_mean, case.risk.rcof_sd)
+    risks = []
+    for name, source, model in models:
+        risk = slip_risk(acof, rcof=rcof, model=model)
+        probability = risk.probability.value or 0.0
+        needed = _needed(target, rcof, model)
+        risks.append(ModelRisk(name, source, probability, risk.low, risk.high, needed))
+    return tuple(risks)
+
+
+def odds(probability: float) -> str:
+    """Return a probability as people say it: "1 in 12 steps" below a fifth, else percent."""
+    if math.isnan(probability):
+        return "not determined"
+    if probability < 1e-3:
+        return "fewer than 1 in 1000 steps"
+    if probability < RARE:
+        return f"1 in {1 / probability:.0f} steps"
+    return f"{percent(probability)} of steps"
+
+
+def _note(effect: ChangeEffect) -> str:
+    return "" if effect.outcome is None else effect.outcome.scalars["slip_probability"].note
+
+
+def _needed(target: float, rcof: RcofPopulation, model: SlipModel) -> float | None:
+    try:
+        return needed_acof(target, rcof=rcof, model=model)
+    except InputError:
+        return None
+
+
+def _missing(case: Case, outcome: Outcome, target: float) -> float | None:
+    """Return how much more ACOF the case's own model requires for ``target``."""
+    if not outcome.usable:
+        return None
+    rcof = RcofPopulation(case.risk.rcof_mean, case.risk.rcof_sd)
+    needed = _needed(target, rcof, slip_model(case.risk.model))
+    return None if needed is None else max(needed - outcome.number("cof"), 0.0)

@@ -1,0 +1,344 @@
+"""Slips of a population of walkers on the floor of a case: who slips, how fast, how far."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from underfoot.compute.slips import slips
+from underfoot.core import InputError, Progress, SourcedValue, silent
+from underfoot.core.presentation import Presentable, Table, percent, quantity_text
+from underfoot.slip.dynamics import (
+    GaitHistory,
+    SlipMotion,
+    SlipStudy,
+    load_history,
+    recorded_histories,
+)
+from underfoot.slip.dynamics.gait import COLUMNS
+
+if TYPE_CHECKING:
+    from underfoot.case import Case
+
+MASSES = (0.06, 0.114, 0.17)
+"""Shares of the body that may move with the heel: foot and shank, the default, the whole leg."""
+NUMBERS = {
+    "peak_speed": ("Peak slipping speed", "m/s"),
+    "distance": ("Distance slipped", "m"),
+    "peak_pressure": ("Peak pressure at the sensors", "Pa"),
+    "duration": ("Duration of the pressure", "s"),
+}
+AT_SENSORS = ("peak_pressure", "duration")
+
+
+@dataclass(frozen=True, slots=True)
+class SlipPopulation(Presentable):
+    """Simulated slips of a population of walkers."""
+
+    kind: ClassVar[str] = "slip"
+
+    name: str
+    study: SlipStudy
+
+    def __repr__(self) -> str:
+        return f"<SlipPopulation on {self.name!r}: {len(self.study.subjects)} walkers>"
+
+    @property
+    def wet(self) -> bool:
+        """Whether there is a fluid on the floor."""
+        return self.study.setting.viscosity is not None
+
+    def headline(self) -> tuple[str, ...]:
+        """Return the share of walkers that slip with its interval, and their speed."""
+        study = self.study
+        count = len(study.subjects)
+        if count == 1:
+            seen = study.subjects[0].seen
+            verdict = "slips" if seen.slipped else "does not slip"
+            return (
+                f"The walker {verdict}: peak heel speed {seen.peak_speed:.2f} m/s (slip above "
+                f"0.2 m/s), distance {1e3 * seen.distance:.0f} mm ({seen.outcome}).",
+                "One walker has no spread, so no interval.",
+            )
+        share, low, high = study.slipped()
+        floor = "" if self.wet else " The floor is dry: no film."
+        return (
+            f"{round(share * count)} of {count} walkers slip (heel faster than 0.2 m/s): "
+            f"{percent(share)} (95 %: {percent(low)} to {percent(high)}).",
+            f"Peak heel speed {_value_text(study.mean('peak_speed', 'm/s'))} (mean and standard "
+            f"deviation between walkers).{floor}",
+        )
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return what keeps the numbers from being those of real people."""
+        study = self.study
+        reasons = [
+            "Load and drive are those of dry walking: walkers do not react, so speeds and "
+            "distances of long slips are upper limits."
+        ]
+        lower = sum(subject.motion.still_sliding for subject in study.subjects)
+        if lower:
+            reasons.append(f"{lower} still slide when their step ends: lower bounds.")
+        if study.fit is not None and study.fit.at_bound:
+            names = ", ".join(study.fit.at_bound)
+            reasons.append(
+                f"Constants of the reduced model not identified by these slips: {names}."
+            )
+        if study.failed:
+            reasons.append(f"{study.failed} slips could not be solved and are left out.")
+        return tuple(reasons)
+
+    def table(self) -> Table:
+        """Return outcomes, speeds, distances and pressures of the population."""
+        study = self.study
+        single = len(study.subjects) < 2
+        rows = []
+        for outcome, (share, low, high) in study.shares().items():
+            interval = "" if single else f"95 %: {percent(low)} to {percent(high)}"
+            rows.append((f"Distance slipped: {outcome}", percent(share), interval))
+        for name, (label, unit) in NUMBERS.items():
+            if self.wet or name not in AT_SENSORS:
+                value = study.mean(name, unit, crossed=name in AT_SENSORS)
+                rows.append((label, _value_text(value), self._range(name, unit) or value.reason))
+        if self.wet:
+            rows += self._sensor_rows()
+        if study.fit is not None:
+            error = study.fit.held_out
+            rows.append(
+                (
+                    "Reduced model on full runs held out",
+                    f"± {error.peak_speed:.2g} m/s",
+                    f"{error}; on fitted runs ± {study.fit.fitted.peak_speed:.2g} m/s",
+                )
+            )
+            if study.pressure_error is not None:
+                rows.append(("  peak pressure", f"± {percent(study.pressure_error)}", "relative"))
+        speeds = [study.peak_speed_at(share) for share in MASSES]
+        if None not in speeds:
+            text = " / ".join(f"{speed:.2f}" for speed in speeds if speed is not None)
+            shares = " / ".join(f"{share:g}" for share in MASSES)
+            rows.append(
+                ("Peak speed by moving mass", f"{text} m/s", f"{shares} of the body mass (assumed)")
+            )
+        return Table("Population", ("Quantity", "Value", "Remark"), rows)
+
+    def remarks(self) -> dict[str, Sequence[str]]:
+        """Return assumptions of people, model and friction, and the tested ranges left."""
+        study = self.study
+        people = study.population
+        model = "full model for every walker" if study.full else "reduced model fitted to full runs"
+        lines = [f"model: {model}"] if self.wet else []
+        lines.append(f"moving mass: {people.effective_mass:.3g} of the body mass (assumed)")
+        if any(spread.assumed for spread in (people.mass, people.rcof, people.heel_speed)):
+            lines.append(
+                f"people: RCOF {people.rcof.mean:.3g} ± {people.rcof.sd:.2g}, heel contact at "
+                f"{people.heel_speed.mean:.3g} ± {people.heel_speed.sd:.2g} m/s (assumed)"
+            )
+        return {
+            "Outside the tested range": study.breaches,
+            "Assumptions": (*lines, *study.setting.friction.assumptions),
+        }
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the answer in SI; what is missing is None."""
+        study = self.study
+
+        def finite(value: float) -> float | None:
+            return None if math.isnan(value) else float(value)
+
+        return {
+            "subjects": len(study.subjects),
+            "model": "full" if study.full else "reduced",
+            "outcomes": {str(k): [finite(x) for x in v] for k, v in study.shares().items()},
+            "numbers": study.numbers(),
+            "row_peaks_Pa": [finite(pressure) for pressure in study.rows()],
+            "peak_speed_by_effective_mass": {
+                f"{share:g}": study.peak_speed_at(share) for share in MASSES
+            },
+            "fit_error": None if study.fit is None else str(study.fit.held_out),
+            "pressure_error": study.pressure_error,
+            "failed": study.failed,
+            "remarks": {title: list(lines) for title, lines in self.remarks().items()},
+        }
+
+    def data_tables(self) -> dict[str, Table]:
+        """Return one row a walker, and the shown slip against time."""
+        heads = (
+            "subject history mass_kg rcof walking_speed_m_per_s heel_speed_m_per_s shoe_angle_deg "
+            "landing_mm lateral_mm peak_slipping_speed_m_per_s slip_start_s distance_m outcome "
+            "slipped crossed_sensors peak_pressure_Pa pressure_duration_s flags"
+        )
+        rows = []
+        for subject in self.study.subjects:
+            walker, seen = subject.walker, subject.seen
+            rows.append(
+                (
+                    walker.name,
+                    walker.history.name,
+                    f"{walker.mass:.1f}",
+                    f"{walker.rcof:.4f}",
+                    f"{walker.walking_speed or math.nan:.3f}",
+                    f"{walker.heel_speed:.3f}",
+                    f"{math.degrees(walker.shoe_angle):.2f}",
+                    f"{1e3 * walker.landing:.1f}",
+                    f"{1e3 * walker.lateral:.1f}",
+                    f"{seen.peak_speed:.4f}",
+                    seen.start,
+                    f"{seen.distance:.4f}",
+                    str(seen.outcome),
+                    seen.slipped,
+                    seen.crossed,
+                    f"{seen.peak_pressure:.0f}",
+                    seen.duration,
+                    "; ".join(map(str, seen.flags)),
+                )
+            )
+        return {
+            "subjects": Table("", tuple(heads.split()), rows),
+            "motion": motion_table(shown_motion(self.study)),
+        }
+
+    def _sensor_rows(self) -> list[tuple[str, str, str]]:
+        correlation = self.study.correlation()
+        missing = "fewer than three walkers crossed the sensors, or no scatter"
+        rows = [
+            (
+                "Correlation of peak speed and peak pressure",
+                "not estimated" if correlation is None else f"{correlation:.2f}",
+                missing if correlation is None else "Pearson",
+            )
+        ]
+        levels = self.study.rows()
+        if np.isfinite(levels).all():
+            text = " / ".join(f"{pressure / 1e3:.3g}" for pressure in levels) + " kPa"
+            remark = "mean of the walkers whose heel crossed the sensors"
+            rows.append(("Peak by row of sensors, first to last", text, remark))
+        return rows
+
+    def _range(self, name: str, unit: str) -> str:
+        values = self.study.of(name)
+        if name in AT_SENSORS:
+            values = values[np.array([subject.seen.crossed for subject in self.study.subjects])]
+        values = values[np.isfinite(values)]
+        if values.size < 5:
+            return ""
+        low, high = np.percentile(values, [5, 95])
+        return f"90 % of the walkers: {_text(low, unit)} to {_text(high, unit)}"
+
+
+def slip_population(
+    case: Case,
+    *,
+    subjects: int | None = None,
+    histories: Sequence[GaitHistory] | None = None,
+    full_model: bool = False,
+    quick: bool = True,
+    progress: Progress = silent,
+) -> SlipPopulation:
+    """Return the slips of a case's population; arguments as for ``compute.slips.slips``."""
+    study = slips(
+        case,
+        subjects=subjects,
+        histories=histories or None,
+        full=full_model,
+        fine=not quick,
+        progress=progress,
+    )
+    return SlipPopulation(case.name, study)
+
+
+def own_histories(path: Path) -> list[GaitHistory]:
+    """Return the steps of a table of load and shear, or those of a force-plate recording."""
+    if path.suffix.lower() == ".csv" and path.is_file():
+        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+        if any(line.startswith(COLUMNS[0]) for line in lines[:50]):
+            return [load_history(path)]
+    return recorded_histories(path)
+
+
+def measured_rcof(path: Path) -> tuple[float, float, str]:
+    """Return mean and standard deviation of the RCOF of persons, and whose they are in words.
+
+    Read from measurements.csv of ``underfoot trials analyse``. The steps of a person count as one
+    value, their mean; where no person is named, those of a file do.
+
+    Raises
+    ------
+    InputError
+        No such file, no RCOF in it, or one person only.
+    """
+
+    import numpy as np
+
+    from underfoot.trials.analyse.file_result import MEAN_OF_STEPS
+
+    try:
+        with path.open(encoding="utf-8", newline="") as stream:
+            rows = list(csv.DictReader(stream))
+    except FileNotFoundError:
+        raise InputError("there is no such file", where=str(path)) from None
+    steps: dict[str, list[float]] = {}
+    cautions, named = 0, False
+    for row in rows:
+        if row.get("quantity") != "rcof" or not row.get("value") or row["item"] == MEAN_OF_STEPS:
+            continue
+        named = named or bool(row.get("person"))
+        who = row.get("person") or row.get("file") or ""
+        steps.setdefault(who, []).append(float(row["value"]))
+        cautions += row.get("caution") == "yes"
+    if not steps:
+        raise InputError(
+            "holds no RCOF",
+            where=str(path),
+            allowed='rows with quantity "rcof" and a value, as in measurements.csv',
+        )
+    means = [float(np.mean(values)) for values in steps.values()]
+    kind = "persons" if named else "files (no person is named: several may be one person)"
+    if len(means) == 1:
+        raise InputError(
+            f"RCOF of one of the {kind}: there is no spread between people",
+            where=str(path),
+            remedy="Set risk.rcof_mean and risk.rcof_sd instead",
+        )
+    mean, sd = float(np.mean(means)), float(np.std(means, ddof=1))
+    count = sum(map(len, steps.values()))
+    words = f"RCOF mean {mean:.3f}, SD {sd:.3f} between {len(means)} {kind}, {count} steps" + (
+        f", {cautions} of them with a caution" if cautions else ""
+    )
+    return mean, sd, words
+
+
+def shown_motion(study: SlipStudy) -> SlipMotion:
+    """Return the motion to draw: the full run of the median walker, else the median motion."""
+    if study.representative is not None:
+        return study.representative.motion
+    speeds = study.of("peak_speed")
+    return study.subjects[int(np.argmin(np.abs(speeds - np.median(speeds))))].motion
+
+
+def motion_table(motion: SlipMotion) -> Table:
+    """Return one slip against time, in SI."""
+    names = ("time", "speed", "distance", "normal", "drive", "friction", "fluid_load")
+    units = ("s", "m_per_s", "m", "N", "N", "N", "N")
+    heads = tuple(f"{name}_{unit}" for name, unit in zip(names, units, strict=True))
+    columns = [np.round(getattr(motion, name), 6).tolist() for name in names]
+    return Table("", heads, list(zip(*columns, strict=True)))
+
+
+def _value_text(value: SourcedValue) -> str:
+    if value.value is None:
+        return f"not determined: {value.reason}"
+    if value.unit == "m/s":
+        spread = "" if value.uncertainty is None else f" ± {value.uncertainty:.2f}"
+        return f"{value.value:.2f}{spread} m/s"
+    return quantity_text(value.value, value.unit, value.uncertainty)
+
+
+def _text(value: float, unit: str) -> str:
+    return f"{value:.2f} m/s" if unit == "m/s" else quantity_text(float(value), unit)

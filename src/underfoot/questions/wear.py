@@ -1,0 +1,577 @@
+"""Friction and film of a case as its sole wears, and when the fluid load exceeds a limit."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING, Any, ClassVar, cast
+
+import numpy as np
+
+from underfoot.core import InputError, Progress, display, silent, to_si, unknown_name
+from underfoot.core.presentation import Presentable, Table, percent
+from underfoot.core.progress import part
+
+from .outcomes import outcomes
+from .sensitivity import OPEN_INPUTS, OpenInput, open_inputs, variants
+from .wear_limit import Crossing, LimitCrossing, WearPoint, limit_crossing
+
+if TYPE_CHECKING:
+    from underfoot.case import Case
+    from underfoot.shoe.shape import SoleShape
+    from underfoot.shoe.worn import WearMeasures
+
+MODES = ("archard", "plane", "patch")
+BAND_INPUTS = ("interface.roughness_beyond_cutoff", "shoe.material.shore_a")
+"""What the band of the limit is made of: the least known inputs that decide the film."""
+LARGEST_PATCH = 0.8
+"""Largest patch of a series as a share of the heel's length and width."""
+BEYOND_TREAD = 1.6
+"""Thickness lost at the end of an Archard series in depths of the tread."""
+PARTS = 6
+"""Parts of a step in which the wear is measured, to say how worn the sole is at the limit."""
+HEEL_PART = 0.25
+"""Share of a whole sole's length that is its heel."""
+LONGEST_HEEL, WIDTH_OF_HEEL = 0.12, 0.65
+"""m, and the heel's width as a share of a whole sole's (assumed: common lasts)."""
+
+
+WORN_REGION = (
+    "Beschorner et al., worn region size, 57 shoes (abstract; doi 10.5061/dryad.vmcvdncsk)"
+)
+REPORT = "final progress report on shoe-floor friction, G.4.3"
+LOADS = {"fluid_load_sensor": "as floor sensors read it", "fluid_load": "under the sole"}
+MEASURES = (
+    ("removed_depth", "m", 1e3, "Lost (mm)"),
+    ("tread_left", "m", 1e3, "Tread left, least (mm)"),
+    ("mean_tread_left", "m", 1e3, "Tread left, mean (mm)"),
+    ("worn_patch_area", "m2", 1e6, "Worn patch (mm²)"),
+    ("removed_volume", "m3", 1e9, "Volume lost (mm³)"),
+)
+"""Name, SI unit, factor and heading of each measure of wear."""
+NUMBERS = (
+    ("cof", "1", 1.0, "COF"),
+    ("fluid_load", "N", 1.0, "Fluid load (N)"),
+    ("fluid_load_sensor", "N", 1.0, "by sensor (N)"),
+    ("peak_fluid_pressure", "Pa", 1e-3, "Peak (kPa)"),
+    ("peak_fluid_pressure_sensor", "Pa", 1e-3, "by sensor (kPa)"),
+)
+SCREEN = ("removed_depth", "tread_left", "worn_patch_area")
+"""Measures in the first table; the files have all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Trend:
+    """A published direction and ours: rank correlation over the states of the series.
+
+    ``correlation`` is None where the series is too short or does not change.
+    """
+
+    finding: str
+    source: str
+    correlation: float | None
+    agrees: bool | None
+
+    def __str__(self) -> str:
+        verdict = {None: "not testable on this series", True: "agrees", False: "disagrees"}
+        rank = "" if self.correlation is None else f" (rank correlation {self.correlation:.2f})"
+        return verdict[self.agrees] + rank
+
+
+@dataclass(frozen=True, slots=True)
+class WearSeries(Presentable):
+    """A case over its wear.
+
+    ``limit`` is the fluid load (N) that counts as worn out; ``crossings`` has, for the load under
+    the sole ("fluid_load") and as the floor sensors read it ("fluid_load_sensor"), the wear at
+    which it is exceeded.
+    """
+
+    kind: ClassVar[str] = "wear"
+
+    name: str
+    mode: str
+    limit: float
+    points: tuple[WearPoint, ...]
+    crossings: dict[str, LimitCrossing]
+    assumptions: tuple[str, ...]
+    quick: bool = True
+
+    def __repr__(self) -> str:
+        return f"<WearSeries of {self.name!r}, {self.mode}: {len(self.points)} states>"
+
+    @property
+    def usable(self) -> bool:
+        """Whether any state gave a result."""
+        return any(point.outcome.usable for point in self.points)
+
+    def heading(self) -> str:
+        """Return case and kind of wear."""
+        return f"{self.name}: friction and film with wear ({self.mode})"
+
+    def headline(self) -> tuple[str, ...]:
+        """Return when the fluid load exceeds its limit and how the COF changes."""
+        cof = self.values("cof")
+        known = np.flatnonzero(np.isfinite(cof))
+        sentences = [self._crossing(name) for name in LOADS]
+        if known.size > 1:
+            first, last = cof[known[0]], cof[known[-1]]
+            sentences.append(f"COF {first:.3f} new and {last:.3f} at the last state.")
+        return tuple(sentences)
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return what limits the series."""
+        reasons = []
+        cof = self.values("cof")
+        known = cof[np.isfinite(cof)]
+        if known.size > 1 and known[-1] > 1.05 * known[0]:
+            reasons.append(
+                "The COF rises with wear, against published trends; where the lugs lie under the "
+                "heel may decide it (underfoot sensitivity)."
+            )
+        failed = [str(k) for k, p in enumerate(self.points) if not p.outcome.usable]
+        if failed:
+            reasons.append(f"No result for state {', '.join(failed)} (0 is new).")
+        if self.quick:
+            reasons.append("Coarse grid (--full for the fine one).")
+        return tuple(reasons)
+
+    def table(self) -> Table:
+        """Return one row a state with the main measures and numbers."""
+        return self._states(lambda name: name in SCREEN or name == "cof" or "fluid_load" in name)
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the states and the published trends beside those of the series."""
+        rows = [(trend.finding, str(trend), trend.source) for trend in trends(self)]
+        beside = Table("Published trends", ("Finding", "This series", "Source"), rows)
+        return self.table(), beside
+
+    def remarks(self) -> dict[str, Sequence[str]]:
+        """Return the assumptions of the series."""
+        return {"Assumptions": self.assumptions}
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return states, crossings and assumptions in SI."""
+
+        def finite(value: float) -> float | None:
+            return value if math.isfinite(value) else None
+
+        return {
+            "mode": self.mode,
+            "limit_N": self.limit,
+            "states": [
+                {
+                    **asdict(point.measures),
+                    **{name: finite(point.outcome.number(name)) for name, *_ in NUMBERS},
+                    "status": str(point.outcome.status),
+                }
+                for point in self.points
+            ],
+            "crossings": {
+                name: {
+                    "crossing": str(each.crossing),
+                    "share_of_draws": finite(each.share),
+                    **{
+                        measure: [finite(part[measure]) for part in (each.at, each.low, each.high)]
+                        for measure in each.at
+                    },
+                }
+                for name, each in self.crossings.items()
+            },
+            "trends": [asdict(trend) for trend in trends(self)],
+            "assumptions": list(self.assumptions),
+        }
+
+    def data_tables(self) -> dict[str, Table]:
+        """Return one row a state: measures, numbers and their ends over the open inputs, in SI."""
+        heads = [f"{name}_{unit}" for name, unit, *_ in MEASURES]
+        for name, unit, *_ in NUMBERS:
+            heads += [f"{name}_{unit}", f"{name}_low", f"{name}_high"]
+        ends = {name: self.ends(name) for name, *_ in NUMBERS}
+        rows = []
+        for k, point in enumerate(self.points):
+            row = [getattr(point.measures, name) for name, *_ in MEASURES]
+            for name, *_ in NUMBERS:
+                row += [point.outcome.number(name), *(float(end[k]) for end in ends[name])]
+            rows.append((*row, str(point.outcome.status)))
+        return {"wear": Table("", (*heads, "status"), rows)}
+
+    def values(self, name: str) -> np.ndarray:
+        """Return a number of all points in SI, nan where it was not determined."""
+        return np.array([point.outcome.number(name) for point in self.points])
+
+    def measured(self, name: str) -> np.ndarray:
+        """Return a measure of wear of all points in SI."""
+        return np.array([getattr(point.measures, name) for point in self.points])
+
+    def ends(self, name: str) -> tuple[np.ndarray, np.ndarray]:
+        """Return the lowest and highest value of a number over the open inputs, per point."""
+        low, high = [], []
+        for point in self.points:
+            values = [point.outcome.number(name)]
+            values += [end.number(name) for _, *pair in point.variants for end in pair]
+            known = [value for value in values if not math.isnan(value)]
+            low.append(min(known, default=math.nan))
+            high.append(max(known, default=math.nan))
+        return np.array(low), np.array(high)
+
+    def all_states(self) -> Table:
+        """Return one row a state with every measure and number."""
+        return self._states(lambda name: True)
+
+    def _states(self, chosen: Callable[[str], bool]) -> Table:
+        measures = [each for each in MEASURES if chosen(each[0])]
+        numbers = [each for each in NUMBERS if chosen(each[0])]
+        rows = []
+        for point in self.points:
+            cells = [
+                _short(getattr(point.measures, name) * scale) for name, _, scale, _ in measures
+            ]
+            values = [point.outcome.number(name) * scale for name, _, scale, _ in numbers]
+            cells += ["not determined" if math.isnan(value) else _short(value) for value in values]
+            rows.append(cells)
+        heads = tuple(label for *_, label in (*measures, *numbers))
+        return Table("States of wear, new to worn", heads, rows)
+
+    def _crossing(self, name: str) -> str:
+        crossing = self.crossings[name]
+        subject = f"The fluid load {LOADS[name]}"
+        share = ""
+        if self.points[0].variants and math.isfinite(crossing.share):
+            share = f" ({percent(crossing.share)} of the draws exceed it within the range)"
+        if crossing.crossing is Crossing.UNKNOWN:
+            return f"{subject} was not determined."
+        if crossing.crossing is Crossing.FROM_NEW:
+            return f"{subject} exceeds {self.limit:g} N already when new."
+        if crossing.crossing is Crossing.NEVER:
+            return f"{subject} stays below {self.limit:g} N within the range{share}."
+        tread, patch = (
+            [each[measure] for each in (crossing.at, crossing.low, crossing.high)]
+            for measure in ("tread_left", "worn_patch_area")
+        )
+        text = (
+            f"{subject} exceeds {self.limit:g} N with {_interval(tread, 1e3, 'mm')} of tread left"
+        )
+        worn = any(each > 0 for each in patch)
+        area = f" and a worn patch of {_interval(patch, 1e6, 'mm²')}" if worn else ""
+        return f"{text} at the most worn place{area}{share}."
+
+
+def wear_series(
+    case: Case,
+    *,
+    mode: str = "archard",
+    steps: int = 6,
+    deepest: float | None = None,
+    limit: float | None = None,
+    band: bool = True,
+    draws: int = 4000,
+    seed: int = 0,
+    quick: bool = True,
+    processes: int | None = 1,
+    progress: Progress = silent,
+) -> WearSeries:
+    """Return a case from new to worn, and the wear at which its fluid load exceeds a limit.
+
+    Parameters
+    ----------
+    case
+        A shoe with tread; its own wear is replaced.
+    mode
+        "archard": contact pressure times sliding at three angles about ``shoe.wear.angle`` (the
+        shoe angle of the case where none is given); "plane": ground at that angle; "patch": a worn
+        patch at the heel that grows, worn down to the channel floor.
+    steps
+        Number of worn states.
+    deepest
+        Thickness lost at the end, m (archard, plane); area of the patch at the end, m^2 (patch).
+        By default the depth of the tread (plane), 1.6 times that (archard: a single place is worn
+        through first), and a patch of 0.8 of the heel's length and width.
+    limit
+        Fluid load, N; by default 5 N, the report's limit of detection (G.4).
+    band
+        Vary the least known inputs at every state: four more runs a state.
+    draws, seed
+        Of the sampling of the band.
+    quick, processes, progress
+        As for ``outcomes``; every finished state is kept on disk, so that a stopped series goes on.
+
+    Raises
+    ------
+    InputError
+        A sole without tread; a patch larger than the shoe; wear deeper than the sole.
+    """
+    if mode not in MODES:
+        raise unknown_name("mode", mode, MODES, where="mode")
+    if steps < 2:
+        raise InputError(f"{steps} steps make no series", where="steps", allowed="2 or more")
+    if mode == "archard" and case.shoe.outsole is not None:
+        raise InputError(
+            "wear by pressure and sliding needs a parametric sole",
+            where="mode",
+            allowed="plane or patch with an outsole file",
+        )
+    if not _extent(case)[0] > 0:
+        raise InputError(
+            "the sole has no tread to wear",
+            where="shoe.tread.pattern",
+            remedy="Choose a case with tread; an untreaded sole counts as worn out",
+        )
+    force = case.motion.normal_force
+    limit = 5.0 if limit is None else limit
+    if not 0 < limit < force:
+        raise InputError(
+            f"a limit of {limit:g} N is not below the load",
+            where="limit",
+            allowed=f"above 0 N and below {force:g} N (motion.normal_force)",
+        )
+    cases = worn_cases(case, mode, steps, deepest)
+    inputs = band_inputs(case) if band else []
+    plan: list[Case] = []
+    for worn in cases:
+        plan.append(worn)
+        plan += [end for *_, low, high in variants(worn, inputs) for end in (low, high)]
+    shaped = 0.1 if mode == "archard" else 0.0
+    if mode == "archard":
+        _wear_down(plan, part(progress, 0.0, shaped))
+    results = outcomes(
+        plan,
+        quick=quick,
+        processes=processes,
+        progress=part(progress, shaped, 1.0),
+        stage="Simulating the worn soles",
+    )
+    per_state = 1 + 2 * len(inputs)
+    points = []
+    for number, worn in enumerate(cases):
+        own, *ends = results[number * per_state : (number + 1) * per_state]
+        pairs = zip(inputs, ends[::2], ends[1::2], strict=True)
+        varied = tuple((each.path, low, high) for each, low, high in pairs)
+        points.append(WearPoint(_measures(worn), own, varied))
+    between = measures_between(case, cases, mode, deepest)
+    return WearSeries(
+        name=case.name,
+        mode=mode,
+        limit=limit,
+        points=tuple(points),
+        crossings={
+            name: limit_crossing(points, name, limit, draws=draws, seed=seed, between=between)
+            for name in LOADS
+        },
+        assumptions=_assumptions(cases[-1], mode, inputs),
+        quick=quick,
+    )
+
+
+def wear_mode(mode: str | None, case: Case) -> str:
+    """Return the kind of wear: the given one, or the best that the sole of the case allows."""
+    if mode is None:
+        return "archard" if case.shoe.outsole is None else "plane"
+    if mode not in MODES:
+        raise unknown_name("mode", mode, MODES, where="--mode")
+    return mode
+
+
+def limit_load(text: str, normal_force: float) -> float:
+    """Return a limit in N from a force ("5 N") or a share of the normal force ("20 %")."""
+    try:
+        if text.strip().endswith("%"):
+            return float(text.strip()[:-1]) / 100 * normal_force
+        return to_si(re.sub(r"(?<=\d)(?=[A-Za-z])", " ", text.strip()), "N", where="--limit")
+    except ValueError:
+        raise InputError(
+            f'"{text}" is not a load',
+            where="--limit",
+            allowed='a force or a share, as "5 N" or "20 %"',
+        ) from None
+
+
+def deepest_wear(text: str | None, mode: str) -> float | None:
+    """Return the last state of a series from text: area of the patch (m^2) or depth (m)."""
+    if text is None:
+        return None
+    return to_si(text, "m^2" if mode == "patch" else "m", where="--to")
+
+
+def worn_cases(case: Case, mode: str, steps: int, deepest: float | None) -> list[Case]:
+    """Return the case new and worn in ``steps`` equal steps."""
+    depth, heel_length, heel_width = _extent(case)
+    angle = case.value("shoe.wear.angle")
+    if angle is None or case.origins["shoe.wear.angle"].kind == "default":
+        angle = max(case.motion.shoe_angle, 0.0)
+    new = case.replace("shoe.wear.depth", "0 mm")
+    cases = [new]
+    share = np.arange(1, steps + 1) / steps
+    if mode == "patch":
+        length, width = heel_length * LARGEST_PATCH, heel_width * LARGEST_PATCH
+        if deepest is not None:
+            grow = math.sqrt(deepest / (math.pi / 4 * length * width))
+            length, width = length * grow, width * grow
+        for part in map(float, np.sqrt(share)):
+            cases.append(
+                new.replace(
+                    {
+                        "shoe.wear.mode": "patch",
+                        "shoe.wear.depth": depth,
+                        "shoe.wear.patch_length": length * part,
+                        "shoe.wear.patch_width": width * part,
+                    }
+                )
+            )
+        return cases
+    thickness = case.shoe.sole.outsole_thickness
+    end = depth if deepest is None else deepest
+    if deepest is None and mode == "archard":
+        end = min(BEYOND_TREAD * depth, (depth + thickness) / 2)
+    if not 0 < end < thickness:
+        raise InputError(
+            f"wear of {display(end, 'm')} is deeper than the sole",
+            where="deepest",
+            allowed=f"above 0 mm and below {display(thickness, 'm')} (shoe.sole.outsole_thickness)",
+        )
+    for part in map(float, share):
+        cases.append(
+            new.replace(
+                {
+                    "shoe.wear.mode": mode,
+                    "shoe.wear.depth": end * part,
+                    "shoe.wear.angle": float(angle),
+                }
+            )
+        )
+    return cases
+
+
+def measures_between(
+    case: Case, cases: list[Case], mode: str, deepest: float | None
+) -> list[WearMeasures]:
+    """Return how worn the sole is from new to the end, in ``PARTS`` even parts of each step.
+
+    Between two states of Archard wear the removed thickness is taken as linear.
+    """
+    steps = len(cases) - 1
+    if mode != "archard":
+        return [_measures(worn) for worn in worn_cases(case, mode, steps * PARTS, deepest)]
+    from underfoot.compute.sole import archard_state, new_sole
+    from underfoot.shoe.worn import WornMap, wear_measures
+
+    new = new_sole(cases[0])
+    maps = [archard_state(worn).worn for worn in cases[1:]]
+    removed = [np.zeros_like(maps[0].removed), *(worn.removed for worn in maps)]
+    measures = []
+    for place in np.linspace(0, steps, steps * PARTS + 1):
+        before = min(int(place), steps - 1)
+        share = place - before
+        blend = (1 - share) * removed[before] + share * removed[before + 1]
+        worn = WornMap(maps[0].x, maps[0].y, blend)
+        measures.append(wear_measures(cast("SoleShape", replace(cast("Any", new), wear=worn))))
+    return measures
+
+
+def band_inputs(case: Case) -> list[OpenInput]:
+    """Return the open inputs of the case that the band of the limit is made of."""
+    return open_inputs(case, [one for one in OPEN_INPUTS if one.path in BAND_INPUTS])
+
+
+def _wear_down(cases: list[Case], progress: Progress) -> None:
+    """Compute the worn shapes one after the other, so that none is worn twice."""
+    from underfoot.compute.sole import archard_state
+
+    waiting = [worn for worn in cases if worn.shoe.wear.depth > 0]
+    waiting.sort(key=lambda worn: worn.shoe.wear.depth)
+    for number, worn in enumerate(waiting):
+        progress("Wearing the sole", number / len(waiting))
+        archard_state(worn)
+
+
+def _extent(case: Case) -> tuple[float, float, float]:
+    """Return depth of the tread, length and width of the heel, m."""
+    heel: Any = case.shoe.heel
+    if case.shoe.outsole is not None:
+        from underfoot.compute.sole import file_outsole
+
+        surface = file_outsole(case).surface
+        # longer than a heel can be: a whole sole or its rear half
+        part = HEEL_PART if surface.length > LONGEST_HEEL else 1.0
+        width = surface.width if part == 1.0 else WIDTH_OF_HEEL * surface.width
+        return float(surface.tread_depth.max()), surface.length * part, width
+    depth = case.value("shoe.tread.depth") or 0.0
+    return depth, heel.length * (HEEL_PART if heel.name == "sole" else 1.0), heel.width
+
+
+def _measures(case: Case) -> WearMeasures:
+    from underfoot.shoe.worn import surface_wear_measures, wear_measures
+
+    if case.shoe.outsole is not None:
+        from underfoot.compute.sole import file_outsole, file_surface
+
+        return surface_wear_measures(file_outsole(case).surface, file_surface(case))
+    from underfoot.compute.sole import sole_shape
+
+    return wear_measures(sole_shape(case))
+
+
+def _assumptions(case: Case, mode: str, inputs: list[OpenInput]) -> tuple[str, ...]:
+    wear: Any = case.shoe.wear  # the option that ``mode`` names
+    if mode == "archard":
+        low, high = (math.degrees(wear.angle + side * wear.angle_range / 2) for side in (-1, 1))
+        shape = (
+            f"worn dry at {low:.0f}, {math.degrees(wear.angle):.0f} and {high:.0f} deg with equal "
+            "sliding, depth proportional to pressure times sliding (Archard); the wear rate sets "
+            "the sliding distance only"
+        )
+    elif mode == "plane":
+        shape = f"ground flat at {math.degrees(wear.angle):.0f} deg"
+    else:
+        shape = (
+            f"patch worn to the channel floor, wear tapering off at "
+            f"{math.degrees(wear.patch_taper):.0f} deg around it"
+        )
+    return (
+        shape,
+        "the worn surface is as rough as the new one",
+        *(f"interval: {each.path}, {each.reason}" for each in inputs),
+    )
+
+
+def trends(series: WearSeries) -> list[Trend]:
+    """Return published trends with worn shoes beside those of the series."""
+    patch = series.measured("worn_patch_area")
+    peak = series.values("peak_fluid_pressure_sensor")
+    friction = series.values("cof")
+    new, worn = series.values("fluid_load_sensor")[[0, -1]]
+    half = series.values("fluid_load_sensor")[: max(2, (len(series.points) + 1) // 2)]
+    rows = [
+        _rank("a larger worn region goes with a higher peak fluid pressure", patch, peak, 1),
+        _rank("a higher peak fluid pressure goes with less available friction", peak, friction, -1),
+    ]
+    late = None
+    if np.isfinite([new, worn]).all() and worn > new:
+        # the rise over the first half of the wear against that over all of it
+        late = bool(np.nanmax(half) - new < 0.5 * (worn - new))
+    finding = "little changes until a threshold of wear, then fluid pressure rises steeply"
+    rows.append(Trend(finding, REPORT, None, late))
+    return rows
+
+
+def _rank(finding: str, x: np.ndarray, y: np.ndarray, sign: int) -> Trend:
+    from scipy.stats import spearmanr
+
+    known = np.isfinite(x) & np.isfinite(y)
+    if known.sum() < 3 or np.ptp(x[known]) == 0 or np.ptp(y[known]) == 0:
+        return Trend(finding, WORN_REGION, None, None)
+    value = float(np.asarray(spearmanr(x[known], y[known]))[0])
+    return Trend(finding, WORN_REGION, value, value * sign > 0)
+
+
+def _short(value: float) -> str:
+    """Return a number with three figures, without decimals where it is large."""
+    return f"{value:.0f}" if abs(value) >= 100 else f"{value:.3g}"
+
+
+def _interval(values: Sequence[float], scale: float, unit: str) -> str:
+    value, *ends = values
+    low, high = ("beyond the range" if math.isinf(e) else _short(e * scale) for e in ends)
+    return f"{_short(value * scale)} {unit} (90 %: {low} to {high})"

@@ -1,0 +1,161 @@
+"""What an object can be drawn as and written to: generic functions that each type registers for.
+
+A module of this room registers its types when it is imported; ``_HOMES`` names the module for the
+types of a room of the package, so that nothing is imported before it is needed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import singledispatch
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from underfoot.core import InputError
+from underfoot.core.presentation import Presentable
+
+from .html import embedded, png
+from .page import Picture, Section, page, remark_sections, table_sections
+from .writing import Writer, Written, data_writers, write_bytes, write_folder, write_text
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FigureMakers = dict[str, "Callable[[], Figure]"]
+_HOMES = {
+    "compute": ("results",),
+    "case": ("results",),
+    "questions": ("results", "question_figures", "slips", "contact"),
+    "film": ("regime_figure",),
+    "report": ("outsole",),
+    **dict.fromkeys(("friction", "rough_contact", "slip", "material"), ("laws",)),
+}
+"""Modules of this room that register the types of a room of the package."""
+
+
+def _registered(generic: Any, shown: object) -> Any:
+    """Return the function registered for the type of ``shown`` after its module is imported."""
+    parts = type(shown).__module__.split(".")
+    room = parts[1] if parts[0] == "underfoot" and len(parts) > 1 else ""
+    for name in _HOMES.get(room, ()):
+        import_module(f".{name}", __package__)
+    chosen = generic.dispatch(type(shown))
+    return None if chosen is generic.dispatch(object) else chosen
+
+
+@singledispatch
+def figures(shown: object) -> FigureMakers:
+    """Return the functions that draw an object, by name; the first is the one of ``plot``."""
+    chosen = _registered(figures, shown)
+    return {} if chosen is None else chosen(shown)
+
+
+@singledispatch
+def plot(shown: object, *args: Any, **options: Any) -> Figure:
+    """Return a figure of an object.
+
+    Parameters
+    ----------
+    shown
+        A result (name of a field on the sole, or nothing for all of them), a comparison (name of
+        a field), a sensitivity, a wear series, slips, a case, a contact table, a trial ...
+    *args, **options
+        What to draw of it; by default the first of its ``figures``.
+
+    Raises
+    ------
+    InputError
+        A type without a figure, or a name that the object has no figure of.
+    """
+    chosen = _registered(plot, shown)
+    if chosen is not None:
+        return chosen(shown, *args, **options)
+    return named_figure(figures(shown), type(shown).__name__, *args)
+
+
+def named_figure(makers: FigureMakers, kind: str, name: str | None = None) -> Figure:
+    """Return the figure of a name among several, the first without a name."""
+    from underfoot.core import unknown_name
+
+    if not makers:
+        raise InputError(f"nothing of a {kind} can be drawn", where="plot")
+    if name is not None and name not in makers:
+        raise unknown_name("figure", name, makers, where="plot")
+    return makers[name or next(iter(makers))]()
+
+
+@singledispatch
+def files(shown: Any) -> dict[str, Writer]:
+    """Return the data files of an object: the function that writes each of them, by name."""
+    chosen = _registered(files, shown)
+    if chosen is not None:
+        return chosen(shown)
+    return data_writers(shown)
+
+
+@singledispatch
+def sections(shown: Any, pictures: dict[str, bytes]) -> tuple[Sequence[Section], str]:
+    """Return the sections of an object's page and its script; ``pictures`` are those drawn."""
+    chosen = _registered(sections, shown)
+    if chosen is not None:
+        return chosen(shown, pictures)
+    drawn = [
+        Picture(name.replace("_", " "), embedded(data), True) for name, data in pictures.items()
+    ]
+    figure = [Section("Figure", pictures=drawn)] if drawn else []
+    return [*figure, *table_sections(shown), *remark_sections(shown)], ""
+
+
+@singledispatch
+def write_report(
+    shown: Any,
+    folder: Path | str,
+    *,
+    overwrite: bool = False,
+    further: dict[str, Writer] | None = None,
+    **options: Any,
+) -> Written:
+    """Write an object's data, figures and page (report.html) into a new folder.
+
+    ``further`` are more data files by name, each with the function that writes it.
+
+    Returns
+    -------
+    Written
+        The folder, the page and one line for each file that could not be written.
+
+    Raises
+    ------
+    InputError
+        A type without a page; a folder that holds something else.
+    """
+    chosen = _registered(write_report, shown)
+    if chosen is not None:
+        return chosen(shown, folder, overwrite=overwrite, **options)
+    if not isinstance(shown, Presentable):
+        raise InputError(f"a {type(shown).__name__} has no report", where="write_report")
+    drawn: dict[str, bytes] = {}
+
+    def draw(name: str, make: Callable[[], Figure]) -> Writer:
+        def made() -> bytes:
+            drawn[name] = png(make())
+            return drawn[name]
+
+        return write_bytes(made)
+
+    pictures = {f"{name}.png": draw(name, make) for name, make in figures(shown).items()}
+
+    return write_folder(
+        folder,
+        files(shown) | (further or {}),
+        pictures,
+        lambda path: write_text(page_text(shown, drawn))(path),
+        overwrite=overwrite,
+    )
+
+
+def page_text(shown: Presentable, pictures: dict[str, bytes]) -> str:
+    """Return an object's page as HTML text; ``pictures`` are its figures as PNG, by name."""
+    parts, script = sections(shown, pictures)
+    return page(shown, parts, script=script)

@@ -1,0 +1,36 @@
+"""Pictures and templates of a self-contained page."""
+
+from __future__ import annotations
+
+import base64
+import io
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+    from matplotlib.figure import Figure
+
+
+def png(figure: Figure, dpi: int = 130) -> bytes:
+    """Return a figure as a PNG file."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, dpi=dpi, format="png")
+    return buffer.getvalue()
+
+
+def embedded(picture: bytes) -> str:
+    """Return a PNG file as a data address for an ``img`` element."""
+    return "data:image/png;base64," + base64.b64encode(picture).decode("ascii")
+
+
+def environment() -> Environment:
+    """Return the template environment of this room, escaping everything by default."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    settings: dict[str, Any] = {"trim_blocks": True, "lstrip_blocks": True}
+    return Environment(
+        loader=PackageLoader("underfoot.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        **settings,
+    )

@@ -1,0 +1,290 @@
+"""An outsole from a file: its measures, what was read and repaired, and its picture."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from underfoot.core.files import checksum
+from underfoot.core.presentation import Presentable, Table
+from underfoot.shoe import SoleSurface
+from underfoot.shoe.files import FileOutsole, FileSettings
+from underfoot.shoe.tread_measures import (
+    SHARES,
+    TreadMeasures,
+    channel_depth,
+    draining,
+    largest_patch,
+    tread_measures,
+)
+
+from .dispatch import FigureMakers, figures, files
+from .maps import frame_sole
+from .writing import Writer, data_writers
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_HIGHEST = 98.0  # percentile of the heights at which colours end: walls and welts go beyond
+_PATCH, _CLOSED = "#e3c16f", "#c8553d"
+_UNITS = {"area": "_m2", "length": "_m", "width": "_m", "depth": "_m", "circle": "_m"}
+
+
+@dataclass(frozen=True, slots=True)
+class OutsoleInspection(Presentable):
+    """An outsole file as it was read, with the measures of its tread."""
+
+    kind: ClassVar[str] = "outsole"
+
+    file: Path
+    settings: FileSettings
+    outsole: FileOutsole
+    measures: TreadMeasures
+
+    def __repr__(self) -> str:
+        return f"<OutsoleInspection of {self.file.name!r:.100}: {self.outsole.faces} faces>"
+
+    def heading(self) -> str:
+        """Return file, format and number of faces."""
+        return f"{self.file.name}: {self.outsole.format}, {self.outsole.faces} faces"
+
+    def headline(self) -> tuple[str, ...]:
+        """Return size and land."""
+        m = self.measures
+        return (
+            f"{m.length * 1e3:.4g} x {m.width * 1e3:.4g} mm, land {m.land_ratio:.0%} of "
+            f"{m.plan_area * 1e4:.4g} cm², {m.lug_count} lugs.",
+        )
+
+    def table(self) -> Table:
+        """Return every measure of the tread."""
+
+        def spread(values: tuple[float, float, float] | None, factor: float, unit: str) -> str:
+            if values is None:
+                return "none"
+            low, middle, high = (value * factor for value in values)
+            return f"{middle:.3g} {unit}  (10 to 90 %: {low:.3g} to {high:.3g})"
+
+        m = self.measures
+        drained = m.drained_share
+        patch = f"{m.patch_length * 1e3:.3g} x {m.patch_width * 1e3:.3g} mm"
+        rows = [
+            ("Length x width", f"{m.length * 1e3:.4g} x {m.width * 1e3:.4g} mm"),
+            ("Plan area", f"{m.plan_area * 1e4:.4g} cm²"),
+            ("Land", f"{m.land_ratio:.0%} of the plan area"),
+            ("Channel depth, median", spread(m.channel_depth, 1e3, "mm")),
+            ("Channel width, median", spread(m.channel_width, 1e3, "mm")),
+            ("Channels open to the rim", "none" if drained is None else f"{drained:.0%} of area"),
+            ("Lugs", f"{m.lug_count}"),
+            ("Lug area, median", spread(m.lug_area, 1e6, "mm²")),
+            ("Largest untreaded patch", f"{m.patch_area * 1e6:.4g} mm²"),
+            ("  length x width", patch),
+            ("  largest circle in it", f"{m.patch_circle * 1e3:.3g} mm"),
+            ("Largest circle without channel", f"{m.free_circle * 1e3:.3g} mm"),
+        ]
+        if self.outsole.thickness is not None:
+            rows.append(
+                ("Thickness over the land, median", f"{self.outsole.thickness * 1e3:.3g} mm")
+            )
+        return Table("Tread", ("Measure", "Value"), rows)
+
+    def remarks(self) -> dict[str, Sequence[str]]:
+        """Return what was determined, assumed and repaired."""
+        return {"Determined, assumed and repaired": self.outsole.surface.remarks}
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything in SI; what there is none of is None."""
+        outsole = self.outsole
+        return {
+            "file": str(self.file),
+            "file_format": outsole.format,
+            "faces": outsole.faces,
+            "unit_m": outsole.unit,
+            "down": outsole.down,
+            "forward": outsole.forward,
+            "foot": outsole.foot or None,
+            "whole_length": outsole.whole_length,
+            "thickness": outsole.thickness,
+            "mesh": asdict(outsole.soundness),
+            "measures": asdict(self.measures),
+            "remarks": list(outsole.surface.remarks),
+        }
+
+    def data_tables(self) -> dict[str, Table]:
+        """Return one row a measure, in SI, with its unit in the name."""
+        rows: list[tuple[str, Any]] = []
+        for name, value in asdict(self.measures).items():
+            unit = next((_UNITS[end] for end in _UNITS if name.endswith(end)), "")
+            if isinstance(value, tuple):
+                shares = zip(SHARES, value, strict=True)
+                rows += [(f"{name}_{share}pct{unit}", each) for share, each in shares]
+            else:
+                rows.append((f"{name}{unit}", value))
+        return {"measures": Table("", ("measure", "value"), rows)}
+
+    def write_heights(self, path: Path) -> None:
+        """Write the height map as compressed CSV, rows from the heel to the toe, in mm."""
+        surface = self.outsole.surface
+        header = (
+            "height above the sole plane (mm), nan outside; rows: x from the heel, columns: y from "
+            f"right to left seen from above, spacing {surface.spacing * 1e3:g} mm; first row x = "
+            f"{surface.x[0] * 1e3:g} mm, first column y = {surface.y[0] * 1e3:g} mm"
+        )
+        # np.savetxt compresses by the ending
+        np.savetxt(path, surface.height * 1e3, fmt="%.4f", delimiter=",", header=header)
+
+
+def inspected(file: Path, settings: FileSettings) -> OutsoleInspection:
+    """Return an outsole file as it is read with ``settings``, with the measures of its tread."""
+    from underfoot.shoe.files import outsole_from_file
+
+    outsole = outsole_from_file(file, settings)
+    return OutsoleInspection(file, settings, outsole, tread_measures(outsole.surface))
+
+
+@figures.register(OutsoleInspection)
+def _figures(inspection: OutsoleInspection) -> FigureMakers:
+    return {"outsole": partial(outsole_figure, inspection.outsole.surface, inspection.measures)}
+
+
+@files.register(OutsoleInspection)
+def _files(inspection: OutsoleInspection) -> dict[str, Writer]:
+    return data_writers(inspection) | {"heights.csv.gz": inspection.write_heights}
+
+
+def outsole_figure(surface: SoleSurface, measures: TreadMeasures) -> Figure:
+    """Return height, channel depth and parts of the tread beside each other, as seen from below.
+
+    The heel is at the bottom and the toe at the top, like all maps of results.
+    """
+    from matplotlib.figure import Figure
+
+    tall = float(np.clip(4.0 * surface.length / max(surface.width, 1e-6), 4.5, 10.0))
+    figure = Figure(figsize=(12.5, tall), layout="constrained")
+    heights, depths, parts = figure.subplots(1, 3)
+    millimetres = surface.height * 1e3
+    shown = millimetres[surface.inside]
+    high = max(float(np.percentile(shown, _HIGHEST)), float(shown.min()) + 0.1)
+    _field(heights, surface, millimetres, "viridis", (float(shown.min()), high), "mm")
+    heights.set_title("Height above the sole plane")
+    depth = channel_depth(surface) * 1e3
+    deepest = max(float(np.nanmax(depth)), 0.1)
+    depth = np.where(surface.land | ~surface.inside, np.nan, depth)
+    _field(depths, surface, depth, "Blues", (0.0, deepest), "mm")
+    depths.set_title("Depth of the channels")
+    _parts(parts, surface, measures)
+    for axes in (heights, depths, parts):
+        rim = surface.outline * 1e3
+        axes.plot(rim[:, 1], rim[:, 0], color="0.25", linewidth=1.0)
+        frame_sole(axes, surface.x * 1e3, surface.y * 1e3, surface.inside)
+        axes.set_xticks([])
+        axes.set_yticks([])
+    figure.suptitle(f"{surface.name}, seen from below", fontsize="large")
+    return figure
+
+
+def _field(
+    axes: Axes,
+    surface: SoleSurface,
+    values: np.ndarray,
+    colours: str,
+    limits: tuple[float, float],
+    unit: str,
+) -> None:
+    image = axes.pcolormesh(
+        surface.y * 1e3, surface.x * 1e3, np.ma.masked_invalid(values), cmap=colours,
+        vmin=limits[0], vmax=limits[1], shading="nearest", rasterized=True,
+    )  # fmt: skip
+    bar = axes.figure.colorbar(image, ax=axes, fraction=0.05, pad=0.03)
+    bar.ax.set_title(unit, fontsize="small")
+
+
+def _parts(axes: Axes, surface: SoleSurface, measures: TreadMeasures) -> None:
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Patch
+
+    channel = surface.inside & ~surface.land
+    closed = channel & ~draining(surface)
+    parts = np.full(surface.height.shape, np.nan)
+    parts[surface.land] = 0
+    parts[channel] = 1
+    parts[closed] = 2
+    parts[largest_patch(surface)] = 3
+    colours = ["0.72", "#dfeaf3", _CLOSED, _PATCH]
+    axes.pcolormesh(
+        surface.y * 1e3, surface.x * 1e3, np.ma.masked_invalid(parts),
+        cmap=ListedColormap(colours), vmin=-0.5, vmax=3.5, shading="nearest", rasterized=True,
+    )  # fmt: skip
+    names = ["land", "channels open to the rim", "closed channels"]
+    names.append(f"largest untreaded patch, {measures.patch_area * 1e6:.3g} mm²")
+    present = [(parts == number).any() for number in range(4)]
+    handles = [
+        Patch(facecolor=colour, edgecolor="0.5", linewidth=0.5, label=name)
+        for colour, name, there in zip(colours, names, present, strict=True)
+        if there
+    ]
+    axes.legend(
+        handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), frameon=False, fontsize=8
+    )
+    axes.set_title(f"Land {measures.land_ratio:.0%} of the plan form")
+
+
+def case_text(inspection: OutsoleInspection, out: Path) -> str:
+    """Return a case file for the folder ``out`` that uses the outsole with the same settings."""
+    file, settings = inspection.file, inspection.settings
+    plain = FileSettings()
+    path = Path(os.path.relpath(file.resolve(), out.resolve())).as_posix()
+    lines = [
+        f"name = {_quoted(file.stem)}",
+        "",
+        "[shoe]",
+        'from = "work_shoe_half_tread"  # compound and roughness; set your own',
+        "# material.shore_a = 60",
+        "",
+        "[shoe.outsole]",
+        f"file = {_quoted(path)}",
+        f'sha256 = "{checksum(file)}"',
+    ]
+    for name in ("unit", "down", "forward", "foot", "region"):
+        value = getattr(settings, name)
+        mark = "" if value != getattr(plain, name) else "# "
+        lines.append(f'{mark}{name} = "{value}"')
+    if settings.mirror:
+        lines.append("mirror = true")
+    if settings.region_length is not None:
+        lines.append(f'region_length = "{settings.region_length * 1e3:g} mm"')
+    if settings.spacing != plain.spacing:
+        lines.append(f'map_spacing = "{settings.spacing * 1e3:g} mm"')
+    lines += ["", "[shoe.sole]"]
+    if inspection.outsole.thickness is None:
+        lines.append('outsole_thickness = "15 mm"  # not in the file: set your own')
+    else:
+        lines.append(
+            f'outsole_thickness = "{inspection.outsole.thickness * 1e3:.3g} mm"  # as in the file'
+        )
+    lines += [
+        '# midsole_modulus = "2 MPa"',
+        '# midsole_thickness = "15 mm"',
+        "",
+        "[floor]",
+        'from = "vinyl_g4"',
+        "",
+        "[contaminant]",
+        'from = "glycerol_90pct"',
+        "",
+        "[motion]",
+        'from = "slip_tester_g4"',
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _quoted(text: str) -> str:
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'

@@ -1,0 +1,155 @@
+"""Figures of sensitivity and wear, and their pages."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core import display
+from underfoot.core.presentation import quantity_text
+from underfoot.questions.sensitivity import QUANTITIES, Sensitivity
+from underfoot.questions.wear import WearSeries
+
+from .dispatch import figures
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Quantities = Mapping[str, str] | Iterable[tuple[str, str]]
+MOST = 6
+LOW, HIGH = "#4477aa", "#ee7733"
+FILM, SENSOR, FRICTION = "#1f5c7a", "#ee7733", "#333333"
+SCALES = {"Pa": (1e-3, "kPa")}
+
+
+@figures.register(Sensitivity)
+def _sensitivity(shown: Sensitivity) -> dict[str, Callable[[], Figure]]:
+    return {"sensitivity": lambda: sensitivity_figure(shown)} if shown.usable else {}
+
+
+@figures.register(WearSeries)
+def _wear(shown: WearSeries) -> dict[str, Callable[[], Figure]]:
+    return {"wear": lambda: wear_figure(shown)} if shown.usable else {}
+
+
+def sensitivity_figure(shown: Sensitivity, quantities: Quantities = QUANTITIES) -> Figure:
+    """Return one panel a quantity: bars from the nominal value to that at either end."""
+    from matplotlib.figure import Figure
+
+    panels = dict(quantities)
+    rows = math.ceil(len(panels) / 2)
+    figure = Figure(figsize=(11.5, 0.6 + 2.9 * rows), layout="constrained")
+    figure.suptitle(
+        f"{shown.nominal.name}\nblue: at the low value, orange: at the high one", fontsize=10
+    )
+    for number, (name, label) in enumerate(panels.items()):
+        axes = figure.add_subplot(rows, 2, number + 1)
+        _panel(axes, shown, name, label)
+    return figure
+
+
+def _panel(axes: Axes, shown: Sensitivity, name: str, label: str) -> None:
+    unit = shown.nominal.scalars[name].unit
+    scale, label_unit = SCALES.get(unit, (1.0, "" if unit == "1" else unit))
+    centre = shown.nominal.number(name) * scale
+    effects = shown.ranked(name)[:MOST][::-1]
+    for row, effect in enumerate(effects):
+        for end, colour in ((effect.low, LOW), (effect.high, HIGH)):
+            value = end.number(name) * scale
+            if not math.isnan(value):
+                axes.barh(row, value - centre, left=centre, height=0.62, color=colour, alpha=0.85)
+    names = [effect.path.rpartition(".")[2].replace("_", " ") for effect in effects]
+    ends = [
+        f"{name}\n{display(effect.low_value, effect.unit, 3)} | "
+        f"{display(effect.high_value, effect.unit, 3)}"
+        for name, effect in zip(names, effects, strict=True)
+    ]
+    axes.set_yticks(range(len(effects)), ends, fontsize=7.5)
+    axes.axvline(centre, color="0.25", linewidth=0.9)
+    band = shown.band(name)
+    axes.set_title(
+        f"{label}: {quantity_text(band.value, unit, band.deviation)}",
+        fontsize=9.5,
+        loc="left",
+    )
+    axes.set_xlabel(label_unit)
+    axes.margins(y=0.03)
+    axes.spines[["top", "right", "left"]].set_visible(False)
+    axes.tick_params(axis="y", length=0)
+
+
+def wear_figure(series: WearSeries) -> Figure:
+    """Return three panels over wear: fluid load with its limit, peak pressure and COF."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(12.0, 4.6), layout="constrained")
+    load, peak, friction = figure.subplots(1, 3)
+    place, label = _axis(series)
+    worn = zip(series.measured("tread_left"), series.measured("worn_patch_area"), strict=True)
+    labels = [f"{left * 1e3:.2g} mm\n{patch * 1e6:.0f} mm²" for left, patch in worn]
+    top = load.secondary_xaxis("top")
+    top.set_xticks(place, labels, fontsize=7)
+    top.set_xlabel("tread left where it is least, worn patch", fontsize=8)
+    for axes in (load, peak, friction):
+        axes.set_xlabel(label)
+        axes.spines["right"].set_visible(False)
+        axes.spines["top"].set_visible(axes is load)
+    _curve(load, series, place, "fluid_load", "under the sole", FILM, 1.0)
+    _curve(load, series, place, "fluid_load_sensor", "as floor sensors read it", SENSOR, 1.0)
+    load.axhline(series.limit, color="0.4", linestyle="--", linewidth=1)
+    load.annotate(
+        f"limit {series.limit:g} N",
+        (0.02, series.limit),
+        xycoords=("axes fraction", "data"),
+        va="bottom",
+        fontsize=8,
+        color="0.3",
+    )
+    load.set_ylabel("load carried by the fluid (N)")
+    load.set_ylim(bottom=0)
+    load.legend(frameon=False, fontsize=8)
+    _curve(peak, series, place, "peak_fluid_pressure", "under the sole", FILM, 1e-3)
+    _curve(
+        peak,
+        series,
+        place,
+        "peak_fluid_pressure_sensor",
+        "as a floor sensor reads it",
+        SENSOR,
+        1e-3,
+    )
+    peak.set_ylabel("peak fluid pressure (kPa)")
+    peak.set_ylim(bottom=0)
+    peak.legend(frameon=False, fontsize=8)
+    _curve(friction, series, place, "cof", "", FRICTION, 1.0)
+    friction.set_ylabel("coefficient of friction")
+    friction.set_ylim(bottom=0)
+    return figure
+
+
+def _axis(series: WearSeries) -> tuple[NDArray[np.float64], str]:
+    """Return where the states lie on the axis of wear, and its label."""
+    if series.mode == "patch":
+        return series.measured("worn_patch_area") * 1e6, "worn patch (mm²)"
+    return series.measured("removed_depth") * 1e3, "thickness lost at the most worn place (mm)"
+
+
+def _curve(
+    axes: Axes,
+    series: WearSeries,
+    place: NDArray[np.float64],
+    name: str,
+    label: str,
+    colour: str,
+    scale: float,
+) -> None:
+    low, high = series.ends(name)
+    axes.fill_between(place, low * scale, high * scale, color=colour, alpha=0.18, linewidth=0)
+    axes.plot(
+        place, series.values(name) * scale, color=colour, marker="o", markersize=4, label=label
+    )

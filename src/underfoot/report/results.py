@@ -1,0 +1,216 @@
+"""Figures and pages of results, comparisons and cases."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from underfoot.case import Case
+from underfoot.compute.result import Result
+from underfoot.compute.sole import sole_map
+from underfoot.core import silent
+from underfoot.core.presentation import Table
+from underfoot.questions.comparison import Comparison
+from underfoot.questions.risk import RiskAssessment
+
+from .dispatch import FigureMakers, figures, files, named_figure, plot, sections, write_report
+from .html import embedded, png
+from .maps import comparison_figure, draw_map, grid_note, map_figure, overview_figure
+from .page import Picture, Section, page, remark_sections, table_sections
+from .quantities import quantities
+from .viewer import viewer_script, viewer_section
+from .writing import Writer, Written, data_writers, write_bytes, write_folder, write_text
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SEEN = "Seen through the floor: the heel's back edge is at the bottom, walking direction up."
+
+
+@figures.register(Result)
+def _result_figures(result: Result) -> FigureMakers:
+    """Return the overview, a map for each quantity on the sole, and the history of the load."""
+    makers: FigureMakers = {"maps": partial(overview_figure, result.fields)}
+    for quantity in quantities([result.fields]):
+        makers[quantity.name] = partial(map_figure, result.fields, quantity)
+    if "time" in result.fields.dims:
+        makers["history"] = partial(history_figure, result)
+    return makers
+
+
+@files.register(Result)
+def _result_files(result: Result) -> dict[str, Writer]:
+    return dict(result.writers())
+
+
+@sections.register(Result)
+def _result_sections(
+    result: Result, pictures: dict[str, bytes], advice: RiskAssessment | None = None
+) -> tuple[Sequence[Section], str]:
+    warning = "" if result.usable else "The computation did not converge: for diagnosis only."
+    parts = [
+        Section("Under the sole", warning, html=viewer_section([result])),
+        *table_sections(result),
+    ]
+    if advice is not None:
+        parts.append(Section(advice.table().title, "Coarse grid.", table=advice.table()))
+    titles = {quantity.name: quantity.title for quantity in quantities([result.fields])}
+    maps = [
+        Picture(f"Map of {titles[name].lower()} on the sole", embedded(data))
+        for name, data in pictures.items()
+        if name in titles
+    ]
+    if maps:
+        parts.append(Section("Maps", SEEN, pictures=maps))
+    if "history" in pictures:
+        history = Picture(
+            "Applied load and load carried by the fluid over time",
+            embedded(pictures["history"]),
+            True,
+        )
+        parts.append(Section("Load over time", pictures=[history]))
+    provenance = result.provenance
+    models = Table("", ("", ""), list(provenance.closures.items()))
+    versions = ", ".join(f"{name} {version}" for name, version in provenance.versions.items())
+    made = f"Case {provenance.case_hash[:16]}, computed {provenance.created} with {versions}."
+    parts += [
+        *remark_sections(result),
+        Section("Models", made, table=models),
+        Section("Sources", items=provenance.citations, folded=True),
+        Section("Corrections to printed values", items=provenance.errata, folded=True),
+        Section("Complete case (TOML)", text=result.case_text, folded=True),
+    ]
+    return [part for part in parts if _filled(part)], viewer_script()
+
+
+@write_report.register(Result)
+def _write_result(
+    result: Result,
+    folder: Path | str,
+    *,
+    overwrite: bool = False,
+    advice: RiskAssessment | None = None,
+) -> Written:
+    """Write case.toml, result.json, summary.csv, result.nc, the maps and report.html.
+
+    ``advice`` adds risk.json, changes.csv and the most effective changes to the page.
+    """
+    drawn: dict[str, bytes] = {}
+
+    def draw(name: str, make: Callable[[], Figure]) -> Writer:
+        def made() -> bytes:
+            drawn[name] = png(make())
+            return drawn[name]
+
+        return write_bytes(made)
+
+    def write_page(path: Path) -> None:
+        parts, script = _result_sections(result, drawn, advice)
+        write_text(page(result, parts, script=script))(path)
+
+    data = files(result) | ({} if advice is None else data_writers(advice))
+    pictures = {f"{name}.png": draw(name, make) for name, make in figures(result).items()}
+    return write_folder(folder, data, pictures, write_page, overwrite=overwrite)
+
+
+@figures.register(Comparison)
+def _comparison_figures(comparison: Comparison) -> FigureMakers:
+    if not comparison.usable:
+        return {}
+    datasets = [result.fields for result in comparison.results]
+    return {
+        quantity.name: partial(comparison_figure, datasets, quantity)
+        for quantity in quantities(datasets)
+    }
+
+
+@sections.register(Comparison)
+def _comparison_sections(
+    comparison: Comparison, pictures: dict[str, bytes]
+) -> tuple[Sequence[Section], str]:
+    results = comparison.results
+    ranking = table_sections(comparison)
+    parts = []
+    if comparison.usable:
+        note = grid_note([result.fields for result in results])
+        titles = {q.name: q.title for q in quantities([result.fields for result in results])}
+        scale = f"One colour scale for all; red is more than A, blue less. {note} {SEEN}"
+        parts = [
+            ranking[0],
+            Section("Under the soles", html=viewer_section(results)),
+            *ranking[1:],
+            Section("Maps and differences", scale),
+            *(
+                Section(titles[name], pictures=[Picture(titles[name], embedded(data), True)])
+                for name, data in pictures.items()
+            ),
+        ]
+    sources = [
+        f"{letter}: {result.name}, case {result.provenance.case_hash[:16]}, computed "
+        f"{result.provenance.created}"
+        for letter, result in zip(comparison.letters, results, strict=True)
+    ]
+    parts.append(Section("Results compared", items=sources))
+    return parts, viewer_script() if comparison.usable else ""
+
+
+@plot.register(Case)
+def _plot_case(case: Case) -> Figure:
+    """Return the height of a case's sole above the floor, on the coarse grid."""
+    import xarray
+    from matplotlib.figure import Figure
+
+    sole = sole_map(case, case.numerics.quick_grid_spacing, silent)
+    labels = {"units": "m", "long_name": "height of the undeformed sole"}
+    fields = xarray.Dataset(
+        {
+            "clearance": (("x", "y"), sole.clearance, labels),
+            "inside": (("x", "y"), sole.inside),
+            "land": (("x", "y"), sole.land),
+            "outline_x": ("outline", sole.outline[:, 0]),
+            "outline_y": ("outline", sole.outline[:, 1]),
+        },
+        coords={"x": sole.x, "y": sole.y},
+    )
+    figure = Figure(figsize=(9.0, 6.0), layout="constrained")
+    left, right = figure.subplots(1, 2, width_ratios=[1.0, 1.3])
+    draw_map(left, fields, quantities([fields])[0])
+    lines = case.summary().splitlines()
+    right.text(0.0, 1.0, "\n".join(line[:64] for line in lines[:42]), va="top", fontsize=6)
+    right.set_axis_off()
+    figure.suptitle(case.name)
+    return figure
+
+
+@plot.register(Result)
+def _plot_result(result: Result, name: str | None = None) -> Figure:
+    """Return the map of a field by its name, or the maps of all."""
+    return named_figure(_result_figures(result), "Result", name)
+
+
+def history_figure(result: Result) -> Figure:
+    """Return how the load is shared between fluid and contact over time."""
+    from matplotlib.figure import Figure
+
+    fields = result.fields
+    figure = Figure(figsize=(7.5, 2.8), layout="constrained")
+    axes = figure.add_subplot()
+    time = fields["time"].values * 1e3
+    for name, label, colour, line in (
+        ("load_history", "applied load", "0.3", "--"),
+        ("fluid_load_history", "carried by the fluid", "tab:blue", "-"),
+    ):
+        if name in fields:
+            axes.plot(time, fields[name].values, label=label, color=colour, linestyle=line)
+    axes.set_xlabel("time after first contact with the film (ms)")
+    axes.set_ylabel("load (N)")
+    axes.set_ylim(bottom=0)
+    axes.legend(frameon=False)
+    axes.spines[["top", "right"]].set_visible(False)
+    return figure
+
+
+def _filled(section: Section) -> bool:
+    return bool(section.html or section.pictures or section.table or section.items or section.text)

@@ -1,0 +1,114 @@
+"""What a study leaves on disk: its folder, and one offline page of all studies."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .html import embedded, environment
+from .study_figures import drawn
+
+if TYPE_CHECKING:
+    from underfoot.studies.runner import StudyResult
+
+COLOURS = {
+    "agrees": "good",
+    "overlaps": "half",
+    "trend only": "half",
+    "disagrees": "bad",
+    "not converged": "none",
+    "not comparable": "none",
+}
+
+
+def write_study(result: StudyResult, folder: Path) -> list[str]:
+    """Write study.json, tables, statements and figures (PNG and their data) into a folder.
+
+    Returns the figures' names.
+    """
+    content = json.dumps(result.as_dict(), indent=1, ensure_ascii=False)
+    (folder / "study.json").write_text(content, encoding="utf-8")
+    for table in result.computed.tables:
+        _write_csv(folder / f"{table.name}.csv", table.columns, table.rows)
+    rows = [one.as_dict() for one in result.judgements]
+    _write_csv(folder / "verdicts.csv", list(rows[0]), [list(row.values()) for row in rows])
+    _write_csv(folder / "errata.csv", ("where", "printed", "used", "why"), result.study.errata)
+    columns = ("panel", "series", "x", "y", "low", "high")
+    for name, figure in result.computed.figures.items():
+        drawn(figure).savefig(folder / f"{name}.png", dpi=130)
+        _write_csv(folder / f"{name}.csv", columns, figure.rows())
+    return sorted(result.computed.figures)
+
+
+def studies_page(
+    results: Sequence[StudyResult], images: Mapping[tuple[str, str], bytes], *, quick: bool = False
+) -> str:
+    """Return the page as HTML text that needs no network; ``images`` are PNG by (study, name)."""
+    from underfoot.studies.summary import figure_rows, headline
+    from underfoot.studies.verdict import Verdict, tables_by_kind
+
+    names = {r.study.name: [name for s, name in images if s == r.study.name] for r in results}
+    remarks = {
+        (r.study.name, file): remark for r in results for _, _, file, remark in r.study.figures
+    }
+    sections = [
+        {
+            "result": result,
+            "study": result.study,
+            "kinds": [(kind.heading, some) for kind, some in tables_by_kind(result.judgements)],
+            "tables": [_table(one) for one in result.computed.tables],
+            "notes": [*result.study.notes, *result.computed.notes],
+            "assumptions": [*result.study.assumptions, *result.computed.assumptions],
+            "images": [
+                (
+                    name,
+                    embedded(images[result.study.name, name]),
+                    remarks.get((result.study.name, name), ""),
+                )
+                for name in names[result.study.name]
+            ],
+        }
+        for result in results
+    ]
+    return (
+        environment()
+        .get_template("studies.html")
+        .render(
+            sections=sections,
+            headline=headline(results),
+            rules={str(verdict): verdict.rule for verdict in Verdict},
+            colours=COLOURS,
+            figures=figure_rows(results, names),
+            quick=quick,
+        )
+    )
+
+
+def _write_csv(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
+    with path.open("w", newline="", encoding="utf-8-sig") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(columns)
+        writer.writerows(rows)
+
+
+def _table(one: Any) -> dict[str, Any]:
+    return {
+        "title": one.title,
+        "columns": one.columns,
+        "rows": [[_cell(value) for value in row] for row in one.rows],
+    }
+
+
+def _cell(value: Any) -> tuple[str, bool]:
+    """Return a cell's text and whether it is a number."""
+    if value is None or value != value:
+        return "-", True
+    if isinstance(value, bool | str):
+        return str(value), False
+    number = float(value)
+    if number == 0 or 1e-3 <= abs(number) < 1e5:
+        return f"{number:.4g}", True
+    return f"{number:.3g}", True

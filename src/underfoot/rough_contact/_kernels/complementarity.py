@@ -1,0 +1,232 @@
+"""Primal-dual active set for p >= 0, gap >= 0, p gap = 0, mean p = p0 on one grid."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from underfoot.core.arrays import AnyArray
+
+from .krylov import Workspace, residual_correction
+from .operators import Operators
+from .restriction import Restriction
+
+_SWITCH = 1e-5
+"""Error at which the residual is taken in double precision: ten times the rounding of single."""
+_RENEW = 0.05
+"""Share of changed nodes beyond which the response to a uniform approach is computed again."""
+_PATIENCE = 4
+"""Steps without a new least error after which the inner solves are made ten times more exact."""
+_HOPELESS = 3
+"""Rounds of patience after which the way is given up."""
+_THINNER = 0.6
+_HARD_STEPS = 40
+_MATTRESS_TOLERANCE = 1e-3
+
+
+@dataclass(slots=True)
+class ContactState:
+    """Pressure and gap (scaled fields), steps taken, and the error of every step."""
+
+    pressure: AnyArray
+    gap: AnyArray
+    steps: int
+    inner: int
+    error: float
+    converged: bool
+    history: list[float]
+    full: bool = False
+
+
+def solve_on_grid(
+    operators: Operators,
+    height: AnyArray,
+    pressure: AnyArray,
+    mean_pressure: float,
+    workspace: Workspace,
+    *,
+    tolerance: float,
+    max_steps: int,
+    exact: bool,
+    settle: bool = True,
+    reduction: float = 0.15,
+    report: Callable[[float], None] = lambda error: None,
+) -> ContactState:
+    """Return the contact of ``height`` from a first guess of the pressure (its support counts).
+
+    Each step solves A p = h - d on the present contact with the load as a side condition, not more
+    exactly than by ``reduction``, then takes nodes with p <= 0 out and nodes that the gap of that
+    solution penetrates in. The gap of the unclipped solution decides, and a first guess with too
+    much contact is better than one with too little: both keep the set from cycling (inverse of an
+    M-matrix: Hintermueller, Ito and Kunisch 2002). The error is the largest of the deepest
+    penetration, the pressure-weighted mean |gap| and the relative error of the load; it counts only
+    when no pressure is negative.
+    With ``exact`` the last steps take their residual in double precision; without ``settle`` a
+    solution with some negative pressures will do, as a start for a finer grid.
+    """
+    xp = operators.xp
+    points = height.shape[0] * height.shape[1]
+    load = mean_pressure * points
+    single = xp.astype(height, xp.float32)
+    work = xp.zeros_like(single)
+    double = False
+    contact = pressure > 0.0
+    p = pressure
+    gap: AnyArray = None
+    history: list[float] = []
+    inner = 0
+    error = float("inf")
+    known: AnyArray = None  # S 1 on a recent contact
+    lowest = -1.0
+    changed = 0
+    best, since, rounds = error, 0, 0
+    step = 0
+    for step in range(1, max_steps + 1):
+        if bool(xp.all(contact)):
+            closed = operators.exact_pressure(height) if exact else operators.pressure(single)
+            p = closed + mean_pressure
+            contact, gap = p > 0.0, None
+            if bool(xp.all(contact)):
+                state = ContactState(p, xp.zeros_like(p), step, inner, 0.0, True, [*history, 0.0])
+                state.full = True
+                return state
+            p = xp.astype(p, xp.float64 if double else xp.float32)
+        if not bool(xp.any(contact)):
+            contact = single == xp.max(single)
+        part = Restriction(contact, xp, work)
+        if known is None or changed > _RENEW * part.nodes:
+            known = operators.pressure(part.spread(part.constant()))
+            known = xp.where(known > 0.0, known, xp.zeros_like(known))
+        response = part.take(known)
+        if not float(xp.sum(response)) > 0.0:
+            response, known = part.constant(), None
+        if lowest < 0.0:
+            p = xp.where(contact, p, xp.zeros_like(p))
+        missing = load - float(xp.sum(p))
+        negligible = 0.3 * tolerance if double else max(0.3 * tolerance, 1e-7)
+        if abs(missing) > negligible * load:
+            share = missing / float(xp.sum(response))
+            p = p + xp.astype(part.spread(response * share), p.dtype)
+            gap = None
+        if gap is None:
+            gap = _gap(operators, p, height if double else single, double)
+        residual = part.take(gap)
+        mean = float(xp.sum(residual)) / part.nodes
+        residual = xp.astype(-residual, xp.float32)
+        part.shift(residual, mean)
+        correction, count = residual_correction(
+            operators, part, residual, response, reduction, 0.0, workspace
+        )
+        inner += count
+        p = p + part.spread(correction)
+        gap = _gap(operators, p, height if double else single, double)
+        gap -= float(xp.sum(part.take(gap))) / part.nodes
+        lowest = float(xp.min(p))
+        carried = float(xp.sum(xp.abs(gap * p))) / load
+        unbalanced = abs(float(xp.sum(p)) / load - 1.0)
+        error = max(-float(xp.min(gap)), carried, unbalanced)
+        history.append(error)
+        report(error)
+        best, since = (error, 0) if error < best else (best, since + 1)
+        if since >= _PATIENCE:
+            reduction, since, rounds = max(0.1 * reduction, 1e-4), 0, rounds + 1
+        if rounds >= _HOPELESS or not error < 1e6:
+            break
+        kept = p > 0.0
+        settled = lowest >= 0.0 or not settle
+        if error <= tolerance and settled and (double or not exact):
+            return ContactState(p, gap, step, inner, error, True, history)
+        if error <= tolerance and double:
+            # a node on the very edge may change sides for ever: see whether it matters
+            trial, its_gap, its_error = _clipped(operators, p, height, load, double)
+            if its_error <= tolerance:
+                history[-1] = its_error
+                return ContactState(trial, its_gap, step, inner, its_error, True, history)
+        before, contact = contact, kept | ((gap < 0.0) & ~contact)
+        changed = int(xp.count_nonzero(contact != before))
+        if exact and not double and error <= max(_SWITCH, 3.0 * tolerance):
+            double = True
+            p = xp.astype(p, xp.float64)
+            gap = None
+        elif lowest < 0.0:
+            gap = None
+    p, gap, error = _clipped(operators, p, height if double else single, load, double)
+    return ContactState(p, gap, step, inner, error, False, history)
+
+
+def solve_with_mattress(
+    operators: Operators,
+    height: AnyArray,
+    pressure: AnyArray,
+    mean_pressure: float,
+    workspace: Workspace,
+    *,
+    tolerance: float,
+    max_steps: int,
+    exact: bool,
+    settle: bool = True,
+    reduction: float = 0.03,
+    report: Callable[[float], None] = lambda error: None,
+) -> ContactState:
+    """Return the contact of ``solve_on_grid`` by way of ever thinner mattresses on the body.
+
+    A mattress (compliance + constant) makes the problem diagonally dominant, so that the active
+    set settles from any start; each thinner one starts from the contact of the one before. Slower,
+    for strong loss over a narrow band of speeds, where the direct way cycles.
+    """
+    least, softness = operators.softness_range()
+    workspace = Workspace(_HARD_STEPS, operators.xp, height)
+    inner = steps = 0
+    while softness > 0.1 * least:
+        with operators.softened(softness):
+            state = solve_on_grid(
+                operators,
+                height,
+                pressure,
+                mean_pressure,
+                workspace,
+                tolerance=max(_MATTRESS_TOLERANCE, tolerance),
+                max_steps=12,
+                exact=False,
+                reduction=min(reduction, 0.03),
+            )
+        inner, steps = inner + state.inner, steps + state.steps
+        if state.converged:
+            pressure = state.pressure
+        softness *= _THINNER
+    with operators.softened(0.0):
+        state = solve_on_grid(
+            operators,
+            height,
+            pressure,
+            mean_pressure,
+            workspace,
+            tolerance=tolerance,
+            max_steps=max_steps,
+            exact=exact,
+            settle=settle,
+            reduction=min(reduction, 0.03),
+            report=report,
+        )
+    state.inner += inner
+    state.steps += steps
+    return state
+
+
+def _clipped(
+    operators: Operators, p: AnyArray, height: AnyArray, load: float, double: bool
+) -> tuple[AnyArray, AnyArray, float]:
+    """Return (pressure, gap, error) with the negative pressures of ``p`` taken out."""
+    xp = operators.xp
+    p = xp.where(p > 0.0, p, xp.zeros_like(p))
+    p = p * xp.asarray(load / max(float(xp.sum(p)), 1e-300), dtype=p.dtype)
+    gap = _gap(operators, p, height, double)
+    gap -= float(xp.sum(gap * p)) / load
+    error = max(-float(xp.min(gap)), float(xp.sum(xp.abs(gap) * p)) / load)
+    return p, gap, error
+
+
+def _gap(operators: Operators, pressure: AnyArray, height: AnyArray, double: bool) -> AnyArray:
+    if double:
+        return operators.exact_displacement(pressure) - height
+    return operators.displacement(pressure) - height

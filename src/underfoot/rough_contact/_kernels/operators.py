@@ -1,0 +1,140 @@
+"""The compliance of a sliding body and its inverse on one periodic grid."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from underfoot.core.arrays import AnyArray
+from underfoot.core.fourier import Transform, transform
+
+from .symbols import wavenumbers
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """A body whose compliance is scale * unit(|q|) / moduli(qx), and what computes with it.
+
+    ``moduli`` returns E*(qx v) for a column of qx (real when elastic), ``unit`` the compliance for
+    E = 1. ``spacing`` is that of the fine grid. ``asarray`` brings a NumPy array to the namespace
+    ``xp`` and its device. ``library`` names the FFT (see ``transform``).
+    """
+
+    moduli: Callable[[AnyArray], AnyArray]
+    unit: Callable[[AnyArray], AnyArray]
+    spacing: tuple[float, float]
+    scale: float = 1.0
+    xp: Any = np
+    asarray: Callable[..., AnyArray] = np.asarray
+    threads: int = 1
+    library: str = "auto"
+
+
+class Operators:
+    """Displacement of a pressure (A p) and pressure of a displacement (S u) on one grid.
+
+    Single precision, in buffers that the next product overwrites; ``exact_displacement`` works in
+    double. The mean of every result is zero. ``count`` counts products.
+    """
+
+    def __init__(
+        self,
+        body: Body,
+        shape: tuple[int, int],
+        coarsening: tuple[int, int] = (1, 1),
+        exact: Transform | None = None,
+    ) -> None:
+        self.shape = shape
+        self.xp = body.xp
+        self.count = 0
+        spacing = (body.spacing[0] * coarsening[0], body.spacing[1] * coarsening[1])
+        qx, qy = wavenumbers(shape, spacing)
+        rows = body.moduli(qx)
+        unit = body.unit(np.hypot(qx, qy))
+        unit *= body.scale
+        unit[0, 0] = 1.0
+        single = np.complex64 if np.iscomplexobj(rows) else np.float32
+        stiffness = rows.astype(single) / unit.astype(np.float32)
+        compliance = 1.0 / stiffness
+        stiffness[0, 0] = compliance[0, 0] = unit[0, 0] = 0.0
+        self.asarray = asarray = body.asarray
+        self.compliance, self.stiffness = asarray(compliance), asarray(stiffness)
+        self.unit, self.rows = asarray(unit), asarray(rows)
+        self._inverse_rows = asarray(1.0 / rows)
+        self._body = body
+        self._lossy = np.iscomplexobj(rows)
+        self.fast = self._transform(self.xp.float32)
+        self._exact = exact
+
+    @contextmanager
+    def softened(self, softness: float) -> Iterator[None]:
+        """Add a soft mattress, u = softness p at every node, to the body inside the block.
+
+        It acts on the products in single precision only. ``pressure`` becomes the inverse of the
+        compliance in phase: less close to the inverse, but symmetric, so that the minimum-residual
+        iteration can't stagnate (the operator is positive in that inner product).
+        """
+        kept = self.compliance, self.stiffness
+        softened = self.compliance + self.xp.asarray(softness, dtype=self.compliance.dtype)
+        in_phase = self.xp.real(softened) if self._lossy else softened
+        in_phase[0, 0] = 1.0
+        self.compliance, self.stiffness = softened, 1.0 / in_phase
+        self.compliance[0, 0] = self.stiffness[0, 0] = 0.0
+        try:
+            yield
+        finally:
+            self.compliance, self.stiffness = kept
+
+    def softness_range(self) -> tuple[float, float]:
+        """Return the least and the largest compliance of a wave."""
+        size = self.xp.abs(self.compliance)
+        largest = float(self.xp.max(size))
+        size[0, 0] = largest
+        return float(self.xp.min(size)), largest
+
+    def displacement(self, pressure: AnyArray) -> AnyArray:
+        """Return A p in single precision."""
+        return self._product(self.compliance, pressure)
+
+    def pressure(self, displacement: AnyArray) -> AnyArray:
+        """Return S u in single precision."""
+        return self._product(self.stiffness, displacement)
+
+    def exact_displacement(self, pressure: AnyArray) -> AnyArray:
+        """Return A p in double precision."""
+        self.count += 1
+        spectrum = self.exact.forward(pressure)
+        spectrum *= self.unit
+        spectrum *= self._inverse_rows
+        return self.exact.backward(spectrum)
+
+    def exact_pressure(self, displacement: AnyArray) -> AnyArray:
+        """Return S u in double precision."""
+        self.count += 1
+        spectrum = self.exact.forward(displacement)
+        spectrum *= self.rows
+        safe = self.xp.where(self.unit > 0.0, self.unit, self.xp.ones_like(self.unit))
+        spectrum /= safe
+        spectrum[0, 0] = 0.0
+        return self.exact.backward(spectrum)
+
+    @property
+    def exact(self) -> Transform:
+        """The transform in double precision, planned at first use."""
+        if self._exact is None:
+            self._exact = self._transform(self.xp.float64)
+        return self._exact
+
+    def _product(self, symbol: AnyArray, field: AnyArray) -> AnyArray:
+        self.count += 1
+        spectrum = self.fast.forward(field)
+        spectrum *= symbol
+        return self.fast.backward(spectrum)
+
+    def _transform(self, dtype: Any) -> Transform:
+        body = self._body
+        return transform(self.shape, dtype, xp=body.xp, threads=body.threads, library=body.library)

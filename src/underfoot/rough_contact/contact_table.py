@@ -1,0 +1,678 @@
+"""Rough contact over pressure and speed, computed once and interpolated with its limits."""
+
+from __future__ import annotations
+
+import json
+import pickle
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from underfoot.core import (
+    Breach,
+    Cache,
+    ConvergenceError,
+    DataError,
+    InputError,
+    Progress,
+    Range,
+    RangeError,
+    SourcedValue,
+    breaches,
+    content_hash,
+    display,
+    silent,
+    unknown_name,
+)
+from underfoot.core.arrays import Array
+from underfoot.core.pool import in_processes
+from underfoot.core.presentation import Presentable, Table
+from underfoot.core.provenance import version
+from underfoot.surface import HeightMap
+
+from ._kernels.monotone import interpolated, interpolated_grid, pchip_slopes
+from .composite import RESTING, composite_surface
+from .flow_factor import flow_factors
+from .pressure_gap_law import TabulatedLaw
+from .sliding_input import Modulus, modulus_function
+from .steady import SteadySliding, steady_sliding
+
+QUANTITIES = {
+    "real_contact_fraction": "1",
+    "cof_hysteresis": "1",
+    "mean_gap": "m",
+    "flow_factor_along": "1",
+    "flow_factor_across": "1",
+}
+Outside = Literal["error", "extend"]
+Direction = Literal["along", "across", "mean"]
+_FORMAT = 1
+ROOM = "contact_table-2"
+"""Of the cache; raised when the numbers or the form of a part change."""
+_REFINEMENT = 8
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class ContactTable(Presentable):
+    """Averages of one rough contact on a grid of nominal pressures and sliding speeds.
+
+    Between the nodes every quantity is a monotone cubic in ln(pressure) and ln(speed), the
+    contact fraction in its logarithm. ``outside="error"`` refuses to leave the grid;
+    ``outside="extend"`` holds the edge value, except that below the lowest pressure the contact
+    fraction is proportional to pressure and the gap grows as pressure decays exponentially.
+
+    Parameters
+    ----------
+    pressure, speed
+        Pa and m/s, rising, (n,) and (m,).
+    values, deviation
+        Mean and sample standard deviation over the surfaces, (n, m), per name in QUANTITIES; a
+        deviation is not a number where fewer than two surfaces were computed.
+    realizations
+        Number of surfaces behind every node, (n, m).
+    ranges
+        Tested box: the grid.
+    notes
+        What a reader must know: surfaces, missing nodes, assumptions, why friction is zero.
+    """
+
+    pressure: np.ndarray
+    speed: np.ndarray
+    values: Mapping[str, np.ndarray]
+    deviation: Mapping[str, np.ndarray]
+    realizations: np.ndarray
+    description: str = ""
+    key: str = ""
+    notes: tuple[str, ...] = ()
+    out_of_range: tuple[str, ...] = ()
+    name: str = field(default="contact table", init=False)
+
+    @classmethod
+    def from_surfaces(
+        cls,
+        surfaces: Sequence[HeightMap],
+        modulus: Modulus,
+        pressure: ArrayLike,
+        speed: ArrayLike,
+        *,
+        shoe_surfaces: Sequence[HeightMap] | None = None,
+        poisson_ratio: float = 0.5,
+        layer_thickness: float | None = None,
+        processes: int = 1,
+        cache: Cache | None = None,
+        description: str = "",
+        progress: Progress = silent,
+    ) -> ContactTable:
+        """Return the contact table of an ensemble of surfaces of one texture.
+
+        Every node is ``steady_sliding`` followed by ``flow_factors`` on its gap, with contact
+        closed. The contact fraction is the perimeter-corrected one.
+
+        Parameters
+        ----------
+        surfaces
+            Periodic height maps (``HeightMap``), one or more (seeds of one texture); the spread
+            between them becomes the uncertainty. Their shortest wave decides the contact fraction:
+            see ``cutoff_dependence``.
+        modulus, poisson_ratio, layer_thickness
+            As in ``steady_sliding``.
+        pressure, speed
+            Nodes: Pa and m/s, rising, > 0; at least 4 pressures, 1 speed.
+        shoe_surfaces
+            The rubber's own roughness, one periodic map for each of ``surfaces``: contact, gap and
+            flow are those of ``composite_surface`` at each speed, hysteresis that of the floor
+            alone; its limits are noted.
+        processes
+            Worker processes; with more than 1 the modulus must be picklable (no lambda).
+        cache
+            Where finished parts are kept; None takes the user's cache.
+        progress
+            Receives the fraction done; may raise ``Cancelled``: finished parts stay in the cache.
+
+        Raises
+        ------
+        InputError
+            No surface, not periodic, nodes not rising, modulus that can't be sent to a process.
+        ConvergenceError
+            A node where no surface converged.
+        """
+        p, v = _nodes("pressure", pressure, 4), _nodes("speed", speed, 1)
+        _check_surfaces(surfaces)
+        store = Cache(ROOM) if cache is None else cache
+        parts = [
+            _part(floor, shoe, modulus, float(u), p, poisson_ratio, layer_thickness)
+            for floor, shoe in _pairs(surfaces, shoe_surfaces)
+            for u in v
+        ]
+        keys = [part.key for part in parts]
+        columns = [store.load(key) for key in keys]
+        missing = [n for n, column in enumerate(columns) if column is None]
+        done = len(parts) - len(missing)
+        progress("contact table", done / len(parts))
+        for n, column in _computed(parts, missing, processes):
+            store.store(keys[n], column)
+            columns[n] = column
+            done += 1
+            progress("contact table", done / len(parts))
+        about = [_about(surfaces), *([RESTING] if shoe_surfaces is not None else [])]
+        finished = [column for column in columns if column is not None]
+        return _table(about, p, v, finished, keys, description)
+
+    def table(self) -> Table:
+        """Return the nodes, one row a pressure and speed, with the spread between surfaces."""
+        quantities = [(name, self.values[name], self.deviation[name]) for name in QUANTITIES]
+        columns = [
+            label for name in QUANTITIES for label in (f"{name.replace('_', ' ')}", f"{name} ±")
+        ]
+        rows = [
+            [p, v, *(x for _, mean, spread in quantities for x in (mean[i, j], spread[i, j]))]
+            for i, p in enumerate(self.pressure.tolist())
+            for j, v in enumerate(self.speed.tolist())
+        ]
+        title = f"Contact table: {self.description or 'rough contact'}"
+        return Table(title, ("pressure Pa", "speed m/s", *columns), rows)
+
+    def __repr__(self) -> str:
+        p, v = (
+            f"{display(nodes[0], unit)} to {display(nodes[-1], unit)}"
+            for nodes, unit in ((self.pressure, "Pa"), (self.speed, "m/s"))
+        )
+        count = int(self.realizations.max())
+        return f"ContactTable({self.description[:60]!r}, {p}, {v}, {count} surfaces)"
+
+    @property
+    def ranges(self) -> dict[str, Range]:
+        """Return the validity box: the pressures and speeds of the grid."""
+        return {
+            "pressure": Range(float(self.pressure[0]), float(self.pressure[-1]), "Pa", "grid"),
+            "speed": Range(float(self.speed[0]), float(self.speed[-1]), "m/s", "grid"),
+        }
+
+    def breaches(self, *, pressure: ArrayLike, speed: ArrayLike) -> list[Breach]:
+        """Return what leaves the grid (speed by its magnitude)."""
+        values = {"pressure": pressure, "speed": np.abs(np.asarray(speed, dtype=float))}
+        return breaches(self.name, self.ranges, values)
+
+    def real_contact_fraction(
+        self, pressure: ArrayLike, speed: ArrayLike, outside: Outside = "error"
+    ) -> Array:
+        """Return the real over the nominal contact area at p (Pa) and v (m/s)."""
+        p, x, y = self._at(pressure, speed, outside)
+        floor = np.finfo(float).tiny
+        logarithm = np.log(np.maximum(self.values["real_contact_fraction"], floor))
+        value, _ = interpolated_grid(*self._axes, logarithm, x, y)
+        return np.exp(value) * np.minimum(p / self.pressure[0], 1.0)
+
+    def cof_hysteresis(
+        self, pressure: ArrayLike, speed: ArrayLike, outside: Outside = "error"
+    ) -> Array:
+        """Return the hysteresis COF; it takes the sign of the speed."""
+        _, x, y = self._at(pressure, speed, outside)
+        value, _ = interpolated_grid(*self._axes, self.values["cof_hysteresis"], x, y)
+        return value * np.where(np.asarray(speed, dtype=float) < 0.0, -1.0, 1.0)
+
+    def mean_gap(self, pressure: ArrayLike, speed: ArrayLike, outside: Outside = "error") -> Array:
+        """Return the mean gap (m), contact counted as zero.
+
+        In the extension a pressure of zero counts as a millionth of the lowest one.
+        """
+        p, x, y = self._at(pressure, speed, outside)
+        value, slope = interpolated_grid(*self._axes, self.values["mean_gap"], x, y)
+        below = np.log(np.clip(p / self.pressure[0], 1e-6, 1.0))
+        return value + np.where(below < 0.0, slope * below, 0.0)
+
+    def flow_factor(
+        self,
+        pressure: ArrayLike,
+        speed: ArrayLike,
+        direction: Direction = "mean",
+        outside: Outside = "error",
+    ) -> Array:
+        """Return the pressure flow factor phi; flow is phi h^3/(12 eta) with h the mean gap."""
+        _, x, y = self._at(pressure, speed, outside)
+        return interpolated_grid(*self._axes, self._flow(direction), x, y)[0]
+
+    def sourced(self, quantity: str, pressure: float, speed: float) -> SourcedValue:
+        """Return one interpolated quantity with the spread between surfaces as uncertainty."""
+        if quantity not in QUANTITIES:
+            raise unknown_name("quantity", quantity, QUANTITIES, where=self.name)
+        _, x, y = self._at(pressure, speed, "error")
+        if quantity == "real_contact_fraction":
+            value = self.real_contact_fraction(pressure, speed)
+        else:
+            value, _ = interpolated_grid(*self._axes, self.values[quantity], x, y)
+        spread, reason = None, "only one surface was computed"
+        if np.all(np.isfinite(self.deviation[quantity])):
+            deviation, _ = interpolated_grid(*self._axes, self.deviation[quantity], x, y)
+            spread, reason = max(float(deviation), 0.0), ""
+        return SourcedValue(
+            value=float(value),
+            unit=QUANTITIES[quantity],
+            source=f"{self.name}: {self.description}",
+            uncertainty=spread,
+            reason=reason,
+            note="uncertainty: standard deviation between surfaces of one texture",
+        )
+
+    def law(self, speed: float, direction: Direction = "mean") -> TabulatedLaw:
+        """Return the pressure-gap law at one speed (m/s; by magnitude, within the grid's edges).
+
+        Nodes at full contact, where the gap no longer falls, are left out. The two directions
+        of the flow factor differ by chance for isotropic textures; ``mean`` averages them.
+        Raises RangeError when fewer than three pressures of the grid leave an open gap.
+        """
+        # between the nodes too, so that law and table are one function
+        nodes = np.arange(self.pressure.size)
+        fine = np.linspace(0, nodes[-1], _REFINEMENT * nodes[-1] + 1)
+        pressure = np.exp(np.interp(fine, nodes, np.log(self.pressure)))
+        v = np.full(pressure.shape, abs(float(speed)))
+        gap = self.mean_gap(pressure, v, "extend")
+        flow = self.flow_factor(pressure, v, direction, "extend")
+        keep = [0]
+        for n in range(1, gap.size):
+            if gap[n] < gap[keep[-1]] - 1e-6 * gap[0]:
+                keep.append(n)
+        if len(keep) < 3:
+            raise RangeError(
+                f"only {len(keep)} pressures leave an open gap at {speed} m/s",
+                where=self.name,
+                remedy="Compute the table from a lower pressure on",
+            )
+        order = keep[::-1]
+        return TabulatedLaw(
+            name=self.name,
+            source=f"{self.description or 'rough contact'}, at {abs(speed):g} m/s",
+            gap=gap[order],
+            node_pressure=pressure[order],
+            node_flow_factor=np.maximum(flow[order], 0.0),
+            speed=abs(float(speed)),
+            ranges=self.ranges,
+        )
+
+    def save(self, path: str | Path) -> None:
+        """Write the table as one compressed NumPy archive (.npz)."""
+        arrays: dict[str, Any] = dict(self._arrays())
+        with Path(path).open("wb") as stream:
+            np.savez_compressed(stream, **arrays)
+
+    @classmethod
+    def load(cls, path: str | Path) -> ContactTable:
+        """Return a table written by ``save``; DataError when the file is no such table."""
+        try:
+            with np.load(path, allow_pickle=False) as stored:
+                return cls._restored({name: stored[name] for name in stored.files})
+        except (OSError, ValueError, KeyError, EOFError) as error:
+            raise DataError(
+                f"{path} is not a contact table ({error})",
+                where=str(path),
+                allowed="a file written by ContactTable.save",
+            ) from error
+
+    @property
+    def _axes(self) -> tuple[np.ndarray, np.ndarray]:
+        return np.log(self.pressure), np.log(self.speed)
+
+    def _flow(self, direction: Direction) -> np.ndarray:
+        along, across = self.values["flow_factor_along"], self.values["flow_factor_across"]
+        if direction == "along":
+            return along
+        if direction == "across":
+            return across
+        return 0.5 * (along + across)
+
+    def _at(
+        self, pressure: ArrayLike, speed: ArrayLike, outside: Outside
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return (pressure, ln p, ln v) broadcast, clipped to the grid if extension is allowed."""
+        p, v = np.broadcast_arrays(
+            np.asarray(pressure, dtype=float), np.abs(np.asarray(speed, dtype=float))
+        )
+        if np.any(~(p >= 0.0)) or np.any(~np.isfinite(v)) or np.any(~np.isfinite(p)):
+            raise InputError(
+                "pressure or speed is negative, missing or infinite",
+                where=self.name,
+                allowed="pressure >= 0 Pa and a finite speed",
+            )
+        if outside == "error":
+            outside_grid = self.breaches(pressure=p, speed=v)
+            if outside_grid:
+                raise RangeError(
+                    str(outside_grid[0]),
+                    where=self.name,
+                    remedy='Compute a wider table, or extend it knowingly with outside="extend"',
+                )
+        x = np.log(np.clip(p, self.pressure[0], self.pressure[-1]))
+        return p, x, np.log(np.clip(v, self.speed[0], self.speed[-1]))
+
+    def _arrays(self) -> dict[str, np.ndarray]:
+        text = {
+            "format": _FORMAT,
+            "description": self.description,
+            "key": self.key,
+            "notes": list(self.notes),
+            "out_of_range": list(self.out_of_range),
+        }
+        arrays = {
+            "pressure": self.pressure,
+            "speed": self.speed,
+            "realizations": self.realizations,
+            "text": np.array(json.dumps(text)),
+        }
+        for name in QUANTITIES:
+            arrays[f"value_{name}"] = self.values[name]
+            arrays[f"deviation_{name}"] = self.deviation[name]
+        return arrays
+
+    @classmethod
+    def _restored(cls, arrays: Mapping[str, np.ndarray]) -> ContactTable:
+        text = json.loads(str(arrays["text"]))
+        if text["format"] != _FORMAT:
+            raise ValueError(f"format {text['format']}, this program reads {_FORMAT}")
+        return cls(
+            pressure=arrays["pressure"],
+            speed=arrays["speed"],
+            values={name: arrays[f"value_{name}"] for name in QUANTITIES},
+            deviation={name: arrays[f"deviation_{name}"] for name in QUANTITIES},
+            realizations=arrays["realizations"],
+            description=text["description"],
+            key=text["key"],
+            notes=tuple(text["notes"]),
+            out_of_range=tuple(text["out_of_range"]),
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Part:
+    """One surface at one speed: the unit of work and of the cache.
+
+    ``floor_heights`` is the floor alone where ``heights`` is a composite: its hysteresis counts.
+    """
+
+    heights: np.ndarray
+    spacing: float
+    modulus: Any
+    speed: float
+    pressure: np.ndarray
+    poisson_ratio: float
+    layer_thickness: float | None
+    floor_heights: np.ndarray | None = None
+
+    @property
+    def key(self) -> str:
+        """Return the content key: program version, heights, loads, modulus at every frequency."""
+        q = 2.0 * np.pi * np.fft.rfftfreq(self.heights.shape[0], self.spacing)
+        young = modulus_function(self.modulus, q * self.speed)(q * self.speed)
+        return content_hash(
+            version(),
+            self.heights,
+            self.spacing,
+            young,
+            self.speed,
+            self.pressure,
+            self.poisson_ratio,
+            self.layer_thickness,
+            self.floor_heights,
+        )
+
+
+def _part(
+    floor: Any,
+    shoe: Any,
+    modulus: Modulus,
+    speed: float,
+    pressure: np.ndarray,
+    poisson_ratio: float,
+    layer_thickness: float | None,
+) -> _Part:
+    """Return the part of one floor (with its shoe or None) at one speed."""
+    alone = np.asarray(floor.heights)
+    if shoe is None:
+        heights, floor_heights = alone, None
+    else:
+        heights = composite_surface(floor, shoe, modulus, speed).heights
+        floor_heights = alone
+    return _Part(
+        heights,
+        floor.spacing,
+        modulus,
+        speed,
+        pressure,
+        poisson_ratio,
+        layer_thickness,
+        floor_heights,
+    )
+
+
+def _column(part: _Part) -> dict[str, np.ndarray]:
+    """Return the averages of one surface at one speed over all pressures, with their remarks."""
+    rows: list[list[float]] = []
+    errors: list[float] = []
+    remarks: list[str] = []
+    out_of_range: list[str] = []
+
+    def contact_of(heights: np.ndarray, pressure: float) -> SteadySliding:
+        return steady_sliding(
+            heights,
+            part.spacing,
+            part.modulus,
+            part.speed,
+            pressure,
+            part.poisson_ratio,
+            layer_thickness=part.layer_thickness,
+        )
+
+    for p in part.pressure.tolist():
+        contact = friction = contact_of(part.heights, p)
+        if contact.status.usable and part.floor_heights is not None:
+            friction = contact_of(part.floor_heights, p)
+        errors.append(max(contact.complementarity_error, friction.complementarity_error))
+        if not (contact.status.usable and friction.status.usable):
+            rows.append([np.nan] * len(QUANTITIES))
+            continue
+        flow = flow_factors(np.where(contact.pressure > 0.0, 0.0, contact.gap), part.spacing)
+        rows.append(
+            [
+                contact.real_contact_fraction_corrected,
+                friction.cof_hysteresis,
+                contact.mean_gap,
+                flow.along,
+                flow.across,
+            ]
+        )
+        out_of_range += [str(breach) for breach in contact.breaches]
+        remarks += [contact.negligible_loss] if contact.negligible_loss else []
+    column = dict(zip(QUANTITIES, np.array(rows).T, strict=True))
+    column["error"] = np.array(errors)
+    column["remarks"] = np.array(list(dict.fromkeys(remarks)), dtype=np.str_)
+    column["out_of_range"] = np.array(list(dict.fromkeys(out_of_range)), dtype=np.str_)
+    return column
+
+
+def _computed(
+    parts: list[_Part], missing: list[int], processes: int
+) -> Iterator[tuple[int, dict[str, np.ndarray]]]:
+    if processes <= 1 or len(missing) < 2:
+        for n in missing:
+            yield n, _column(parts[n])
+        return
+    try:
+        pickle.dumps(parts[missing[0]].modulus)
+    except Exception as error:
+        raise InputError(
+            f"the modulus can't be sent to another process ({error})",
+            where="modulus",
+            remedy="Use a material or a named function instead of a lambda, or processes=1",
+        ) from error
+    for index, column in in_processes(_column, [parts[n] for n in missing], processes):
+        yield missing[index], column
+
+
+def _table(
+    about: list[str],
+    p: np.ndarray,
+    v: np.ndarray,
+    columns: list[dict[str, np.ndarray]],
+    keys: list[str],
+    description: str,
+) -> ContactTable:
+    shape = (len(columns) // v.size, v.size, p.size)
+    stacked = {
+        name: np.array([column[name] for column in columns]).reshape(shape) for name in QUANTITIES
+    }
+    usable = np.isfinite(stacked["mean_gap"])
+    count = usable.sum(axis=0)
+    holes = _holes(count, p, v, columns)
+    values, deviation = {}, {}
+    for name, array in stacked.items():
+        mean = np.where(usable, array, 0.0).sum(axis=0) / np.maximum(count, 1)
+        for row, hole in enumerate(holes):
+            if hole.any():
+                slopes = pchip_slopes(np.log(p[~hole]), mean[row, ~hole])
+                mean[row, hole], _ = interpolated(
+                    np.log(p[~hole]), mean[row, ~hole], slopes, np.log(p[hole])
+                )
+        square = np.where(usable, (array - mean) ** 2, 0.0).sum(axis=0)
+        spread = np.sqrt(square / np.maximum(count - 1, 1))
+        values[name] = mean.T
+        deviation[name] = np.where(count > 1, spread, np.nan).T
+    remarks, out_of_range = (
+        list(dict.fromkeys(str(text) for column in columns for text in column[name]))
+        for name in ("remarks", "out_of_range")
+    )
+    notes = about + remarks
+    dropped = int((~usable).sum())
+    if dropped:
+        notes.append(f"{dropped} of {usable.size} solutions did not converge and were left out")
+    notes += [
+        f"no solution at {p[n]:.3g} Pa and {v[row]:.3g} m/s: interpolated between its neighbours"
+        for row, n in np.argwhere(holes)
+    ]
+    return ContactTable(
+        pressure=p,
+        speed=v,
+        values=values,
+        deviation=deviation,
+        realizations=count.T,
+        description=description,
+        key=content_hash(keys),
+        notes=tuple(notes),
+        out_of_range=tuple(out_of_range),
+    )
+
+
+def _holes(
+    count: np.ndarray, p: np.ndarray, v: np.ndarray, columns: list[dict[str, np.ndarray]]
+) -> np.ndarray:
+    """Return the nodes without a solution; they are bridged only one by one and not at an end."""
+    holes = count == 0
+    bridged = holes.copy()
+    bridged[:, [0, -1]] = False
+    bridged[:, 1:] &= ~holes[:, :-1]
+    bridged[:, :-1] &= ~holes[:, 1:]
+    lost = holes & ~bridged
+    if lost.any():
+        at = np.argwhere(lost)[0]
+        raise ConvergenceError(
+            f"no surface converged at {p[at[1]]:.4g} Pa and {v[at[0]]:.4g} m/s "
+            f"({int(lost.sum())} such nodes)",
+            history=[float(np.max(column["error"])) for column in columns],
+            where="contact table",
+            remedy="Leave out the highest pressures (near full contact) or take finer surfaces",
+        )
+    return holes
+
+
+def _about(surfaces: Sequence[Any]) -> str:
+    first = surfaces[0]
+    shortest = [s.resolution if s.resolution is not None else 2.0 * s.spacing for s in surfaces]
+    nx, ny = first.heights.shape
+    return (
+        f"{len(surfaces)} surface(s) of {nx} x {ny} points, spacing {display(first.spacing, 'm')}, "
+        f"shortest wave {display(max(shortest), 'm')}: contact fraction and "
+        "hysteresis belong to this shortest wave"
+    )
+
+
+def _nodes(name: str, nodes: ArrayLike, least: int) -> np.ndarray:
+    values = np.atleast_1d(np.asarray(nodes, dtype=float))
+    good = values.ndim == 1 and values.size >= least and np.all(np.isfinite(values))
+    if not (good and values[0] > 0.0 and np.all(np.diff(values) > 0.0)):
+        raise InputError(
+            f"{name} nodes {nodes}",
+            where=name,
+            allowed=f"{least} or more rising values above zero",
+            remedy="For example numpy.geomspace(low, high, 8)",
+        )
+    return values
+
+
+def _pairs(floors: Sequence[Any], shoes: Sequence[Any] | None) -> list[tuple[Any, Any]]:
+    if shoes is None:
+        return [(floor, None) for floor in floors]
+    _check_surfaces(shoes)
+    if len(shoes) != len(floors):
+        raise InputError(
+            f"{len(shoes)} shoe surfaces for {len(floors)} floors",
+            where="shoe_surfaces",
+            allowed="one for each floor",
+        )
+    return list(zip(floors, shoes, strict=True))
+
+
+def _check_surfaces(surfaces: Sequence[Any]) -> None:
+    if len(surfaces) == 0:
+        raise InputError("no surface", where="surfaces", allowed="one height map or more")
+    for n, surface in enumerate(surfaces):
+        if not surface.periodic:
+            raise InputError(
+                f"surface {n + 1} is not periodic",
+                where="surfaces",
+                remedy="Make it periodic first (taper or mirror its edges), or generate surfaces "
+                "from its spectrum",
+            )
+
+
+def leave_out_errors(table: ContactTable, axis: str = "pressure") -> dict[str, float]:
+    """Return the largest interpolation error at every second node when those are left out.
+
+    The contact fraction is relative; the mean gap relative to the largest gap of the table;
+    the others absolute. ``axis`` is "pressure" or "speed". The node distance is doubled, so that
+    the table itself is several times better than this between its nodes.
+
+    Raises
+    ------
+    InputError
+        Fewer than 5 pressures or 5 speeds.
+    """
+    nodes = {"pressure": table.pressure, "speed": table.speed}[axis]
+    if nodes.size < 5:
+        raise InputError(
+            f"{nodes.size} {axis} nodes", where="leave_out_errors", allowed="5 or more"
+        )
+    removed = np.arange(1, nodes.size - 1, 2)
+    retained = np.setdiff1d(np.arange(nodes.size), removed)
+    index = (retained, slice(None)) if axis == "pressure" else (slice(None), retained)
+    coarse = replace(
+        table,
+        pressure=table.pressure[index[0]],
+        speed=table.speed[index[1]],
+        values={name: array[index] for name, array in table.values.items()},
+        deviation={name: array[index] for name, array in table.deviation.items()},
+        realizations=table.realizations[index],
+    )
+    p, v = np.meshgrid(table.pressure, table.speed, indexing="ij")
+    at_nodes = {
+        "real_contact_fraction": coarse.real_contact_fraction(p, v),
+        "cof_hysteresis": coarse.cof_hysteresis(p, v),
+        "mean_gap": coarse.mean_gap(p, v),
+        "flow_factor_along": coarse.flow_factor(p, v, "along"),
+        "flow_factor_across": coarse.flow_factor(p, v, "across"),
+    }
+    errors = {name: np.abs(at_nodes[name] - table.values[name]) for name in QUANTITIES}
+    errors["real_contact_fraction"] /= table.values["real_contact_fraction"]
+    errors["mean_gap"] /= table.values["mean_gap"].max()
+    return {name: float(error.max()) for name, error in errors.items()}

@@ -1,0 +1,93 @@
+"""Greenwood and Williamson (1966): a rough surface as independent spherical summits."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy import special
+
+from underfoot.core import InputError, Range, RangeError, breaches
+from underfoot.surface import SpectralMoments, asperities
+
+from .theory import TheoryContact
+
+SOURCE = (
+    "Greenwood and Williamson (1966) Proc. R. Soc. A 295:300-319; summits from the moments of "
+    "the spectrum as surface.asperities gives them"
+)
+TESTED = {
+    "real_contact_fraction": Range(
+        0.0, 0.05, "1", "area and gap 5 to 15 % low against half-space solutions up to here"
+    ),
+}
+
+
+def greenwood_williamson(
+    pressure: ArrayLike,
+    moments: SpectralMoments,
+    modulus: float,
+    poisson_ratio: float = 0.5,
+) -> TheoryContact:
+    """Return area, mean gap and contacts at nominal pressures (Pa, > 0).
+
+    p = (4/3) E* D R^(1/2) int_d^inf (z-d)^(3/2) phi(z) dz, area fraction pi D R int (z-d) phi dz,
+    contacts per area D int phi dz; E* = E/(1-nu^2), ``modulus`` = E (Pa) of the elastic body.
+    The gap returned is that of the mean planes, d + z_s; negative where the planes cross.
+
+    Valid at light load only: summits neither interact nor merge. Beside half-space solutions of a
+    self-affine surface the area is 8 % low at 1 % contact, 14 % at 5 %, 26 % at 20 %; the gap 5 %
+    low at 2 % contact and useless above 10 %, where the mean planes cross.
+    Raises RangeError when no separation down to minus eight deviations carries the pressure.
+    """
+    p = np.atleast_1d(np.asarray(pressure, dtype=float))
+    if not np.all((p > 0.0) & np.isfinite(p)):
+        raise InputError("pressure must be positive", where="Greenwood-Williamson")
+    summits = asperities(moments)
+    deviation = summits.height_sd
+    stiffness = modulus / (1.0 - poisson_ratio**2)
+    scale = 4.0 / 3.0 * stiffness * summits.density * math.sqrt(summits.radius) * deviation**1.5
+    t = _separation(p / scale)
+    area = math.pi * summits.density * summits.radius * deviation * _summit_integral(1.0, t)
+    values = {"real_contact_fraction": area}
+    return TheoryContact(
+        closure="greenwood_williamson_1966",
+        source=SOURCE,
+        pressure=p,
+        real_contact_fraction=area,
+        mean_gap=deviation * t + summits.mean_height,
+        spot_density=summits.density * _summit_integral(0.0, t),
+        not_estimated="hysteresis: the theory is elastic",
+        breaches=tuple(breaches("greenwood_williamson_1966", TESTED, values)),
+    )
+
+
+def _summit_integral(power: float, t: np.ndarray) -> np.ndarray:
+    """Return int_t^inf (z-t)^n exp(-z^2/2)/sqrt(2 pi) dz through parabolic cylinder functions."""
+    if power == 0.0:
+        return special.ndtr(-t)
+    if power == 1.0:
+        return np.exp(-(t**2) / 2.0) / math.sqrt(2.0 * math.pi) - t * special.ndtr(-t)
+    cylinder, _ = special.pbdv(-power - 1.0, t)
+    factor = math.gamma(power + 1.0) / math.sqrt(2.0 * math.pi)
+    return factor * np.exp(-(t**2) / 4.0) * cylinder
+
+
+def _separation(load: np.ndarray) -> np.ndarray:
+    """Return t with F_3/2(t) = load: table for the start, Newton on the logarithm."""
+    table = np.linspace(-8.0, 12.0, 401)
+    logarithm = np.log(_summit_integral(1.5, table))
+    log_load = np.log(load)
+    if log_load.max() > logarithm[0] or log_load.min() < logarithm[-1]:
+        raise RangeError(
+            "no separation between -8 and 12 summit deviations carries this pressure",
+            where="Greenwood-Williamson",
+            remedy="Use the sliding half-space, which holds up to full contact",
+        )
+    t = np.interp(log_load, logarithm[::-1], table[::-1])
+    for _ in range(4):
+        value = _summit_integral(1.5, t)
+        slope = -1.5 * _summit_integral(0.5, t) / value
+        t = t - (np.log(value) - log_load) / slope
+    return t

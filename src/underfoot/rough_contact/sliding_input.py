@@ -1,0 +1,190 @@
+"""Inputs of a sliding contact: checks, complex modulus, resolution."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from underfoot.core import Breach, InputError, Range, breaches, display
+from underfoot.core.arrays import AnyArray
+from underfoot.core.checks import poisson_ratio as check_poisson_ratio
+from underfoot.core.checks import positive
+from underfoot.core.threads import namespace
+
+
+class HasComplexModulus(Protocol):
+    """A material: E*(angular frequency, rad/s) in Pa."""
+
+    def complex_modulus(self, angular_frequency: Any) -> Any:
+        """Return E* (Pa, complex) at the angular frequencies (rad/s)."""
+        ...
+
+
+Modulus = float | HasComplexModulus | Callable[[AnyArray], Any]
+
+_RANGES = {
+    "rms slope": Range(0.0, 0.5, "1", "small-slope theory, limit assumed"),
+    "share of the mean square slope in waves shorter than 4 grid spacings": Range(
+        0.0, 0.1, "1", "resolution, limit assumed"
+    ),
+}
+FEWEST_NODES = 30
+"""Nodes in contact below which area, gap and friction rest on too few spots (assumed)."""
+_NEGLIGIBLE_LOSS_TANGENT = 1e-3
+
+
+def checked_contact_input(
+    height: ArrayLike,
+    spacing: float | tuple[float, float],
+    speed: float,
+    pressure: float,
+    poisson_ratio: float,
+    layer_thickness: float | None,
+) -> tuple[AnyArray, tuple[float, float]]:
+    """Return (heights as floats, (dx, dy)) or raise InputError with the remedy."""
+    h = _as_floats(height)
+    if h.ndim != 2:
+        raise InputError(
+            f"height has {h.ndim} dimension(s)",
+            where="height",
+            allowed="a map (nx, ny)",
+            remedy="Give a profile as (n, 4) equal columns: np.repeat(profile[:, None], 4, axis=1)",
+        )
+    if min(h.shape) < 4 or max(h.shape) < 8:
+        raise InputError(
+            f"height has shape {h.shape}", where="height", allowed="at least 8 x 4 nodes"
+        )
+    xp = namespace(h)
+    if not bool(xp.all(xp.isfinite(h))):
+        bad = np.argwhere(~np.isfinite(np.asarray(h)))
+        first = tuple(int(i) for i in bad[0])
+        raise InputError(
+            f"{len(bad)} of {h.shape[0] * h.shape[1]} heights are missing or infinite, "
+            f"the first at {first}",
+            where="height",
+            allowed="a finite height at every node",
+            remedy="Fill or cut them away first (underfoot.surface.filled)",
+        )
+    steps: Any = (spacing, spacing) if np.ndim(spacing) == 0 else spacing
+    if len(steps) != 2:
+        raise InputError(f"spacing {spacing}", where="spacing", allowed="one length or two, m")
+    dx, dy = (_positive("spacing", value, "m") for value in steps)
+    _positive("pressure", pressure, "Pa")
+    _single_number("speed", speed)
+    _single_number("poisson_ratio", poisson_ratio)
+    if not math.isfinite(speed):
+        raise InputError(f"speed {speed} m/s", where="speed", allowed="a finite speed, m/s")
+    check_poisson_ratio(poisson_ratio)
+    if layer_thickness is not None:
+        _positive("layer_thickness", layer_thickness, "m")
+    return h, (dx, dy)
+
+
+def modulus_function(modulus: Modulus, frequencies: AnyArray) -> Callable[[AnyArray], AnyArray]:
+    """Return E*(w) as a vectorised function, after checking it at ``frequencies`` (rad/s)."""
+    if isinstance(modulus, int | float | np.integer | np.floating):
+        value = _positive("modulus", float(modulus), "Pa")
+        return lambda w: np.full(np.shape(w), value, dtype=complex)
+    call = getattr(modulus, "complex_modulus", modulus)
+    if not callable(call):
+        raise InputError(
+            f"modulus is a {type(modulus).__name__}",
+            where="modulus",
+            allowed="a number (Pa), a material with complex_modulus, or a callable E*(rad/s)",
+        )
+
+    def young(w: AnyArray) -> AnyArray:
+        values = np.asarray(call(np.asarray(w, dtype=float)), dtype=complex)
+        return np.broadcast_to(values, np.shape(w))
+
+    values = young(frequencies)
+    wrong = ~(np.isfinite(values) & (values.real > 0.0))
+    if np.any(wrong):
+        at = int(np.flatnonzero(wrong)[0])
+        raise InputError(
+            f"E* = {values[at]:.4g} Pa at {frequencies[at]:.4g} rad/s",
+            where="modulus",
+            allowed="a finite modulus with a positive real part at every frequency, 0 included",
+            remedy="A liquid (no equilibrium modulus) can't carry the mean pressure; "
+            "a fitted spectrum must not have negative terms",
+        )
+    if np.any(values.imag < -1e-9 * values.real):
+        at = int(np.argmin(values.imag / values.real))
+        raise InputError(
+            f"E* = {values[at]:.4g} Pa at {frequencies[at]:.4g} rad/s gives energy back",
+            where="modulus",
+            allowed="a loss modulus E'' >= 0 (convention E' + i E'')",
+            remedy="Take the conjugate if your convention is E' - i E''",
+        )
+    return young
+
+
+def loss_reason(moduli: AnyArray, frequencies: AnyArray) -> str:
+    """Return why the hysteresis is (nearly) zero if the material hardly loses energy, else "".
+
+    ``moduli`` are E* (Pa) at ``frequencies`` (rad/s).
+    """
+    w, values = frequencies[frequencies > 0.0], moduli[frequencies > 0.0]
+    if w.size == 0:
+        return ""
+    tangent = float(np.max(values.imag / values.real))
+    if tangent >= _NEGLIGIBLE_LOSS_TANGENT:
+        return ""
+    low, high = (display(x / (2.0 * math.pi), "Hz") for x in (w.min(), w.max()))
+    return (
+        f"hysteresis is negligible because the material is: its loss tangent is at most "
+        f"{tangent if tangent >= 1e-6 else 0:.1g} between {low} and {high}, the frequencies this "
+        "surface excites at this speed; a spectrum with relaxation times near those is needed"
+    )
+
+
+def resolution_breaches(rms_slope: float, short_share: float, nodes: int) -> list[Breach]:
+    """Return whether slopes are too steep for the theory or too short for the grid, and whether
+    the contact (``nodes`` in contact) is too small for it.
+    """
+    values = dict(zip(_RANGES, (rms_slope, short_share), strict=True))
+    enough = Range(FEWEST_NODES, math.inf, "1", "resolution of the contact itself, limit assumed")
+    return [
+        *breaches("steady_sliding", _RANGES, values),
+        *breaches("steady_sliding", {"nodes in contact": enough}, {"nodes in contact": nodes}),
+    ]
+
+
+def _as_floats(height: Any) -> Any:
+    """Return heights in double precision, left on their device if not NumPy's."""
+    if type(height).__module__.partition(".")[0] in ("torch", "cupy", "array_api_strict"):
+        xp = namespace(height)
+        return xp.astype(height, xp.float64)
+    try:
+        return np.asarray(height, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"height is a {type(height).__name__}",
+            where="height",
+            allowed="an array of heights, m",
+            remedy="Give the heights of a map: map.heights",
+        ) from error
+
+
+def _single_number(name: str, value: Any) -> None:
+    if np.ndim(value) == 0 and isinstance(value, int | float | np.number | np.ndarray):
+        return
+    several = np.ndim(value) > 0
+    raise InputError(
+        f"{np.size(value)} values" if several else f"{value!r} is a {type(value).__name__}",
+        where=name,
+        allowed="one number",
+        remedy="Call it once for each; ContactTable.from_surfaces makes a table over pressures "
+        "and speeds"
+        if several
+        else None,
+    )
+
+
+def _positive(name: str, value: float, unit: str) -> float:
+    _single_number(name, value)
+    return positive(value, name, unit)

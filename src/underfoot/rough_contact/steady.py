@@ -1,0 +1,337 @@
+"""Steady sliding of a smooth viscoelastic half-space or layer over a rough rigid surface."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from underfoot.core import Breach, Progress, Status, display, silent
+from underfoot.core.fourier import transform
+from underfoot.core.presentation import Presentable, Table
+from underfoot.core.threads import converter, namespace, threads_limited
+
+from ._kernels.area import contact_fractions
+from ._kernels.nested import NestedSolution, solve_nested
+from ._kernels.operators import Body
+from ._kernels.spectra import dissipation, slope_numbers, work_against_slope
+from ._kernels.symbols import odd_wavenumbers, sliding_moduli, unit_compliance, wavenumbers
+from .sliding_input import (
+    Modulus,
+    checked_contact_input,
+    loss_reason,
+    modulus_function,
+    resolution_breaches,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class SlidingSettings:
+    """How ``steady_sliding`` solves: numbers that change cost and error, not the physics.
+
+    Parameters
+    ----------
+    tolerance
+        On ``complementarity_error``.
+    max_iterations
+        Active-set steps on the full grid before the result is marked as not converged.
+    threads
+        Of the Fourier transforms and matrix products; everything else runs on one.
+    fft
+        "mkl" (Intel's library, used when installed), "scipy", or "auto".
+    """
+
+    tolerance: float = 1e-6
+    max_iterations: int = 60
+    threads: int = 1
+    fft: str = "auto"
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class SteadySliding(Presentable):
+    """Steady contact under sliding.
+
+    Parameters
+    ----------
+    pressure
+        Contact pressure, Pa, (nx, ny); its mean is the nominal pressure.
+    gap
+        Distance between the surfaces, m, (nx, ny).
+    nominal_pressure, speed
+        Pa and m/s, as given.
+    mean_gap
+        m, contact counted as zero.
+    real_contact_fraction
+        Share of the nodes in contact.
+    real_contact_fraction_corrected
+        The same with the grid's staircase taken off the edge of every spot (Yastrebov et al.
+        2017): closer to the continuous surface on a coarse grid.
+    cof_hysteresis
+        Energy lost in the material per sliding distance and normal load.
+    cof_slope
+        Mean of pressure times slope over the mean pressure: the same number on a fine grid.
+    rms_slope
+        Of the surface, over all directions.
+    full_contact
+        True when the surfaces touch everywhere (closed form, no iteration).
+    iterations, operator_applications
+        Active-set steps, and FFT products (forward and back; a product on a coarser grid counts by
+        its share of the points).
+    complementarity_error
+        Largest of the deepest penetration and the pressure-weighted mean |gap|, both over the rms
+        height, and the relative error of the load, before the last projection onto p, gap >= 0.
+    history
+        That error after each iteration on the full grid.
+    status, notes
+        How it ended, and what a reader must know (why the friction is zero, what was assumed).
+    breaches
+        Ranges that were left, such as a slope too steep or a grid too coarse.
+    negligible_loss
+        Why the hysteresis is negligible where the material hardly loses energy at the frequencies
+        of this surface and speed; "" otherwise.
+    """
+
+    pressure: np.ndarray
+    gap: np.ndarray
+    nominal_pressure: float
+    speed: float
+    mean_gap: float
+    real_contact_fraction: float
+    real_contact_fraction_corrected: float
+    cof_hysteresis: float
+    cof_slope: float
+    rms_slope: float
+    full_contact: bool
+    iterations: int
+    operator_applications: float
+    complementarity_error: float
+    history: tuple[float, ...]
+    status: Status
+    notes: tuple[str, ...]
+    breaches: tuple[Breach, ...]
+    negligible_loss: str = ""
+
+    def table(self) -> Table:
+        """Return the averages of the contact."""
+        return Table(
+            f"Steady sliding at {display(self.nominal_pressure, 'Pa')}, "
+            f"{display(self.speed, 'm/s')} ({self.status})",
+            ("quantity", "value", "unit"),
+            [
+                (
+                    "real contact fraction (edges of spots corrected)",
+                    self.real_contact_fraction_corrected,
+                    "1",
+                ),
+                ("hysteresis COF", self.cof_hysteresis, "1"),
+                ("mean gap", self.mean_gap, "m"),
+                ("rms slope of the surface", self.rms_slope, "1"),
+                ("complementarity error", self.complementarity_error, "1"),
+            ],
+        )
+
+    def __repr__(self) -> str:
+        return (
+            f"SteadySliding({display(self.nominal_pressure, 'Pa')}, {display(self.speed, 'm/s')}: "
+            f"contact {self.real_contact_fraction_corrected:.3g}, hysteresis COF "
+            f"{self.cof_hysteresis:.3g}, gap {display(self.mean_gap, 'm')}, {self.status})"
+        )
+
+
+def steady_sliding(
+    height: ArrayLike,
+    spacing: float | tuple[float, float],
+    modulus: Modulus,
+    speed: float,
+    pressure: float,
+    poisson_ratio: float = 0.5,
+    *,
+    layer_thickness: float | None = None,
+    settings: SlidingSettings | None = None,
+    progress: Progress = silent,
+) -> SteadySliding:
+    """Return the steady contact of smooth rubber sliding along axis 0 over a rough rigid surface.
+
+    In the frame of the surface the rubber answers each wave with its complex modulus,
+    u(q) = 2 (1 - nu^2) p(q) / (|q| E*(q_x v)), so that p >= 0, gap = d + u - h >= 0, p gap = 0 and
+    mean p = ``pressure`` hold the whole history of any relaxation spectrum: no time march.
+
+    Parameters
+    ----------
+    height
+        m, (nx, ny), positive towards the rubber, periodic; axis 0 along sliding.
+    spacing
+        m, one number or (along axis 0, along axis 1).
+    modulus
+        Young's modulus of the rubber: an object with ``complex_modulus``, a callable E*(angular
+        frequency, rad/s >= 0) in Pa with positive real part and loss E'' >= 0, or a number
+        (elastic).
+    speed
+        m/s, of the rubber relative to the surface; 0 is the elastic contact of the relaxed
+        rubber, a negative one slides towards -x and gives a negative COF.
+    pressure
+        Mean contact pressure, Pa, > 0.
+    poisson_ratio
+        Constant in time, 0 to 0.5.
+    layer_thickness
+        m, of a layer bonded to a rigid base; None: half-space.
+    settings
+        Tolerance, iterations, threads, Fourier transforms.
+    progress
+        Receives the stage, the fraction done and the error; may raise ``Cancelled``.
+
+    Validity: small slopes (tested below an rms slope of 0.5, assumed), smooth rubber, no
+    adhesion, no friction at the spots themselves, inertia negligible (speed far below the shear
+    wave speed).
+
+    Raises
+    ------
+    InputError
+        Heights missing or not a map, pressure, spacing or modulus not positive, speed not finite.
+
+    Source: frame of the rough surface and complex modulus, e.g. Carbone and Putignano (2013)
+    J. Mech. Phys. Solids 61:1822; active set of Hintermueller, Ito and Kunisch (2002) SIAM J.
+    Optim. 13:865.
+    """
+    settings = settings or SlidingSettings()
+    tolerance, threads, fft = settings.tolerance, settings.threads, settings.fft
+    h, steps = checked_contact_input(
+        height, spacing, speed, pressure, poisson_ratio, layer_thickness
+    )
+    shape: tuple[int, int] = h.shape
+    xp = namespace(h)
+    qx, qy = wavenumbers(shape, steps)
+    length = shape[0] * steps[0]
+    frequencies = 2.0 * math.pi / length * abs(speed) * np.arange(shape[0] // 2 + 1)
+    young = modulus_function(modulus, frequencies)
+    table = young(frequencies)
+    asarray = converter(h)
+    odd = asarray(odd_wavenumbers(shape, steps))
+    body = Body(
+        partial(sliding_moduli, table, length, speed > 0.0),
+        lambda q: unit_compliance(q, layer_thickness, poisson_ratio),
+        steps,
+        xp=xp,
+        asarray=asarray,
+        threads=threads,
+        library=fft,
+    )
+    with threads_limited(threads):
+        exact = transform(shape, xp.float64, xp=xp, threads=threads, library=fft)
+        surface = 1.0 * exact.forward(h)
+        slope, short = slope_numbers(
+            surface, asarray(qx**2 + qy**2), shape, 0.5 * math.pi / max(steps)
+        )
+        if slope == 0.0:
+            return _flat(h, float(pressure), float(speed), xp)
+        rms = float(xp.std(h))
+        unit = 0.5 * slope * abs(complex(young(np.asarray([slope / rms * abs(speed)]))[0]))
+        unit /= 1.0 - poisson_ratio**2
+        surface /= rms
+        solved = solve_nested(
+            (h - xp.mean(h)) / rms,
+            surface,
+            replace(body, scale=unit / rms),
+            pressure / unit,
+            exact=exact,
+            tolerance=tolerance,
+            max_steps=settings.max_iterations,
+            report=lambda error: progress("rough contact", _done(error, tolerance), error),
+        )
+        p, gap = _physical(solved, unit, rms, float(pressure), xp)
+        spectrum = exact.forward(p)
+        on_slope = work_against_slope(spectrum, surface, odd, shape) * rms
+        lost = 0.0
+        if np.any(table.imag):
+            operators = solved.operators
+            lost = dissipation(spectrum, operators.unit, operators.rows, odd, shape) * rms / unit
+    state = solved.state
+    plain, corrected = contact_fractions(p > 0.0, steps, xp)
+    negligible = loss_reason(table, frequencies)
+    notes = []
+    if state.full:
+        notes.append(
+            "the pressure closes the surface everywhere: full contact, solved in closed form"
+        )
+    if speed == 0.0:
+        notes.append("speed 0: elastic contact of the relaxed rubber")
+    else:
+        notes += [negligible] if negligible else []
+    if not state.converged:
+        notes.append(
+            f"stopped after {state.steps} iterations at an error of {state.error:.1e} "
+            f"(asked for {tolerance:.1e}): the numbers are not a result"
+        )
+    touching = int(xp.sum(xp.astype(p > 0.0, xp.int64)))
+    out_of_range = tuple(resolution_breaches(slope, short, touching))
+    return SteadySliding(
+        pressure=p,
+        gap=gap,
+        nominal_pressure=float(pressure),
+        speed=float(speed),
+        mean_gap=float(xp.mean(gap)),
+        real_contact_fraction=plain,
+        real_contact_fraction_corrected=corrected,
+        cof_hysteresis=lost / pressure,
+        cof_slope=on_slope / pressure,
+        rms_slope=slope,
+        full_contact=state.full,
+        iterations=state.steps,
+        operator_applications=solved.applications,
+        complementarity_error=state.error,
+        history=tuple(state.history),
+        status=_status(state.converged, out_of_range),
+        notes=tuple(notes),
+        breaches=out_of_range,
+        negligible_loss=negligible,
+    )
+
+
+def _physical(
+    solved: NestedSolution, unit: float, rms: float, mean: float, xp: Any
+) -> tuple[Any, Any]:
+    """Return pressure and gap in SI: both >= 0, one of them 0 everywhere, the mean exact."""
+    p = xp.astype(solved.state.pressure, xp.float64)
+    p = xp.where(p > 0.0, p, xp.zeros_like(p))
+    p *= mean / float(xp.mean(p))
+    gap = xp.astype(solved.state.gap, xp.float64)
+    gap = xp.where((gap > 0.0) & (p == 0.0), gap * rms, xp.zeros_like(gap))
+    return p, gap
+
+
+def _flat(height: Any, pressure: float, speed: float, xp: Any) -> SteadySliding:
+    return SteadySliding(
+        pressure=xp.zeros_like(height) + pressure,
+        gap=xp.zeros_like(height),
+        nominal_pressure=pressure,
+        speed=speed,
+        mean_gap=0.0,
+        real_contact_fraction=1.0,
+        real_contact_fraction_corrected=1.0,
+        cof_hysteresis=0.0,
+        cof_slope=0.0,
+        rms_slope=0.0,
+        full_contact=True,
+        iterations=0,
+        operator_applications=0.0,
+        complementarity_error=0.0,
+        history=(),
+        status=Status.CONVERGED,
+        notes=("the surface is flat: full contact, no deformation, no hysteresis",),
+        breaches=(),
+    )
+
+
+def _status(converged: bool, out_of_range: tuple[Breach, ...]) -> Status:
+    if not converged:
+        return Status.NOT_CONVERGED
+    return Status.OUT_OF_RANGE if out_of_range else Status.CONVERGED
+
+
+def _done(error: float, tolerance: float) -> float:
+    """Return the fraction done on a logarithmic scale from an error of 1."""
+    return min(1.0, max(0.0, math.log(max(error, 1e-300)) / math.log(tolerance)))

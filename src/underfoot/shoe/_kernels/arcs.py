@@ -1,0 +1,107 @@
+"""Closed curves of arcs that meet without a kink: exact signed distance and joining arcs."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core.optional import njit
+
+Array = NDArray[np.float64]
+STRAIGHT = 1e6  # m: a radius this large is a line
+
+
+@njit(cache=True, error_model="numpy")
+def inward_distance(x: Array, y: Array, arcs: Array) -> Array:
+    """Return the distance (m) from a closed anticlockwise curve, positive inside.
+
+    ``arcs`` (n, 7): start x, y, end x, y, centre x, y and radius in m; the radius is positive where
+    the curve turns left, infinite for a line. x, y are flat arrays of one length.
+    """
+    signed = np.empty(x.size)
+    for i in range(x.size):
+        best, inside = np.inf, 1.0
+        for k in range(arcs.shape[0]):
+            x0, y0, x1, y1, cx, cy, radius = arcs[k]
+            if np.isinf(radius):
+                tx, ty = x1 - x0, y1 - y0
+                length = math.sqrt(tx * tx + ty * ty)
+                tx, ty = tx / length, ty / length
+                along = min(max((x[i] - x0) * tx + (y[i] - y0) * ty, 0.0), length)
+                dx, dy = x[i] - x0 - along * tx, y[i] - y0 - along * ty
+                far = math.sqrt(dx * dx + dy * dy)
+                side = tx * (y[i] - y0) - ty * (x[i] - x0)
+            else:
+                dx, dy = x[i] - cx, y[i] - cy
+                turn = 1.0 if radius > 0 else -1.0
+                # within the sector: left of the start's ray and right of the end's (turned)
+                after = turn * ((x0 - cx) * dy - (y0 - cy) * dx)
+                before = turn * (dx * (y1 - cy) - dy * (x1 - cx))
+                distance = math.sqrt(dx * dx + dy * dy)
+                if after >= 0.0 and before >= 0.0:
+                    far = abs(distance - abs(radius))
+                else:
+                    start = (x[i] - x0) ** 2 + (y[i] - y0) ** 2
+                    end = (x[i] - x1) ** 2 + (y[i] - y1) ** 2
+                    far = math.sqrt(min(start, end))
+                side = turn * (abs(radius) - distance)
+            if far < best:
+                best = far
+                inside = 1.0 if side >= 0.0 else -1.0
+        signed[i] = inside * best
+    return signed
+
+
+def biarc(start: Array, start_tangent: Array, end: Array, end_tangent: Array) -> list[Array]:
+    """Return two arcs (7,) from point to point with the unit tangents given, equal leg lengths.
+
+    Both legs d satisfy |v - d (t0 + t1)| = 2 d with v = end - start; none may turn by more than a
+    half circle.
+    """
+    v, t = end - start, start_tangent + end_tangent
+    quadratic = 2 * (1 - float(start_tangent @ end_tangent))
+    vv, vt = float(v @ v), float(v @ t)
+    if quadratic > 1e-12:
+        leg = (-vt + math.sqrt(vt * vt + quadratic * vv)) / quadratic
+    else:
+        leg = vv / (2 * vt)
+    middle = (start + end + leg * (start_tangent - end_tangent)) / 2
+    first = arc(start, start_tangent, middle)
+    last = arc(end, -end_tangent, middle)
+    reverse = np.array([last[2], last[3], last[0], last[1], last[4], last[5], -last[6]])
+    return [first, reverse]
+
+
+def arc(start: Array, tangent: Array, end: Array) -> Array:
+    """Return the arc (7,) from ``start`` along ``tangent`` to ``end``; a line where it is one."""
+    v = end - start
+    normal = np.array([-tangent[1], tangent[0]])
+    aside = float(normal @ v)
+    length = float(v @ v)
+    if abs(aside) * STRAIGHT <= length:
+        return np.array([*start, *end, 0.0, 0.0, math.inf])
+    radius = length / (2 * aside)
+    centre = start + radius * normal
+    return np.array([*start, *end, *centre, radius])
+
+
+def points_on(arcs: Array, most: float) -> Array:
+    """Return the closed polygon (n, 2) on the arcs, no edge longer than ``most`` (m)."""
+    points = []
+    for x0, y0, x1, y1, cx, cy, radius in arcs:
+        if math.isinf(radius):
+            count = max(1, math.ceil(math.hypot(x1 - x0, y1 - y0) / most))
+            share = np.arange(count)[:, None] / count
+            points.append((1 - share) * np.array([x0, y0]) + share * np.array([x1, y1]))
+            continue
+        first = math.atan2(y0 - cy, x0 - cx)
+        sweep = math.atan2(y1 - cy, x1 - cx) - first
+        sweep = sweep % (2 * math.pi) if radius > 0 else -((-sweep) % (2 * math.pi))
+        count = max(2, math.ceil(abs(sweep * radius) / most))
+        angle = first + sweep * np.arange(count) / count
+        size = abs(radius)
+        points.append(np.column_stack([cx + size * np.cos(angle), cy + size * np.sin(angle)]))
+    polygon = np.concatenate(points)
+    return np.concatenate([polygon, polygon[:1]])

@@ -1,0 +1,168 @@
+"""Edges and faces of a triangle soup as keys that can be sorted: who shares what."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core.optional import njit
+
+Keys = NDArray[np.uint64]
+Triangles = NDArray[np.float32]
+
+
+@njit(cache=True, inline="always")
+def _mixed(key: np.uint64) -> np.uint64:
+    key ^= key >> np.uint64(30)
+    key *= np.uint64(0xBF58476D1CE4E5B9)
+    key ^= key >> np.uint64(27)
+    key *= np.uint64(0x94D049BB133111EB)
+    key ^= key >> np.uint64(31)
+    return key
+
+
+@njit(cache=True, error_model="numpy")
+def soup_keys(
+    triangles: Triangles, bits: NDArray[np.uint32]
+) -> tuple[Keys, Keys, NDArray[np.int64], float]:
+    """Return edge keys (3 n,), face keys (n,), counts and the signed volume of a soup.
+
+    A corner is known by the bits of its coordinates. The lowest bit of an edge key tells its
+    direction, the rest is a hash of both corners in order; a face key is the same for any order of
+    its corners. Faces without area or with corners that are not finite get key 0, no edge keys
+    (all zero), and are counted in ``counts`` (degenerate, not finite).
+    """
+    count = triangles.shape[0]
+    edges = np.zeros(3 * count, dtype=np.uint64)
+    faces = np.zeros(count, dtype=np.uint64)
+    counts = np.zeros(2, dtype=np.int64)
+    corner = np.empty(3, dtype=np.uint64)
+    volume = 0.0
+    bx, by, bz = triangles[0, 0, 0], triangles[0, 0, 1], triangles[0, 0, 2]
+    one = np.uint64(1)
+    for n in range(count):
+        ax, ay, az = triangles[n, 0, 0] - bx, triangles[n, 0, 1] - by, triangles[n, 0, 2] - bz
+        ux = np.float64(triangles[n, 1, 0]) - triangles[n, 0, 0]
+        uy = np.float64(triangles[n, 1, 1]) - triangles[n, 0, 1]
+        uz = np.float64(triangles[n, 1, 2]) - triangles[n, 0, 2]
+        vx = np.float64(triangles[n, 2, 0]) - triangles[n, 0, 0]
+        vy = np.float64(triangles[n, 2, 1]) - triangles[n, 0, 1]
+        vz = np.float64(triangles[n, 2, 2]) - triangles[n, 0, 2]
+        nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        size = nx * nx + ny * ny + nz * nz
+        if not np.isfinite(size):
+            counts[1] += 1
+            continue
+        longest = max(
+            ux * ux + uy * uy + uz * uz,
+            vx * vx + vy * vy + vz * vz,
+        )
+        if size <= 1e-14 * longest * longest:
+            counts[0] += 1
+            continue
+        volume += (ax * nx + ay * ny + az * nz) / 6.0
+        for k in range(3):
+            # + 0.0 turns a negative zero, which has other bits, into zero
+            key = np.uint64(bits[n, k, 0]) | (np.uint64(bits[n, k, 1]) << np.uint64(32))
+            key = _mixed(key + np.uint64(0x9E3779B97F4A7C15))
+            corner[k] = _mixed(key ^ (np.uint64(bits[n, k, 2]) + np.uint64(0x632BE59BD9B4E019)))
+        faces[n] = _mixed(corner[0] + corner[1] + corner[2]) | one
+        for k in range(3):
+            a, b = corner[k], corner[(k + 1) % 3]
+            low, high = (a, b) if a < b else (b, a)
+            key = _mixed(low + _mixed(high))
+            edges[3 * n + k] = (key & ~one) | (one if a < b else np.uint64(0))
+    return edges, faces, counts, volume
+
+
+@njit(cache=True)
+def shared_edges(edges: Keys) -> tuple[int, int, int]:
+    """Return how many edges of sorted keys have one face, more than two, or two turned alike."""
+    open_edges, crowded, turned = 0, 0, 0
+    one = np.uint64(1)
+    n = 0
+    while n < edges.size and edges[n] == 0:
+        n += 1
+    while n < edges.size:
+        key = edges[n] >> one
+        total, forward = 0, 0
+        while n < edges.size and (edges[n] >> one) == key:
+            total += 1
+            forward += int(edges[n] & one)
+            n += 1
+        if total == 1:
+            open_edges += 1
+        elif total > 2:
+            crowded += 1
+        elif forward != 1:
+            turned += 1
+    return open_edges, crowded, turned
+
+
+@njit(cache=True, error_model="numpy")
+def overlap_lines(
+    triangles: Triangles,
+    axes: NDArray[np.float64],
+    first: tuple[float, float],
+    pitch: float,
+    shape: tuple[int, int],
+) -> tuple[int, int]:
+    """Return on how many straight lines through a body its material overlaps, and of how many.
+
+    Lines along the third axis, ``pitch`` apart. Along a line through a sound body the surfaces are
+    met in turn from outside and from inside; two from outside in a row mean that the surface
+    crosses itself or another body.
+    """
+    lines = shape[0] * shape[1]
+    counts = np.zeros(lines + 1, dtype=np.int64)
+    height = np.empty(0)
+    side = np.empty(0, dtype=np.int8)
+    order = np.empty(0, dtype=np.int64)
+    u, v, w = np.empty(3), np.empty(3), np.empty(3)
+    for turn in range(2):
+        for n in range(triangles.shape[0]):
+            for k in range(3):
+                x, y, z = triangles[n, k, 0], triangles[n, k, 1], triangles[n, k, 2]
+                u[k] = (axes[0, 0] * x + axes[0, 1] * y + axes[0, 2] * z - first[0]) / pitch
+                v[k] = (axes[1, 0] * x + axes[1, 1] * y + axes[1, 2] * z - first[1]) / pitch
+                w[k] = axes[2, 0] * x + axes[2, 1] * y + axes[2, 2] * z
+            twice = (u[1] - u[0]) * (v[2] - v[0]) - (u[2] - u[0]) * (v[1] - v[0])
+            if not abs(twice) > 1e-18:
+                continue
+            i_end = min(int(np.floor(max(u[0], u[1], u[2]))), shape[0] - 1)
+            j_begin = max(int(np.ceil(min(v[0], v[1], v[2]))), 0)
+            j_end = min(int(np.floor(max(v[0], v[1], v[2]))), shape[1] - 1)
+            for i in range(max(int(np.ceil(min(u[0], u[1], u[2]))), 0), i_end + 1):
+                for j in range(j_begin, j_end + 1):
+                    a = ((u[1] - i) * (v[2] - j) - (u[2] - i) * (v[1] - j)) / twice
+                    b = ((u[2] - i) * (v[0] - j) - (u[0] - i) * (v[2] - j)) / twice
+                    if a < 0 or b < 0 or a + b > 1:
+                        continue
+                    line = i * shape[1] + j
+                    if turn == 0:
+                        counts[line + 1] += 1
+                    else:
+                        height[order[line]] = a * w[0] + b * w[1] + (1 - a - b) * w[2]
+                        side[order[line]] = 1 if twice > 0 else -1
+                        order[line] += 1
+        if turn == 0:
+            counts = np.cumsum(counts)
+            height = np.empty(counts[-1])
+            side = np.empty(counts[-1], dtype=np.int8)
+            order = counts[:-1].copy()
+    crossed, met = 0, 0
+    for line in range(lines):
+        begin, end = counts[line], counts[line + 1]
+        if begin == end:
+            continue
+        met += 1
+        within, bad = 0, False
+        ranks = np.argsort(height[begin:end])
+        for k in range(end - begin):
+            within += side[begin + ranks[k]]
+            if within > 1 or within < -1:
+                bad = True
+        # a line that ends within the body grazed an edge or a hole: it tells nothing
+        if bad and within == 0:
+            crossed += 1
+    return crossed, met

@@ -1,0 +1,309 @@
+"""How an outsole lies in its file: axes, ground side, heel end, foot and resting plane."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull, QhullError
+
+from .._kernels.pieces import shrunk, without_specks
+from ..tread_map import tread_map
+from .settings import DIRECTIONS, FileSettings
+from .view import View
+
+Array = NDArray[np.float64]
+_SAMPLE = 200_000  # triangles: more change the axes by less than the snapping
+_SNAP = math.cos(math.radians(20))
+_NEARLY = 1.10  # a box along the file's axes may be this much larger than the smallest one
+Mask = NDArray[np.bool_]
+_TREAD_SHARE = 0.03  # of the plan form: fewer channels decide nothing
+_TREAD_RATIO = 1.5  # channels on the ground's side against the other
+_RIM_RISE = 0.5e-3  # m by which a ground side's rim must turn up more than the other's
+_SHEET = 0.05e-3  # m between both sides: a scan of one side
+_OFF_CENTRE = 0.005  # of the length: less decides nothing
+_BEND = 0.006  # of the length
+_BLOCK = 3e-3  # m: one low point a block, so that noise and single spikes don't carry the sole
+_LOW = 5.0  # percentile of the heights in a block that counts as its low point
+
+
+def unit_vector(direction: str) -> Array:
+    """Return the unit vector of a direction such as "-z"."""
+    vector = np.zeros(3)
+    vector["xyz".index(direction[1])] = 1.0 if direction[0] == "+" else -1.0
+    return vector
+
+
+def named_direction(vector: Array) -> str:
+    """Return "+x" and so on for a vector along an axis of the file, else its components."""
+    for name in DIRECTIONS:
+        if float(vector @ unit_vector(name)) > 1 - 1e-6:
+            return name
+    return "(" + ", ".join(f"{value:.2f}" for value in vector) + ")"
+
+
+def box_axes(triangles: NDArray[np.float32], settings: FileSettings) -> Array:
+    """Return rows (long, across, thin), a right-handed frame; signs still mean nothing.
+
+    Thin: the direction in which the area spreads least (second moments of the triangles), taken
+    as the file's axis when within 20 degrees of it. Long and across: the smallest rectangle around
+    the plan form, or the file's axes when that rectangle is less than 10 % larger.
+    """
+    centres, weights = _sample(triangles)
+    if settings.down in DIRECTIONS:
+        thin = unit_vector(settings.down)
+    else:
+        moments = np.cov(centres.T, aweights=weights)
+        _, vectors = np.linalg.eigh(moments)
+        thin = _snapped(np.asarray(vectors[:, 0], dtype=np.float64))
+        if settings.forward in DIRECTIONS:
+            forward = unit_vector(settings.forward)
+            thin = thin - (thin @ forward) * forward
+            thin = _snapped(thin / np.linalg.norm(thin))
+    if settings.forward in DIRECTIONS:
+        along = unit_vector(settings.forward)
+        along = along - (along @ thin) * thin
+        along /= np.linalg.norm(along)
+        return np.stack([along, np.cross(thin, along), thin])
+    along = _long_axis(centres, thin)
+    return np.stack([along, np.cross(thin, along), thin])
+
+
+def _sample(triangles: NDArray[np.float32]) -> tuple[Array, Array]:
+    chosen = triangles[:: max(1, triangles.shape[0] // _SAMPLE)].astype(np.float64)
+    chosen = chosen[np.isfinite(chosen).all(axis=(1, 2))]
+    sides = chosen[:, 1:] - chosen[:, :1]
+    weights = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    centres = chosen.mean(axis=1)
+    return centres - np.average(centres, axis=0, weights=np.maximum(weights, 1e-30)), weights
+
+
+def _snapped(vector: Array) -> Array:
+    axis = int(np.argmax(np.abs(vector)))
+    if abs(vector[axis]) < _SNAP:
+        return vector
+    axis_vector = np.zeros(3)
+    axis_vector[axis] = math.copysign(1.0, vector[axis])
+    return axis_vector
+
+
+def _long_axis(centres: Array, thin: Array) -> Array:
+    """Return the longer side of the smallest rectangle around the points seen along ``thin``."""
+    start = np.eye(3)[int(np.argmin(np.abs(thin)))]
+    u = start - (start @ thin) * thin
+    u /= np.linalg.norm(u)
+    v = np.cross(thin, u)
+    points = np.asarray(np.column_stack([centres @ u, centres @ v]), dtype=np.float64)
+    hull = points[ConvexHull(points).vertices]
+    edges = np.roll(hull, -1, axis=0) - hull
+    angles = np.unique(np.mod(np.arctan2(edges[:, 1], edges[:, 0]), math.pi / 2).round(3))
+    best = min(angles, key=lambda angle: math.prod(_extents(hull, angle)))
+    for axis in np.eye(3):
+        if abs(axis @ thin) > 1e-6:
+            continue
+        angle = math.atan2(float(axis @ v), float(axis @ u))
+        if math.prod(_extents(hull, angle)) <= _NEARLY * math.prod(_extents(hull, best)):
+            best = angle
+            break
+    length, width = _extents(hull, best)
+    if width > length:
+        best += math.pi / 2
+    return math.cos(best) * u + math.sin(best) * v
+
+
+def _extents(points: Array, angle: float) -> tuple[float, float]:
+    cosine, sine = math.cos(angle), math.sin(angle)
+    along = points @ np.array([cosine, sine])
+    across = points @ np.array([-sine, cosine])
+    return float(np.ptp(along)), float(np.ptp(across))
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """A decision: its sign (1 keep, -1 turn) and how it was made ("" when stated by the user)."""
+
+    sign: int
+    remark: str
+
+
+def ground_side(seen: View, settings: FileSettings) -> Choice:
+    """Return whether the ground is below the view (1) or above it (-1).
+
+    In turn: the side the user names; the side with more channels (by area, narrower than 16 mm, 0.3
+    to 12 mm deep); the side whose rim turns away (rounded edges, toe spring, side walls); for a
+    surface without thickness the side its normals point to; else the file's own lower side.
+    """
+    if settings.down in DIRECTIONS:
+        return Choice(-1, "")
+    choice = _ground_side(seen)
+    if settings.down == "flip":
+        return Choice(-choice.sign, "Ground side: turned over by the option down = flip.")
+    return choice
+
+
+def _ground_side(seen: View) -> Choice:
+    below, above = seen.lowest, -seen.highest
+    covered = seen.covered
+    thin = np.median((seen.highest - seen.lowest)[covered]) < _SHEET
+    turned = float(np.count_nonzero(seen.facing > 0)) / max(1, np.count_nonzero(covered))
+    rise = _rim_rise(below) - _rim_rise(above)
+    if not thin:
+        shares = [channel_share(height, seen.spacing) for height in (below, above)]
+        most, least = max(shares), min(shares)
+        if most > _TREAD_SHARE and most > _TREAD_RATIO * least:
+            sign = 1 if shares[0] > shares[1] else -1
+            return Choice(
+                sign,
+                f"Ground side: determined from the tread, channels over {most:.0%} of it, "
+                f"{least:.0%} on the other side.",
+            )
+    if abs(rise) > _RIM_RISE:
+        remark = "Ground side: determined from the rim, which turns up from the floor."
+        return Choice(1 if rise > 0 else -1, remark)
+    if thin and abs(turned - 0.5) > 0.25:
+        remark = "Ground side: the side to which the normals of the scan point."
+        return Choice(1 if turned < 0.5 else -1, remark)
+    return Choice(
+        1 if _file_side(seen) else -1,
+        "Assumed: the ground side is the lower one of the file; both sides look alike.",
+    )
+
+
+def _file_side(seen: View) -> bool:
+    """Return whether the view's down is the file's -z, -y or -x (its largest component)."""
+    up = seen.axes[2]
+    return bool(up[int(np.argmax(np.abs(up)))] > 0)
+
+
+def channel_share(height: Array, spacing: float) -> float:
+    """Return the share of the plan form that is channel: narrower than 16 mm, 0.3 to 12 mm deep."""
+    filled = np.where(np.isfinite(height), height, np.nan)
+    tread = tread_map(filled, spacing)
+    depth = np.where(np.isfinite(filled), filled - tread.base, 0.0)
+    inside = np.isfinite(filled)
+    channel = inside & ~tread.land & (depth < 12e-3)
+    return float(np.count_nonzero(channel)) / max(1, np.count_nonzero(inside))
+
+
+def _rim_rise(height: Array) -> float:
+    """Return how much higher the outermost ring is than the land within, m."""
+    inside = without_specks(np.isfinite(height), 50)
+    core = shrunk(inside, 2)
+    ring = inside & ~core
+    if not core.any() or not ring.any():
+        return 0.0
+    # the same low percentile on both: a ring half of channels is no rim that turns up
+    return float(np.percentile(height[ring], 20) - np.percentile(height[core], 20))
+
+
+def toe_end(plan: Mask, settings: FileSettings) -> Choice:
+    """Return whether the toe is at the far end of axis 0 (1) or at the near one (-1).
+
+    The toe side is the heavier one: the area's centroid lies beyond the middle, both on a whole
+    sole (the forepart is broader) and on a heel piece (its rear is rounded).
+    """
+    if settings.forward in DIRECTIONS:
+        return Choice(1, "")
+    offset = off_centre(plan, 0)
+    if settings.forward == "flip":
+        return Choice(-1 if offset > 0 else 1, "Heel end: swapped by the option forward = flip.")
+    if abs(offset) < _OFF_CENTRE:
+        return Choice(1, "Assumed: which end is the heel; both look alike.")
+    return Choice(
+        1 if offset > 0 else -1,
+        "Heel end: determined from the plan form, which is rounder or narrower there.",
+    )
+
+
+def off_centre(plan: Mask, axis: int) -> float:
+    """Return the offset of the plan form's centroid from its middle, in lengths along ``axis``."""
+    counts = plan.sum(axis=1 - axis).astype(float)
+    places = np.nonzero(counts)[0]
+    middle = (places[0] + places[-1]) / 2
+    centroid = float((np.arange(counts.size) * counts).sum() / counts.sum())
+    return (centroid - middle) / (places[-1] - places[0] + 1)
+
+
+def foot_of(plan: Mask, spacing: float, settings: FileSettings) -> tuple[str, str]:
+    """Return "left", "right" or "" (not determined) and a remark on how it was determined.
+
+    The middle line of a sole bends towards the inner side of the foot: c, the coefficient of
+    y = a + b x + c x^2 through the middles of its rows (x along, y to the left), is positive for a
+    right foot. Determined when the sagitta |c| L^2 / 4 is more than 0.6 % of the length L.
+    """
+    if settings.foot != "auto":
+        return settings.foot, ""
+    rows = np.nonzero(plan.any(axis=1))[0]
+    rows = rows[int(0.03 * rows.size) : rows.size - int(0.03 * rows.size)]
+    y = np.arange(plan.shape[1], dtype=float)
+    middle = [(y[plan[row]].min() + y[plan[row]].max()) / 2 for row in rows]
+    length = float(rows[-1] - rows[0])
+    bend = float(np.polyfit(rows / length, middle, 2)[0]) / 4 / length
+    if abs(bend) < _BEND:
+        return "", "The foot is not determined: the plan form is nearly symmetric."
+    foot = "right" if bend > 0 else "left"
+    return foot, f"Foot: {foot}, from the bend of the plan form."
+
+
+def resting_plane(height: Array, spacing: float) -> tuple[float, float, float]:
+    """Return (a, b, c) of the plane z = a x + b y + c that the sole rests on under its own centre.
+
+    The lower convex hull of the low points (5 % of the heights in blocks of 3 mm); of its faces the
+    one over the centroid of the plan form: a sole pressed there stands on that face's corners. x
+    and y count from the first cell, m.
+
+    Parameters
+    ----------
+    height
+        (nx, ny) m, z up, nan outside.
+    spacing
+        Of its cells, m.
+    """
+    points = _low_points(height, spacing)
+    inside = np.isfinite(height)
+    centre = np.array([float(index.mean()) for index in np.nonzero(inside)]) * spacing
+    if points.shape[0] < 4:
+        return 0.0, 0.0, float(np.nanmin(height))
+    try:
+        hull = ConvexHull(points)
+    except QhullError:  # all points in one plane: that plane
+        coefficients, *_ = np.linalg.lstsq(
+            np.column_stack([points[:, :2], np.ones(points.shape[0])]), points[:, 2], rcond=None
+        )
+        return float(coefficients[0]), float(coefficients[1]), float(coefficients[2])
+    lower = hull.equations[hull.equations[:, 2] < -1e-9]
+    # every lower face lies below the points: over the centre the highest of them is the hull
+    a, b, c = (-lower[:, n] / lower[:, 2] for n in (0, 1, 3))
+    best = int(np.argmax(a * centre[0] + b * centre[1] + c))
+    return float(a[best]), float(b[best]), float(c[best])
+
+
+def _low_points(height: Array, spacing: float) -> Array:
+    size = max(1, round(_BLOCK / spacing))
+    count = [math.ceil(n / size) for n in height.shape]
+    padded = np.full([n * size for n in count], np.nan)
+    padded[: height.shape[0], : height.shape[1]] = height
+    blocks = padded.reshape(count[0], size, count[1], size).transpose(0, 2, 1, 3)
+    blocks = blocks.reshape(count[0], count[1], -1)
+    filled = np.isfinite(blocks).sum(axis=2)
+    i, j = np.nonzero(filled >= 0.5 * blocks.shape[2])
+    if i.size == 0:
+        return np.zeros((0, 3))
+    ranked = np.sort(blocks[i, j], axis=1)  # nan comes last
+    rank = np.rint(_LOW / 100 * (filled[i, j] - 1)).astype(int)
+    low = ranked[np.arange(i.size), rank]
+    places = (i + 0.5) * size * spacing, (j + 0.5) * size * spacing
+    return np.asarray(np.column_stack([*places, low]), dtype=np.float64)
+
+
+def levelled(axes: Array, plane: tuple[float, float, float]) -> tuple[Array, float]:
+    """Return the axes turned so that the plane is level, and the angle of the turn, rad."""
+    slope_x, slope_y, _ = plane
+    up = np.array([-slope_x, -slope_y, 1.0])
+    up /= np.linalg.norm(up)
+    forward = np.array([1.0, 0.0, 0.0]) - up[0] * up
+    forward /= np.linalg.norm(forward)
+    turn = np.stack([forward, np.cross(up, forward), up])
+    return turn @ axes, math.acos(min(1.0, float(up[2])))

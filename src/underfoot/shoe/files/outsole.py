@@ -1,0 +1,323 @@
+"""From a file to the bottom of a sole in its own frame, with a remark on every decision."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core import InputError
+
+from .._kernels.mesh_edges import overlap_lines
+from ..sole_surface import SoleSurface
+from ..tread_map import tread_map
+from .cleaning import cleaned, plan_outline, without_ledges
+from .mesh import Mesh
+from .orientation import (
+    box_axes,
+    foot_of,
+    ground_side,
+    levelled,
+    named_direction,
+    off_centre,
+    resting_plane,
+    toe_end,
+)
+from .read import read_mesh
+from .settings import DIRECTIONS, SHARES, FileSettings
+from .soundness import Soundness, soundness
+from .units import HEEL, length_unit
+from .view import View, extents, view
+
+Array = NDArray[np.float64]
+_COARSE = 400  # cells along the sole for finding sides and plane
+_NEARLY_SQUARE = 1.3
+_LEVEL = math.radians(0.05)  # a tilt below it is that of noise and roundings
+_MOST_TURN = math.radians(12)  # beyond it the sole stands on a stud or on its side
+_OVERLAP_PITCH = 2e-3  # m between the lines on which crossing material is looked for
+_SHEET = 0.05e-3
+
+
+@dataclass(frozen=True, slots=True)
+class FileOutsole:
+    """An outsole read from a file.
+
+    Parameters
+    ----------
+    surface
+        Its bottom in its own frame; ``surface.remarks`` lists what was determined,
+        assumed, repaired or tolerated.
+    format, unit, down, forward, foot, faces
+        What the file is; ``unit`` in m, directions in the file's axes, ``foot`` "" if not
+        determined.
+    soundness
+        Counts of what is wrong with the mesh.
+    thickness
+        Median distance of both sides of the file's body over the land, m; None for a surface
+        without thickness.
+    whole_length
+        Of the sole before the region was cut, m.
+    """
+
+    surface: SoleSurface
+    format: str
+    unit: float
+    down: str
+    forward: str
+    foot: str
+    faces: int
+    soundness: Soundness
+    thickness: float | None
+    whole_length: float
+
+
+def outsole_from_file(path: Path | str, settings: FileSettings | None = None) -> FileOutsole:
+    """Return the outsole in a STEP, STL, OBJ or PLY file.
+
+    Raises
+    ------
+    InputError, DataError
+        See ``read_mesh`` and ``outsole_from_mesh``.
+    """
+    path = Path(path)
+    return outsole_from_mesh(read_mesh(path), settings, name=path.name, where=str(path))
+
+
+def outsole_from_mesh(
+    mesh: Mesh, settings: FileSettings | None = None, *, name: str = "mesh", where: str = "mesh"
+) -> FileOutsole:
+    """Return the outsole that triangles describe.
+
+    Unit, ground side, heel end, foot, resting plane, region and tread are determined in this
+    order; each decision and each repair is a sentence of ``surface.remarks``, guesses begin with
+    "Assumed".
+
+    Raises
+    ------
+    InputError
+        No unit makes it a sole; a region it doesn't have; a grid too fine or too coarse.
+    DataError
+        No face with an area.
+    """
+    chosen = settings or FileSettings()
+    mesh = replace(mesh, triangles=np.ascontiguousarray(mesh.triangles, dtype=np.float32))
+    remarks = list(mesh.remarks)
+    sound = soundness(mesh, where)
+    axes = box_axes(mesh.triangles, chosen)
+    low, high = extents(mesh.triangles, axes)
+    size = high - low
+    unit, unit_remark = length_unit(
+        float(max(size[:2])),
+        float(min(size[:2])),
+        chosen=chosen.unit,
+        in_file=mesh.unit,
+        where=where,
+    )
+    remarks.append(unit_remark)
+    axes, side_remarks = _sides(mesh, axes, unit, chosen)
+    remarks += side_remarks
+    seen, axes, level_remarks = _level_view(mesh, axes, chosen.spacing)
+    remarks += level_remarks
+    remarks += sound.remarks() + _view_remarks(seen, sound, mesh)
+    height, repaired = cleaned(seen.lowest, seen.spacing)
+    remarks += repaired
+    rows, columns = (np.nonzero(np.isfinite(height).any(axis=n))[0] for n in (1, 0))
+    part = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    height = height[part]
+    thickness = (seen.highest - seen.lowest)[part]
+    whole_length = rows.size * seen.spacing
+    foot, foot_remark = "", ""
+    if whole_length > HEEL[1] or chosen.foot != "auto":
+        foot, foot_remark = foot_of(np.isfinite(height), seen.spacing, chosen)
+    remarks += [foot_remark] if foot_remark else []
+    if chosen.mirror:
+        height, thickness = height[:, ::-1], thickness[:, ::-1]
+        foot = {"left": "right", "right": "left", "": ""}[foot]
+        remarks.append("Mirrored: the other shoe of the pair.")
+    height, part, region_remarks = _region(height, seen.spacing, chosen, where)
+    thickness = thickness[part]
+    remarks += region_remarks
+    surface, tread_remarks = _surface(height, seen.spacing, name)
+    remarks += tread_remarks
+    body = float(np.median(thickness[surface.land]))
+    return FileOutsole(
+        surface=replace(surface, remarks=tuple(remarks)),
+        format=mesh.format,
+        unit=unit,
+        down=named_direction(-axes[2] / np.linalg.norm(axes[2])),
+        forward=named_direction(axes[0] / np.linalg.norm(axes[0])),
+        foot=foot,
+        faces=mesh.triangles.shape[0],
+        soundness=sound,
+        thickness=body if body > _SHEET else None,
+        whole_length=whole_length,
+    )
+
+
+def _sides(mesh: Mesh, axes: Array, unit: float, chosen: FileSettings) -> tuple[Array, list[str]]:
+    """Return the axes forward, left, up (rows, m per unit of the file) and how they were tread."""
+    low, high = extents(mesh.triangles, axes * unit)
+    coarse = max(float(max(high[:2] - low[:2])) / _COARSE, chosen.spacing)
+    seen = view(mesh.triangles, axes * unit, coarse)
+    ground = ground_side(seen, chosen)
+    plan = seen.covered
+    along, across, thin = axes
+    if ground.sign < 0:
+        across, thin, plan = -across, -thin, plan[:, ::-1]
+    size = [float(high[n] - low[n]) for n in range(2)]
+    square = max(size) < _NEARLY_SQUARE * min(size)
+    free = chosen.forward not in DIRECTIONS and square
+    if free and abs(off_centre(plan, 1)) > abs(off_centre(plan, 0)):
+        along, across, plan = across, -along, plan.T[:, ::-1]
+    toe = toe_end(plan, chosen)
+    if toe.sign < 0:
+        along, across = -along, -across
+    turned = np.stack([along, across, thin])
+    down, forward = named_direction(-thin), named_direction(along)
+    remarks = [
+        f"{choice.remark[:-1]} (down is {down} of the file)."
+        if k == 0
+        else f"{choice.remark[:-1]} (forward is {forward} of the file)."
+        for k, choice in enumerate((ground, toe))
+        if choice.remark
+    ]
+    return turned * unit, remarks
+
+
+def _level_view(mesh: Mesh, axes: Array, spacing: float) -> tuple[View, Array, list[str]]:
+    """Return the fine view in the resting plane's frame: z = 0 is the plane."""
+    seen = view(mesh.triangles, axes, spacing)
+    total = 0.0
+    remarks: list[str] = []
+    for _ in range(3):
+        height, _ = cleaned(seen.lowest, spacing)
+        plane = resting_plane(height, spacing)
+        turned, angle = levelled(axes, plane)
+        if angle < _LEVEL:
+            break
+        if angle > _MOST_TURN:
+            remarks.append(
+                f"It would rest {math.degrees(angle):.0f}° off level, on few points: left as it "
+                "lies."
+            )
+            break
+        total += angle
+        axes = turned
+        seen = view(mesh.triangles, axes, spacing)
+    if total > 0:
+        remarks.append(
+            f"Turned by {math.degrees(total):.2g}° so that it rests on its lowest lugs; toe spring "
+            "is kept."
+        )
+    height, _ = cleaned(seen.lowest, spacing)
+    a, b, c = resting_plane(height, spacing)
+    centre = [(n - 1) / 2 * spacing for n in height.shape]
+    level = a * centre[0] + b * centre[1] + c
+    lifted = View(
+        seen.axes, seen.first, spacing, seen.lowest - level, seen.highest - level, seen.facing
+    )
+    return lifted, axes, remarks
+
+
+def _view_remarks(seen: View, sound: Soundness, mesh: Mesh) -> tuple[str, ...]:
+    remarks: list[str] = []
+    covered = seen.covered
+    up = float(np.count_nonzero(seen.facing > 0)) / max(1, np.count_nonzero(covered))
+    sheet = float(np.median((seen.highest - seen.lowest)[covered])) < _SHEET
+    inward = sound.closed and not sound.turned_edges and sound.volume < 0
+    if up > 0.5 and not inward:
+        remarks.append("Normals of the ground side point into the sole (inverted); tolerated.")
+    elif 0.01 < up <= 0.5 and not inward:
+        remarks.append(f"Normals are turned over {up:.0%} of the ground side; tolerated.")
+    if not sheet:
+        shape = tuple(max(1, int(n * seen.spacing / _OVERLAP_PITCH)) for n in covered.shape)
+        # off the cells' own places by odd parts, so that lines don't run along edges or diagonals
+        odd = (0.381966, 0.527864)
+        first = tuple(s + n * _OVERLAP_PITCH for s, n in zip(seen.first, odd, strict=True))
+        crossed, met = overlap_lines(
+            mesh.triangles, seen.axes, (first[0], first[1]), _OVERLAP_PITCH, (shape[0], shape[1])
+        )
+        if crossed:
+            remarks.append(
+                f"The surface crosses itself, or bodies overlap, on {crossed} of {met} lines "
+                "through the sole; tolerated, the lowest surface counts."
+            )
+    return tuple(remarks)
+
+
+def _region(
+    height: Array, spacing: float, chosen: FileSettings, where: str
+) -> tuple[Array, tuple[slice, slice], list[str]]:
+    length = height.shape[0] * spacing
+    everything = (slice(None), slice(None))
+    if chosen.region == "whole" and chosen.region_length is None:
+        return height, everything, []
+    piece = length <= HEEL[1]
+    if chosen.region == "forepart" and piece:
+        raise InputError(
+            f"a heel piece of {length * 1e3:.4g} mm has no forepart",
+            where="outsole.region",
+            allowed='"heel" or "whole"',
+        )
+    extent = chosen.region_length
+    if extent is None:
+        extent = length if piece else SHARES[chosen.region] * length
+    if extent > length * (1 + 1e-9):
+        raise InputError(
+            f"the region is {extent * 1e3:.4g} mm long, the sole only {length * 1e3:.4g} mm",
+            where="outsole.region_length",
+            allowed=f"at most {length * 1e3:.4g} mm",
+        )
+    count = max(1, round(extent / spacing))
+    cut = slice(height.shape[0] - count, None) if chosen.region == "forepart" else slice(0, count)
+    if not np.isfinite(height[cut]).any():
+        raise InputError(
+            f"nothing of the sole of {where} lies in the {chosen.region} region",
+            where="outsole.region",
+            remedy="Check forward and region_length",
+        )
+    part = height[cut]
+    columns = np.nonzero(np.isfinite(part).any(axis=0))[0]
+    block = (cut, slice(int(columns[0]), int(columns[-1]) + 1))
+    if count == height.shape[0]:
+        return height[block], block, []
+    name = "forepart" if chosen.region == "forepart" else "rear"
+    remarks = [
+        f"Cut to the {name} {count * spacing * 1e3:.4g} mm of {length * 1e3:.4g} mm; channels that "
+        "cross the cut count as open there."
+    ]
+    return height[block], block, remarks
+
+
+def _surface(height: Array, spacing: float, name: str) -> tuple[SoleSurface, list[str]]:
+    tread = tread_map(height, spacing)
+    lugs = tread.tread_depth[tread.tread_depth > 0]
+    deep = float(np.percentile(lugs, 90)) if lugs.size else 0.0
+    height, cut_open, remarks = without_ledges(height, tread.land, spacing, deep)
+    if remarks or cut_open.any() or not np.isfinite(height[tread.land]).all():
+        tread = tread_map(height, spacing, channels=cut_open)
+    inside = np.isfinite(height)
+    x = (np.arange(height.shape[0], dtype=np.float64) + 0.5) * spacing
+    y = (np.arange(height.shape[1], dtype=np.float64) - (height.shape[1] - 1) / 2) * spacing
+    remarks.append(
+        f"Channels are hollows of {tread.level * 1e3:.2g} mm and more, narrower than 16 mm."
+    )
+    if tread.noise > 10e-6:
+        remarks.append(
+            f"The heights carry noise of {tread.noise * 1e6:.0f} um (standard deviation)."
+        )
+    surface = SoleSurface(
+        x=x,
+        y=y,
+        height=height,
+        land=tread.land,
+        tread_depth=tread.tread_depth,
+        spacing=spacing,
+        outline=plan_outline(inside, x, y, spacing),
+        name=name,
+        base=tread.base,
+    )
+    return surface, remarks

@@ -1,0 +1,215 @@
+"""The sole as a solid: plan form, profile, lugs, sipes and rounded edges."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from underfoot.core import InputError
+
+from ..shape import SoleShape
+from ..tread import ArcChannel
+from .lugs import Outline, lug_outlines, slit_outlines
+from .modelling import MM, arc_edge, kernel, outline_wire, plate_with_holes, raised, rim_face
+from .rounding import rounded
+from .slab import slab
+
+LEAST_PRINTABLE = 0.3e-3
+"""m: walls and slits below this can be neither printed nor moulded (assumed: common nozzles)."""
+_BELOW = 1e-3  # m under the sole plane where cutting prisms begin
+
+
+@dataclass(frozen=True, slots=True)
+class SoleSolid:
+    """A solid of the modelling kernel in mm, with what could not be made as described.
+
+    ``volume`` in m^3; ``lugs`` is the number of lugs that meet the plan form (0 untreaded).
+    """
+
+    body: Any
+    volume: float
+    lugs: int
+    remarks: tuple[str, ...] = ()
+
+
+def sole_solid(shape: SoleShape) -> SoleSolid:
+    """Return the new sole as a solid: the same description that ``heel_map`` samples.
+
+    The land is cut from a slab, its rim and its lugs' edges are rounded by fillets; a channel keeps
+    its depth straight above the land. Fillets roll along the surface, the map's rounding is
+    straight above it: on a bevel of 10 degrees they differ by less than 2 % of the radius. Wear is
+    left out.
+
+    Raises
+    ------
+    InputError
+        A lug, channel or sipe too small to be made; a toe or bevel through the top.
+    """
+    check_printable(shape)
+    remarks: list[str] = []
+    body = slab(shape) * raised(rim_face(shape.rim_arcs(), -_BELOW), 0.3)
+    if shape.edge_radius > 0:
+        rim = [i for i, edge in enumerate(body.edges) if _on_lower_rim(edge, shape)]
+        body = _rounded(body, rim, shape.edge_radius, "the lower rim", remarks)
+    lower = body
+    tread, lugs = shape.tread, []
+    if tread is not None and tread.depth > 0:
+        lugs = lug_outlines(shape, tread)
+        plate = plate_with_holes(lugs, -_BELOW)
+        body = body - raised(plate, 0.3) * _layer(lower, tread.depth)
+        if tread.edge_radius > 0:
+            edges = [(i, edge) for i, edge in enumerate(body.edges) if _on_lug(edge, shape)]
+            whole = _free_lugs(lugs, shape)
+            free = [i for i, edge in edges if _belongs(edge, whole)]
+            if free:
+                body = _rounded(body, free, tread.edge_radius, "the lugs' edges", remarks)
+            if len(free) < len(edges):
+                remarks.append(
+                    f"{len(edges) - len(free)} of {len(edges)} edges of lugs stay sharp: "
+                    "they meet the rim or the end of the bevel"
+                )
+        if tread.sipes is not None:
+            sipes = tread.sipes
+            first = sipes.spacing / 2 if sipes.offset is None else sipes.offset
+            slits = slit_outlines(shape, sipes.width, sipes.spacing, sipes.angle, first)
+            body = body - _prisms(slits) * _layer(lower, sipes.depth)
+    if shape.arc_channel is not None and shape.arc_channel.depth > 0:
+        body = body - _half_ring(shape.arc_channel) * _layer(lower, shape.arc_channel.depth)
+    if shape.wear is not None and shape.wear.depth > 0:
+        remarks.append("the solid is the new sole: its wear is left out")
+    return SoleSolid(body, float(body.mass) / MM**3, len(lugs), tuple(remarks))
+
+
+def check_printable(shape: SoleShape) -> None:
+    """Refuse what cannot be made: too fine, or cut through the top."""
+    tread = shape.tread
+    fine: list[tuple[str, str, float]] = []
+    if tread is not None and tread.depth > 0:
+        fine += [("tread.lug_width", "lug", tread.smallest_lug)]
+        fine += [("tread.channel_width", "channel", tread.channel_width)]
+        if tread.sipes is not None:
+            fine += [("sipes.width", "sipe", tread.sipes.width)]
+            left = tread.sipes.spacing - tread.sipes.width
+            fine += [("sipes.spacing", "wall between sipes", left)]
+    if shape.arc_channel is not None and shape.arc_channel.depth > 0:
+        fine += [("arc_channel.width", "arc channel", shape.arc_channel.width)]
+    for where, name, size in fine:
+        if size < LEAST_PRINTABLE:
+            raise InputError(
+                f"a {name} of {size * 1e3:g} mm can be neither printed nor moulded",
+                where=where,
+                allowed=f"at least {LEAST_PRINTABLE * 1e3:g} mm",
+            )
+    x = np.linspace(0.0, shape.length, 201)
+    half = np.full_like(x, shape.width / 2)
+    deepest = max([0.0 if tread is None else tread.depth, 0.0])
+    crown = 0.0 if shape.crown_radius is None else float(half[0] ** 2 / (2 * shape.crown_radius))
+    rear = x < shape.length / 2
+    highest = float(shape.profile.height(x[rear]).max()) + crown + deepest
+    if highest >= shape.outsole_thickness:
+        raise InputError(
+            f"bevel, crown and tread together reach {highest * 1e3:.3g} mm, through the outsole",
+            where="heel.outsole_thickness",
+            allowed=f"above {highest * 1e3:.3g} mm for this profile",
+        )
+
+
+def _layer(lower: Any, depth: float) -> Any:
+    """Return the layer of ``depth`` over the land: the body without itself raised."""
+    return lower - lower.Move(depth * MM * kernel().Z)
+
+
+def _prisms(outlines: Sequence[Outline]) -> Any:
+    return kernel().Compound(
+        [raised(kernel().Face(outline_wire(outline, -_BELOW)), 0.3) for outline in outlines]
+    )
+
+
+def _half_ring(channel: ArcChannel) -> Any:
+    x = channel.position + channel.radius
+    outer, inner = channel.radius + channel.width / 2, channel.radius - channel.width / 2
+
+    def closed(radius: float) -> Any:
+        ends = [kernel().Pnt(x * MM, side * radius * MM, -_BELOW * MM) for side in (-1, 1)]
+        return kernel().Face(
+            kernel().Wire(
+                [arc_edge(x, 0.0, radius, math.pi / 2, -_BELOW), kernel().Segment(ends[0], ends[1])]
+            )
+        )
+
+    return raised(closed(outer), 0.3) - raised(closed(inner), 0.3)
+
+
+def _rounded(body: Any, edges: list[int], radius: float, name: str, remarks: list[str]) -> Any:
+    """Return the body with fillets; where the kernel cannot make them the edges stay sharp."""
+    filleted = rounded(body, edges, radius)
+    if filleted is None:
+        remarks.append(f"left sharp: {name}, {radius * 1e3:g} mm cannot be rolled along all of it")
+        return body
+    return filleted
+
+
+def _on_lower_rim(edge: Any, shape: SoleShape) -> bool:
+    """Whether an edge joins the land and the side wall of the plan form."""
+    ends = np.array([[v.p[0], v.p[1], v.p[2]] for v in edge.vertices]) / MM
+    x, y, z = ends.T
+    land = shape.profile.height(x)
+    if shape.crown_radius is not None:
+        land = land + y**2 / (2 * shape.crown_radius)
+    if np.abs(z - land).max() > 1e-6 or np.abs(shape.inward_distance(x, y)).max() > 1e-6:
+        return False
+    middle = np.array([edge.center.x, edge.center.y]) / MM
+    across = len(x) == 2 and abs(x[0] - x[1]) < 1e-7
+    inner = abs(float(shape.inward_distance(middle[:1], middle[1:])[0])) > 1e-5
+    return not (across and inner)
+
+
+def _on_lug(edge: Any, shape: SoleShape) -> bool:
+    """Whether an edge joins the land of a lug and a wall of a channel, clear of the rim."""
+    tread = shape.tread
+    assert tread is not None
+    ends = np.array([[v.p[0], v.p[1], v.p[2]] for v in edge.vertices]) / MM
+    x, y, z = ends.T
+    if np.abs(z - shape.unworn_height(x, y)).max() > 1e-5:
+        return False
+    if np.abs(tread.channel_distance(x, y)).max() > 1e-6:
+        return False
+    middle = np.array([edge.center.x, edge.center.y]) / MM
+    off = float(np.abs(tread.channel_distance(middle[:1], middle[1:]))[0])
+    return off < 1e-6 or tread.pattern == "circles"
+
+
+def _free_lugs(lugs: Sequence[Outline], shape: SoleShape) -> list[Outline]:
+    """Return the lugs that keep clear of the rounded rim and of kinks of the profile.
+
+    The kernel cannot roll a fillet over those.
+    """
+    from .slab import break_points
+
+    assert shape.tread is not None
+    clear = shape.edge_radius + 2 * shape.tread.edge_radius
+    kinks = np.array(break_points(shape)[1:-1])
+    fitting = []
+    for lug in lugs:
+        low, high = lug.points.min(axis=0) - lug.radius, lug.points.max(axis=0) + lug.radius
+        around = np.array([[low[0], low[1]], [high[0], low[1]], [low[0], high[1]], high])
+        if shape.inward_distance(around[:, 0], around[:, 1]).min() < clear:
+            continue
+        if ((kinks > low[0] - clear) & (kinks < high[0] + clear)).any():
+            continue
+        fitting.append(lug)
+    return fitting
+
+
+def _belongs(edge: Any, lugs: Sequence[Outline]) -> bool:
+    """Whether an edge lies on one of these lugs."""
+    ends = np.array([[v.p[0], v.p[1]] for v in edge.vertices]) / MM
+    for lug in lugs:
+        low, high = lug.points.min(axis=0) - lug.radius, lug.points.max(axis=0) + lug.radius
+        if (ends > low - 1e-6).all() and (ends < high + 1e-6).all():
+            return True
+    return False

@@ -1,0 +1,93 @@
+"""What a heel and a whole sole have in common: the height of their land, new and worn."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core import InputError
+
+from .profile import Profile
+from .tread import ArcChannel, Tread
+
+Array = NDArray[np.float64]
+_CENTRE_LINE_NODES = 4001
+
+
+class SoleWear(Protocol):
+    """Material removed from the land of a sole."""
+
+    @property
+    def depth(self) -> float:
+        """Largest thickness removed, m."""
+        ...
+
+    def worn_height(self, x: Array, y: Array, unworn: Array, shape: SoleShape) -> Array:
+        """Return the height (m) of the worn land at (x, y); ``unworn`` is that of the new one."""
+        ...
+
+
+class SoleShape(ABC):
+    """Bottom of a sole given by lengths and angles, x from the rear end, y to the left, z up."""
+
+    __slots__ = ()
+    length: float
+    width: float
+    outsole_thickness: float
+    profile: Profile
+    edge_radius: float
+    crown_radius: float | None
+    tread: Tread | None
+    arc_channel: ArcChannel | None
+    wear: SoleWear | None
+
+    @property
+    @abstractmethod
+    def plan_area(self) -> float:
+        """Area of the plan form in its own plane, m^2."""
+
+    @abstractmethod
+    def inward_distance(self, x: Array, y: Array) -> Array:
+        """Return the distance (m) from the rim of the plan form, positive inside."""
+
+    @abstractmethod
+    def rim_arcs(self) -> Array:
+        """Return the rim as arcs (n, 7), anticlockwise; see ``_kernels.arcs``."""
+
+    def land_height(self, x: Array, y: Array) -> Array:
+        """Return the height (m) of the worn sole over its plane, as if there were no channels."""
+        unworn = self.unworn_height(x, y)
+        if self.wear is None or self.wear.depth == 0:
+            return unworn
+        return self.wear.worn_height(x, y, unworn, self)
+
+    def unworn_height(self, x: Array, y: Array) -> Array:
+        """Return the height (m) of the new sole over its plane, as if there were no channels."""
+        height = self.profile.height(x)
+        if self.crown_radius is not None:
+            height = height + y**2 / (2 * self.crown_radius)
+        if self.edge_radius > 0:
+            into = np.clip(self.edge_radius - self.inward_distance(x, y), 0.0, self.edge_radius)
+            height = height + self.edge_radius - np.sqrt(self.edge_radius**2 - into**2)
+        return height
+
+    def centre_line(self) -> tuple[Array, Array]:
+        """Return x and the unworn height (m) along y = 0."""
+        line = np.linspace(0.0, self.length, _CENTRE_LINE_NODES)
+        return line, self.unworn_height(line, np.zeros_like(line))
+
+
+def check_depths(shape: SoleShape) -> None:
+    """Refuse channels, arc channels and wear that go through the outsole."""
+    for name in ("tread", "arc_channel", "wear"):
+        part = getattr(shape, name)
+        if part is not None and part.depth >= shape.outsole_thickness:
+            raise InputError(
+                f"depth {part.depth * 1e3:g} mm goes through the outsole of "
+                f"{shape.outsole_thickness * 1e3:g} mm",
+                where=f"{name}.depth",
+                allowed="less than heel.outsole_thickness",
+            )

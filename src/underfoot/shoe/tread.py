@@ -1,0 +1,244 @@
+"""Tread: lugs, channels and sipes in the frame of the sole.
+
+Sipes are slits in the lugs, too narrow to drain much; they let a lug bend and open its edges.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core import InputError, unknown_name
+from underfoot.core.checks import between, not_negative, positive
+
+from ._kernels.tread_pattern import (
+    bar_distance,
+    block_distance,
+    chevron_distance,
+    circle_distance,
+    hexagon_distance,
+    rotated,
+)
+
+Array = NDArray[np.float64]
+PATTERNS = (
+    "grid",
+    "transverse",
+    "longitudinal",
+    "blocks",
+    "bars",
+    "chevrons",
+    "circles",
+    "hexagons",
+)
+LATTICES = ("circles", "hexagons")
+
+
+@dataclass(frozen=True, slots=True)
+class Sipes:
+    """Parallel slits through all lugs.
+
+    Parameters
+    ----------
+    width, depth
+        Of a slit, m; the depth at most that of the tread.
+    spacing
+        Between the middles of two slits, m.
+    angle
+        Of the slits against the transverse direction, rad, anticlockwise seen from above.
+    offset
+        Distance of the first slit's middle from the rear end at angle 0, m; by default half the
+        spacing.
+    """
+
+    width: float
+    depth: float
+    spacing: float
+    angle: float = 0.0
+    offset: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("width", "depth", "spacing"):
+            positive(getattr(self, name), f"sipes.{name}")
+        most = math.radians(180)
+        between(self.angle, -most, most, "sipes.angle", "-180 deg to 180 deg")
+        if self.width >= self.spacing / 2:
+            raise InputError(
+                f"slits of {self.width * 1e3:g} mm every {self.spacing * 1e3:g} mm leave no lug",
+                where="sipes.width",
+                allowed=f"below {self.spacing / 2e-3:g} mm (half of sipes.spacing)",
+            )
+
+    def check_within(self, tread_depth: float) -> None:
+        """Refuse slits that go deeper than the lugs stand."""
+        if self.depth > tread_depth * (1 + 1e-9):
+            raise InputError(
+                f"sipes of {self.depth * 1e3:g} mm are deeper than the tread",
+                where="sipes.depth",
+                allowed=f"at most {tread_depth * 1e3:g} mm (tread.depth)",
+            )
+
+    def channel_distance(self, x: Array, y: Array) -> Array:
+        """Return the distance (m) into a slit: positive in it, negative beside it."""
+        first = self.spacing / 2 if self.offset is None else self.offset
+        across, _ = rotated(x, y, self.angle)
+        place = np.mod(across - first + self.spacing / 2, self.spacing) - self.spacing / 2
+        return self.width / 2 - np.abs(place)
+
+
+@dataclass(frozen=True, slots=True)
+class Tread:
+    """Lugs of one kind between channels of one width.
+
+    Parameters
+    ----------
+    pattern
+        "grid" (square lugs), "blocks" (rectangular lugs), "transverse" (channels across the shoe),
+        "longitudinal" (channels along it), "bars" (straight channels, across the shoe at angle 0),
+        "chevrons" (zigzag bars, tips forward), "circles" and "hexagons" (triangular lattices).
+    lug_width, channel_width
+        m; of bars and chevrons normal to their walls, the diameter of circles, the width across
+        flats of hexagons; the channel where it is narrowest.
+    depth
+        Height of the lugs, m; 0 is an untreaded sole.
+    edge_radius
+        Rounding of the lower edges of the lugs, m.
+    offset
+        Shift (x, y) of the pattern, m. At (0, 0) the first lug begins at the rear end of the sole
+        and a lug is centred on the centre line.
+    angle
+        Turns the pattern as a whole, rad, anticlockwise seen from above; for chevrons it is the
+        angle of the arms against the transverse direction instead.
+    lug_length
+        Of "blocks" along the shoe, m.
+    arm_length
+        Of "chevrons": extent of one arm across the shoe, m.
+    sipes
+        Fine slits in the lugs.
+    """
+
+    pattern: str
+    lug_width: float
+    channel_width: float
+    depth: float
+    edge_radius: float = 0.0
+    offset: tuple[float, float] = (0.0, 0.0)
+    angle: float = 0.0
+    lug_length: float | None = None
+    arm_length: float | None = None
+    sipes: Sipes | None = None
+
+    def __post_init__(self) -> None:
+        if self.pattern not in PATTERNS:
+            raise unknown_name("tread pattern", self.pattern, PATTERNS, where="tread.pattern")
+        positive(self.lug_width, "tread.lug_width")
+        positive(self.channel_width, "tread.channel_width")
+        not_negative(self.depth, "tread.depth")
+        not_negative(self.edge_radius, "tread.edge_radius")
+        for name, pattern in (("lug_length", "blocks"), ("arm_length", "chevrons")):
+            value = getattr(self, name)
+            if (value is None) == (self.pattern == pattern):
+                raise InputError(
+                    f"is {'missing' if value is None else 'not used'} for {self.pattern}",
+                    where=f"tread.{name}",
+                )
+            if value is not None:
+                positive(value, f"tread.{name}")
+        most = math.radians(75 if self.pattern == "chevrons" else 180)
+        between(self.angle, -most, most, "tread.angle", f"at most {math.degrees(most):g} deg")
+        rounding = min(self.depth, self.smallest_lug / 2)
+        if self.depth > 0 and self.edge_radius > rounding:
+            raise InputError(
+                f"edge radius {self.edge_radius * 1e3:g} mm doesn't fit on the lug",
+                where="tread.edge_radius",
+                allowed=f"at most {rounding * 1e3:g} mm (the depth and half the lug width)",
+            )
+        if self.sipes is not None and self.depth > 0:
+            self.sipes.check_within(self.depth)
+
+    @property
+    def smallest_lug(self) -> float:
+        """Smaller side of a lug, m."""
+        return min(self.lug_width, self.lug_length or self.lug_width)
+
+    @property
+    def land_ratio(self) -> float:
+        """Share of an endless tread that is lug, sipes left aside.
+
+        w / (w + c) = s for bars, s^2 for a grid and hexagons, the product of both directions for
+        blocks, pi / (2 sqrt 3) s^2 for circles.
+        """
+        share = self.lug_width / (self.lug_width + self.channel_width)
+        if self.pattern == "blocks" and self.lug_length is not None:
+            return share * self.lug_length / (self.lug_length + self.channel_width)
+        if self.pattern == "circles":
+            return math.pi / (2 * math.sqrt(3.0)) * share**2
+        return share**2 if self.pattern in ("grid", "hexagons") else share
+
+    def channel_distance(self, x: Array, y: Array) -> Array:
+        """Return the distance (m) into the channels: positive in a channel, negative on a lug.
+
+        On a lug the value is minus the distance to its nearest edge.
+        """
+        lug, channel = self.lug_width, self.channel_width
+        x, y = x - self.offset[0], y - self.offset[1]
+        if self.pattern == "chevrons" and self.arm_length is not None:
+            return chevron_distance(x, y, lug, channel, self.arm_length, self.angle)
+        x, y = rotated(x, y, self.angle)
+        if self.pattern == "blocks" and self.lug_length is not None:
+            lugs = (self.lug_length, lug)
+            return block_distance(x, y + lug / 2, lugs, (channel, channel))
+        if self.pattern == "circles":
+            return circle_distance(x - lug / 2, y, lug, channel)
+        if self.pattern == "hexagons":
+            return hexagon_distance(x - lug / 2, y, lug, channel)
+        distances = []
+        if self.pattern in ("grid", "transverse", "bars"):
+            distances.append(bar_distance(x, lug, channel))
+        if self.pattern in ("grid", "longitudinal"):
+            if self.offset[1] == 0.0 and self.angle == 0.0:
+                y = np.abs(y)  # exactly the same on both sides
+            distances.append(bar_distance(y + lug / 2, lug, channel))
+        return np.maximum.reduce(distances)
+
+
+@dataclass(frozen=True, slots=True)
+class ArcChannel:
+    """One channel that follows the rounded rear of the heel.
+
+    Parameters
+    ----------
+    position
+        Distance of the channel's middle from the rear end, on the centre line, m.
+    radius
+        Radius of the channel's middle line, m; its centre lies at position + radius.
+    width, depth
+        Of the channel, m.
+    """
+
+    position: float
+    radius: float
+    width: float
+    depth: float
+
+    def __post_init__(self) -> None:
+        for name in ("position", "radius", "width"):
+            positive(getattr(self, name), f"arc_channel.{name}")
+        not_negative(self.depth, "arc_channel.depth")
+        if self.width / 2 >= min(self.position, self.radius):
+            raise InputError(
+                f"width {self.width * 1e3:g} mm is too large for its place",
+                where="arc_channel.width",
+                allowed=f"below {2e3 * min(self.position, self.radius):g} mm "
+                "(twice the smaller of position and radius)",
+            )
+
+    def channel_distance(self, x: Array, y: Array) -> Array:
+        """Return the distance (m) into the channel: positive in it, negative beside it."""
+        along = x - (self.position + self.radius)
+        into = self.width / 2 - np.abs(np.hypot(along, y) - self.radius)
+        ahead = -np.hypot(along, np.maximum(np.abs(np.abs(y) - self.radius) - self.width / 2, 0.0))
+        return np.where(along < 0, into, np.minimum(into, ahead))

@@ -1,0 +1,281 @@
+"""How far the sole's surface gives way under pressure.
+
+A ``Compliance`` maps a pressure field to a deflection field. The contact solver needs nothing else
+than this map, its diagonal and a radial symbol to precondition with, so a finite-element compliance
+can take the place of the layers below.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+
+from underfoot.core import InputError
+from underfoot.core.arrays import Array
+from underfoot.shoe.geometry import SoleMap
+
+from ._kernels.elastic import (
+    Convolution,
+    attenuation,
+    balanced_weights,
+    block_compression,
+    bonded_layer_symbol,
+    fast_length,
+    free_sided_symbol,
+    half_space_influence,
+    influence_from_symbol,
+    wavenumbers,
+)
+
+Symbol = Callable[[Array], Array]
+BOX_THICKNESSES = 16.0  # side of the box on which a layer's influence coefficients are found
+THINNEST = 0.1  # share of the outsole left above the deepest profile
+TREADED_SHARE = 0.5  # of the land that must be lugs for the tread to be modelled as lugs
+
+
+class Compliance(Protocol):
+    """Linear map from surface pressure to surface deflection on one grid."""
+
+    @property
+    def self_compliance(self) -> Array:
+        """Deflection of a cell under unit pressure on itself alone, (nx, ny), m/Pa."""
+        ...
+
+    def apply(self, pressure: Array) -> Array:
+        """Return the deflection (nx, ny) in m of a pressure field (nx, ny) in Pa."""
+        ...
+
+    def symbol(self, wavenumber: Array) -> Array:
+        """Return the approximate deflection over pressure (m/Pa) of a wave of |k| (rad/m)."""
+        ...
+
+
+class ConvolutionCompliance:
+    """Sum of convolutions, each w * K(w * p) with an optional weight field w."""
+
+    def __init__(
+        self,
+        shape: tuple[int, int],
+        parts: list[tuple[Array, Array | None]],
+        symbol: Symbol,
+    ) -> None:
+        self._symbol = symbol
+        centre = (shape[0] - 1, shape[1] - 1)
+        self._plain: Convolution | None = None
+        self._weighted: list[tuple[Convolution, Array]] = []
+        self._self = np.zeros(shape)
+        for influence, weight in parts:
+            if weight is None:
+                self._plain = Convolution(influence, shape)
+                self._self += influence[centre]
+            else:
+                self._weighted.append((Convolution(influence, shape), weight))
+                self._self += influence[centre] * weight**2
+        # A cell of weight zero (a channel) carries no pressure; keep its diagonal positive.
+        self._self = np.maximum(self._self, self._self.max() * 1e-3)
+
+    @property
+    def self_compliance(self) -> Array:
+        """Deflection of a cell under unit pressure on itself alone, (nx, ny), m/Pa."""
+        return self._self
+
+    def symbol(self, wavenumber: Array) -> Array:
+        """Return the deflection over pressure (m/Pa) of a wave far from free edges."""
+        return self._symbol(np.asarray(wavenumber, dtype=float))
+
+    def apply(self, pressure: Array) -> Array:
+        """Return the deflection (nx, ny) in m of a pressure field (nx, ny) in Pa."""
+        deflection = np.zeros_like(self._self) if self._plain is None else self._plain(pressure)
+        for convolution, weight in self._weighted:
+            deflection += weight * convolution(weight * pressure)
+        return deflection
+
+
+def half_space_compliance(
+    shape: tuple[int, int], spacing: float, *, modulus: float, poisson_ratio: float
+) -> ConvolutionCompliance:
+    """Return the compliance of an elastic half-space, exact for cell-wise constant pressure.
+
+    Parameters
+    ----------
+    shape, spacing
+        Grid (nx, ny) and cell size in m.
+    modulus, poisson_ratio
+        Of the body, Pa and 1 (0 to 0.5). For two bodies pass E* and 0.
+
+    Source: Love 1929; symbol 2 / (E* k).
+    """
+    _check_elastic(modulus, poisson_ratio)
+    plane = modulus / (1 - poisson_ratio**2)
+    influence = half_space_influence(shape, spacing, plane)
+    longest = 2 * np.pi / (max(shape) * spacing)
+    return ConvolutionCompliance(
+        shape, [(influence, None)], lambda k: 2 / (plane * np.maximum(k, 0.5 * longest))
+    )
+
+
+def layered_compliance(
+    sole: SoleMap,
+    *,
+    modulus: float,
+    poisson_ratio: float,
+    thickness: float,
+    shoe_angle: float | None = None,
+    midsole_modulus: float | None = None,
+    midsole_thickness: float | None = None,
+    midsole_poisson_ratio: float = 0.3,
+    free_edges: bool = True,
+) -> ConvolutionCompliance:
+    """Return the compliance of an outsole layer, its tread and the midsole under it.
+
+    Parameters
+    ----------
+    sole
+        Plan form and tread.
+    modulus, poisson_ratio, thickness
+        Of the outsole: Pa, 1 (0 to 0.5), m.
+    shoe_angle
+        Tilt of the sole's plane against the floor, rad; then the thickness is that from this plane
+        to the midsole and profile and lugs are taken off. None: the thickness above the lugs, the
+        same everywhere.
+    midsole_modulus, midsole_thickness, midsole_poisson_ratio
+        Of the layer between outsole and rigid foot; both None for none. A Poisson's ratio of 0.3
+        stands for a foam (assumed).
+    free_edges
+        Let the plan form and the lugs bulge at their edges. Without it the layer is endless and
+        pressure peaks at edges are too high.
+
+    Notes
+    -----
+    Bonded layer by its Fourier symbol; a midsole adds its own symbol, attenuated by
+    (1 + k T) exp(-k T) through the outsole. Free edges: the part of the response that a block of
+    the plan form or a lug has with free sides is split off, 1 / (1 / f + E* k / 2), and balanced on
+    its mask so that a uniform pressure compresses it as ``block_compression`` says: by its own
+    height at each place, more near a free side than in the middle. Lugs stand in series on the
+    layer.
+    """
+    _check_elastic(modulus, poisson_ratio)
+    _check_positive(thickness, "thickness")
+    if (midsole_modulus is None) != (midsole_thickness is None):
+        raise InputError(
+            "a midsole needs both its modulus and its thickness",
+            where="midsole_modulus" if midsole_modulus is None else "midsole_thickness",
+        )
+    shape = (sole.x.size, sole.y.size)
+    body = np.full(shape, float(thickness))
+    if shoe_angle is not None:
+        body = body_thickness(sole, thickness, shoe_angle)
+        thickness = float(body[sole.inside & sole.land].mean())
+    total = thickness + (midsole_thickness or 0.0)
+    extent = 2 * max(shape) * sole.spacing
+    box = fast_length(math.ceil(max(extent, BOX_THICKNESSES * total) / sole.spacing))
+    k = wavenumbers((box, box), sole.spacing)
+
+    def influence(symbol: Symbol) -> Array:
+        return influence_from_symbol(symbol(k), box, shape)
+
+    def midsole(q: Array) -> Array:
+        if midsole_modulus is None or midsole_thickness is None:
+            return np.zeros_like(q)
+        return bonded_layer_symbol(
+            q, midsole_modulus, midsole_poisson_ratio, midsole_thickness
+        ) * attenuation(q, thickness)
+
+    if midsole_modulus is not None and midsole_thickness is not None:
+        _check_elastic(midsole_modulus, midsole_poisson_ratio)
+        _check_positive(midsole_thickness, "midsole_thickness")
+
+    def layer(q: Array) -> Array:
+        return bonded_layer_symbol(q, modulus, poisson_ratio, thickness)
+
+    if not free_edges:
+        plain = influence(lambda q: layer(q) + midsole(q))
+        return ConvolutionCompliance(shape, [(plain, None)], lambda q: layer(q) + midsole(q))
+
+    depth = mean_lug_depth(sole)
+    land = sole.inside & sole.land
+    plan = land if depth == 0.0 else sole.inside
+    give = block_compression(plan, sole.spacing, body, modulus, poisson_ratio)
+    mean_give = float(give[plan].mean())
+
+    def footprint(q: Array) -> Array:
+        return free_sided_symbol(q, modulus, poisson_ratio, mean_give)
+
+    def rest(q: Array) -> Array:
+        return np.maximum(layer(q) - footprint(q), 0.0) + midsole(q)
+
+    block = influence(footprint)
+    plan_weight = balanced_weights(block, plan, give)
+    if depth == 0.0:
+        return ConvolutionCompliance(
+            shape,
+            [(influence(rest), None), (block, plan_weight)],
+            lambda q: rest(q) + footprint(q),
+        )
+
+    height = np.where(sole.tread_depth > 0, sole.tread_depth, 0.0)
+    # untreaded land beside the lugs is as stiff as a lug of the least height the grid can tell
+    height = np.maximum(height, min(0.5 * sole.spacing, depth))
+    lug_give = block_compression(land, sole.spacing, height, modulus, poisson_ratio)
+    mean_lug_give = float(lug_give[land].mean())
+
+    def lug(q: Array) -> Array:
+        return free_sided_symbol(q, modulus, poisson_ratio, mean_lug_give)
+
+    def smooth(q: Array) -> Array:
+        return attenuation(q, depth)
+
+    lugs = influence(lug)
+    return ConvolutionCompliance(
+        shape,
+        [
+            (influence(lambda q: rest(q) * smooth(q)), None),
+            (influence(lambda q: footprint(q) * smooth(q)), plan_weight),
+            (lugs, balanced_weights(lugs, land, lug_give)),
+        ],
+        lambda q: (rest(q) + footprint(q)) * smooth(q) + lug(q),
+    )
+
+
+def body_thickness(sole: SoleMap, thickness: float, shoe_angle: float) -> Array:
+    """Return the outsole (m) above lugs and profile, (nx, ny), of ``thickness`` from its plane.
+
+    The plane lies at ``shoe_angle`` against the floor and touches the lowest land. At least a tenth
+    of the thickness: land that rises higher (an arch, a toe) does not come near the floor.
+    """
+    land = sole.inside & sole.land
+    height = sole.clearance - math.tan(shoe_angle) * sole.x[:, None]
+    over = np.where(land, (height - height[land].min()) * math.cos(shoe_angle), 0.0)
+    above = thickness - over - np.where(land, sole.tread_depth, 0.0)
+    above = np.maximum(above, THINNEST * thickness)
+    from scipy.ndimage import distance_transform_edt
+
+    nearest = distance_transform_edt(~land, return_distances=False, return_indices=True)
+    assert isinstance(nearest, np.ndarray)
+    return above[nearest[0], nearest[1]]
+
+
+def mean_lug_depth(sole: SoleMap) -> float:
+    """Return the mean tread depth of the lugs in m, 0 when less than half the land is lugs."""
+    land = sole.inside & sole.land
+    depth = np.asarray(sole.tread_depth)[land]
+    lugs = depth[depth > 0]
+    return float(lugs.mean()) if lugs.size > TREADED_SHARE * depth.size else 0.0
+
+
+def _check_positive(value: float, where: str) -> None:
+    if not (math.isfinite(value) and value > 0):
+        raise InputError(f"{value} is not positive", where=where, allowed="a finite value above 0")
+
+
+def _check_elastic(modulus: float, poisson_ratio: float) -> None:
+    _check_positive(modulus, "modulus")
+    if not 0 <= poisson_ratio <= 0.5:
+        raise InputError(
+            f"Poisson's ratio {poisson_ratio} is outside the physical range",
+            where="poisson_ratio",
+            allowed="0 to 0.5",
+        )

@@ -1,0 +1,171 @@
+"""Mass balance of the film under the sole in one Newton iterate, and its linearisation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core.arrays import Array, Mask
+from underfoot.film import (
+    Cavity,
+    FilmOperator,
+    Pattern,
+    divergence,
+    film_operator,
+    upwinding,
+)
+
+from .problem import Problem
+
+SMALLEST_GAP = 2e-7  # m; the flow sees no thinner film (the pressure law does)
+
+
+@dataclass(frozen=True)
+class Linearisation:
+    """Coupled problem at one iterate, linear in total pressure and gap; (size,), (5, size).
+
+    full cell:       (A dp_f + T dtheta + B dh) / diagonal,   dp_f = dp + kappa dh
+    other cells:     dp + kappa dh
+    cavitated cell:  dtheta such that A dp_f + T dtheta + B dh = 0
+    """
+
+    pattern: Pattern
+    stiffness: Array  # kappa = -dP/dh, Pa/m
+    full: Mask
+    film: FilmRows | None = None  # None where no cell holds film
+
+    @cached_property
+    def _matrices(self):
+        assert self.film is not None
+        film, matrix = self.film, self.pattern.matrix
+        of_full = film.by_pressure * (self.pattern.neighbours_of(self.full.astype(float)) > 0)
+        by_gap = film.by_gap + of_full * self.pattern.neighbours_of(self.stiffness)
+        of_cavity = matrix(film.by_fraction)[:, self.cavitated]
+        return matrix(of_full), matrix(by_gap), of_cavity
+
+    @cached_property
+    def cavitated(self) -> NDArray[np.int64]:
+        """Places of the cavitated cells among the numbered ones."""
+        assert self.film is not None
+        return np.searchsorted(self.pattern.cells, self.film.cavity.cells)
+
+    def residual(self, pressure: Array, gap: Array) -> Array:
+        """Return what the rows become by a change of total pressure (Pa) and of gap (m)."""
+        fluid = pressure + self.stiffness * gap
+        if self.film is None:
+            return fluid
+        by_pressure, by_gap, by_fraction = self._matrices
+        net = by_pressure @ pressure + by_gap @ gap
+        net += by_fraction @ self.film.cavity.filled_by(-net[self.cavitated])
+        return np.where(self.full, net / self.film.diagonal, fluid)
+
+
+@dataclass(frozen=True, slots=True)
+class FilmRows:
+    """Mass balance of one iterate on the numbered cells: (size,), stencils (5, size)."""
+
+    full: Mask
+    imbalance: Array  # m^3/s
+    diagonal: Array  # condensed, m^3/(Pa s)
+    by_pressure: Array
+    by_fraction: Array
+    by_gap: Array
+    fraction: Array  # (nx, ny)
+    cavity: Cavity
+    error: float  # sum of imbalances over what the walls carry and the gaps store
+
+
+class FilmBalance:
+    """Mass balance of the film in one time step.
+
+    ``film`` marks the cells that the pool reaches, ``content`` (m) is the liquid they hold at the
+    start, when the gap is ``gap``.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        pattern: Pattern,
+        film: Mask,
+        gap: Array,
+        content: Array,
+        duration: float,
+    ) -> None:
+        self._problem, self._pattern, self._film = problem, pattern, film
+        self._content = content
+        self._storage = problem.spacing**2 / duration
+        self._wet = pattern.gather(film)
+        self._give = pattern.gather(problem.compliance.self_compliance)
+        # upwinding from the gap at the start of the step: it stays out of the Newton matrix
+        start = np.clip(gap, SMALLEST_GAP, problem.largest_gap)
+        carried = 0.5 * abs(problem.wall_speed) * problem.spacing
+        self._lean = upwinding(
+            start,
+            carried * problem.compliance.self_compliance,
+            problem.conductance(start).value,
+            from_a=problem.wall_speed < 0,
+        )
+
+    def rows(
+        self, gap: Array, fluid: Array, stiffness: Array, full: Mask, faint: float
+    ) -> FilmRows:
+        """Return the balance at a gap (nx, ny) and a fluid pressure (size,), Pa above the cavities.
+
+        Which cells are full is judged on the balance of those that were, ``full``.
+        """
+        pattern, wet, give = self._pattern, self._wet, self._give
+        problem = self._problem
+        bounded = np.clip(gap, SMALLEST_GAP, problem.largest_gap)
+        conductance = problem.conductance(bounded)
+        operator = film_operator(
+            bounded,
+            conductance,
+            conductance,
+            spacing=(problem.spacing, problem.spacing),
+            speed=0.5 * problem.wall_speed,
+            storage=self._storage,
+            upwinding=self._lean,
+        )
+        by_pressure = pattern.rows_of(operator.by_pressure)
+        by_fraction = pattern.rows_of(operator.by_fraction)
+
+        before = full
+        fraction, net, by_gap, cavity = self._balance(operator, fluid, before)
+        diagonal = by_pressure[0] * (1 + stiffness * give) + np.abs(by_gap[0]) * give
+        lacks = by_fraction[0] * (1 - pattern.gather(fraction))
+        # at rest nothing flows and nothing is pressed: such a cell counts as full
+        full = wet & (fluid - (net + lacks) / diagonal >= -faint)
+        if (full != before).any():
+            fraction, net, by_gap, cavity = self._balance(operator, fluid, full)
+        # where the gap is clipped the film does not follow the walls
+        free = (gap > SMALLEST_GAP) & (gap < problem.largest_gap)
+        overfull = by_fraction[0] * np.maximum(pattern.gather(fraction) - 1, 0.0)
+        carried = np.abs(divergence(*operator.flows(np.zeros_like(gap), fraction)))
+        stored = self._storage * np.abs(operator.gap * fraction - self._content)
+        wrong = np.where(full, np.abs(net), np.where(wet, overfull, 0.0)).sum()
+        return FilmRows(
+            full,
+            net,
+            diagonal,
+            by_pressure,
+            by_fraction,
+            by_gap * pattern.neighbours_of(pattern.gather(free.astype(float))),
+            fraction,
+            cavity,
+            float(wrong) / (float((carried + stored)[self._film].sum()) + 1e-30),
+        )
+
+    def _balance(
+        self, operator: FilmOperator, fluid: Array, full: Mask
+    ) -> tuple[Array, Array, Array, Cavity]:
+        """Return liquid fraction, imbalance, its derivative by gap and the cavity of a set."""
+        pattern, floor = self._pattern, self._problem.cavity_pressure
+        pressure = pattern.scatter(np.where(full, fluid + floor, np.where(self._wet, floor, 0.0)))
+        cavity = Cavity(operator, self._film & (pattern.scatter(full.astype(float)) == 0))
+        fraction = operator.cavity_fraction(pressure, cavity, self._content)
+        net = operator.imbalance(pressure, np.minimum(fraction, 1.0), self._content)
+        by_gap = operator.by_gap(pressure, fraction)
+        return fraction, pattern.gather(net), pattern.rows_of(by_gap), cavity

@@ -1,0 +1,276 @@
+"""Compliance of the real sole: finite elements where it is coarse, layers where it is fine."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from underfoot.core import Cache, Progress, silent
+from underfoot.core.cache import content_hash
+from underfoot.shoe.geometry import SoleMap
+
+from ..compliance import ConvolutionCompliance, layered_compliance
+from .elasticity import LandCompliance, Rubber, hat_integrals, land_compliance
+from .mesh import Layers, sole_mesh
+from .plan import plan_of
+
+Array = NDArray[np.float64]
+ELEMENT, PLAIN_ELEMENT = 2.0e-3, 3.0e-3
+"""Side of an element on the land of a treaded and of an untreaded sole, m; at least
+``CELLS_AN_ELEMENT`` cells of the grid."""
+CELLS_AN_ELEMENT = 2.5
+FAR_ELEMENT = 4.0e-3
+REACH = 3.5e-3
+"""Land higher above the floor than this (m) keeps the layered compliance alone."""
+FAINT = 0.02
+"""Hats that the grid can't tell apart (relative eigenvalue of their overlap) are left out."""
+
+
+class FiniteElementCompliance:
+    """Finite elements for what varies over an element or more, layers for what is finer.
+
+    C = P D P + (1 - P) L (1 - P) with P the projection (on the grid's cells) to the hats of the
+    land nodes, D the finite-element compliance on them and L the layered compliance. So lugs, rim,
+    thickness and midsole act as they are; symmetric and positive as both parts are. Between cells
+    without finite elements (channels, land far above the floor) and the others L acts.
+    """
+
+    def __init__(
+        self, layers: ConvolutionCompliance, hats: sp.csr_matrix, inverse_gram: Array, exact: Array
+    ) -> None:
+        """``hats`` (cells, n); ``exact`` (n, n) rise of hat i by weight of hat j on the cells."""
+        self._layers = layers
+        self._hats = hats
+        self._transposed = sp.csr_matrix(hats.T)
+        self._inverse_gram = inverse_gram
+        self._exact = exact
+        self._bare = (np.diff(hats.indptr) == 0).reshape(layers.self_compliance.shape)
+        plain = layers.self_compliance
+        own, covered = (self._diagonal(matrix, plain.shape) for matrix in (exact, inverse_gram))
+        self._self = np.maximum(own + (1 - covered) ** 2 * plain, 0.05 * plain)
+
+    def _diagonal(self, matrix: Array, shape: tuple[int, ...]) -> Array:
+        """Return the diagonal of H M H^T as a map; H has its rows in CSR order."""
+        starts, columns, values = self._hats.indptr, self._hats.indices, self._hats.data
+        left = np.zeros(starts.size - 1)
+        for place in np.flatnonzero(np.diff(starts)):
+            nodes = columns[starts[place] : starts[place + 1]]
+            weight = values[starts[place] : starts[place + 1]]
+            left[place] = weight @ matrix[np.ix_(nodes, nodes)] @ weight
+        return left.reshape(shape)
+
+    @property
+    def self_compliance(self) -> Array:
+        """Deflection of a cell under unit pressure on itself alone, (nx, ny), m/Pa."""
+        return self._self
+
+    @property
+    def covered(self) -> NDArray[np.bool_]:
+        """Cells whose pressure the finite elements see, (nx, ny)."""
+        return ~self._bare
+
+    def symbol(self, wavenumber: Array) -> Array:
+        """Return the deflection over pressure (m/Pa) of a wave far from free edges."""
+        return self._layers.symbol(wavenumber)
+
+    def apply(self, pressure: Array) -> Array:
+        """Return the deflection (nx, ny) in m of a pressure field (nx, ny) in Pa."""
+        weight = self._transposed @ pressure.ravel()
+        coarse = (self._hats @ (self._inverse_gram @ weight)).reshape(pressure.shape)
+        rise = self._layers.apply(pressure - coarse)
+        over = self._exact @ weight - self._inverse_gram @ (self._transposed @ rise.ravel())
+        rise += (self._hats @ over).reshape(pressure.shape)
+        rise += np.where(self._bare, self._layers.apply(coarse), 0.0)
+        alone = np.where(self._bare, pressure, 0.0)
+        if alone.any():
+            pushed = self._transposed @ self._layers.apply(alone).ravel()
+            rise += (self._hats @ (self._inverse_gram @ pushed)).reshape(pressure.shape)
+        return rise
+
+
+def finite_element_compliance(
+    sole: SoleMap,
+    *,
+    modulus: float,
+    poisson_ratio: float,
+    thickness: float,
+    shoe_angle: float,
+    midsole_modulus: float | None = None,
+    midsole_thickness: float | None = None,
+    midsole_poisson_ratio: float = 0.3,
+    cache: Cache | None = None,
+    progress: Progress = silent,
+) -> FiniteElementCompliance:
+    """Return the compliance of a sole from finite elements of its real shape.
+
+    Parameters
+    ----------
+    sole
+        Plan form, profile and tread; meshed as its cells show them.
+    modulus, poisson_ratio, thickness
+        Of the outsole: Pa, 1 (0 to 0.495), m (from the plane of the sole to the midsole, lugs
+        included).
+    shoe_angle
+        Tilt of the sole's plane against the floor, rad.
+    midsole_modulus, midsole_thickness, midsole_poisson_ratio
+        Of the layer between outsole and rigid foot; None for none.
+    cache
+        Where the condensed land is kept; a sole of the same shape and the same ratio of moduli is
+        not computed again. None computes afresh.
+
+    Raises
+    ------
+    InputError
+        The profile or a channel goes through the outsole; Poisson's ratio above 0.495.
+    """
+    land = sole_land(
+        sole,
+        modulus=modulus,
+        poisson_ratio=poisson_ratio,
+        thickness=thickness,
+        shoe_angle=shoe_angle,
+        midsole_modulus=midsole_modulus,
+        midsole_thickness=midsole_thickness,
+        midsole_poisson_ratio=midsole_poisson_ratio,
+        cache=cache,
+        progress=progress,
+    )
+    layers = layered_compliance(
+        sole,
+        modulus=modulus,
+        poisson_ratio=poisson_ratio,
+        thickness=thickness,
+        shoe_angle=shoe_angle,
+        midsole_modulus=midsole_modulus,
+        midsole_thickness=midsole_thickness,
+        midsole_poisson_ratio=midsole_poisson_ratio,
+    )
+    hats = hats_on_cells(land, sole)
+    gram = (hats.T @ hats).toarray()
+    size = np.sqrt(np.maximum(np.diagonal(gram), 1e-12))  # each hat counts alike, however small
+    values, vectors = np.linalg.eigh(gram / np.outer(size, size))
+    distinct = values > FAINT
+    turn = vectors[:, distinct] / np.sqrt(values[distinct]) / size[:, None]
+    inverse_gram = turn @ turn.T
+    # The sum of hat times pressure over the cells is the force on a node: the elements' own overlap
+    # turns it into pressure, so that force is kept where cells cover a rim only in part.
+    by_force = np.linalg.inv(land.overlap.toarray())
+    exact = by_force @ land.work @ by_force * sole.spacing**2
+    return FiniteElementCompliance(layers, hats, inverse_gram, exact)
+
+
+def sole_land(
+    sole: SoleMap,
+    *,
+    modulus: float,
+    poisson_ratio: float,
+    thickness: float,
+    shoe_angle: float,
+    midsole_modulus: float | None = None,
+    midsole_thickness: float | None = None,
+    midsole_poisson_ratio: float = 0.3,
+    element: float | None = None,
+    far_element: float = FAR_ELEMENT,
+    lug_layers: int = 1,
+    reach: float = REACH,
+    cache: Cache | None = None,
+    progress: Progress = silent,
+) -> LandCompliance:
+    """Return the finite-element compliance of the land within ``reach`` (m) of the floor.
+
+    ``element`` and ``far_element`` (m) are the sides of elements on this land and elsewhere,
+    ``lug_layers`` the elements over the height of a lug. Others as ``finite_element_compliance``.
+    """
+    if element is None:
+        plain = not (sole.inside & ~sole.land).any()
+        element = max(PLAIN_ELEMENT if plain else ELEMENT, CELLS_AN_ELEMENT * sole.spacing)
+    soft = None if midsole_modulus is None else midsole_modulus / modulus
+    key = content_hash(
+        [sole.x, sole.y, np.nan_to_num(sole.clearance, posinf=-1.0), sole.inside, sole.land],
+        [np.asarray(sole.outline), poisson_ratio, thickness, shoe_angle],
+        [soft, midsole_thickness, midsole_poisson_ratio],
+        [element, far_element, lug_layers, reach],
+    )
+    stored = None if cache is None else cache.load(key)
+    if stored is not None:
+        area, overlap = hat_integrals(stored["nodes"], stored["triangles"])
+        return LandCompliance(
+            nodes=stored["nodes"],
+            height=stored["height"],
+            triangles=stored["triangles"],
+            work=stored["work"] / modulus,
+            area=area,
+            overlap=overlap,
+            unknowns=int(stored["unknowns"]),
+        )
+    mesh = sole_mesh(
+        plan_of(sole),
+        Layers(thickness, midsole_thickness or 0.0, shoe_angle),
+        element=element,
+        far_element=max(far_element, element),
+        reach=reach,
+        lug_layers=lug_layers,
+    )
+    near = (mesh.nodes[mesh.land, 2] - sole.clearance.min()).min(axis=1) < reach
+    land = land_compliance(
+        mesh,
+        Rubber(modulus, poisson_ratio),
+        None if midsole_modulus is None else Rubber(midsole_modulus, midsole_poisson_ratio),
+        loaded=near,
+        progress=progress,
+    )
+    if cache is not None:
+        cache.store(
+            key,
+            {
+                "nodes": land.nodes,
+                "height": land.height,
+                "triangles": land.triangles,
+                "work": land.work * modulus,
+                "unknowns": land.unknowns,
+            },
+        )
+    return land
+
+
+def hats_on_cells(land: LandCompliance, sole: SoleMap, reach: float = REACH) -> sp.csr_matrix:
+    """Return the value of each hat at each cell centre, (nx ny, n); 0 beyond ``reach`` (m)."""
+    from scipy.spatial import KDTree
+
+    cell = sole.spacing
+    corners = land.nodes[land.triangles]
+    ny = sole.y.size
+    rows, columns, values = [], [], []
+    taken = np.full(sole.clearance.shape, -np.inf)
+    best: dict[int, tuple[NDArray[np.int64], Array]] = {}
+    for nodes, points in zip(land.triangles, corners, strict=True):
+        low = np.floor((points.min(axis=0) - (sole.x[0], sole.y[0])) / cell - 0.7).astype(int)
+        high = np.ceil((points.max(axis=0) - (sole.x[0], sole.y[0])) / cell + 0.7).astype(int)
+        i = np.arange(max(low[0], 0), min(high[0], sole.x.size - 1) + 1)
+        j = np.arange(max(low[1], 0), min(high[1], ny - 1) + 1)
+        x, y = np.meshgrid(sole.x[i], sole.y[j], indexing="ij")
+        first, second, third = points
+        size = np.linalg.det(np.array([second - first, third - first]))
+        b = ((x - first[0]) * (third - first)[1] - (y - first[1]) * (third - first)[0]) / size
+        c = ((second - first)[0] * (y - first[1]) - (second - first)[1] * (x - first[0])) / size
+        share = np.stack([1 - b - c, b, c], axis=-1)
+        depth = share.min(axis=-1)
+        # a cell just outside, on the rim of a piece, takes the value of the nearest edge
+        near = (depth > -0.5) & sole.land[np.ix_(i, j)] & (depth > taken[np.ix_(i, j)])
+        for at, to in zip(*np.nonzero(near), strict=True):
+            taken[i[at], j[to]] = depth[at, to]
+            clipped = np.clip(share[at, to], 0.0, None)
+            best[int(i[at] * ny + j[to])] = (nodes, clipped / clipped.sum())
+    # what the mesh leaves out at rims belongs to the nearest node
+    left = np.argwhere(sole.land & (sole.clearance < reach) & np.isneginf(taken))
+    if len(left):
+        places = np.column_stack([sole.x[left[:, 0]], sole.y[left[:, 1]]])
+        _, nearest = KDTree(land.nodes).query(places)
+        for (at, to), node in zip(left, np.atleast_1d(nearest), strict=True):
+            best[int(at * ny + to)] = (np.full(3, node), np.full(3, 1 / 3))
+    for place, (nodes, share) in best.items():
+        rows += [place] * 3
+        columns += nodes.tolist()
+        values += share.tolist()
+    return sp.csr_matrix((values, (rows, columns)), shape=(sole.clearance.size, land.area.size))

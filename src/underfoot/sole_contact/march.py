@@ -1,0 +1,171 @@
+"""One accepted time step of the contact after the other: the wet cells follow, failures shorten."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from scipy.ndimage import binary_dilation
+
+from underfoot.core.arrays import Array, Mask
+
+from .film_balance import SMALLEST_GAP
+from .newton import Cells, implicit_step
+from .preconditioner import PoleFit
+from .problem import Problem, State
+
+EASY = 7  # Newton steps below which the time step grows
+GROWTH = 1.5
+CUT = 2.5
+SHORTEST = 1e-4  # of the first step, below which the march gives up
+LETS_GO = 1.05  # times the pool depth; without it a cell at the brink flips at every step
+ROOM = 1.3  # times the cells needed now, beyond which they are chosen anew
+MARGIN = 3  # cells around the pool that may come into contact within a step
+
+
+@dataclass(slots=True)
+class History:
+    """What each accepted time step left behind."""
+
+    time: list[float] = field(default_factory=list)
+    load: list[float] = field(default_factory=list)
+    fluid_load: list[float] = field(default_factory=list)
+    approach: list[float] = field(default_factory=list)
+    residual: list[float] = field(default_factory=list)
+    speed: list[float] = field(default_factory=list)
+    shoe_angle: list[float] = field(default_factory=list)
+
+    def shortened(self, length: int) -> History:
+        """Return the first ``length`` entries."""
+        return History(*(getattr(self, name)[:length] for name in self.__slots__))
+
+
+@dataclass(slots=True)
+class Counts:
+    """How much work it took."""
+
+    time_steps: int = 0
+    rejected: int = 0
+    newton: int = 0
+    krylov: int = 0
+    cells: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """What holds at the end of a step: load N, floor speed m/s and clearance of the sole m."""
+
+    load: float
+    wall_speed: float
+    clearance: Array
+
+
+class March:
+    """The state in time. ``step`` is the length (s) that the next step tries."""
+
+    def __init__(
+        self, problem: Problem, fit: PoleFit, start: State, *, pool_depth: float, first_step: float
+    ) -> None:
+        self.problem = problem
+        self.state = start
+        self.film: Mask = _film_mask(problem, start.gap, pool_depth, None)
+        self.step = first_step
+        self.counts = Counts()
+        self.residuals: list[float] = []
+        self._fit = fit
+        self._pool_depth = pool_depth
+        self._shortest = first_step * SHORTEST
+        self._cells: Cells | None = None
+
+    def turn(self, clearance: Array) -> None:
+        """Put another clearance under the state, without time passing."""
+        state, change = self.state, clearance - self.problem.clearance
+        self.problem = replace(self.problem, clearance=clearance)
+        self.state = replace(state, gap=state.gap + change)
+        self.film = _film_mask(self.problem, self.state.gap, self._pool_depth, None)
+
+    def advance(
+        self, most: float, demand_after: Callable[[float], Demand], tick: Callable[[float], None]
+    ) -> float:
+        """Take one step of at most ``most`` seconds; return what it took, 0 where none holds.
+
+        ``demand_after`` gives what holds after so many seconds; ``tick`` receives the residual of
+        each Newton step.
+        """
+        limited = self.step > most
+        duration = min(self.step, most)
+        while True:
+            demand = demand_after(duration)
+            problem = replace(
+                self.problem, clearance=demand.clearance, wall_speed=demand.wall_speed
+            )
+            # the film follows a sole that rolls: where it will be, not where it was
+            gap = self.state.gap
+            if demand.clearance is not self.problem.clearance:
+                gap = gap + (demand.clearance - self.problem.clearance)
+            film = _film_mask(problem, gap, self._pool_depth, self.film)
+            self._cells = _cells(problem, self._fit, self._cells, film)
+            self.counts.cells = max(self.counts.cells, self._cells.pattern.size)
+            attempt = implicit_step(
+                problem,
+                self._cells,
+                self.state,
+                load=demand.load,
+                duration=duration,
+                film=film,
+                content=self._content(),
+                tick=tick,
+            )
+            self.counts.newton += attempt.newton
+            self.counts.krylov += attempt.krylov
+            self.residuals = attempt.residuals
+            if attempt.state is not None and not _escaped(problem, self._cells, attempt.state.gap):
+                self.problem, self.state, self.film = problem, attempt.state, film
+                self.counts.time_steps += 1
+                grown = duration * GROWTH if attempt.newton < EASY else duration
+                # a step cut short by the end of a stage says nothing against longer ones
+                self.step = max(grown, self.step) if limited else grown
+                return duration
+            self.counts.rejected += 1
+            duration /= CUT
+            limited = False
+            if duration < self._shortest:
+                return 0.0
+
+    def _content(self) -> Array:
+        """Return the liquid per area, m: of the film, and of the pool where it is undisturbed."""
+        pool = np.clip(self.state.gap, SMALLEST_GAP, self._pool_depth)
+        held = np.clip(self.state.gap, SMALLEST_GAP, self.problem.largest_gap)
+        return np.where(self.film, self.state.fraction * held, pool)
+
+
+def _film_mask(problem: Problem, gap: Array, pool_depth: float, before: Mask | None) -> Mask:
+    """Return the cells that the pool reaches; one that held film lets go a little later."""
+    film = gap < pool_depth
+    if before is not None:
+        film |= before & (gap < LETS_GO * pool_depth)
+    film &= problem.clearance < 0.5
+    film[[0, -1]] = film[:, [0, -1]] = False  # the rim of the grid is open to the surroundings
+    if not film.any():
+        film = problem.clearance < problem.clearance.min() + 2e-5
+    return film
+
+
+def _cells(problem: Problem, fit: PoleFit, cells: Cells | None, film: Mask) -> Cells:
+    """Return cells that hold the film with room to spare, the present ones if they do."""
+    mask = np.asarray(binary_dilation(film, iterations=MARGIN), dtype=bool) & (
+        problem.clearance < 0.5
+    )
+    if (
+        cells is not None
+        and not (film & ~cells.mask).any()
+        and cells.pattern.size < ROOM * np.count_nonzero(mask)
+    ):
+        return cells
+    return Cells(mask, problem, fit)
+
+
+def _escaped(problem: Problem, cells: Cells, gap: Array) -> bool:
+    """Return whether the sole touches the floor outside the cells of the step."""
+    return bool((gap[~cells.mask] < 20 * problem.decay).any())

@@ -1,0 +1,54 @@
+"""What is solved at one instant under the sole, and a solution of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from underfoot.core.arrays import Array, Mask
+from underfoot.film import Conductance
+from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
+
+from .compliance import Compliance
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """What does not change during a run; SI, arrays (nx, ny)."""
+
+    clearance: Array
+    spacing: float
+    compliance: Compliance
+    law: PressureGapLaw
+    viscosity: float | None
+    wall_speed: float
+    largest_gap: float
+    decay: float  # m, gap over which the asperity pressure falls by about e
+    backend: str | None
+    tolerance: float
+    most_newton: int
+    krylov_tolerance: float
+    cavity_pressure: float = 0.0  # Pa above that of the air, 0 or less
+
+    def gap(self, pressure: Array, approach: float) -> Array:
+        """Return the mean gap of a pressure field and an approach."""
+        return self.clearance - approach + self.compliance.apply(pressure)
+
+    def conductance(self, gap: Array) -> Conductance:
+        """Return what lets the fluid flow through a mean gap (m) between rough walls."""
+        assert self.viscosity is not None
+        factor, slope = self.law.flow_factor(gap), self.law.flow_factor_slope(gap)
+        twelve = 12 * self.viscosity
+        return Conductance(factor * gap**3 / twelve, (3 * factor + slope * gap) * gap**2 / twelve)
+
+
+@dataclass(slots=True)
+class State:
+    """A solved instant."""
+
+    pressure: Array  # total, Pa
+    approach: float  # m
+    gap: Array  # m, not clipped
+    fluid: Array  # Pa
+    contact: Array  # Pa
+    cavitated: Mask
+    fraction: Array  # share of the gap that holds liquid, 1 outside the film

@@ -1,0 +1,234 @@
+"""What a fluid-pressure sensor in the floor reads under a sliding sole."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from underfoot.core import InputError, SourcedValue
+from underfoot.core.arrays import Array
+from underfoot.core.checks import not_negative, positive
+
+_SOURCE = "pocket at uniform pressure in the computed film, Eq. (27)"
+GAP_CAP = 0.3e-3
+"""m, gap from which a pocket vents freely (assumed)."""
+_SMALLEST_GAP = 1e-7
+"""m: keeps the weights of a fully sealed rim defined; far below any computed mean gap."""
+
+
+@dataclass(frozen=True, slots=True)
+class SensorReading:
+    """Reading of one instrument, averaged over where its tracks may lie across the shoe.
+
+    ``load`` (N) and ``peak_pressure`` (Pa) are means over the lateral offsets with their standard
+    deviation as uncertainty. ``pressure`` (len(x), len(scan_y)) is the map for the central offset,
+    with ``peak_position`` (x, y) in m. ``outermost_share`` is the share of the load read by the
+    first and last scan: when it is not small, the scans do not cover the film.
+    """
+
+    load: SourcedValue
+    peak_pressure: SourcedValue
+    peak_position: tuple[float, float]
+    x: Array
+    scan_y: Array
+    pressure: Array
+    outermost_share: float
+    loads: Array
+    peaks: Array
+
+
+def floor_sensor_reading(
+    x: ArrayLike,
+    y: ArrayLike,
+    fluid_pressure: ArrayLike,
+    film_thickness: ArrayLike,
+    *,
+    inlet_diameter: float = 10e-3,
+    scan_spacing: float = 10e-3,
+    scans: int = 7,
+    sampling_step: float = 0.7e-3,
+    gap_cap: float = GAP_CAP,
+    offsets: int = 11,
+) -> SensorReading:
+    """Return the fluid load and the peak pressure as a sensor in the floor would give them.
+
+    The inlet is a pocket of one pressure, filled and vented through its rim: the reading is the
+    mean of the film pressure over the rim weighted by h^3, with p = 0 outside the film. The load
+    is that of Eq. (27): sum of p * scan_spacing * sampling_step over all scans. Scans are centred
+    on y = 0; the whole set is shifted sideways to ``offsets`` places within one scan spacing.
+
+    Parameters
+    ----------
+    x, y
+        Cell centres of a square grid, m.
+    fluid_pressure
+        (nx, ny), Pa, 0 outside the film.
+    film_thickness
+        (nx, ny), mean gap, m.
+    inlet_diameter
+        m; 0 is a point. The report: 10 mm (G.4.1) and 4 mm (G.5.1).
+    scan_spacing, scans
+        Distance of the tracks, m, and their number (G.4.1: 10 mm, 7).
+    sampling_step
+        Way between two samples, m: sliding speed times sampling interval (G.4.1: 0.7 m/s x 1 ms).
+    gap_cap
+        Largest gap in the weights, m (assumed): in a gap this deep the pocket vents freely.
+    offsets
+        Number of lateral places, odd.
+
+    Notes
+    -----
+    Quasi-static: the pocket does not change the film. Source of Eq. (27): final
+    progress report on shoe-floor friction, G.4.1; the pocket model is assumed, not tested by
+    measurement.
+
+    Raises
+    ------
+    InputError
+        Shapes that don't match, a pressure or gap that is not finite, an instrument that can't be.
+    """
+    along, across, pressure, gap = _checked_maps(x, y, fluid_pressure, film_thickness)
+    not_negative(inlet_diameter, "sensor.inlet_diameter")
+    positive(scan_spacing, "sensor.scan_spacing")
+    positive(sampling_step, "sensor.sampling_step")
+    positive(gap_cap, "sensor.gap_cap")
+    for name, count in (("scans", scans), ("offsets", offsets)):
+        if int(count) != count or count < 1:
+            raise InputError(
+                f"{count} is no count", where=f"sensor.{name}", allowed="a whole number, 1 or more"
+            )
+    if offsets % 2 == 0:
+        raise InputError(f"{offsets} is even", where="sensor.offsets", allowed="an odd number")
+    spacing = float(along[1] - along[0])
+    reach = 0.5 * inlet_diameter + spacing
+    count = math.ceil((along[-1] - along[0] + 2 * reach) / sampling_step) + 1
+    middle = 0.5 * (along[0] + along[-1])
+    places = middle + (np.arange(count, dtype=np.float64) - 0.5 * (count - 1)) * sampling_step
+    tracks = (np.arange(scans, dtype=np.float64) - 0.5 * (scans - 1)) * scan_spacing
+    shifts = (np.arange(offsets) - offsets // 2) * (scan_spacing / offsets)
+    lanes = (tracks[None, :] + shifts[:, None]).ravel()
+    read = pocket_pressure(
+        along,
+        across,
+        pressure,
+        gap,
+        places,
+        lanes,
+        inlet_diameter=inlet_diameter,
+        gap_cap=gap_cap,
+        spacing=spacing,
+    ).reshape(count, offsets, scans)
+    scan_loads = read.sum(axis=0) * scan_spacing * sampling_step
+    loads = scan_loads.sum(axis=1)
+    peaks = read.max(axis=(0, 2))
+    central = np.ascontiguousarray(read[:, offsets // 2, :])
+    top = np.unravel_index(int(central.argmax()), central.shape)
+    outer = scan_loads[:, [0, -1]].sum() if scans > 1 else scan_loads.sum()
+    total = float(loads.sum())
+    spread = "spread over where the tracks lie"
+    return SensorReading(
+        load=SourcedValue(
+            float(loads.mean()), "N", source=_SOURCE, uncertainty=float(loads.std()), note=spread
+        ),
+        peak_pressure=SourcedValue(
+            float(peaks.mean()), "Pa", source=_SOURCE, uncertainty=float(peaks.std()), note=spread
+        ),
+        peak_position=(float(places[top[0]]), float(tracks[top[1]])),
+        x=places,
+        scan_y=tracks,
+        pressure=central,
+        outermost_share=float(outer) / total if total > 0 else 0.0,
+        loads=loads,
+        peaks=peaks,
+    )
+
+
+def pocket_pressure(
+    x: Array,
+    y: Array,
+    fluid_pressure: Array,
+    film_thickness: Array,
+    places: Array,
+    lanes: Array,
+    *,
+    inlet_diameter: float,
+    gap_cap: float,
+    spacing: float,
+) -> Array:
+    """Return the reading (places x lanes) of pockets centred at ``places`` (x) and ``lanes`` (y).
+
+    Mean film pressure over the rim weighted by h^3; lengths in m, maps (nx, ny) as in
+    ``floor_sensor_reading``, which checks them.
+    """
+    return _pocket_pressure(
+        (places - x[0]) / spacing,
+        (lanes - y[0]) / spacing,
+        _rim(inlet_diameter, spacing) / spacing,
+        np.asarray(fluid_pressure, dtype=float),
+        np.clip(np.asarray(film_thickness, dtype=float), _SMALLEST_GAP, gap_cap) ** 3,
+        gap_cap**3,
+    )
+
+
+def _rim(diameter: float, spacing: float) -> Array:
+    """Return points (n, 2) on the rim, symmetric about both axes and no further apart than a cell.
+
+    A quarter of a step off the axes, so that a rim that touches a cell edge is not favoured.
+    """
+    quarter = max(6, math.ceil(math.pi * diameter / (4 * spacing))) if diameter > 0 else 1
+    angle = (np.arange(4 * quarter) + 0.5) * (math.pi / (2 * quarter))
+    return 0.5 * diameter * np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+def _pocket_pressure(
+    places: Array,
+    lanes: Array,
+    rim: Array,
+    pressure: Array,
+    conductance: Array,
+    outside: float,
+) -> Array:
+    """Return the weighted rim mean at (places x lanes); all lengths in cells."""
+    from scipy.ndimage import map_coordinates
+
+    flow = np.zeros((places.size, lanes.size))
+    weight = np.zeros_like(flow)
+    # The product is interpolated, not its factors: next to a lug's edge the factors would put the
+    # lug's pressure on the channel's conductance.
+    driven = conductance * pressure
+    for along, across in rim:
+        at = np.meshgrid(places + along, lanes + across, indexing="ij")
+        flow += map_coordinates(driven, at, order=1, mode="constant", cval=0.0)
+        weight += map_coordinates(conductance, at, order=1, mode="constant", cval=outside)
+    return flow / weight
+
+
+def _checked_maps(
+    x: ArrayLike, y: ArrayLike, fluid_pressure: ArrayLike, film_thickness: ArrayLike
+) -> tuple[Array, Array, Array, Array]:
+    along, across = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    pressure = np.asarray(fluid_pressure, dtype=float)
+    gap = np.asarray(film_thickness, dtype=float)
+    shape = (along.size, across.size)
+    if along.ndim != 1 or across.ndim != 1 or min(shape) < 2:
+        raise InputError(
+            f"x has shape {along.shape}, y {across.shape}",
+            where="floor_sensor_reading",
+            allowed="two rows of at least 2 cell centres",
+        )
+    steps = np.concatenate([np.diff(along), np.diff(across)])
+    if not (steps[0] > 0 and np.allclose(steps, steps[0], rtol=1e-6)):
+        raise InputError(
+            "x and y are not the centres of square cells", where="floor_sensor_reading"
+        )
+    for name, array in (("fluid_pressure", pressure), ("film_thickness", gap)):
+        if array.shape != shape:
+            raise InputError(f"shape {array.shape}", where=name, allowed=f"{shape}")
+    if not np.isfinite(pressure).all():
+        raise InputError("a pressure is not finite", where="fluid_pressure")
+    if np.isnan(gap).any():
+        raise InputError("a gap is not a number", where="film_thickness")
+    return along, across, pressure, gap

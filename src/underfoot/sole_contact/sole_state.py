@@ -1,0 +1,93 @@
+"""What is solved at one instant of a sole on a flooded floor, and how it is solved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from underfoot.core import Status
+from underfoot.core.arrays import Array, Mask
+
+
+@dataclass(frozen=True, slots=True)
+class SolverSettings:
+    """How the sole meets the floor and how exactly it is solved.
+
+    Parameters
+    ----------
+    pool_depth
+        Depth of the fluid on the floor, m; deeper gaps hold no film. 0.6 mm is 150 ml on
+        0.4 m x 0.6 m (report, G.6.1).
+    start_film
+        Height of the lowest point above the floor when the load starts to rise, m (assumed).
+    rise_time
+        Time over which the load rises linearly to its full value, s (report, G.4.1: 30 ms).
+    end_time
+        Time at which the result is taken, s (assumed: 90 ms of sliding under full load).
+    steady
+        Go on until nothing moves instead of stopping at ``end_time``.
+    tolerance
+        Largest relative imbalance of volume, of load and of the cavitation condition.
+    backend
+        Sparse factorization: "pardiso", "superlu" or None for the fastest installed.
+    cavity_pressure
+        Pressure of ruptured film, Pa above that of the air, 0 or less: 0 where air finds its way
+        in, down to -1e5 where nothing does (the default is the former).
+    """
+
+    pool_depth: float = 0.6e-3
+    start_film: float = 50e-6
+    rise_time: float = 0.03
+    end_time: float = 0.12
+    steady: bool = False
+    tolerance: float = 1e-4
+    backend: str | None = None
+    most_newton: int = 40
+    most_time_steps: int = 400
+    krylov_tolerance: float = 1e-3
+    time_resolution: float = 8.0
+    cavity_pressure: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class SoleState:
+    """Pressures and film under the sole at one instant; arrays (nx, ny), SI.
+
+    ``film_thickness`` is the mean gap, at most the pool depth; ``liquid_fraction`` the share of it
+    that holds liquid, below 1 where the film has ruptured. ``wet`` marks the film (cavitated cells
+    included, see ``cavitated``). ``approach`` is how far the rigid foot has come down since
+    the lowest point touched the floor. ``status`` other than CONVERGED: not a result, see
+    ``remedy``.
+    """
+
+    x: Array
+    y: Array
+    spacing: float
+    contact_pressure: Array
+    fluid_pressure: Array
+    film_thickness: Array
+    liquid_fraction: Array
+    wet: Mask
+    cavitated: Mask
+    approach: float
+    normal_force: float
+    speed: float
+    shoe_angle: float
+    time: float
+    status: Status
+    remedy: str
+    residuals: tuple[float, ...]
+
+    @property
+    def fluid_load(self) -> float:
+        """Load carried by the fluid, N."""
+        return float(self.fluid_pressure.sum()) * self.spacing**2
+
+    @property
+    def contact_load(self) -> float:
+        """Load carried by asperities, N."""
+        return float(self.contact_pressure.sum()) * self.spacing**2
+
+    @property
+    def total_pressure(self) -> Array:
+        """Fluid and contact pressure together, Pa."""
+        return self.fluid_pressure + self.contact_pressure

@@ -1,0 +1,116 @@
+"""Whole-shoe contact with fluid: a sole pressed and slid over a flooded floor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+
+from underfoot.core import Progress, silent
+from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
+from underfoot.shoe.geometry import SoleMap
+
+from ._solver_checks import check_demand, check_times
+from .compliance import Compliance
+from .march import Counts, History
+from .sole_state import SoleState, SolverSettings
+from .stepping import Reporting, SlidingSole
+
+__all__ = ["SoleContact", "SolverSettings", "solve_sliding"]
+
+
+@dataclass(frozen=True, slots=True)
+class SoleContact(SoleState):
+    """The last instant of a run (see ``SoleState``) with its history in time and its cost."""
+
+    history: History
+    counts: Counts
+
+
+def solve_sliding(
+    sole: SoleMap,
+    compliance: Compliance,
+    law: PressureGapLaw,
+    *,
+    viscosity: float | None,
+    speed: float,
+    normal_force: float,
+    settings: SolverSettings | None = None,
+    progress: Progress = silent,
+    watch: Callable[[SoleState], None] | None = None,
+) -> SoleContact:
+    """Return contact pressure, fluid pressure and film under a sole pressed and slid.
+
+    The load rises linearly over ``settings.rise_time`` and stays; the result is the state at
+    ``settings.end_time``, or the steady one. Equations: ``SlidingSole``.
+
+    Parameters
+    ----------
+    sole
+        Undeformed sole over the floor.
+    compliance
+        Surface deflection under pressure on the same grid.
+    law
+        Asperity pressure and flow factor against the mean gap.
+    viscosity
+        Pa s; None for a dry floor, which is solved as the load rises, without time.
+    speed
+        Sliding speed of the shoe along +x, m/s; negative slides backward, 0 only squeezes.
+    normal_force
+        Full load, N.
+    settings
+        Start, times and accuracy.
+    progress
+        Receives stage, fraction of the time and residual; an exception it raises stops the work.
+    watch
+        Receives the state after every inner step.
+
+    Raises
+    ------
+    InputError
+        A value that is not finite or not physical.
+    ConvergenceError
+        Not even the first instant could be solved.
+    """
+    settings = settings or SolverSettings()
+    check_demand(settings.rise_time, normal_force, speed, None, rising=True)
+    check_times(settings)
+    dry = viscosity is None  # without memory: it is done when the load is there
+    end = settings.rise_time if dry else settings.end_time
+    sliding = SlidingSole(
+        sole,
+        compliance,
+        law,
+        viscosity=viscosity,
+        settings=settings,
+        typical_force=normal_force,
+        reporting=Reporting(
+            progress, end_time=None if settings.steady and not dry else end, watch=watch
+        ),
+    )
+    rise = settings.rise_time
+    state = sliding.advance(
+        rise,
+        normal_force=normal_force,
+        speed=speed,
+        longest_step=rise / settings.time_resolution,
+    )
+    counts = sliding.counts
+    left = settings.most_time_steps - counts.time_steps - counts.rejected
+    if not dry and state.status.usable and left > 0:
+        if settings.steady:
+            state = sliding.settle(normal_force=normal_force, speed=speed, most_steps=left)
+        elif end > rise:
+            state = sliding.advance(
+                end - rise,
+                normal_force=normal_force,
+                speed=speed,
+                longest_step=max(end - rise, rise) / settings.time_resolution,
+                most_steps=left,
+            )
+    return with_history(state, sliding)
+
+
+def with_history(state: SoleState, sliding: SlidingSole) -> SoleContact:
+    """Return a state with the history and the cost of the sole that it comes from."""
+    solved = {part.name: getattr(state, part.name) for part in fields(SoleState)}
+    return SoleContact(**solved, history=sliding.history, counts=sliding.counts)

@@ -1,0 +1,420 @@
+"""A sole carried in time: load, sliding speed and shoe angle change, contact and film follow."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core import ConvergenceError, InputError, Progress, Status, silent
+from underfoot.core.arrays import Array
+from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
+from underfoot.shoe.geometry import SoleMap
+
+from ._solver_checks import check_demand, check_setup
+from .compliance import Compliance
+from .march import Counts, Demand, History, March
+from .preconditioner import pole_fit
+from .problem import Problem, State
+from .sole_state import SoleState, SolverSettings
+
+FAR = 1.0  # m, clearance that stands for "outside the plan form"
+FIRST_STEP = 1 / 150  # of the rise time
+LEAST_LOAD = 1e-3  # of the largest load so far: what a foot about to lift still weighs
+LONGEST_TIME = 1e5  # s, when a film that still moves is given up as not steady
+STEADY_STEP = 0.25  # share of the elapsed time over which a steady state must not move
+STEADY_CHANGE = 3e-4  # share of the load by which the pressures may change over such a step
+MOST_STRETCH = 0.15  # of the grid along x, by which a sole may roll away from its map's angle
+
+
+@dataclass(frozen=True, slots=True)
+class Reporting:
+    """Who hears of the steps of a ``SlidingSole``.
+
+    Parameters
+    ----------
+    progress
+        Receives stage, fraction of the time and residual; an exception it raises stops the work.
+    stage
+        What the work is called.
+    end_time
+        s, to report progress against.
+    watch
+        Receives the state after every inner step.
+    """
+
+    progress: Progress = silent
+    stage: str = "Pressing and sliding the sole"
+    end_time: float | None = None
+    watch: Callable[[SoleState], None] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Bookmark:
+    """An instant of a ``SlidingSole`` to go back to."""
+
+    march: tuple[Problem, State, NDArray[np.bool_], float]
+    time: float
+    load: float
+    speed: float | None
+    shoe_angle: float
+    length: int
+
+
+class SlidingSole:
+    """Contact and film of a sole, carried in time.
+
+    h = G - d + C[p_t],  p_t = p_f + p_c,  p_c = P(h),  sum p_t dA = F(t)
+    -div(phi h^3 / (12 eta) grad p_f) - (V / 2) dh/dx + dh/dt = lambda,  p_f >= 0, lambda >= 0,
+    p_f lambda = 0
+
+    Parameters
+    ----------
+    sole
+        Undeformed sole over the floor, at ``shoe_angle``.
+    compliance
+        Surface deflection under pressure on the same grid.
+    law
+        Asperity pressure and flow factor against the mean gap.
+    viscosity
+        Pa s; None for a dry floor, where time does nothing.
+    settings
+        Pool, start film, first step (``rise_time`` / 150) and accuracy.
+    shoe_angle
+        Angle (rad, toe up positive) at which ``sole`` was made; at others it is
+        ``rolled_clearance``.
+    typical_force
+        N, a load of the order to come: sets the scale of the asperity law.
+    reporting
+        Who hears of the steps.
+
+    Notes
+    -----
+    The sole starts ``settings.start_film`` above the floor, unloaded. Cells are fixed to the sole:
+    rolling by ``a`` from its map's angle a0 leaves them cos(a) / cos(a0) too long, refused beyond
+    15 %.
+    """
+
+    def __init__(
+        self,
+        sole: SoleMap,
+        compliance: Compliance,
+        law: PressureGapLaw,
+        *,
+        viscosity: float | None,
+        settings: SolverSettings | None = None,
+        shoe_angle: float = 0.0,
+        typical_force: float = 500.0,
+        reporting: Reporting | None = None,
+    ) -> None:
+        settings = settings or SolverSettings()
+        check_setup(sole, compliance.self_compliance, viscosity, typical_force, settings)
+        self.sole = sole
+        self.settings = settings
+        self.viscosity = viscosity
+        self.history = History()
+        self._reporting = reporting or Reporting()
+        self._map_angle = self._angle = shoe_angle
+        self._time = self._load = self._largest_load = 0.0
+        self._speed: float | None = None
+        clearance = _bounded(sole.clearance)
+        extent = max(clearance.shape) * sole.spacing
+        decay, touch = asperity_scale(law, typical_force / (0.01 * extent**2))
+        problem = Problem(
+            clearance=clearance,
+            spacing=sole.spacing,
+            compliance=compliance,
+            law=law,
+            viscosity=viscosity,
+            wall_speed=0.0,
+            largest_gap=min(4 * settings.pool_depth, 5e-3),
+            decay=decay,
+            backend=settings.backend,
+            tolerance=settings.tolerance,
+            most_newton=settings.most_newton,
+            krylov_tolerance=settings.krylov_tolerance,
+            cavity_pressure=settings.cavity_pressure,
+        )
+        lift = settings.start_film if viscosity is not None else touch
+        blank = np.zeros_like(clearance)
+        self._march = March(
+            problem,
+            pole_fit(compliance, extent, sole.spacing),
+            State(blank, -lift, clearance + lift, blank, blank, blank > 0, np.ones_like(blank)),
+            pool_depth=settings.pool_depth,
+            first_step=settings.rise_time * FIRST_STEP,
+        )
+        self._status = Status.CONVERGED
+
+    @property
+    def time(self) -> float:
+        """Time carried so far, s."""
+        return self._time
+
+    @property
+    def counts(self) -> Counts:
+        """Work done so far."""
+        return self._march.counts
+
+    def advance(
+        self,
+        duration: float,
+        *,
+        normal_force: float,
+        speed: float,
+        shoe_angle: float | None = None,
+        longest_step: float | None = None,
+        most_steps: int | None = None,
+    ) -> SoleState:
+        """Carry contact and film on by ``duration`` and return them.
+
+        Load, speed and shoe angle go linearly from where they are to the values given (load from
+        0, speed from the value given at the first call), in as many inner steps as convergence
+        asks for.
+
+        Parameters
+        ----------
+        duration
+            s.
+        normal_force
+            Load at the end, N; below 1e-3 of the largest so far it counts as that much: a foot
+            that lifts off is not followed.
+        speed
+            Sliding speed of the shoe along +x at the end, m/s; negative slides backward.
+        shoe_angle
+            At the end, rad; None keeps it.
+        longest_step
+            Longest inner step, s; None: the whole duration if it converges.
+        most_steps
+            Inner steps, rejected ones included; None for ``settings.most_time_steps``.
+
+        Returns
+        -------
+        SoleState
+            Status NOT_CONVERGED and the last good instant (``time`` says which) when a step could
+            not be made small enough; the sole then stays there.
+        """
+        check_demand(duration, normal_force, speed, shoe_angle)
+        ramp = self._ramp(duration, normal_force, speed, shoe_angle)
+        end = self._time + duration
+        done = self._loop(ramp, end, longest_step or math.inf, most_steps, None)
+        return self._state(done)
+
+    def settle(
+        self, *, normal_force: float, speed: float, most_steps: int | None = None
+    ) -> SoleState:
+        """Carry on at constant load and speed until nothing moves, and return that.
+
+        At rest: over a step of a quarter of the elapsed time the pressures change by less than
+        3e-4 of the load.
+        """
+        check_demand(1.0, normal_force, speed, None)
+        self._speed = speed
+        self._load = normal_force
+        area = self.sole.spacing**2
+        loading = 2 * self.settings.rise_time
+
+        def settled(before: State, step: float) -> bool:
+            after = self._march.state
+            change = float(np.abs(after.pressure - before.pressure).sum()) * area
+            moved = abs(float((after.fluid - before.fluid).sum())) * area
+            return (
+                self._time > loading
+                and step > STEADY_STEP * self._time
+                and max(change, moved) < STEADY_CHANGE * normal_force
+            )
+
+        ramp = self._ramp(LONGEST_TIME, normal_force, speed, None)
+        done = self._loop(ramp, LONGEST_TIME, math.inf, most_steps, settled)
+        return self._state(done)
+
+    def begin(self, *, normal_force: float, speed: float, shoe_angle: float | None = None) -> None:
+        """Set what holds at time 0, before the first ``advance``, which ramps from here.
+
+        Without it the load starts at 0 and the speed at that of the first ``advance``.
+        """
+        check_demand(1.0, normal_force, speed, shoe_angle)
+        if self.counts.time_steps:
+            raise InputError("the sole is moving already", where="begin", allowed="a new sole")
+        self._load, self._speed = normal_force, speed
+        if shoe_angle is not None and shoe_angle != self._angle:
+            self._check_stretch(shoe_angle)
+            march = self._march
+            clearance = self._clearance(shoe_angle)
+            march.turn(clearance)
+            self._angle = shoe_angle
+
+    def bookmark(self) -> Bookmark:
+        """Return this instant, to try several continuations from."""
+        march = self._march
+        return Bookmark(
+            (march.problem, march.state, march.film, march.step),
+            self._time,
+            self._load,
+            self._speed,
+            self._angle,
+            len(self.history.time),
+        )
+
+    def go_back(self, mark: Bookmark) -> None:
+        """Return to an instant marked before."""
+        march = self._march
+        march.problem, march.state, march.film, march.step = mark.march
+        self._time, self._load, self._speed = mark.time, mark.load, mark.speed
+        self._angle = mark.shoe_angle
+        self.history = self.history.shortened(mark.length)
+
+    def _ramp(
+        self, duration: float, normal_force: float, speed: float, shoe_angle: float | None
+    ) -> Callable[[float], tuple[float, float, float]]:
+        """Return load, speed and angle against time, linear from now to the values given."""
+        start, load = self._time, self._load
+        first = speed if self._speed is None else self._speed
+        angle = self._angle
+        last = angle if shoe_angle is None else shoe_angle
+        self._check_stretch(last)
+        self._largest_load = max(self._largest_load, normal_force)
+        least = LEAST_LOAD * self._largest_load
+
+        def at(time: float) -> tuple[float, float, float]:
+            share = min((time - start) / duration, 1.0)
+            return (
+                max(load + share * (normal_force - load), least),
+                first + share * (speed - first),
+                angle + share * (last - angle),
+            )
+
+        return at
+
+    def _loop(
+        self,
+        ramp: Callable[[float], tuple[float, float, float]],
+        end: float,
+        longest_step: float,
+        most_steps: int | None,
+        settled: Callable[[State, float], bool] | None,
+    ) -> bool:
+        """Step to ``end`` or until ``settled``; return whether that was reached."""
+        march, history, report = self._march, self.history, self._reporting
+        counts = march.counts
+        most = most_steps or self.settings.most_time_steps
+        before = counts.time_steps + counts.rejected
+        area = self.sole.spacing**2
+        while self._time < end * (1 - 1e-12):
+            if counts.time_steps + counts.rejected - before >= most:
+                return False
+            start = self._time
+
+            def demand(duration: float) -> Demand:
+                load, speed, angle = ramp(self._time + duration)
+                clearance = march.problem.clearance
+                if angle != self._angle:
+                    clearance = self._clearance(angle)
+                return Demand(load, -speed, clearance)
+
+            fraction = self._fraction(min(start + march.step, end))
+            state = march.state
+            taken = march.advance(
+                min(end - start, longest_step),
+                demand,
+                lambda residual, fraction=fraction: report.progress(
+                    report.stage, fraction, residual
+                ),
+            )
+            if taken == 0.0:
+                return False
+            self._time = end if end - start - taken < 1e-12 * end else start + taken
+            self._load, self._speed, self._angle = ramp(self._time)
+            history.time.append(self._time)
+            history.load.append(self._load)
+            history.fluid_load.append(float(march.state.fluid.sum()) * area)
+            history.approach.append(march.state.approach)
+            history.residual.append(march.residuals[-1])
+            history.speed.append(self._speed)
+            history.shoe_angle.append(self._angle)
+            if report.watch is not None:
+                report.watch(self._state(True))
+            if settled is not None and settled(state, taken):
+                return True
+        return settled is None
+
+    def _fraction(self, time: float) -> float:
+        end = self._reporting.end_time
+        return time / (time + self.settings.rise_time) if end is None else min(time / end, 1.0)
+
+    def _clearance(self, angle: float) -> Array:
+        return _bounded(rolled_clearance(self.sole, angle - self._map_angle))
+
+    def _check_stretch(self, angle: float) -> None:
+        stretch = abs(math.cos(angle) / math.cos(self._map_angle) - 1)
+        if stretch > MOST_STRETCH:
+            raise InputError(
+                f"a shoe angle of {math.degrees(angle):.3g} deg stretches a grid made at "
+                f"{math.degrees(self._map_angle):.3g} deg by {stretch:.0%}",
+                where="shoe_angle",
+                allowed=f"angles whose cosine is within {MOST_STRETCH:.0%} of the map's",
+                remedy="Make the map at the middle of the angles",
+            )
+
+    def _state(self, done: bool) -> SoleState:
+        if self.counts.time_steps == 0:
+            raise ConvergenceError(
+                "the contact could not be solved even at the start of loading",
+                history=self._march.residuals,
+                where="sole_contact",
+                remedy="Start from a thicker film, refine the grid or check the pressure law.",
+            )
+        status = Status.CONVERGED if done else Status.NOT_CONVERGED
+        march, sole = self._march, self.sole
+        state = march.state
+        return SoleState(
+            x=sole.x,
+            y=sole.y,
+            spacing=sole.spacing,
+            # negative only by what the tolerance leaves
+            contact_pressure=np.maximum(state.contact, 0.0),
+            fluid_pressure=np.maximum(state.fluid, self.settings.cavity_pressure),
+            film_thickness=np.clip(state.gap, 0.0, self.settings.pool_depth),
+            liquid_fraction=state.fraction,
+            wet=march.film & sole.inside,
+            cavitated=state.cavitated & march.film,
+            approach=state.approach,
+            normal_force=self._load,
+            speed=self._speed or 0.0,
+            shoe_angle=self._angle,
+            time=self._time,
+            status=status,
+            remedy=status.remedy,
+            residuals=tuple(march.residuals),
+        )
+
+
+def rolled_clearance(sole: SoleMap, angle: float) -> Array:
+    """Return the clearance (nx, ny) in m of a sole rolled by ``angle`` (rad, toe up), inf outside.
+
+    A point (x, z) goes to z' = x sin a + z cos a; the lowest is put at 0. Cells stay with the sole.
+    """
+    clearance = np.asarray(sole.clearance)
+    rolled = clearance * math.cos(angle) + np.asarray(sole.x)[:, None] * math.sin(angle)
+    rolled = np.where(np.isfinite(clearance), rolled, np.inf)
+    return rolled - rolled.min()
+
+
+def asperity_scale(law: PressureGapLaw, pressure: float) -> tuple[float, float]:
+    """Return the gap over which the law decays at ``pressure``, and where it has all but faded."""
+    gaps = np.geomspace(1e-8, 1e-2, 400)
+    values = law.pressure(gaps)
+    near = int(np.argmin(np.abs(np.log(np.maximum(values, 1e-300) / pressure))))
+    decay = float(values[near] / max(float(law.stiffness(gaps[near : near + 1])[0]), 1e-300))
+    faint = values < 1e-3 * pressure
+    touch = float(gaps[int(np.argmax(faint))]) if faint.any() else float(gaps[-1])
+    return decay, touch
+
+
+def _bounded(clearance: Array) -> Array:
+    """Return clearances from 0 to FAR: what the solver takes for outside is far, not infinite."""
+    bounded = np.minimum(np.where(np.isfinite(clearance), clearance, FAR), FAR)
+    return bounded - bounded.min()

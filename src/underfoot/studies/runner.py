@@ -1,0 +1,303 @@
+"""A study that was run: quantities with their verdicts, tables, figures; one runner for all."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from importlib import import_module
+from typing import Any, ClassVar
+
+import numpy as np
+
+from underfoot.core import Cache, InputError, Progress, content_hash, silent
+from underfoot.core.errors import Cancelled
+from underfoot.core.pool import in_processes
+from underfoot.core.presentation import Presentable
+from underfoot.core.presentation import Table as ShownTable
+from underfoot.core.progress import part
+from underfoot.questions.outcomes import program_hash
+
+from .figure import Figure
+from .statements import STUDIES, Study, study
+from .verdict import Judgement, Quantity, Verdict, counts, judged, tables_by_kind
+
+__all__ = [
+    "Computed",
+    "Options",
+    "StudyResult",
+    "Table",
+    "kept",
+    "named",
+    "part",
+    "run_all",
+    "run_study",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """How a study is run; ``settings`` are those of a study that has its own (g1)."""
+
+    quick: bool = False
+    processes: int | None = 1
+    seed: int = 0
+    settings: Any = None
+    progress: Progress = silent
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table: ``columns`` and ``rows`` of numbers (None where there is none) or words."""
+
+    name: str
+    title: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str | float | None, ...], ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Computed:
+    """What a study computes: quantities by name, and what a reader sees beside the verdicts."""
+
+    quantities: Mapping[str, Quantity]
+    tables: tuple[Table, ...] = ()
+    figures: Mapping[str, Figure] = field(default_factory=dict)
+    conclusions: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    assumptions: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StudyResult(Presentable):
+    """A study that was run; ``error`` says why there is nothing, where it failed."""
+
+    kind: ClassVar[str] = "study"
+    study: Study
+    computed: Computed
+    quick: bool
+    seconds: float
+    process_seconds: float
+    error: str = ""
+
+    @property
+    def judgements(self) -> list[Judgement]:
+        """Every statement with its verdict; empty where the study failed."""
+        return [] if self.error else judged(self.study.statements, self.computed.quantities)
+
+    def __repr__(self) -> str:
+        return f"StudyResult({self.study.name}: {len(self.study.statements)} statements)"
+
+    def table(self) -> ShownTable:
+        """Return the independent statements with their verdicts."""
+        return self.tables()[0]
+
+    def tables(self) -> tuple[ShownTable, ...]:
+        """Return the statements by kind, independent ones first, then the study's own tables."""
+        columns = ("statement", "printed", "ours", "verdict", "why")
+        found = [
+            ShownTable(
+                kind.heading,
+                columns,
+                [
+                    (f"{s.text} ({s.place})", s.printed, one.ours, str(one.verdict), one.reason)
+                    for one in some
+                    for s in [one.statement]
+                ],
+            )
+            for kind, some in tables_by_kind(self.judgements)
+        ]
+        found += [ShownTable(one.title, one.columns, one.rows) for one in self.computed.tables]
+        return tuple(found)
+
+    def heading(self) -> str:
+        """Return title and source."""
+        return f"{self.study.title} ({self.study.source})"
+
+    def headline(self) -> tuple[str, ...]:
+        """Return how many independent statements got which verdict."""
+        found = counts(self.judgements)
+        parts = [f"{number} {verdict}" for verdict, number in found.items() if number]
+        if not parts:
+            return (f"Failed: {self.error}",) if self.error else ()
+        return (f"Of {sum(found.values())} independent statements: {', '.join(parts)}.",)
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return what a quick run leaves open."""
+        text = "One coarse grid (--quick): what depends on a grid is not judged."
+        return (text,) if self.quick else ()
+
+    def remarks(self) -> dict[str, Sequence[str]]:
+        """Return conclusions, method, assumptions, errata and the rules of the verdicts."""
+        return {
+            "Conclusions": self.computed.conclusions,
+            "Method": (*self.study.notes, *self.computed.notes),
+            "Assumptions": (*self.study.assumptions, *self.computed.assumptions),
+            "Not taken as printed": [f"{a}: {b} -> {c}: {d}" for a, b, c, d in self.study.errata],
+            "Verdicts": [f"{verdict}: {verdict.rule}" for verdict in Verdict],
+        }
+
+    @property
+    def usable(self) -> bool:
+        """Whether the study gave a result."""
+        return not self.error
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain data in SI for JSON."""
+        return self.as_dict()
+
+    def as_dict(self, *, figures: bool = False) -> dict[str, Any]:
+        """Return plain data for JSON (SI units), from which ``from_dict`` judges again."""
+        computed = self.computed
+        content: dict[str, Any] = {
+            "study": self.study.name,
+            "source": self.study.source,
+            "statements": [one.as_dict() for one in self.judgements],
+            "quantities": {k: q.as_dict() for k, q in computed.quantities.items()},
+            "tables": [asdict(table) for table in computed.tables],
+            "conclusions": list(computed.conclusions),
+            "notes": list(computed.notes),
+            "assumptions": list(computed.assumptions),
+            "errata": [list(one) for one in self.study.errata],
+            "quick": self.quick,
+            "seconds": self.seconds,
+            "process_seconds": self.process_seconds,
+            "error": self.error,
+        }
+        if figures:
+            content["figures"] = {name: f.as_dict() for name, f in computed.figures.items()}
+        return content
+
+    @classmethod
+    def from_dict(cls, content: Mapping[str, Any]) -> StudyResult:
+        """Return the result that ``as_dict`` wrote; its statements are those of today."""
+        tables = tuple(
+            Table(t["name"], t["title"], tuple(t["columns"]), tuple(tuple(r) for r in t["rows"]))
+            for t in content["tables"]
+        )
+        computed = Computed(
+            {name: Quantity.from_dict(q) for name, q in content["quantities"].items()},
+            tables,
+            {name: Figure.from_dict(f) for name, f in content.get("figures", {}).items()},
+            *(tuple(content[name]) for name in ("conclusions", "notes", "assumptions")),
+        )
+        return cls(
+            study(content["study"]),
+            computed,
+            content["quick"],
+            content["seconds"],
+            content["process_seconds"],
+            content["error"],
+        )
+
+
+def run_study(chosen: Study, options: Options) -> StudyResult:
+    """Return the result of a study; a finished one of the same program is taken from the cache.
+
+    Raises
+    ------
+    InputError
+        Settings for a study that has none.
+    """
+    module = import_module(f"underfoot.studies.{chosen.name}")
+    if options.settings is not None and not hasattr(module, "Settings"):
+        raise InputError(
+            f"study {chosen.name} has no settings of its own",
+            where="settings",
+            remedy="Leave out the options of g1",
+        )
+    store = Cache("studies-1")
+    key = content_hash(chosen.name, options.quick, options.seed, options.settings, program_hash())
+    stored = store.load(key)
+    if stored is not None:
+        return StudyResult.from_dict(json.loads(str(stored["result"])))
+    started, used = time.perf_counter(), time.process_time()
+    computed: Computed = module.compute(options)
+    options.progress("done", 1.0)
+    result = StudyResult(
+        chosen,
+        computed,
+        options.quick,
+        time.perf_counter() - started,
+        time.process_time() - used,
+    )
+    if not any(q.unconverged for q in computed.quantities.values()):
+        store.store(key, {"result": np.array(json.dumps(result.as_dict(figures=True)))})
+    return result
+
+
+def run_all(
+    names: Sequence[str] = STUDIES, options: Options | None = None
+) -> Iterator[StudyResult]:
+    """Yield every study's result; one that fails says why and does not stop the others.
+
+    Raises
+    ------
+    Cancelled
+        The receiver of progress raised it.
+    """
+    options = options or Options()
+    for number, name in enumerate(names):
+        share = part(options.progress, number / len(names), (number + 1) / len(names))
+        stage = named(share, name)
+        stage("begins", 0.0)
+        try:
+            yield run_study(
+                study(name), Options(options.quick, options.processes, options.seed, None, stage)
+            )
+        except Cancelled:
+            raise
+        except Exception as failure:  # stands on the page; the other studies go on
+            text = f"{type(failure).__name__}: {failure}"
+            yield StudyResult(study(name), Computed({}), options.quick, 0.0, 0.0, text)
+
+
+def named(progress: Progress, name: str) -> Progress:
+    """Return a receiver of progress that puts a name before every stage."""
+
+    def report(stage: str, fraction: float, residual: float | None = None) -> None:
+        progress(f"{name}: {stage}", fraction, residual)
+
+    return report
+
+
+def kept(
+    room: str,
+    function: Callable[[Any], Mapping[str, Any]],
+    items: Sequence[Any],
+    keys: Sequence[str],
+    *,
+    processes: int | None = 1,
+) -> Iterator[tuple[Any, dict[str, np.ndarray]]]:
+    """Yield (item, arrays) in the order in which they end; a stopped run goes on from there.
+
+    Parameters
+    ----------
+    room
+        Of the cache.
+    function
+        Item -> arrays by name; on the top level of a module, since other processes call it.
+    items, keys
+        What is computed, and under which content key each is kept.
+    processes
+        Items at the same time.
+    """
+    store = Cache(room)
+    waiting: dict[str, Any] = {}
+    for key, item in zip(keys, items, strict=True):
+        stored = store.load(key)
+        if stored is None:
+            waiting[key] = item
+        else:
+            yield item, stored
+    for index, arrays in in_processes(function, list(waiting.values()), processes):
+        key = list(waiting)[index]
+        store.store(key, arrays)
+        yield waiting[key], {name: np.asarray(value) for name, value in arrays.items()}
+
+
+def number_kept(room: str, keys: Iterable[str]) -> int:
+    """Return how many of the keys an earlier run has left."""
+    folder = Cache(room).folder
+    return sum((folder / f"{key}.npz").is_file() for key in keys)

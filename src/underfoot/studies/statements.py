@@ -1,0 +1,402 @@
+"""Printed statements as data: what a publication says, and what counts as agreeing with it.
+
+``data/statements/STUDY.toml`` holds one table for each statement. Its accepted interval follows
+from what is printed (digits, scatter, number of persons) and is fixed before anything is computed.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cache
+from importlib import resources
+from typing import Any
+
+from underfoot.core import InputError, to_si, unknown_name
+
+Z95 = 1.959963984540054
+STUDIES = ("g1", "g2", "g3", "g4", "g5", "g6", "calibration", "corpus")
+
+
+class Kind(StrEnum):
+    """What a statement is worth as evidence; only independent ones are counted."""
+
+    INDEPENDENT = "independent"
+    RESTATES = "restates"
+    AGAINST_ITSELF = "report_against_itself"
+    OWN_GOAL = "own_goal"
+    CALIBRATED_ON = "calibrated_on"
+    ALTERNATIVE = "alternative"
+
+    @property
+    def heading(self) -> str:
+        """Return the heading of the table of such statements."""
+        return {
+            Kind.INDEPENDENT: "Independent statements",
+            Kind.RESTATES: "The same readings in other words",
+            Kind.AGAINST_ITSELF: "The report compared with itself",
+            Kind.OWN_GOAL: "Goals of this project; the report prints no number",
+            Kind.CALIBRATED_ON: "Readings that a parameter was chosen on",
+            Kind.ALTERNATIVE: "The same statements with a model or parameters other than the "
+            "default",
+        }[self]
+
+
+class Claim(StrEnum):
+    """The form of what is printed."""
+
+    VALUE = "value"
+    RANGE = "range"
+    BELOW = "below"
+    ABOVE = "above"
+    RISES = "rises"
+    FALLS = "falls"
+    ORDER = "order"
+    WORDS = "words"
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """One printed statement.
+
+    Parameters
+    ----------
+    study, id
+        Together its name, as "g4.load_athletic".
+    text, place
+        What it is about, and where it is printed (section, figure, table).
+    claim, printed
+        Its form, and what a reader sees.
+    names
+        Of an order: highest first.
+    unit, factor, si_unit
+        As printed; SI = printed x factor.
+    accepted
+        Interval that agrees (SI), from printed value and tolerance; sign and bounds are half-lines.
+    tolerance, tolerance_reason
+        Half width (SI; 0 of a bound) and where it comes from.
+    effect
+        +1 or -1 where the number is a change of which zero means no effect; 0 elsewhere.
+    quantity
+        Name of ours in the study's result.
+    kind, of
+        What it is worth; the statement that it restates or is an alternative of.
+    not_comparable
+        Why nothing of ours can stand beside it; "" where something does.
+    remark
+        What a reader should know about the cause.
+    """
+
+    study: str
+    id: str
+    text: str
+    place: str
+    claim: Claim
+    printed: str
+    names: tuple[str, ...]
+    unit: str
+    factor: float
+    si_unit: str
+    accepted: tuple[float, float]
+    tolerance: float
+    tolerance_reason: str
+    effect: int
+    quantity: str
+    kind: Kind
+    of: str
+    not_comparable: str
+    remark: str
+
+    @property
+    def name(self) -> str:
+        """Study and id."""
+        return f"{self.study}.{self.id}"
+
+
+@dataclass(frozen=True, slots=True)
+class Study:
+    """One publication that can be run again, with everything that is fixed before a run.
+
+    ``errata`` are (where, printed, used, why); ``figures`` are (number in the publication, what it
+    shows, our file or "", remark).
+    """
+
+    name: str
+    title: str
+    source: str
+    statements: tuple[Statement, ...]
+    assumptions: tuple[str, ...]
+    notes: tuple[str, ...]
+    errata: tuple[tuple[str, str, str, str], ...]
+    figures: tuple[tuple[int, str, str, str], ...]
+
+
+def study(name: str) -> Study:
+    """Return a study by its name; an unknown name is answered with the nearest one."""
+    chosen = name.strip().lower()
+    if chosen not in STUDIES:
+        raise unknown_name("study", name, STUDIES)
+    return _packaged(chosen)
+
+
+@cache
+def _packaged(name: str) -> Study:
+    file = resources.files("underfoot") / "data" / "statements" / f"{name}.toml"
+    return read_study(name, tomllib.loads(file.read_text(encoding="utf-8")))
+
+
+def read_study(name: str, content: Mapping[str, Any]) -> Study:
+    """Return a study from the content of its file.
+
+    Raises
+    ------
+    InputError
+        A statement without tolerance or reason, an unknown kind or claim, a reference to a
+        statement that is not there, two independent statements on one quantity.
+    """
+    tables = content.get("statement", ())
+    statements = []
+    for table in tables:
+        statements.append(_statement(name, table))
+        for label, path in table.get("alternatives", {}).items():
+            other = {
+                **{key: table[key] for key in table if key not in ("alternatives", "kind", "of")},
+                "id": f"{table['id']}_{label}",
+                "text": f"{table['text']} ({label.replace('_', ' ')})",
+                "quantity": path,
+                "kind": "alternative",
+                "of": table["id"],
+                "remark": table.get("remarks", {}).get(label, table.get("remark", "")),
+            }
+            statements.append(_statement(name, other))
+    _check(name, statements)
+    return Study(
+        name,
+        content["title"],
+        content["source"],
+        tuple(statements),
+        tuple(content.get("assumptions", ())),
+        tuple(content.get("notes", ())),
+        tuple(
+            tuple(e[k] for k in ("where", "printed", "used", "why"))
+            for e in content.get("erratum", ())
+        ),
+        tuple(
+            (f["number"], f["shows"], f.get("file", ""), f.get("remark", ""))
+            for f in content.get("figure", ())
+        ),
+    )
+
+
+def _check(study_name: str, statements: Sequence[Statement]) -> None:
+    """Refuse what would let one reading count twice."""
+    ids = [one.id for one in statements]
+    read: dict[str, str] = {}
+    for one in statements:
+        where = f"statements/{study_name}.toml, {one.id}"
+        if ids.count(one.id) > 1:
+            raise InputError("two statements have this id", where=where)
+        if one.kind in (Kind.RESTATES, Kind.ALTERNATIVE):
+            other, _, rest = one.of.partition(".")
+            if not rest and one.of not in ids:
+                raise unknown_name("statement", one.of or "(none)", ids, where=f"{where}.of")
+            if rest and other not in STUDIES:
+                raise unknown_name("study", other, STUDIES, where=f"{where}.of")
+        if one.kind is Kind.INDEPENDENT and one.quantity:
+            if one.quantity in read:
+                raise InputError(
+                    f"reads {one.quantity}, as {read[one.quantity]} does",
+                    where=where,
+                    remedy='Mark it kind = "restates", of = "..."; a reading counts once',
+                )
+            read[one.quantity] = one.id
+
+
+def _statement(study_name: str, table: Mapping[str, Any]) -> Statement:
+    where = f"statements/{study_name}.toml, {table.get('id', '?')}"
+    known = {
+        "id",
+        "text",
+        "place",
+        "claim",
+        "printed",
+        "shown",
+        "unit",
+        "tolerance",
+        "reason",
+        "count",
+        "deviation",
+        "effect",
+        "quantity",
+        "kind",
+        "of",
+        "not_comparable",
+        "remark",
+        "remarks",
+        "alternatives",
+        "resolution",
+    }
+    for key in table:
+        if key not in known:
+            raise unknown_name("key of a statement", key, known, where=where)
+    try:
+        claim, kind = Claim(table["claim"]), Kind(table.get("kind", "independent"))
+    except ValueError as error:
+        raise InputError(str(error), where=where) from error
+    none = table.get("not_comparable", "")
+    if not none and not table.get("quantity"):
+        raise InputError("no quantity of ours", where=where, allowed="quantity or not_comparable")
+    printed, unit = table.get("printed", ""), table.get("unit", "")
+    numbers: tuple[float, ...] = ()
+    names: tuple[str, ...] = ()
+    factor, si_unit = _unit(unit, where)
+    if claim is Claim.ORDER:
+        names = tuple(printed)
+    elif claim in (Claim.VALUE, Claim.RANGE, Claim.BELOW, Claim.ABOVE):
+        texts = printed if isinstance(printed, list) else [printed]
+        if len(texts) != (2 if claim is Claim.RANGE else 1):
+            raise InputError(f"{printed!r}", where=f"{where}.printed")
+        numbers = tuple(float(text) * factor for text in texts)
+        if claim is Claim.RANGE and numbers[0] > numbers[1]:
+            raise InputError(f"{printed}", where=f"{where}.printed", allowed="lowest first")
+    tolerance = _Tolerance(0.0, 0.0, "")
+    if not none and claim is not Claim.WORDS:
+        tolerance = _tolerance(claim, printed, numbers, factor, table, where)
+    return Statement(
+        study_name,
+        table["id"],
+        table["text"],
+        table["place"],
+        claim,
+        table.get("shown") or _shown(claim, printed, unit, table.get("deviation")),
+        names,
+        unit,
+        factor,
+        si_unit,
+        _accepted(claim, numbers, tolerance),
+        max(tolerance.below, tolerance.above),
+        tolerance.reason,
+        round(math.copysign(1, sum(numbers))) if table.get("effect") else 0,
+        table.get("quantity", ""),
+        kind,
+        table.get("of", ""),
+        none,
+        table.get("remark", ""),
+    )
+
+
+_SI = {
+    "": "1",
+    "%": "1",
+    "N": "N",
+    "kPa": "Pa",
+    "m/s": "m/s",
+    "ms": "s",
+    "mm": "m",
+    "kPa/mm": "Pa/m",
+    "kPa per m/s": "Pa*s/m",
+    "deg": "rad",
+}
+_COMPOUND = {"kPa/mm": 1e6, "kPa per m/s": 1e3}
+
+
+def _unit(unit: str, where: str) -> tuple[float, str]:
+    """Return SI over printed, and the SI unit."""
+    if unit not in _SI:
+        raise unknown_name("unit", unit, _SI, where=f"{where}.unit")
+    if unit in _COMPOUND:
+        return _COMPOUND[unit], _SI[unit]
+    return (to_si(f"1 {unit}", _SI[unit], where=where) if unit else 1.0), _SI[unit]
+
+
+@dataclass(frozen=True, slots=True)
+class _Tolerance:
+    below: float
+    above: float
+    reason: str
+
+
+def _tolerance(
+    claim: Claim,
+    printed: Any,
+    numbers: Sequence[float],
+    factor: float,
+    table: Mapping[str, Any],
+    where: str,
+) -> _Tolerance:
+    """Return the tolerance (SI) by what the statement names: printed digits, scatter or a number.
+
+    "digits": half of the last printed digit. "mean": 95 % of a mean of ``count`` values with the
+    printed ``deviation``. "share", "correlation": exact binomial and Fisher's 95 % interval of a
+    share or correlation of ``count``.
+    """
+    given, reason = table.get("tolerance", ""), table.get("reason", "")
+    count = int(table.get("count", 0))
+    if claim in (Claim.RISES, Claim.FALLS, Claim.ORDER):
+        limit = float(table.get("resolution", 0.0)) * factor
+        return _Tolerance(limit, limit, reason or "by sign")
+    if given == "digits":
+        texts = printed if isinstance(printed, list) else [printed]
+        half = [0.5 * 10.0 ** -len(re.sub(r"^[^.]*\.?", "", str(text))) * factor for text in texts]
+        return _Tolerance(half[0], half[-1], reason or "half of the last printed digit")
+    if given == "mean" and count > 1:
+        half = Z95 * float(table["deviation"]) * factor / math.sqrt(count)
+        return _Tolerance(half, half, reason or f"95 % of a mean of {count} by the printed scatter")
+    if given == "share" and count > 0:
+        from scipy.stats import binomtest
+
+        bounds = binomtest(round(numbers[0] * count), count).proportion_ci(0.95)
+        text = reason or f"95 % of a share of {count}"
+        return _Tolerance(numbers[0] - float(bounds.low), float(bounds.high) - numbers[0], text)
+    if given == "correlation" and count > 3:
+        z, half = math.atanh(numbers[0]), Z95 / math.sqrt(count - 3)
+        text = reason or f"95 % of a correlation of {count} (Fisher)"
+        return _Tolerance(numbers[0] - math.tanh(z - half), math.tanh(z + half) - numbers[0], text)
+    if isinstance(given, str) and given.endswith("%") and reason:
+        half = abs(numbers[0]) * to_si(given, "1", where=f"{where}.tolerance")
+        return _Tolerance(half, half, f"{given}: {reason}")
+    if isinstance(given, int | float) and reason:
+        return _Tolerance(float(given) * factor, float(given) * factor, reason)
+    raise InputError(
+        f"tolerance {given!r}, reason {reason!r}",
+        where=where,
+        allowed='"digits", "mean", "share" or "correlation" (with count), or a number in the '
+        'printed unit or as "15 %" with its reason',
+    )
+
+
+def _accepted(claim: Claim, numbers: Sequence[float], tolerance: _Tolerance) -> tuple[float, float]:
+    match claim:
+        case Claim.VALUE | Claim.RANGE if numbers:
+            return numbers[0] - tolerance.below, numbers[-1] + tolerance.above
+        case Claim.BELOW if numbers:
+            return -math.inf, numbers[0] + tolerance.above
+        case Claim.ABOVE if numbers:
+            return numbers[0] - tolerance.below, math.inf
+        case Claim.RISES | Claim.ORDER:
+            return tolerance.above, math.inf
+        case Claim.FALLS:
+            return -math.inf, -tolerance.below
+        case _:
+            return math.nan, math.nan
+
+
+def _shown(claim: Claim, printed: Any, unit: str, deviation: Any) -> str:
+    tail = f" {unit}" if unit else ""
+    match claim:
+        case Claim.ORDER:
+            return " > ".join(printed)
+        case Claim.RANGE:
+            return f"{printed[0]} to {printed[1]}{tail}"
+        case Claim.BELOW | Claim.ABOVE:
+            return f"{claim} {printed}{tail}"
+        case Claim.RISES | Claim.FALLS:
+            return str(claim)
+        case Claim.VALUE if deviation is not None:
+            return f"{printed} ± {deviation}{tail}"
+        case _:
+            return f"{printed}{tail}"

@@ -1,0 +1,110 @@
+"""RCOF of a folder under every definition: what the choice does to the numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from underfoot.core import Progress, UnderfootError, silent
+
+from ..axes import axes_of
+from ..edits import EditError
+from ..events import stances
+from ..gait import DEFINITIONS, required_friction, stance_frictions
+from ..readers import Profile, read_profile, read_trials
+from ..trial import Trial, joined
+from .conditions import study_folder
+from .edit_table import edits_of
+from .tables import Cell, Table
+
+
+def definition_tables(
+    folder: Path, *, profile: Path | None = None, progress: Progress = silent
+) -> tuple[Table, Table]:
+    """Return RCOF under all ``DEFINITIONS``: one row a definition, and one row a step.
+
+    Files that can't be read are named in the notes; edits by hand are applied.
+
+    Raises
+    ------
+    InputError
+        No such folder, no trial in it, a wrong profile or a wrong edit.
+    """
+    folder = Path(folder)
+    own = folder / "profile.toml"
+    path = profile or (own if own.is_file() else None)
+    read = read_profile(path) if path else Profile()
+    recordings = study_folder(folder).recordings
+    edits = edits_of(folder, [recording.name for recording in recordings])
+    rows: list[tuple[Cell, ...]] = []
+    notes = []
+    for number, recording in enumerate(recordings, start=1):
+        try:
+            trial: Trial | None = None
+            for file in recording.paths:
+                part = read_trials(file, read)[0]
+                trial = part if trial is None else joined(trial, part)
+            assert trial is not None  # a recording has files
+            trial = trial.with_edits(*edits.get(recording.name, []))
+            rows += [(recording.name, *row) for row in _steps(trial, read)]
+        except EditError:
+            raise
+        except UnderfootError as error:
+            notes.append(f"{recording.name}: {error}")
+        progress("reading trials", number / len(recordings))
+    steps = Table(
+        "definitions_steps",
+        "RCOF of every step under every definition",
+        ("file", "step", "verdict", *DEFINITIONS),
+        tuple(rows),
+        tuple(notes),
+        dict.fromkeys(DEFINITIONS, 4),
+    )
+    return _summary(rows), steps
+
+
+def _steps(trial: Trial, profile: Profile) -> list[tuple[Cell, ...]]:
+    axes = axes_of(trial, vertical=profile.vertical, walking=profile.walking)
+    found = stances(trial, axes=axes, walking=profile.walking, heels=profile.heels)
+    rows: list[tuple[Cell, ...]] = []
+    for step in stance_frictions(trial, found, axes=axes, heels=profile.heels):
+        if step.measurement.value is None:
+            continue
+        values = [
+            required_friction(trial, step.stance, definition, axes=axes, checked=False)
+            for definition in DEFINITIONS.values()
+        ]
+        rows.append((step.stance.label, step.verdict, *(v.measurement.value for v in values)))
+    return rows
+
+
+def _summary(rows: Sequence[tuple[Cell, ...]]) -> Table:
+    values = np.array([row[3:] for row in rows], dtype=float).reshape(len(rows), len(DEFINITIONS))
+    out: list[tuple[Cell, ...]] = []
+    for i, (name, definition) in enumerate(DEFINITIONS.items()):
+        known = np.isfinite(values[:, i])
+        numbers = values[known, i]
+        change = numbers - values[known, 0]
+        said = definition.conventions()
+        out.append(
+            (
+                name,
+                len(numbers),
+                float(numbers.mean()) if len(numbers) else None,
+                float(numbers.std(ddof=1)) if len(numbers) > 1 else None,
+                float(change.mean()) if len(numbers) else None,
+                float(np.abs(change).max()) if len(numbers) else None,
+                "; ".join(said.values()),
+            )
+        )
+    columns = ("definition", "steps", "mean RCOF", "SD", "mean change", "largest change", "choices")
+    return Table(
+        "definitions",
+        "RCOF under every definition",
+        columns,
+        tuple(out),
+        ("Change: step by step against the default. SD is the standard deviation between steps.",),
+        dict.fromkeys(columns[2:6], 4),
+    )

@@ -1,0 +1,158 @@
+"""Readings that a machine already made: pendulum, ramp, BOT-3000E, SlipAlert, English XL, GMG."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from underfoot.core import DataError
+
+from ..floor_classes import class_scheme
+from ..measurement import Measurement, caution
+from ..protocols import Protocol
+from ..readers.text import is_number, name_and_unit
+from .conditions import table_rows
+from .file_result import Draft, FileResult
+
+QUANTITIES = {
+    "ptv": ("ptv", "srv", "bpn", "pendulum test value", "pendulum", "pendelwert"),
+    "angle": ("angle", "ramp angle", "acceptance angle", "angle of slip", "winkel"),
+    "cof": (
+        "cof", "dcof", "scof", "coefficient of friction", "friction", "slip resistance", "mu", "µ",
+        "slip index", "reibwert", "reibzahl", "gleitreibwert", "gleitreibungskoeffizient",
+    ),
+}  # fmt: skip
+_RUN = ("run", "type of run", "kind of run", "lauf")
+_ZERO = re.compile(r"zero|null", re.IGNORECASE)
+_CONDITIONING = re.compile(r"condition|warm|einlauf|vorlauf", re.IGNORECASE)
+_LARGEST = {"ptv": 150.0, "angle": 90.0, "cof": 3.0}
+
+
+def reading_results(
+    name: str, path: Path, checksum: str, noted: Mapping[str, Any], protocol: Protocol
+) -> list[FileResult]:
+    """Return one result for each sample of a table of readings (one reading a row).
+
+    Every text column is a condition; rows that agree in all of them are readings of one sample.
+    A column "run" may say "zero" (the mean of these readings is taken off the sample's others)
+    or "conditioning" (left out). The protocol may leave out the first readings of each sample
+    (``conditioning``) and keep the last ones (``readings``).
+
+    Raises
+    ------
+    DataError
+        No column that can be recognised as readings, or impossible values.
+    """
+    table = [row for row in table_rows(path) if any(row)]
+    heads = [name_and_unit(cell) for cell in table[0]] if table else []
+    cells = {
+        head: [row[i] if i < len(row) else "" for row in table[1:]]
+        for i, (head, _) in enumerate(heads)
+        if head
+    }
+    numbers = {
+        head: column
+        for head, column in cells.items()
+        if any(column) and all(is_number(c.replace(",", ".")) for c in column if c)
+    }
+    column, quantity = _value_column(list(numbers), name, protocol)
+    values = np.array([float(c.replace(",", ".")) if c else np.nan for c in numbers[column]])
+    top = _LARGEST[quantity]
+    wrong = np.flatnonzero((values < (-0.1 * top)) | (values > top))
+    if len(wrong):
+        raise DataError(
+            f"line {wrong[0] + 2}: {column} is {values[wrong[0]]:g}",
+            where=name,
+            allowed=f"0 to {top:g}",
+        )
+    runs = next((cells[c] for c in cells if c.casefold() in _RUN), None)
+    texts = {
+        k: v
+        for k, v in cells.items()
+        if k.casefold() not in _RUN
+        and k != column
+        and (k not in numbers or k.casefold() in ("direction", "operator", "laboratory", "sample"))
+    }
+    rows: dict[tuple[str, ...], list[int]] = {}
+    for i in range(len(values)):
+        rows.setdefault(tuple(text[i] for text in texts.values()), []).append(i)
+    results = []
+    for key, members in rows.items():
+        label = ", ".join(part for part in key if part)
+        own = {k.casefold(): v for k, v in zip(texts, key, strict=True) if v}
+        draft = Draft(f"{name}: {label}" if label and len(rows) > 1 else name, {**noted, **own})
+        draft.checksum = checksum
+        words = [runs[i] if runs else "" for i in members]
+        _one_sample(draft, values[members], words, quantity, protocol)
+        results.append(draft.finished(protocol))
+    return results
+
+
+def _one_sample(
+    draft: Draft, values: np.ndarray, runs: Sequence[str], quantity: str, protocol: Protocol
+) -> None:
+    zero = np.array([bool(_ZERO.search(text)) for text in runs])
+    first = np.array([bool(_CONDITIONING.search(text)) for text in runs])
+    offset = float(np.nanmean(values[zero])) if np.isfinite(values[zero]).any() else 0.0
+    counted = values[~zero & ~first & np.isfinite(values)]
+    drop = int(protocol.number("conditioning", "1", 0.0)) if not first.any() else 0
+    last = int(protocol.number("readings", "1", 0.0))
+    readings = counted[drop:][-last:] if last else counted[drop:]
+    draft.facts["repeats"] = float(len(readings))
+    if not len(readings):
+        draft.refusals.append("no reading is left after zero and conditioning runs")
+        return
+    flags = []
+    if quantity == "ptv" and abs(offset) > 1.0:
+        flags.append(caution(f"the zero run reads {offset:.1f}: the pendulum was not at zero"))
+    spread = float(readings.std(ddof=1)) if len(readings) > 1 else None
+    conventions = {
+        "readings": f"mean of {len(readings)} of {len(values)}",
+        "left out": f"{int(first.sum()) + drop} conditioning, {int(zero.sum())} zero runs",
+        "zero": f"mean of the zero runs, {offset:.4g}, taken off" if zero.any() else "not measured",
+    }
+    value = float(readings.mean()) - offset
+    draft.add(
+        "sample",
+        Measurement(
+            quantity,
+            value,
+            "deg" if quantity == "angle" else "1",
+            None if spread is None else spread / float(np.sqrt(len(readings))),
+            "a single reading has no scatter" if spread is None else "",
+            len(readings),
+            tuple(flags),
+            conventions,
+            spread,
+        ),
+        main=quantity,
+    )
+    draft.curves["readings"] = [float(v) for v in readings - offset]
+    name = protocol.text("classes")
+    if name:
+        scheme = class_scheme(name)
+        if scheme.quantity != quantity:
+            draft.cautions.append(f"{scheme.title} is about {scheme.quantity}, not {quantity}")
+        else:
+            draft.curves["class"] = scheme.class_of(value)
+
+
+def _value_column(names: list[str], where: str, protocol: Protocol) -> tuple[str, str]:
+    quantity, named = protocol.text("quantity"), protocol.text("column")
+    folded = {name.casefold().strip(): name for name in names}
+    if named and named.casefold() in folded:
+        return folded[named.casefold()], quantity or "cof"
+    for candidate in (quantity,) if quantity else QUANTITIES:
+        column = next((folded[n] for n in QUANTITIES[candidate] if n in folded), None)
+        if column and not named:
+            return column, candidate
+    raise DataError(
+        "no column of readings was recognised",
+        where=where,
+        allowed=", ".join(names) or "a column of numbers",
+        remedy='Name it in the protocol: column = "..."',
+    )

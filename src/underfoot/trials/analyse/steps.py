@@ -1,0 +1,395 @@
+"""Analysis of recordings with steps: walking, and human slips."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, replace
+from typing import Any
+
+import numpy as np
+
+from underfoot.core import DataError, InputError, UnderfootError, nearest_match, unknown_name
+
+from ..array_pressures import sensor_array_reading
+from ..axes import Axes, axes_of
+from ..events import no_contact_reason, stances
+from ..filters import LowPass
+from ..gait import DEFINITIONS, RcofDefinition, RequiredFriction, stance_frictions
+from ..gait_context import gait_context, stance_curves
+from ..measurement import Measurement, mean_of
+from ..outcome import OutcomeLimits
+from ..plates import plate_named
+from ..protocols import Protocol
+from ..ramp import Ramp
+from ..readers import Profile
+from ..slip_course import slip_course
+from ..slips import Slip, SlipDefinition, slip_of
+from ..stance import Stance
+from ..trial import Trial
+from .edit_table import edit_log
+from .file_result import MEAN_OF_STEPS, Draft, rates
+
+STEP_KINDS = ("gait", "human_slip")
+_SETTINGS = ("filter", "gate", "gate_body_weight", "shear", "peak", "braking", "part")
+
+
+def rcof_definition(protocol: Protocol) -> RcofDefinition:
+    """Return the definition of RCOF that a protocol sets.
+
+    ``definition`` names one of ``DEFINITIONS``; ``force_cutoff`` and ``rcof_filter``,
+    ``rcof_gate``, ``rcof_gate_body_weight``, ``rcof_shear``, ``rcof_peak``, ``rcof_braking``,
+    ``rcof_part`` change single choices.
+
+    Raises
+    ------
+    InputError
+        An unknown name or setting.
+    """
+    where = f"protocol {protocol.name}"
+    known = [f"rcof_{key}" for key in _SETTINGS]
+    for key in protocol.method:
+        if key.startswith("rcof_") and key not in known:
+            raise InputError(
+                f'unknown setting "{key}"',
+                where=where,
+                allowed=", ".join(known),
+                nearest=nearest_match(key, known),
+            )
+    name = protocol.text("definition", "default")
+    if name not in DEFINITIONS:
+        raise unknown_name("RCOF definition", name, DEFINITIONS, where=where)
+    base = DEFINITIONS[name]
+    changes: dict[str, Any] = {
+        "filter": LowPass(
+            protocol.text("rcof_filter", base.filter.kind),
+            protocol.number("force_cutoff", "Hz", base.filter.cutoff),
+        ),
+        "gate": protocol.number("rcof_gate", "N", base.gate),
+        "shear": protocol.text("rcof_shear", base.shear),
+        "peak": protocol.text("rcof_peak", base.peak),
+        "part": protocol.number("rcof_part", "1", base.part),
+    }
+    if "rcof_gate_body_weight" in protocol.method:
+        changes["gate_body_weight"] = protocol.number("rcof_gate_body_weight", "1")
+    if "rcof_braking" in protocol.method:
+        changes["braking"] = protocol.text("rcof_braking").casefold() in ("true", "yes", "1")
+    return replace(base, **changes)
+
+
+def protocol_ramp(protocol: Protocol) -> Ramp:
+    """Return the slope of the walkway that a protocol sets (``ramp``, ``plate_frame``).
+
+    Raises
+    ------
+    InputError
+        No angle, or a slope without the axes of its plates.
+    """
+    angle = protocol.number("ramp", "rad", 0.0)
+    return Ramp(angle, protocol.text("plate_frame"))
+
+
+def check_ramp(protocol: Protocol) -> None:
+    """Refuse a ramp that can't be one, or that a protocol without steps is given.
+
+    Raises
+    ------
+    InputError
+        As ``protocol_ramp``; a ramp in a protocol of testers.
+    """
+    if protocol.kind in STEP_KINDS:
+        protocol_ramp(protocol)
+    elif "ramp" in protocol.method or "plate_frame" in protocol.method:
+        raise InputError(
+            f"a ramp has no meaning in a protocol of the kind {protocol.kind}",
+            where=f"protocol {protocol.name}",
+            allowed="only walking and human slips take ramp and plate_frame",
+        )
+
+
+def analysed_steps(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
+    """Analyse a walk or a slip into ``draft``; edits are applied and logged.
+
+    Raises
+    ------
+    DataError
+        No contact with a plate, with the cause.
+    EditError
+        An edit by hand that can't be applied.
+    """
+    analysis = {"gait": _gait, "human_slip": _human_slip}[protocol.kind]
+    analysis(trial, draft, protocol, profile)
+    if trial.edits:
+        before = Draft(draft.file, draft.conditions)
+        analysis(replace(trial, edits=()), before, protocol, profile)
+        draft.edits += edit_log(trial.edits, before.steps, draft.steps)
+
+
+def _found(trial: Trial, protocol: Protocol, profile: Profile) -> tuple[list[Stance], Axes]:
+    axes = axes_of(
+        trial,
+        vertical=profile.vertical,
+        walking=profile.walking,
+        ramp=protocol_ramp(protocol),
+    )
+    found = stances(trial, axes=axes, walking=profile.walking, heels=profile.heels)
+    if not found:
+        raise DataError(no_contact_reason(trial, axes), where=trial.name)
+    return found, axes
+
+
+def _gait(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
+    found, axes = _found(trial, protocol, profile)
+    rates(trial, draft)
+    if not _required(trial, draft, protocol, profile, found, axes, found):
+        draft.refusals.append("no clean step: " + "; ".join(_why(draft)))
+
+
+def _human_slip(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
+    found, axes = _found(trial, protocol, profile)
+    rates(trial, draft)
+    name = str(draft.conditions.get("slip plate") or protocol.text("slip_plate"))
+    on_plate = [s for s in found if not name or s.plate == name]
+    if not on_plate:
+        raise DataError(f"no contact with the slippery plate ({name})", where=trial.name)
+    dry = [s for s in found if s not in on_plate]
+    _required(trial, draft, protocol, profile, dry, axes, found)
+    definition = SlipDefinition(
+        threshold=protocol.number("slip_threshold", "m/s", 0.2),
+        filter=LowPass(cutoff=protocol.number("marker_cutoff", "Hz", 10.0)),
+    )
+    standard = OutcomeLimits()
+    limits = OutcomeLimits(
+        protocol.number("no_slip_distance", "m", standard.no_slip),
+        protocol.number("microslip_distance", "m", standard.microslip),
+        protocol.number("slide_distance", "m", standard.slide),
+    )
+    usable = [s for s in on_plate if "exclude" not in s.by_hand]
+    for stance in on_plate:
+        if stance not in usable or stance is not usable[0]:
+            reason = stance.reason or "a later contact with the slippery plate"
+            draft.steps.append(_step_entry(trial, stance, found, axes, profile, reason=reason))
+    if not usable:
+        draft.refusals.append(on_plate[0].reason)
+        return
+    stance = _with_side(usable[0], draft.conditions)
+    one = slip_of(
+        trial, stance, axes=axes, definition=definition, limits=limits, heels=profile.heels
+    )
+    _slip_numbers(trial, draft, profile, stance, one, found, axes, limits)
+    if one.motion is not None:
+        motion = one.motion
+        near = (motion.time > one.contact - 0.15) & (motion.time < one.contact + 0.9)
+        draft.curve(
+            "heel",
+            time=motion.time[near] - one.contact,
+            speed=motion.speed[near],
+            start=(one.start.value or np.nan) - one.contact,
+            end=one.end - one.contact,
+            peak_time=one.peak_time - one.contact,
+            peak=one.peak_speed.value or np.nan,
+            threshold=definition.threshold,
+        )
+    if profile.sensors and stance.walking is not None:
+        _sensors(trial, draft, one, profile, axes.up, stance.walking)
+    if "acof" in draft.conditions and "rcof" in draft.main:
+        acof = draft.conditions["acof"]
+        if isinstance(acof, float):
+            draft.main["acof"] = acof
+            draft.main["acof_minus_rcof"] = acof - draft.main["rcof"]
+
+
+def _slip_numbers(
+    trial: Trial,
+    draft: Draft,
+    profile: Profile,
+    stance: Stance,
+    one: Slip,
+    found: list[Stance],
+    axes: Axes,
+    limits: OutcomeLimits,
+) -> None:
+    course = slip_course(trial, stance, one, axes, limits)
+    item = f"slip on {stance.plate}"
+    draft.add(item, one.start)
+    draft.add(item, one.peak_speed, main="peak_slipping_speed")
+    draft.add(item, one.distance, main="slip_distance")
+    draft.add(item, one.margin, main="slip_margin")
+    draft.cautions += [f"{item}: {flag.words}" for flag in course.flags if flag.matters]
+    if one.slipped is None:
+        draft.refusals.append(one.peak_speed.reason)
+    else:
+        draft.main["slip"] = float(one.slipped)
+    draft.steps.append(
+        {
+            **_step_entry(trial, stance, found, axes, profile),
+            "item": item,
+            "verdict": "not estimated" if one.slipped is None else "accepted",
+            "peak_slipping_speed": one.peak_speed.value,
+            "slip_start": one.start.value,
+            "slip_distance": one.distance.value,
+            "slipped": one.slipped,
+            "outcome": None if one.outcome is None else str(one.outcome),
+            "slip_direction": one.way,
+            "recovery_or_fall": course.body,
+            "recovery_or_fall_reason": course.body_reason,
+            "toe_slip": course.toe_slip,
+            "trailing_slip": course.trailing_slip,
+            "misstep": course.misstep,
+        }
+    )
+
+
+def _sensors(
+    trial: Trial, draft: Draft, one: Any, profile: Profile, up: np.ndarray, walking: np.ndarray
+) -> None:
+    try:
+        reading = sensor_array_reading(trial, one, profile.sensors, up=up, walking=walking)
+    except UnderfootError as error:
+        draft.cautions.append(f"pressures: {error.what}")
+        return
+    draft.add("sensor array", reading.peak, main="peak_pressure")
+    draft.main["crossed_array"] = float(reading.crossed)
+    across = np.cross(up, walking)
+    places = {
+        n: (float(np.dot(p, walking)), float(np.dot(p, across))) for n, p in profile.sensors.items()
+    }
+    middle = np.mean([[min(c), max(c)] for c in zip(*places.values(), strict=True)], axis=1)
+    pulses = []
+    for name, pulse in reading.pulses.items():
+        draft.add(f"sensor {name}", pulse.peak)
+        draft.add(f"sensor {name}", pulse.duration)
+        channel = trial.channel(name)
+        near = (channel.time > one.contact - 0.1) & (channel.time < one.contact + 0.6)
+        step = max(1, int(near.sum()) // 150)
+        kilopascal = 1e-3 * (channel.values[near] - pulse.baseline)
+        pulses.append(
+            {
+                "sensor": name,
+                "along": places[name][0] - float(middle[0]),
+                "across": places[name][1] - float(middle[1]),
+                "time": [round(float(t), 4) for t in (channel.time[near] - one.contact)[::step]],
+                "kPa": [None if np.isnan(v) else round(float(v), 3) for v in kilopascal[::step]],
+            }
+        )
+        passage = reading.passages.get(name)
+        if passage is not None:
+            draft.add(f"sensor {name}", passage.speed)
+            draft.add(f"sensor {name}", passage.lateral)
+            if passage.speed.value is not None and pulse.peak.value is not None:
+                draft.curve(
+                    "sensor_rows",
+                    sensor=name,
+                    row=passage.row,
+                    pressure=float(pulse.peak.value),
+                    irss=float(passage.speed.value),
+                    ml=float(passage.lateral.value or 0.0),
+                )
+    if pulses:
+        quiet = trial.channel(next(iter(reading.pulses)))
+        draft.facts["baseline_samples"] = float(np.sum(quiet.time < one.contact - 0.05))
+        track = reading.track if len(reading.track) else np.full((1, 2), np.nan)
+        draft.curve("track", along=track[:, 0], across=track[:, 1], pulses=pulses)
+
+
+def _required(
+    trial: Trial,
+    draft: Draft,
+    protocol: Protocol,
+    profile: Profile,
+    chosen: list[Stance],
+    axes: Axes,
+    found: list[Stance],
+) -> list[Measurement]:
+    """Add the RCOF of the chosen contacts; ``found`` are all contacts of the trial."""
+    definition = rcof_definition(protocol)
+    steps = stance_frictions(trial, chosen, definition, axes=axes, heels=profile.heels)
+    values = []
+    for step in steps:
+        stance, own = step.stance, step.measurement
+        draft.add(stance.label, own)
+        draft.steps.append(_step_entry(trial, stance, found, axes, profile, step))
+        if own.value is None:
+            _rejected_curve(trial, draft, stance, axes)
+            continue
+        values.append(own)
+        assert stance.walking is not None  # an RCOF has one
+        force = plate_named(trial, stance.plate).force[stance.start : stance.stop]
+        draft.curve(
+            "steps",
+            step=stance.label,
+            time=step.time - stance.contact,
+            ratio=step.ratio,
+            normal=step.normal,
+            along=force @ axes.ramp.surface(axes.up, stance.walking)[1],
+            across=force @ np.cross(axes.up, stance.walking),
+            gate=step.gate_time - stance.contact,
+            peak_time=step.peak_time - stance.contact,
+            peak=own.value,
+            verdict=step.verdict,
+        )
+        curves = stance_curves(trial, stance, step.ratio, definition.filter, axes)
+        draft.curve("normalised", step=stance.label, **curves)
+    draft.facts["steps"] = float(len(values))
+    draft.facts["steps_with_caution"] = float(sum(bool(own.caution_flags) for own in values))
+    if values:
+        draft.add(MEAN_OF_STEPS, mean_of(values), main="rcof")
+    return values
+
+
+def _rejected_curve(trial: Trial, draft: Draft, stance: Stance, axes: Axes) -> None:
+    """Keep the ratio of a rejected contact: contact sheets show it with the reason."""
+    plate = plate_named(trial, stance.plate)
+    force = plate.force[stance.start : stance.stop]
+    up = axes.up if stance.walking is None else axes.ramp.surface(axes.up, stance.walking)[0]
+    normal = force @ up
+    shear = np.linalg.norm(force - np.outer(normal, up), axis=1)
+    draft.curve(
+        "rejected",
+        step=stance.label,
+        time=np.arange(len(force)) / plate.rate,
+        normal=normal,
+        ratio=shear / np.maximum(normal, 1.0),
+        reason=stance.reason,
+    )
+
+
+def _step_entry(
+    trial: Trial,
+    stance: Stance,
+    found: list[Stance],
+    axes: Axes,
+    profile: Profile,
+    step: RequiredFriction | None = None,
+    *,
+    reason: str = "",
+) -> dict[str, Any]:
+    own = None if step is None else step.measurement
+    return {
+        "number": stance.number,
+        "item": stance.label,
+        "plate": stance.plate,
+        "side": stance.side,
+        "contact": stance.contact,
+        "toe_off": stance.toe_off,
+        "stance_time": stance.duration,
+        "peak_force": stance.peak,
+        "rcof": None if own is None else own.value,
+        "rcof_uncertainty": None if own is None else own.uncertainty,
+        "verdict": "rejected" if step is None else step.verdict,
+        "reason": reason or stance.reason or (own.reason if own and own.value is None else ""),
+        "cautions": [] if own is None else [flag.words for flag in own.caution_flags],
+        "by_hand": list(stance.by_hand),
+        **asdict(gait_context(trial, stance, found, axes, profile.heels)),
+    }
+
+
+def _with_side(stance: Stance, conditions: Mapping[str, Any]) -> Stance:
+    side = str(conditions.get("side", "")).casefold()
+    if side not in ("left", "right") or "side" in stance.by_hand:
+        return stance
+    return replace(stance, side=side, heel="")
+
+
+def _why(draft: Draft) -> list[str]:
+    reasons = (step["reason"] for step in draft.steps if step["reason"])
+    return list(dict.fromkeys(reasons)) or ["no peak found"]

@@ -1,0 +1,414 @@
+"""Is a step what it looks like? Checks of signals, markers and results, each with its limit.
+
+The limits are wide against the real steps that come with this package; where no publication is
+named, they are assumed. A flag that matters makes a step "caution".
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from underfoot.core import UnderfootError
+
+from .axes import Axes, DirectionSource, heel_candidates, marker_velocity
+from .baseline import longest_run, runs
+from .events import BodyWeight
+from .filters import LowPass, low_passed
+from .heel import contact_from_heel, marker_jumps
+from .measurement import Flag
+from .plates import plate_named
+from .ramp import LEVEL, Ramp
+from .stance import Stance, contacts
+from .trial import Plate, Trial
+
+_ASSUMED = "assumed; kept by every real step that comes with this package"
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """A bound of a plausible value, in ``unit``, and where it comes from."""
+
+    name: str
+    value: float
+    unit: str
+    source: str = _ASSUMED
+
+    def flag(self, measured: float, words: str) -> Flag:
+        """Return the flag of a value beyond the limit."""
+        return Flag(self.name, words, True, float(measured), self.value, self.unit, self.source)
+
+
+RCOF = Limit(
+    "RCOF of level walking", 0.30, "1",
+    "mean 0.20 and standard deviation 0.03 between adults who walk straight on level floor "
+    "(Redfern et al. 2001, Chang et al. 2011; from memory, not verified), plus three of them",
+)  # fmt: skip
+LOW_RCOF = Limit("RCOF of level walking", 0.08, "1", "the same distribution, less four of them")
+HIGH_PEAK = Limit("peak over body weight", 1.6, "1")
+MEAN_LOW = Limit(
+    "mean over body weight", 0.68, "1",
+    "two stances of 58 to 66 % of a stride carry body weight together: 0.76 to 0.86",
+)  # fmt: skip
+MEAN_HIGH = Limit("mean over body weight", 0.97, "1", MEAN_LOW.source)
+LOADING_RATE = Limit("loading rate", 100.0, "1/s")
+LONG_STANCE = Limit("stance time", 1.0, "s")
+SHORT_STANCE = Limit("stance time", 0.45, "s")
+REST_JUMP = Limit("jump from rest", 0.2, "1")
+SHEAR_SPIKE = Limit("spike", 30.0, "N")
+NORMAL_SPIKE = Limit("spike", 120.0, "N")
+HELD = Limit("held samples", 0.004, "s")
+DROP_OUT = Limit("drop-out", 0.0, "s")
+DRIFT = Limit(
+    "baseline drift", 0.01, "1", "change of RCOF by the unloaded level before or after the step"
+)
+VIBRATION = Limit(
+    "vibration", 0.01, "1", "two standard deviations of the unloaded, filtered shear in RCOF"
+)
+FILTERED = Limit(
+    "already filtered", 0.01, "1",
+    "forces at 50 to 100 Hz over those at 10 to 30 Hz: 0.05 and more in 18 unfiltered real steps, "
+    "below 0.013 in the same steps after a low-pass of 25 Hz",
+)  # fmt: skip
+OTHER_FOOT = Limit("shear against the other foot", 1.4, "1")
+TURN = Limit("turn", math.radians(20.0), "rad")
+SHEAR_TURN = Limit(
+    "turn", math.radians(60.0), "rad",
+    "angle between braking and driving; up to 55 deg in 17 real straight steps, 106 deg in a turn",
+)  # fmt: skip
+CLIMB = Limit("climb", 0.15, "m/s")
+PLATE_HEIGHT = Limit("plate height", 0.03, "m")
+FAST = Limit("walking speed", 2.2, "m/s", "people run above 2.0 to 2.1 m/s (textbook value)")
+LATE = Limit("forces against markers", 0.06, "s")
+_HUMP = 1.05  # largest mid-stance force over both humps at which a step is no walk
+_QUIET = 0.2  # s of unloaded record looked at before and after a step
+_MARGIN = 0.025  # s away from the load
+
+
+def step_flags(
+    trial: Trial,
+    stance: Stance,
+    axes: Axes,
+    low_pass: LowPass,
+    weight: BodyWeight | None,
+    heels: Mapping[str, str] | None = None,
+) -> tuple[Flag, ...]:
+    """Return what is doubtful about the signals and the markers of one accepted step."""
+    plate = plate_named(trial, stance.plate)
+    return (
+        *_force_flags(plate, stance, axes.up, weight),
+        *_level_flags(plate, stance, axes.up, low_pass),
+        *_path_flags(trial, stance, axes),
+        *_marker_flags(trial, stance, axes, heels),
+    )
+
+
+def rcof_flags(value: float, ramp: Ramp = LEVEL) -> tuple[Flag, ...]:
+    """Return the flag of an RCOF that walking does not need.
+
+    On a ramp the limits of level walking widen by the tangent of the angle, which is what a body
+    at rest there adds or takes off.
+    """
+    slope = math.tan(abs(ramp.angle))
+    where = (
+        f"straight walking on a {ramp.words.split(',')[0]}" if slope else "level, straight walking"
+    )
+    if value > RCOF.value + slope:
+        return (RCOF.flag(value, f"RCOF {value:.2f} is more than {where} needs"),)
+    if value < LOW_RCOF.value - slope:
+        return (LOW_RCOF.flag(value, f"RCOF {value:.2f} is less than walking needs"),)
+    return ()
+
+
+def other_foot_flags(
+    stance: Stance, shear: float, others: Sequence[tuple[Stance, float]]
+) -> tuple[Flag, ...]:
+    """Return the flag of a step whose RCOF differs from that of the recording's other plates."""
+    values = [value for other, value in others if other.plate != stance.plate]
+    if not values:
+        return ()
+    middle = float(np.median(values))
+    ratio = max(shear / middle, middle / shear) if min(shear, middle) > 0 else math.inf
+    if ratio <= OTHER_FOOT.value:
+        return ()
+    words = f"RCOF {shear:.2f} here and {middle:.2f} on the other plates: a gain or a turn"
+    return (OTHER_FOOT.flag(ratio, words),)
+
+
+def _force_flags(
+    plate: Plate, stance: Stance, up: np.ndarray, weight: BodyWeight | None
+) -> Iterator[Flag]:
+    part = plate.force[stance.start : stance.stop]
+    normal = part @ up
+    rate, duration = plate.rate, stance.duration
+    if duration > LONG_STANCE.value:
+        yield LONG_STANCE.flag(duration, f"stance of {duration:.2f} s: is the sampling rate right?")
+    if duration < SHORT_STANCE.value:
+        yield SHORT_STANCE.flag(duration, f"stance of {duration:.2f} s: running, or a wrong rate")
+    thirds = len(normal) // 3
+    humps = max(normal[:thirds].max(), normal[2 * thirds :].max())
+    middle = float(normal[thirds : 2 * thirds].max())
+    if middle > _HUMP * humps:
+        yield Flag(
+            "single hump",
+            "the force is largest in mid-stance: running or hopping, not walking",
+            True, middle / float(humps), _HUMP, "1", _ASSUMED,
+        )  # fmt: skip
+    if weight is not None:
+        ratio, mean = stance.peak / weight.newtons, float(normal.mean()) / weight.newtons
+        if ratio > HIGH_PEAK.value:
+            yield HIGH_PEAK.flag(ratio, f"peak of {ratio:.2f} body weights ({weight.source})")
+        if not MEAN_LOW.value <= mean <= MEAN_HIGH.value:
+            limit = MEAN_LOW if mean < MEAN_LOW.value else MEAN_HIGH
+            words = f"mean force of {mean:.2f} body weights ({weight.source}): gain or unit?"
+            yield limit.flag(mean, words)
+    own = weight.newtons if weight else 0.9 * stance.peak
+    step = float(normal[0] - (plate.force @ up)[max(stance.start - 1, 0)]) / own
+    if stance.start and step > REST_JUMP.value + 100.0 / rate:
+        words = f"the force jumps from rest to {100 * step:.0f} % of body weight in one sample"
+        yield REST_JUMP.flag(step, words)
+    padded = (plate.force @ up)[max(0, stance.start - 50) : stance.stop]
+    smooth = low_passed(padded, rate, LowPass(cutoff=min(36.0, 0.4 * rate)))
+    slope = float(np.diff(smooth[: len(smooth) // 2]).max(initial=0.0)) * rate / own
+    if slope > LOADING_RATE.value:
+        yield LOADING_RATE.flag(slope, f"loading rate of {slope:.0f} body weights a second")
+    yield from _sample_flags(plate, stance, up)
+
+
+def _sample_flags(plate: Plate, stance: Stance, up: np.ndarray) -> Iterator[Flag]:
+    rate = plate.rate
+    margin = round(_MARGIN * rate)
+    part = plate.force[max(0, stance.start - margin) : stance.stop + margin]
+    normal = part @ up
+    shear = part - np.outer(normal, up)
+    spikes = [
+        (float(size), limit)
+        for values, limit in ((normal[:, None], NORMAL_SPIKE), (shear, SHEAR_SPIKE))
+        for size in [_spike(values, rate)]
+        if size > limit.value
+    ]
+    if spikes:
+        size, limit = max(spikes, key=lambda pair: pair[0])
+        yield limit.flag(size, f"a spike of {size:.0f} N lasts three samples at most")
+    inner = slice(margin, len(part) - margin)
+    still = (np.diff(part[inner], axis=0) == 0.0).all(axis=1) & (normal[inner][1:] > 50.0)
+    held = longest_run(still) + 1
+    if held >= 4 and held / rate >= HELD.value:
+        words = f"all forces stand still for {held} samples: held values"
+        yield HELD.flag(held / rate, words)
+    firm = normal[inner]
+    edge = max(1, len(firm) // 20)
+    lost = firm[edge:-edge] < 20.0
+    if lost.any():
+        yield DROP_OUT.flag(lost.sum() / rate, f"the force drops out for {int(lost.sum())} samples")
+    if rate >= 150.0:
+        begin, end = stance.start - 2 * margin, stance.start + (stance.stop - stance.start) // 4
+        share = _high_share(plate.force[max(0, begin) : end], rate)
+        if share < FILTERED.value:
+            words = "nothing in the forces is faster than 25 Hz: they were filtered before"
+            yield FILTERED.flag(share, words)
+
+
+def _spike(values: np.ndarray, rate: float) -> float:
+    """Largest excursion (n, k) that stands out from the samples up to 2 ms to both sides.
+
+    Two samples to each side from 800 Hz on, else one: a heel's impact lasts longer.
+    """
+    reach = 2 if rate >= 800.0 else 1
+    here = values[reach:-reach]
+    before, after = here - values[: -2 * reach], here - values[2 * reach :]
+    out = np.where(before * after > 0, np.minimum(np.abs(before), np.abs(after)), 0.0)
+    return float(out.max(initial=0.0))
+
+
+def _high_share(force: np.ndarray, rate: float) -> float:
+    """Amplitude of the forces (n, 3) at 50 to 100 Hz over that at 10 to 30 Hz, about contact."""
+    line = np.linspace(0.0, 1.0, len(force))[:, None]
+    force = force - (force[0] + (force[-1] - force[0]) * line)
+    power = np.abs(np.fft.rfft(force * np.hanning(len(force))[:, None], axis=0)) ** 2
+    frequency = np.fft.rfftfreq(len(force), 1.0 / rate)
+    high = (frequency >= 50.0) & (frequency < min(100.0, 0.45 * rate))
+    low = (frequency >= 10.0) & (frequency < 30.0)
+    if not high.any() or not power[low].any():
+        return math.inf
+    return math.sqrt(float(power[high].mean(axis=0).sum() / power[low].mean(axis=0).sum()))
+
+
+def unloaded_levels(plate: Plate, stance: Stance, up: np.ndarray) -> list[np.ndarray]:
+    """Return the mean forces (3,) of up to 0.2 s unloaded record before and after a step.
+
+    A side with less than 20 ms between the margins of neighbouring loads is left out.
+    """
+    rate = plate.rate
+    margin, quiet = round(_MARGIN * rate), round(_QUIET * rate)
+    loaded = np.zeros(len(plate.force), dtype=bool)
+    for start, stop in contacts(plate.force @ up, rate):
+        loaded[max(0, start - margin) : stop + margin] = True
+    loaded[max(0, stance.start - margin) : stance.stop + margin] = True
+    found = []
+    for window in (
+        slice(max(0, stance.start - margin - quiet), max(0, stance.start - margin)),
+        slice(stance.stop + margin, stance.stop + margin + quiet),
+    ):
+        force = plate.force[window][~loaded[window]]
+        force = force[np.isfinite(force).all(axis=1)]
+        if len(force) >= max(5, 0.02 * rate):
+            found.append(force.mean(axis=0))
+    return found
+
+
+def baseline_error(
+    plate: Plate, stance: Stance, up: np.ndarray, normal: float, rcof: float
+) -> float:
+    """Return what the unloaded level before or after a step, if not zero, does to its RCOF."""
+    effects = [
+        math.hypot(float(np.linalg.norm(level - (level @ up) * up)), rcof * float(level @ up))
+        for level in unloaded_levels(plate, stance, up)
+    ]
+    return max(effects, default=0.0) / max(normal, 1.0)
+
+
+def _level_flags(plate: Plate, stance: Stance, up: np.ndarray, low_pass: LowPass) -> Iterator[Flag]:
+    normal = 0.8 * stance.peak
+    drift = baseline_error(plate, stance, up, normal, 0.2)
+    if drift > DRIFT.value:
+        words = f"the unloaded level before or after the step moves RCOF by {drift:.3f}: drift"
+        yield DRIFT.flag(drift, words)
+    noise = unloaded_noise(plate, up, low_pass)
+    if 2.0 * noise / normal > VIBRATION.value:
+        words = f"the unloaded plate swings by {noise:.1f} N (standard deviation): vibration"
+        yield VIBRATION.flag(2.0 * noise / normal, words)
+
+
+def unloaded_noise(plate: Plate, up: np.ndarray, low_pass: LowPass) -> float:
+    """Return the standard deviation (N) of the filtered shear about its slow level, unloaded."""
+    margin = round(2 * _MARGIN * plate.rate)
+    free = np.ones(len(plate.force), dtype=bool)
+    for start, stop in contacts(plate.force @ up, plate.rate):
+        free[max(0, start - margin) : stop + margin] = False
+    parts = []
+    for start, stop in runs(free):
+        part = plate.force[start:stop]
+        if stop - start < max(40, 0.1 * plate.rate) or not np.isfinite(part).all():
+            continue
+        try:
+            part = low_passed(part, plate.rate, low_pass)
+        except UnderfootError:
+            continue
+        line = np.linspace(0.0, 1.0, len(part))[:, None]
+        part = part - part.mean(axis=0)
+        part = part - (line - 0.5) * ((line - 0.5) * part).sum(axis=0) / ((line - 0.5) ** 2).sum()
+        parts.append(part - np.outer(part @ up, up))
+    if not parts:
+        return 0.0
+    return float(np.sqrt((np.concatenate(parts) ** 2).sum(axis=1).mean()))
+
+
+def _path_flags(trial: Trial, stance: Stance, axes: Axes) -> Iterator[Flag]:
+    if stance.direction.source is DirectionSource.SHEAR:
+        yield Flag(
+            "walking direction",
+            "no markers and no centre of pressure: the walking direction comes from the shear "
+            "alone, and whether this was a walk can't be checked",
+        )
+    normal = axes.up if stance.walking is None else axes.ramp.surface(axes.up, stance.walking)[0]
+    heights = {
+        plate.name: float(plate.corners.mean(axis=0) @ normal)
+        for plate in trial.plates
+        if plate.usable and plate.corners is not None
+    }
+    if stance.plate in heights:
+        away = max(abs(height - heights[stance.plate]) for height in heights.values())
+        if away > PLATE_HEIGHT.value:
+            words = f"plates differ by {1e3 * away:.0f} mm in height: stairs or a step"
+            yield PLATE_HEIGHT.flag(away, words)
+    angle = _braking_to_driving(plate_named(trial, stance.plate), stance, axes)
+    if angle > SHEAR_TURN.value:
+        words = f"driving is turned by {math.degrees(angle):.0f} deg against braking: a turn"
+        yield SHEAR_TURN.flag(angle, words)
+    middle = 0.5 * (stance.contact + stance.toe_off)
+    whole = marker_velocity(trial, stance.contact, stance.toe_off, None)
+    if whole is None:
+        return
+    climb = float(whole @ axes.up)
+    speed = float(np.linalg.norm(whole - climb * axes.up))
+    slope = axes.ramp.angle if axes.ramp.plate_frame == "horizontal" else 0.0
+    expected = speed * math.tan(slope)
+    if abs(climb - expected) > CLIMB.value:
+        words = f"the body rises at {climb:.2f} m/s: stairs, a ramp or a jump"
+        if slope:
+            words = f"the body rises at {climb:.2f} m/s, the ramp at {expected:.2f} m/s"
+        yield CLIMB.flag(abs(climb - expected), words)
+    if speed > FAST.value:
+        yield FAST.flag(speed, f"{speed:.1f} m/s is faster than people walk")
+    first = marker_velocity(trial, stance.contact, middle, axes.up)
+    second = marker_velocity(trial, middle, stance.toe_off, axes.up)
+    if first is None or second is None:
+        return
+    speeds = float(np.linalg.norm(first)), float(np.linalg.norm(second))
+    if min(speeds) < 0.3:
+        return
+    cosine = float(first @ second) / (speeds[0] * speeds[1])
+    angle = math.acos(min(1.0, max(-1.0, cosine)))
+    if angle > TURN.value:
+        words = f"the walk turns by {math.degrees(angle):.0f} deg during the step"
+        yield TURN.flag(angle, words)
+
+
+def _braking_to_driving(plate: Plate, stance: Stance, axes: Axes) -> float:
+    """Angle (rad) between the braking and the opposite of the driving impulse of a step."""
+    if stance.walking is None:
+        return 0.0
+    up, forward = axes.ramp.gravity(axes.up, stance.walking)
+    force = plate.force[stance.start : stance.stop]
+    shear = force - np.outer(force @ up, up)
+    half = len(shear) // 2
+    along = shear @ forward
+    braking = shear[:half][along[:half] < 0].sum(axis=0)
+    driving = shear[half:][along[half:] > 0].sum(axis=0)
+    size = float(np.linalg.norm(braking) * np.linalg.norm(driving))
+    return math.acos(min(1.0, max(-1.0, -float(braking @ driving) / size))) if size else 0.0
+
+
+def _marker_flags(
+    trial: Trial, stance: Stance, axes: Axes, heels: Mapping[str, str] | None
+) -> Iterator[Flag]:
+    for event in trial.events:
+        if (
+            event.name == "heel contact"
+            and event.side in ("left", "right")
+            and stance.side in ("left", "right")
+            and abs(event.time - stance.contact) < 0.15
+            and event.side != stance.side
+            and "side" not in stance.by_hand
+        ):
+            yield Flag(
+                "side",
+                f"the {stance.side} heel stands here, the file's own event at {event.time:.2f} s "
+                f"says {event.side}: markers exchanged?",
+            )
+    candidates = heel_candidates(trial, heels)
+    names = [found[0] for found in candidates.values() if found]
+    if not names:
+        return
+    plate = plate_named(trial, stance.plate)
+    if not stance.heel and plate.corners is not None and "side" not in stance.by_hand:
+        words = "no heel marker comes down on the plate: are forces and markers in time?"
+        yield Flag("foot", words)
+    if not stance.heel:
+        return
+    heel = trial.marker(stance.heel)
+    if heel.times is None:
+        landings = [t for t in contact_from_heel(heel, axes.up) if abs(t - stance.contact) < 0.4]
+        gap = min((abs(t - stance.contact) for t in landings), default=0.0)
+        if gap > LATE.value:
+            words = f"heel and force come down {1e3 * gap:.0f} ms apart: forces late or early"
+            yield LATE.flag(gap, words)
+    near = (heel.time > stance.contact - 0.1) & (heel.time < stance.toe_off)
+    leaps = int(marker_jumps(heel.positions)[near].sum())
+    if leaps:
+        words = f"the heel marker leaps off its path in {leaps} frames"
+        yield Flag("marker jumps", words, True, leaps, 0.0, "1")

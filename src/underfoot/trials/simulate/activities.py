@@ -1,0 +1,254 @@
+"""Made-up activities over two force plates: walking, and what must not be taken for it.
+
+Simple shapes with the forces, times and marker paths of textbooks; nobody moved here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from .c3d_file import c3d_bytes
+from .walk import MARKER_RATE, RATE, WalkRecording, raised_cosines
+
+DURATION = 4.0
+_GRAVITY = 9.80665
+_FOOT = 0.2  # m from heel to toe marker
+Motion = tuple[
+    list[np.ndarray], list[np.ndarray], list[np.ndarray], np.ndarray, tuple[float, float]
+]
+"""Forces, centres of pressure and heels of both feet, the pelvis, heights of the plates."""
+
+
+def activity(
+    name: str, rng: np.random.Generator, *, mass: float = 70.0, markers: bool = True
+) -> WalkRecording:
+    """Return a made-up recording of an activity, a key of ``ACTIVITIES``.
+
+    Parameters
+    ----------
+    mass
+        Of the person (kg).
+    markers
+        Record heels, toes and pelvis; without them only the plates tell.
+    """
+    time = np.arange(round(DURATION * RATE)) / RATE
+    forces, centres, heels, body, heights = _ACTIVITIES[name](time, mass * _GRAVITY)
+    noisy = [force + rng.normal(0.0, 0.6, force.shape) for force in forces]
+    frames = np.arange(round(DURATION * MARKER_RATE)) / MARKER_RATE
+    found: dict[str, np.ndarray] = {}
+    for side, heel, across in zip("RL", heels, (-0.1, 0.1), strict=True):
+        path = np.column_stack([np.interp(frames, time, heel[:, i]) for i in range(3)])
+        found[f"{side}HEE"] = path
+        found[f"{side}TOE"] = path + np.array([_FOOT, 0.0, 0.02])
+        pelvis = np.column_stack([np.interp(frames, time, body[:, i]) for i in range(3)])
+        found[f"{side}ASI"] = pelvis + np.array([0.08, across, 0.0])
+        found[f"{side}PSI"] = pelvis + np.array([-0.1, 0.5 * across, 0.02])
+    noise = {key: path + rng.normal(0.0, 3e-4, path.shape) for key, path in found.items()}
+    if not markers:
+        noise = {"origin": np.full((len(frames), 3), 5.0)}
+    corners = [_corners(begin, height) for begin, height in zip((0.0, 0.65), heights, strict=True)]
+    return WalkRecording(
+        noise, (noisy[0], noisy[1]), (centres[0], centres[1]), {}, {}, (corners[0], corners[1])
+    )
+
+
+def activity_c3d(recording: WalkRecording, *, crossed: bool = False, mass: float = 0.0) -> bytes:
+    """Return a recording of an activity as C3D; ``crossed`` writes corners 3 and 4 exchanged."""
+    analog: dict[str, tuple[np.ndarray, str]] = {}
+    plates = []
+    axes = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
+    for number, (force, centre, corners) in enumerate(
+        zip(recording.force, recording.centre, recording.corners, strict=True), start=1
+    ):
+        in_plate = force @ axes.T
+        moment = np.cross((centre - corners.mean(axis=0)) @ axes.T, in_plate)
+        names = [f"{letter}{number}" for letter in ("Fx", "Fy", "Fz", "Mx", "My", "Mz")]
+        for i in range(3):
+            analog[names[i]] = (in_plate[:, i], "N")
+            analog[names[3 + i]] = (1e3 * moment[:, i], "Nmm")
+        written = corners[[0, 1, 3, 2]] if crossed else corners
+        plates.append((written, np.zeros(3), names))
+    return c3d_bytes(recording.markers, MARKER_RATE, analog, RATE, plates, mass=mass)
+
+
+def _corners(begin: float, height: float) -> np.ndarray:
+    low, high = np.array([begin, -0.45]), np.array([begin + 0.6, 0.45])
+    flat = [[high[0], high[1]], [high[0], low[1]], [low[0], low[1]], [low[0], high[1]]]
+    return np.column_stack((flat, np.full(4, height)))
+
+
+def _walking_load(share: np.ndarray) -> np.ndarray:
+    """Vertical force over body weight of a walking step at a share of its stance."""
+    on = (share > 0) & (share < 1)
+    shape = np.exp(-(((share - 0.25) / 0.16) ** 2)) + np.exp(-(((share - 0.75) / 0.16) ** 2))
+    shape += 0.55 * np.exp(-(((share - 0.5) / 0.2) ** 2))
+    edge = np.clip(np.minimum(share / 0.08, (1 - share) / 0.08), 0, 1)
+    return np.where(on, shape * 0.5 * (1 - np.cos(np.pi * edge)), 0.0)
+
+
+def _walking_ratio(share: np.ndarray, rcof: float) -> np.ndarray:
+    """Braking shear over normal force of a walking step."""
+    return rcof * (
+        np.exp(-(((share - 0.17) / 0.11) ** 2)) - 0.9 * np.exp(-(((share - 0.84) / 0.1) ** 2))
+    )
+
+
+def _impact(share: np.ndarray) -> np.ndarray:
+    """Short transient of the heel, so that forces have the frequencies of real ones."""
+    return 0.12 * np.exp(-(((share - 0.03) / 0.006) ** 2))
+
+
+def _heel(
+    time: np.ndarray, contact: float, stance: float, place: np.ndarray, speed: float
+) -> np.ndarray:
+    """Heel that lands at ``place`` (3,), stands, and swings on at ``speed`` of the body (m/s)."""
+    swing = 4.0 * speed / 1.35
+    pace = raised_cosines(
+        time,
+        [
+            (contact - 0.4, 0.0),
+            (contact - 0.22, swing),
+            (contact + 0.03, 0.02),
+            (contact + 0.65 * stance, 0.02),
+            (contact + stance + 0.05, swing),
+            (contact + stance + 0.42, 0.0),
+        ],
+    )
+    x = np.cumsum(pace) / RATE
+    x += place[0] - x[int(np.searchsorted(time, contact))]
+    lift = contact + 0.5 * stance
+    z = (
+        place[2]
+        + 0.02
+        + raised_cosines(
+            time,
+            [
+                (contact - 0.4, 0.0),
+                (contact - 0.22, 0.12),
+                (contact, 0.0),
+                (lift, 0.0),
+                (lift + 0.28, 0.2),
+                (lift + 0.72, 0.0),
+            ],
+        )
+    )
+    return np.column_stack((x, np.full(len(time), place[1]), z))
+
+
+def _steps(
+    time: np.ndarray,
+    weight: float,
+    *,
+    stance: float = 0.66,
+    pace: float = 0.55,
+    speed: float = 1.3,
+    load: Callable[[np.ndarray], np.ndarray] = _walking_load,
+    ratio: float = 0.2,
+    rise: float = 0.0,
+    turn: float = 0.0,
+) -> Motion:
+    """Right foot on plate 1, then left foot on plate 2, ``rise`` higher; ``turn`` (rad) between."""
+    forces, centres, heels = [], [], []
+    for i, side in enumerate((-1.0, 1.0)):
+        contact = 1.2 + pace * i
+        share = (time - contact) / stance
+        place = np.array([0.15 + 0.62 * i, 0.08 * side, rise * i])
+        normal = weight * (load(share) + _impact(share) * (load(share) > 0))
+        angle = turn * np.clip((share - 0.2) / 0.6, 0, 1)
+        push = _walking_ratio(share, ratio) * normal
+        forces.append(
+            np.column_stack((-push * np.cos(angle), -push * np.sin(angle) + 0.05 * push, normal))
+        )
+        walk = 0.22 * np.clip(share, 0, 1)
+        zero = np.full(len(time), place[1])
+        centres.append(np.column_stack((place[0] + walk, zero, np.full(len(time), place[2]))))
+        heels.append(_heel(time, contact, stance, place, speed))
+    since = time - 1.2
+    way = turn * np.clip(since / stance, 0, 2)
+    body = np.column_stack(
+        (
+            np.cumsum(speed * np.cos(way)) / RATE - speed * 1.2 + 0.15,
+            np.cumsum(speed * np.sin(way)) / RATE,
+            0.95 + rise * np.clip(since / pace, 0, 2),
+        )
+    )
+    return forces, centres, heels, body, (0.0, rise)
+
+
+def _standing_feet(time: np.ndarray, vertical: np.ndarray, height: np.ndarray) -> Motion:
+    """Both feet side by side over the gap: half of the load on each plate, a little push."""
+    sway = 0.01 * vertical * np.sin(2 * np.pi * 0.6 * time)
+    landing = np.gradient(vertical, 1.0 / RATE)
+    push = sway - 0.12 * vertical * np.clip(landing / 4e4, -1.0, 1.0)
+    forces, centres, heels = [], [], []
+    for i, side in enumerate((-1.0, 1.0)):
+        forces.append(np.column_stack((0.5 * push, 0.04 * side * vertical, 0.5 * vertical)))
+        place = np.array([0.3 + 0.65 * i, 0.0, 0.0])
+        centres.append(place + np.column_stack((3e-5 * (vertical - 600), 0 * time, 0 * time)))
+        lifted = np.maximum(height, 0.0)
+        heels.append(place + np.column_stack((0 * time - 0.1, 0 * time, 0.02 + lifted)))
+    body = np.column_stack((0.6 + 0.004 * np.sin(time), 0 * time, 0.95 + height))
+    return forces, centres, heels, body, (0.0, 0.0)
+
+
+def _standing(time: np.ndarray, weight: float) -> Motion:
+    return _standing_feet(time, np.full(len(time), weight), np.zeros(len(time)))
+
+
+def _jump(time: np.ndarray, weight: float) -> Motion:
+    """Countermovement jump: standing, unweighting, push-off, flight, landing, standing."""
+    knots = [(0.0, 1.0), (1.0, 1.0), (1.25, 0.4), (1.55, 2.3), (1.7, 0.0), (2.1, 0.0)]
+    knots += [(2.15, 3.6), (2.4, 0.8), (2.6, 1.05), (2.8, 1.0)]
+    height = raised_cosines(time, [(1.0, 0.0), (1.4, -0.25), (1.7, 0.0), (1.9, 0.3), (2.1, 0.0)])
+    return _standing_feet(time, weight * raised_cosines(time, knots), height)
+
+
+def _drop_jump(time: np.ndarray, weight: float) -> Motion:
+    """Drop from a box behind the plates, rebound after 0.4 s, landing and standing."""
+    knots = [(0.0, 0.0), (0.99, 0.0), (1.05, 3.7), (1.2, 2.2), (1.4, 0.0), (1.85, 0.0)]
+    knots += [(1.9, 3.4), (2.2, 0.9), (2.4, 1.0), (4.0, 1.0)]
+    drop = [(0.6, 0.3), (1.0, 0.0), (1.2, -0.2), (1.4, 0.0), (1.62, 0.25), (1.85, 0.0)]
+    height = raised_cosines(time, [*drop, (2.1, -0.15), (2.4, 0.0)])
+    return _standing_feet(time, weight * raised_cosines(time, knots), height)
+
+
+def _half_sine(peak: float) -> Callable[[np.ndarray], np.ndarray]:
+    return lambda share: np.where(
+        (share > 0) & (share < 1), peak * np.sin(np.pi * np.clip(share, 0, 1)), 0.0
+    )
+
+
+def _running(time: np.ndarray, weight: float) -> Motion:
+    return _steps(time, weight, stance=0.25, pace=0.36, speed=3.2, load=_half_sine(2.5), ratio=0.25)
+
+
+def _jogging(time: np.ndarray, weight: float) -> Motion:
+    return _steps(
+        time, weight, stance=0.38, pace=0.42, speed=2.3, load=_half_sine(1.75), ratio=0.22
+    )
+
+
+ACTIVITIES: Mapping[str, str] = {
+    "walk": "level walking, a step on each plate",
+    "standing": "quiet standing",
+    "jump": "countermovement jump",
+    "drop_jump": "drop jump with rebound",
+    "running": "running at 3.2 m/s",
+    "jogging": "slow jogging at 2.3 m/s",
+    "stairs_up": "two stairs upward",
+    "stairs_down": "two stairs downward",
+    "turn": "a walk that turns by 90 deg in a step",
+}
+_ACTIVITIES: Mapping[str, Callable[[np.ndarray, float], Motion]] = {
+    "walk": _steps,
+    "standing": _standing,
+    "jump": _jump,
+    "drop_jump": _drop_jump,
+    "running": _running,
+    "jogging": _jogging,
+    "stairs_up": lambda time, weight: _steps(time, weight, rise=0.17, speed=0.6),
+    "stairs_down": lambda time, weight: _steps(time, weight, rise=-0.17, speed=0.6),
+    "turn": lambda time, weight: _steps(time, weight, turn=np.radians(90.0)),
+}

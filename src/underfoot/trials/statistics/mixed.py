@@ -1,0 +1,297 @@
+"""Persons as units: means per person first, then models in which persons differ.
+
+Trials of one person are alike. A test that takes them as independent finds differences that are
+not there; here every person counts once in each condition.
+"""
+
+from __future__ import annotations
+
+import warnings as python_warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from underfoot.core import DataError
+
+from .design import Design, parts
+from .linear import AnovaRow, linear_model, model_data
+
+
+def independence_warning(persons: Sequence[object]) -> tuple[str, ...]:
+    """Return a warning when rows repeat persons, for tests that take rows as independent."""
+    names = {str(person) for person in persons}
+    if len(names) == len(persons):
+        return ()
+    return (
+        f"{len(persons)} trials of {len(names)} persons: this test takes them as independent, "
+        "and its p is too small",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class PersonMeans:
+    """One row for each person in each condition: mean response, number of trials."""
+
+    person: tuple[str, ...]
+    factors: Mapping[str, tuple[str, ...]]
+    mean: np.ndarray
+    trials: np.ndarray
+
+
+def person_means(
+    response: Sequence[float] | np.ndarray,
+    factors: Mapping[str, Sequence[str]],
+    person: Sequence[object],
+) -> PersonMeans:
+    """Return the mean of each person in each combination of levels; missing values are left out.
+
+    Raises
+    ------
+    DataError
+        Lengths differ, or nothing is left.
+    """
+    y = np.asarray(response, dtype=float)
+    if any(len(column) != len(y) for column in (person, *factors.values())):
+        raise DataError("response, factors and persons differ in length", where="person means")
+    cells: dict[tuple[str, ...], list[float]] = {}
+    for i in np.flatnonzero(np.isfinite(y)).tolist():
+        cell = (str(person[i]), *(str(levels[i]) for levels in factors.values()))
+        cells.setdefault(cell, []).append(float(y[i]))
+    if not cells:
+        raise DataError("no values", where="person means")
+    columns = list(zip(*cells, strict=True))
+    return PersonMeans(
+        columns[0],
+        dict(zip(factors, columns[1:], strict=True)),
+        np.array([np.mean(values) for values in cells.values()]),
+        np.array([len(values) for values in cells.values()]),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class MixedModel:
+    """Linear model of person means with a random intercept for each person (REML).
+
+    Parameters
+    ----------
+    coefficients, covariance
+        Of the fixed effects, sum-to-zero coding, shapes (p,) and (p, p).
+    person_sd, residual_sd
+        Standard deviations between persons, and of a person's mean in one condition about it.
+    within_df, between_df
+        Degrees of freedom of what varies within persons and of what only differs between them.
+    within
+        Factors of which at least one person has several levels.
+    """
+
+    response_name: str
+    design: Design
+    coefficients: np.ndarray
+    covariance: np.ndarray
+    person_sd: float
+    residual_sd: float
+    within_df: int
+    between_df: int
+    within: frozenset[str]
+    persons: int
+    trials: int
+    warnings: tuple[str, ...]
+
+    def df(self, factor: str) -> float:
+        """Return the degrees of freedom of comparisons between levels of ``factor``."""
+        inside = any(name in self.within for name in parts(factor))
+        return self.within_df if inside else self.between_df
+
+    @property
+    def tests(self) -> tuple[AnovaRow, ...]:
+        """F tests of the terms (type III, Wald, degrees of freedom between and within persons)."""
+        from scipy import stats
+
+        rows = []
+        for term in self.design.terms:
+            at = self.design.slices[term]
+            b, c = self.coefficients[at], self.covariance[at, at]
+            q, df = len(b), self.df(term)
+            f = float(b @ np.linalg.solve(c, b)) / q
+            rows.append(AnovaRow(term, np.nan, q, f, float(stats.f.sf(f, q, df)), df))
+        return tuple(rows)
+
+
+def mixed_model(
+    response: Sequence[float] | np.ndarray,
+    factors: Mapping[str, Sequence[str]],
+    person: Sequence[object],
+    terms: Sequence[str] | None = None,
+    *,
+    name: str = "response",
+) -> MixedModel:
+    """Return the mixed model of a study in which persons repeat.
+
+    Trials are averaged first for each person and condition, so that repeating trials does not
+    make persons more. The means are modelled with fixed factors and a random intercept for each
+    person; its variance is that of statsmodels' REML fit. In complete data the tests are those
+    of repeated measures (with two levels, the paired t test). Degrees of freedom: persons -
+    parameters for what differs between persons, rows - persons - parameters within.
+
+    Parameters
+    ----------
+    response, person
+        Shape (n,), one row a trial.
+    factors
+        Columns of length n, as names.
+    terms
+        All crossed by default.
+
+    Raises
+    ------
+    DataError
+        Fewer persons than the model needs; no person with two conditions and none repeated;
+        combinations of levels without a person.
+
+    Source: J. C. Pinheiro, D. M. Bates, Mixed-Effects Models in S and S-PLUS, Springer 2000
+    (degrees of freedom: section 2.4.2).
+    """
+    means = person_means(response, factors, person)
+    y, built, notes = model_data(means.mean, means.factors, terms, name)
+    if notes:
+        raise DataError(
+            notes[0], where=name, remedy="Name fewer factors, or leave out interactions"
+        )
+    people = {p: i for i, p in enumerate(dict.fromkeys(means.person))}
+    who = np.array([people[p] for p in means.person])
+    x = built.matrix
+    varies = [bool(np.ptp(x[who == i], axis=0).any()) for i in range(len(people))]
+    columns = np.array(
+        [any(np.ptp(x[who == i, j]) > 0 for i in range(len(people))) for j in range(x.shape[1])]
+    )
+    within = frozenset(
+        n for n, levels in means.factors.items()
+        if any(len({levels[r] for r in np.flatnonzero(who == i)}) > 1 for i in range(len(people)))
+    )  # fmt: skip
+    between_df = len(people) - int((~columns).sum())
+    within_df = len(y) - len(people) - int(columns.sum())
+    if between_df < 1 or (any(varies) and within_df < 1):
+        raise DataError(
+            f"{len(people)} persons leave nothing to estimate the scatter of {x.shape[1]} "
+            "parameters",
+            where=name,
+            remedy="Measure more persons, or name fewer factors",
+        )
+    total = int(means.trials.sum())
+    if not any(varies):
+        # Nobody repeats a condition: the means of persons are independent.
+        plain = linear_model(y, means.factors, built.terms, name=name)
+        spread = float(np.sqrt(plain.residual_mean_square))
+        return MixedModel(
+            name, built, plain.coefficients, plain.covariance, spread, 0.0, 0, plain.residual_df,
+            within, len(people), total, plain.warnings,
+        )  # fmt: skip
+    person_sd, residual_sd = _standard_deviations(y, x, who)
+    share = person_sd**2 / residual_sd**2
+    precision = np.zeros((x.shape[1], x.shape[1]))
+    score = np.zeros(x.shape[1])
+    for i in range(len(people)):
+        rows = x[who == i]
+        shrink = share / (1.0 + share * len(rows))
+        inverse = (np.eye(len(rows)) - shrink) / residual_sd**2
+        precision += rows.T @ inverse @ rows
+        score += rows.T @ inverse @ y[who == i]
+    covariance = np.linalg.inv(precision)
+    warning = ()
+    if person_sd < 1e-3 * residual_sd:
+        warning = ("persons differ no more than by chance: their variance is estimated as zero",)
+    return MixedModel(
+        name, built, covariance @ score, covariance, person_sd, residual_sd, within_df, between_df,
+        within, len(people), total, warning,
+    )  # fmt: skip
+
+
+def _standard_deviations(y: np.ndarray, x: np.ndarray, who: np.ndarray) -> tuple[float, float]:
+    from statsmodels.regression.mixed_linear_model import MixedLM
+
+    scale = float(y.std())
+    with python_warnings.catch_warnings():
+        # A variance of zero is an answer here, said in the model's own warnings.
+        python_warnings.simplefilter("ignore")
+        fit: Any = MixedLM((y - y.mean()) / scale, x, groups=who).fit(
+            reml=True, method=["powell"], ftol=1e-13, xtol=1e-10
+        )
+    person, residual = float(np.asarray(fit.cov_re).ravel()[0]), float(fit.scale)
+    if not np.isfinite([person, residual]).all() or residual <= 1e-18:
+        raise DataError(
+            "persons explain everything: no scatter is left within them", where="mixed model"
+        )
+    return scale * float(np.sqrt(max(person, 0.0))), scale * float(np.sqrt(residual))
+
+
+@dataclass(frozen=True, slots=True)
+class RepeatedMeasures:
+    """Repeated-measures analysis of variance of person means.
+
+    ``epsilon`` is Greenhouse and Geisser's, for one factor: ``rows`` hold p without it,
+    ``p_corrected`` is p with it.
+    """
+
+    rows: tuple[AnovaRow, ...]
+    epsilon: float | None
+    p_corrected: float | None
+    persons: int
+
+
+def repeated_measures(
+    response: Sequence[float] | np.ndarray,
+    factors: Mapping[str, Sequence[str]],
+    person: Sequence[object],
+) -> RepeatedMeasures:
+    """Return the repeated-measures analysis of variance (statsmodels' AnovaRM) of person means.
+
+    Raises
+    ------
+    DataError
+        A person lacks a combination of levels: use ``mixed_model``.
+
+    Source: S. W. Greenhouse, S. Geisser, Psychometrika 24 (1959) 95.
+    """
+    import pandas as pd
+    from scipy import stats
+    from statsmodels.stats.anova import AnovaRM
+
+    means = person_means(response, factors, person)
+    frame = pd.DataFrame({"person": means.person, "y": means.mean})
+    # Neutral column names: statsmodels builds formulas of them.
+    named = {f"factor{i}": name for i, name in enumerate(means.factors)}
+    for column, name in named.items():
+        frame[column] = means.factors[name]
+    cells = int(np.prod([len(set(levels)) for levels in means.factors.values()]))
+    people = sorted(set(means.person))
+    if len(frame) != cells * len(people) or len(people) < 2 or cells < 2:
+        raise DataError(
+            "not every person has every condition", where="repeated measures",
+            remedy="Use the mixed model",
+        )  # fmt: skip
+    table: Any = AnovaRM(frame, "y", "person", within=list(named)).fit().anova_table
+    rows = tuple(
+        AnovaRow(
+            ":".join(named[part] for part in str(term).split(":")),
+            np.nan,
+            int(row["Num DF"]),
+            float(row["F Value"]),
+            float(row["Pr > F"]),
+            float(row["Den DF"]),
+        )
+        for term, row in table.iterrows()
+    )
+    if len(named) > 1:
+        return RepeatedMeasures(rows, None, None, len(people))
+    wide = frame.pivot(index="person", columns="factor0", values="y").to_numpy()
+    k = wide.shape[1]
+    centring = np.eye(k) - 1.0 / k
+    inner = centring @ np.atleast_2d(np.cov(wide.T)) @ centring
+    epsilon = min(float(np.trace(inner) ** 2 / ((k - 1) * np.sum(inner**2))), 1.0)
+    one = rows[0]
+    assert one.f is not None
+    assert one.error_df is not None
+    p = float(stats.f.sf(one.f, epsilon * one.df, epsilon * one.error_df))
+    return RepeatedMeasures(rows, epsilon, p, len(people))

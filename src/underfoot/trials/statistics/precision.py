@@ -1,0 +1,150 @@
+"""Repeatability and reproducibility of a test method (ISO 5725-2), with its outlier tests."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from underfoot.core import DataError
+
+
+@dataclass(frozen=True, slots=True)
+class OutlierTest:
+    """One test of ISO 5725-2: statistic with its critical values at 5 % and 1 %.
+
+    ``verdict``: "correct", "straggler" (beyond 5 %) or "outlier" (beyond 1 %).
+    """
+
+    name: str
+    laboratory: str
+    statistic: float
+    critical_5_percent: float
+    critical_1_percent: float
+
+    @property
+    def verdict(self) -> str:
+        """Return what ISO 5725-2, 7.3.2.1 calls the item."""
+        if self.statistic > self.critical_1_percent:
+            return "outlier"
+        return "straggler" if self.statistic > self.critical_5_percent else "correct"
+
+
+@dataclass(frozen=True, slots=True)
+class Precision:
+    """Precision of a method at one level.
+
+    Parameters
+    ----------
+    repeatability, reproducibility
+        Standard deviations s_r (same laboratory, operator, machine) and s_R (any of them).
+    between
+        Standard deviation s_L between laboratories.
+    outliers
+        Cochran's test of the largest variance, Grubbs' of the largest and the smallest mean.
+    """
+
+    mean: float
+    repeatability: float
+    between: float
+    reproducibility: float
+    laboratories: int
+    n: int
+    outliers: tuple[OutlierTest, ...]
+
+    @property
+    def repeatability_limit(self) -> float:
+        """Difference that two readings of one laboratory exceed in 5 % of cases, 2.8 s_r."""
+        return 2.8 * self.repeatability
+
+    @property
+    def reproducibility_limit(self) -> float:
+        """Difference that readings of two laboratories exceed in 5 % of cases, 2.8 s_R."""
+        return 2.8 * self.reproducibility
+
+
+def precision(readings: Mapping[str, Sequence[float] | np.ndarray]) -> Precision:
+    """Return repeatability and reproducibility from repeated readings of several laboratories.
+
+    s_r^2 is the pooled variance within laboratories, s_L^2 = (MS_between - s_r^2) / n0 (zero when
+    negative), s_R^2 = s_r^2 + s_L^2 with n0 = (N - sum n_i^2 / N) / (p - 1). Nothing is left out:
+    outliers are named, and whoever removes one says so. Operators or machines may stand in place
+    of laboratories; s_R then means reproducibility over these.
+
+    Parameters
+    ----------
+    readings
+        Readings by laboratory, at least two laboratories, one of them with two readings.
+
+    Raises
+    ------
+    DataError
+        Too few laboratories or readings, or missing values.
+
+    Source: ISO 5725-2:1994, 7.3 and 7.4 (from memory, not verified against the text; the formulas
+    reproduce the example of ASTM E691). Critical values are computed: Cochran's from F, Grubbs'
+    from t.
+    """
+    groups = {name: np.asarray(values, dtype=float) for name, values in readings.items()}
+    if any(not len(v) or not np.isfinite(v).all() for v in groups.values()):
+        raise DataError("missing readings", where="precision")
+    p, total = len(groups), sum(map(len, groups.values()))
+    if p < 2 or total <= p:
+        raise DataError(
+            f"{total} readings of {p} laboratories", where="precision",
+            allowed="two laboratories or more, repeated readings",
+        )  # fmt: skip
+    sizes = np.array([len(v) for v in groups.values()], dtype=float)
+    means = np.array([v.mean() for v in groups.values()])
+    grand = float(np.sum(sizes * means) / total)
+    within = sum(float(np.sum((v - v.mean()) ** 2)) for v in groups.values()) / (total - p)
+    n0 = (total - float(np.sum(sizes**2)) / total) / (p - 1)
+    spread = float(np.sum(sizes * (means - grand) ** 2)) / (p - 1)
+    between = max(0.0, (spread - within) / n0)
+    return Precision(
+        grand,
+        float(np.sqrt(within)),
+        float(np.sqrt(between)),
+        float(np.sqrt(within + between)),
+        p,
+        total,
+        tuple(_outliers(groups, means)),
+    )
+
+
+def _outliers(groups: Mapping[str, np.ndarray], means: np.ndarray) -> list[OutlierTest]:
+    from scipy import stats
+
+    names = list(groups)
+    tests = []
+    variances = {n: float(v.var(ddof=1)) for n, v in groups.items() if len(v) > 1}
+    if len(variances) > 1 and sum(variances.values()) > 0:
+        worst = max(variances, key=lambda n: variances[n])
+        # ISO 5725-2, 7.3.3.2: n is the number of readings that most laboratories have.
+        sizes = [len(groups[n]) for n in variances]
+        n, p = max(set(sizes), key=sizes.count), len(variances)
+
+        def cochran(alpha: float) -> float:
+            f = float(stats.f.isf(alpha / p, n - 1, (p - 1) * (n - 1)))
+            return f / (f + p - 1)
+
+        tests.append(
+            OutlierTest(
+                "Cochran, largest variance", worst, variances[worst] / sum(variances.values()),
+                cochran(0.05), cochran(0.01),
+            )
+        )  # fmt: skip
+    p = len(means)
+    if p > 2 and means.std() > 0:
+
+        def grubbs(alpha: float) -> float:
+            t2 = float(stats.t.isf(alpha / (2 * p), p - 2)) ** 2
+            return float((p - 1) / np.sqrt(p) * np.sqrt(t2 / (p - 2 + t2)))
+
+        for label, at, sign in (("largest", means.argmax(), 1), ("smallest", means.argmin(), -1)):
+            g = sign * float(means[at] - means.mean()) / float(means.std(ddof=1))
+            tests.append(
+                OutlierTest(f"Grubbs, {label} mean", names[at], g, grubbs(0.05), grubbs(0.01))
+            )
+    return tests

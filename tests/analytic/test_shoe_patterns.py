@@ -1,0 +1,136 @@
+"""Tread patterns, sipes and outlines against brute force and closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.ndimage import distance_transform_edt
+
+from underfoot.core import InputError
+from underfoot.shoe import Facet, Heel, Sipes, Tread, heel_map, heel_surface
+from underfoot.shoe.parametric import ShoeOutline, ToeSpring, WholeSole
+
+KINDS = {
+    "blocks": {"lug_length": 7e-3},
+    "bars": {"angle": 0.4},
+    "chevrons": {"arm_length": 9e-3, "angle": 0.6},
+    "circles": {},
+    "hexagons": {"angle": 0.2},
+}
+SPACING = 5e-5
+
+
+@pytest.mark.parametrize("pattern", KINDS)
+def test_distance_is_that_to_the_nearest_wall(pattern):
+    tread = Tread(pattern, 5e-3, 2e-3, 2e-3, **KINDS[pattern])
+    line = np.arange(-15e-3, 15e-3, SPACING)
+    x, y = np.meshgrid(line, line, indexing="ij")
+    found = tread.channel_distance(x, y)
+    brute = np.where(
+        found > 0, distance_transform_edt(found > 0), -distance_transform_edt(found <= 0)
+    )
+    middle = (np.abs(x) < 1e-2) & (np.abs(y) < 1e-2)
+    assert np.abs(found - brute * SPACING)[middle].max() < 1.5 * SPACING
+    # 15 periods or more: the share of land is that of an endless tread but for the border
+    assert (found <= 0).mean() == pytest.approx(tread.land_ratio, abs=0.04)
+
+
+@pytest.mark.parametrize("pattern", KINDS)
+def test_largest_depth_of_a_lug_is_half_its_width(pattern):
+    tread = Tread(pattern, 5e-3, 2e-3, 2e-3, **KINDS[pattern])
+    line = np.arange(0, 40e-3, SPACING)
+    x, y = np.meshgrid(line, line, indexing="ij")
+    deepest = -tread.channel_distance(x, y).min()
+    # only in the bend of a chevron a lug is wider than across its arms
+    assert deepest >= 2.5e-3 - SPACING
+    if pattern != "chevrons":
+        assert deepest <= 2.5e-3 + 1e-9
+
+
+def test_existing_patterns_turned_by_a_right_angle_are_each_other():
+    x, y = np.meshgrid(np.linspace(0, 0.05, 101), np.linspace(-0.03, 0.03, 91), indexing="ij")
+    along = Tread("longitudinal", 5e-3, 2.4e-3, 2e-3)
+    bars = Tread("bars", 5e-3, 2.4e-3, 2e-3, angle=math.pi / 2, offset=(0.0, -2.5e-3))
+    assert np.allclose(along.channel_distance(x, y), bars.channel_distance(x, y), atol=1e-9)
+
+
+def test_sipes_cut_their_share_and_no_deeper():
+    sipes = Sipes(1.2e-3, 1e-3, 6e-3, angle=0.3)
+    kind = {"length": 0.06, "width": 0.06, "rear_radius": 0.028, "outsole_thickness": 0.02}
+    plain = Heel(**kind, tread=Tread("bars", 9e-3, 3e-3, 2e-3))
+    slit = Heel(**kind, tread=Tread("bars", 9e-3, 3e-3, 2e-3, sipes=sipes))
+    before = heel_surface(plain, spacing=2e-4)
+    after = heel_surface(slit, spacing=2e-4)
+    assert after.land_area / before.land_area == pytest.approx(1 - 1.2 / 6, rel=0.02)
+    cut = before.land & ~after.land
+    assert np.allclose(after.height[cut], 1e-3)
+
+
+def test_sipes_below_two_cells_are_closed_and_marked():
+    kind = {"length": 0.06, "width": 0.06, "rear_radius": 0.028, "outsole_thickness": 0.02}
+    slit = Heel(**kind, tread=Tread("bars", 9e-3, 3e-3, 2e-3, sipes=Sipes(0.5e-3, 1e-3, 4e-3)))
+    plain = Heel(**kind, tread=Tread("bars", 9e-3, 3e-3, 2e-3))
+    found = heel_map(slit, shoe_angle=0.1, spacing=6e-4)
+    assert any("sipe" in str(breach) for breach in found.breaches)
+    assert np.array_equal(found.land, heel_map(plain, shoe_angle=0.1, spacing=6e-4).land)
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_outline_distance_against_a_fine_polygon(side):
+    from shapely.geometry import Point, Polygon
+
+    from underfoot.shoe._kernels.arcs import points_on
+
+    sole = WholeSole(ShoeOutline(0.29, 0.068, 0.058, 0.1, side), 0.012)
+    polygon = Polygon(points_on(sole.rim_arcs(), 2e-5))
+    places = np.random.default_rng(1).uniform([-0.02, -0.07], [0.31, 0.07], (150, 2))
+    exact = [
+        math.copysign(polygon.exterior.distance(Point(p)), 1 if polygon.contains(Point(p)) else -1)
+        for p in places
+    ]
+    assert np.abs(sole.inward_distance(*places.T) - exact).max() < 1e-8
+    assert sole.plan_area == pytest.approx(polygon.area, rel=1e-6)
+
+
+def test_left_and_right_are_mirror_images():
+    left, right = (
+        WholeSole(ShoeOutline(0.29, 0.068, 0.058, 0.1, side), 0.012) for side in ("left", "right")
+    )
+    places = np.random.default_rng(2).uniform([0, -0.05], [0.29, 0.05], (200, 2))
+    mirrored = right.inward_distance(places[:, 0], -places[:, 1])
+    assert np.allclose(left.inward_distance(*places.T), mirrored, atol=1e-12)
+    # the tip of a right shoe lies towards its medial side, on the left
+    assert right.inward_distance(np.array([0.28]), np.array([0.012]))[0] > 0
+    assert right.inward_distance(np.array([0.28]), np.array([-0.03]))[0] < 0
+
+
+def test_whole_sole_reaches_the_solver():
+    sole = WholeSole(
+        ShoeOutline(0.29, 0.068, 0.058, 0.1),
+        0.012,
+        Facet(math.radians(10), 0.03),
+        ToeSpring(0.012, 0.2, 0.29),
+        edge_radius=2e-3,
+        tread=Tread("hexagons", 8e-3, 3e-3, 3e-3),
+    )
+    found = heel_map(sole, shoe_angle=math.radians(10), spacing=1e-3)
+    assert found.plan_area == pytest.approx(sole.plan_area * math.cos(math.radians(10)), rel=0.02)
+    assert found.land_ratio == pytest.approx((8 / 11) ** 2, abs=0.04)
+    flat = heel_surface(sole, spacing=1e-3)
+    at_tip = flat.height[-3, np.isfinite(flat.height[-3])].min()
+    assert 0.008 < at_tip < 0.012 + 3e-3 + 2e-3
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        ({"pattern": "hexagon"}, "hexagons"),
+        ({"pattern": "blocks"}, "lug_length"),
+        ({"pattern": "grid", "lug_length": 5e-3}, "not used"),
+        ({"pattern": "chevrons", "arm_length": 9e-3, "angle": 1.5}, "75 deg"),
+        ({"pattern": "grid", "sipes": Sipes(5e-4, 3e-3, 4e-3)}, "deeper than the tread"),
+    ],
+)
+def test_refused_treads(kind, words):
+    with pytest.raises(InputError, match=words):
+        Tread(**{"lug_width": 5e-3, "channel_width": 2e-3, "depth": 2e-3, **kind})

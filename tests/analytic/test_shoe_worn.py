@@ -1,0 +1,131 @@
+"""Wear: what is removed against closed forms."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from underfoot.core import InputError
+from underfoot.shoe import Facet, Heel, Tread, WearPlane, heel_map
+from underfoot.shoe.worn import WornMap, WornPatch, archard_wear, wear_measures
+
+HEEL = Heel(
+    length=0.06,
+    width=0.06,
+    rear_radius=0.028,
+    outsole_thickness=0.025,
+    profile=Facet(math.radians(10), 0.03),
+    tread=Tread("hexagons", 6e-3, 2.4e-3, 2e-3),
+)
+
+
+def uniform(pressure, spacing=1e-3):
+    def contact(shape, angle):
+        sole = heel_map(shape, shoe_angle=angle, spacing=spacing)
+        return sole, np.where(sole.land, pressure, 0.0)
+
+    return contact
+
+
+def test_even_pressure_wears_evenly_and_takes_k_p_s():
+    found = archard_wear(
+        HEEL,
+        angles=[math.radians(10)],
+        depth=1e-3,
+        contact=uniform(2e5),
+        wear_rate=1e-12,
+        spacing=1e-3,
+    )
+    assert found.worn.depth == pytest.approx(1e-3, rel=1e-6)
+    assert found.sliding_distance == pytest.approx(1e-3 / (1e-12 * 2e5), rel=1e-6)
+    inside = HEEL.inward_distance(*np.meshgrid(found.worn.x, found.worn.y, indexing="ij")) > 2e-3
+    assert np.allclose(found.worn.removed[inside], 1e-3, rtol=1e-6)
+
+
+def test_removed_volume_is_wear_rate_times_load_times_way():
+    def rear_only(shape, angle):
+        sole = heel_map(shape, shoe_angle=angle, spacing=1e-3)
+        across = np.exp(-(sole.y[None, :] ** 2) / (2 * 0.012**2))
+        along = np.exp(-((sole.x[:, None] - 0.02) ** 2) / (2 * 0.008**2))
+        return sole, np.where(sole.land, 3e5 * across * along, 0.0)
+
+    sole, pressure = rear_only(HEEL, math.radians(10))
+    load = pressure.sum() * sole.spacing**2
+    found = archard_wear(
+        HEEL,
+        angles=[math.radians(10)],
+        depth=0.2e-3,
+        contact=rear_only,
+        wear_rate=1e-12,
+        spacing=1e-3,
+    )
+    volume = wear_measures(replace(HEEL, wear=found.worn)).removed_volume
+    assert volume == pytest.approx(1e-12 * load * found.sliding_distance, rel=0.03)
+
+
+def test_the_way_goes_with_the_wear_rate_and_the_shape_does_not():
+    kind = {"angles": [0.1], "depth": 1e-3, "contact": uniform(1e5), "spacing": 2e-3}
+    slow = archard_wear(HEEL, wear_rate=1e-13, **kind)
+    fast = archard_wear(HEEL, wear_rate=1e-12, **kind)
+    assert slow.sliding_distance == pytest.approx(10 * fast.sliding_distance)
+    assert np.allclose(slow.worn.removed, fast.worn.removed)
+
+
+def test_going_on_from_a_step_is_the_same_as_not_stopping():
+    kind = {"angles": [0.1], "contact": uniform(1e5), "spacing": 2e-3, "wear_rate": 1e-12}
+    half = archard_wear(HEEL, depth=0.5e-3, **kind)
+    whole = archard_wear(HEEL, depth=1e-3, begin=half, **kind)
+    assert whole.sliding_distance == pytest.approx(
+        archard_wear(HEEL, depth=1e-3, **kind).sliding_distance
+    )
+
+
+def test_patch_of_given_area_is_found_again():
+    patch = WornPatch(2e-3, 0.03, 0.024, position=0.03, taper=math.radians(20))
+    found = wear_measures(replace(HEEL, wear=patch), spacing=2.5e-4)
+    assert found.worn_patch_area == pytest.approx(patch.area, rel=0.01)
+    assert found.worn_patch_length == pytest.approx(0.03, abs=5e-4)
+    assert found.characteristic_length == pytest.approx(math.sqrt(0.03 * 0.024), rel=0.02)
+    assert found.tread_left == 0.0
+    assert found.removed_depth == pytest.approx(2e-3)
+
+
+def test_rectangle_wears_nothing_beyond_its_taper():
+    patch = WornPatch(1e-3, 0.02, 0.02, position=0.03, form="rectangle", taper=math.radians(45))
+    new = np.zeros(3)
+    worn = patch.worn_height(np.array([0.03, 0.0405, 0.0415]), np.zeros(3), new, HEEL)
+    assert worn == pytest.approx([1e-3, 0.5e-3, 0.0], abs=1e-12)
+
+
+def test_even_plane_removes_depth_times_land():
+    flat = replace(HEEL, profile=Facet(0.0, 0.03), edge_radius=0.0)
+    found = wear_measures(replace(flat, wear=WearPlane(0.5e-3)), spacing=2.5e-4)
+    land = flat.plan_area * flat.tread.land_ratio
+    assert found.removed_volume == pytest.approx(0.5e-3 * land, rel=0.03)
+    assert found.tread_left == pytest.approx(1.5e-3)
+    assert found.worn_patch_area == 0.0
+
+
+def test_map_is_bilinear_between_its_nodes():
+    worn = WornMap(np.array([0.0, 0.01]), np.array([0.0, 0.01]), np.array([[0, 0], [1e-3, 3e-3]]))
+    assert worn.thickness(0.005, 0.005) == pytest.approx(1e-3)
+    assert worn.depth == 3e-3
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        ({"length": 0.07, "width": 0.02}, "larger than the shoe"),
+        ({"length": 0.02, "width": 0.07}, "larger than the shoe"),
+        ({"length": 0.02, "width": 0.02, "position": 0.08}, "beside the sole"),
+    ],
+)
+def test_patches_that_do_not_fit(kind, words):
+    with pytest.raises(InputError, match=words):
+        WornPatch(2e-3, **kind).check_within(HEEL)
+
+
+def test_wear_deeper_than_the_sole():
+    with pytest.raises(InputError, match="goes through the outsole"):
+        replace(HEEL, wear=WornPatch(0.03, 0.02, 0.02))

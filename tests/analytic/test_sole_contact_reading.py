@@ -1,0 +1,144 @@
+"""The floor sensor's reading against closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+
+from underfoot.sole_contact import floor_sensor_reading
+
+MM = 1e-3
+
+
+def grid(length=100.0, width=100.0, spacing=0.5):
+    x = (np.arange(round(length / spacing)) + 0.5) * spacing * MM
+    y = (np.arange(round(width / spacing)) - 0.5 * (round(width / spacing) - 1)) * spacing * MM
+    return x, y, np.meshgrid(x, y, indexing="ij")
+
+
+def test_uniform_patch_in_a_uniform_gap_keeps_its_load():
+    """With one gap everywhere the rim mean is a moving average: the integral stays a b p."""
+    x, y, (xx, yy) = grid()
+    pressure = np.where((np.abs(xx - 50 * MM) < 20 * MM) & (np.abs(yy) < 15 * MM), 2e5, 0.0)
+    reading = floor_sensor_reading(x, y, pressure, np.full_like(pressure, 1e-3))
+    assert reading.load.value == pytest.approx(40 * 30 * MM**2 * 2e5, rel=2e-3)
+    assert reading.peak_pressure.value == pytest.approx(2e5, rel=1e-9)
+    assert reading.outermost_share == pytest.approx(0.0, abs=1e-12)
+
+
+def test_patch_in_a_thin_film_vents_where_the_rim_leaves_it():
+    """Film 20 um, surroundings open: only pockets wholly inside read, an area (a - D)(b - D)."""
+    x, y, (xx, yy) = grid(spacing=0.25)
+    inside = (np.abs(xx - 50 * MM) < 20 * MM) & (np.abs(yy) < 15 * MM)
+    reading = floor_sensor_reading(
+        x,
+        y,
+        np.where(inside, 2e5, 0.0),
+        np.where(inside, 20e-6, 1e-3),
+        scan_spacing=2 * MM,
+        scans=30,
+    )
+    assert reading.load.value == pytest.approx(30 * 20 * MM**2 * 2e5, rel=0.03)
+
+
+def test_reading_of_a_straight_film_edge():
+    """Rim share inside a half plane at distance t from the centre: 1 - arccos(t / R) / pi."""
+    x, y, (xx, _) = grid(spacing=0.1, length=40, width=40)
+    pressure = np.where(xx < 20 * MM, 1e5, 0.0)
+    reading = floor_sensor_reading(x, y, pressure, np.full_like(pressure, 1e-3), scans=1, offsets=1)
+    t = 20 * MM - reading.x
+    near = np.abs(t) < 4.5 * MM
+    expected = 1e5 * (1 - np.arccos(t[near] / (5 * MM)) / math.pi)
+    assert reading.pressure[near, 0] == pytest.approx(expected, abs=2e3)
+
+
+def test_a_point_sensor_with_dense_scans_finds_the_true_load():
+    """Inlet, spacing and grid to zero: the error falls with their square."""
+    true = 2e5 * math.pi * (10 * MM) ** 2
+    errors = []
+    for inlet, spacing, cell in ((8.0, 4.0, 1.0), (4.0, 2.0, 0.5), (2.0, 1.0, 0.25), (0, 1, 0.25)):
+        x, y, (xx, yy) = grid(spacing=cell)
+        pressure = 2e5 * np.exp(-((xx - 48 * MM) ** 2 + (yy - 3 * MM) ** 2) / (10 * MM) ** 2)
+        gap = 5e-6 + 1e-4 * ((xx - 48 * MM) ** 2 + yy**2) / (20 * MM) ** 2
+        reading = floor_sensor_reading(
+            x,
+            y,
+            pressure,
+            gap,
+            inlet_diameter=inlet * MM,
+            scan_spacing=spacing * MM,
+            scans=round(90 / spacing),
+            sampling_step=0.5 * MM,
+            offsets=3,
+        )
+        errors.append(abs(reading.load.value / true - 1))
+    assert errors[0] > errors[1] > errors[2] > errors[3]
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.35)
+    assert errors[1] / errors[2] == pytest.approx(4.0, rel=0.35)
+    assert errors[3] < 1.5e-3
+    assert reading.peak_pressure.value == pytest.approx(2e5, rel=0.01)
+
+
+@pytest.mark.parametrize(("spacing", "low", "high"), [(10.0, 0.01, 0.02), (5.0, 0.21, 0.23)])
+def test_coverage_counts_more_than_spacing(spacing, low, high):
+    """Seven scans over exp(-(r / 20 mm)^2): 10 mm lose 1 to 2 %, 5 mm 22 %.
+
+    Closed form: a coverage of 7 spacings keeps erf(3.5 spacing / 20 mm).
+    """
+    x, y, (xx, yy) = grid(160, 160, 1.0)
+    pressure = 1e5 * np.exp(-((xx - 80 * MM) ** 2 + yy**2) / (20 * MM) ** 2)
+    reading = floor_sensor_reading(
+        x,
+        y,
+        pressure,
+        np.full_like(pressure, 1e-3),
+        inlet_diameter=0.0,
+        scan_spacing=spacing * MM,
+        offsets=21,
+    )
+    lost = 1 - reading.load.value / (1e5 * math.pi * (20 * MM) ** 2)
+    assert low < lost < high
+    assert lost == pytest.approx(1 - math.erf(3.5 * spacing / 20), abs=2e-3)
+    assert reading.outermost_share > 0.02
+
+
+def test_a_mirrored_film_reads_the_same():
+    rng = np.random.default_rng(7)
+    x, y, (xx, _) = grid(60, 60, 1.0)
+    pressure = np.where(np.abs(xx - 30 * MM) < 20 * MM, rng.uniform(0, 1e5, xx.shape), 0.0)
+    gap = rng.uniform(5e-6, 5e-4, xx.shape)
+    one = floor_sensor_reading(x, y, pressure, gap)
+    other = floor_sensor_reading(x, y, pressure[:, ::-1], gap[:, ::-1])
+    assert other.load.value == pytest.approx(one.load.value, rel=1e-12)
+    assert other.load.uncertainty == pytest.approx(one.load.uncertainty, rel=1e-9)
+    assert other.peak_pressure.value == pytest.approx(one.peak_pressure.value, rel=1e-12)
+    assert other.pressure == pytest.approx(one.pressure[:, ::-1], rel=1e-9)
+    assert other.peak_position[1] == pytest.approx(-one.peak_position[1])
+
+
+def test_position_of_the_peak():
+    x, y, (xx, yy) = grid(60, 80, 0.5)
+    pressure = 2e5 * np.exp(-((xx - 20 * MM) ** 2 + (yy - 10 * MM) ** 2) / (15 * MM) ** 2)
+    reading = floor_sensor_reading(x, y, pressure, np.full_like(pressure, 1e-3))
+    assert reading.peak_position == pytest.approx((20 * MM, 10 * MM), abs=0.7 * MM)
+
+
+def test_a_pocket_over_channels_reads_next_to_nothing():
+    """Lugs of 5 mm between channels of 2.4 mm: a 10 mm rim always meets a channel, a 4 mm not."""
+    x, y, (xx, yy) = grid(60, 60, 0.4)
+    lug = ((xx / MM) % 7.4 < 5.0) & ((np.abs(yy) / MM + 2.5) % 7.4 < 5.0)
+    pressure, gap = np.where(lug, 2e5, 0.0), np.where(lug, 20e-6, 3e-3)
+    wide = floor_sensor_reading(x, y, pressure, gap)
+    narrow = floor_sensor_reading(
+        x, y, pressure, gap, inlet_diameter=4 * MM, scan_spacing=1 * MM, scans=60
+    )
+    assert wide.peak_pressure.value < 0.01 * 2e5
+    assert narrow.peak_pressure.value > 0.5 * 2e5
+
+
+def test_an_empty_film_reads_zero():
+    x, y, (xx, _) = grid(20, 20, 1.0)
+    reading = floor_sensor_reading(x, y, np.zeros_like(xx), np.zeros_like(xx))
+    assert reading.load.value == 0.0
+    assert reading.peak_pressure.value == 0.0
+    assert reading.outermost_share == 0.0

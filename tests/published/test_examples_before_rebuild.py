@@ -1,0 +1,35 @@
+"""What the examples gave before the code was rebuilt, and what the film operator moved since.
+
+``examples_before_rebuild.json`` holds all numbers from before; ``examples_film_operator.json`` what
+moved since, beside the number from before (``test_examples_film_operator.py`` computes it).
+"""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from underfoot.case import Case
+from underfoot.compute.run import run
+
+ROOT = Path(__file__).parents[2]
+BEFORE = json.loads((ROOT / "tests/data/examples_before_rebuild.json").read_text())
+FILM = json.loads((ROOT / "tests/data/examples_film_operator.json").read_text())
+UNMOVED = ("work_shoe_untreaded_glycerol", "work_shoe_full_tread_dry")
+"""Examples of which the stored film numbers are those of the present operator to every digit."""
+
+
+def test_both_tables_begin_with_the_same_numbers():
+    assert set(BEFORE) == set(FILM)
+    for name, moved in FILM.items():
+        for key, (before, _) in moved.items():
+            assert before == pytest.approx(BEFORE[name][key], rel=1e-6, abs=1e-12)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", UNMOVED)
+def test_an_example_gives_what_it_gave(name):
+    scalars = run(Case.load(ROOT / "examples" / f"{name}.toml")).scalars
+    assert set(scalars) == set(BEFORE[name])
+    for key, (_, value) in FILM[name].items():
+        assert scalars[key].value == pytest.approx(value, rel=1e-6, abs=1e-9), key

@@ -1,0 +1,163 @@
+"""Workers that end with their parent, however it ends; estimates of the time left."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+from underfoot.core import Cancelled, UnderfootError
+from underfoot.core import progress as progress_module
+from underfoot.core.pool import in_processes
+from underfoot.core.progress import TimeLeft, bar
+
+# A parent whose workers work for a minute: most in Python, some in a call that holds the lock.
+PARENT = """
+import ctypes, sys, time
+from pathlib import Path
+from underfoot.core.files import whole_folder
+from underfoot.core.pool import in_processes
+
+def work(number):
+    Path(sys.argv[1], f"worker-{number}").write_text("")
+    if number:
+        ctypes.PyDLL(None).sleep(60)
+    time.sleep(60)
+
+if __name__ == "__main__":
+    with whole_folder(Path(sys.argv[1], "out")) as folder:
+        (folder / "half").write_text("x")
+        list(in_processes(work, [0, 1], 2))
+"""
+
+
+def squared(number):
+    return number**2
+
+
+def fatal(number):
+    if number == 2:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number
+
+
+def wrong(number):
+    raise ValueError(f"number {number}")
+
+
+def threads(_):
+    return os.environ["OMP_NUM_THREADS"]
+
+
+@pytest.mark.parametrize("processes", [1, 2])
+def test_answers_come_with_their_index_and_progress_ends_at_one(processes):
+    told = []
+    answers = in_processes(
+        squared,
+        [3, 4, 5],
+        processes,
+        progress=lambda stage, share, residual=None: told.append(share),
+    )
+    assert dict(answers) == {0: 9, 1: 16, 2: 25}
+    assert told == pytest.approx([1 / 3, 2 / 3, 1])
+
+
+def test_workers_have_one_thread_and_the_environment_comes_back(monkeypatch):
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    assert dict(in_processes(threads, [0, 1], 2)) == {0: "1", 1: "1"}
+    assert os.environ["OMP_NUM_THREADS"] == "7"
+
+
+def test_item_that_kills_its_worker_is_found_and_the_others_are_answered():
+    answers = dict(in_processes(fatal, range(4), 2, died=lambda item: -item))
+    assert answers == {0: 0, 1: 1, 2: -2, 3: 3}
+    with pytest.raises(UnderfootError, match=r"ended without an answer.*memory"):
+        list(in_processes(fatal, range(4), 2))
+
+
+@pytest.mark.parametrize("processes", [1, 2])
+def test_error_and_cancel_end_the_work_and_the_workers(processes):
+    with pytest.raises(ValueError, match="number"):
+        list(in_processes(wrong, [1, 2], processes))
+
+    def stop(stage, share, residual=None):
+        raise Cancelled("stopped")
+
+    with pytest.raises(Cancelled):
+        list(in_processes(squared, [1, 2, 3], processes, progress=stop))
+    assert not [p for p in psutil.Process().children() if "spawn_main" in " ".join(p.cmdline())]
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
+def test_no_worker_and_no_hidden_folder_outlives_the_parent(tmp_path, number):
+    script = tmp_path / "parent.py"
+    script.write_text(PARENT)
+    place = tmp_path / "work"
+    place.mkdir()
+    parent = subprocess.Popen(
+        [sys.executable, str(script), str(place)], stderr=subprocess.DEVNULL, start_new_session=True
+    )
+    until(lambda: len(list(place.glob("worker-*"))) == 2, 60)
+    family = psutil.Process(parent.pid).children(recursive=True)
+    assert len(family) >= 3  # two workers and the guard of the folder
+    os.kill(parent.pid, number)
+    parent.wait(timeout=10)
+    until(lambda: not [child for child in family if alive(child)], 3)
+    until(lambda: {path.name for path in place.iterdir()} == {"worker-0", "worker-1"}, 3)
+
+
+def alive(process):
+    try:
+        return process.is_running() and process.status() != psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return False
+
+
+def until(condition, seconds):
+    limit = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < limit, f"not within {seconds} s"
+        time.sleep(0.05)
+
+
+def test_time_left_follows_the_rate_of_the_stage():
+    left = TimeLeft()
+    assert left("solve", 0.0, 10.0) is None
+    assert left("solve", 0.25, 15.0) == pytest.approx(15.0)
+    assert left("solve", 1.0, 40.0) == 0.0
+    assert left("write", 0.5, 41.0) is None  # a new stage begins where it is first seen
+    assert left("write", 0.75, 43.0) == pytest.approx(2.0)
+
+
+def test_lines_come_outside_a_terminal_after_a_while_and_not_too_often(monkeypatch, capsys):
+    clock = [0.0]
+    monkeypatch.setattr(progress_module.time, "monotonic", lambda: clock[0])
+    with bar("shoe") as report:
+        for clock[0] in (0.0, 1.0, 3.0, 4.0, 9.0):
+            report("solve", clock[0] / 10)
+    lines = capsys.readouterr().err.splitlines()
+    assert lines == [
+        "shoe: solve, 30 %, 3 s so far, about 7 s left",
+        "shoe: solve, 90 %, 9 s so far, about 1 s left",
+    ]
+
+
+def test_the_guard_restores_the_old_folder_of_a_process_killed_between_two_renames(tmp_path):
+    script = (
+        "import os, sys\nfrom pathlib import Path\nfrom underfoot.core import files\n"
+        "plain = Path.rename\n"
+        "def rename(self, target):\n"
+        "    plain(self, target)\n"
+        "    os.kill(os.getpid(), 9)\n"
+        "out = Path(sys.argv[1], 'out')\n"
+        "with files.whole_folder(out) as folder: (folder / 'a').write_text('1')\n"
+        "Path.rename = rename\n"
+        "with files.whole_folder(out, overwrite=True) as folder: (folder / 'b').write_text('2')\n"
+    )
+    subprocess.run([sys.executable, "-c", script, str(tmp_path)], check=False)
+    until(lambda: [path.name for path in tmp_path.iterdir()] == ["out"], 3)
+    assert (Path(tmp_path) / "out" / "a").read_text() == "1"

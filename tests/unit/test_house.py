@@ -1,0 +1,157 @@
+"""House rules that the source shows: circles, size, start, paths of machines, versions."""
+
+import ast
+import os
+import re
+import subprocess
+import sys
+import tomllib
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+SOURCE = REPOSITORY / "src"
+LARGEST = 80_000  # lines of source
+START = 0.15  # s of CPU that `import underfoot` may take
+
+
+def files():
+    """Return the path of each module by its dotted name."""
+    paths = {}
+    for path in sorted(SOURCE.rglob("*.py")):
+        parts = path.relative_to(SOURCE).with_suffix("").parts
+        paths[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return paths
+
+
+def imports(name, path, known):
+    """Return which known modules a file names in import statements, wherever they stand."""
+    package = name.split(".") if path.name == "__init__.py" else name.split(".")[:-1]
+    needed = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            needed |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            above = package[: len(package) - node.level + 1] if node.level else []
+            home = ".".join([*above, *([node.module] if node.module else [])])
+            for alias in node.names:
+                inner = f"{home}.{alias.name}"
+                needed.add(inner if inner in known else home)
+    return (needed & known) - {name}
+
+
+def circle(graph):
+    """Return one circle of a graph as text, or None."""
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return " <- ".join(error.args[1])
+    return None
+
+
+def test_imports_are_read_in_every_form(tmp_path):
+    path = tmp_path / "x.py"
+    path.write_text(
+        "import p.a\nfrom . import b\nfrom .c import name\nfrom ..q import d\n"
+        "def f():\n    from p.r.e import g\nif TYPE_CHECKING:\n    from .t import T\n"
+    )
+    known = {"p.a", "p.r.b", "p.r.c", "p.q.d", "p.r.e", "p.r.t", "p.r.x", "p.r"}
+    assert imports("p.r.x", path, known) == known - {"p.r.x", "p.r"}
+
+
+def test_no_files_import_each_other_in_a_circle():
+    """Imports for types and inside functions count: a reader needs an order too."""
+    paths = files()
+    graph = {name: imports(name, path, set(paths)) for name, path in paths.items()}
+    assert circle(graph) is None, circle(graph)
+
+
+def test_circle_is_told_as_a_path():
+    assert circle({"a": {"b"}, "b": {"c"}, "c": set()}) is None
+    assert circle({"a": {"b"}, "b": {"c"}, "c": {"a"}}).count("<-") == 3
+
+
+def test_importing_the_package_loads_next_to_nothing():
+    def cpu(code):
+        script = f"import time; s = time.process_time(); {code}; print(time.process_time() - s)"
+        environment = {**os.environ, "PYTHONPATH": str(SOURCE)}
+        runs = [
+            subprocess.run(
+                [sys.executable, "-c", script],
+                env=environment, capture_output=True, text=True, check=True,
+            ).stdout
+            for _ in range(3)
+        ]  # fmt: skip
+        return min(map(float, runs))
+
+    assert cpu("import underfoot") < START
+
+
+def test_no_line_names_a_path_of_a_machine():
+    path = re.compile(r"""["'\s](/(?:home|root|work|Users|mnt|opt)/|[A-Z]:\\)""")
+    lines = [
+        f"{file.relative_to(REPOSITORY)}:{number}"
+        for folder in ("src", "docs", "examples")
+        for file in (REPOSITORY / folder).rglob("*")
+        if file.suffix in {".py", ".md", ".toml", ".css", ".js", ".html"}
+        for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1)
+        if path.search(line)
+    ]
+    assert not lines
+
+
+def test_size_of_the_source_is_told(record_property, capsys):
+    total = sum(len(path.read_text(encoding="utf-8").splitlines()) for path in files().values())
+    record_property("lines", total)
+    with capsys.disabled():
+        print(f"\nsrc: {len(files())} files, {total} lines")
+    assert total < LARGEST, f"{total} lines: what can go?"
+
+
+def test_lock_holds_each_dependency_at_an_allowed_version():
+    project = tomllib.loads((REPOSITORY / "pyproject.toml").read_text())["project"]
+    text = (REPOSITORY / "requirements.lock").read_text()
+    locked = {
+        re.sub(r"[-_.]+", "-", name).lower(): version
+        for name, version in re.findall(r"^([\w.-]+)==([\w.]+)", text, re.MULTILINE)
+    }
+
+    def numbers(version):
+        return [int(part) for part in re.findall(r"\d+", version)]
+
+    wanted = [*project["dependencies"]]
+    for extra in project["optional-dependencies"].values():
+        wanted += [line for line in extra if not line.startswith("underfoot[")]
+    for line in wanted:
+        match = re.match(r"([\w.-]+)>=([\w.]+)", line)
+        assert match, f"no lowest version: {line}"
+        name = re.sub(r"[-_.]+", "-", match[1]).lower()
+        assert numbers(locked[name]) >= numbers(match[2]), line
+
+
+def test_each_package_that_the_source_imports_is_declared():
+    """In the dependencies, or in an extra; what comes along with another package does not count."""
+    project = tomllib.loads((REPOSITORY / "pyproject.toml").read_text())["project"]
+    lines = [*project["dependencies"]]
+    for extra in project["optional-dependencies"].values():
+        lines += extra
+    declared = {re.split(r"[^\w.-]", line)[0].lower().replace("-", "_") for line in lines}
+    declared |= {"netgen", "pydantic_core"}  # belong to NGSolve and pydantic
+    imported = {
+        name.partition(".")[0].lower()
+        for path in files().values()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        for name in imported_names(node)
+    }
+    standard = {name.lower() for name in sys.stdlib_module_names}
+    assert imported - declared - standard <= {"underfoot"}
+
+
+def imported_names(node):
+    """Return the modules that a statement imports, or a call names to ``optional_module``."""
+    if isinstance(node, ast.Import):
+        return [alias.name for alias in node.names]
+    if isinstance(node, ast.ImportFrom) and not node.level:
+        return [node.module]
+    called = isinstance(node, ast.Call) and getattr(node.func, "id", "") == "optional_module"
+    return [node.args[0].value] if called else []
