@@ -59,7 +59,8 @@ def read_pose_json(draft: Draft) -> Trial:
     if len({len(v) for v in places.values()}) != 1:
         raise draft.error("points have different numbers of frames")
     # Height above the floor is below 3 in m, above it in mm.
-    size = float(np.nanmedian([np.nanmax(np.abs(v)) for v in places.values()]))
+    sizes = [np.nanmax(np.abs(v)) for v in places.values() if np.isfinite(v).any()]
+    size = float(np.median(sizes)) if sizes else 0.0
     written = str(top.get("unit", top.get("units", "")))
     factor = draft.length_unit(written, size, "no unit of length", "the size")
     for name, place in places.items():
