@@ -90,8 +90,8 @@ class Plate:
     ``force`` (n, 3), N, has its baseline subtracted and is empty when ``problem`` says why the
     plate can't be used. ``moment`` (n, 3), N m, is about the centre of the plate's surface;
     ``centre_of_pressure`` (n, 3), m, is NaN where the plate is unloaded; ``corners`` (4, 3), m.
-    Each is None when the file does not hold it. ``rate`` (samples per second) and ``start`` (s) give the
-    time. ``baseline`` (3,), N, is what was subtracted, None when nothing was, and
+    Each is None when the file does not hold it. ``rate`` (samples per second) and ``start`` (s)
+    give the time. ``baseline`` (3,), N, is what was subtracted, None when nothing was, and
     ``baseline_samples`` the number of unloaded samples it is the mean of. ``kind`` is the plate's
     type in words, ``notes`` what reading assumed (units, ZERO ...), ``flags`` what a reader must
     know (baseline, saturation, unlikely size ...); ``saturated`` is True when a channel is cut flat
@@ -145,8 +145,8 @@ class Edit:
     ``step`` is the number of the contact as ``describe`` prints it (int), or a time within it
     (float, s); ``what`` one of ``EDITS``; ``value`` the new time (s) for "contact" and "toe off",
     "left" or "right", the plate's name, or None for "exclude". ``why``, the reason, goes to the
-    edit log; ``where`` is file and line of the edit, for messages. An unknown kind of edit, a value that
-    does not fit it and a missing reason are InputErrors.
+    edit log; ``where`` is file and line of the edit, for messages. An unknown kind of edit, a value
+    that does not fit it and a missing reason are InputErrors.
     """
 
     step: int | float
