@@ -35,16 +35,9 @@ def mean_friction(
     reaches ``target``. The uncertainty is the standard error with the number of samples lowered
     for their correlation, n (1 - r) / (1 + r) with r the correlation of neighbours.
 
-    Parameters
-    ----------
-    normal, shear
-        Shape (n,), N; the shear as a resultant (not negative).
-    rate
-        Samples per second.
-    target
-        Normal force that opens the window (N).
-    window
-        Length (s): 0.2 in the grant report (G.6.1); 0.05 is enough by Iraqi et al. (PMC6922306).
+    ``normal`` and ``shear``: shape (n,), N; the shear as a resultant (not negative). ``rate``:
+    samples per second. ``target``: normal force that opens the window (N). ``window``: length (s):
+    0.2 in the grant report (G.6.1); 0.05 is enough by Iraqi et al. (PMC6922306).
     """
     normal, shear = np.asarray(normal, dtype=float), np.asarray(shear, dtype=float)
     said = {
@@ -103,10 +96,7 @@ def available_friction(
     Resultant shear over normal force, see ``mean_friction``. Not filtered unless ``low_pass``
     is given: the average does that.
 
-    Parameters
-    ----------
-    up
-        Unit vector out of the floor, lab axes; by default the plate's normal, or z.
+    ``up``: unit vector out of the floor, lab axes; by default the plate's normal, or z.
     """
     if not plate.usable:
         return Measurement.not_estimated("acof", plate.problem or "the plate has no samples")

@@ -47,17 +47,10 @@ def friction_split(
     F_adhesion(lubricated) = F_lubricated - F_hysteresis (Eq. 25). Standard errors add in squares;
     all adhesions of a pair share the error of its hysteresis and are therefore correlated.
 
-    Parameters
-    ----------
-    dry, blocked
-        Friction forces (N) dry and with the oil that blocks adhesion (SAE 75W-140 in the report).
-    lubricated
-        Friction forces (N) by fluid.
+    ``dry`` and ``blocked``: friction forces (N) dry and with the oil that blocks adhesion (SAE
+    75W-140 in the report). ``lubricated``: friction forces (N) by fluid.
 
-    Errors
-    ------
-    DataError
-        No values, or values that are not finite.
+    DataError: no values, or values that are not finite.
     """
     total = _mean("dry friction", dry)
     hysteresis = _mean("hysteresis friction", blocked)
@@ -113,15 +106,9 @@ def alpha_beta(
     One regression with a slope and an intercept for each fluid and one residual variance; the
     fluids are compared (Tukey) at the mean dry adhesion.
 
-    Parameters
-    ----------
-    fluid, dry_adhesion, lubricated_adhesion
-        Shape (n,): name, N, N.
+    ``fluid``, ``dry_adhesion``, ``lubricated_adhesion``: shape (n,): name, N, N.
 
-    Errors
-    ------
-    DataError
-        As ``linear_model``; a fluid with fewer than two different dry adhesions.
+    DataError: as ``linear_model``; a fluid with fewer than two different dry adhesions.
     """
     names = [str(name) for name in fluid]
     x = np.asarray(dry_adhesion, dtype=float)

@@ -46,10 +46,7 @@ def stances(
     plates, samples without numbers, and contacts without a braking phase or while nobody walks.
     The trial's edits are applied first.
 
-    Raises
-    ------
-    EditError
-        An edit names no contact, changes nothing or contradicts another.
+    EditError: an edit names no contact, changes nothing or contradicts another.
     """
     axes = axes or axes_of(trial)
     plates = {plate.name: plate for plate in trial.plates if plate.usable}

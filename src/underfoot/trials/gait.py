@@ -45,21 +45,10 @@ _TILT = math.radians(1.0)  # plates are levelled better than that; it shifts the
 class RcofDefinition:
     """What "required coefficient of friction" means; each choice goes with every number.
 
-    Parameters
-    ----------
-    filter
-        Low-pass of the forces.
-    gate
-        The normal force must have passed this (N), or ``gate_body_weight`` (share of body
-        weight) when that is given.
-    shear
-        A key of ``SHEARS``.
-    peak
-        A key of ``PEAKS``.
-    braking
-        Only while the floor pushes the foot backward (the foot pushes the floor forward).
-    part
-        Share of the stance, from contact, that is searched.
+    ``filter``: low-pass of the forces. ``gate``: the normal force must have passed this (N), or
+    ``gate_body_weight`` (share of body weight) when that is given. ``shear``: a key of ``SHEARS``.
+    ``peak``: a key of ``PEAKS``. ``braking``: only while the floor pushes the foot backward (the
+    foot pushes the floor forward). ``part``: share of the stance, from contact, that is searched.
     """
 
     filter: LowPass = field(default_factory=lambda: FORCE_FILTER)
@@ -178,16 +167,10 @@ def required_friction(
     whose heel slides: there the ratio is the available friction. The uncertainty holds the
     baseline, the readings of the filter's name and the plate's specification.
 
-    Parameters
-    ----------
-    checked
-        Look whether the heel slides and whether signals and result are plausible; without it only
-        the number is taken.
+    ``checked``: look whether the heel slides and whether signals and result are plausible; without
+    it only the number is taken.
 
-    Raises
-    ------
-    InputError
-        The filter does not fit the sampling rate.
+    InputError: the filter does not fit the sampling rate.
 
     Source: definitions collected from Redfern 2001, Chang 2011, Beschorner 2016 and others; the
     default is the grant report's (G.6.1) made unambiguous, see docs/physics/required_friction.md.

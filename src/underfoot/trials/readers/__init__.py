@@ -83,19 +83,11 @@ def read_trials(
     Understood are C3D, TRC, MOT/STO, Cortex .forces, BioWare text, Qualisys TSV, Vicon CSV,
     MATLAB, JSON of pose systems, Pedar or F-Scan text, CETR or PCS log, CSV, XLSX or XLS.
 
-    Parameters
-    ----------
-    profile
-        What the columns, axes and heels are called: a ``Profile`` or a TOML file.
-    subtract_baseline
-        Subtract the mean force of the unloaded samples from each plate.
+    ``profile``: what the columns, axes and heels are called: a ``Profile`` or a TOML file.
+    ``subtract_baseline``: subtract the mean force of the unloaded samples from each plate.
 
-    Raises
-    ------
-    DataError
-        The file can't be read as any of these, with the reason.
-    InputError
-        The profile is wrong.
+    DataError: the file can't be read as any of these, with the reason. InputError: the profile is
+    wrong.
     """
     path = Path(path)
     if profile is None:

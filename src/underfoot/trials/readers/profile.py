@@ -72,10 +72,7 @@ class Profile:
 def read_profile(path: Path) -> Profile:
     """Return the profile in a TOML file.
 
-    Raises
-    ------
-    InputError
-        Not TOML, an unknown key or unit, a wrong type; names the key and the nearest match.
+    InputError: not TOML, an unknown key or unit, a wrong type; names the key and the nearest match.
     """
     path = Path(path)
     try:
