@@ -26,6 +26,10 @@ class ContaminantSection(Option):
         "final progress report on shoe-floor friction, G.6.1 (150 ml on 0.4 m x 0.6 m)",
     )
 
+    family: Literal["aqueous", "oil"] = default(
+        "aqueous", "aqueous", "not given: taken as no oil", assumed=True
+    )
+
     @abstractmethod
     def build(self) -> SourcedValue:
         """Return the dynamic viscosity, Pa s."""
@@ -61,6 +65,7 @@ class GlycerolWater(ContaminantSection):
     source: ClassVar[str] = "Cheng 2008"
     chosen_by: ClassVar[tuple[str, ...]] = ("glycerol_fraction",)
 
+    family: Literal["aqueous"] = default("aqueous", "aqueous", "glycerol in water")
     glycerol_fraction: Fraction
     fraction_basis: Literal["mass", "volume"] = required(
         missing="is missing: the same percentage by mass and by volume differs by half in viscosity"

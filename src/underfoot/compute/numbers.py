@@ -30,6 +30,11 @@ _INPUTS = {
     "fine_roughness": "fine roughness",
     "roughness_factor": "roughness",
     "shear_strength": "shear strength",
+    "film": "boundary film",
+    "dry": "dry-like part",
+    "kappa": "fading of the dry-like part",
+    "laboratory": "difference between laboratories",
+    "pair": "difference between pairs",
     "model": "the law itself",
 }
 GRID_ORDER = 1.0

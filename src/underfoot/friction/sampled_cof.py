@@ -116,7 +116,13 @@ def sampled_cof(
         return np.array([solid + viscous, solid - hysteresis, hysteresis, viscous])
 
     spread = propagated(
-        parts, inputs, confidence=confidence, samples=samples, seed=seed, shares=False
+        parts,
+        inputs,
+        confidence=confidence,
+        samples=samples,
+        seed=seed,
+        shares=False,
+        joint=_joint(law, samples, seed),
     )
     return SampledCof(
         *spread.draws.T,
@@ -153,7 +159,14 @@ def sampled_points(
         solid = (shear.adhesion + shear.hysteresis) / pressure + values.get(MODEL, 0.0)
         return np.maximum(solid, 0.0) + shear.viscous / pressure
 
-    return propagated(points, inputs, samples=samples, seed=seed, shares=False)
+    return propagated(
+        points,
+        inputs,
+        samples=samples,
+        seed=seed,
+        shares=False,
+        joint=_joint(law, samples, seed),
+    )
 
 
 def _inputs(
@@ -166,6 +179,12 @@ def _inputs(
     if law.error_of_model:
         inputs[MODEL] = SourcedValue(0.0, "1", law.source, law.error_of_model)
     return inputs if any(value.uncertainty for value in inputs.values()) else None
+
+
+def _joint(law: FrictionLaw, samples: int, seed: int) -> Mapping[str, Array]:
+    """Return joint draws of inputs that depend on each other, where the law has such."""
+    draws: Any = getattr(law, "joint_draws", None)
+    return {} if draws is None else draws(samples, seed)
 
 
 def _shares(spread: Propagated) -> dict[str, float]:
