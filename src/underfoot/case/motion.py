@@ -227,4 +227,3 @@ class Sensor(Section):
     scan_spacing: Length = default(10 * _mm, "10 mm", _TESTER)
     scans: Count = default(7, 7, _TESTER)
     array: FloorArray | None = None
-

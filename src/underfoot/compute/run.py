@@ -24,6 +24,7 @@ from underfoot.core import (
 
 from .contact import Recorder, history_fields, refuse_too_large, scanned, solved_motion
 from .numbers import (
+    FILM_ERROR,
     grid_errors,
     grid_words,
     readings,
@@ -117,6 +118,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         speed=speed,
         wet=contact.wet,
         fluid_inputs={} if context.viscosity is None else {"viscosity": context.viscosity},
+        film_error=FILM_ERROR,
         seed=case.numerics.seed,
     )
     friction = cof(
