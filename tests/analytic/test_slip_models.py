@@ -102,7 +102,7 @@ def test_more_friction_never_adds_risk(a, more, mean, sd, name):
 def test_risk_carries_its_band():
     found = slip_risk(acof(0.15, 0.02))
     model, people = ReportG6(), ADULTS_LEVEL_WALKING
-    assert found.probability.value == pytest.approx(model.population(0.15, people.mean, people.sd))
+    assert found.at_best_estimate == pytest.approx(model.population(0.15, people.mean, people.sd))
     assert found.low == pytest.approx(
         model.population(0.15 + 1.95996 * 0.02, people.mean, people.sd), rel=1e-5
     )

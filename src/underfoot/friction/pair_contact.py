@@ -269,7 +269,7 @@ class PairContactLaw(UncertainInputs):
     draws: PairDraws = field(default_factory=packaged_pair_draws)
     medians: Mapping[str, float] = field(default_factory=dict)
     name: str = field(default="pair", init=False)
-    spread_basis: str = field(default="95 % interval of a pair that was not measured", init=False)
+    spread_basis: str = field(default="of a pair that was not measured", init=False)
 
     def __post_init__(self) -> None:
         positive(self.viscosity, "viscosity", "Pa s")
@@ -283,7 +283,7 @@ class PairContactLaw(UncertainInputs):
                 medians |= {"laboratory": 1.0, "pair": 1.0}
             object.__setattr__(self, "medians", medians)
         if self.draws.errors:
-            basis = "95 % interval, calibrated to readings"
+            basis = "calibrated to readings"
             object.__setattr__(self, "spread_basis", basis)
 
     @property
