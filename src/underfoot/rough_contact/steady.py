@@ -18,8 +18,15 @@ from underfoot.core.threads import converter, namespace, threads_limited
 from ._kernels.area import contact_fractions
 from ._kernels.nested import NestedSolution, solve_nested
 from ._kernels.operators import Body
-from ._kernels.spectra import dissipation, slope_numbers, work_against_slope
-from ._kernels.symbols import odd_wavenumbers, sliding_moduli, unit_compliance, wavenumbers
+from ._kernels.spectra import (
+    dissipation,
+    odd_wavenumbers,
+    sliding_moduli,
+    slope_numbers,
+    unit_compliance,
+    wavenumbers,
+    work_against_slope,
+)
 from .sliding_input import (
     Modulus,
     checked_contact_input,

@@ -19,11 +19,10 @@ from underfoot.material._kernels.prony_march import (
     relaxed_memory,
 )
 
-from ._kernels.complementarity import ContactState, solve_on_grid, solve_with_mattress
+from ._kernels.complementarity import ContactState, Search, solved_contact
 from ._kernels.krylov import Workspace
 from ._kernels.operators import Body, Operators
-from ._kernels.shift import ShiftedMap
-from ._kernels.symbols import unit_compliance
+from ._kernels.spectra import ShiftedMap, unit_compliance
 from .sliding_input import checked_contact_input
 
 
@@ -167,27 +166,16 @@ class _March:
 
     def _loaded(self, height: np.ndarray, guess: np.ndarray, mean: float) -> ContactState:
         guess = guess * np.float32(mean / max(float(guess.mean()), 1e-30))
-        for solver in (solve_on_grid, solve_with_mattress):
-            state = solver(
-                self.operators,
-                height,
-                guess,
-                mean,
-                self.workspace,
-                tolerance=self.tolerance,
-                max_steps=40,
-                exact=False,
-            )
-            if state.converged:
-                return state
-        self.failures += 1
-        return state  # pyright: ignore[reportPossiblyUnbound]  # the loop runs at least once
+        search = Search(self.tolerance, max_steps=40, exact=False)
+        state = solved_contact(self.operators, height, guess, mean, self.workspace, search)
+        self.failures += not state.converged
+        return state
 
     def _at_height(self, height: np.ndarray, guess: np.ndarray, goal: float) -> ContactState:
         """Return the contact whose mean planes are ``goal`` apart: secant on the load."""
         if goal >= float(height.max()):
             zero = np.zeros(self.shape, np.float32)
-            return ContactState(zero, goal - height, 0, 0, 0.0, True, [])
+            return ContactState(zero, goal - height, 0, 0.0, True, [])
         mean = max(float(guess.mean()), 1e-6)
         before: tuple[float, float] | None = None
         state = self._loaded(height, guess, mean)
