@@ -15,9 +15,8 @@ from underfoot.core.arrays import Array
 from underfoot.core.checks import poisson_ratio, positive
 from underfoot.core.presentation import Presentable, Table
 
-from . import yang_persson_2008
 from ._kernels.monotone import pchip_slopes
-from .persson_2001 import cumulative
+from .persson import GAP_SOURCE, cumulative, yang_persson_mean_gap
 from .theory import checked_spectrum
 
 DECAY_OVER_RQ, INTERCEPT_OVER_MODULUS = 0.5, 0.375
@@ -343,11 +342,11 @@ def persson_law(
     gradient = float(np.sqrt(2.0 * np.pi * cumulative(q**3 * c, q)[-1]))
     full = modulus / (1.0 - poisson_ratio**2) * gradient
     pressure = np.geomspace(_HEAVIEST, _LIGHTEST, _NODES) * full
-    gap = yang_persson_2008.yang_persson_mean_gap(pressure, q, c, modulus, poisson_ratio)
+    gap = yang_persson_mean_gap(pressure, q, c, modulus, poisson_ratio)
     flow = np.ones_like(gap) if flow_factor is None else np.asarray(flow_factor(gap), dtype=float)
     return TabulatedLaw(
         name="persson",
-        source=yang_persson_2008.SOURCE,
+        source=GAP_SOURCE,
         gap=gap,
         node_pressure=pressure,
         node_flow_factor=flow,
