@@ -68,19 +68,11 @@ class ContactTable(Presentable):
     ``outside="extend"`` holds the edge value, except that below the lowest pressure the contact
     fraction is proportional to pressure and the gap grows as pressure decays exponentially.
 
-    Parameters
-    ----------
-    pressure, speed
-        Pa and m/s, rising, (n,) and (m,).
-    values, deviation
-        Mean and sample standard deviation over the surfaces, (n, m), per name in QUANTITIES; a
-        deviation is not a number where fewer than two surfaces were computed.
-    realizations
-        Number of surfaces behind every node, (n, m).
-    ranges
-        Tested box: the grid.
-    notes
-        What a reader must know: surfaces, missing nodes, assumptions, why friction is zero.
+    ``pressure`` (Pa, (n,)) and ``speed`` (m/s, (m,)) rise. ``values`` and ``deviation`` hold mean
+    and sample standard deviation over the surfaces, (n, m), per name in QUANTITIES (a deviation is
+    not a number where fewer than two surfaces were computed), ``realizations`` the number of
+    surfaces behind every node. ``notes`` say what a reader must know: surfaces, missing nodes,
+    assumptions, why friction is zero.
     """
 
     pressure: np.ndarray

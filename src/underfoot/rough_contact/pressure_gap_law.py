@@ -96,14 +96,8 @@ class ExponentialLaw(_PresentableLaw):
 
     Below h = 0 the pressure continues along its tangent, p0 (1 - h / u0).
 
-    Parameters
-    ----------
-    modulus
-        Young's modulus of the softer body at the rate of the asperities, Pa.
-    poisson_ratio
-        Of the softer body; 0.5 for rubber.
-    rq
-        Root-mean-square roughness of the two surfaces together, m.
+    ``modulus`` (Pa, Young's, at the rate of the asperities) and ``poisson_ratio`` (0.5 for rubber)
+    are those of the softer body, ``rq`` (m) the rms roughness of the two surfaces together.
 
     Notes
     -----
@@ -178,16 +172,9 @@ class TabulatedLaw(_PresentableLaw):
     tends to 1; below the smallest gap the pressure rises along its tangent and the flow factor
     decays to 0. Both tails continue the end slopes; leaving the nodes is a breach.
 
-    Parameters
-    ----------
-    gap
-        Mean gaps, m, rising, (n,), n >= 3; contact counts as zero gap.
-    node_pressure
-        Pa, falling, > 0.
-    node_flow_factor
-        phi of h^3/(12 eta) with h the mean gap.
-    speed
-        m/s at which the nodes were computed; None when they do not depend on it.
+    ``gap`` are mean gaps (m, rising, (n,), n >= 3; contact counts as zero gap), ``node_pressure``
+    (Pa) falls and is above 0, ``node_flow_factor`` is phi of h^3/(12 eta) with h the mean gap.
+    ``speed`` (m/s) is that at which the nodes were computed; None when they do not depend on it.
     """
 
     name: str

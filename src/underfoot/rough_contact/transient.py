@@ -30,21 +30,12 @@ from .sliding_input import checked_contact_input
 class TransientSettings:
     """How ``transient_sliding`` marches.
 
-    Parameters
-    ----------
-    start
-        "relaxed" (long rest before sliding) or "fresh" (pressed on at the instant sliding starts).
-    steps_per_spacing
-        Time steps while the floor moves by one spacing; with 8 nodes to the shortest wave, 2 keep
-        the COF within 2 %, 1 within 5 % (second order).
-    max_periods
-        Passages of the whole floor map at most.
-    steady_tolerance
-        The run ends when the COF of two periods running agrees to this, relative to the larger.
-    tolerance
-        On the contact of each step (penetration over rms height).
-    threads, fft
-        As in ``SlidingSettings``.
+    ``start`` is "relaxed" (long rest before sliding) or "fresh" (pressed on at the instant sliding
+    starts). ``steps_per_spacing`` are the time steps while the floor moves by one spacing: with 8
+    nodes to the shortest wave, 2 keep the COF within 2 %, 1 within 5 % (second order). The run ends
+    after ``max_periods`` passages of the whole floor map, or when the COF of two periods running
+    agrees to ``steady_tolerance``, relative to the larger. ``tolerance`` is that on the contact of
+    each step (penetration over rms height); ``threads`` and ``fft`` as in ``SlidingSettings``.
     """
 
     start: str = "relaxed"
@@ -64,7 +55,7 @@ class TransientSettings:
 
 
 class MaxwellSpectrum(Protocol):
-    """A generalised Maxwell material (Young's moduli, Pa; relaxation times, s)."""
+    """A generalised Maxwell material: E_inf, E_i (Young's moduli, Pa) and tau_i (s)."""
 
     @property
     def equilibrium_modulus(self) -> float:
@@ -208,27 +199,14 @@ def _separation(state: ContactState, height: np.ndarray, operators: Operators) -
 class TransientSliding:
     """History of a sliding contact; arrays have one value per time step.
 
-    Parameters
-    ----------
-    time, distance
-        s and m since the start of sliding.
-    pressure
-        Mean contact pressure, Pa.
-    shear
-        Mean of pressure times floor slope, Pa: friction by hysteresis, positive against sliding;
-        with a rough shoe it also swings elastically about its mean.
-    real_contact_fraction, mean_gap
-        Share of nodes in contact; m.
-    period_cof
-        Mean shear over mean pressure in each period of the floor.
-    cof_hysteresis
-        Of the last whole period; NaN when none was finished.
-    contact_pressure, gap
-        Last state, Pa and m, in the frame of the rubber.
-    steady
-        True when two periods running agreed within the tolerance asked for.
-    status, notes
-        How it ended.
+    ``time`` (s) and ``distance`` (m) since the start of sliding; ``pressure`` the mean contact
+    pressure (Pa); ``shear`` (Pa) the mean of pressure times floor slope: friction by hysteresis,
+    positive against sliding; with a rough shoe it also swings elastically about its mean.
+    ``real_contact_fraction`` is the share of nodes in contact, ``mean_gap`` in m. ``period_cof`` is
+    mean shear over mean pressure in each period of the floor, ``cof_hysteresis`` that of the last
+    whole one (NaN when none was finished). ``contact_pressure`` (Pa) and ``gap`` (m) are the last
+    state in the frame of the rubber. ``steady``: two periods running agreed within the tolerance
+    asked for. ``status`` and ``notes`` tell how it ended.
     """
 
     time: np.ndarray
