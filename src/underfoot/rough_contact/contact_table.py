@@ -107,33 +107,24 @@ class ContactTable(Presentable):
         Every node is ``steady_sliding`` followed by ``flow_factors`` on its gap, with contact
         closed. The contact fraction is the perimeter-corrected one.
 
-        Parameters
-        ----------
-        surfaces
-            Periodic height maps (``HeightMap``), one or more (seeds of one texture); the spread
-            between them becomes the uncertainty. Their shortest wave decides the contact fraction:
-            see ``cutoff_dependence``.
-        modulus, poisson_ratio, layer_thickness
-            As in ``steady_sliding``.
-        pressure, speed
-            Nodes: Pa and m/s, rising, > 0; at least 4 pressures, 1 speed.
-        shoe_surfaces
-            The rubber's own roughness, one periodic map for each of ``surfaces``: contact, gap and
-            flow are those of ``composite_surface`` at each speed, hysteresis that of the floor
-            alone; its limits are noted.
-        processes
-            Worker processes; with more than 1 the modulus must be picklable (no lambda).
-        cache
-            Where finished parts are kept; None takes the user's cache.
-        progress
-            Receives the fraction done; may raise ``Cancelled``: finished parts stay in the cache.
+        Parameters:
+            surfaces: Periodic height maps (``HeightMap``), one or more (seeds of one texture); the
+                spread between them becomes the uncertainty. Their shortest wave decides the contact
+                fraction: see ``cutoff_dependence``.
+            modulus, poisson_ratio, layer_thickness: As in ``steady_sliding``.
+            pressure, speed: Nodes: Pa and m/s, rising, > 0; at least 4 pressures, 1 speed.
+            shoe_surfaces: The rubber's own roughness, one periodic map for each of ``surfaces``:
+                contact, gap and flow are those of ``composite_surface`` at each speed, hysteresis
+                that of the floor alone; its limits are noted.
+            processes: Worker processes; with more than 1 the modulus must be picklable (no lambda).
+            cache: Where finished parts are kept; None takes the user's cache.
+            progress: Receives the fraction done; may raise ``Cancelled``: finished parts stay in
+                the cache.
 
-        Raises
-        ------
-        InputError
-            No surface, not periodic, nodes not rising, modulus that can't be sent to a process.
-        ConvergenceError
-            A node where no surface converged.
+        Raises:
+            InputError: No surface, not periodic, nodes not rising, modulus that can't be sent to a
+                process.
+            ConvergenceError: A node where no surface converged.
         """
         p, v = _nodes("pressure", pressure, 4), _nodes("speed", speed, 1)
         _check_surfaces(surfaces)
@@ -571,10 +562,8 @@ def leave_out_errors(table: ContactTable, axis: str = "pressure") -> dict[str, f
     the others absolute. ``axis`` is "pressure" or "speed". The node distance is doubled, so that
     the table itself is several times better than this between its nodes.
 
-    Raises
-    ------
-    InputError
-        Fewer than 5 pressures or 5 speeds.
+    Raises:
+        InputError: Fewer than 5 pressures or 5 speeds.
     """
     nodes = {"pressure": table.pressure, "speed": table.speed}[axis]
     if nodes.size < 5:

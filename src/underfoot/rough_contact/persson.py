@@ -79,16 +79,12 @@ def persson_contact_fractions(
     P = erf(1/(2 sqrt(G))), G(q) = (1/8) int_q0^q q^3 C(q) int_0^2pi |E*(q v cos phi)/p|^2 dphi dq,
     E* = E/(1-nu^2). Elastic: P = erf(sqrt(2) p/(E* h'(q))). The last value is the contact.
 
-    Parameters
-    ----------
-    pressure
-        Nominal pressure, Pa, > 0.
-    wavenumber, spectrum
-        q (rad/m, rising) and the isotropic 2-D spectrum C(q) (m^4), <h^2> = 2 pi int q C dq.
-    modulus
-        Young's modulus as in ``steady_sliding``: Pa, a material, or E*(rad/s).
-    speed
-        m/s; 0 takes the modulus at rest.
+    Parameters:
+        pressure: Nominal pressure, Pa, > 0.
+        wavenumber, spectrum: q (rad/m, rising) and the isotropic 2-D spectrum C(q) (m^4), <h^2> = 2
+            pi int q C dq.
+        modulus: Young's modulus as in ``steady_sliding``: Pa, a material, or E*(rad/s).
+        speed: m/s; 0 takes the modulus at rest.
 
     Exact at full contact. At light load the area is p/(E* h') times 1.60, where half-space
     solutions of broad spectra give 2.0 to 2.3: about 25 to 30 % low there, less above.

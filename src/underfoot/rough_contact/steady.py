@@ -133,38 +133,27 @@ def steady_sliding(
     u(q) = 2 (1 - nu^2) p(q) / (|q| E*(q_x v)), so that p >= 0, gap = d + u - h >= 0, p gap = 0 and
     mean p = ``pressure`` hold the whole history of any relaxation spectrum: no time march.
 
-    Parameters
-    ----------
-    height
-        m, (nx, ny), positive towards the rubber, periodic; axis 0 along sliding.
-    spacing
-        m, one number or (along axis 0, along axis 1).
-    modulus
-        Young's modulus of the rubber: an object with ``complex_modulus``, a callable E*(angular
-        frequency, rad/s >= 0) in Pa with positive real part and loss E'' >= 0, or a number
-        (elastic).
-    speed
-        m/s, of the rubber relative to the surface; 0 is the elastic contact of the relaxed
-        rubber, a negative one slides towards -x and gives a negative COF.
-    pressure
-        Mean contact pressure, Pa, > 0.
-    poisson_ratio
-        Constant in time, 0 to 0.5.
-    layer_thickness
-        m, of a layer bonded to a rigid base; None: half-space.
-    settings
-        Tolerance, iterations, threads, Fourier transforms.
-    progress
-        Receives the stage, the fraction done and the error; may raise ``Cancelled``.
+    Parameters:
+        height: m, (nx, ny), positive towards the rubber, periodic; axis 0 along sliding.
+        spacing: m, one number or (along axis 0, along axis 1).
+        modulus: Young's modulus of the rubber: an object with ``complex_modulus``, a callable
+            E*(angular frequency, rad/s >= 0) in Pa with positive real part and loss E'' >= 0, or a
+            number (elastic).
+        speed: m/s, of the rubber relative to the surface; 0 is the elastic contact of the relaxed
+            rubber, a negative one slides towards -x and gives a negative COF.
+        pressure: Mean contact pressure, Pa, > 0.
+        poisson_ratio: Constant in time, 0 to 0.5.
+        layer_thickness: m, of a layer bonded to a rigid base; None: half-space.
+        settings: Tolerance, iterations, threads, Fourier transforms.
+        progress: Receives the stage, the fraction done and the error; may raise ``Cancelled``.
 
     Validity: small slopes (tested below an rms slope of 0.5, assumed), smooth rubber, no
     adhesion, no friction at the spots themselves, inertia negligible (speed far below the shear
     wave speed).
 
-    Raises
-    ------
-    InputError
-        Heights missing or not a map, pressure, spacing or modulus not positive, speed not finite.
+    Raises:
+        InputError: Heights missing or not a map, pressure, spacing or modulus not positive, speed
+            not finite.
 
     Source: frame of the rough surface and complex modulus, e.g. Carbone and Putignano (2013)
     J. Mech. Phys. Solids 61:1822; active set of Hintermueller, Ito and Kunisch (2002) SIAM J.

@@ -246,31 +246,21 @@ def transient_sliding(
     p >= 0, p gap = 0. Exact in time for a displacement linear in time, second order otherwise, for
     any number of terms; terms much faster than a step act through E0.
 
-    Parameters
-    ----------
-    floor_height, shoe_height
-        m, (nx, ny), periodic, each positive out of its own body; None: smooth rubber.
-    spacing
-        m, one number or (along axis 0, along axis 1).
-    modulus
-        Generalised Maxwell material (Young's moduli).
-    speed
-        m/s, > 0.
-    pressure, separation
-        Exactly one: mean pressure (Pa, > 0) for a fixed load, or the distance of the mean planes
-        of deformed rubber and floor (m) for a fixed height.
-    poisson_ratio, layer_thickness
-        As in ``steady_sliding``.
-    settings
-        Start, steps, periods, tolerances, threads.
-    progress
-        As in ``steady_sliding``; ``Cancelled`` raised by it ends the run early.
+    Parameters:
+        floor_height, shoe_height: m, (nx, ny), periodic, each positive out of its own body; None:
+            smooth rubber.
+        spacing: m, one number or (along axis 0, along axis 1).
+        modulus: Generalised Maxwell material (Young's moduli).
+        speed: m/s, > 0.
+        pressure, separation: Exactly one: mean pressure (Pa, > 0) for a fixed load, or the distance
+            of the mean planes of deformed rubber and floor (m) for a fixed height.
+        poisson_ratio, layer_thickness: As in ``steady_sliding``.
+        settings: Start, steps, periods, tolerances, threads.
+        progress: As in ``steady_sliding``; ``Cancelled`` raised by it ends the run early.
 
-    Raises
-    ------
-    InputError
-        As ``steady_sliding``; a material without relaxation terms; both or neither of pressure and
-        separation; maps of different shape.
+    Raises:
+        InputError: As ``steady_sliding``; a material without relaxation terms; both or neither of
+            pressure and separation; maps of different shape.
 
     Source: recursive convolution of Taylor, Pister and Goudreau (1970) Int. J. Numer. Methods Eng.
     2:45, with the half-space of Johnson (1985) Contact Mechanics, chapter 13.
