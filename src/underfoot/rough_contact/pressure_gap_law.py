@@ -99,8 +99,6 @@ class ExponentialLaw(_PresentableLaw):
     ``modulus`` (Pa, Young's, at the rate of the asperities) and ``poisson_ratio`` (0.5 for rubber)
     are those of the softer body, ``rq`` (m) the rms roughness of the two surfaces together.
 
-    Notes
-    -----
     Persson, Physical Review Letters 99 (2007) 125502 gives the form p = beta E* exp(-u / u0). For a
     self-affine surface of Hurst exponent 0.8 and many scales the theory (Yang and Persson 2008,
     stored energy times 0.45) gives u0 = 0.45 sqrt(0.32 / pi) (10 / 3) Rq = 0.479 Rq, so 0.5 holds
@@ -309,18 +307,12 @@ def persson_law(
 ) -> TabulatedLaw:
     """Return the law p(u) of Yang and Persson's mean gap u between 1e-4 and 0.5 of E* h'.
 
-    Parameters
-    ----------
-    wavenumber, spectrum
-        q (rad/m, rising) and C(q) (m^4), <h^2> = 2 pi int q C dq.
-    modulus
-        Young's modulus of the rubber at the rate of its asperities, Pa.
-    flow_factor
-        phi of the mean gap (m), 0 or more and not falling; None leaves it at 1, which lets too
-        much fluid through at small gaps.
+    Parameters:
+        wavenumber, spectrum: q (rad/m, rising) and C(q) (m^4), <h^2> = 2 pi int q C dq.
+        modulus: Young's modulus of the rubber at the rate of its asperities, Pa.
+        flow_factor: phi of the mean gap (m), 0 or more and not falling; None leaves it at 1, which
+            lets too much fluid through at small gaps.
 
-    Notes
-    -----
     Within 2 % of half-space gaps up to a tenth of E* h', 7 % at 0.3 and 20 % at 0.5 (self-affine,
     Hurst exponent 0.8). Without hysteresis: at speed take the modulus at the asperities' rate.
     """
