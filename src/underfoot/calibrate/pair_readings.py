@@ -254,13 +254,13 @@ def _whole_cof(
         raise ConvergenceError(
             f"the case {case.name} gave no result: {result.status}", history=(), where=case.name
         )
-    maps = {
-        name: result.fields[name].values
-        for name in ("contact_pressure", "fluid_pressure", "film_thickness", "wet")
-    }
+    fields = result.fields
     sampled = sampled_cof(
         PairContactLaw(law.pair, law.viscosity, draws),
-        **maps,
+        fields["contact_pressure"].values,
+        fields["fluid_pressure"].values,
+        fields["film_thickness"].values,
+        wet=fields["wet"].values,
         speed=case.motion.speed,
         film_error=FILM_ERROR,
         samples=draws.count,

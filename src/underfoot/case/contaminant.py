@@ -26,16 +26,17 @@ class ContaminantSection(Option):
         "final progress report on shoe-floor friction, G.6.1 (150 ml on 0.4 m x 0.6 m)",
     )
 
-    family: Literal["aqueous", "oil"] = default(
-        "aqueous", "aqueous", "not given: taken as no oil", assumed=True
-    )
-
     @abstractmethod
     def build(self) -> SourcedValue:
         """Return the dynamic viscosity, Pa s."""
 
     def breaches(self) -> list[Breach]:
         return []
+
+    @property
+    def is_oil(self) -> bool:
+        """Whether the fluid is an oil; else it is aqueous."""
+        return False
 
 
 class MeasuredFluid(ContaminantSection):
@@ -52,6 +53,15 @@ class MeasuredFluid(ContaminantSection):
         '"constant" or "table", and no film',
     )
 
+    family: Literal["aqueous", "oil"] = default(
+        "aqueous", "aqueous", "not given: taken as no oil", assumed=True
+    )
+
+    @property
+    def is_oil(self) -> bool:
+        """Whether the fluid is an oil; else it is aqueous."""
+        return self.family == "oil"
+
     def build(self) -> SourcedValue:
         return self.sourced("viscosity")
 
@@ -63,7 +73,6 @@ class GlycerolWater(ContaminantSection):
     source: ClassVar[str] = "Cheng 2008"
     chosen_by: ClassVar[tuple[str, ...]] = ("glycerol_fraction",)
 
-    family: Literal["aqueous"] = default("aqueous", "aqueous", "glycerol in water")
     glycerol_fraction: Fraction
     fraction_basis: Literal["mass", "volume"] = required(
         missing="is missing: the same percentage by mass and by volume differs by half in viscosity"

@@ -104,7 +104,7 @@ class PairOption(FrictionOption):
             shore_a=_hardness(context),
             sole_rq=_span(context.shoe.roughness, SOLE_RQ),
             floor_rq=_span(context.floor.roughness, FLOOR_RQ),
-            oil=context.contaminant.family == "oil",
+            oil=context.contaminant.is_oil,
             hysteresis=_hysteresis(context),
         )
         return PairContactLaw(pair, _viscosity(context), draws or packaged_pair_draws())
@@ -566,7 +566,7 @@ def _span(roughness: SurfaceRoughness, unknown: tuple[float, float]) -> tuple[fl
 
 def _hysteresis(context: Context) -> float | None:
     """Return the hysteresis COF of the compound's spectrum on the floor; None without one."""
-    from underfoot.rough_contact.scaraggi_persson_2015 import persson_friction
+    from underfoot.rough_contact import persson
 
     if context.shoe.material.relaxation is None:
         return None
@@ -579,7 +579,7 @@ def _hysteresis(context: Context) -> float | None:
     shape = wavenumber * roll_off / (2 * math.pi)
     spectrum = np.where(shape < 1, 1.0, shape ** (-2 * (1 + context.interface.hurst)))
     spectrum *= rq**2 / (2 * math.pi * np.trapezoid(wavenumber * spectrum, wavenumber))
-    cof = persson_friction(
+    contact = persson(
         HYSTERESIS_PRESSURE,
         wavenumber,
         spectrum,
@@ -587,7 +587,8 @@ def _hysteresis(context: Context) -> float | None:
         context.motion.speed,
         context.poisson_ratio,
     )
-    return float(cof[0])
+    assert contact.cof_hysteresis is not None  # the rubber is viscoelastic
+    return float(contact.cof_hysteresis[0])
 
 
 def _viscosity(context: Context) -> float:
