@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import fields
 
 import numpy as np
 
@@ -80,15 +81,12 @@ def _slip_tester(trial: Trial, draft: Draft, protocol: Protocol, profile: Profil
         Measurement("peak fluid pressure", float(scan.pressure.max()), "Pa", scan.baseline_sd),
         main="scan_peak_pressure",
     )
-    draft.curves["scan"] = {
-        "along": [float(f"{v:.7g}") for v in scan.along],
-        "pressure": [float(f"{v:.7g}") for v in scan.pressure],
-        "lateral": scan.lateral,
-        "speed": scan.speed,
-        "speed_change": scan.speed_change,
-        "baseline_sd": scan.baseline_sd,
-        "sample_load": scan.sample_load,
+    stored = {
+        f.name: getattr(scan, f.name) for f in fields(scan) if f.name not in ("trial", "flags")
     }
+    for name in ("along", "pressure"):
+        stored[name] = [float(f"{v:.7g}") for v in stored[name]]
+    draft.curves["scan"] = stored
 
 
 def _pin_on_disk(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
@@ -121,9 +119,8 @@ def _relaxation(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile
             remedy='Add a column "thickness (mm)" to conditions.csv',
         )
     found = relaxation_reading(trial, thickness)
-    draft.add("test", found.force_2_percent, main="force_2_percent")
-    draft.add("test", found.peak_force, main="peak_force")
-    draft.add("test", found.final_force, main="final_force")
+    for name in ("force_2_percent", "peak_force", "final_force"):
+        draft.add("test", getattr(found, name), main=name)
     draft.facts["hold_time"] = found.hold_time
     draft.facts["compression"] = found.peak_displacement / (2.0 * thickness)
     time, force = found.hold

@@ -14,8 +14,8 @@ from underfoot.core import DataError
 from ..floor_classes import class_scheme
 from ..measurement import Measurement, caution
 from ..protocols import Protocol
-from ..readers.text import is_number, name_and_unit
-from .conditions import table_rows
+from ..readers.text import is_number
+from .conditions import table_columns
 from .file_result import Draft, FileResult
 
 QUANTITIES = {
@@ -47,13 +47,8 @@ def reading_results(
     DataError
         No column that can be recognised as readings, or impossible values.
     """
-    table = [row for row in table_rows(path) if any(row)]
-    heads = [name_and_unit(cell) for cell in table[0]] if table else []
-    cells = {
-        head: [row[i] if i < len(row) else "" for row in table[1:]]
-        for i, (head, _) in enumerate(heads)
-        if head
-    }
+    columns, lines = table_columns(path)
+    cells = {head: column for head, _, column in columns}
     numbers = {
         head: column
         for head, column in cells.items()
@@ -65,7 +60,7 @@ def reading_results(
     wrong = np.flatnonzero((values < (-0.1 * top)) | (values > top))
     if len(wrong):
         raise DataError(
-            f"line {wrong[0] + 2}: {column} is {values[wrong[0]]:g}",
+            f"line {lines[wrong[0]]}: {column} is {values[wrong[0]]:g}",
             where=name,
             allowed=f"0 to {top:g}",
         )
@@ -84,8 +79,8 @@ def reading_results(
     for key, members in rows.items():
         label = ", ".join(part for part in key if part)
         own = {k.casefold(): v for k, v in zip(texts, key, strict=True) if v}
-        draft = Draft(f"{name}: {label}" if label and len(rows) > 1 else name, {**noted, **own})
-        draft.checksum = checksum
+        file = f"{name}: {label}" if label and len(rows) > 1 else name
+        draft = Draft(file, {**noted, **own}, checksum)
         words = [runs[i] if runs else "" for i in members]
         _one_sample(draft, values[members], words, quantity, protocol)
         results.append(draft.finished(protocol))
