@@ -70,6 +70,11 @@ ShowAll = Annotated[
 ]
 
 
+def optional(text: str, *names: str) -> Any:
+    """Return an option with its help text, whose default is not shown."""
+    return typer.Option(*names, help=text, show_default=False)
+
+
 def catalogue_for(case: Path | None, folders: list[Path] | None) -> Catalogue:
     """Return the catalogue with the user's folders and that beside the case."""
     from underfoot.core.catalogue import Catalogue, catalogue_folders

@@ -17,6 +17,9 @@ from .conditions import named_file, table_columns
 
 NAMES = ("edits.csv", "edits.xlsx")
 COLUMNS = ("file", "step", "edit", "value", "why")
+EDIT_COLUMNS = (
+    "step", "what", "before", "after", "quantity", "number before", "number after", "why"
+)  # fmt: skip
 
 
 def edits_of(folder: Path, labels: Sequence[str], *, others: bool = False) -> dict[str, list[Edit]]:
@@ -126,18 +129,9 @@ def edit_log(
         new = next(step for step in after if step["number"] == old["number"])
         quantity = "peak slipping speed" if "peak_slipping_speed" in old else "rcof"
         key = quantity.replace(" ", "_")
-        rows.append(
-            {
-                "step": old["item"],
-                "what": edit.what,
-                "before": _event(edit.what, old),
-                "after": _event(edit.what, new),
-                "quantity": quantity,
-                "number before": old[key],
-                "number after": new[key],
-                "why": edit.why,
-            }
-        )
+        events = _event(edit.what, old), _event(edit.what, new)
+        row = (old["item"], edit.what, *events, quantity, old[key], new[key], edit.why)
+        rows.append(dict(zip(EDIT_COLUMNS, row, strict=True)))
     return rows
 
 

@@ -59,11 +59,8 @@ def reading_results(
     top = _LARGEST[quantity]
     wrong = np.flatnonzero((values < (-0.1 * top)) | (values > top))
     if len(wrong):
-        raise DataError(
-            f"line {lines[wrong[0]]}: {column} is {values[wrong[0]]:g}",
-            where=name,
-            allowed=f"0 to {top:g}",
-        )
+        text = f"line {lines[wrong[0]]}: {column} is {values[wrong[0]]:g}"
+        raise DataError(text, where=name, allowed=f"0 to {top:g}")
     runs = next((cells[c] for c in cells if c.casefold() in _RUN), None)
     texts = {
         k: v
@@ -111,21 +108,12 @@ def _one_sample(
         "zero": f"mean of the zero runs, {offset:.4g}, taken off" if zero.any() else "not measured",
     }
     value = float(readings.mean()) - offset
-    draft.add(
-        "sample",
-        Measurement(
-            quantity,
-            value,
-            "deg" if quantity == "angle" else "1",
-            None if spread is None else spread / float(np.sqrt(len(readings))),
-            "a single reading has no scatter" if spread is None else "",
-            len(readings),
-            tuple(flags),
-            conventions,
-            spread,
-        ),
-        main=quantity,
-    )
+    scatter = (None, "a single reading has no scatter")
+    if spread is not None:
+        scatter = (spread / float(np.sqrt(len(readings))), "")
+    unit = "deg" if quantity == "angle" else "1"
+    noted = (len(readings), tuple(flags), conventions, spread)
+    draft.add("sample", Measurement(quantity, value, unit, *scatter, *noted), main=quantity)
     draft.curves["readings"] = [float(v) for v in readings - offset]
     name = protocol.text("classes")
     if name:

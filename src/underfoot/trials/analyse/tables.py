@@ -150,11 +150,11 @@ _NUMBER_COLUMNS = (
 
 def edit_table(files: Iterable[FileResult]) -> Table | None:
     """Return the edit log: every edit by hand with event and number before and after, or None."""
-    keys = ("step", "what", "before", "after", "quantity", "number before", "number after", "why")
-    rows = tuple((one.file, *(e[key] for key in keys)) for one in files for e in one.edits)
-    if not rows:
+    edits = [(one.file, edit) for one in files for edit in one.edits]
+    if not edits:
         return None
-    return Table("edits", "Edits by hand", ("file", *keys), rows)
+    rows = tuple((file, *edit.values()) for file, edit in edits)
+    return Table("edits", "Edits by hand", ("file", *edits[0][1]), rows)
 
 
 # Column, entry of the step and decimals that a reader sees.
