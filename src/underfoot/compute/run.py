@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -22,9 +23,10 @@ from underfoot.core import (
     unknown_name,
 )
 
-from .contact import Recorder, history_fields, refuse_too_large, scanned, solved_motion
+from .contact import Recorder, edged_law, history_fields, refuse_too_large, scanned, solved_motion
 from .numbers import (
     FILM_ERROR,
+    SUCTION_SPREAD,
     grid_errors,
     grid_words,
     readings,
@@ -91,7 +93,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
     asperities = own.get("rough_contact") or case.rough_contact.build(context)
     compliance = own.get("compliance") or case.compliance.build(context, sole)
     viscosity = case.film.build(context)
-    recorder = Recorder(case, law, sole, viscosity)
+    edged = edged_law(case, context, law, sole, asperities)
+    recorder = Recorder(case, edged or law, sole, viscosity)
     prepared = time.perf_counter()
     contact = solved_motion(
         case,
@@ -109,7 +112,12 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         "speed": speed,
         "film_thickness": contact.film_thickness,
     }
-    parts = law(**local)
+    parts = (edged or law)(**local)
+    lugs, suction = None if edged is None else edged.lugs(**local), None
+    if lugs is not None:
+        pull = case.sourced("film.suction")
+        pull = pull if pull.uncertainty else replace(pull, uncertainty=SUCTION_SPREAD)
+        suction = pull, lugs.suction_share(parts)
     sampled = sampled_cof(
         law,
         contact.contact_pressure,
@@ -119,6 +127,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         wet=contact.wet,
         fluid_inputs={} if context.viscosity is None else {"viscosity": context.viscosity},
         film_error=FILM_ERROR,
+        contact_factor=1.0 if lugs is None else lugs.factor_map(),
+        suction=suction,
         seed=case.numerics.seed,
     )
     friction = cof(
@@ -136,6 +146,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         numbers, risk = scalars(case, contact, friction, sensor, sampled, slip)
         numbers |= recorder.array_scalars()
         labels = {**regime(contact), **spread_origin(sampled)}
+        if lugs is not None:
+            labels["lug_edges"] = lugs.words()
         if basis := getattr(law, "spread_basis", ""):
             labels["cof_spread_basis"] = basis
         if remark := peak_pressure(sole, contact.total_pressure).remark:
