@@ -232,7 +232,7 @@ def assembled(
         scaling = largest_mass_scaling(loading.speed, shear_speed, unscaled)
     density = material.density * scaling
     confined = bulk + 4.0 / 3.0 * g0
-    critical = critical_time_step(mesh.largest_gradient_square, confined, density)
+    critical = critical_time_step(mesh.largest_gradient_square(), confined, density)
     cfl = settings.cfl or (0.4 if settings.viscous else 0.6)
     dt = cfl * critical if settings.time_step is None else settings.time_step
     if dt >= critical:

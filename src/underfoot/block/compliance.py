@@ -12,10 +12,9 @@ from underfoot.core import ConvergenceError, InputError, Progress, silent
 from underfoot.core.sparse import factorization, schur_complement, upper_triangle
 
 from ._kernels.active_set import contact_under_load
-from ._kernels.finite_strain import forces_and_tangents
-from ._kernels.mean_dilatation import stiffness_matrices
+from ._kernels.hexahedron import MODES, forces_and_tangents, stiffness_matrices
 from .inputs import MicroBlock
-from .mesh import MODES, BlockMesh, block_mesh
+from .mesh import BlockMesh, block_mesh
 
 HOURGLASS = 2.0
 """Coefficient of the explicit elements' hourglass stiffness, in units of the shear modulus."""

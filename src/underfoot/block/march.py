@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
-import tempfile
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
@@ -14,12 +12,12 @@ import numpy as np
 
 from underfoot.core import ConvergenceError, DataError, Progress
 from underfoot.core.cache import default_folder
+from underfoot.core.files import whole_file
 from underfoot.core.optional import optional_module
 
 from ._kernels import generate, names
 from .assembly import Assembly, critical_time_step
 from .inputs import MicroLoading
-from .mesh import MODES
 from .result import EnergyLedger, MicroAverages, edge_excess_area, whole_wavelength_averages
 
 SETTLED = 0.01
@@ -175,7 +173,7 @@ class BlockMarch:
     def _watch(self) -> None:
         """Keep a copy of a state known to be sound; stop when squeezed elements ask for less."""
         assembly = self.assembly
-        square = assembly.mesh.deformed_gradient_square(assembly.displacement)
+        square = assembly.mesh.largest_gradient_square(assembly.displacement)
         critical = critical_time_step(square, self.confined_modulus, assembly.density)
         if assembly.time_step > critical:
             self._stop(
@@ -333,15 +331,8 @@ def averages(rows: np.ndarray, wavelength: float, area: float) -> MicroAverages 
 
 def saved_state(path: Path, arrays: dict[str, np.ndarray]) -> Path:
     """Write arrays to ``path`` and return it; an older file stays until the new one is whole."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, suffix=".part")
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            np.savez_compressed(stream, **arrays)  # pyright: ignore[reportArgumentType]  # arrays only
-        os.replace(name, path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+    with whole_file(path) as part, part.open("wb") as stream:
+        np.savez_compressed(stream, **arrays)  # pyright: ignore[reportArgumentType]  # arrays only
     return path
 
 
@@ -369,7 +360,7 @@ def loaded_state(path: Path, key: str) -> dict[str, np.ndarray]:
     return arrays
 
 
-def snapshot(path: Path, assembly: Assembly) -> Path:
+def snapshot(path: Path, assembly: Assembly) -> None:
     """Write the block as a VTU file: displacement, velocity, pressure, J, von Mises stress.
 
     Stresses are those of the fast (unrelaxed) response, Pa.
@@ -398,14 +389,11 @@ def snapshot(path: Path, assembly: Assembly) -> Path:
             "von_mises_stress": [mises],
         },
     )
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_suffix(".part.vtu")
-    written.write(part, file_format="vtu")
-    os.replace(part, path)
-    return path
+    with whole_file(path) as part:
+        written.write(part, file_format="vtu")
 
 
-def collection(path: Path, times: list[float], files: list[str]) -> Path:
+def collection(path: Path, times: list[float], files: list[str]) -> None:
     """Write a ParaView collection (PVD) that gives each snapshot its time."""
     rows = "\n".join(
         f'    <DataSet timestep="{time:.9e}" file={quoteattr(name)}/>'
@@ -415,17 +403,13 @@ def collection(path: Path, times: list[float], files: list[str]) -> Path:
         '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n'
         f"{rows}\n  </Collection>\n</VTKFile>\n"
     )
-    part = path.with_suffix(".part")
-    part.write_text(text, encoding="utf-8")
-    os.replace(part, path)
-    return path
+    with whole_file(path) as part:
+        part.write_text(text, encoding="utf-8")
 
 
 def _stresses(assembly: Assembly) -> tuple[np.ndarray, np.ndarray]:
     """Return J and the von Mises equivalent of the isochoric Cauchy stress of each element."""
-    mesh = assembly.mesh
-    corners = assembly.displacement[:, mesh.elements[:, None] + mesh.offsets]
-    f = np.eye(3) + np.einsum("iea,qa,ejq->eij", corners, MODES, mesh.gradient)
+    f = assembly.mesh.deformation_gradient(assembly.displacement)
     jac = np.linalg.det(f)
     g0 = float(assembly.parameters[generate.PARAMETERS.index("g0")])
     left = f @ f.transpose(0, 2, 1)

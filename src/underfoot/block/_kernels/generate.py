@@ -26,7 +26,7 @@ Statement = tuple[str, str]
 BITS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
 MODES = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 1, 1), (1, 0, 1), (1, 1, 0), (1, 1, 1)]
 """xi, eta, zeta, eta zeta, xi zeta, xi eta, xi eta zeta."""
-SYMMETRIC = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
+SYMMETRIC = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
 def kernel_name(terms: str, viscous: bool) -> str:
@@ -279,39 +279,29 @@ from numba import njit
 
 from underfoot.block._kernels.energy import element_energies
 from underfoot.block._kernels.motion import contact, move
-from underfoot.block._kernels.wide import prefer_wide_registers
+from underfoot.block._kernels.loops import prefer_wide_registers
 
 
 @njit(cache=True, error_model="numpy")
-def gather(u, W, first, offsets):
+def gather(field, W, first, offsets):
     prefer_wide_registers()
-    stride = u.size // 3
+    stride = field.size // 3
     for axis in range(3):
         for corner in range(8):
             a = axis * stride + first + offsets[corner]
             r = (8 * axis + corner) * LANES
-            source, target = u[a : a + LANES], W[r : r + LANES]
+            nodes, lanes = field[a : a + LANES], W[r : r + LANES]
             for l in range(LANES):
-                target[l] = source[l]
-
-
-@njit(cache=True, error_model="numpy")
-def scatter(f, W, first, offsets):
-    prefer_wide_registers()
-    stride = f.size // 3
-    for axis in range(3):
-        for corner in range(8):
-            a = axis * stride + first + offsets[corner]
-            r = (8 * axis + corner) * LANES
-            source, target = W[r : r + LANES], f[a : a + LANES]
-            for l in range(LANES):
-                target[l] += source[l]
+                lanes[l] = nodes[l]
 '''
+"""``scatter`` follows from ``gather``: it adds the other way."""
 
 
 def source() -> str:
     """Return the text of the module of all element loops."""
-    blocks = [HEAD.replace("LANES", str(LANES))]
+    head, gather = HEAD.replace("LANES", str(LANES)).split("\n\n\n")
+    scatter = gather.replace("lanes[l] = nodes[l]", "nodes[l] += lanes[l]")
+    blocks = [head, gather, scatter.replace("gather", "scatter")]
     for terms, viscous in VARIANTS:
         blocks.append(_element_function(terms, viscous))
         name = kernel_name(terms, viscous)
