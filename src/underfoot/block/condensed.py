@@ -223,14 +223,7 @@ class CondensedMarch:
             notes += self._loss_note(loading) + self._strain_note(loading)
             notes += resolution_note(averages)
         return MicroResult(
-            time=table[:, 0],
-            distance=table[:, 1],
-            normal_force=table[:, 2],
-            shear_force=table[:, 3],
-            lateral_force=table[:, 4],
-            real_contact_area=table[:, 5],
-            corrected_contact_area=table[:, 6],
-            height=table[:, 7],
+            *table[:, :8].T,
             nominal_area=self.condensed.block.nominal_area,
             averages=averages,
             energy=None,
@@ -339,16 +332,9 @@ class CondensedMarch:
         ends = table[first - 1 :]
         middle = 0.5 * (ends[1:] + ends[:-1])
         normal, shear, lateral, area, corrected = middle[:, 2:7].T
+        values = [normal, shear, np.abs(shear), np.hypot(shear, lateral), area, corrected]
         return whole_wavelength_averages(
-            table[sliding, 1],
-            normal,
-            shear,
-            np.abs(shear),
-            np.hypot(shear, lateral),
-            area,
-            corrected,
-            wavelength=self.floor.wavelength,
-            nominal_area=self.condensed.block.nominal_area,
+            table[sliding, 1], values, self.floor.wavelength, self.condensed.block.nominal_area
         )
 
 

@@ -160,12 +160,7 @@ def _result(
     if out_of_range:
         status = worst(status, Status.OUT_OF_RANGE)
     return MicroResult(
-        time=rows[:, 0],
-        distance=rows[:, 1],
-        normal_force=rows[:, 2],
-        shear_force=rows[:, 3],
-        lateral_force=rows[:, 4],
-        real_contact_area=rows[:, 5],
+        *rows[:, :6].T,
         corrected_contact_area=np.maximum(rows[:, 5] - rows[:, 19], 0.0),
         height=rows[:, 8],
         nominal_area=area,
@@ -189,30 +184,25 @@ def _breaches(
     rows: np.ndarray,
 ) -> list[Breach]:
     """Return what leaves the range in which the numbers were checked."""
-    out_of_range = []
-
-    def test(quantity: str, value: float, low: float, high: float, source: str) -> None:
-        if not low <= value <= high:
-            allowed = Range(low, high, "1", source)
-            out_of_range.append(Breach("explicit_sliding", quantity, value, value, allowed))
-
+    tests: list[tuple[str, float, float, float, str]] = []
     waves = [s.wavelength for s in (block.roughness, floor) if s.rough and s.form != "paraboloid"]
     if waves:
         step = max(block.size[0] / block.elements[0], block.size[1] / block.elements[1])
-        test(
-            "elements a wavelength",
-            min(waves) / step * (1.0 + 1e-9),
-            12.0,
-            math.inf,
-            "contact area against the half-space",
-        )
+        per_wave, source = min(waves) / step * (1.0 + 1e-9), "contact area against the half-space"
+        tests.append(("elements a wavelength", per_wave, 12.0, math.inf, source))
     heights = [s.peak_to_valley for s in (block.roughness, floor) if s.peak_to_valley > 0.0]
     if heights and len(rows) and rows[-1, 5] > 0.0:
-        sunk = float(rows[-1, 2] / rows[-1, 5]) / assembly.penalty
-        test("penetration over roughness", sunk / min(heights), 0.0, 0.02, "penalty scan")
-    error = mass_scaling_error(loading.speed, material.wave_speeds[1], assembly.mass_scaling)
+        sunk = float(rows[-1, 2] / rows[-1, 5]) / assembly.penalty / min(heights)
+        tests.append(("penetration over roughness", sunk, 0.0, 0.02, "penalty scan"))
     if assembly.mass_scaling > 1.0:
-        test("mass scaling error", error, 0.0, MASS_SCALING_ALLOWED * (1 + 1e-9), "density scan")
-        impact = assembly.impact_friction
-        test("COF of scaled inertia", impact, 0.0, IMPACT_ALLOWED * (1 + 1e-9), "energy ledger")
-    return out_of_range
+        error = mass_scaling_error(loading.speed, material.wave_speeds[1], assembly.mass_scaling)
+        allowed, impact = MASS_SCALING_ALLOWED * (1 + 1e-9), IMPACT_ALLOWED * (1 + 1e-9)
+        tests.append(("mass scaling error", error, 0.0, allowed, "density scan"))
+        tests.append(
+            ("COF of scaled inertia", assembly.impact_friction, 0.0, impact, "energy ledger")
+        )
+    return [
+        Breach("explicit_sliding", quantity, value, value, Range(low, high, "1", source))
+        for quantity, value, low, high, source in tests
+        if not low <= value <= high
+    ]

@@ -232,27 +232,9 @@ def _name(number: int) -> str:
 
 
 COLUMNS = (
-    "time",
-    "distance",
-    "normal",
-    "shear",
-    "lateral",
-    "area",
-    "absolute",
-    "resultant",
-    "top",
-    "floor_work",
-    "top_work",
-    "kinetic",
-    "strain",
-    "hourglass",
-    "contact",
-    "material_loss",
-    "hourglass_loss",
-    "contact_loss",
-    "damping_loss",
-    "edges",
-)
+    "time distance normal shear lateral area absolute resultant top floor_work top_work kinetic "
+    "strain hourglass contact material_loss hourglass_loss contact_loss damping_loss edges"
+).split()
 """Of a row; forces and area are means over the steps since the row before, ``edges`` is the area
 that the edges of contact spots count too much at the row's end."""
 
@@ -270,22 +252,15 @@ def new_row(assembly: Assembly, before: np.ndarray | None, rate: float) -> np.nd
     lost = 0.0
     if before is not None:
         lost = before[15] + 0.5 * (rate + s[names.LOSS_RATE]) * (time - before[0])
+    held = (names.KINETIC, names.STRAIN, names.HOURGLASS, names.CONTACT_ENERGY)
     row = np.array(
         [
             time,
             distance,
             *(s[names.NORMAL : names.COUNT] / count),
-            s[names.TOP],
-            s[names.SAMPLE_FLOOR_WORK],
-            s[names.SAMPLE_TOP_WORK],
-            s[names.KINETIC],
-            s[names.STRAIN],
-            s[names.HOURGLASS],
-            s[names.CONTACT_ENERGY],
+            *s[[names.TOP, names.SAMPLE_FLOOR_WORK, names.SAMPLE_TOP_WORK, *held]],
             lost,
-            s[names.HOURGLASS_LOSS],
-            s[names.CONTACT_LOSS],
-            s[names.DAMPING_LOSS],
+            *s[[names.HOURGLASS_LOSS, names.CONTACT_LOSS, names.DAMPING_LOSS]],
             _edges(assembly),
         ]
     )
@@ -316,17 +291,9 @@ def ledger(rows: np.ndarray) -> EnergyLedger:
 def averages(rows: np.ndarray, wavelength: float, area: float) -> MicroAverages | None:
     """Return the means over whole wavelengths of the sliding rows."""
     c = dict(zip(COLUMNS, rows[rows[:, 1] > 0.0].T, strict=True))
-    return whole_wavelength_averages(
-        c["distance"],
-        c["normal"],
-        c["shear"],
-        c["absolute"],
-        c["resultant"],
-        c["area"],
-        np.maximum(c["area"] - c["edges"], 0.0),
-        wavelength=wavelength,
-        nominal_area=area,
-    )
+    forces = (c[name] for name in ("normal", "shear", "absolute", "resultant", "area"))
+    corrected = np.maximum(c["area"] - c["edges"], 0.0)
+    return whole_wavelength_averages(c["distance"], [*forces, corrected], wavelength, area)
 
 
 def saved_state(path: Path, arrays: dict[str, np.ndarray]) -> Path:

@@ -67,11 +67,13 @@ def _solved(
         factor = cho_factor(
             compliance[np.ix_(inside, inside)], overwrite_a=True, check_finite=False
         )
-        both = np.column_stack([clearance[inside], np.ones(inside.size)])
-        first, second = cho_solve(factor, both, check_finite=False).T
-        if load is not None:
+        if load is None:
+            force[inside] = cho_solve(factor, -(clearance[inside] + height), check_finite=False)
+        else:
+            both = np.column_stack([clearance[inside], np.ones(inside.size)])
+            first, second = cho_solve(factor, both, check_finite=False).T
             height = -float((load + first.sum()) / second.sum())
-        force[inside] = -first - height * second
+            force[inside] = -first - height * second
     gap = clearance + height + compliance[:, inside] @ force[inside]
     gap[inside] = 0.0
     return force, gap, height
