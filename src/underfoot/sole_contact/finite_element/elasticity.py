@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any, cast
 
@@ -45,9 +45,22 @@ class LandCompliance:
     height: Array
     triangles: NDArray[np.int64]
     work: Array
-    area: Array
-    overlap: sp.csr_matrix
     unknowns: int
+    area: Array = field(init=False)
+    overlap: sp.csr_matrix = field(init=False)
+
+    def __post_init__(self) -> None:
+        a, b, c = (self.nodes[self.triangles[:, n]] for n in range(3))
+        size = 0.5 * np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+        count = len(self.nodes)
+        each = np.repeat(size / 3, 3)
+        area = np.bincount(self.triangles.ravel(), each, minlength=count).astype(float)
+        rows = np.repeat(self.triangles, 3, axis=1).ravel()
+        columns = np.tile(self.triangles, (1, 3)).ravel()
+        values = (size[:, None] * (np.ones((3, 3)) + np.eye(3)).ravel() / 12).ravel()
+        overlap = sp.csr_matrix((values, (rows, columns)), shape=(count, count))
+        object.__setattr__(self, "area", area)
+        object.__setattr__(self, "overlap", overlap)
 
     @property
     def mean_rise(self) -> Array:
@@ -86,7 +99,6 @@ def land_compliance(
     chosen = mesh.land[loaded]
     vertices, triangles = np.unique(chosen, return_inverse=True)
     triangles = triangles.reshape(chosen.shape)
-    area, overlap = hat_integrals(coordinates[vertices, :2], triangles)
     right = load(chosen, triangles, vertices.size)
     right.eliminate_zeros()  # the assembly also stores the sideways parts, all 0
     retained = np.flatnonzero(np.diff(right.indptr))
@@ -106,24 +118,8 @@ def land_compliance(
         coordinates[vertices, 2],
         triangles,
         0.5 * (work + work.T),
-        area,
-        overlap,
         unknowns,
     )
-
-
-def hat_integrals(points: Array, triangles: NDArray[np.int64]) -> tuple[Array, sp.csr_matrix]:
-    """Return the integrals of the hats of a triangulation (m^2) and of their products."""
-    a, b, c = (points[triangles[:, n]] for n in range(3))
-    size = 0.5 * np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
-    count = len(points)
-    area = np.bincount(triangles.ravel(), np.repeat(size / 3, 3), minlength=count).astype(float)
-    rows = np.repeat(triangles, 3, axis=1).ravel()
-    columns = np.tile(triangles, (1, 3)).ravel()
-    share = (np.ones((3, 3)) + np.eye(3)).ravel() / 12
-    values = (size[:, None] * share).ravel()
-    overlap = sp.csr_matrix((values, (rows, columns)), shape=(count, count))
-    return area, overlap
 
 
 def _assembled(

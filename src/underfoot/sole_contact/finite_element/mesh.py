@@ -49,7 +49,7 @@ class SoleMesh:
 
 
 def sole_mesh(
-    plan: Plan, layers: Layers, *, element: float, far_element: float, reach: float, lug_layers: int
+    plan: Plan, layers: Layers, element: float, far_element: float, reach: float, lug_layers: int
 ) -> SoleMesh:
     """Return the mesh: elements of ``element`` (m) on land below ``reach`` (m), coarser beyond."""
     points, triangles, on_land = _triangulation(plan, element, far_element, reach)
