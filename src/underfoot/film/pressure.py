@@ -15,7 +15,6 @@ from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import positive
 from underfoot.core.sparse import Factorization, factorization
 
-from ._kernels.grids import finer, halved
 from .operator import Conductance, FilmOperator, film_operator
 from .pattern import Pattern
 
@@ -220,11 +219,11 @@ class _Grids:
     def coarser(self) -> _Grids | None:
         """Return the film on cells twice as large; None when no axis can lose half its cells."""
         axes = tuple(axis for axis in (0, 1) if self.gap.shape[axis] >= FEWEST_CELLS)
-        mask = halved(self.mask.astype(float), axes) > 0.5
+        mask = _halved(self.mask.astype(float), axes) > 0.5
         if not axes or not mask.any():
             return None
         coarse = {
-            part.name: halved(value, axes)
+            part.name: _halved(value, axes)
             for part in fields(self)
             if isinstance(value := getattr(self, part.name), np.ndarray) and part.name != "mask"
         }
@@ -355,7 +354,7 @@ class _FilmSolver:
         if coarse is None:
             return np.ones_like(film.mask)
         solved = _FilmSolver(coarse.mask, self._backend).solve(coarse)
-        return finer(solved.excess, film.mask.shape) >= 0.0
+        return _finer(solved.excess, film.mask.shape) >= 0.0
 
 
 def _largest_flow(operator: FilmOperator, pressure: Array, content: Array) -> float:
@@ -454,3 +453,26 @@ def _field(value: ArrayLike, shape: tuple[int, ...], where: str) -> Array:
 def _check_fraction(values: Array, where: str) -> None:
     if not ((values >= 0) & (values <= 1)).all():
         raise InputError("a liquid fraction is not 0 to 1", where=where, allowed="0 to 1")
+
+
+def _halved(field: Array, axes: tuple[int, ...]) -> Array:
+    """Return the means of neighbouring cells along ``axes``; an odd last cell counts twice."""
+    for axis in axes:
+        if field.shape[axis] % 2:
+            field = np.concatenate([field, np.take(field, [-1], axis)], axis=axis)
+        even, odd = (np.take(field, range(part, field.shape[axis], 2), axis) for part in (0, 1))
+        field = 0.5 * (even + odd)
+    return field
+
+
+def _finer(field: Array, shape: tuple[int, ...]) -> Array:
+    """Return a coarse ``field`` on the grid of ``shape``, linear between cell centres."""
+    for axis in (0, 1):
+        if field.shape[axis] == shape[axis]:
+            continue
+        size = field.shape[axis]
+        before = np.take(field, np.maximum(np.arange(size) - 1, 0), axis)
+        after = np.take(field, np.minimum(np.arange(size) + 1, size - 1), axis)
+        pair = np.stack([0.75 * field + 0.25 * before, 0.75 * field + 0.25 * after], axis + 1)
+        field = pair.reshape(*field.shape[:axis], 2 * size, *field.shape[axis + 1 :])
+    return field[: shape[0], : shape[1]]

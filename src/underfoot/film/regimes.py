@@ -56,10 +56,10 @@ class RegimeComparison:
 
 @dataclass(frozen=True, slots=True)
 class RegimeMap:
-    """Regimes over viscosity and speed; arrays (viscosities, speeds)."""
+    """Regimes over viscosity (Pa s) and speed (m/s); arrays (viscosities, speeds)."""
 
-    viscosity: Array  # Pa s
-    speed: Array  # m/s
+    viscosity: Array
+    speed: Array
     lambda_ratio: Array
     fluid_share: Array | None
     assumptions: tuple[str, ...]
