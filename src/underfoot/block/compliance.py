@@ -185,18 +185,14 @@ def inverse_block(matrix: sp.csr_matrix, loaded: np.ndarray, progress: Progress)
     reduced = schur_complement(upper_triangle(matrix), loaded[order], where="condensed_block")
     placed = np.empty_like(order)
     placed[order] = np.arange(order.size)
-    return _inverse(reduced)[np.ix_(placed, placed)]
-
-
-def _inverse(matrix: np.ndarray) -> np.ndarray:
-    """Return the inverse of a symmetric positive definite matrix."""
     try:
-        factor = cho_factor(0.5 * (matrix + matrix.T), check_finite=False)
+        factor = cho_factor(0.5 * (reduced + reduced.T), check_finite=False)
     except LinAlgError as problem:
         raise ConvergenceError(
             "the stiffness of the block is not positive definite", where="condensed_block"
         ) from problem
-    return cho_solve(factor, np.eye(len(matrix)), check_finite=False)
+    inverse = cho_solve(factor, np.eye(len(reduced)), check_finite=False)
+    return inverse[np.ix_(placed, placed)]
 
 
 class _Pressing:

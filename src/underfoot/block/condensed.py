@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import time as clock
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -158,8 +157,7 @@ LEAST_LOSS_TANGENT = 1e-3
 """Below it hysteresis COF is less than 1e-4 on surfaces as rough as the report's."""
 
 
-@dataclass(frozen=True, slots=True)
-class Moment:
+class Moment(NamedTuple):
     """One time of the march: how long the step before it took, where the floor is, what holds."""
 
     step: float
