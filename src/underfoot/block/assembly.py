@@ -1,7 +1,5 @@
 """Settings and arrays of an explicit march: element constants in chunks, nodes, contact, state."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

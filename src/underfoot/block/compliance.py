@@ -1,7 +1,5 @@
 """Compliance of a block's lower face, all other nodes eliminated; at rest or pressed flat."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

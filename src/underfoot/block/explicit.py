@@ -1,7 +1,5 @@
 """A rough rubber block slid over a rough rigid floor by explicit finite elements (G.1)."""
 
-from __future__ import annotations
-
 import math
 import time
 from pathlib import Path

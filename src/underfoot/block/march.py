@@ -1,7 +1,5 @@
 """Press, hold, slide: the stages of an explicit march, its history, restarts and snapshots."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field, fields
 from pathlib import Path

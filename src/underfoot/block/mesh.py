@@ -1,7 +1,5 @@
 """Structured mesh of hexahedra: graded layers, a rough lower face, one-point mean gradients."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

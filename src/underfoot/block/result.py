@@ -1,7 +1,5 @@
 """History of a sliding block: forces, real contact area, energies, means over wavelengths."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

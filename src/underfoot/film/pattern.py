@@ -1,7 +1,5 @@
 """Sparsity of five-point operators on a masked grid, found once and filled many times."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Lubrication regimes, by film over roughness and by who carries the load."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Protocol

@@ -1,7 +1,5 @@
 """Soft elastohydrodynamic film of a point contact: Hamrock and Dowson 1978 (Eq. 18 to 21)."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from enum import StrEnum

@@ -1,7 +1,5 @@
 """Tapered wedge of finite width: load, side leakage, peak pressure, film that carries a load."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache

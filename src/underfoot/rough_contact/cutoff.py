@@ -1,7 +1,5 @@
 """How a contact depends on the shortest wave that a surface keeps."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Pressure flow factors: the thin-film flow through a contact's own gap."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Steady sliding of a smooth viscoelastic half-space or layer over a rough rigid surface."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from functools import partial

@@ -1,7 +1,5 @@
 """Sliding of rough rubber over a rough rigid floor, marched in time."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 

@@ -1,7 +1,5 @@
 """Contact as a linear complementarity problem of a symmetric positive definite compliance."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

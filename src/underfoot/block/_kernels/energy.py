@@ -1,7 +1,5 @@
 """Energies of all elements at one moment: a plain loop, for samples and checks."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Height and slope of a rough face at one point; both from the same polynomials, so they agree."""
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

@@ -6,8 +6,6 @@ checks and fills whole vector registers. The statements are plain arithmetic,
 valid in C++ too: ``benchmarks`` compares both compilers.
 """
 
-from __future__ import annotations
-
 import re
 from itertools import product
 

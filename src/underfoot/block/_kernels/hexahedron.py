@@ -1,7 +1,5 @@
 """Eight-node hexahedra: modes, mean gradients, stiffness at small and forces at finite strain."""
 
-from __future__ import annotations
-
 import numpy as np
 
 CORNERS = np.array(

@@ -1,7 +1,5 @@
 """The element loops as a module: written by ``generate`` once a version, then imported."""
 
-from __future__ import annotations
-
 import sys
 import warnings
 from functools import cache

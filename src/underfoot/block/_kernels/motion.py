@@ -1,7 +1,5 @@
 """Contact of the lower face with the floor, and the central-difference move of all nodes."""
 
-from __future__ import annotations
-
 import math
 
 from numba import njit

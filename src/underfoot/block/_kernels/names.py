@@ -1,7 +1,5 @@
 """Places of the numbers in the arrays ``state`` and ``control`` of a march."""
 
-from __future__ import annotations
-
 # state: changed every step; the sums NORMAL to COUNT are cleared with every sample
 TIME, SLID, TOP, TOP_SPEED, FLOOR_WORK, TOP_WORK, DAMPING_LOSS, CONTACT_LOSS = range(8)
 NORMAL, SHEAR, LATERAL, AREA, ABSOLUTE, RESULTANT, COUNT = range(8, 15)

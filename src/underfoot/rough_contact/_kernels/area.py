@@ -1,7 +1,5 @@
 """Real contact area on a grid, and its correction for the staircase boundary."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

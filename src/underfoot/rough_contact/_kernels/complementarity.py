@@ -1,7 +1,5 @@
 """Primal-dual active set for p >= 0, gap >= 0, p gap = 0, mean p = p0 on one grid."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """Contact from coarse to fine grids: each grid starts from the contact of the one before."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any

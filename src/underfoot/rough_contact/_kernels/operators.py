@@ -1,7 +1,5 @@
 """The compliance of a sliding body and its inverse on one periodic grid."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass

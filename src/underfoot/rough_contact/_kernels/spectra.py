@@ -1,7 +1,5 @@
 """Fourier symbols of the sliding half-space or layer, sums over half spectra, shifts of maps."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from underfoot.core.arrays import AnyArray

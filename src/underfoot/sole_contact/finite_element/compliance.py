@@ -1,7 +1,5 @@
 """Compliance of the real sole: finite elements where it is coarse, layers where it is fine."""
 
-from __future__ import annotations
-
 from typing import Any, NotRequired, TypedDict, Unpack
 
 import numpy as np

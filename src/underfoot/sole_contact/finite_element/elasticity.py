@@ -1,7 +1,5 @@
 """Surface compliance of a meshed sole: elasticity of second order, condensed to the land."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from importlib import import_module

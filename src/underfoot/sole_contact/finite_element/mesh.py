@@ -1,7 +1,5 @@
 """Prisms under the plan form: a triangulation that follows rim and lugs, carried up to the foot."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from importlib import import_module
