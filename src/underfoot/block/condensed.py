@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time as clock
 from typing import Any, NamedTuple
 
@@ -114,22 +115,17 @@ def _schedule(
     length = floor.wavelength if floor.rough else loading.slide_distance
     pixel = length / per_wavelength
     load = full if loading.control == "load" else None
+    slid = loading.slide_distance
+    places = np.minimum(pixel * np.arange(1, math.ceil(slid / pixel * (1.0 - 1e-9)) + 1), slid)
     # from rest to the speed at constant acceleration, in steps of one pixel or less
     ramp_length = 0.5 * loading.speed * loading.ramp_time
-    distance = 0.0
-    while distance < loading.slide_distance * (1.0 - 1e-9):
-        following = min(distance + pixel, loading.slide_distance)
-        step = _time_at(following, loading, ramp_length) - _time_at(distance, loading, ramp_length)
-        moments.append(Moment(step, following, load))
-        distance = following
-    return moments
-
-
-def _time_at(distance: float, loading: MicroLoading, ramp_length: float) -> float:
-    """Return the time since sliding began at which ``distance`` is reached."""
-    if distance >= ramp_length:
-        return loading.ramp_time + (distance - ramp_length) / loading.speed
-    return float(np.sqrt(2.0 * distance * loading.ramp_time / loading.speed))
+    times = np.where(
+        places >= ramp_length,
+        loading.ramp_time + (places - ramp_length) / loading.speed,
+        np.sqrt(2.0 * places * loading.ramp_time / loading.speed),
+    )
+    steps = np.diff(times, prepend=0.0).tolist()
+    return moments + [Moment(s, x, load) for s, x in zip(steps, places.tolist(), strict=True)]
 
 
 def pressure_ratio_of(material: MicroMaterial, loading: MicroLoading) -> float:

@@ -85,11 +85,11 @@ class BlockMarch:
         if self.stage < 2:
             c[names.ALPHA] = 2.0 * math.pi / self.shear_period
         if self.stage == 0:
-            self._until_time("press", press, press / 100.0, press)
+            self._until_time("press", press, press / 100.0)
             self.stage = 1
         while self.stage == 1:
             end = press + hold * (self.holds + 1)
-            self._until_time("hold", end, hold / 20.0, end)
+            self._until_time("hold", end, hold / 20.0)
             self.holds += 1
             recent = float(np.mean([row[2] for row in self.rows[-10:]]))
             self.settled = abs(recent / c[names.LOAD] - 1.0) < SETTLED
@@ -105,13 +105,13 @@ class BlockMarch:
             self._slide()
         self.stage = 3
 
-    def _until_time(self, name: str, end: float, sample: float, total: float) -> None:
+    def _until_time(self, name: str, end: float, sample: float) -> None:
         s = self.assembly.state
         count = max(1, round(sample / self.assembly.time_step))
         while s[names.TIME] < end - 0.5 * self.assembly.time_step:
             left = max(1, round((end - s[names.TIME]) / self.assembly.time_step))
             self._sample(min(count, left))
-            self.progress(name, min(s[names.TIME] / total, 1.0))
+            self.progress(name, min(s[names.TIME] / end, 1.0))
 
     def _slide(self) -> None:
         s, goal = self.assembly.state, self.loading.slide_distance

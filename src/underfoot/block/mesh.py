@@ -112,14 +112,11 @@ def block_mesh(block: MicroBlock) -> BlockMesh:
     nodes = np.stack([np.broadcast_to(xx, z.shape), np.broadcast_to(yy, z.shape), z])
     numbers = np.arange(z.size).reshape(z.shape)
     shape = (nx + 1, ny + 1, nz + 1)
-    area = np.zeros((ny + 1, nx + 1))
     cell = block.size[0] / nx * block.size[1] / ny
-    if block.sides == "periodic":
-        area[:-1, :-1] = cell
-    else:
-        for a in (slice(0, -1), slice(1, None)):
-            for b in (slice(0, -1), slice(1, None)):
-                area[a, b] += 0.25 * cell
+    shares = np.ones(ny + 1), np.ones(nx + 1)
+    for share in shares:
+        share[[0, -1]] = (1.0, 0.0) if block.sides == "periodic" else 0.5
+    area = cell * np.outer(*shares)
     elements = numbers[:-1, :-1, :-1].ravel()
     flat = nodes.reshape(3, -1)
     offsets = CORNERS @ np.array([1, shape[0], shape[0] * shape[1]])

@@ -3,6 +3,7 @@
 from .operator import Cavity as Cavity
 from .operator import Conductance as Conductance
 from .operator import FilmOperator as FilmOperator
+from .operator import Pattern as Pattern
 from .operator import Stencil as Stencil
 from .operator import Upwinding as Upwinding
 from .operator import divergence as divergence
@@ -13,7 +14,6 @@ from .patir_cheng_1978 import patir_cheng_mean_gap as patir_cheng_mean_gap
 from .patir_cheng_1978 import patir_cheng_pressure_factors as patir_cheng_pressure_factors
 from .patir_cheng_1979 import patir_cheng_shear_factor as patir_cheng_shear_factor
 from .patir_cheng_1979 import patir_cheng_shear_flow as patir_cheng_shear_flow
-from .pattern import Pattern as Pattern
 from .pressure import Film as Film
 from .pressure import FilmPressure as FilmPressure
 from .pressure import film_history as film_history

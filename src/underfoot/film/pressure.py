@@ -15,8 +15,7 @@ from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import positive
 from underfoot.core.sparse import Factorization, factorization
 
-from .operator import Conductance, FilmOperator, film_operator
-from .pattern import Pattern
+from .operator import Conductance, FilmOperator, Pattern, film_operator
 
 OPEN = 100.0
 """Gap of the open surroundings over the largest gap of the film."""

@@ -269,8 +269,7 @@ class ContactTable(Presentable):
         flow = self.flow_factor(pressure, v, direction, "extend")
         keep = [0]
         for n in range(1, gap.size):
-            if gap[n] < gap[keep[-1]] - 1e-6 * gap[0]:
-                keep.append(n)
+            keep += [n] if gap[n] < gap[keep[-1]] - 1e-6 * gap[0] else []
         if len(keep) < 3:
             raise RangeError(
                 f"only {len(keep)} pressures leave an open gap at {speed} m/s",
@@ -384,15 +383,8 @@ def _column(part: _Part) -> dict[str, np.ndarray]:
     out_of_range: list[str] = []
 
     def contact_of(heights: np.ndarray, pressure: float) -> SteadySliding:
-        return steady_sliding(
-            heights,
-            part.spacing,
-            part.modulus,
-            part.speed,
-            pressure,
-            part.poisson_ratio,
-            layer_thickness=part.layer_thickness,
-        )
+        given = (part.spacing, part.modulus, part.speed, pressure, part.poisson_ratio)
+        return steady_sliding(heights, *given, layer_thickness=part.layer_thickness)
 
     for p in part.pressure.tolist():
         contact = friction = contact_of(part.heights, p)
@@ -582,13 +574,9 @@ def leave_out_errors(table: ContactTable, axis: str = "pressure") -> dict[str, f
         realizations=table.realizations[index],
     )
     p, v = np.meshgrid(table.pressure, table.speed, indexing="ij")
-    at_nodes = {
-        "real_contact_fraction": coarse.real_contact_fraction(p, v),
-        "cof_hysteresis": coarse.cof_hysteresis(p, v),
-        "mean_gap": coarse.mean_gap(p, v),
-        "flow_factor_along": coarse.flow_factor(p, v, "along"),
-        "flow_factor_across": coarse.flow_factor(p, v, "across"),
-    }
+    at_nodes = {name: getattr(coarse, name)(p, v) for name in list(QUANTITIES)[:3]}
+    for direction in ("along", "across"):
+        at_nodes[f"flow_factor_{direction}"] = coarse.flow_factor(p, v, direction)
     errors = {name: np.abs(at_nodes[name] - table.values[name]) for name in QUANTITIES}
     errors["real_contact_fraction"] /= table.values["real_contact_fraction"]
     errors["mean_gap"] /= table.values["mean_gap"].max()

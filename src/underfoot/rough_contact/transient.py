@@ -20,7 +20,7 @@ from underfoot.material._kernels.prony_march import (
 from ._kernels.complementarity import ContactState, Search, solved_contact
 from ._kernels.krylov import Workspace
 from ._kernels.operators import Body, Operators
-from ._kernels.spectra import ShiftedMap, unit_compliance
+from ._kernels.periodic import ShiftedMap, unit_compliance
 from .sliding_input import checked_contact_input
 
 
@@ -68,7 +68,6 @@ class MaxwellSpectrum(Protocol):
     @property
     def relaxation_times(self) -> np.ndarray:
         """tau_i, s."""
-        ...
 
 
 class _March:

@@ -10,7 +10,7 @@ import numpy as np
 from underfoot.core.arrays import AnyArray
 from underfoot.core.fourier import Transform, transform
 
-from .spectra import wavenumbers
+from .periodic import wavenumbers
 
 
 @dataclass(frozen=True, slots=True)

@@ -198,7 +198,6 @@ def hats_on_cells(land: LandCompliance, sole: SoleMap, reach: float = REACH) -> 
     cell = sole.spacing
     corners = land.nodes[land.triangles]
     ny = sole.y.size
-    rows, columns, values = [], [], []
     taken = np.full(sole.clearance.shape, -np.inf)
     best: dict[int, tuple[NDArray[np.int64], Array]] = {}
     for nodes, points in zip(land.triangles, corners, strict=True):
@@ -226,8 +225,6 @@ def hats_on_cells(land: LandCompliance, sole: SoleMap, reach: float = REACH) -> 
         _, nearest = KDTree(land.nodes).query(places)
         for (at, to), node in zip(left, np.atleast_1d(nearest), strict=True):
             best[int(at * ny + to)] = (np.full(3, node), np.full(3, 1 / 3))
-    for place, (nodes, share) in best.items():
-        rows += [place] * 3
-        columns += nodes.tolist()
-        values += share.tolist()
+    rows = np.repeat(np.array(list(best), dtype=int), 3)
+    columns, values = (np.concatenate(part) for part in zip(*best.values(), strict=True))
     return sp.csr_matrix((values, (rows, columns)), shape=(sole.clearance.size, land.area.size))
