@@ -57,6 +57,7 @@ class PressureGapLaw(Protocol):
 
     def breaches(self, *, pressure: ArrayLike, speed: ArrayLike) -> list[Breach]:
         """Return what leaves the tested range at these pressures (Pa) and speeds (m/s)."""
+        ...
 
 
 class _PresentableLaw(Presentable):

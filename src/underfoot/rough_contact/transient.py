@@ -68,6 +68,7 @@ class MaxwellSpectrum(Protocol):
     @property
     def relaxation_times(self) -> np.ndarray:
         """tau_i, s."""
+        ...
 
 
 class _March:
