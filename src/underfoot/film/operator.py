@@ -24,10 +24,11 @@ Taking the gap linear between cell centres instead doubles the film under a lug 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
+from numpy.typing import NDArray
 from scipy.linalg import solve_banded
 
 from underfoot.core.arrays import Array, Mask
@@ -331,7 +332,7 @@ class Pattern:
         self.indices = columns[self._order].astype(np.int32)
         self.indptr = np.searchsorted(self.rows, np.arange(self.size + 1)).astype(np.int32)
 
-    def gather(self, field: Array) -> Array:
+    def gather(self, field: NDArray[Any]) -> NDArray[Any]:
         """Return the values of a grid field at the numbered cells."""
         return field.ravel()[self.cells]
 
