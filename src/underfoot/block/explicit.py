@@ -13,7 +13,6 @@ from underfoot.core.status import worst
 from .assembly import (
     IMPACT_ALLOWED,
     MASS_SCALING_ALLOWED,
-    Assembly,
     ExplicitSettings,
     assembled,
     mass_scaling_error,
@@ -102,30 +101,15 @@ def explicit_sliding(
         notes.append(f"cancelled after {march.steps} steps")
     if output is not None:
         saved_state(output / "restart.npz", march.state())
-    return _result(
-        march, block, floor, material, settings, status, notes, time.process_time() - begun
-    )
-
-
-def _result(
-    march: BlockMarch,
-    block: MicroBlock,
-    floor: MicroSurface,
-    material: MicroMaterial,
-    settings: ExplicitSettings,
-    status: Status,
-    notes: list[str],
-    seconds: float,
-) -> MicroResult:
+    seconds = time.process_time() - begun
     rows = np.array(march.rows).reshape(-1, len(COLUMNS))
     area = block.nominal_area
-    loading = march.loading
     if not march.settled:
         status = worst(status, Status.NOT_CONVERGED)
         notes.append(
             "the load had not settled to 1 % before sliding: raise hold_time or contact_damping"
         )
-    out_of_range = _breaches(march.assembly, block, floor, material, loading, rows)
+    out_of_range = _breaches(march, block, floor, material, rows)
     if march.assembly.mass_scaling > 1.0:
         bound = mass_scaling_error(
             loading.speed, material.wave_speeds[1], march.assembly.mass_scaling
@@ -174,14 +158,14 @@ def _result(
 
 
 def _breaches(
-    assembly: Assembly,
+    march: BlockMarch,
     block: MicroBlock,
     floor: MicroSurface,
     material: MicroMaterial,
-    loading: MicroLoading,
     rows: np.ndarray,
 ) -> list[Breach]:
     """Return what leaves the range in which the numbers were checked."""
+    assembly, speed = march.assembly, march.loading.speed
     tests: list[tuple[str, float, float, float, str]] = []
     waves = [s.wavelength for s in (block.roughness, floor) if s.rough and s.form != "paraboloid"]
     if waves:
@@ -193,7 +177,7 @@ def _breaches(
         sunk = float(rows[-1, 2] / rows[-1, 5]) / assembly.penalty / min(heights)
         tests.append(("penetration over roughness", sunk, 0.0, 0.02, "penalty scan"))
     if assembly.mass_scaling > 1.0:
-        error = mass_scaling_error(loading.speed, material.wave_speeds[1], assembly.mass_scaling)
+        error = mass_scaling_error(speed, material.wave_speeds[1], assembly.mass_scaling)
         allowed, impact = MASS_SCALING_ALLOWED * (1 + 1e-9), IMPACT_ALLOWED * (1 + 1e-9)
         tests.append(("mass scaling error", error, 0.0, allowed, "density scan"))
         tests.append(

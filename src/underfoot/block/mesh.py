@@ -17,25 +17,15 @@ FEWEST_ELEMENTS = {"triangular": 2}
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BlockMesh:
-    """Nodes and elements; node (i, j, k) has the number (k ny1 + j) nx1 + i.
+    """Nodes and elements; node (i, j, k) has the number (k ny1 + j) nx1 + i."""
 
-    Parameters:
-        nodes: m, (3, n), undeformed; z = 0 is the mean plane of the lower face.
-        shape: Nodes along x, y, z.
-        elements: Number of the lowest corner's node of each element, (m,).
-        volume: m^3, (m,).
-        gradient: 1/m, (m, 3, 7): mean reference gradient by modes.
-        hourglass_shape: m, (m, 4, 3): coordinates by non-linear modes, over 8.
-        lower_area: m^2, (nx1 * ny1,): share of the nominal area; 0 on the sides that repeat others.
-    """
-
-    nodes: np.ndarray
-    shape: tuple[int, int, int]
-    elements: np.ndarray
-    volume: np.ndarray
-    gradient: np.ndarray
-    hourglass_shape: np.ndarray
-    lower_area: np.ndarray
+    nodes: np.ndarray  # m, (3, n), undeformed; z = 0 is the mean plane of the lower face
+    shape: tuple[int, int, int]  # nodes along x, y, z
+    elements: np.ndarray  # number of the lowest corner's node of each element, (m,)
+    volume: np.ndarray  # m^3, (m,)
+    gradient: np.ndarray  # 1/m, (m, 3, 7): mean reference gradient by modes
+    hourglass_shape: np.ndarray  # m, (m, 4, 3): coordinates by non-linear modes, over 8
+    lower_area: np.ndarray  # m^2, (nx1 * ny1,): share of the nominal area; 0 on sides that repeat
 
     @property
     def offsets(self) -> np.ndarray:
