@@ -1,6 +1,5 @@
 """Surface compliance of a meshed sole: elasticity of second order, condensed to the land."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any, cast
@@ -91,13 +90,14 @@ def land_compliance(
     from scipy.linalg import cho_factor, cho_solve
 
     progress("Condensing the sole to its land", 0.0)
-    stiffness, load, coordinates = _assembled(mesh, outsole, midsole)
+    stiffness, load = _assembled(mesh, outsole, midsole)
     if loaded is None:
         loaded = np.ones(len(mesh.land), bool)
     chosen = mesh.land[loaded]
     vertices, triangles = np.unique(chosen, return_inverse=True)
     triangles = triangles.reshape(chosen.shape)
-    right = load(chosen, triangles, vertices.size)
+    # mm^3/MPa to m^3/Pa, shared evenly between the two factors of the work
+    right = sp.csr_matrix(load[:, vertices]) * np.sqrt(1e-15)
     right.eliminate_zeros()  # the assembly also stores the sideways parts, all 0
     retained = np.flatnonzero(np.diff(right.indptr))
     progress("Condensing the sole to its land", 0.3)
@@ -112,8 +112,8 @@ def land_compliance(
     carried = sp.csr_matrix(right[retained]).toarray()
     work = carried.T @ cho_solve(factor, carried)
     return LandCompliance(
-        coordinates[vertices, :2],
-        coordinates[vertices, 2],
+        mesh.nodes[vertices, :2],
+        mesh.nodes[vertices, 2],
         triangles,
         0.5 * (work + work.T),
         unknowns,
@@ -122,8 +122,8 @@ def land_compliance(
 
 def _assembled(
     mesh: SoleMesh, outsole: Rubber, midsole: Rubber | None
-) -> tuple[sp.csr_matrix, Callable[..., sp.csr_matrix], Array]:
-    """Return the stiffness of the free unknowns, a builder of load cases, the nodes.
+) -> tuple[sp.csr_matrix, sp.csr_matrix]:
+    """Return the stiffness of the free unknowns and their loads by the hats of all nodes.
 
     Lengths in mm and stresses in MPa inside, so that the matrix is of order one.
     """
@@ -171,13 +171,7 @@ def _assembled(
         shape=(len(free), scalar.ndof),
     )
 
-    def loads(triangles: NDArray[np.int64], local: NDArray[np.int64], count: int) -> sp.csr_matrix:
-        vertices = np.empty(count, dtype=np.int64)
-        vertices[local.ravel()] = triangles.ravel()
-        # mm^3/MPa to m^3/Pa, shared evenly between the two factors of the work
-        return sp.csr_matrix(full[free][:, vertices]) * np.sqrt(1e-15)
-
-    return stiffness, loads, mesh.nodes
+    return stiffness, sp.csr_matrix(full[free])
 
 
 def _ngsolve_mesh(mesh: SoleMesh) -> Any:
