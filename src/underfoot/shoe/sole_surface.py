@@ -10,8 +10,7 @@ from underfoot.core import Breach, InputError, Range, breaches
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import between, not_negative, positive
 
-from ._kernels.land import carried_on, nearest_true
-from ._kernels.local_width import local_width
+from ._kernels.regions import carried_on, local_width, nearest_true
 from ._kernels.tilt import tilted_rows
 from .geometry import CELLS_REFUSED, CELLS_WANTED, SoleMap
 

@@ -11,9 +11,8 @@ from underfoot.core.arrays import Array
 
 from .._kernels.mesh_edges import overlap_lines
 from ..sole_surface import SoleSurface
-from ..tread_map import tread_map
+from ..tread_measures import tread_map
 from .cleaning import cleaned, plan_outline, without_ledges
-from .mesh import Mesh
 from .orientation import (
     box_axes,
     foot_of,
@@ -24,11 +23,9 @@ from .orientation import (
     resting_plane,
     toe_end,
 )
-from .read import read_mesh
-from .settings import DIRECTIONS, SHARES, FileSettings
-from .soundness import Soundness, soundness
-from .units import HEEL, length_unit
-from .view import View, extents, view
+from .read import Mesh, read_mesh
+from .settings import DIRECTIONS, HEEL, SHARES, FileSettings, length_unit
+from .view import Soundness, View, extents, soundness, view
 
 _COARSE = 400  # cells along the sole for finding sides and plane
 _NEARLY_SQUARE = 1.3
