@@ -1,11 +1,9 @@
 """What a heel and a whole sole have in common: profile and height of the land, new and worn."""
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
-from typing import Protocol
+from dataclasses import dataclass, replace
+from typing import Any, Protocol, Self, cast
 
 import numpy as np
 
@@ -96,7 +94,7 @@ class SoleWear(Protocol):
         """Largest thickness removed, m."""
         ...
 
-    def worn_height(self, x: Array, y: Array, unworn: Array, shape: SoleShape) -> Array:
+    def worn_height(self, x: Array, y: Array, unworn: Array, shape: "SoleShape") -> Array:
         """Return the height (m) of the worn land at (x, y); ``unworn`` is that of the new one."""
         ...
 
@@ -144,6 +142,10 @@ class SoleShape(ABC):
             into = np.clip(self.edge_radius - self.inward_distance(x, y), 0.0, self.edge_radius)
             height = height + self.edge_radius - np.sqrt(self.edge_radius**2 - into**2)
         return height
+
+    def worn(self, wear: SoleWear | None) -> Self:
+        """Return the sole with other wear."""
+        return replace(cast("Any", self), wear=wear)
 
     def centre_line(self) -> tuple[Array, Array]:
         """Return x and the unworn height (m) along y = 0."""

@@ -17,7 +17,7 @@ from ._kernels.regions import (
     rim,
     without_specks,
 )
-from .sole_surface import SoleSurface
+from .geometry import SoleSurface
 
 WIDEST_CHANNEL = 16e-3
 """A hollow wider than this is shape of the sole, not tread, m."""

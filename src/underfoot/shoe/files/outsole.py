@@ -10,7 +10,7 @@ from underfoot.core import InputError
 from underfoot.core.arrays import Array
 
 from .._kernels.mesh_edges import overlap_lines
-from ..sole_surface import SoleSurface
+from ..geometry import SoleSurface, centred
 from ..tread_measures import tread_map
 from .cleaning import cleaned, plan_outline, without_ledges
 from .orientation import (
@@ -285,7 +285,7 @@ def _surface(height: Array, spacing: float, name: str) -> tuple[SoleSurface, lis
         tread = tread_map(height, spacing, channels=cut_open)
     inside = np.isfinite(height)
     x = (np.arange(height.shape[0], dtype=np.float64) + 0.5) * spacing
-    y = (np.arange(height.shape[1], dtype=np.float64) - (height.shape[1] - 1) / 2) * spacing
+    y = centred(height.shape[1], spacing)
     remarks.append(
         f"Channels are hollows of {tread.level * 1e3:.2g} mm and more, narrower than 16 mm."
     )

@@ -1,17 +1,16 @@
 """How worn a sole is: tread left, size of the patch without tread, volume removed."""
 
 import math
-from dataclasses import dataclass, replace
-from typing import Any, cast
+from dataclasses import dataclass
 
 import numpy as np
 
 from underfoot.core.arrays import Array, Mask
 
 from .._kernels.regions import nearest_true
-from ..heel_grid import cut_heel
+from ..geometry import SoleSurface
+from ..grids import cut_heel
 from ..shape import SoleShape
-from ..sole_surface import SoleSurface
 
 MEASURING_CELL = 0.5e-3  # m
 SHALLOW = 0.5
@@ -58,7 +57,7 @@ def wear_measures(shape: SoleShape, *, spacing: float = MEASURING_CELL) -> WearM
         (rows + 0.5) * spacing, (columns + 0.5) * spacing - shape.width / 2, indexing="ij"
     )
     inside = shape.inward_distance(x, y) > 0
-    new = cast(SoleShape, replace(cast("Any", shape), wear=None))
+    new = shape.worn(None)
     removed = np.where(inside, shape.land_height(x, y) - shape.unworn_height(x, y), 0.0)
     raised = (cut_heel(shape, x, y)[0] - cut_heel(new, x, y)[0])[inside]
     depth = np.where(inside, 0.0 if shape.tread is None else shape.tread.depth, 0.0)

@@ -7,8 +7,8 @@ import numpy as np
 
 from underfoot.core.arrays import Array
 
+from ..geometry import SoleSurface
 from ..shape import SoleShape, SoleWear
-from ..sole_surface import SoleSurface
 
 
 def worn_surface(surface: SoleSurface, wear: SoleWear) -> SoleSurface:
