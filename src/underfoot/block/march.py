@@ -221,8 +221,7 @@ class BlockMarch:
         name = _name(len(self._shown) + 1)
         snapshot(self.output / name, self.assembly)
         self._shown.append((float(self.assembly.state[names.TIME]), name))
-        times, files = zip(*self._shown, strict=True)
-        collection(self.output / "block.pvd", list(times), list(files))
+        collection(self.output / "block.pvd", self._shown)
 
 
 def _name(number: int) -> str:
@@ -358,11 +357,10 @@ def snapshot(path: Path, assembly: Assembly) -> None:
         written.write(part, file_format="vtu")
 
 
-def collection(path: Path, times: list[float], files: list[str]) -> None:
+def collection(path: Path, shown: list[tuple[float, str]]) -> None:
     """Write a ParaView collection (PVD) that gives each snapshot its time."""
     rows = "\n".join(
-        f'    <DataSet timestep="{time:.9e}" file={quoteattr(name)}/>'
-        for time, name in zip(times, files, strict=True)
+        f'    <DataSet timestep="{time:.9e}" file={quoteattr(name)}/>' for time, name in shown
     )
     text = (
         '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n'

@@ -1,0 +1,328 @@
+"""Soles on square cells: in their own frame, and tilted over the floor."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core import Breach, InputError, Range, breaches
+from underfoot.core.arrays import Array, Mask
+from underfoot.core.checks import between, not_negative, positive
+
+from ._kernels.regions import local_width, nearest_true
+from ._kernels.tilt import tilted_rows
+from .geometry import CELLS_REFUSED, CELLS_WANTED, SoleMap, SoleSurface, centred
+from .heel import Heel
+from .shape import SoleShape
+
+HALF, NARROW = 50.0, 10.0
+"""Percentiles of the local width by area: what is refused, and what is listed."""
+_BISECTIONS = 48
+
+
+def heel_map(
+    heel: SoleShape, *, shoe_angle: float, spacing: float, padding: float = 0.004
+) -> SoleMap:
+    """Return the heel, tilted by the shoe angle, on a grid of square cells in the floor's frame.
+
+    A point (x, z) of the heel goes to x' = x cos a - z sin a, z' = x sin a + z cos a. The map
+    follows the land surface exactly; a channel keeps its depth straight above the land it cuts.
+    Tread and land are decided in the untilted frame.
+
+    Parameters:
+        heel: The heel in its own frame.
+        shoe_angle: a, rad, toe up positive, -30 to 60 deg.
+        spacing: Side of a cell, m. A channel or lug of fewer than 2 cells is refused, one of fewer
+            than 4 is listed in ``SoleMap.breaches``.
+        padding: Free margin around the plan form, m.
+
+    Raises:
+        InputError: Grid too coarse for the plan form, a channel or a lug; angle out of range.
+    """
+    _check_grid(heel, shoe_angle, spacing, padding)
+    breaches_of_grid = _resolution(heel, spacing)
+    cosine, sine = math.cos(shoe_angle), math.sin(shoe_angle)
+
+    def along(x: Array, y: Array) -> Array:
+        return x * cosine - heel.land_height(x, y) * sine
+
+    ends = along(np.array([0.0, heel.length]), np.zeros(2))
+    rear = float(ends[0])
+    margin = max(1, math.ceil(padding / spacing - 1e-9))
+    count_x = math.ceil((ends[1] - rear) / spacing - 1e-9) + 2 * margin
+    count_y = math.ceil(heel.width / spacing - 1e-9) + 2 * margin
+    x_floor = (np.arange(count_x) + 0.5 - margin) * spacing
+    y = centred(count_y, spacing)
+    target, y_map = np.meshgrid(x_floor + rear, y, indexing="ij")
+    if sine == 0.0:
+        x = target
+    else:
+        x = _solved(along, target, y_map, -2 * margin * spacing - heel.length, 3 * heel.length)
+    inside = heel.inward_distance(x, y_map) > 0
+    height, land, tread_depth = cut_heel(heel, x, y_map, spacing)
+    land &= inside
+    clearance = np.where(inside, x * sine + height * cosine, np.inf)
+    if inside.any():
+        clearance -= clearance.min()
+    rim = plan_outline(heel)
+    return SoleMap(
+        x=x_floor,
+        y=y,
+        clearance=clearance,
+        inside=inside,
+        land=land,
+        tread_depth=np.where(land, tread_depth, 0.0),
+        spacing=float(spacing),
+        outline=np.column_stack([along(rim[:, 0], rim[:, 1]) - rear, rim[:, 1]]),
+        breaches=tuple(breaches_of_grid),
+    )
+
+
+def _check_grid(
+    sole: SoleShape | SoleSurface, shoe_angle: float, spacing: float, padding: float
+) -> None:
+    positive(spacing, "grid.spacing")
+    not_negative(padding, "grid.padding")
+    between(shoe_angle, math.radians(-30), math.radians(60), "shoe_angle", "-30 deg to 60 deg")
+    smallest = min(sole.length, sole.width)
+    if smallest < CELLS_WANTED * spacing:
+        raise InputError(
+            f"the plan form is {smallest * 1e3:g} mm small, the grid spacing {spacing * 1e3:g} mm",
+            where="grid.spacing",
+            allowed=f"at most {smallest / CELLS_WANTED * 1e3:.3g} mm for this plan form",
+        )
+
+
+def _few_cells(quantity: str, cells: float) -> list[Breach]:
+    tested = Range(CELLS_WANTED, math.inf, "1", "grid refinement of the tread")
+    return breaches("grid", {quantity: tested}, {quantity: cells})
+
+
+def _solved(
+    along: Callable[[Array, Array], Array], target: Array, y: Array, low: float, high: float
+) -> Array:
+    """Return the x of the sole whose place on the floor is ``target``, by bisection."""
+    below, above = np.full_like(target, low), np.full_like(target, high)
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (below + above)
+        short = along(middle, y) < target
+        below = np.where(short, middle, below)
+        above = np.where(short, above, middle)
+    return 0.5 * (below + above)
+
+
+def cut_heel(
+    heel: SoleShape, x: Array, y: Array, spacing: float = 0.0
+) -> tuple[Array, Mask, Array]:
+    """Return height over the sole plane, land and lug height, all in the frame of the sole.
+
+    Sipes narrower than two cells of ``spacing`` are left out: closed slits.
+    """
+    unworn = heel.unworn_height(x, y)
+    base = heel.land_height(x, y)
+    height = base.copy()
+    land = np.ones(x.shape, dtype=bool)
+    lug = np.zeros_like(x)
+    tread = heel.tread
+    if tread is not None and tread.depth > 0:
+        into = tread.channel_distance(x, y)
+        if tread.edge_radius > 0:
+            edge = np.clip(tread.edge_radius + into, 0.0, tread.edge_radius)
+            rounding = tread.edge_radius - np.sqrt(tread.edge_radius**2 - edge**2)
+            height = np.maximum(unworn + rounding, base)
+        lug = np.maximum(tread.depth - (base - unworn), 0.0)
+        channel = into > 0
+        height, land = _cut(height, land, channel, unworn + tread.depth, base)
+        sipes = tread.sipes
+        if sipes is not None and spacing <= sipes.width / CELLS_REFUSED * (1 + 1e-9):
+            slit = ~channel & (sipes.channel_distance(x, y) > 0)
+            height, land = _cut(height, land, slit, unworn + sipes.depth, base)
+    arc = heel.arc_channel
+    if arc is not None and arc.depth > 0:
+        into = arc.channel_distance(x, y)
+        height, land = _cut(height, land, into > 0, unworn + arc.depth, base)
+    return height, land, lug
+
+
+def _cut(
+    height: Array, land: Mask, channel: Mask, bottom: Array, base: Array
+) -> tuple[Array, Mask]:
+    """Return height and land with a channel; where wear has reached its bottom it is land."""
+    open_channel = channel & (bottom > base)
+    height = np.where(channel, np.maximum(np.where(open_channel, height, base), base), height)
+    return np.where(open_channel, np.maximum(height, bottom), height), land & ~open_channel
+
+
+def _resolution(heel: SoleShape, spacing: float) -> list[Breach]:
+    """Return what the grid resolves with too few cells; refuse what it cannot show at all."""
+    features: list[tuple[str, str, float]] = []
+    if heel.tread is not None and heel.tread.depth > 0:
+        features.append(("tread.channel_width", "channel", heel.tread.channel_width))
+        features.append(("tread.lug_width", "lug", heel.tread.smallest_lug))
+    if heel.arc_channel is not None and heel.arc_channel.depth > 0:
+        features.append(("arc_channel.width", "arc channel", heel.arc_channel.width))
+    unresolved: list[Breach] = []
+    sipes = heel.tread.sipes if heel.tread is not None and heel.tread.depth > 0 else None
+    if sipes is not None:
+        quantity = "cells across a sipe (below 2 it is taken as closed)"
+        unresolved += _few_cells(quantity, sipes.width / spacing)
+    for where, name, width in features:
+        cells = width / spacing
+        if cells < CELLS_REFUSED * (1 - 1e-9):
+            raise InputError(
+                f"the {name} of {width * 1e3:g} mm spans {cells:.2g} cells of {spacing * 1e3:g} mm",
+                where=where,
+                allowed=f"at least {CELLS_REFUSED:g} cells, {CELLS_WANTED:g} for a result to trust",
+                remedy=f"Use a grid spacing of {width / CELLS_WANTED * 1e3:.3g} mm or less",
+            )
+        unresolved += _few_cells(f"cells across the {name}", cells)
+    return unresolved
+
+
+def plan_outline(heel: SoleShape, nodes: int = 24) -> Array:
+    """Return the closed polygon (n, 2) of the plan form in its own plane, m; anticlockwise."""
+    if not isinstance(heel, Heel):
+        from ._kernels.arcs import points_on
+
+        return points_on(heel.rim_arcs(), 2e-3)
+    half = heel.width / 2
+    corners = (  # centre of the corner's circle, its radius, first angle; anticlockwise
+        (heel.length - heel.front_radius, half - heel.front_radius, heel.front_radius, 0.0),
+        (heel.rear_radius, half - heel.rear_radius, heel.rear_radius, 0.5),
+        (heel.rear_radius, heel.rear_radius - half, heel.rear_radius, 1.0),
+        (heel.length - heel.front_radius, heel.front_radius - half, heel.front_radius, 1.5),
+    )
+    points = []
+    for x, y, radius, first in corners:
+        angle = math.pi * (first + np.linspace(0.0, 0.5, nodes if radius > 0 else 1))
+        points.append(np.column_stack([x + radius * np.cos(angle), y + radius * np.sin(angle)]))
+    rim = np.concatenate(points)
+    return np.concatenate([rim, rim[:1]])
+
+
+def heel_surface(heel: SoleShape, *, spacing: float) -> SoleSurface:
+    """Return the heel in its own frame on square cells of ``spacing`` (m).
+
+    The cells begin at the rear end and are symmetric about the centre line. What ``heel_map`` makes
+    of a heel at an angle, ``surface_map`` makes of this within the size of a cell.
+    """
+    positive(spacing, "spacing")
+    count_x = math.ceil(heel.length / spacing - 1e-9)
+    count_y = math.ceil(heel.width / spacing - 1e-9)
+    x = (np.arange(count_x, dtype=np.float64) + 0.5) * spacing
+    y = centred(count_y, spacing)
+    grid_x, grid_y = np.meshgrid(x, y, indexing="ij")
+    inside = heel.inward_distance(grid_x, grid_y) > 0
+    height, land, tread_depth = cut_heel(heel, grid_x, grid_y, spacing)
+    land &= inside
+    return SoleSurface(
+        x=x,
+        y=y,
+        height=np.where(inside, height, np.nan),
+        land=land,
+        tread_depth=np.where(land, tread_depth, 0.0),
+        spacing=float(spacing),
+        outline=plan_outline(heel),
+        name="parametric heel",
+        base=np.where(inside, heel.land_height(grid_x, grid_y), np.nan),
+    )
+
+
+def surface_map(
+    surface: SoleSurface, *, shoe_angle: float, spacing: float, padding: float = 0.004
+) -> SoleMap:
+    """Return the surface, tilted by the shoe angle, on square cells in the floor's frame.
+
+    A point (x, z) of the sole goes to x' = x cos a - z sin a, z' = x sin a + z cos a. The map
+    follows the land (bilinear between cells) exactly, of several points over one cell the lowest;
+    a channel keeps its depth straight above the land it cuts, as in ``heel_map``.
+
+    Parameters:
+        surface: The sole in its own frame.
+        shoe_angle: a, rad, toe up positive, -30 to 60 deg.
+        spacing: Side of a cell, m.
+        padding: Free margin around the plan form, m.
+
+    Raises:
+        InputError: Grid too coarse for the plan form or for most of the channels; angle out of
+            range.
+    """
+    _check_grid(surface, shoe_angle, spacing, padding)
+    cosine, sine = math.cos(shoe_angle), math.sin(shoe_angle)
+    inside, base = surface.inside, surface.land_base
+    base = base[nearest_true(np.isfinite(base))]
+    outline = surface.outline.copy()
+    rim = _cells(surface, outline[:, 0], outline[:, 1])
+    outline[:, 0] = outline[:, 0] * cosine - base[rim] * sine
+    rear = float(outline[:, 0].min())
+    outline[:, 0] -= rear
+    margin = max(1, math.ceil(padding / spacing - 1e-9))
+    count_x = math.ceil(float(outline[:, 0].max()) / spacing - 1e-9) + 2 * margin
+    low, high = float(outline[:, 1].min()), float(outline[:, 1].max())
+    count_y = math.ceil((high - low) / spacing - 1e-9) + 2 * margin
+    x = (np.arange(count_x, dtype=np.float64) + 0.5 - margin) * spacing
+    y = (low + high) / 2 + centred(count_y, spacing)
+    clearance, origin = tilted_rows(
+        (surface.x, surface.y), base, inside, (x + rear, y), cosine, sine
+    )
+    covered = np.isfinite(clearance)
+    cells = _cells(
+        surface, np.where(covered, origin, surface.x[0]), np.broadcast_to(y, x.shape + y.shape)
+    )
+    above = np.where(inside, surface.height - base, 0.0)
+    clearance = np.where(covered, clearance + above[cells] * cosine, np.inf)
+    if covered.any():
+        clearance -= clearance.min()
+    land = covered & surface.land[cells]
+    return SoleMap(
+        x=x,
+        y=y,
+        clearance=clearance,
+        inside=covered,
+        land=land,
+        tread_depth=np.where(land, surface.tread_depth[cells], 0.0),
+        spacing=float(spacing),
+        outline=outline,
+        breaches=tuple(resolution_breaches(surface, spacing)),
+    )
+
+
+def _cells(surface: SoleSurface, x: Array, y: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the indices of the cells that hold the points (x, y), the nearest where none does."""
+    indices = []
+    for value, centres in ((x, surface.x), (y, surface.y)):
+        place = np.rint((value - centres[0]) / surface.spacing).astype(np.intp)
+        indices.append(np.clip(place, 0, centres.size - 1))
+    return indices[0], indices[1]
+
+
+def resolution_breaches(surface: SoleSurface, spacing: float) -> list[Breach]:
+    """Return what a grid of ``spacing`` (m) resolves with too few cells.
+
+    By local width (the largest disc that covers a place), because a sole has no single channel
+    width: listed when more than a tenth of the area of channels or of lugs is narrower than 4
+    cells.
+
+    Raises:
+        InputError: More than half of the channels' or of the lugs' area is narrower than 2 cells.
+    """
+    channel = surface.inside & ~surface.land
+    if not channel.any():
+        return []
+    unresolved: list[Breach] = []
+    for name, mask in (("channel", channel), ("lug", surface.land)):
+        widths = local_width(mask, surface.spacing)[mask]
+        narrow, half = (float(value) for value in np.percentile(widths, (NARROW, HALF)))
+        # the width itself is known within half a cell of the height map
+        if half + surface.spacing / 2 < CELLS_REFUSED * spacing * (1 - 1e-9):
+            raise InputError(
+                f"half of the {name} area of {surface.name} is narrower than {half * 1e3:.2g} mm, "
+                f"{half / spacing:.2g} cells of {spacing * 1e3:g} mm",
+                where="grid.spacing",
+                allowed=f"at least {CELLS_REFUSED:g} cells, {CELLS_WANTED:g} for a result to trust",
+                remedy=f"Use a grid spacing of {half / CELLS_WANTED * 1e3:.2g} mm or less",
+            )
+        cells = (narrow + surface.spacing / 2) / spacing
+        unresolved += _few_cells(f"cells across the narrowest tenth of the {name}s", cells)
+    return unresolved
