@@ -11,11 +11,8 @@ import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-<<<<<<< HEAD
-from uuid import uuid4
-=======
 from typing import Any
->>>>>>> main
+from uuid import uuid4
 
 from .errors import InputError
 
