@@ -93,18 +93,17 @@ def length_unit(
     Raises:
         InputError: No unit makes it as long as a sole, or the chosen unit makes it absurd.
     """
-    if chosen != "auto" or in_file is not None:
-        stated = in_file is not None and chosen == "auto"
-        unit = in_file if stated else UNITS[chosen]
+    unit, by, origin = in_file, "by the unit in the file", "as stated in the file"
+    if chosen != "auto":
+        unit, by, origin = UNITS[chosen], f"in {chosen}", f"{chosen} (chosen)"
+    if unit is not None:
         if not _POSSIBLE[0] <= length * unit <= _POSSIBLE[1]:
-            by = "by the unit in the file" if stated else f"in {chosen}"
             raise InputError(
                 f"{by} the sole is {_length(length * unit)} long",
                 where=where,
                 allowed="20 mm to 500 mm",
                 remedy=_suggestion(length, width),
             )
-        origin = "as stated in the file" if stated else f"{chosen} (chosen)"
         return unit, f"Unit: {origin}; length {_length(length * unit)}."
     likely = _likely(length, width)
     if not likely:
