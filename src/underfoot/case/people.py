@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from underfoot.slip import SlipModel
 
 _REPORT = "final progress report on shoe-floor friction"
+_SLIPS = (
+    "load at slip start 0.267 of body weight (Iraqi et al. 2018), largest in unexpected slips 0.40 "
+    f"to 0.85 ({_REPORT}, G.4.1), 1.1 in dry steps"
+)
 _STEPS = "recorded steps of dry walking that come with the package, see slip dynamics"
 Mass = Annotated[float, Quantity("kg", 5.0, 400.0)]
 MassSpread = Annotated[float, Quantity("kg", 0.0, 100.0)]
@@ -27,6 +31,9 @@ Place = Annotated[float, Quantity("m", -0.5, 0.5)]
 Width = Annotated[float, Quantity("m", 0.0, 0.5)]
 Spacing = Annotated[float, Quantity("m", 1e-3, 0.5)]
 Inlet = Annotated[float, Quantity("m", 0.0, 0.05)]
+Time = Annotated[float, Quantity("s", 1e-3, 0.2)]
+TimeSpread = Annotated[float, Quantity("s", 0.0, 0.1)]
+Transfer = Annotated[float, Quantity("1", 0.0, 1.0)]
 Step = Annotated[float, Quantity("s", 1e-4, 0.02)]
 
 
@@ -111,6 +118,25 @@ class Walkers(Section):
     walking_speed_sd: SpeedSpread = default(0.18, "0.18 m/s", _STEPS, assumed=True)
     heel_speed_mean: HeelSpeed = default(0.33, "0.33 m/s", _STEPS, assumed=True)
     heel_speed_sd: SpeedSpread = default(0.12, "0.12 m/s", _STEPS, assumed=True)
+    heel_brake: Literal["recorded", "constant", "none"] = default(
+        "recorded",
+        "recorded",
+        "the leg stops the landing heel as in a dry step; constant: all by slip.brake_time_mean; "
+        "none: friction alone stops it",
+    )
+    brake_time_mean: Time = default(
+        0.011, "11 ms", "ten recorded steps with heel and toe markers", assumed=True
+    )
+    brake_time_sd: TimeSpread = default(
+        0.007, "7 ms", "ten recorded steps with heel and toe markers", assumed=True
+    )
+    rcof_step_sd: Friction = default(
+        0.016,
+        0.016,
+        "15 steps of six persons: one step from the mean of its person (0.011 to 0.03)",
+    )
+    weight_transfer_from: Transfer = default(0.16, 0.16, _SLIPS, assumed=True)
+    weight_transfer_to: Transfer = default(0.69, 0.69, _SLIPS, assumed=True)
     shoe_angle_sd: AngleSpread = default(
         math.radians(4.0), "4 deg", f"angle at heel contact in the {_STEPS}", assumed=True
     )

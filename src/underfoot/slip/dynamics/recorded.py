@@ -15,7 +15,7 @@ from underfoot.trials.axes import Axes, axes_of, marker_velocity
 from underfoot.trials.events import body_mass
 from underfoot.trials.filters import low_passed
 from underfoot.trials.gait import RcofDefinition, RequiredFriction, required_frictions
-from underfoot.trials.heel import heel_motion
+from underfoot.trials.heel import HeelMotion, heel_motion
 from underfoot.trials.plates import plate_named
 from underfoot.trials.readers import read_trial
 from underfoot.trials.trial import Marker, Trial
@@ -65,7 +65,9 @@ def step_history(
     """Return one accepted step as a history: forces low-passed as for RCOF, 200 samples a second.
 
     Foot angle: from the line heel marker to toe marker (or first or second metatarsal head of the
-    same side), against its angle while the foot lies flat (30 to 50 % of stance).
+    same side), against its angle while the foot lies flat (30 to 50 % of stance). Heel velocity:
+    of the marker along the walk, less its height above the plate times the rate at which the foot
+    falls, which a marker on a standing heel has too.
     """
     axes, stance = axes_of(trial), step.stance
     assert stance.walking is not None  # an RCOF has one
@@ -80,7 +82,7 @@ def step_history(
     size = np.linalg.norm(shear, axis=1) * np.where(shear @ stance.walking < 0, 1.0, -1.0)
     ratio = np.where(normal > LEAST_LOAD * weight, size / np.maximum(normal, 1.0), 0.0)
     time = np.arange(0.0, since[-1] + 0.5 / plate.rate, 1 / RATE)
-    heel_speed, angle = _heel(trial, step, axes, time)
+    heel_speed, angle, heel_velocity = _heel(trial, step, axes, time)
     how = f"{own:g} kg" if own else f"estimated {weight:.0f} N: mean normal force x 2 x {DUTY:g}"
     return GaitHistory(
         name or stance.plate,
@@ -90,31 +92,56 @@ def step_history(
         angle,
         walking_speed=_walking_speed(trial, stance.contact, stance.toe_off, axes),
         heel_speed=heel_speed,
+        heel_velocity=heel_velocity,
         source=how,
     )
 
 
 def _heel(
     trial: Trial, step: RequiredFriction, axes: Axes, time: Array
-) -> tuple[float | None, Array | None]:
-    """Return the heel's speed at contact and the foot's angle at ``time``, where recorded."""
+) -> tuple[float | None, Array | None, Array | None]:
+    """Return marker speed at contact, foot angle and heel velocity at ``time``, where recorded."""
     stance = step.stance
     heel = trial.marker(stance.heel) if stance.heel else None
     if heel is None or stance.walking is None:
-        return None, None
+        return None, None, None
     motion = heel_motion(heel, axes.up)
     speed = float(np.interp(stance.contact, motion.time, motion.speed))
     toe = _toe_of(trial, stance.heel)
     if toe is None or len(toe.positions) != len(heel.positions):
-        return (speed if math.isfinite(speed) else None), None
+        return (speed if math.isfinite(speed) else None), None, None
     line = toe.positions - heel.positions
     tilt = np.arctan2(line @ axes.up, line @ stance.walking)
     share = (motion.time - stance.contact) / stance.duration
     flat = (share > FLAT[0]) & (share < FLAT[1])
     if not (flat.any() and np.isfinite(tilt[flat]).all()):
-        return speed, None
+        return speed, None, None
     angle = np.interp(time + stance.contact, motion.time, tilt - np.median(tilt[flat]))
-    return speed, (angle if np.isfinite(angle).all() else None)
+    if not np.isfinite(angle).all():
+        return speed, None, None
+    return speed, angle, _heel_velocity(trial, step, axes, motion, heel_motion(toe, axes.up), time)
+
+
+def _heel_velocity(
+    trial: Trial,
+    step: RequiredFriction,
+    axes: Axes,
+    heel: HeelMotion,
+    toe: HeelMotion,
+    time: Array,
+) -> Array | None:
+    """Return the heel's own velocity over the floor at ``time``; None where it is not recorded."""
+    stance = step.stance
+    corners = plate_named(trial, stance.plate).corners
+    if corners is None or stance.walking is None:
+        return None
+    line, turning = toe.position - heel.position, toe.velocity - heel.velocity
+    along, up = line @ stance.walking, line @ axes.up
+    falling = (up * (turning @ stance.walking) - along * (turning @ axes.up)) / (along**2 + up**2)
+    height = np.maximum((heel.position - corners.mean(axis=0)) @ axes.up, 0.0)
+    own = heel.velocity @ stance.walking - falling * height
+    velocity = np.interp(time + stance.contact, heel.time, own)
+    return velocity if np.isfinite(velocity).all() else None
 
 
 def _toe_of(trial: Trial, heel: str) -> Marker | None:
