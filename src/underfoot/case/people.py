@@ -131,9 +131,7 @@ class Walkers(Section):
         0.007, "7 ms", "ten recorded steps with heel and toe markers", assumed=True
     )
     rcof_step_sd: Friction = default(
-        0.016,
-        0.016,
-        "15 steps of six persons: one step from the mean of its person (0.011 to 0.03)",
+        0.015, 0.015, "14 steps of six persons about their own mean (95 %: 0.010 to 0.030)"
     )
     weight_transfer_from: Transfer = default(0.16, 0.16, _SLIPS, assumed=True)
     weight_transfer_to: Transfer = default(0.69, 0.69, _SLIPS, assumed=True)

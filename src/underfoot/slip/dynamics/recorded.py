@@ -119,29 +119,28 @@ def _heel(
     angle = np.interp(time + stance.contact, motion.time, tilt - np.median(tilt[flat]))
     if not np.isfinite(angle).all():
         return speed, None, None
-    return speed, angle, _heel_velocity(trial, step, axes, motion, heel_motion(toe, axes.up), time)
-
-
-def _heel_velocity(
-    trial: Trial,
-    step: RequiredFriction,
-    axes: Axes,
-    heel: HeelMotion,
-    toe: HeelMotion,
-    time: Array,
-) -> Array | None:
-    """Return the heel's own velocity over the floor at ``time``; None where it is not recorded."""
-    stance = step.stance
     corners = plate_named(trial, stance.plate).corners
-    if corners is None or stance.walking is None:
-        return None
+    if corners is None:
+        return speed, angle, None
+    own = heel_over_floor(
+        motion, heel_motion(toe, axes.up), axes.up, stance.walking, corners.mean(axis=0) @ axes.up
+    )
+    velocity = np.interp(time + stance.contact, motion.time, own)
+    return speed, angle, (velocity if np.isfinite(velocity).all() else None)
+
+
+def heel_over_floor(
+    heel: HeelMotion, toe: HeelMotion, up: Array, walking: Array, level: float
+) -> Array:
+    """Return the velocity (n,) along ``walking`` of a heel under its marker, m/s.
+
+    v - w h: marker's velocity less its height above the floor (``level``, m) times the rate at
+    which the line from heel to toe marker falls. A heel that rolls without sliding has 0.
+    """
     line, turning = toe.position - heel.position, toe.velocity - heel.velocity
-    along, up = line @ stance.walking, line @ axes.up
-    falling = (up * (turning @ stance.walking) - along * (turning @ axes.up)) / (along**2 + up**2)
-    height = np.maximum((heel.position - corners.mean(axis=0)) @ axes.up, 0.0)
-    own = heel.velocity @ stance.walking - falling * height
-    velocity = np.interp(time + stance.contact, heel.time, own)
-    return velocity if np.isfinite(velocity).all() else None
+    along, rise = line @ walking, line @ up
+    falling = (rise * (turning @ walking) - along * (turning @ up)) / (along**2 + rise**2)
+    return heel.velocity @ walking - falling * np.maximum(heel.position @ up - level, 0.0)
 
 
 def _toe_of(trial: Trial, heel: str) -> Marker | None:
