@@ -74,6 +74,12 @@ def test_defaults_of_the_brake_are_those_of_the_steps():
     assert np.mean(late) == pytest.approx(0.028, abs=1e-3)  # slips start at 0.02 s: Iraqi 2018
 
 
+def test_default_load_in_slips_is_the_published_one_over_the_steps_own():
+    largest = np.mean([history.normal.max() for history in PACKAGED.values()])
+    low, high = Population().weight_transfer
+    assert (low * largest, high * largest) == pytest.approx((0.40, 0.85), abs=0.01)
+
+
 def test_default_spread_of_steps_is_that_of_repeated_steps():
     persons = ("biomechzoo_hc030", "biomechzoo_hc032", "biomechzoo_hc036", "bmc_gait", "bmc_walk1",
                "kineticstoolkit")  # fmt: skip

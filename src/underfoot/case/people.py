@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 _REPORT = "final progress report on shoe-floor friction"
 _SLIPS = (
-    "load at slip start 0.267 of body weight (Iraqi et al. 2018), largest in unexpected slips 0.40 "
-    f"to 0.85 ({_REPORT}, G.4.1), 1.1 in dry steps"
+    f"largest load in unexpected slips 0.40 to 0.85 of body weight ({_REPORT}, G.4.1), 1.1 in dry "
+    "steps"
 )
 _STEPS = "recorded steps of dry walking that come with the package, see slip dynamics"
 Mass = Annotated[float, Quantity("kg", 5.0, 400.0)]
@@ -133,8 +133,8 @@ class Walkers(Section):
     rcof_step_sd: Friction = default(
         0.015, 0.015, "14 steps of six persons about their own mean (95 %: 0.010 to 0.030)"
     )
-    weight_transfer_from: Transfer = default(0.16, 0.16, _SLIPS, assumed=True)
-    weight_transfer_to: Transfer = default(0.69, 0.69, _SLIPS, assumed=True)
+    weight_transfer_from: Transfer = default(0.36, 0.36, _SLIPS, assumed=True)
+    weight_transfer_to: Transfer = default(0.77, 0.77, _SLIPS, assumed=True)
     shoe_angle_sd: AngleSpread = default(
         math.radians(4.0), "4 deg", f"angle at heel contact in the {_STEPS}", assumed=True
     )

@@ -133,8 +133,8 @@ def slip_motion(
 
     by the trapezoidal rule for V with contact and film carried to the predicted speed. V_dry is
     the heel's speed on a dry floor, where friction is r F: the body brakes the landing heel. From
-    slip start on the foot takes on ``Walker.weight_transfer`` of the load still to come, until it
-    rests. At rest friction is what the body asks, up to its greatest value at the lowest speed. A
+    slip start until it rests the foot takes on no more load than ``Walker.weight_transfer`` of that
+    of the dry step, or what it bears already. At rest friction is what the body asks, up to its greatest value at the lowest speed. A
     foot is not pushed backward. It ends when the foot rests and braking is over, or with the
     history.
 
@@ -175,7 +175,7 @@ def slip_motion(
         duration = float(times[i + 1] - times[i])
         normal, drive = float(normals[i + 1]), float(drives[i + 1])
         if at_start is not None and normal > at_start:
-            share = at_start / normal + walker.weight_transfer * (1 - at_start / normal)
+            share = max(at_start / normal, walker.weight_transfer)
             normal, drive = share * normal, share * drive
         brake = mass * float(braked[i]) / duration
         guess = max(speed + duration * acceleration + float(braked[i]), 0.0)

@@ -55,7 +55,7 @@ class Walker:
     brake_time
         That time constant, s.
     weight_transfer
-        Share of the load still to come at slip start that a slipping foot takes on, 0 to 1.
+        Share of the dry step's load that a slipping foot takes on, 0 to 1.
 
     Raises
     ------
@@ -161,8 +161,8 @@ class Spread:
         return np.clip(values, self.low, self.high)
 
 
-WEIGHT_TRANSFER = (0.16, 0.69)
-"""From load at slip start (0.267 body weights) to peak load in slips (0.40 to 0.85; dry 1.1)."""
+WEIGHT_TRANSFER = (0.36, 0.77)
+"""Largest load in unexpected slips, 0.40 to 0.85 body weights, over that of dry steps, 1.1."""
 _STEPS = "13 steps of dry walking with heel markers that come with the package (slip_dynamics.md)"
 
 

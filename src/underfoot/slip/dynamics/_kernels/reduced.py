@@ -156,7 +156,7 @@ def carried(
         braked = dry_speed[i + 1] - dry_speed[i]
         brake = mass * braked / dt
         if at_start >= 0.0 and normals[i + 1] > at_start:
-            share = (at_start + transfer * (normals[i + 1] - at_start)) / normals[i + 1]
+            share = max(at_start / normals[i + 1], transfer)
             normals[i + 1] *= share
             drives[i + 1] *= share
         net = began + brake - last
