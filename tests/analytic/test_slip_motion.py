@@ -85,8 +85,8 @@ def test_a_slipping_foot_takes_on_its_share_of_the_load():
     history = GaitHistory("rising", time, 0.2 + 2.0 * time, np.full(201, 0.2))
     person = walker(history, 0.2, heel_brake="constant", brake_time=0.02, weight_transfer=0.4)
     for motion in (
-        slip_motion(person, Floor(cof=0.1), step=1e-3),
-        dry_sole(0.1).motion(person, step=1e-3),
+        slip_motion(person, Floor(cof=0.1), step=5e-4),
+        dry_sole(0.1).motion(person, step=5e-4),
     ):
         # forces balance where the brake, m V0 / T exp(-t / T), has fallen to (0.2 - 0.1) F
         fine = np.linspace(0, 0.1, 100001)
@@ -95,7 +95,8 @@ def test_a_slipping_foot_takes_on_its_share_of_the_load():
         at_start = 0.2 + 2.0 * begin
         taken = np.maximum(0.4 * (0.2 + 2.0 * motion.time), at_start)
         later = motion.time > begin + 2e-3
-        assert np.abs(motion.normal / WEIGHT - taken)[later].max() < 1e-4
+        # slip start lies within a step, in which the load grows by 2 x 5e-4
+        assert np.abs(motion.normal / WEIGHT - taken)[later].max() < 1e-3
         assert motion.drive[later] == pytest.approx(0.2 * motion.normal[later])
         assert motion.slip_start == pytest.approx((begin, at_start), abs=2e-3)
 

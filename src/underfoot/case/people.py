@@ -133,8 +133,8 @@ class Walkers(Section):
     rcof_step_sd: Friction = default(
         0.015, 0.015, "14 steps of six persons about their own mean (95 %: 0.010 to 0.030)"
     )
-    weight_transfer_from: Transfer = default(0.36, 0.36, _SLIPS, assumed=True)
-    weight_transfer_to: Transfer = default(0.77, 0.77, _SLIPS, assumed=True)
+    weight_transfer_from: Transfer = default(0.35, 0.35, _SLIPS, assumed=True)
+    weight_transfer_to: Transfer = default(0.75, 0.75, _SLIPS, assumed=True)
     shoe_angle_sd: AngleSpread = default(
         math.radians(4.0), "4 deg", f"angle at heel contact in the {_STEPS}", assumed=True
     )

@@ -126,7 +126,7 @@ def compute(options: Options) -> Computed:
     misfit = chi_square(np.stack([loads[0], peaks[0]], axis=-1), data[0], READING * data[0])
     i, j = (int(k) for k in np.unravel_index(int(misfit.argmin()), misfit.shape))
     mass = found[2].profile.best
-    speed = math.nan if mass is None else bare.peak_speed_at(mass) or math.nan
+    speed = math.nan if mass is None else bare.peak_speed_at(effective_mass=mass) or math.nan
     _, error = model_error([loads[1, i, j], peaks[1, i, j]], data[1])
     return Computed(
         {
@@ -214,7 +214,7 @@ def heel_profiles(
 def mass_profile(study: SlipStudy, masses: Sequence[float] = MASSES) -> Profile:
     """Return the profile of the share of the body that moves with the heel, from G.5's mean."""
     mean = _published("peak_slipping_speed_over_sensors_untreaded")
-    speeds = np.array([study.peak_speed_at(share) or math.nan for share in masses])
+    speeds = np.array([study.peak_speed_at(effective_mass=share) or math.nan for share in masses])
     misfit = chi_square(speeds[:, None], [mean[0]], [mean[1] / math.sqrt(11)])
     return profile("share of the body moving with the heel", "1", masses, misfit, data=1)
 

@@ -321,7 +321,7 @@ def _number(value: float) -> float | None:
 def conclusions(found: Mapping[str, SlipStudy], passages: Mapping[str, Array]) -> tuple[str, ...]:
     """Return what the comparison says."""
     bare, tread = found["untreaded"], found["treaded"]
-    speeds = [bare.peak_speed_at(share) for share in (0.06, 0.114, 0.17)]
+    speeds = [bare.peak_speed_at(effective_mass=share) for share in (0.06, 0.114, 0.17)]
     words = " / ".join("-" if v is None else f"{v:.2f}" for v in speeds)
     pressures = [numbers_of(one)["peak_pressure"] / 1e3 for one in (bare, tread)]
     return (

@@ -134,9 +134,9 @@ def slip_motion(
     by the trapezoidal rule for V with contact and film carried to the predicted speed. V_dry is
     the heel's speed on a dry floor, where friction is r F: the body brakes the landing heel. From
     slip start until it rests the foot takes on no more load than ``Walker.weight_transfer`` of that
-    of the dry step, or what it bears already. At rest friction is what the body asks, up to its greatest value at the lowest speed. A
-    foot is not pushed backward. It ends when the foot rests and braking is over, or with the
-    history.
+    of the dry step, or what it bears already. At rest friction is what the body asks, up to its
+    greatest value at the lowest speed. A foot is not pushed backward. It ends when the foot rests
+    and braking is over, or with the history.
 
     Parameters
     ----------

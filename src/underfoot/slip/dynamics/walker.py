@@ -161,7 +161,7 @@ class Spread:
         return np.clip(values, self.low, self.high)
 
 
-WEIGHT_TRANSFER = (0.36, 0.77)
+WEIGHT_TRANSFER = (0.35, 0.75)
 """Largest load in unexpected slips, 0.40 to 0.85 body weights, over that of dry steps, 1.1."""
 _STEPS = "13 steps of dry walking with heel markers that come with the package (slip_dynamics.md)"
 
