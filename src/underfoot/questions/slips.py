@@ -22,6 +22,7 @@ from underfoot.slip.dynamics import (
     recorded_histories,
 )
 from underfoot.slip.dynamics.gait import COLUMNS
+from underfoot.sole_contact.reading import BLIND
 
 if TYPE_CHECKING:
     from underfoot.case import Case
@@ -98,6 +99,12 @@ class SlipPopulation(Presentable):
             names = ", ".join(study.fit.at_bound)
             reasons.append(
                 f"Constants of the reduced model not identified by these slips: {names}."
+            )
+        seen = study.highest_seen()
+        if seen is not None and seen < BLIND:
+            reasons.append(
+                f"Inlets of {1e3 * study.array.inlet_diameter:.3g} mm read at most {percent(seen)} "
+                "of the film's highest pressure: a low reading does not show that there is no film."
             )
         if study.failed:
             reasons.append(f"{study.failed} slips could not be solved and are left out.")

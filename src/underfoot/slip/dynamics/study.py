@@ -121,6 +121,12 @@ class SlipStudy:
         known = [start for start in starts if start is not None]
         return tuple(np.mean(known, axis=0).tolist()) if known else None
 
+    def highest_seen(self) -> float | None:
+        """Return the highest reading over the film's highest pressure, median of the full runs."""
+        runs = [*self.full_runs, *([self.representative] if self.representative else [])]
+        seen = [float(run.maps.max() / run.peaks.max()) for run in runs if run.peaks.max() > 0]
+        return float(np.median(seen)) if seen else None
+
     def sensor_passages(self) -> dict[str, Array]:
         """Return what the report's Table 7 regresses, one value a sensor that a heel passed.
 
