@@ -191,7 +191,7 @@ class Population:
     lateral: Spread = Spread(0.0, 0.01, -0.03, 0.03, "assumption")
     effective_mass: float = 0.114
     recorded_angle: bool = False
-    rcof_step: Spread = Spread(0.0, 0.015, -0.05, 0.05, "14 steps of six persons", False)
+    rcof_step: Spread = Spread(0.0, 0.015, -0.2, 0.2, "14 steps of six persons", False)
     brake_time: Spread = Spread(BRAKE_TIME, 0.007, 0.004, 0.04, "10 steps with heel and toe")
     heel_brake: str = "recorded"
     weight_transfer: tuple[float, float] = WEIGHT_TRANSFER
