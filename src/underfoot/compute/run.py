@@ -31,6 +31,7 @@ from .contact import (
     solved_motion,
 )
 from .numbers import (
+    FILM_ERROR,
     grid_errors,
     grid_words,
     readings,
@@ -124,6 +125,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         speed=speed,
         wet=contact.wet,
         fluid_inputs={} if context.viscosity is None else {"viscosity": context.viscosity},
+        film_error=FILM_ERROR,
         seed=case.numerics.seed,
     )
     friction = cof(
@@ -141,6 +143,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         numbers, risk = scalars(case, contact, friction, sensor, sampled, slip)
         numbers |= recorder.array_scalars()
         labels = {**regime(contact), **spread_origin(sampled)}
+        if basis := getattr(law, "spread_basis", ""):
+            labels["cof_spread_basis"] = basis
         if remark := peak_pressure(sole, contact.total_pressure).remark:
             labels["edge_peak"] = remark
         if remark := blind_sensor(case, sensor, contact):
@@ -191,6 +195,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             sensor,
             parts.total - np.where(contact.wet, 0.0, parts.viscous),
             history_fields(contact, recorder),
+            None if sampled is None else sampled.cof,
         ),
         status=status,
         breaches=_texts(breaches),
@@ -297,6 +302,7 @@ def _fields(
     sensor: SensorReading,
     shear: object,
     in_time: tuple[dict[str, Any], dict[str, Any]],
+    draws: np.ndarray | None,
 ) -> xarray.Dataset:
     import xarray
 
@@ -324,6 +330,11 @@ def _fields(
             "outline_x": ("outline", sole.outline[:, 0], {"units": "m"}),
             "outline_y": ("outline", sole.outline[:, 1], {"units": "m"}),
             **histories,
+            **(
+                {}
+                if draws is None
+                else {"cof_draws": ("draw", draws, {"units": "1", "long_name": "draws of COF"})}
+            ),
         },
         coords={
             "x": ("x", sole.x, {"units": "m", "long_name": "along the walking direction"}),

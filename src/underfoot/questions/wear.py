@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -20,7 +20,6 @@ from .wear_limit import Crossing, LimitCrossing, WearPoint, limit_crossing
 
 if TYPE_CHECKING:
     from underfoot.case import Case
-    from underfoot.shoe.shape import SoleShape
     from underfoot.shoe.worn import WearMeasures
 
 MODES = ("archard", "plane", "patch")
@@ -466,7 +465,7 @@ def measures_between(
         share = place - before
         blend = (1 - share) * removed[before] + share * removed[before + 1]
         worn = WornMap(maps[0].x, maps[0].y, blend)
-        measures.append(wear_measures(cast("SoleShape", replace(cast("Any", new), wear=worn))))
+        measures.append(wear_measures(new.worn(worn)))
     return measures
 
 

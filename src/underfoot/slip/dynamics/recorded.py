@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from pathlib import Path
 
@@ -15,16 +14,17 @@ from underfoot.trials.axes import Axes, axes_of, marker_velocity
 from underfoot.trials.events import body_mass
 from underfoot.trials.filters import low_passed
 from underfoot.trials.gait import RcofDefinition, RequiredFriction, required_frictions
+from underfoot.trials.gait_context import FLAT, heel_speed
 from underfoot.trials.heel import HeelMotion, heel_motion
 from underfoot.trials.plates import plate_named
 from underfoot.trials.readers import read_trial
+from underfoot.trials.stance import Stance
 from underfoot.trials.trial import Marker, Trial
 
 from .gait import LEAST_LOAD, GaitHistory
 
 DUTY = 0.62  # stance over stride of level walking (assumed, textbook value)
 RATE = 200.0  # Hz of the tables
-FLAT = (0.3, 0.5)  # share of the stance in which the foot lies flat
 _TOE = re.compile(r"toe$|mt2$|mt1$", re.IGNORECASE)
 
 
@@ -66,8 +66,7 @@ def step_history(
 
     Foot angle: from the line heel marker to toe marker (or first or second metatarsal head of the
     same side), against its angle while the foot lies flat (30 to 50 % of stance). Heel velocity:
-    of the marker along the walk, less its height above the plate times the rate at which the foot
-    falls, which a marker on a standing heel has too.
+    ``heel_over_floor``.
     """
     axes, stance = axes_of(trial), step.stance
     assert stance.walking is not None  # an RCOF has one
@@ -82,51 +81,46 @@ def step_history(
     size = np.linalg.norm(shear, axis=1) * np.where(shear @ stance.walking < 0, 1.0, -1.0)
     ratio = np.where(normal > LEAST_LOAD * weight, size / np.maximum(normal, 1.0), 0.0)
     time = np.arange(0.0, since[-1] + 0.5 / plate.rate, 1 / RATE)
-    heel_speed, angle, heel_velocity = _heel(trial, step, axes, time)
     how = f"{own:g} kg" if own else f"estimated {weight:.0f} N: mean normal force x 2 x {DUTY:g}"
     return GaitHistory(
         name or stance.plate,
         time,
         np.interp(time, since, normal / weight),
         np.interp(time, since, ratio),
-        angle,
+        _foot_angle(trial, stance, axes, time),
         walking_speed=_walking_speed(trial, stance.contact, stance.toe_off, axes),
-        heel_speed=heel_speed,
-        heel_velocity=heel_velocity,
+        heel_speed=heel_speed(trial, stance, axes),
+        heel_velocity=_heel_velocity(trial, stance, axes, time),
         source=how,
     )
 
 
-def _heel(
-    trial: Trial, step: RequiredFriction, axes: Axes, time: Array
-) -> tuple[float | None, Array | None, Array | None]:
-    """Return marker speed at contact, foot angle and heel velocity at ``time``, where recorded."""
-    stance = step.stance
-    heel = trial.marker(stance.heel) if stance.heel else None
-    if heel is None or stance.walking is None:
-        return None, None, None
-    motion = heel_motion(heel, axes.up)
-    speed = float(np.interp(stance.contact, motion.time, motion.speed))
-    toe = _toe_of(trial, stance.heel)
-    if toe is None or len(toe.positions) != len(heel.positions):
-        return (speed if math.isfinite(speed) else None), None, None
+def _foot_angle(trial: Trial, stance: Stance, axes: Axes, time: Array) -> Array | None:
+    """Return the foot's angle at ``time`` since contact, where heel and toe are recorded."""
+    heel, toe = _heel_and_toe(trial, stance)
+    if heel is None or toe is None:
+        return None
     line = toe.positions - heel.positions
     tilt = np.arctan2(line @ axes.up, line @ stance.walking)
-    share = (motion.time - stance.contact) / stance.duration
+    share = (heel.time - stance.contact) / stance.duration
     flat = (share > FLAT[0]) & (share < FLAT[1])
     if not (flat.any() and np.isfinite(tilt[flat]).all()):
-        return speed, None, None
-    angle = np.interp(time + stance.contact, motion.time, tilt - np.median(tilt[flat]))
-    if not np.isfinite(angle).all():
-        return speed, None, None
+        return None
+    angle = np.interp(time + stance.contact, heel.time, tilt - np.median(tilt[flat]))
+    return angle if np.isfinite(angle).all() else None
+
+
+def _heel_velocity(trial: Trial, stance: Stance, axes: Axes, time: Array) -> Array | None:
+    """Return the heel's velocity over the floor at ``time``, where heel and toe are recorded."""
+    heel, toe = _heel_and_toe(trial, stance)
     corners = plate_named(trial, stance.plate).corners
-    if corners is None:
-        return speed, angle, None
-    own = heel_over_floor(
-        motion, heel_motion(toe, axes.up), axes.up, stance.walking, corners.mean(axis=0) @ axes.up
-    )
+    if heel is None or toe is None or corners is None or stance.walking is None:
+        return None
+    motion, up = heel_motion(heel, axes.up), axes.up
+    level = corners.mean(axis=0) @ up
+    own = heel_over_floor(motion, heel_motion(toe, up), up, stance.walking, level)
     velocity = np.interp(time + stance.contact, motion.time, own)
-    return speed, angle, (velocity if np.isfinite(velocity).all() else None)
+    return velocity if np.isfinite(velocity).all() else None
 
 
 def heel_over_floor(
@@ -143,6 +137,13 @@ def heel_over_floor(
     return heel.velocity @ walking - falling * np.maximum(heel.position @ up - level, 0.0)
 
 
+def _heel_and_toe(trial: Trial, stance: Stance) -> tuple[Marker | None, Marker | None]:
+    heel = trial.marker(stance.heel) if stance.heel else None
+    toe = _toe_of(trial, stance.heel) if heel else None
+    same = heel is not None and toe is not None and len(toe.positions) == len(heel.positions)
+    return heel, toe if same else None
+
+
 def _toe_of(trial: Trial, heel: str) -> Marker | None:
     side = heel.strip()[0].lower()
     names = [n for n in trial.markers if _TOE.search(n) and n.strip()[0].lower() == side]
@@ -151,7 +152,6 @@ def _toe_of(trial: Trial, heel: str) -> Marker | None:
 
 
 def _walking_speed(trial: Trial, begin: float, end: float, axes: Axes) -> float | None:
-
     velocity = marker_velocity(trial, begin, end, axes.up)
     if velocity is None or not np.isfinite(velocity).all():
         return None
