@@ -211,7 +211,7 @@ def _deliver(
                 (staging / "studies.html").write_text(page, encoding="utf-8")
     if json:
         content: Any = [one.as_dict() for result in results for one in result.judgements]
-        _print_json(content if everything else results[0].as_dict())
+        _print_json(content if everything else results[0].to_dict())
     elif everything:
         _show_headline(results)
     else:
