@@ -29,13 +29,9 @@ def _figures(shown: RoughContact) -> FigureMakers:
 @files.register(RoughContact)
 def _files(shown: RoughContact) -> dict[str, Writer]:
     def write_fields(path: Path) -> None:
-        np.savez_compressed(
-            path,
-            heights=shown.floor.heights,
-            spacing=shown.floor.spacing,
-            pressure=shown.contact.pressure,
-            gap=shown.contact.gap,
-        )
+        floor, contact = shown.floor, shown.contact
+        fields: dict[str, Any] = {"pressure": contact.pressure, "gap": contact.gap}
+        np.savez_compressed(path, heights=floor.heights, spacing=floor.spacing, **fields)
 
     return data_writers(shown) | ({"contact.npz": write_fields} if shown.usable else {})
 
@@ -66,15 +62,8 @@ def contact_figure(heights: np.ndarray, spacing: float, contact: Any, title: str
         ("Gap (contact in blue-grey)", open_gap, "gap (µm)", "magma_r", (0.0, max(highest, 1e-9))),
     )
     for ax, (name, field, unit, colours, (low, high)) in zip(axes.flat, panels, strict=True):
-        image = ax.imshow(
-            field,
-            origin="lower",
-            extent=extent,
-            cmap=colours,
-            vmin=low,
-            vmax=high,
-            interpolation="nearest",
-        )
+        style: dict[str, Any] = {"origin": "lower", "extent": extent, "interpolation": "nearest"}
+        image = ax.imshow(field, cmap=colours, vmin=low, vmax=high, **style)
         ax.set_title(name)
         if name.startswith("Gap") and touching.all():
             ax.clear()
@@ -83,13 +72,11 @@ def contact_figure(heights: np.ndarray, spacing: float, contact: Any, title: str
             continue
         if name.startswith("Gap"):
             ax.set_facecolor("#a9bfd1")  # contact, apart from small gaps
-        ax.set_xlabel("across, y (µm)")
-        ax.set_ylabel("sliding, x (µm)")
+        ax.set(xlabel="across, y (µm)", ylabel="sliding, x (µm)")
         if unit:
             figure.colorbar(image, ax=ax, fraction=0.046, pad=0.03).set_label(unit)
         else:
-            share = float(np.mean(touching))
-            ax.set_title(f"{name}: {100.0 * share:.3g} % of the grid")
+            ax.set_title(f"{name}: {100.0 * np.mean(touching):.3g} % of the grid")
     if title:
         figure.suptitle(title)
     return figure

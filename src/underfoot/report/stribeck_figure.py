@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from underfoot.studies.figure import COLOURS, Figure, Layer, Panel, line, numbers, points
+from underfoot.studies.figure import COLOURS, MARKERS, Figure, Layer, Panel, line, points
 
 from .study_figures import drawn
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
     from underfoot.calibrate import StribeckCurve
 
-MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 PART_COLOURS = {"adhesion": "#c8553d", "hysteresis": "#2e86ab", "viscous": "#3c9d6d"}
 
 
@@ -31,6 +30,7 @@ def stribeck_figure(curves: Sequence[StribeckCurve], title: str = "") -> Picture
         notes.append(f"points: published, {', '.join(pairs)}")
     if any(curve.interval is not None for curve in curves):
         notes.append("bands: 95 % intervals")
+    axes: dict[str, Any] = {"x_scale": "log", "y_limits": (0.0, None)}
     panels = []
     for name, product in (("sliding speed (m/s)", False), ("viscosity × speed (mPa m)", True)):
         layers: list[Layer] = []
@@ -40,40 +40,19 @@ def stribeck_figure(curves: Sequence[StribeckCurve], title: str = "") -> Picture
             whole = np.sum([curve.parts[part] for part in PART_COLOURS], axis=0)
             layers.append(line(curve.speed * scale, whole, curve.label, **style))
             if curve.interval is not None:
-                low, high = (numbers(bound) for bound in curve.interval)
-                layers.append(
-                    Layer("band", numbers(curve.speed * scale), low=low, high=high, **style)
-                )
+                low, high = curve.interval
+                layers.append(Layer("band", curve.speed * scale, low=low, high=high, **style))
             if curve.points is not None:
                 speed, cof = curve.points
-                marker = MARKERS[index % len(MARKERS)]
-                layers.append(points(speed * scale, cof, marker=marker, **style))
-        panels.append(
-            Panel(
-                tuple(layers),
-                name,
-                "COF",
-                "; ".join(notes) if product else "",
-                x_scale="log",
-                y_limits=(0.0, None),
-                legend="best" if product else "",
-            )
-        )
+                style["marker"] = MARKERS[index % len(MARKERS)]
+                layers.append(points(speed * scale, cof, **style))
+        note, legend = ("; ".join(notes), "best") if product else ("", "")
+        panels.append(Panel(layers, name, "COF", note, legend=legend, **axes))
     for curve in curves:
-        stack = tuple(
-            Layer(
-                "stack", numbers(curve.speed), numbers(curve.parts[part]), label=part, colour=colour
-            )
+        parts = [
+            Layer("stack", curve.speed, curve.parts[part], label=part, colour=colour)
             for part, colour in PART_COLOURS.items()
-        )
-        panels.append(
-            Panel(
-                stack,
-                "sliding speed (m/s)",
-                "COF",
-                f"{curve.label}, in its parts",
-                x_scale="log",
-                y_limits=(0.0, None),
-            )
-        )
-    return drawn(Figure(tuple(panels), title, columns=2 if len(curves) < 3 else 3, size=(4.8, 3.4)))
+        ]
+        name = f"{curve.label}, in its parts"
+        panels.append(Panel(parts, "sliding speed (m/s)", "COF", name, **axes))
+    return drawn(Figure(panels, title, columns=2 if len(curves) < 3 else 3, size=(4.8, 3.4)))

@@ -76,7 +76,8 @@ def _draw(axes: Axes, panel: Panel, highest: float, *, legend: bool) -> Any:
         place: Any = {"transform": axes.transAxes, "ha": "center", "va": "center"}
         axes.text(0.5, 0.5, panel.note, color="0.35", **place)
     if legend and panel.legend and axes.get_legend_handles_labels()[0]:
-        axes.legend(frameon=False, fontsize=8, loc=panel.legend)
+        where: Any = panel.legend
+        axes.legend(frameon=False, fontsize=8, loc=where)
     axes.spines[["top", "right"]].set_visible(False)
     return next((image for image in images if image is not None), None)
 

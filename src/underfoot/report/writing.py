@@ -82,11 +82,6 @@ def write_text(text: str) -> Writer:
     return lambda path: path.write_text(text, encoding="utf-8")
 
 
-def write_bytes(content: Callable[[], bytes]) -> Writer:
-    """Return the writer of a file whose content is made when it is written."""
-    return lambda path: path.write_bytes(content())
-
-
 def write_csv(table: Table) -> Writer:
     """Return the writer of a table as CSV; what is missing is an empty cell."""
 

@@ -206,8 +206,8 @@ def compute(options: Options) -> Computed:
 
 def matrix(settings: Settings) -> Iterator[Case]:
     """Yield every case; those that share a block follow one another."""
-    for shoe, *rest in product(SHOE_RZ, settings.series, MATERIALS, FLOOR_RZ, settings.speeds):
-        series, material, floor, speed = rest
+    every = product(SHOE_RZ, settings.series, MATERIALS, FLOOR_RZ, settings.speeds)
+    for shoe, series, material, floor, speed in every:
         yield Case(series, material, shoe, floor, speed)
 
 

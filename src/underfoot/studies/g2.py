@@ -200,12 +200,12 @@ def _mechanism_table(comparison: MechanismComparison) -> Table:
     rows = []
     for name, test in comparison.tests.items():
         given = test.calibration.parameters.get("parameter")
-        none = given is None or given.value is None
+        number = "-" if given is None or given.value is None else display(given.value, given.unit)
         rows.append(
             {
                 "mechanism": name,
                 "what it is": test.mechanism.label,
-                "calibrated": "-" if none else display(given.value, given.unit),
+                "calibrated": number,
                 "50 % glycerol": test.calibration.mean_absolute_error,
                 "5 fluids, COF_BL": test.fluids[0].error,
                 "5 fluids, viscosity": test.fluids[1].error,
@@ -371,7 +371,7 @@ def _levels_figure(fluids: Mapping[str, BoundaryFriction]) -> Figure:
     for k, (name, label) in enumerate(LABELS.items()):
         one = fluids[name]
         rest, error = one.cof_boundary.value or 0.0, one.cof_boundary.uncertainty or 0.0
-        ends = {"low": rest - error, "high": rest + error}
+        ends: dict[str, Any] = {"low": rest - error, "high": rest + error}
         left.append(Layer("bars", k, rest, **ends, colour=COLOURS[k], width=0.7))
         if one.tau_hydro is not None:
             tau, spread = one.tau_hydro.value or 0.0, one.tau_hydro.uncertainty or 0.0

@@ -188,10 +188,10 @@ def reading(condition: Condition, varied: Sensitivity | None, *, quick: bool = F
     ]
     levels = tuple(zip(spacings, map(Outcome.of, results), strict=True))
     fields = results[-1].fields
-    sensed = (fields[f"sensor_{name}"].values for name in ("x", "y", "pressure"))
+    x, y, pressure = (fields[f"sensor_{name}"].values for name in ("x", "y", "pressure"))
     outline = np.column_stack([fields["outline_x"].values, fields["outline_y"].values])
     draws = {} if varied is None else {name: _draws(name, levels[-1][1], varied) for name in LEAST}
-    return Reading(condition, levels, *sensed, outline, draws)
+    return Reading(condition, levels, x, y, pressure, outline, draws)
 
 
 def _draws(name: str, outcome: Outcome, varied: Sensitivity) -> Array:
@@ -505,7 +505,7 @@ def load_figure(readings: Sequence[Reading]) -> Figure:
             low, high = zip(*bands, strict=True) if has else ((), ())
             places = [TREADS.index(one.condition.tread) + side for one in some]
             loads = [one.number(LOAD) for one in some]
-            style = {"label": fluid, "colour": colour, "width": 0.36}
+            style: dict[str, Any] = {"label": fluid, "colour": colour, "width": 0.36}
             layers.append(Layer("bars", places, loads, low=low, high=high, **style))
         load = printed("fluid_load", kind, "N")
         layers.append(points(-0.2, load, "report", colour=PRINTED, marker="D"))
