@@ -28,11 +28,6 @@ def _of_g1(name: str, text: str) -> Any:
     return typer.Option(f"--{name}", help=f"Only of g1: {text}")
 
 
-@studies_app.callback()
-def studies() -> None:
-    """Published studies run again: our numbers beside the printed ones."""
-
-
 def list_studies(json: AsJson = False) -> None:
     """List the studies that can be run."""
     from underfoot.studies import STUDIES, study

@@ -54,11 +54,9 @@ class OutsoleInspection(Presentable):
         return f"<OutsoleInspection of {self.file.name!r:.100}: {self.outsole.faces} faces>"
 
     def heading(self) -> str:
-        """Return file, format and number of faces."""
         return f"{self.file.name}: {self.outsole.format}, {self.outsole.faces} faces"
 
     def headline(self) -> tuple[str, ...]:
-        """Return size and land."""
         m = self.measures
         return (
             f"{m.length * 1e3:.4g} x {m.width * 1e3:.4g} mm, land {m.land_ratio:.0%} of "
@@ -66,8 +64,6 @@ class OutsoleInspection(Presentable):
         )
 
     def table(self) -> Table:
-        """Return every measure of the tread."""
-
         def spread(values: tuple[float, float, float] | None, factor: float, unit: str) -> str:
             if values is None:
                 return "none"
@@ -97,11 +93,9 @@ class OutsoleInspection(Presentable):
         return Table("Tread", ("Measure", "Value"), rows)
 
     def remarks(self) -> dict[str, Sequence[str]]:
-        """Return what was determined, assumed and repaired."""
         return {"Determined, assumed and repaired": self.outsole.surface.remarks}
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything in SI; what there is none of is None."""
         outsole = self.outsole
         return {
             "file": str(self.file),
@@ -119,7 +113,6 @@ class OutsoleInspection(Presentable):
         }
 
     def data_tables(self) -> dict[str, Table]:
-        """Return one row a measure, in SI, with its unit in the name."""
         rows: list[tuple[str, Any]] = []
         for name, value in asdict(self.measures).items():
             unit = next((_UNITS[end] for end in _UNITS if name.endswith(end)), "")

@@ -9,20 +9,19 @@ from dataclasses import asdict, astuple, dataclass, fields, replace
 from functools import cache
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas
 
+import underfoot.block
+from underfoot import material as materials
+from underfoot.block import condensed, explicit
 from underfoot.core import Cache, InputError, Status, content_hash, unknown_name
 
 from .figure import OURS, PRINTED, SECOND, Figure, Layer, Panel, grouped_bars, level, line
 from .runner import Computed, Options, Table, kept
 from .verdict import Quantity
-
-if TYPE_CHECKING:
-    from underfoot.block import explicit
-    from underfoot.block.condensed import CondensedBlock
 
 MATERIALS = ("neolite", "rubber")
 SHOE_RZ = (12.1e-6, 35.1e-6)
@@ -213,28 +212,17 @@ def matrix(settings: Settings) -> Iterator[Case]:
 
 def material_of(case: Case, bulk: str = "corrected") -> explicit.MicroMaterial:
     """Return the rubber of a case; density assumed."""
-    from underfoot.block.explicit import MicroMaterial
-    from underfoot.material import (
-        RelaxationSpectrum,
-        bulk_modulus,
-        power_law_spectrum,
-        report_elastomer,
-        shear_from_young,
-        youngs_modulus_from_shear,
-    )
-
     if case.series == "report":
-        young = report_elastomer(case.material).modulus
-        assert isinstance(young, RelaxationSpectrum)
-        shear = shear_from_young(young, POISSON_RATIO)
+        young = materials.report_elastomer(case.material).modulus
+        assert isinstance(young, materials.RelaxationSpectrum)
+        shear = materials.shear_from_young(young, POISSON_RATIO)
     else:
-        shear = power_law_spectrum(*BROAD[case.material], terms_per_decade=2)
+        shear = materials.power_law_spectrum(*BROAD[case.material], terms_per_decade=2)
+    relaxed = materials.youngs_modulus_from_shear(shear.equilibrium_modulus, POISSON_RATIO)
+    k = float(materials.bulk_modulus(relaxed, POISSON_RATIO))
     if bulk == "printed":
         k = PRINTED_BULK_MODULUS[case.material]
-    else:
-        relaxed = youngs_modulus_from_shear(shear.equilibrium_modulus, POISSON_RATIO)
-        k = float(bulk_modulus(relaxed, POISSON_RATIO))
-    return MicroMaterial(shear, k, name=case.material, source=shear.source)
+    return explicit.MicroMaterial(shear, k, name=case.material, source=shear.source)
 
 
 def parts_of(
@@ -243,14 +231,12 @@ def parts_of(
     explicit.MicroBlock, explicit.MicroSurface, explicit.MicroMaterial, explicit.MicroLoading
 ]:
     """Return block, floor, material and loading of a case."""
-    from underfoot.block.explicit import MicroBlock, MicroLoading, MicroSurface
-
-    rough = MicroSurface.checkerboard(case.shoe_rz, settings.shoe_wavelength)
+    rough = explicit.MicroSurface.checkerboard(case.shoe_rz, settings.shoe_wavelength)
     return (
-        MicroBlock(elements=settings.elements, roughness=rough),
-        MicroSurface.checkerboard(case.floor_rz, settings.floor_wavelength),
+        explicit.MicroBlock(elements=settings.elements, roughness=rough),
+        explicit.MicroSurface.checkerboard(case.floor_rz, settings.floor_wavelength),
         material_of(case, settings.bulk_modulus),
-        MicroLoading(
+        explicit.MicroLoading(
             speed=case.speed,
             slide_distance=settings.slide_distance,
             control=settings.control,
@@ -269,30 +255,23 @@ def outcomes(
         for _, arrays in kept(ROOM, explicit_outcome, items, keys, processes=processes):
             yield Row(**json.loads(str(arrays.pop("row")))), arrays
         return
-    block: CondensedBlock | None = None
+    block: condensed.CondensedBlock | None = None
     last: tuple[float, float] | None = None
+    steps = settings.steps_per_wavelength
     for case in cases:
-        from underfoot.block.condensed import (
-            condensed_block,
-            condensed_poisson_ratio,
-            condensed_sliding,
-        )
-
-        shape, floor, material, loading = parts_of(case, settings)
-        key = (case.shoe_rz, round(condensed_poisson_ratio(material), 9))
+        shape, *others = parts_of(case, settings)
+        ratio = condensed.condensed_poisson_ratio(others[1])
+        key = (case.shoe_rz, round(ratio, 9))
         if block is None or key != last:
-            block, last = condensed_block(shape, condensed_poisson_ratio(material)), key
-        result = condensed_sliding(
-            block, floor, material, loading, steps_per_wavelength=settings.steps_per_wavelength
-        )
+            block, last = condensed.condensed_block(shape, ratio), key
+        result = condensed.condensed_sliding(block, *others, steps_per_wavelength=steps)
         yield row_of(case, result), {name: getattr(result, name) for name in HISTORY}
 
 
 def explicit_outcome(item: tuple[Case, Settings]) -> dict[str, np.ndarray]:
     """Return one case by explicit finite elements, mass scaled within its error bounds."""
-    from underfoot.block.explicit import ExplicitSettings, explicit_sliding
-
-    result = explicit_sliding(*parts_of(*item), ExplicitSettings(mass_scaling="auto"))
+    scaled = explicit.ExplicitSettings(mass_scaling="auto")
+    result = explicit.explicit_sliding(*parts_of(*item), scaled)
     row = np.array(json.dumps(asdict(row_of(item[0], result))))
     return {"row": row, **{name: getattr(result, name) for name in HISTORY}}
 
@@ -327,8 +306,6 @@ def _key(case: Case, settings: Settings) -> str:
 @cache
 def _source() -> str:
     """Return a hash of the program text that the explicit numbers come from."""
-    import underfoot.block
-
     files = sorted(Path(str(underfoot.block.__file__)).parent.rglob("*.py"))
     return content_hash(*[path.read_text(encoding="utf-8") for path in (*files, Path(__file__))])
 

@@ -142,6 +142,7 @@ def compute(options: Options) -> Computed:
 
 def sole_case(shore: float, law: str) -> Case:
     """Return the case of one outsole (Shore A) under one friction law."""
+    tread = {"depth": "3 mm", "lug_width": "3.6 mm", "channel_width": "2.4 mm"}
     mapping: dict[str, Any] = {
         "file_version": 1,
         "name": f"Outsole of {shore:g} Shore A, 50 % glycerol",
@@ -149,12 +150,7 @@ def sole_case(shore: float, law: str) -> Case:
             "from": "slip_tester_heel",
             "material": {"shore_a": shore},
             "roughness": {"ra": "7.24 um", "cutoff": "0.8 mm"},
-            "tread": {
-                "pattern": "grid",
-                "depth": "3 mm",
-                "lug_width": "3.6 mm",
-                "channel_width": "2.4 mm",
-            },
+            "tread": {"pattern": "grid", **tread},
         },
         "floor": {"from": "vinyl_g4"},
         "contaminant": {"from": FLUID},
@@ -186,12 +182,9 @@ def pin_strength() -> tuple[float, float]:
         float(rules.value(f"interface.{name}"))
         for name in ("roughness_beyond_cutoff", "longest_wave", "hurst")
     )
-    scale = self_affine_scale(
-        STYLUS_RESOLUTION,
-        rq=factor * float(np.hypot(pin.sole_rq, pin.floor_rq)),
-        longest_wave=longest,
-        hurst=min(hurst, 0.99),
-    )
+    rq = factor * float(np.hypot(pin.sole_rq, pin.floor_rq))
+    fractal = {"longest_wave": longest, "hurst": min(hurst, 0.99)}
+    scale = self_affine_scale(STYLUS_RESOLUTION, rq=rq, **fractal)
     share = float(scale.contact_fraction(pin.pressure / pin.modulus))
     source = "final progress report on shoe-floor friction, G.2.2"
     return strength_from_cof(cof - left, pin.pressure, share, source).strength, left
@@ -274,20 +267,6 @@ def risk_by_rcof(count: int = 29) -> tuple[float, float, float]:
     return float(found[0]), float(found[1]), float(found[2])
 
 
-def implied_differences() -> dict[str, float]:
-    """Return ACOF - RCOF behind the printed risks 0.6, 21 and 92.5 %, and the slope of the log
-    odds with ACOF alone between the printed slip rates (per unit)."""
-
-    def logit(p: float) -> float:
-        return math.log(p / (1 - p))
-
-    found = {
-        name: PRINTED_HALF + logit(p) / PRINTED_SLOPE
-        for name, p in (("lowest", 0.006), ("median", 0.21), ("highest", 0.925))
-    }
-    return found | {"acof_slope": (logit(0.06) - logit(0.41)) / (0.182 - 0.159)}
-
-
 def precision_of_published(*, draws: int = 200, seed: int = 0) -> tuple[Array, Array]:
     """Return slopes and 50 % points (draws,) of studies as large as G.6 if its logistic were true.
 
@@ -314,8 +293,7 @@ def fitted_logistic(difference: Array, slipped: Array) -> Logistic:
         fit = logistic_regression(outcome, {"difference": difference})
     except DataError:
         fit = logistic_regression(outcome, {"difference": difference}, method="firth")
-    slope = fit.coefficients[1]
-    curve = risk_curve(fit)
+    slope, curve = fit.coefficients[1], risk_curve(fit)
     low, high = (math.nan if v is None else float(v) for v in (slope.low, slope.high))
     return Logistic(slope.estimate, low, high, curve.half, curve.half_error)
 

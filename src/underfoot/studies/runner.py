@@ -95,11 +95,9 @@ class StudyResult(Presentable):
         return f"StudyResult({self.study.name}: {len(self.study.statements)} statements)"
 
     def table(self) -> ShownTable:
-        """Return the independent statements with their verdicts."""
         return self.tables()[0]
 
     def tables(self) -> tuple[ShownTable, ...]:
-        """Return the statements by kind, independent ones first, then the study's own tables."""
         columns = ("statement", "printed", "ours", "verdict", "why")
         verdicts = [
             ShownTable(
@@ -117,11 +115,9 @@ class StudyResult(Presentable):
         return (*verdicts, *own)
 
     def heading(self) -> str:
-        """Return title and source."""
         return f"{self.study.title} ({self.study.source})"
 
     def headline(self) -> tuple[str, ...]:
-        """Return how many independent statements got which verdict."""
         found = counts(self.judgements)
         parts = [f"{number} {verdict}" for verdict, number in found.items() if number]
         if not parts:
@@ -129,12 +125,10 @@ class StudyResult(Presentable):
         return (f"Of {sum(found.values())} independent statements: {', '.join(parts)}.",)
 
     def cautions(self) -> tuple[str, ...]:
-        """Return what a quick run leaves open."""
         text = "One coarse grid (--quick): what depends on a grid is not judged."
         return (text,) if self.quick else ()
 
     def remarks(self) -> dict[str, Sequence[str]]:
-        """Return conclusions, method, assumptions, errata and the rules of the verdicts."""
         return {
             "Conclusions": self.computed.conclusions,
             "Method": (*self.study.notes, *self.computed.notes),
@@ -145,7 +139,6 @@ class StudyResult(Presentable):
 
     @property
     def usable(self) -> bool:
-        """Whether the study gave a result."""
         return not self.error
 
     def to_dict(self, *, figures: bool = False) -> dict[str, Any]:
