@@ -206,7 +206,7 @@ def test_old_option_names_answer_with_a_note(capsys):
     import typer
     from typer.testing import CliRunner
 
-    from underfoot.cli.renamed import Command
+    from underfoot.cli.app import Command
 
     app, seen = typer.Typer(), SimpleNamespace(target=None)
 

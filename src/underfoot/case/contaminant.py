@@ -31,7 +31,6 @@ class ContaminantSection(Option):
         """Return the dynamic viscosity, Pa s."""
 
     def breaches(self) -> list[Breach]:
-        """Return what leaves the range on which a viscosity relation was tested."""
         return []
 
 
@@ -50,7 +49,6 @@ class MeasuredFluid(ContaminantSection):
     )
 
     def build(self) -> SourcedValue:
-        """Return the dynamic viscosity, Pa s."""
         return self.sourced("viscosity")
 
 
@@ -68,14 +66,12 @@ class GlycerolWater(ContaminantSection):
     temperature: Temperature = default(293.15, "20 degC", "room temperature", assumed=True)
 
     def build(self) -> SourcedValue:
-        """Return the dynamic viscosity, Pa s."""
         from underfoot.fluid import glycerol_water
 
         mixture = glycerol_water(self.glycerol_fraction, self.temperature, self.fraction_basis)
         return mixture.viscosity
 
     def breaches(self) -> list[Breach]:
-        """Return what leaves the range on which the relation was tested."""
         from underfoot.fluid import glycerol_water_breaches
 
         return glycerol_water_breaches(self.glycerol_fraction, self.temperature)

@@ -54,7 +54,6 @@ class FrictionOption(Option):
         """Return the law."""
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield a dry floor under a law of films."""
         if case.contaminant is None and not self.dry:
             yield InputError(
                 "a dry case needs a measured coefficient of friction",
@@ -103,7 +102,6 @@ class BoundaryOption(_Measured):
     source: ClassVar[str] = "boundary friction of the pair and fluid"
 
     def build(self, context: Context) -> FrictionLaw:
-        """Return the law."""
         from underfoot.friction import BoundaryLaw, boundary_friction_at
 
         others, own = measured_fluids(context.catalogue), self.measured(context)
@@ -127,7 +125,6 @@ class StribeckOption(_Measured):
     cof_asymptote: Friction | None = Field(default=None, description="COF at high speed (Eq. 17)")
 
     def build(self, context: Context) -> FrictionLaw:
-        """Return the law."""
         from underfoot.friction import BoundaryLaw, StribeckLaw, stribeck_law_at
 
         others, own = measured_fluids(context.catalogue), self.measured(context)
@@ -161,7 +158,6 @@ class AdhesionBlockingOption(FrictionOption):
     pair: str | None = Field(default=None, description="sole and floor it was measured on")
 
     def build(self, context: Context) -> FrictionLaw:
-        """Return the law."""
         from underfoot.fluid import AdhesionBlocking
         from underfoot.friction import AdhesionBlockingLaw
 
@@ -184,7 +180,6 @@ class ConstantOption(FrictionOption):
     hysteresis_cof: Friction | None = Field(default=None, description="its hysteresis part")
 
     def build(self, context: Context) -> FrictionLaw:
-        """Return the law."""
         from underfoot.friction import ConstantLaw
 
         hysteresis, sourced = self.hysteresis_cof or 0.0, self.sourced("cof")
@@ -197,7 +192,6 @@ class ConstantOption(FrictionOption):
         )
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield a hysteresis part above the whole."""
         if (self.hysteresis_cof or 0.0) > self.cof:
             yield RangeError(
                 f"{self.hysteresis_cof:g} is more than the whole",
@@ -257,7 +251,6 @@ class AsperityEhlOption(_Mechanism):
     )
 
     def build(self, context: Context) -> FrictionLaw:
-        """Return the law."""
         return self._asperity_law(context)
 
 
@@ -270,7 +263,6 @@ class MeanFilmSharingOption(_Mechanism):
     source: ClassVar[str] = "load shared with the mean film of a pin"
 
     def build(self, context: Context) -> FrictionLaw:
-        """Return the law."""
         from underfoot.friction import MeanFilmSharing
 
         pin = context.catalogue.entry(*PIN)
@@ -299,7 +291,6 @@ class ViscoelasticAreaOption(_Mechanism):
     reads: ClassVar[tuple[str, ...]] = (*_Mechanism.reads, "interface.shortest_wave")
 
     def build(self, context: Context) -> FrictionLaw:
-        """Return the law."""
         from underfoot.friction import ViscoelasticArea, modulus_exponent
 
         rubber, wave = context.rubber(), context.interface.shortest_wave
@@ -311,7 +302,6 @@ class ViscoelasticAreaOption(_Mechanism):
         return self._rival(ViscoelasticArea(exponent), context)
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield a compound without relaxation spectrum too."""
         yield from super().problems(case, where)
         if case.shoe.material.relaxation is None:
             yield InputError(
@@ -348,7 +338,6 @@ class BowdenTaborOption(FrictionOption):
     )
 
     def build(self, context: Context) -> FrictionLaw:
-        """Return the law."""
         from underfoot.friction import BowdenTaborLaw, ShearStrength
 
         stiffness = context.plane_strain_modulus
@@ -404,7 +393,6 @@ class TableOption(FrictionOption):
 
     @classmethod
     def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
-        """Return the table with the readings of its file."""
         name = table.get("table_file")
         name = getattr(getattr(name, "leaf", None), "given", name)
         if not isinstance(name, str):
@@ -419,7 +407,6 @@ class TableOption(FrictionOption):
         return {"readings_source": source, **table, "readings": readings}
 
     def build(self, context: Context) -> FrictionLaw:
-        """Return the law."""
         from underfoot.friction import SpeedTableLaw
 
         readings, viscosity = self.readings, context.viscosity_value
@@ -457,7 +444,6 @@ class TableOption(FrictionOption):
         )
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield readings at one speed only."""
         if len({reading.speed for reading in self.readings}) < 2:
             yield InputError(
                 "of one speed only" if self.readings else "are missing",

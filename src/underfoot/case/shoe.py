@@ -53,7 +53,6 @@ class Material(Section):
     relaxation: Relaxation | None = None
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield a compound without stiffness."""
         if self.shore_a is None and self.modulus is None:
             yield InputError(
                 "neither hardness nor modulus is given",
@@ -120,7 +119,6 @@ class OutsoleFile(Section):
 
     @classmethod
     def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
-        """Return the table with the full path and the checksum of the file."""
         from underfoot.core.files import checksum
 
         name, meant = _plain(table.get("file")), _plain(table.get("sha256"))
@@ -144,7 +142,6 @@ class OutsoleFile(Section):
         return {**table, "file": str(path), "sha256": present}
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield directions on one axis and a map coarser than the grid."""
         down, forward = self.down, self.forward
         if down[0] in "+-" and forward[0] in "+-" and down[1] == forward[1]:
             yield InputError(
@@ -174,7 +171,6 @@ class Shoe(Section):
 
     @classmethod
     def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
-        """Return the table without heel and tread where a file gives the outsole."""
         outsole = table.get("outsole")
         if outsole is None:
             return {key: item for key, item in table.items() if key != "outsole"}
