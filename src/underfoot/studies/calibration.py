@@ -102,22 +102,26 @@ def compute(options: Options) -> Computed:
     bare = slips(slip_case("untreaded", quick=quick), progress=part(progress, 0.5, 0.75))
     tread = slips(slip_case("treaded", quick=quick), progress=part(progress, 0.75, 1.0))
     case = Condition("work", "untreaded", "glycerol").case
-    angle = float(case.value("shoe.heel.profile.angle"))
-    facet, rough = heel_profiles(facets, roughness, loads, peaks)
+    angle = math.degrees(float(case.value("shoe.heel.profile.angle")))
+    rough = float(case.value("interface.roughness_beyond_cutoff"))
     contact = bare.setting.friction(2.5e5, 1.0, 1e-3)
-    rough_default = float(case.value("interface.roughness_beyond_cutoff"))
     own = float((contact.adhesion + contact.hysteresis) / 2.5e5)
-    mass = bare.population.effective_mass
-    found = (
-        Calibrated(facet, "G.4.2, work shoe", math.degrees(angle)),
-        Calibrated(rough, "G.4.2, work shoe", rough_default),
-        Calibrated(mass_profile(bare), "G.5.2, over the sensors", mass),
-        Calibrated(contact_profile(tread), "G.5.2, treaded", own),
+    # N and Pa of both untreaded shoes in glycerol
+    data = np.array(
+        [[printed("fluid_load", k, "N"), printed("peak_pressure", k, "Pa")] for k in KINDS]
     )
-    data = readings()
     misfit = chi_square(np.stack([loads[0], peaks[0]], axis=-1), data[0], READING * data[0])
+    by_angle = profile("facet angle", "deg", facets, misfit, data=2)
+    by_roughness = profile("roughness beyond the cut-off", "1", roughness, misfit.T, data=2)
+    by_mass, by_contact = mass_profile(bare), contact_profile(tread)
+    found = (
+        Calibrated(by_angle, "G.4.2, work shoe", angle),
+        Calibrated(by_roughness, "G.4.2, work shoe", rough),
+        Calibrated(by_mass, "G.5.2, over the sensors", bare.population.effective_mass),
+        Calibrated(by_contact, "G.5.2, treaded", own),
+    )
     i, j = (int(k) for k in np.unravel_index(int(misfit.argmin()), misfit.shape))
-    mass = found[2].profile.best
+    mass = by_mass.best
     _, error = model_error([loads[1, i, j], peaks[1, i, j]], data[1])
     return Computed(
         {
@@ -173,45 +177,26 @@ def slip_tester_grid(
     return loads, peaks
 
 
-def readings() -> Array:
-    """Return load (N) and peak (Pa) of both untreaded shoes in glycerol, (2 shoes, 2)."""
-    return np.array(
-        [[printed("fluid_load", k, "N"), printed("peak_pressure", k, "Pa")] for k in KINDS]
-    )
-
-
-def heel_profiles(
-    facets: Sequence[float], roughness: Sequence[float], loads: Array, peaks: Array
-) -> tuple[Profile, Profile]:
-    """Return profiles of facet angle (deg) and roughness factor from the work shoe's readings."""
-    data = readings()[0]
-    misfit = chi_square(np.stack([loads[0], peaks[0]], axis=-1), data, READING * data)
-    return (
-        profile("facet angle", "deg", facets, misfit, data=2),
-        profile("roughness beyond the cut-off", "1", roughness, misfit.T, data=2),
-    )
-
-
-def mass_profile(study: SlipStudy, masses: Sequence[float] = MASSES) -> Profile:
+def mass_profile(study: SlipStudy) -> Profile:
     """Return the profile of the share of the body that moves with the heel, from G.5's mean."""
     mean = _published("peak_slipping_speed_over_sensors_untreaded")
-    speeds = np.array([study.peak_speed_at(share) or math.nan for share in masses])
+    speeds = np.array([study.peak_speed_at(share) or math.nan for share in MASSES])
     misfit = chi_square(speeds[:, None], [mean[0]], [mean[1] / math.sqrt(11)])
-    return profile("share of the body moving with the heel", "1", masses, misfit, data=1)
+    return profile("share of the body moving with the heel", "1", MASSES, misfit, data=1)
 
 
-def contact_profile(study: SlipStudy, contacts: Sequence[float] = CONTACTS) -> Profile:
+def contact_profile(study: SlipStudy) -> Profile:
     """Return the profile of the contact's COF under lugs in 90 % glycerol, from the treaded slips.
 
     The film is that of the case; the contact has one COF at every speed.
     """
     assert study.sole is not None
     mean = _published("peak_slipping_speed_over_sensors_treaded")
-    speeds = np.array([treaded_speed(study, study.sole, cof) for cof in contacts])
+    speeds = np.array([treaded_speed(study, study.sole, cof) for cof in CONTACTS])
     # 0.06 m/s is what a marker moves at without any slip (required_friction)
     error = math.hypot(mean[1] / math.sqrt(6), 0.06)
     misfit = chi_square(speeds[:, None], [mean[0]], [error])
-    return profile("contact COF under lugs, 90 % glycerol", "1", contacts, misfit, data=1)
+    return profile("contact COF under lugs, 90 % glycerol", "1", CONTACTS, misfit, data=1)
 
 
 def _published(name: str) -> tuple[float, float]:

@@ -259,12 +259,14 @@ def outcomes(
     last: tuple[float, float] | None = None
     steps = settings.steps_per_wavelength
     for case in cases:
-        shape, *others = parts_of(case, settings)
-        ratio = condensed.condensed_poisson_ratio(others[1])
+        shape, floor, rubber, loading = parts_of(case, settings)
+        ratio = condensed.condensed_poisson_ratio(rubber)
         key = (case.shoe_rz, round(ratio, 9))
         if block is None or key != last:
             block, last = condensed.condensed_block(shape, ratio), key
-        result = condensed.condensed_sliding(block, *others, steps_per_wavelength=steps)
+        result = condensed.condensed_sliding(
+            block, floor, rubber, loading, steps_per_wavelength=steps
+        )
         yield row_of(case, result), {name: getattr(result, name) for name in HISTORY}
 
 
