@@ -82,7 +82,7 @@ def write_stribeck(curves: list[StribeckCurve], folder: Path, title: str) -> Non
     """Write stribeck.png and stribeck.csv into an existing folder."""
     import csv
 
-    from underfoot.report.stribeck_figure import stribeck_figure
+    from underfoot.report.study_figures import stribeck_figure
 
     stribeck_figure(curves, title).savefig(folder / "stribeck.png", dpi=150)
     with (folder / "stribeck.csv").open("w", newline="", encoding="utf-8-sig") as stream:

@@ -26,7 +26,7 @@ FigureMakers = dict[str, "Callable[[], Figure]"]
 _HOMES = {
     "compute": ("results",),
     "case": ("results",),
-    "questions": ("results", "question_figures", "slips", "contact"),
+    "questions": ("results", "question_figures", "slips"),
     "film": ("regime_figure",),
     "report": ("outsole",),
     **dict.fromkeys(("friction", "rough_contact", "slip", "material"), ("laws",)),

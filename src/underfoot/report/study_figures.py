@@ -1,4 +1,4 @@
-"""The one drawer of the studies' figures: panels and series from ``studies.figure``."""
+"""The one drawer of figures that are data (``studies.figure``), and friction against speed."""
 
 from __future__ import annotations
 
@@ -8,21 +8,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from underfoot.studies.figure import COLOURS, MARKERS, Layer, Panel, line, points
+from underfoot.studies.figure import Figure as FigureData
+
+from .html import new_figure
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from underfoot.studies.figure import Figure as FigureData
-    from underfoot.studies.figure import Layer, Panel
+    from underfoot.calibrate import StribeckCurve
+
+PART_COLOURS = {"adhesion": "#c8553d", "hysteresis": "#2e86ab", "viscous": "#3c9d6d"}
 
 
 def drawn(figure: FigureData) -> Figure:
     """Return the picture of a figure's data."""
-    from matplotlib.figure import Figure
-
     rows = math.ceil(len(figure.panels) / figure.columns)
-    size = (figure.size[0] * figure.columns, figure.size[1] * rows + 0.5)
-    picture = Figure(figsize=size, layout="constrained")
+    picture = new_figure(figure.size[0] * figure.columns, figure.size[1] * rows + 0.5)
     grid = picture.subplots(
         rows, figure.columns, squeeze=False, sharex=figure.share_x, sharey=figure.share_y
     ).ravel()
@@ -132,3 +135,42 @@ def _draw_layer(axes: Axes, s: Layer, highest: float) -> Any:
                 s.x, s.y, np.transpose(s.z), shading="nearest", rasterized=True, **scale
             )
     return None
+
+
+def stribeck_figure(curves: Sequence[StribeckCurve], title: str = "") -> Figure:
+    """Return COF over speed, over viscosity x speed, and the parts of every fluid.
+
+    Bands hold 95 %; points what was published for the fluid on its own pair.
+    """
+    notes = []
+    pairs = dict.fromkeys(curve.pair for curve in curves if curve.points is not None)
+    if pairs:
+        notes.append(f"points: published, {', '.join(pairs)}")
+    if any(curve.interval is not None for curve in curves):
+        notes.append("bands: 95 % intervals")
+    axes: dict[str, Any] = {"x_scale": "log", "y_limits": (0.0, None)}
+    panels = []
+    for name, product in (("sliding speed (m/s)", False), ("viscosity × speed (mPa m)", True)):
+        layers: list[Layer] = []
+        for index, curve in enumerate(curves):
+            style: dict[str, Any] = {"colour": COLOURS[index % len(COLOURS)]}
+            scale = curve.viscosity * 1e3 if product else 1.0
+            whole = np.sum([curve.parts[part] for part in PART_COLOURS], axis=0)
+            layers.append(line(curve.speed * scale, whole, curve.label, **style))
+            if curve.interval is not None:
+                low, high = curve.interval
+                layers.append(Layer("band", curve.speed * scale, low=low, high=high, **style))
+            if curve.points is not None:
+                speed, cof = curve.points
+                style["marker"] = MARKERS[index % len(MARKERS)]
+                layers.append(points(speed * scale, cof, **style))
+        note, legend = ("; ".join(notes), "best") if product else ("", "")
+        panels.append(Panel(layers, name, "COF", note, legend=legend, **axes))
+    for curve in curves:
+        parts = [
+            Layer("stack", curve.speed, curve.parts[part], label=part, colour=colour)
+            for part, colour in PART_COLOURS.items()
+        ]
+        name = f"{curve.label}, in its parts"
+        panels.append(Panel(parts, "sliding speed (m/s)", "COF", name, **axes))
+    return drawn(FigureData(panels, title, columns=2 if len(curves) < 3 else 3, size=(4.8, 3.4)))

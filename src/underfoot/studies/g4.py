@@ -121,10 +121,10 @@ class Reading:
         """Return a scalar of the finest grid in SI."""
         return self.outcome.number(name)
 
-    def band(self, name: str) -> tuple[float | None, float | None]:
-        """Return the central 95 % of the draws, which holds the value itself."""
+    def band(self, name: str) -> tuple[float, float]:
+        """Return the central 95 % of the draws, which holds the value itself; nan without draws."""
         if name not in self.draws:
-            return None, None
+            return math.nan, math.nan
         low, high = np.percentile(self.draws[name], [2.5, 97.5])
         return min(float(low), self.number(name)), max(float(high), self.number(name))
 
@@ -342,7 +342,7 @@ def conclusions(
     """Return what the study says, in sentences."""
     treaded = [one for one in readings if not one.condition.untreaded]
     most = max(treaded, key=lambda one: one.number(TRUE_LOAD))
-    said = [
+    sentences = [
         f"The sensor does not see the film under lugs: up to {most.number(TRUE_LOAD):.0f} N "
         f"({most.condition.name}), of which it reads {most.number(LOAD):.1f} N. "
         "'Below 5 N' is a statement on the sensor."
@@ -350,17 +350,17 @@ def conclusions(
     for one in readings:
         if one.condition.untreaded and one.condition.fluid == "glycerol":
             load, peak = (varied[one.condition.name].ranked(name)[0] for name in (LOAD, PEAK))
-            said.append(
+            sentences.append(
                 f"{one.condition.name}: the load depends most on {load.path}, the peak depends "
                 f"most on {peak.path}."
             )
     limit = threshold(depths)
     if limit is not None:
-        said.append(
+        sentences.append(
             f"Tread of {1e3 * limit[1]:g} mm is enough to bring the sensor below 5 N, "
             f"{1e3 * limit[0]:g} mm is not (lugs of 5 mm, channels of 2.4 mm)."
         )
-    return tuple(said)
+    return tuple(sentences)
 
 
 def conditions_table(readings: Sequence[Reading]) -> Table:
@@ -368,7 +368,6 @@ def conditions_table(readings: Sequence[Reading]) -> Table:
     rows = []
     for one in readings:
         bands = {name: one.band(name) for name in LEAST}
-        peak_low, peak_high = (None if v is None else v / 1e3 for v in bands[PEAK])
         # no place for a peak that is none
         x, y = one.place if one.number(PEAK) > 1e3 else (math.nan, math.nan)
         grids = [(f"{1e3 * spacing:.2g} mm", outcome) for spacing, outcome in one.levels]
@@ -382,8 +381,8 @@ def conditions_table(readings: Sequence[Reading]) -> Table:
                 "true low": bands[TRUE_LOAD][0],
                 "true high": bands[TRUE_LOAD][1],
                 "peak kPa": one.number(PEAK) / 1e3,
-                "peak low": peak_low,
-                "peak high": peak_high,
+                "peak low": bands[PEAK][0] / 1e3,
+                "peak high": bands[PEAK][1] / 1e3,
                 "peak from back mm": 1e3 * x,
                 "peak left of middle mm": 1e3 * y,
                 "COF": one.number("cof"),
@@ -501,8 +500,7 @@ def load_figure(readings: Sequence[Reading]) -> Figure:
         for fluid, side, colour in (("glycerol", -0.2, OURS), ("detergent", 0.2, "#9db8d2")):
             some = [r for r in readings if (r.condition.kind, r.condition.fluid) == (kind, fluid)]
             bands = [one.band(LOAD) for one in some]
-            has = all(low is not None for low, _ in bands)
-            low, high = zip(*bands, strict=True) if has else ((), ())
+            low, high = np.transpose(bands) if np.isfinite(bands).all() else ((), ())
             places = [TREADS.index(one.condition.tread) + side for one in some]
             loads = [one.number(LOAD) for one in some]
             style: dict[str, Any] = {"label": fluid, "colour": colour, "width": 0.36}
