@@ -194,10 +194,7 @@ def read_study(name: str, content: Mapping[str, Any]) -> Study:
         tuple(statements),
         tuple(content.get("assumptions", ())),
         tuple(content.get("notes", ())),
-        tuple(
-            tuple(e[k] for k in ("where", "printed", "used", "why"))
-            for e in content.get("erratum", ())
-        ),
+        tuple((e["where"], e["printed"], e["used"], e["why"]) for e in content.get("erratum", ())),
         tuple(
             (f["number"], f["shows"], f.get("file", ""), f.get("remark", ""))
             for f in content.get("figure", ())
