@@ -179,16 +179,13 @@ def _human_slip(walk: _Walk) -> None:
     if one.motion is not None:
         motion = one.motion
         near = (motion.time > one.contact - 0.15) & (motion.time < one.contact + 0.9)
-        draft.curve(
-            "heel",
-            time=motion.time[near] - one.contact,
-            speed=motion.speed[near],
-            start=(one.start.value or np.nan) - one.contact,
-            end=one.end - one.contact,
-            peak_time=one.peak_time - one.contact,
-            peak=one.peak_speed.value or np.nan,
-            threshold=definition.threshold,
-        )
+        times = {
+            "time": motion.time[near], "start": one.start.value or np.nan, "end": one.end,
+            "peak_time": one.peak_time,
+        }  # fmt: skip
+        after = {key: time - one.contact for key, time in times.items()}
+        speeds = {"speed": motion.speed[near], "peak": one.peak_speed.value or np.nan}
+        draft.curve("heel", **after, **speeds, threshold=definition.threshold)
     if walk.profile.sensors and stance.walking is not None:
         _sensors(walk, one, stance.walking)
     acof = draft.conditions.get("acof")
