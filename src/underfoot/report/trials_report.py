@@ -137,23 +137,18 @@ def trials_page(
         for reason in one.reasons
         if one.verdict != "accepted"
     )
-    return (
-        environment()
-        .get_template("trials.html")
-        .render(
-            analysis=analysis,
-            counts=counts,
-            lead=lead_sentence(analysis),
-            reasons=reasons.most_common(4),
-            summary=None if summary is None else _page_table(_on_page(summary)),
-            first=chapters["study"][:1],
-            figures={**chapters, "study": chapters["study"][1:]},
-            study=[_page_table(_on_page(table)) for table in study],
-            findings=[_page_table(f.table) | {"cautions": f.cautions}
-                      for f in analysis.study.findings],
-            files=_page_table(_on_page(tables["files"], noted), limit=10_000),
-            edits=_page_table(tables["edits"]) if "edits" in tables else None,
-        )
+    return environment().get_template("trials.html").render(
+        analysis=analysis,
+        counts=counts,
+        lead=lead_sentence(analysis),
+        reasons=reasons.most_common(4),
+        summary=None if summary is None else _page_table(_on_page(summary)),
+        first=chapters["study"][:1],
+        figures={**chapters, "study": chapters["study"][1:]},
+        study=[_page_table(_on_page(table)) for table in study],
+        findings=[_page_table(f.table) | {"cautions": f.cautions} for f in analysis.study.findings],
+        files=_page_table(_on_page(tables["files"], noted), limit=10_000),
+        edits=_page_table(tables["edits"]) if "edits" in tables else None,
     )  # fmt: skip
 
 
@@ -203,9 +198,9 @@ def lead_sentence(analysis: FolderAnalysis) -> str:
     samples = tables.get("samples")
     if samples is not None:
         return f"{len(samples.rows)} samples.{tail}"
-    values = [one.main["cof"] for one in usable if "cof" in one.main]
-    if values:
-        text = f"COF {min(values):.3f} to {max(values):.3f} in {len(values)} usable runs."
+    cof = [one.main["cof"] for one in usable if "cof" in one.main]
+    if cof:
+        text = f"COF {min(cof):.3f} to {max(cof):.3f} in {len(cof)} usable runs."
         return text + carried + tail
     return f"{len(usable)} usable tests.{tail}"
 
