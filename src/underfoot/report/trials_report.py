@@ -115,9 +115,7 @@ def check_report_folder(folder: Path, *, overwrite: bool = False) -> None:
 
 
 def trials_page(
-    analysis: FolderAnalysis,
-    all_tables: Sequence[Table],
-    pictures: list[tuple[TrialFigure, bytes]],
+    analysis: FolderAnalysis, all_tables: Sequence[Table], pictures: list[tuple[TrialFigure, bytes]]
 ) -> str:
     """Return the page of an analysis as HTML text; it opens without a network."""
     counts = Counter(one.verdict for one in analysis.files)

@@ -58,11 +58,7 @@ class StudyFolder:
 
 
 def study_folder(
-    folder: Path,
-    *,
-    conditions: Path | None = None,
-    names: str = "",
-    merge_spelling: bool = False,
+    folder: Path, *, conditions: Path | None = None, names: str = "", merge_spelling: bool = False
 ) -> StudyFolder:
     """Return the recordings in a folder with their conditions.
 

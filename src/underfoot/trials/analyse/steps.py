@@ -111,10 +111,7 @@ def analysed_steps(trial: Trial, draft: Draft, protocol: Protocol, profile: Prof
     """
     analysis = {"gait": _gait, "human_slip": _human_slip}[protocol.kind]
     axes = axes_of(
-        trial,
-        vertical=profile.vertical,
-        walking=profile.walking,
-        ramp=protocol_ramp(protocol),
+        trial, vertical=profile.vertical, walking=profile.walking, ramp=protocol_ramp(protocol)
     )
     analysis(_Walk(trial, draft, protocol, profile, axes))
     if trial.edits:
