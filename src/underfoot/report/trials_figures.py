@@ -35,10 +35,7 @@ class TrialFigure:
 def trial_figures(analysis: FolderAnalysis, *, details: int = 4) -> list[TrialFigure]:
     """Return the figures of an analysis: the study, single trials in detail, contact sheets.
 
-    Parameters
-    ----------
-    details
-        Number of single trials drawn in detail: first those with cautions, then accepted ones.
+    ``details`` is the number of single trials drawn: first those with cautions, then accepted ones.
     """
     single = [made for one in _chosen(analysis.files, details) for made in _details(one)]
     return [*_study(analysis), *single, *_sheets(analysis)]

@@ -50,14 +50,8 @@ def write_trials_report(
 ) -> list[Path]:
     """Write report.html, trials.xlsx, tables/*.csv, figures/*.png and *.svg; return the paths.
 
-    Parameters
-    ----------
-    details
-        Number of single trials drawn in detail.
-    vector
-        Write the figures of the study and of single trials as SVG too.
-    processes
-        Number of processes that draw many figures; by default the number of processors.
+    ``details`` single trials are drawn in detail. With ``vector`` the figures of the study and of
+    single trials are written as SVG too. ``processes`` (by default the number of processors) draw.
     """
     folder.mkdir(parents=True, exist_ok=True)
     written: list[Path] = []

@@ -35,12 +35,8 @@ def activity(
 ) -> WalkRecording:
     """Return a made-up recording of an activity, a key of ``ACTIVITIES``.
 
-    Parameters
-    ----------
-    mass
-        Of the person (kg).
-    markers
-        Record heels, toes and pelvis; without them only the plates tell.
+    ``mass`` is that of the person (kg). Without ``markers`` (heels, toes, pelvis) only the plates
+    tell.
     """
     time = np.arange(round(DURATION * RATE)) / RATE
     if name in _STEPS:

@@ -88,12 +88,8 @@ def simulated_study(
     """Write a study with named files (``S01_hard_1.c3d``) and return their paths.
 
     RCOF of a trial = mean of the shoe + person + person in the shoe + trial, all normal with the
-    standard deviations of this module. Each file holds one step on one plate.
-
-    Parameters
-    ----------
-    persons, trials
-        Number of persons, and of trials of each in each shoe.
+    standard deviations of this module; ``trials`` of each person in each shoe, each one step on one
+    plate.
     """
     total = persons * len(SHOES) * trials
     return _written(out, _walks(persons, trials, seed), total, _WALKWAY, progress)
