@@ -11,6 +11,7 @@ import pytest
 
 from underfoot.case import Case
 from underfoot.compute.run import run
+from underfoot.slip import slip_risk
 
 ROOT = Path(__file__).parents[2]
 BEFORE = json.loads((ROOT / "tests/data/examples_before_rebuild.json").read_text())
@@ -29,7 +30,12 @@ def test_both_tables_begin_with_the_same_numbers():
 @pytest.mark.slow
 @pytest.mark.parametrize("name", UNMOVED)
 def test_an_example_gives_what_it_gave(name):
-    scalars = run(Case.load(ROOT / "examples" / f"{name}.toml")).scalars
+    case = Case.load(ROOT / "examples" / f"{name}.toml")
+    if case.contaminant is not None:  # the friction law that was the default then
+        case = case.replace("friction", "stribeck")
+    scalars = dict(run(case).scalars)
+    risk = slip_risk(scalars["cof"].value)  # at the best estimate, as it was stored
+    scalars["slip_probability"] = risk.probability
     assert set(scalars) == set(BEFORE[name])
     for key, (_, value) in FILM[name].items():
         assert scalars[key].value == pytest.approx(value, rel=1e-6, abs=1e-9), key

@@ -33,6 +33,11 @@ class ContaminantSection(Option):
     def breaches(self) -> list[Breach]:
         return []
 
+    @property
+    def is_oil(self) -> bool:
+        """Whether the fluid is an oil; else it is aqueous."""
+        return False
+
 
 class MeasuredFluid(ContaminantSection):
     """Fluid of known viscosity."""
@@ -47,6 +52,15 @@ class MeasuredFluid(ContaminantSection):
         'one only a measured friction applies: contaminant = "none" with friction.model = '
         '"constant" or "table", and no film',
     )
+
+    family: Literal["aqueous", "oil"] = default(
+        "aqueous", "aqueous", "not given: taken as no oil", assumed=True
+    )
+
+    @property
+    def is_oil(self) -> bool:
+        """Whether the fluid is an oil; else it is aqueous."""
+        return self.family == "oil"
 
     def build(self) -> SourcedValue:
         return self.sourced("viscosity")

@@ -13,8 +13,8 @@ from pydantic import Field
 from underfoot.core import InputError, RangeError, display, to_si
 
 from .quantity import Flag, Force, Length, Quantity, Speed, default
-from .section import CaseView, Option, Section, origin_of
-from .tables import as_written, table_columns
+from .section import CaseView, Option, Section
+from .tables import as_written, plain, table_columns
 
 if TYPE_CHECKING:
     from underfoot.sole_contact.motion_history import MotionHistory
@@ -118,7 +118,7 @@ class MotionFromHistory(Motion):
     @classmethod
     def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
         table = dict(table)
-        name, points = _plain(table.get("history")), _plain(table.get("history_points"))
+        name, points = plain(table.get("history")), plain(table.get("history_points"))
         if isinstance(name, str):
             if points is not None:
                 raise InputError(
@@ -222,8 +222,3 @@ class Sensor(Section):
     scan_spacing: Length = default(10 * _mm, "10 mm", _TESTER)
     scans: Count = default(7, 7, _TESTER)
     array: FloorArray | None = None
-
-
-def _plain(given: Any) -> Any:
-    origin = origin_of(given)
-    return given if origin is None else origin.leaf.given

@@ -76,6 +76,11 @@ ShowAll = Annotated[
 ]
 
 
+def optional(text: str, *names: str) -> Any:
+    """Return an option with its help text, whose default is not shown."""
+    return typer.Option(*names, help=text, show_default=False)
+
+
 @dataclass
 class Shared:
     """Options of most commands as given; those that a command does not have keep their default."""

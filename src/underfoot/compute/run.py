@@ -24,6 +24,7 @@ from underfoot.core import (
 
 from .contact import Recorder, history_fields, refuse_too_large, scanned, solved_motion
 from .numbers import (
+    FILM_ERROR,
     grid_errors,
     grid_words,
     readings,
@@ -117,6 +118,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         speed=speed,
         wet=contact.wet,
         fluid_inputs={} if context.viscosity is None else {"viscosity": context.viscosity},
+        film_error=FILM_ERROR,
         seed=case.numerics.seed,
     )
     friction = cof(
@@ -134,6 +136,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         numbers, risk = scalars(case, contact, friction, sensor, sampled, slip)
         numbers |= recorder.array_scalars()
         labels = {**regime(contact), **spread_origin(sampled)}
+        if basis := getattr(law, "spread_basis", ""):
+            labels["cof_spread_basis"] = basis
         if remark := peak_pressure(sole, contact.total_pressure).remark:
             labels["edge_peak"] = remark
         coarse_spacing = case.numerics.quick_grid_spacing
@@ -182,6 +186,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             sensor,
             parts.total - np.where(contact.wet, 0.0, parts.viscous),
             history_fields(contact, recorder),
+            None if sampled is None else sampled.cof,
         ),
         status=status,
         breaches=_texts(breaches),
@@ -288,6 +293,7 @@ def _fields(
     sensor: SensorReading,
     shear: object,
     in_time: tuple[dict[str, Any], dict[str, Any]],
+    draws: np.ndarray | None,
 ) -> xarray.Dataset:
     import xarray
 
@@ -315,6 +321,11 @@ def _fields(
             "outline_x": ("outline", sole.outline[:, 0], {"units": "m"}),
             "outline_y": ("outline", sole.outline[:, 1], {"units": "m"}),
             **histories,
+            **(
+                {}
+                if draws is None
+                else {"cof_draws": ("draw", draws, {"units": "1", "long_name": "draws of COF"})}
+            ),
         },
         coords={
             "x": ("x", sole.x, {"units": "m", "long_name": "along the walking direction"}),

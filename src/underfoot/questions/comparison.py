@@ -71,11 +71,9 @@ class Comparison(Presentable):
 
     @property
     def usable(self) -> bool:
-        """Whether all results can be compared."""
         return all(result.status.usable for result in self.results)
 
     def heading(self) -> str:
-        """Return the title."""
         return "Comparison of friction"
 
     def label(self, letter: str) -> str:
@@ -85,7 +83,6 @@ class Comparison(Presentable):
         return name if names.count(name) == 1 else f"{letter} ({name})"
 
     def headline(self) -> tuple[str, ...]:
-        """Return which result has the highest COF and what differs."""
         for result in self.results:
             if not result.status.usable:
                 return (f"No comparison: {result.name} is {result.status}. {result.status.remedy}",)
@@ -105,11 +102,9 @@ class Comparison(Presentable):
         return (f"{order} ({sure}).", self._different())
 
     def cautions(self) -> tuple[str, ...]:
-        """Return what makes the results unequal to compare."""
         return self.reasons
 
     def table(self) -> Table:
-        """Return the quantities of all results."""
         rows = []
         for quantity in self.quantities:
             texts = ["" if v is None else value_text(quantity.name, v) for v in quantity.values]
@@ -121,7 +116,6 @@ class Comparison(Presentable):
         return Table("Results", ("Quantity", *self.letters, "Differs from A"), rows)
 
     def tables(self) -> tuple[Table, ...]:
-        """Return ranking, quantities and the inputs in which the cases differ."""
         ranking = Table(
             "Ranking by COF",
             ("", "Case", "COF", "95 % interval", "Higher than the next"),
@@ -146,7 +140,6 @@ class Comparison(Presentable):
         return LETTERS[: len(self.results)]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return ranking, quantities, differing inputs and the results in SI."""
         return {
             "ranking": [
                 {
@@ -173,7 +166,6 @@ class Comparison(Presentable):
         }
 
     def data_tables(self) -> dict[str, Table]:
-        """Return the quantities and the differing inputs for other programs."""
         quantities = [
             (q.name, next((v.unit for v in q.values if v), ""), *(v and v.value for v in q.values))
             for q in self.quantities
@@ -217,9 +209,10 @@ def compare(
 
     Notes
     -----
-    The probability that one COF is higher than another is Phi(d / s) with d their difference and
-    s = sqrt(s1^2 + s2^2). Errors common to both (the same floor, the same closures) cancel in part,
-    so s is an upper bound for similar cases.
+    The probability that one COF is higher than another is the share of the joint draws in which it
+    is: what two cases have in common (laboratory, compound, floor, law, the model's error of the
+    film) is drawn once for both and cancels. Results without draws, or of different laws or seeds,
+    count as independent: Phi(d / s), d their difference and s = sqrt(s1^2 + s2^2).
 
     Raises
     ------
@@ -304,9 +297,20 @@ def _ranking(results: Sequence[Result]) -> tuple[Rank, ...]:
     for place, k in enumerate(order):
         cof = results[k].scalars["cof"]
         after = order[place + 1 : place + 2]
-        chance = probability_higher(cof, results[after[0]].scalars["cof"]) if after else None
+        chance = _chance_higher(results[k], results[after[0]]) if after else None
         ranks.append(Rank(LETTERS[k], results[k].name, cof, _interval(cof), chance))
     return tuple(ranks)
+
+
+def _chance_higher(first: Result, second: Result) -> float | None:
+    """Return the probability that the first COF is higher, from shared draws where there are."""
+    draws = [result.fields.get("cof_draws") for result in (first, second)]
+    laws = {result.provenance.closures.get("friction") for result in (first, second)}
+    a, b = draws
+    if laws != {"pair"} or a is None or b is None or a.size != b.size:
+        return probability_higher(first.scalars["cof"], second.scalars["cof"])
+    higher, equal = np.mean(a.values > b.values), np.mean(a.values == b.values)
+    return float(higher + 0.5 * equal)
 
 
 def _interval(scalar: SourcedValue) -> tuple[float, float] | None:

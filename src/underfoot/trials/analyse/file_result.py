@@ -71,27 +71,24 @@ class FileResult:
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> FileResult:
         """Return the result written by ``as_dict``."""
-        plain: dict[str, Any] = dict(data)
-        plain["reasons"] = tuple(plain["reasons"])
-        plain["measurements"] = tuple(plain["measurements"])
-        plain["edits"] = tuple(plain["edits"])
-        plain["steps"] = tuple(plain["steps"])
+        plain: dict[str, Any] = {
+            key: tuple(v) if isinstance(v, list) else v for key, v in data.items()
+        }
         return cls(**plain)
 
 
 class Draft:
     """Collects what one file gives while it is analysed."""
 
-    def __init__(self, file: str, conditions: Mapping[str, Any]) -> None:
-        self.file = file
-        self.checksum = ""
+    def __init__(self, file: str, conditions: Mapping[str, Any], checksum: str = "") -> None:
+        self.file, self.checksum = file, checksum
         self.conditions = dict(conditions)
-        self.measurements: list[dict[str, Any]] = []
         self.main: dict[str, float] = {}
         self.facts: dict[str, float] = {}
         self.curves: dict[str, Any] = {}
         self.cautions: list[str] = []
         self.refusals: list[str] = []
+        self.measurements: list[dict[str, Any]] = []
         self.edits: list[dict[str, Any]] = []
         self.steps: list[dict[str, Any]] = []
 
@@ -108,18 +105,14 @@ class Draft:
             if isinstance(values, np.ndarray):
                 step = max(1, math.ceil(len(values) / _POINTS))
                 out[key] = [_rounded(v) for v in np.asarray(values, dtype=float)[::step].tolist()]
-            elif isinstance(values, float):
-                out[key] = _rounded(values)
             else:
-                out[key] = values
+                out[key] = _rounded(values) if isinstance(values, float) else values
         self.curves.setdefault(name, []).append(out)
 
     def finished(self, protocol: Protocol) -> FileResult:
         """Check the rules and return the result with its verdict."""
         for rule in protocol.rules:
-            if rule.quantity not in self.facts:
-                continue
-            broken = rule.broken_by(self.facts[rule.quantity])
+            broken = rule.quantity in self.facts and rule.broken_by(self.facts[rule.quantity])
             if broken:
                 (self.refusals if rule.severity == "refuse" else self.cautions).append(broken)
         for entry in self.measurements:
@@ -127,19 +120,9 @@ class Draft:
                 f"{entry['item']}: {flag['words']}" for flag in entry["flags"] if flag["matters"]
             ]
         verdict = REFUSED if self.refusals else CAUTION if self.cautions else ACCEPTED
-        return FileResult(
-            self.file,
-            self.checksum,
-            verdict,
-            tuple(dict.fromkeys([*self.refusals, *self.cautions])),
-            tuple(self.measurements),
-            self.main,
-            self.facts,
-            self.curves,
-            self.conditions,
-            tuple(self.edits),
-            tuple(self.steps),
-        )
+        reasons = dict.fromkeys([*self.refusals, *self.cautions])
+        own = {k: v for k, v in vars(self).items() if k not in ("cautions", "refusals")}
+        return FileResult.from_dict({**own, "verdict": verdict, "reasons": list(reasons)})
 
 
 def rates(trial: Trial, draft: Draft) -> None:

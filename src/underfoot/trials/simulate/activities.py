@@ -5,16 +5,25 @@ Simple shapes with the forces, times and marker paths of textbooks; nobody moved
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
-from .c3d_file import c3d_bytes
-from .walk import MARKER_RATE, RATE, WalkRecording, raised_cosines
+from .c3d_file import walk_c3d
+from .walk import (
+    GRAVITY,
+    MARKER_RATE,
+    RATE,
+    WalkRecording,
+    foot_markers,
+    heel_path,
+    plate_corners,
+    raised_cosines,
+    stance_load,
+    stance_ratio,
+)
 
 DURATION = 4.0
-_GRAVITY = 9.80665
-_FOOT = 0.2  # m from heel to toe marker
 Motion = tuple[
     list[np.ndarray], list[np.ndarray], list[np.ndarray], np.ndarray, tuple[float, float]
 ]
@@ -26,115 +35,47 @@ def activity(
 ) -> WalkRecording:
     """Return a made-up recording of an activity, a key of ``ACTIVITIES``.
 
-    Parameters
-    ----------
-    mass
-        Of the person (kg).
-    markers
-        Record heels, toes and pelvis; without them only the plates tell.
+    ``mass`` is that of the person (kg). Without ``markers`` (heels, toes, pelvis) only the plates
+    tell.
     """
     time = np.arange(round(DURATION * RATE)) / RATE
-    forces, centres, heels, body, heights = _ACTIVITIES[name](time, mass * _GRAVITY)
+    if name in _STEPS:
+        motion = _steps(time, mass * GRAVITY, **_STEPS[name])
+    else:
+        load, height = (raised_cosines(time, knots) for knots in _STANDING[name])
+        motion = _standing_feet(time, mass * GRAVITY * load, height)
+    forces, centres, heels, body, heights = motion
     noisy = [force + rng.normal(0.0, 0.6, force.shape) for force in forces]
     frames = np.arange(round(DURATION * MARKER_RATE)) / MARKER_RATE
-    found: dict[str, np.ndarray] = {}
-    for side, heel, across in zip("RL", heels, (-0.1, 0.1), strict=True):
-        path = np.column_stack([np.interp(frames, time, heel[:, i]) for i in range(3)])
-        found[f"{side}HEE"] = path
-        found[f"{side}TOE"] = path + np.array([_FOOT, 0.0, 0.02])
-        pelvis = np.column_stack([np.interp(frames, time, body[:, i]) for i in range(3)])
-        found[f"{side}ASI"] = pelvis + np.array([0.08, across, 0.0])
-        found[f"{side}PSI"] = pelvis + np.array([-0.1, 0.5 * across, 0.02])
+    left, right, pelvis = (
+        np.column_stack([np.interp(frames, time, path[:, i]) for i in range(3)])
+        for path in (heels[1], heels[0], body)
+    )
+    found = foot_markers({"R": right, "L": left}, pelvis, (0.2, 0.0, 0.02), 0.1, 0.05)
     noise = {key: path + rng.normal(0.0, 3e-4, path.shape) for key, path in found.items()}
     if not markers:
         noise = {"origin": np.full((len(frames), 3), 5.0)}
-    corners = [_corners(begin, height) for begin, height in zip((0.0, 0.65), heights, strict=True)]
-    return WalkRecording(
-        noise, (noisy[0], noisy[1]), (centres[0], centres[1]), {}, {}, (corners[0], corners[1])
-    )
+    corners = (plate_corners(0.0, 0.45, heights[0]), plate_corners(0.65, 0.45, heights[1]))
+    return WalkRecording(noise, (noisy[0], noisy[1]), (centres[0], centres[1]), {}, {}, corners)
 
 
 def activity_c3d(recording: WalkRecording, *, crossed: bool = False, mass: float = 0.0) -> bytes:
     """Return a recording of an activity as C3D; ``crossed`` writes corners 3 and 4 exchanged."""
-    analog: dict[str, tuple[np.ndarray, str]] = {}
-    plates = []
-    axes = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
-    for number, (force, centre, corners) in enumerate(
-        zip(recording.force, recording.centre, recording.corners, strict=True), start=1
-    ):
-        in_plate = force @ axes.T
-        moment = np.cross((centre - corners.mean(axis=0)) @ axes.T, in_plate)
-        names = [f"{letter}{number}" for letter in ("Fx", "Fy", "Fz", "Mx", "My", "Mz")]
-        for i in range(3):
-            analog[names[i]] = (in_plate[:, i], "N")
-            analog[names[3 + i]] = (1e3 * moment[:, i], "Nmm")
-        written = corners[[0, 1, 3, 2]] if crossed else corners
-        plates.append((written, np.zeros(3), names))
-    return c3d_bytes(recording.markers, MARKER_RATE, analog, RATE, plates, mass=mass)
-
-
-def _corners(begin: float, height: float) -> np.ndarray:
-    low, high = np.array([begin, -0.45]), np.array([begin + 0.6, 0.45])
-    flat = [[high[0], high[1]], [high[0], low[1]], [low[0], low[1]], [low[0], high[1]]]
-    return np.column_stack((flat, np.full(4, height)))
-
-
-def _walking_load(share: np.ndarray) -> np.ndarray:
-    """Vertical force over body weight of a walking step at a share of its stance."""
-    on = (share > 0) & (share < 1)
-    shape = np.exp(-(((share - 0.25) / 0.16) ** 2)) + np.exp(-(((share - 0.75) / 0.16) ** 2))
-    shape += 0.55 * np.exp(-(((share - 0.5) / 0.2) ** 2))
-    edge = np.clip(np.minimum(share / 0.08, (1 - share) / 0.08), 0, 1)
-    return np.where(on, shape * 0.5 * (1 - np.cos(np.pi * edge)), 0.0)
-
-
-def _walking_ratio(share: np.ndarray, rcof: float) -> np.ndarray:
-    """Braking shear over normal force of a walking step."""
-    return rcof * (
-        np.exp(-(((share - 0.17) / 0.11) ** 2)) - 0.9 * np.exp(-(((share - 0.84) / 0.1) ** 2))
-    )
-
-
-def _impact(share: np.ndarray) -> np.ndarray:
-    """Short transient of the heel, so that forces have the frequencies of real ones."""
-    return 0.12 * np.exp(-(((share - 0.03) / 0.006) ** 2))
+    order = (0, 1, 3, 2) if crossed else (0, 1, 2, 3)
+    return walk_c3d(recording, origin=0.0, order=order, mass=mass)
 
 
 def _heel(
     time: np.ndarray, contact: float, stance: float, place: np.ndarray, speed: float
 ) -> np.ndarray:
     """Heel that lands at ``place`` (3,), stands, and swings on at ``speed`` of the body (m/s)."""
-    swing = 4.0 * speed / 1.35
-    pace = raised_cosines(
-        time,
-        [
-            (contact - 0.4, 0.0),
-            (contact - 0.22, swing),
-            (contact + 0.03, 0.02),
-            (contact + 0.65 * stance, 0.02),
-            (contact + stance + 0.05, swing),
-            (contact + stance + 0.42, 0.0),
-        ],
-    )
-    x = np.cumsum(pace) / RATE
-    x += place[0] - x[int(np.searchsorted(time, contact))]
-    lift = contact + 0.5 * stance
-    z = (
-        place[2]
-        + 0.02
-        + raised_cosines(
-            time,
-            [
-                (contact - 0.4, 0.0),
-                (contact - 0.22, 0.12),
-                (contact, 0.0),
-                (lift, 0.0),
-                (lift + 0.28, 0.2),
-                (lift + 0.72, 0.0),
-            ],
-        )
-    )
-    return np.column_stack((x, np.full(len(time), place[1]), z))
+    swing, lift, end = 4.0 * speed / 1.35, contact + 0.5 * stance, contact + stance
+    before, top = contact - 0.4, contact - 0.22
+    still = [(contact + 0.03, 0.02), (contact + 0.65 * stance, 0.02)]
+    speeds = [(before, 0.0), (top, swing), *still, (end + 0.05, swing), (end + 0.42, 0.0)]
+    heights = [(before, 0.0), (top, 0.12), (contact, 0.0), (lift, 0.0)]
+    heights += [(lift + 0.28, 0.2), (lift + 0.72, 0.0)]
+    return heel_path(time, contact, place, speeds, heights)
 
 
 def _steps(
@@ -144,20 +85,27 @@ def _steps(
     stance: float = 0.66,
     pace: float = 0.55,
     speed: float = 1.3,
-    load: Callable[[np.ndarray], np.ndarray] = _walking_load,
+    half_sine: float = 0.0,
     ratio: float = 0.2,
     rise: float = 0.0,
     turn: float = 0.0,
 ) -> Motion:
-    """Right foot on plate 1, then left foot on plate 2, ``rise`` higher; ``turn`` (rad) between."""
+    """Right foot on plate 1, then left foot on plate 2, ``rise`` higher; ``turn`` (rad) between.
+
+    The load over body weight is a half sine of that height; at zero that of walking.
+    """
     forces, centres, heels = [], [], []
     for i, side in enumerate((-1.0, 1.0)):
         contact = 1.2 + pace * i
         share = (time - contact) / stance
         place = np.array([0.15 + 0.62 * i, 0.08 * side, rise * i])
-        normal = weight * (load(share) + _impact(share) * (load(share) > 0))
+        load = half_sine * np.sin(np.pi * np.clip(share, 0, 1)) * ((share > 0) & (share < 1))
+        load = load if half_sine else stance_load(share)
+        # A short transient of the heel, so that forces have the frequencies of real ones.
+        impact = 0.12 * np.exp(-(((share - 0.03) / 0.006) ** 2))
+        normal = weight * (load + impact * (load > 0))
         angle = turn * np.clip((share - 0.2) / 0.6, 0, 1)
-        push = _walking_ratio(share, ratio) * normal
+        push = ratio * stance_ratio(share) * normal
         forces.append(
             np.column_stack((-push * np.cos(angle), -push * np.sin(angle) + 0.05 * push, normal))
         )
@@ -193,43 +141,6 @@ def _standing_feet(time: np.ndarray, vertical: np.ndarray, height: np.ndarray) -
     return forces, centres, heels, body, (0.0, 0.0)
 
 
-def _standing(time: np.ndarray, weight: float) -> Motion:
-    return _standing_feet(time, np.full(len(time), weight), np.zeros(len(time)))
-
-
-def _jump(time: np.ndarray, weight: float) -> Motion:
-    """Countermovement jump: standing, unweighting, push-off, flight, landing, standing."""
-    knots = [(0.0, 1.0), (1.0, 1.0), (1.25, 0.4), (1.55, 2.3), (1.7, 0.0), (2.1, 0.0)]
-    knots += [(2.15, 3.6), (2.4, 0.8), (2.6, 1.05), (2.8, 1.0)]
-    height = raised_cosines(time, [(1.0, 0.0), (1.4, -0.25), (1.7, 0.0), (1.9, 0.3), (2.1, 0.0)])
-    return _standing_feet(time, weight * raised_cosines(time, knots), height)
-
-
-def _drop_jump(time: np.ndarray, weight: float) -> Motion:
-    """Drop from a box behind the plates, rebound after 0.4 s, landing and standing."""
-    knots = [(0.0, 0.0), (0.99, 0.0), (1.05, 3.7), (1.2, 2.2), (1.4, 0.0), (1.85, 0.0)]
-    knots += [(1.9, 3.4), (2.2, 0.9), (2.4, 1.0), (4.0, 1.0)]
-    drop = [(0.6, 0.3), (1.0, 0.0), (1.2, -0.2), (1.4, 0.0), (1.62, 0.25), (1.85, 0.0)]
-    height = raised_cosines(time, [*drop, (2.1, -0.15), (2.4, 0.0)])
-    return _standing_feet(time, weight * raised_cosines(time, knots), height)
-
-
-def _half_sine(peak: float) -> Callable[[np.ndarray], np.ndarray]:
-    return lambda share: np.where(
-        (share > 0) & (share < 1), peak * np.sin(np.pi * np.clip(share, 0, 1)), 0.0
-    )
-
-
-def _running(time: np.ndarray, weight: float) -> Motion:
-    return _steps(time, weight, stance=0.25, pace=0.36, speed=3.2, load=_half_sine(2.5), ratio=0.25)
-
-
-def _jogging(time: np.ndarray, weight: float) -> Motion:
-    return _steps(
-        time, weight, stance=0.38, pace=0.42, speed=2.3, load=_half_sine(1.75), ratio=0.22
-    )
-
-
 ACTIVITIES: Mapping[str, str] = {
     "walk": "level walking, a step on each plate",
     "standing": "quiet standing",
@@ -241,14 +152,27 @@ ACTIVITIES: Mapping[str, str] = {
     "stairs_down": "two stairs downward",
     "turn": "a walk that turns by 90 deg in a step",
 }
-_ACTIVITIES: Mapping[str, Callable[[np.ndarray, float], Motion]] = {
-    "walk": _steps,
-    "standing": _standing,
-    "jump": _jump,
-    "drop_jump": _drop_jump,
-    "running": _running,
-    "jogging": _jogging,
-    "stairs_up": lambda time, weight: _steps(time, weight, rise=0.17, speed=0.6),
-    "stairs_down": lambda time, weight: _steps(time, weight, rise=-0.17, speed=0.6),
-    "turn": lambda time, weight: _steps(time, weight, turn=np.radians(90.0)),
+_STEPS: Mapping[str, Mapping[str, float]] = {
+    "walk": {},
+    "running": {"stance": 0.25, "pace": 0.36, "speed": 3.2, "half_sine": 2.5, "ratio": 0.25},
+    "jogging": {"stance": 0.38, "pace": 0.42, "speed": 2.3, "half_sine": 1.75, "ratio": 0.22},
+    "stairs_up": {"rise": 0.17, "speed": 0.6},
+    "stairs_down": {"rise": -0.17, "speed": 0.6},
+    "turn": {"turn": np.radians(90.0)},
 }
+# (s, load over body weight) and (s, height of the body in m) of both feet side by side: a jump is
+# standing, unweighting, push-off, flight, landing; a drop jump comes from a box behind the plates.
+_STANDING: Mapping[str, tuple[list[tuple[float, float]], list[tuple[float, float]]]] = {
+    "standing": ([(0.0, 1.0)], [(0.0, 0.0)]),
+    "jump": (
+        [(0.0, 1.0), (1.0, 1.0), (1.25, 0.4), (1.55, 2.3), (1.7, 0.0), (2.1, 0.0), (2.15, 3.6),
+         (2.4, 0.8), (2.6, 1.05), (2.8, 1.0)],
+        [(1.0, 0.0), (1.4, -0.25), (1.7, 0.0), (1.9, 0.3), (2.1, 0.0)],
+    ),
+    "drop_jump": (
+        [(0.0, 0.0), (0.99, 0.0), (1.05, 3.7), (1.2, 2.2), (1.4, 0.0), (1.85, 0.0), (1.9, 3.4),
+         (2.2, 0.9), (2.4, 1.0), (4.0, 1.0)],
+        [(0.6, 0.3), (1.0, 0.0), (1.2, -0.2), (1.4, 0.0), (1.62, 0.25), (1.85, 0.0), (2.1, -0.15),
+         (2.4, 0.0)],
+    ),
+}  # fmt: skip
