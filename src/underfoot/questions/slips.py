@@ -65,7 +65,6 @@ class SlipPopulation(Presentable):
         return self.study.setting.viscosity is not None
 
     def headline(self) -> tuple[str, ...]:
-        """Return the share of walkers that slip with its interval, and their speed."""
         study = self.study
         count = len(study.subjects)
         if count == 1:
@@ -86,7 +85,6 @@ class SlipPopulation(Presentable):
         )
 
     def cautions(self) -> tuple[str, ...]:
-        """Return what keeps the numbers from being those of real people."""
         study = self.study
         reasons = [
             "Drive is that of dry walking and walkers do not react: speeds and distances of long "
@@ -111,7 +109,6 @@ class SlipPopulation(Presentable):
         return tuple(reasons)
 
     def table(self) -> Table:
-        """Return outcomes, speeds, distances and pressures of the population."""
         study = self.study
         single = len(study.subjects) < 2
         rows = []
@@ -153,7 +150,6 @@ class SlipPopulation(Presentable):
         return Table("Population", ("Quantity", "Value", "Remark"), rows)
 
     def remarks(self) -> dict[str, Sequence[str]]:
-        """Return assumptions of people, model and friction, and the tested ranges left."""
         study = self.study
         people = study.population
         model = "full model for every walker" if study.full else "reduced model fitted to full runs"
@@ -174,7 +170,6 @@ class SlipPopulation(Presentable):
         }
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the answer in SI; what is missing is None."""
         study = self.study
 
         def finite(value: float) -> float | None:
@@ -194,7 +189,6 @@ class SlipPopulation(Presentable):
         }
 
     def data_tables(self) -> dict[str, Table]:
-        """Return one row a walker, and the shown slip against time."""
         heads = (
             "subject history mass_kg rcof walking_speed_m_per_s heel_speed_m_per_s shoe_angle_deg "
             "landing_mm lateral_mm peak_slipping_speed_m_per_s slip_start_s distance_m outcome "
