@@ -78,7 +78,7 @@ def stribeck(
 def _write(curves: list[StribeckCurve], folder: Path, title: str) -> None:
     import pandas
 
-    from underfoot.report.stribeck_figure import stribeck_figure
+    from underfoot.report.study_figures import stribeck_figure
 
     stribeck_figure(curves, title).savefig(folder / "stribeck.png", dpi=150)
     rows = pandas.DataFrame([row for curve in curves for row in curve.rows()])

@@ -1,7 +1,5 @@
 """On-disk cache of arrays, keyed by the content of what they were computed from."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os
