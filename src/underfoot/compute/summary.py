@@ -35,6 +35,7 @@ LABELS = {
     "cof_spread_from": "Uncertainty of the COF",
     "grid_error": "Discretisation error",
     "edge_peak": "Caution on pressures",
+    "sensor": "Caution on the sensor",
     "objects": "Computed with an object in place of the case's option",
 }
 DECISIVE = ("interface", "shoe.heel", "shoe.tread", "shoe.sole", "motion")
