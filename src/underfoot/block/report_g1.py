@@ -4,8 +4,6 @@ Left open by the report and assumed here: density, phase of the patterns, number
 26 instead of 25.6 elements, hourglass control.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TypeVar
@@ -13,7 +11,7 @@ from typing import TypeVar
 from underfoot.core import unknown_name
 from underfoot.core.checks import choice
 from underfoot.material import report_elastomer, shear_from_young
-from underfoot.material.report_rubber import POISSON_RATIO
+from underfoot.material.few_terms import POISSON_RATIO
 from underfoot.material.spectrum import RelaxationSpectrum
 
 from .inputs import MicroBlock, MicroLoading, MicroMaterial, MicroSurface

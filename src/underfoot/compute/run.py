@@ -23,7 +23,15 @@ from underfoot.core import (
     unknown_name,
 )
 
-from .contact import Recorder, edged_law, history_fields, refuse_too_large, scanned, solved_motion
+from .contact import (
+    Recorder,
+    blind_sensor,
+    edged_law,
+    history_fields,
+    refuse_too_large,
+    scanned,
+    solved_motion,
+)
 from .numbers import (
     FILM_ERROR,
     SUCTION_SPREAD,
@@ -140,7 +148,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         sampled=sampled,
         source=f"{law.name} law: {law.source}",
     )
-    sensor = scanned(case, sole, contact)
+    sensor = scanned(case, sole, contact, viscosity=viscosity)
     numbers, risk, labels = undetermined(case, contact.status), None, {}
     if contact.status.usable:
         numbers, risk = scalars(case, contact, friction, sensor, sampled, slip)
@@ -152,6 +160,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             labels["cof_spread_basis"] = basis
         if remark := peak_pressure(sole, contact.total_pressure).remark:
             labels["edge_peak"] = remark
+        if remark := blind_sensor(case, sensor, contact):
+            labels["sensor"] = remark
         coarse_spacing = case.numerics.quick_grid_spacing
         if case.numerics.grid_check and not quick and coarse_spacing > spacing:
             if "compliance" in own:
@@ -170,7 +180,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
                 progress=progress,
             )
             if coarse.status.usable:
-                there = readings(coarse, scanned(case, coarse_sole, coarse))
+                there = readings(coarse, scanned(case, coarse_sole, coarse, viscosity=viscosity))
                 errors = grid_errors(readings(contact, sensor), there, coarse_spacing / spacing)
                 numbers = with_grid_errors(numbers, errors)
                 labels["grid_error"] = grid_words(numbers, errors, spacing, coarse_spacing)

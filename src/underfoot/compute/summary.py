@@ -36,6 +36,7 @@ LABELS = {
     "grid_error": "Discretisation error",
     "edge_peak": "Caution on pressures",
     "lug_edges": "Edges of the lugs",
+    "sensor": "Caution on the sensor",
     "objects": "Computed with an object in place of the case's option",
 }
 DECISIVE = ("interface", "shoe.heel", "shoe.tread", "shoe.sole", "motion")

@@ -1,11 +1,8 @@
 """On-disk cache of arrays, keyed by the content of what they were computed from."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os
-import tempfile
 from collections.abc import Mapping
 from dataclasses import asdict, is_dataclass
 from pathlib import Path
@@ -13,6 +10,8 @@ from typing import Any
 from zipfile import BadZipFile
 
 import numpy as np
+
+from .files import whole_file
 
 
 def content_hash(*parts: Any) -> str:
@@ -29,19 +28,13 @@ def content_hash(*parts: Any) -> str:
 class Cache:
     """Arrays stored under a content key; a damaged or missing entry is simply computed again.
 
-    Parameters
-    ----------
-    room
-        Name of the part of the program that owns the entries; raise its version suffix
-        (``"contact_table-2"``) when the numbers behind a key change.
-    folder
-        Where entries lie; by default ``UNDERFOOT_CACHE`` or the user's cache folder.
+    ``room`` names the part of the program that owns the entries; raise its version suffix
+    (``"contact_table-2"``) when the numbers behind a key change. Entries lie in ``folder``, by
+    default that of ``default_folder()``.
     """
 
     def __init__(self, room: str, folder: Path | None = None) -> None:
-        if folder is None:
-            folder = default_folder()
-        self.folder = Path(folder) / room
+        self.folder = Path(folder or default_folder()) / room
 
     def load(self, key: str) -> dict[str, np.ndarray] | None:
         """Return the arrays stored under ``key``, or None."""
@@ -57,22 +50,14 @@ class Cache:
 
     def store(self, key: str, arrays: Mapping[str, Any]) -> None:
         """Store arrays under ``key``; readers never see a half-written entry."""
-        self.folder.mkdir(parents=True, exist_ok=True)
         plain: dict[str, Any] = {key: np.asarray(value) for key, value in arrays.items()}
-        handle, name = tempfile.mkstemp(dir=self.folder, suffix=".part")
-        try:
-            with os.fdopen(handle, "wb") as stream:
-                np.savez_compressed(stream, **plain)
-            os.replace(name, self.folder / f"{key}.npz")
-        except BaseException:
-            Path(name).unlink(missing_ok=True)
-            raise
+        with whole_file(self.folder / f"{key}.npz") as part, part.open("wb") as stream:
+            np.savez_compressed(stream, **plain)
 
 
 def default_folder() -> Path:
     """Return the cache folder: ``UNDERFOOT_CACHE`` if set, else the user's cache folder."""
-    chosen = os.environ.get("UNDERFOOT_CACHE")
-    if chosen:
+    if chosen := os.environ.get("UNDERFOOT_CACHE"):
         return Path(chosen)
     from platformdirs import user_cache_path
 

@@ -1,7 +1,5 @@
 """Units at the door: text with a unit becomes an SI float; SI floats become readable text."""
 
-from __future__ import annotations
-
 import math
 import re
 from decimal import Decimal
@@ -26,6 +24,7 @@ _EXAMPLES = {
     "kg": "70 kg",
     "kg/m^3": "1100 kg/m^3",
     "m^2": "10 mm^2",
+    "m^3/Pa": "0.3 mm^3/MPa",
     "1/m": "4 1/mm",
     "1": "0.5",
 }
@@ -40,15 +39,11 @@ _SCALES = {
 }
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
 _ALIASES = {"%": "percent", "deg C": "degC", "mPa s": "mPa*s", "mPas": "mPa*s", "Pa s": "Pa*s"}
-_KNOWN = tuple(
-    (
-        "m mm um nm cm inch N kN mN kgf lbf Pa kPa MPa GPa psi bar cP mPa*s Pa*s P m/s mm/s cm/s "
-        "s ms us min rad deg degC degF K kg g Hz kHz rad/s mm^2 cm^2 m^2 1/s 1/mm kg/m^3 g/cm^3 "
-        "percent"
-    ).split()
-)
-
-
+_KNOWN = (
+    "m mm um nm cm inch N kN mN kgf lbf Pa kPa MPa GPa psi bar cP mPa*s Pa*s P m/s mm/s cm/s "
+    "s ms us min rad deg degC degF K kg g Hz kHz rad/s mm^2 cm^2 m^2 1/s 1/mm kg/m^3 g/cm^3 "
+    "percent"
+).split()
 # Powers of ten of the units people write most: a unit library takes a second to start, and moving
 # the decimal point is exact.
 _POWERS: dict[str, dict[str, int]] = {
@@ -81,10 +76,9 @@ def to_si(given: object, unit: str, *, where: str) -> float:
     Plain numbers are accepted only where ``unit`` is ``"1"`` (dimensionless): elsewhere a number
     without a unit is refused, because guessing it would change results silently.
 
-    Errors
-    ------
-    InputError
-        Unit missing, unknown or of another dimension; text that is no number; not finite.
+    Errors:
+        InputError: Unit missing, unknown or of another dimension; text that is no number; not
+            finite.
     """
     example = _EXAMPLES.get(unit, f"1 {unit}")
     if isinstance(given, bool):
@@ -129,10 +123,14 @@ def display(value: float, unit: str, digits: int = 3) -> str:
     if not math.isfinite(value):
         return "not a number"
     factor, name = display_unit(value, unit)
-    number = f"{value / factor:.{digits}g}"
-    if "e" in number and 1e-3 <= abs(value / factor) < 1e6:
-        number = f"{value / factor:.0f}"
+    number = number_text(value / factor, digits)
     return number if name == "1" else f"{number} {name}"
+
+
+def number_text(value: float, digits: int) -> str:
+    """Return a number with significant digits, without an exponent where people write none."""
+    text = f"{value:.{digits}g}"
+    return f"{value:.0f}" if "e" in text and 1e-3 <= abs(value) < 1e6 else text
 
 
 def display_unit(value: float, unit: str) -> tuple[float, str]:
@@ -151,10 +149,8 @@ def display_unit(value: float, unit: str) -> tuple[float, str]:
 def si_unit(given: str, *, where: str) -> str:
     """Return the SI unit (as used by ``to_si``) that fits a text such as ``"219 cP"``.
 
-    Errors
-    ------
-    InputError
-        No number, or a unit that fits none of the units in use.
+    Errors:
+        InputError: No number, or a unit that fits none of the units in use.
     """
     match = _NUMBER.match(_plain(given))
     if match is None:

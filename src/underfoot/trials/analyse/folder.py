@@ -114,16 +114,18 @@ def analyse_folder(
         (one.name, one.paths, one.conditions, edits.get(one.name, []), read, protocol, base, store)
         for one in study_files.recordings
     ]
-    # A process takes longer to start than a file.
-    count = (processes or available_processors()) if len(jobs) >= 4 else 1
-    answers = in_processes(
-        _job, jobs, count, progress=progress, stage="analysing files", died=_died
-    )
-    results = (one for _, part in answers for one in part)
-    files = tuple(sorted(results, key=lambda one: one.file))
+    results = _run(jobs, processes or available_processors(), progress)
+    files = tuple(sorted((one for part in results for one in part), key=lambda one: one.file))
     study = study_of(files, protocol)
     methods = tuple(methods_paragraphs(files, protocol, study, version()))
     return FolderAnalysis(protocol, files, study, methods, study_files.notes)
+
+
+def _run(jobs: list[tuple[Any, ...]], processes: int, progress: Progress) -> list[list[FileResult]]:
+    count = processes if len(jobs) >= 4 else 1  # a process takes longer to start than a file
+    stage = "analysing files"
+    answers = in_processes(_job, jobs, count, progress=progress, stage=stage, died=_died)
+    return [results for _, results in answers]
 
 
 def _died(job: tuple[Any, ...]) -> list[FileResult]:
@@ -219,14 +221,10 @@ def _check_whole_edits(edits: list[Edit], trials: int, protocol: Protocol) -> No
     """Where a file holds runs and no steps, an edit can only exclude a run by its number."""
     for i, edit in enumerate(edits):
         if edit.what != "exclude":
-            raise EditError(
-                f"the protocol {protocol.name} has no steps: {edit.what} changes nothing",
-                where=edit.where,
-                allowed="exclude",
-            )
+            text = f"the protocol {protocol.name} has no steps: {edit.what} changes nothing"
+            raise EditError(text, where=edit.where, allowed="exclude")
         if edit.step not in range(1, trials + 1):
-            raise EditError(
-                f"there is no {edit.step_words}", where=edit.where, allowed=f"1 to {trials}"
-            )
+            text = f"there is no {edit.step_words}"
+            raise EditError(text, where=edit.where, allowed=f"1 to {trials}")
         if any(edit.step == other.step for other in edits[:i]):
             raise EditError(f"{edit.step_words} is excluded twice", where=edit.where)
