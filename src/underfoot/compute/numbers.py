@@ -31,6 +31,7 @@ _INPUTS = {
     "roughness_factor": "roughness",
     "shear_strength": "shear strength",
     "model": "the law itself",
+    "tread_position": "position of the tread",
 }
 GRID_ORDER = 1.0
 """Order of convergence: steps and rims of the film are first order on square cells."""
@@ -113,12 +114,12 @@ def undetermined(case: Case, status: Status) -> dict[str, SourcedValue]:
     return {**found, "normal_force": case.sourced("motion.normal_force")}
 
 
-def regime(contact: SoleContact) -> dict[str, str]:
+def regime(share: float) -> dict[str, str]:
     """Return the lubrication regime by the share of the load that the fluid carries."""
     from underfoot.film import SHARE_LIMITS, lubrication_by_load_share
 
     low, high = SHARE_LIMITS
-    name = lubrication_by_load_share(min(max(contact.fluid_load / contact.normal_force, 0.0), 1.0))
+    name = lubrication_by_load_share(min(max(share, 0.0), 1.0))
     return {
         "regime": str(name) if name == "full film" else f"{name} lubrication",
         "regime_rule": f"by load share: below {100 * low:g} % boundary, "
@@ -135,7 +136,8 @@ def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
     if sampled.left_out:
         names = ", ".join(_INPUTS.get(name, name) for name in sampled.left_out)
         parts.append(f"taken as exact: {names}")
-    drawn = f"{sampled.cof.size} draws, seed {sampled.seed}; contact and film as computed"
+    held = "at each position of the tread" if "tread_position" in sampled.share else "as computed"
+    drawn = f"{sampled.cof.size} draws, seed {sampled.seed}; contact and film {held}"
     return {"cof_spread_from": ", ".join(parts), "cof_spread_how": drawn}
 
 

@@ -16,6 +16,7 @@ GAIN_MATTERS = 1.1
 """Ratio of the COF without the film to the present one above which drainage is worth naming."""
 QUANTITIES: Mapping[str, tuple[str, str]] = {
     "cof": ("Coefficient of friction", ""),
+    "cof_tread_position": ("  spread over tread positions", ""),
     "cof_adhesion": ("  from adhesion", ""),
     "cof_hysteresis": ("  from hysteresis", ""),
     "cof_viscous": ("  from shearing the fluid", ""),
@@ -33,6 +34,7 @@ QUANTITIES: Mapping[str, tuple[str, str]] = {
 """Label and remark of each quantity, in the order of the summary; parts are indented."""
 LABELS = {
     "cof_spread_from": "Uncertainty of the COF",
+    "tread_position": "Tread position",
     "grid_error": "Discretisation error",
     "edge_peak": "Caution on pressures",
     "objects": "Computed with an object in place of the case's option",
