@@ -29,7 +29,8 @@ def test_both_tables_begin_with_the_same_numbers():
 @pytest.mark.slow
 @pytest.mark.parametrize("name", UNMOVED)
 def test_an_example_gives_what_it_gave(name):
-    scalars = run(Case.load(ROOT / "examples" / f"{name}.toml")).scalars
+    case = Case.load(ROOT / "examples" / f"{name}.toml")
+    scalars = run(case.replace("numerics.tread_positions", 1)).scalars
     assert set(scalars) == set(BEFORE[name])
     for key, (_, value) in FILM[name].items():
         assert scalars[key].value == pytest.approx(value, rel=1e-6, abs=1e-9), key

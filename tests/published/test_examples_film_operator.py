@@ -25,7 +25,8 @@ def test_following_the_liquid_makes_no_load(name):
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_examples_give_the_stored_values(name):
     """To the solver's tolerance, which one factorization and another share."""
-    result = run(Case.load(ROOT / f"examples/{name}.toml"))
+    case = Case.load(ROOT / f"examples/{name}.toml")
+    result = run(case.replace("numerics.tread_positions", 1))
     after = {scalar: pair[1] for scalar, pair in EXAMPLES[name].items()}
     for scalar, (allowed, relative) in {
         "cof": (1e-4, 1e-3),

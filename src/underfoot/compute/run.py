@@ -131,7 +131,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
     )
     sensor = scanned(case, sole, contact)
 
-    def solved_quick(place: Place, progress: Progress) -> tuple[SoleMap, SoleContact]:
+    def solved_quick(case: Case, place: Place, progress: Progress) -> tuple[SoleMap, SoleContact]:
         there = sole_map(case, case.numerics.quick_grid_spacing, shift=place.shift, turn=place.turn)
         body = case.compliance.build(turned(context, place.turn), there)
         return there, solved_motion(
@@ -167,7 +167,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
                     remedy="Set numerics.grid_check = false",
                 )
             coarse_sole, coarse = (positions and positions.coarse) or solved_quick(
-                Place(), progress
+                case, Place(), progress
             )
             if coarse.status.usable:
                 there = readings(coarse, scanned(case, coarse_sole, coarse))
