@@ -28,7 +28,7 @@ html_static_path = ["_static"]
 html_css_files = ["pages.css"]
 templates_path: list[str] = []
 
-napoleon_google_docstring = False
+napoleon_google_docstring = True
 napoleon_custom_sections = [("Errors", "Raises"), "Source"]
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"

@@ -102,7 +102,7 @@ def test_more_friction_never_adds_risk(a, more, mean, sd, name):
 def test_risk_carries_its_band():
     found = slip_risk(acof(0.15, 0.02))
     model, people = ReportG6(), ADULTS_LEVEL_WALKING
-    assert found.probability.value == pytest.approx(model.population(0.15, people.mean, people.sd))
+    assert found.at_best_estimate == pytest.approx(model.population(0.15, people.mean, people.sd))
     assert found.low == pytest.approx(
         model.population(0.15 + 1.95996 * 0.02, people.mean, people.sd), rel=1e-5
     )
@@ -112,7 +112,7 @@ def test_risk_carries_its_band():
     assert found.low < found.probability.value < found.high
     rng = np.random.default_rng(11)
     sampled = model.population(np.maximum(rng.normal(0.15, 0.02, 5000), 0), people.mean, people.sd)
-    assert found.expected == pytest.approx(sampled.mean(), abs=0.006)
+    assert found.probability.value == pytest.approx(sampled.mean(), abs=0.006)
     assert found.probability.uncertainty == pytest.approx(sampled.std(), abs=0.006)
     assert found.probability.assumed
     assert any("Required friction 0.2" in text for text in found.assumptions)
@@ -129,7 +129,7 @@ def test_risk_without_uncertainty_has_no_band():
 def test_chang_with_uncertain_acof_adds_the_variances():
     """P = Phi((mean R - mean A) / sqrt(s_R^2 + s_A^2)) is the mean over the uncertain ACOF."""
     found = slip_risk(acof(0.24, 0.04), rcof=RcofPopulation(0.2, 0.03), model=Chang2004())
-    assert found.expected == pytest.approx(norm.cdf(-0.04 / 0.05), abs=1e-6)
+    assert found.probability.value == pytest.approx(norm.cdf(-0.04 / 0.05), abs=1e-6)
 
 
 @pytest.mark.parametrize(

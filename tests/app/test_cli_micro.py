@@ -5,6 +5,7 @@ import json
 import pytest
 from typer.testing import CliRunner
 
+from underfoot.block import MicroBlock
 from underfoot.cli.app import app
 from underfoot.cli.micro_input import TEMPLATE, micro_case
 from underfoot.core import silent
@@ -69,6 +70,11 @@ def test_the_template_is_a_case_with_the_defaults(run, tmp_path):
     assert written.loading == default.loading
     assert written.speeds == default.speeds
     assert written.material.bulk_modulus == default.material.bulk_modulus
+    assert written.block.size == MicroBlock().size
+    assert written.block.elements == MicroBlock().elements
+    path.write_text('[block.roughness]\npeak_to_valley = "10 um"\n', encoding="utf-8")
+    partly = micro_case(path).block.roughness
+    assert (partly.peak_to_valley, partly.wavelength) == (10e-6, 0.5e-3)
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,16 @@ def called(*words):
 def test_one_table_and_one_figure_for_several_fluids(tmp_path):
     out = tmp_path / "st"
     found = called(
-        "stribeck", CASE, "--fluid", "measured", "--fluid", "glycerol_90pct", "--out", str(out)
+        "stribeck",
+        CASE,
+        "--law",
+        "stribeck",
+        "--fluid",
+        "measured",
+        "--fluid",
+        "glycerol_90pct",
+        "--out",
+        str(out),
     )
     assert found.exit_code == 0, found.output
     assert (out / "stribeck.png").stat().st_size > 2e4

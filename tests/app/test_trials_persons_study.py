@@ -11,7 +11,7 @@ import pytest
 
 from underfoot.trials.analyse import analyse_folder
 from underfoot.trials.protocols import protocol
-from underfoot.trials.simulate.study import NAMES, SHOES, simulated_study
+from underfoot.trials.simulate.folder import NAMES, SHOES, simulated_study
 
 
 def findings(analysis):

@@ -201,7 +201,7 @@ def main(page: str, *, mend: bool) -> None:
             used = sum(os.times()[:4]) - sum(start[:4])
             print(f"--- line {block.line}, {used:.1f} s of processor\n{block.text}")
             print(f">>>\n{printed}", flush=True)
-            if block.shown is not None:
+            if block.shown:
                 text = text.replace(block.shown, mended(block.shown, printed))
     if mend:
         source.write_text(text)

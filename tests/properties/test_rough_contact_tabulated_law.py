@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.interpolate import PchipInterpolator
 
 from underfoot.core import InputError, Range
 from underfoot.rough_contact import ExponentialLaw, PressureGapLaw
-from underfoot.rough_contact._kernels.monotone import interpolated, interpolated_grid, pchip_slopes
+from underfoot.rough_contact._kernels.monotone import interpolated_grid
 from underfoot.rough_contact.pressure_gap_law import TabulatedLaw
 
 GAP = np.array([1e-6, 2e-6, 3.5e-6, 6e-6, 9e-6])
@@ -94,19 +93,6 @@ def test_ranges_are_reported():
 def test_bad_nodes_are_refused(gap, flow):
     with pytest.raises(InputError):
         law(flow=flow, gap=gap)
-
-
-@settings(max_examples=30, deadline=None)
-@given(seed=st.integers(0, 100_000), count=st.integers(3, 12))
-def test_slopes_are_those_of_scipy(seed, count):
-    rng = np.random.default_rng(seed)
-    x = np.cumsum(rng.uniform(0.1, 1, count))
-    y = rng.standard_normal(count)
-    at = np.linspace(x[0], x[-1], 101)
-    value, slope = interpolated(x, y, pchip_slopes(x, y), at)
-    peer = PchipInterpolator(x, y)
-    np.testing.assert_allclose(value, peer(at), atol=1e-12)
-    np.testing.assert_allclose(slope, peer(at, 1), atol=1e-10)
 
 
 def test_grid_interpolation_is_exact_at_nodes_and_for_planes():

@@ -11,9 +11,8 @@ from underfoot.core import InputError
 from underfoot.material import power_law_spectrum
 from underfoot.rough_contact import PressureGapLaw, steady_sliding
 from underfoot.rough_contact.greenwood_williamson_1966 import greenwood_williamson
-from underfoot.rough_contact.persson import persson
+from underfoot.rough_contact.persson import persson, yang_persson_decay_length
 from underfoot.rough_contact.pressure_gap_law import persson_law
-from underfoot.rough_contact.yang_persson_2008 import yang_persson_decay_length
 from underfoot.surface import isotropic_spectrum, self_affine, spectral_moments
 
 YOUNG, NU = 2e6, 0.5

@@ -49,7 +49,7 @@ def test_every_value_knows_where_it_comes_from(case):
     speed = case.sourced("motion.speed")
     assert (speed.uncertainty, speed.source) == (0.005, "encoder")
     assert case.sourced("shoe.heel.facet_angle").assumed
-    oil = case.replace("contaminant", "canola_oil")
+    oil = case.replace({"contaminant": "canola_oil", "friction": "stribeck"})
     assert oil.sourced("contaminant.boundary.cof_bl").uncertainty == 0.02
     assert case.sourced("shoe.material.modulus").value is None
     assert case.entries["shoe"] == "work_shoe_half_tread"

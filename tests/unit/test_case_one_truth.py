@@ -97,7 +97,7 @@ def test_a_changed_case_computes_what_it_says(thick):
     results = [run(case, quick=True) for case in (changed, written)]
     for result in results:
         assert result.provenance.case_hash == changed.hash != base.provenance.case_hash
-        assert result.value("cof") > 5 * base.value("cof")
+        assert result.value("cof") > 2 * base.value("cof")
         table = tomllib.loads(result.case_text)
         assert Case.from_mapping({k: v for k, v in table.items() if k != "file_version"}) == changed
     assert results[0].value("cof") == results[1].value("cof")
@@ -142,7 +142,7 @@ def test_a_slot_takes_the_name_of_an_option_in_text_too():
 
 
 def test_the_source_of_a_value_does_not_outlive_the_value():
-    case = Case(**{**PARTS, "contaminant": "canola_oil"})
+    case = Case(**{**PARTS, "contaminant": "canola_oil"}, friction="stribeck")
     assert case.sourced("friction.cof_bl").uncertainty == 0.02
     own = case.friction.model_copy(update={"cof_bl": 0.3})
     changed = case.replace("friction", own)
@@ -154,10 +154,11 @@ def test_the_source_of_a_value_does_not_outlive_the_value():
 
 
 def test_what_was_measured_with_a_fluid_goes_with_the_fluid(thick):
-    oil = thick.replace("contaminant", "canola_oil")
+    measured = thick.replace("friction", "stribeck")
+    oil = measured.replace("contaminant", "canola_oil")
     assert oil.value("friction.cof_bl") is not None
     parts = {**sections(oil), "contaminant": "detergent"}
-    assert Case(**parts) == thick.replace("contaminant", "detergent")
+    assert Case(**parts) == measured.replace("contaminant", "detergent")
     assert Case(**parts).value("friction.tau_hydro") is not None
 
 

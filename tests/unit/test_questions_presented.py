@@ -59,7 +59,10 @@ def test_the_headline_has_the_number_first_and_marks_what_is_extrapolated():
     note = "extrapolated: ACOF - RCOF = -0.2 is outside the tested -0.1 to 0.1"
     made = outcome(fluid=250.0, note=note)
     first, second, third = summary.headline(made.status, made.scalars, {"regime": "mixed"})
-    assert first == "Available COF 0.100 ± 0.020 (spread of the friction law alone)."
+    assert (
+        first
+        == "Available COF 0.100 ± 0.020, one standard deviation of friction law and film load."
+    )
     assert "50 % of the load (mixed)" in second
     assert third == "Slip probability 60 % ± 10 %, extrapolated."
     breaches = ("report_g6: x", "stribeck: pressure 3", "stribeck: speed 4")
@@ -206,7 +209,7 @@ def test_old_option_names_answer_with_a_note(capsys):
     import typer
     from typer.testing import CliRunner
 
-    from underfoot.cli.renamed import Command
+    from underfoot.cli.app import Command
 
     app, seen = typer.Typer(), SimpleNamespace(target=None)
 

@@ -188,12 +188,35 @@ def test_three_results_are_ranked_and_beyond_their_bands_or_not(worn_shoe_result
     assert figures(none) == {}
 
 
+def test_shared_draws_decide_an_order(worn_shoe_result):
+    def result(name, factor):
+        provenance = dataclasses.replace(worn_shoe_result.provenance, case_hash=name)
+        draws = worn_shoe_result.fields["cof_draws"]
+        value = factor * worn_shoe_result.value("cof")
+        return dataclasses.replace(
+            worn_shoe_result,
+            name=name,
+            scalars={**worn_shoe_result.scalars, **cof(value, 0.4 * value)},
+            provenance=provenance,
+            fields=worn_shoe_result.fields.assign(cof_draws=draws * factor),
+        )
+
+    higher = compare(result("a", 1.0), result("b", 1.1)).ranking[0]
+    assert (higher.name, higher.better_than_next) == ("b", 1.0)
+    equal = compare(result("a", 1.0), result("b", 1.0)).ranking[0]
+    assert equal.better_than_next == 0.5
+
+
 def test_an_order_is_stated_from_three_quarters_on(worn_shoe_result):
     def result(name, value):
         provenance = dataclasses.replace(worn_shoe_result.provenance, case_hash=name)
         scalars = {**worn_shoe_result.scalars, **cof(value, 0.02)}
         return dataclasses.replace(
-            worn_shoe_result, name=name, scalars=scalars, provenance=provenance
+            worn_shoe_result,
+            name=name,
+            scalars=scalars,
+            provenance=provenance,
+            fields=worn_shoe_result.fields.drop_vars("cof_draws"),
         )
 
     # Phi(d / (0.02 sqrt 2)) = 0.75 at d = 0.0191

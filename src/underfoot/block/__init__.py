@@ -1,39 +1,23 @@
 """The report's rubber block on a rough floor (G.1) by explicit or condensed finite elements."""
 
-from .assembly import ExplicitSettings
-from .compliance import CondensedBlock, condensed_block, pressed_block
-from .condensed import (
-    condensed_poisson_ratio,
-    condensed_sliding,
-    edge_corrected_contact_area,
-    nodal_contact_area,
-    pressure_ratio_of,
-)
-from .explicit import explicit_sliding
-from .inputs import MicroBlock, MicroLoading, MicroMaterial, MicroSurface
-from .report_g1 import report_block, report_floor, report_loading, report_material
-from .result import EnergyLedger, MicroAverages, MicroResult
-
-__all__ = [
-    "CondensedBlock",
-    "EnergyLedger",
-    "ExplicitSettings",
-    "MicroAverages",
-    "MicroBlock",
-    "MicroLoading",
-    "MicroMaterial",
-    "MicroResult",
-    "MicroSurface",
-    "condensed_block",
-    "condensed_poisson_ratio",
-    "condensed_sliding",
-    "edge_corrected_contact_area",
-    "explicit_sliding",
-    "nodal_contact_area",
-    "pressed_block",
-    "pressure_ratio_of",
-    "report_block",
-    "report_floor",
-    "report_loading",
-    "report_material",
-]
+from .assembly import ExplicitSettings as ExplicitSettings
+from .compliance import CondensedBlock as CondensedBlock
+from .compliance import condensed_block as condensed_block
+from .compliance import pressed_block as pressed_block
+from .condensed import condensed_poisson_ratio as condensed_poisson_ratio
+from .condensed import condensed_sliding as condensed_sliding
+from .condensed import edge_corrected_contact_area as edge_corrected_contact_area
+from .condensed import nodal_contact_area as nodal_contact_area
+from .condensed import pressure_ratio_of as pressure_ratio_of
+from .explicit import explicit_sliding as explicit_sliding
+from .inputs import MicroBlock as MicroBlock
+from .inputs import MicroLoading as MicroLoading
+from .inputs import MicroMaterial as MicroMaterial
+from .inputs import MicroSurface as MicroSurface
+from .report_g1 import report_block as report_block
+from .report_g1 import report_floor as report_floor
+from .report_g1 import report_loading as report_loading
+from .report_g1 import report_material as report_material
+from .result import EnergyLedger as EnergyLedger
+from .result import MicroAverages as MicroAverages
+from .result import MicroResult as MicroResult

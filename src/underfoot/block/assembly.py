@@ -28,39 +28,28 @@ LARGEST_MASS_SCALING = 1000.0
 class ExplicitSettings:
     """Settings of ``explicit_sliding``.
 
-    Parameters
-    ----------
-    cfl
-        Time step over the critical one of the undeformed mesh; None: 0.6 (squeezed elements ask for
-        less than 0.7), or 0.4 with a viscous form, which lowers the critical step.
-    time_step
-        s; None takes ``cfl``.
-    hourglass
-        "stiffness" (elastic, from a potential) or "viscous" (Flanagan and Belytschko 1981, what
-        explicit codes do by default: it makes friction of its own).
-    hourglass_coefficient
-        None: 2 (about the stiffness of eight-point integration), or 0.1 for the viscous form.
-    hourglass_modulus
-        Pa; None: G'(omega) at the frequency of the floor's asperities passing.
-    penalty_factor
-        Contact stiffness in units of (K + 4 G / 3) / bottom layer. None: the larger of 0.5 and
-        what sinks by 0.3 % of the roughness under the mean pressure, at most 1.5. A bulk modulus
-        lowered for speed would soften the contact with it.
-    penalty_stiffness
-        Pa/m, in place of ``penalty_factor``.
-    contact_damping
-        Share of critical damping at the contact nodes, only while they press. Without it nodes
-        chatter as they meet the floor, and 2 % of the real contact area is lost; it takes no
-        energy to speak of (the ledger has it).
-    bulk_viscosity
-        Linear coefficient, in compression only (0.06 in common codes; makes friction of its own).
-    mass_scaling
-        Factor on the density; "auto" takes the largest one (up to 1000) with an error bound of 1 %
-        on area over force and of 1e-4 on the COF (``impact_friction``).
-    precision
-        "double" or "single" (element arithmetic and history only).
-    samples_per_wavelength
-        Of the history; every value is the mean of all steps since the last.
+    Parameters:
+        cfl: Time step over the critical one of the undeformed mesh; None: 0.6 (squeezed elements
+            ask for less than 0.7), or 0.4 with a viscous form, which lowers the critical step.
+        time_step: s; None takes ``cfl``.
+        hourglass: "stiffness" (elastic, from a potential) or "viscous" (Flanagan and Belytschko
+            1981, what explicit codes do by default: it makes friction of its own).
+        hourglass_coefficient: None: 2 (about the stiffness of eight-point integration), or 0.1 for
+            the viscous form.
+        hourglass_modulus: Pa; None: G'(omega) at the frequency of the floor's asperities passing.
+        penalty_factor: Contact stiffness in units of (K + 4 G / 3) / bottom layer. None: the larger
+            of 0.5 and what sinks by 0.3 % of the roughness under the mean pressure, at most 1.5. A
+            bulk modulus lowered for speed would soften the contact with it.
+        penalty_stiffness: Pa/m, in place of ``penalty_factor``.
+        contact_damping: Share of critical damping at the contact nodes, only while they press.
+            Without it nodes chatter as they meet the floor, and 2 % of the real contact area is
+            lost; it takes no energy to speak of (the ledger has it).
+        bulk_viscosity: Linear coefficient, in compression only (0.06 in common codes; makes
+            friction of its own).
+        mass_scaling: Factor on the density; "auto" takes the largest one (up to 1000) with an error
+            bound of 1 % on area over force and of 1e-4 on the COF (``impact_friction``).
+        precision: "double" or "single" (element arithmetic and history only).
+        samples_per_wavelength: Of the history; every value is the mean of all steps since the last.
     """
 
     cfl: float | None = None
@@ -154,32 +143,20 @@ SINKING = 0.003
 class Assembly:
     """Everything that ``advance`` takes; ``nodes``, ``history`` and ``state`` change.
 
-    Parameters
-    ----------
-    mesh
-        The block's mesh.
-    nodes
-        Displacement, velocity, internal force: each (3 * stride,), axis by axis.
-    arrays, floor
-        As the kernels take them.
-    constants, history, parameters, work
-        Element constants and history by chunks, numbers of the material, scratch.
-    state, control, terms
-        As ``_kernels.names`` names them; G_i and b_i of each term.
-    time_step, critical_time_step
-        s.
-    density
-        kg/m^3, scaled.
-    penalty
-        Pa/m.
-    hourglass_modulus
-        Pa.
-    mass_scaling
-        Factor.
-    impact_friction
-        Bound on the COF that lower nodes meeting the floor add.
-    kind, viscous
-        Which kernel.
+    Parameters:
+        mesh: The block's mesh.
+        nodes: Displacement, velocity, internal force: each (3 * stride,), axis by axis.
+        arrays, floor: As the kernels take them.
+        constants, history, parameters, work: Element constants and history by chunks, numbers of
+            the material, scratch.
+        state, control, terms: As ``_kernels.names`` names them; G_i and b_i of each term.
+        time_step, critical_time_step: s.
+        density: kg/m^3, scaled.
+        penalty: Pa/m.
+        hourglass_modulus: Pa.
+        mass_scaling: Factor.
+        impact_friction: Bound on the COF that lower nodes meeting the floor add.
+        kind, viscous: Which kernel.
     """
 
     mesh: BlockMesh
@@ -240,11 +217,9 @@ def assembled(
 ) -> Assembly:
     """Return the arrays of a march at rest, the block's lowest point touching the floor.
 
-    Raises
-    ------
-    InputError
-        A mesh that can't carry a roughness, a time step above the critical one, a contact stiffer
-        than the step allows.
+    Raises:
+        InputError: A mesh that can't carry a roughness, a time step above the critical one, a
+            contact stiffer than the step allows.
     """
     mesh = block_mesh(block)
     check_pattern(block, floor, "floor")

@@ -30,30 +30,23 @@ LARGEST_PRESSURE_RATIO = 1.0
 class CondensedBlock:
     """A block reduced to the vertical displacements of its lower face; its top is glued.
 
-    Parameters
-    ----------
-    block
-        Size, mesh and roughness.
-    poisson_ratio
-        Of the block.
-    points
-        m, (n, 3): the lower face's nodes at rest, z = 0 its mean plane, upwards into the rubber.
-    areas
-        m^2, (n,): the part of the nominal area that belongs to each of them.
-    grid
-        Nodes along x and y; point (i, j) has the number j * grid[0] + i.
-    unit_compliance
-        1/m, (n, n), symmetric: displacement (m, upwards) of each lower node for a unit force
-        (N, upwards) on each, times the shear modulus (Pa). The compliance at the shear modulus G
-        is ``unit_compliance`` / G.
-    asymmetry
-        Largest difference of the solved compliance from its transpose over its largest entry,
-        before it was made symmetric: the error of the factorisation (reciprocity).
-    unit_vector_compliance
-        1/m, (3, n, 3, n): the same for displacement and force along x, y, z, or None.
-    pressure_ratio
-        Mean pressure over shear modulus that the block is linearised about (``pressed_block``);
-        ``points`` are then the nodes' places without that pressure, were the compliance constant.
+    Parameters:
+        block: Size, mesh and roughness.
+        poisson_ratio: Of the block.
+        points: m, (n, 3): the lower face's nodes at rest, z = 0 its mean plane, upwards into the
+            rubber.
+        areas: m^2, (n,): the part of the nominal area that belongs to each of them.
+        grid: Nodes along x and y; point (i, j) has the number j * grid[0] + i.
+        unit_compliance: 1/m, (n, n), symmetric: displacement (m, upwards) of each lower node for a
+            unit force (N, upwards) on each, times the shear modulus (Pa). The compliance at the
+            shear modulus G is ``unit_compliance`` / G.
+        asymmetry: Largest difference of the solved compliance from its transpose over its largest
+            entry, before it was made symmetric: the error of the factorisation (reciprocity).
+        unit_vector_compliance: 1/m, (3, n, 3, n): the same for displacement and force along x, y,
+            z, or None.
+        pressure_ratio: Mean pressure over shear modulus that the block is linearised about
+            (``pressed_block``); ``points`` are then the nodes' places without that pressure, were
+            the compliance constant.
     """
 
     block: MicroBlock
@@ -91,13 +84,10 @@ def condensed_block(
     ``sideways`` keeps the lower nodes' motion along x and y too (three times the cost): sliding
     then follows where each node goes and the direction of the floor's normal there.
 
-    Raises
-    ------
-    InputError
-        Poisson's ratio of 0.5 (no finite bulk modulus) or outside 0 to 0.5; roughness that turns
-        an element inside out.
-    ConvergenceError
-        A compliance that is not symmetric to 1e-6.
+    Raises:
+        InputError: Poisson's ratio of 0.5 (no finite bulk modulus) or outside 0 to 0.5; roughness
+            that turns an element inside out.
+        ConvergenceError: A compliance that is not symmetric to 1e-6.
     """
     bulk = bulk_ratio(poisson_ratio)
     mesh = block_mesh(block)
@@ -301,21 +291,14 @@ def pressed_block(
     rubber block under 160 kPa with G = 0.59 MPa is stiffened and spread by its own compression,
     which a block condensed at rest does not know. All three displacements are kept.
 
-    Parameters
-    ----------
-    block
-        As ``condensed_block`` takes it.
-    poisson_ratio
-        Of small strains, 0 to below 0.5.
-    pressure_ratio
-        Mean pressure over the shear modulus that answers it, above 0 and at most 1.
+    Parameters:
+        block: As ``condensed_block`` takes it.
+        poisson_ratio: Of small strains, 0 to below 0.5.
+        pressure_ratio: Mean pressure over the shear modulus that answers it, above 0 and at most 1.
 
-    Raises
-    ------
-    InputError
-        Ratios outside their range; a mesh that can't carry the roughness.
-    ConvergenceError
-        No equilibrium; an element turned inside out.
+    Raises:
+        InputError: Ratios outside their range; a mesh that can't carry the roughness.
+        ConvergenceError: No equilibrium; an element turned inside out.
     """
     if not 0.0 < pressure_ratio <= LARGEST_PRESSURE_RATIO:
         raise InputError(

@@ -47,33 +47,25 @@ def condensed_sliding(
     together (nu constant): right for nearly incompressible rubber. Shear force is
     sum f dh/dx, the horizontal part of forces normal to the floor.
 
-    Parameters
-    ----------
-    block
-        A block, or one condensed before (``condensed_block``, ``pressed_block``) to use its
-        compliance again; with its ``sideways`` motion, contact is where the nodes have gone and
-        normal to the floor there.
-    floor
-        Heights of the rigid floor.
-    material
-        Shear spectrum; Poisson's ratio follows from K and the relaxed shear modulus
-        (``condensed_poisson_ratio``).
-    loading
-        Pressed under a load that grows linearly for ``press_time``, held for ``hold_time``, then
-        slid at the height reached (control "displacement") or under the load.
-    steps_per_wavelength
-        Time steps while the floor moves by one wavelength.
-    finite_strain
-        Of a block not yet condensed: take ``pressed_block`` at ``pressure_ratio_of`` instead of the
-        block at rest. Ten times the cost.
-    progress
-        A ``Cancelled`` that it raises ends the run with what there is.
+    Parameters:
+        block: A block, or one condensed before (``condensed_block``, ``pressed_block``) to use its
+            compliance again; with its ``sideways`` motion, contact is where the nodes have gone and
+            normal to the floor there.
+        floor: Heights of the rigid floor.
+        material: Shear spectrum; Poisson's ratio follows from K and the relaxed shear modulus
+            (``condensed_poisson_ratio``).
+        loading: Pressed under a load that grows linearly for ``press_time``, held for
+            ``hold_time``, then slid at the height reached (control "displacement") or under the
+            load.
+        steps_per_wavelength: Time steps while the floor moves by one wavelength.
+        finite_strain: Of a block not yet condensed: take ``pressed_block`` at ``pressure_ratio_of``
+            instead of the block at rest. Ten times the cost.
+        progress: A ``Cancelled`` that it raises ends the run with what there is.
 
-    Raises
-    ------
-    InputError
-        A floor whose wavelength the block can't hold or its elements can't follow; Poisson's
-        ratio of 0.5; fewer than 16 steps a wavelength; a speed of 0 with a distance to slide.
+    Raises:
+        InputError: A floor whose wavelength the block can't hold or its elements can't follow;
+            Poisson's ratio of 0.5; fewer than 16 steps a wavelength; a speed of 0 with a distance
+            to slide.
     """
     nu = condensed_poisson_ratio(material)
     outline = block.block if isinstance(block, CondensedBlock) else block

@@ -52,37 +52,26 @@ def explicit_sliding(
     control, penalty contact that is minus the gradient of an energy, central differences. The top
     carries the load and moves in one piece; rubber is at rest and the floor passes underneath.
 
-    Parameters
-    ----------
-    block, material, loading
-        As ``inputs`` describes them.
-    floor
-        Rigid, heights positive towards the rubber.
-    settings
-        Time step, hourglass form, penalty, mass scaling, precision.
-    output
-        Folder for ``restart.npz`` (rewritten as the run goes on) and ``snapshots`` VTU files of the
-        slide with ``block.pvd``, which ParaView opens.
-    restart
-        A restart file of the same inputs: the run goes on from there.
-    overwrite
-        Allow an ``output`` that holds something.
-    progress
-        Receives the stage and the fraction done; ``Cancelled`` raised by it ends the run early with
-        the status CANCELLED and a restart file (with ``output``).
+    Parameters:
+        block, material, loading: As ``inputs`` describes them.
+        floor: Rigid, heights positive towards the rubber.
+        settings: Time step, hourglass form, penalty, mass scaling, precision.
+        output: Folder for ``restart.npz`` (rewritten as the run goes on) and ``snapshots`` VTU
+            files of the slide with ``block.pvd``, which ParaView opens.
+        restart: A restart file of the same inputs: the run goes on from there.
+        overwrite: Allow an ``output`` that holds something.
+        progress: Receives the stage and the fraction done; ``Cancelled`` raised by it ends the run
+            early with the status CANCELLED and a restart file (with ``output``).
 
     Validity: spectrum and bulk modulus of a nearly incompressible solid; real contact area needs 13
     or more elements a wavelength (marked below that); counted by nodes even 26 overestimate it by
     20 %, without its edges by some 4 %.
 
-    Raises
-    ------
-    InputError
-        What the mesh, the step or the contact can't carry.
-    ConvergenceError
-        NaN, an element turned inside out, energy made by the march: with the last good state saved.
-    DataError
-        A restart file of another case.
+    Raises:
+        InputError: What the mesh, the step or the contact can't carry.
+        ConvergenceError: NaN, an element turned inside out, energy made by the march: with the last
+            good state saved.
+        DataError: A restart file of another case.
 
     Source: grant report G.1; Flanagan and Belytschko (1981) Int. J. Numer. Methods Eng. 17:679
     (mean gradient, hourglass); Simo (1987) Comput. Methods Appl. Mech. Eng. 60:153 (histories).

@@ -24,28 +24,19 @@ FORMS = ("flat", "cosine", "triangular", "wave", "paraboloid", "map")
 class MicroSurface:
     """Heights h(x, y) above the mean line, positive out of the body; periodic except "paraboloid".
 
-    Parameters
-    ----------
-    form
-        "flat"; "cosine", the checkerboard (R_z / 2) cos(2 pi x / w) cos(2 pi y / w); "triangular",
-        the same with straight flanks (nodes raised and lowered by turns); "wave", along x only;
-        "paraboloid", -(x^2 + y^2) / (2 radius), to indent with; "map", a measured or generated
-        height map (cubic B-spline through its points).
-    peak_to_valley
-        R_z, m.
-    wavelength
-        w, m.
-    offset
-        m, (x, y): where the pattern's origin lies.
-    radius
-        m, of the paraboloid's tip.
-    height_map
-        Of the form "map"; periodic.
+    Parameters:
+        form: "flat"; "cosine", the checkerboard (R_z / 2) cos(2 pi x / w) cos(2 pi y / w);
+            "triangular", the same with straight flanks (nodes raised and lowered by turns); "wave",
+            along x only; "paraboloid", -(x^2 + y^2) / (2 radius), to indent with; "map", a measured
+            or generated height map (cubic B-spline through its points).
+        peak_to_valley: R_z, m.
+        wavelength: w, m.
+        offset: m, (x, y): where the pattern's origin lies.
+        radius: m, of the paraboloid's tip.
+        height_map: Of the form "map"; periodic.
 
-    Raises
-    ------
-    InputError
-        Another form, lengths not positive, a map that is missing or not periodic.
+    Raises:
+        InputError: Another form, lengths not positive, a map that is missing or not periodic.
     """
 
     form: str = "flat"
@@ -135,22 +126,15 @@ RUBBER_DENSITY = 1150.0
 class MicroMaterial:
     """Nearly incompressible rubber: G(t) = G_inf + sum G_i exp(-t / tau_i) (Eq. 7), constant K.
 
-    Parameters
-    ----------
-    shear
-        Spectrum of the shear modulus, Pa, any number of terms.
-    bulk_modulus
-        K, Pa.
-    density
-        kg/m^3.
-    name, source
-        Words.
+    Parameters:
+        shear: Spectrum of the shear modulus, Pa, any number of terms.
+        bulk_modulus: K, Pa.
+        density: kg/m^3.
+        name, source: Words.
 
-    Raises
-    ------
-    InputError
-        K not above two thirds of G(0) (Poisson's ratio not positive), infinite (Poisson's ratio
-        of 0.5), or density not positive.
+    Raises:
+        InputError: K not above two thirds of G(0) (Poisson's ratio not positive), infinite
+            (Poisson's ratio of 0.5), or density not positive.
     """
 
     shear: RelaxationSpectrum
@@ -216,10 +200,9 @@ class MicroMaterial:
     ) -> MicroMaterial:
         """Return the material of an ``Elastomer`` (Young's spectrum and Poisson's ratio).
 
-        Raises
-        ------
-        InputError
-            Poisson's ratio of 0.5, or an elastomer without relaxation data unless ``elastic``.
+        Raises:
+            InputError: Poisson's ratio of 0.5, or an elastomer without relaxation data unless
+                ``elastic``.
         """
         spectrum = elastomer.modulus
         if not isinstance(spectrum, RelaxationSpectrum):
@@ -257,20 +240,15 @@ class MicroMaterial:
 class MicroBlock:
     """A rubber block over a rough rigid floor, with its structured mesh of hexahedra.
 
-    Parameters
-    ----------
-    size
-        m, along x (sliding), y and z.
-    elements
-        Number along x, y and z.
-    bottom_layer
-        m, thickness of the lowest layer; each layer above is thicker by one ratio. None: all alike.
-    roughness
-        Of the block's lower face, positive downwards, out of the rubber.
-    roughness_layers
-        Number of layers over which the displacement of the lower face's nodes fades out linearly.
-    sides
-        "free" or "periodic" (x and y).
+    Parameters:
+        size: m, along x (sliding), y and z.
+        elements: Number along x, y and z.
+        bottom_layer: m, thickness of the lowest layer; each layer above is thicker by one ratio.
+            None: all alike.
+        roughness: Of the block's lower face, positive downwards, out of the rubber.
+        roughness_layers: Number of layers over which the displacement of the lower face's nodes
+            fades out linearly.
+        sides: "free" or "periodic" (x and y).
     """
 
     size: tuple[float, float, float] = (0.8e-3, 0.5e-3, 0.5e-3)
@@ -315,19 +293,13 @@ class MicroBlock:
 class MicroLoading:
     """Press, hold, slide.
 
-    Parameters
-    ----------
-    mean_pressure
-        Pa, over the nominal area.
-    speed
-        m/s, of the block towards +x over the floor at rest.
-    slide_distance
-        m.
-    control
-        "displacement": the height reached under the load is kept while sliding (grant report);
-        "load": the load stays on.
-    press_time, hold_time, ramp_time
-        s: to reach the load, to settle, to reach the speed.
+    Parameters:
+        mean_pressure: Pa, over the nominal area.
+        speed: m/s, of the block towards +x over the floor at rest.
+        slide_distance: m.
+        control: "displacement": the height reached under the load is kept while sliding (grant
+            report); "load": the load stays on.
+        press_time, hold_time, ramp_time: s: to reach the load, to settle, to reach the speed.
     """
 
     mean_pressure: float = 160e3

@@ -348,10 +348,8 @@ def saved_state(path: Path, arrays: dict[str, np.ndarray]) -> Path:
 def loaded_state(path: Path, key: str) -> dict[str, np.ndarray]:
     """Return the arrays of a restart file that was written for the same inputs.
 
-    Raises
-    ------
-    DataError
-        A file that can't be read, or that belongs to another case.
+    Raises:
+        DataError: A file that can't be read, or that belongs to another case.
     """
     try:
         with np.load(path, allow_pickle=False) as stored:

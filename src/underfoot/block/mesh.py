@@ -36,22 +36,14 @@ FEWEST_ELEMENTS = {"triangular": 2}
 class BlockMesh:
     """Nodes and elements; node (i, j, k) has the number (k ny1 + j) nx1 + i.
 
-    Parameters
-    ----------
-    nodes
-        m, (3, n), undeformed; z = 0 is the mean plane of the lower face.
-    shape
-        Nodes along x, y, z.
-    elements
-        Number of the lowest corner's node of each element, (m,).
-    volume
-        m^3, (m,).
-    gradient
-        1/m, (m, 3, 7): mean reference gradient by modes.
-    hourglass_shape
-        m, (m, 4, 3): coordinates by non-linear modes, over 8.
-    lower_area
-        m^2, (nx1 * ny1,): share of the nominal area; 0 on the sides that repeat others.
+    Parameters:
+        nodes: m, (3, n), undeformed; z = 0 is the mean plane of the lower face.
+        shape: Nodes along x, y, z.
+        elements: Number of the lowest corner's node of each element, (m,).
+        volume: m^3, (m,).
+        gradient: 1/m, (m, 3, 7): mean reference gradient by modes.
+        hourglass_shape: m, (m, 4, 3): coordinates by non-linear modes, over 8.
+        lower_area: m^2, (nx1 * ny1,): share of the nominal area; 0 on the sides that repeat others.
     """
 
     nodes: np.ndarray
@@ -108,11 +100,10 @@ def layer_heights(block: MicroBlock) -> np.ndarray:
 def block_mesh(block: MicroBlock) -> BlockMesh:
     """Return the mesh of a block.
 
-    Raises
-    ------
-    InputError
-        Wavelength longer than the block, elements too coarse for the roughness, roughness larger
-        than the layers that carry it, or a pattern that does not repeat on periodic sides.
+    Raises:
+        InputError: Wavelength longer than the block, elements too coarse for the roughness,
+            roughness larger than the layers that carry it, or a pattern that does not repeat on
+            periodic sides.
     """
     nx, ny, nz = block.elements
     check_pattern(block, block.roughness, "MicroBlock.roughness")

@@ -37,19 +37,14 @@ class EnergyLedger:
     ``residual`` is what came in less what is stored, moving or lost: the error of the march, and
     with relaxation terms that of ``strain`` and ``material_loss``, which hold for small strains.
 
-    Parameters
-    ----------
-    time
-        s.
-    floor_work
-        Done by the floor passing underneath: friction force times distance.
-    top_work
-        Done by the load on the top.
-    kinetic, strain, hourglass, contact
-        In motion and stored.
-    material_loss, hourglass_loss, contact_loss, damping_loss
-        Lost in the rubber, in viscous hourglass control with bulk viscosity, in contact damping, in
-        the body damping of pressing.
+    Parameters:
+        time: s.
+        floor_work: Done by the floor passing underneath: friction force times distance.
+        top_work: Done by the load on the top.
+        kinetic, strain, hourglass, contact: In motion and stored.
+        material_loss, hourglass_loss, contact_loss, damping_loss: Lost in the rubber, in viscous
+            hourglass control with bulk viscosity, in contact damping, in the body damping of
+            pressing.
     """
 
     time: np.ndarray
@@ -76,26 +71,20 @@ class EnergyLedger:
 class MicroAverages:
     """Means over whole floor wavelengths of sliding, the first left out (Eq. 8 to 12).
 
-    Parameters
-    ----------
-    cof_hysteresis
-        Signed mean shear over mean normal force (Eq. 8): friction.
-    cof_absolute, cof_resultant
-        The same with the mean of |shear|, and of the resultant of shear and lateral force: not
-        friction, but what unsigned averages give.
-    area_per_force
-        A_c / F_N, m^2/N (Eq. 12), with the cells of all nodes in contact, as finite elements do.
-    real_contact_fraction
-        A_c over the nominal area.
-    mean_pressure
-        Pa, over the nominal area.
-    wavelengths
-        How many were averaged.
-    scatter
-        Largest difference of one wavelength's signed COF from their mean (NaN with only one).
-    area_per_force_corrected, real_contact_fraction_corrected
-        The same area less what the edges of contact spots count too much (``edge_excess_area``):
-        the better estimate. NaN where the edges are more than half of it: spots of a node or two.
+    Parameters:
+        cof_hysteresis: Signed mean shear over mean normal force (Eq. 8): friction.
+        cof_absolute, cof_resultant: The same with the mean of |shear|, and of the resultant of
+            shear and lateral force: not friction, but what unsigned averages give.
+        area_per_force: A_c / F_N, m^2/N (Eq. 12), with the cells of all nodes in contact, as finite
+            elements do.
+        real_contact_fraction: A_c over the nominal area.
+        mean_pressure: Pa, over the nominal area.
+        wavelengths: How many were averaged.
+        scatter: Largest difference of one wavelength's signed COF from their mean (NaN with only
+            one).
+        area_per_force_corrected, real_contact_fraction_corrected: The same area less what the edges
+            of contact spots count too much (``edge_excess_area``): the better estimate. NaN where
+            the edges are more than half of it: spots of a node or two.
     """
 
     cof_hysteresis: float
@@ -114,28 +103,18 @@ class MicroAverages:
 class MicroResult:
     """History of pressing and sliding a block; arrays of one value per sample.
 
-    Parameters
-    ----------
-    time, distance
-        s since the start of pressing; m of sliding (0 while pressing).
-    normal_force, shear_force, lateral_force
-        N at the rough interface: on the block, upwards; against sliding (-x); along y.
-    real_contact_area
-        m^2: cells of the nodes in contact.
-    corrected_contact_area
-        m^2: the same less its edges (``edge_excess_area``).
-    height
-        m, displacement of the block's top.
-    nominal_area
-        m^2.
-    averages
-        None when no whole wavelength was slid.
-    energy
-        None where the solver keeps no energies.
-    status, notes, breaches
-        How it ended.
-    steps, time_step, process_seconds
-        Count, s, s.
+    Parameters:
+        time, distance: s since the start of pressing; m of sliding (0 while pressing).
+        normal_force, shear_force, lateral_force: N at the rough interface: on the block, upwards;
+            against sliding (-x); along y.
+        real_contact_area: m^2: cells of the nodes in contact.
+        corrected_contact_area: m^2: the same less its edges (``edge_excess_area``).
+        height: m, displacement of the block's top.
+        nominal_area: m^2.
+        averages: None when no whole wavelength was slid.
+        energy: None where the solver keeps no energies.
+        status, notes, breaches: How it ended.
+        steps, time_step, process_seconds: Count, s, s.
     """
 
     time: np.ndarray

@@ -20,7 +20,7 @@ from scipy.stats import norm, qmc, spearmanr
 from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
 from underfoot.fluid import BLOCKING
-from underfoot.friction.pair_contact import PairConstants, contact_parts
+from underfoot.friction.pair_contact import LOSS_TANGENT, PairConstants, PairDraws, contact_terms
 
 from .corpus import NUMBERS, Condition, sampled_numbers
 
@@ -32,7 +32,7 @@ machines, over 2.8 (Jung and Fischer 1993, Safety Science 16:115): 0.25 and 0.36
 SPREADS = ("source", "pair", "reading", "dry part of a source")
 SPREAD_PRIOR = (SD_SOURCE, 0.4, 0.2, 0.7)
 """The first log-normal with sd 0.35 of its logarithm, the others half-normal."""
-DEFAULTS = {"loss_tangent": 0.2}
+DEFAULTS = {"loss_tangent": LOSS_TANGENT}
 """Of a compound whose loss tangent is not printed (assumed)."""
 
 
@@ -52,8 +52,11 @@ class PairLaw:
 
 
 def _pair(theta: Array, numbers: dict[str, Array], fluid: str) -> Array:
-    constants = PairConstants(*np.exp(theta[:, :4]).T, *theta[:, 4:].T)
-    return np.log(sum(contact_parts(constants, numbers, oil=fluid == "oil")))
+    columns = theta.T[..., None]
+    constants = PairConstants(*np.exp(columns[:4]), *columns[4:])
+    film, hysteresis, dry, kappa = contact_terms(constants, numbers, oil=fluid == "oil")
+    drag = numbers["viscosity"] * np.abs(numbers["speed"])
+    return np.log(film + hysteresis + dry * np.exp(-drag / kappa))
 
 
 def _without_roughness(theta: Array, numbers: dict[str, Array], fluid: str) -> Array:
@@ -207,6 +210,15 @@ class PairPosterior:
     theta: Array
     spreads: Array
     acceptance: float
+
+    def draws(self, count: int, seed: int = 0) -> PairDraws:
+        """Return draws of the law "pair" as a case uses them: a random choice of the sampler's."""
+        generator = np.random.default_rng(seed)
+        rows = generator.choice(self.theta.shape[0], count, replace=False)
+        columns, spreads = self.theta[rows].T, self.spreads[rows].T
+        return PairDraws(
+            PairConstants(*np.exp(columns[:4]), *columns[4:]), spreads[0], spreads[3], spreads[1]
+        )
 
     def predicted(self, conditions: Sequence[Condition], seed: int = 0) -> Array:
         """Return draws of ln COF (draws, rows) as one unseen source would read the conditions."""

@@ -105,6 +105,7 @@ def stribeck_curve(
     InputError
         A dry case, a pressure that is not positive, or what the law itself misses.
     """
+    from underfoot.case.friction import measured_fluids
     from underfoot.compute.resolve import resolved
     from underfoot.friction import sampled_points
 
@@ -131,11 +132,8 @@ def stribeck_curve(
     rest = float(law(pressure, 1e-9, gap).adhesion)
     left = found.adhesion / rest if rest > 0 else np.zeros(speed.shape)
     spread = sampled_points(law, **at, fluid_inputs={"viscosity": fluid}, seed=case.numerics.seed)
-    measured_with = getattr(case.friction, "measured", None)
-    own = None if measured_with is None else measured_with(context)
-    measured = None
-    if own is not None and own.pair and not own.cof_boundary.assumed:
-        measured = fluid_points(own, rq=0.0, speed=within)
+    own = next((one for one in measured_fluids(case.catalogue) if one.fluid == context.fluid), None)
+    measured = None if own is None else fluid_points(own, rq=0.0, speed=within)
     return StribeckCurve(
         label=label,
         law=law.name,

@@ -53,7 +53,6 @@ class GentHardness(HardnessOption):
     source: ClassVar[str] = "Gent 1958"
 
     def build(self, shore_a: float) -> tuple[SourcedValue, list[Breach]]:
-        """Return Young's modulus, Pa, and what leaves the range of the relation."""
         from underfoot import material
 
         modulus = float(material.youngs_modulus_gent(shore_a))
@@ -67,7 +66,6 @@ class RuessHardness(HardnessOption):
     source: ClassVar[str] = "Ruess"
 
     def build(self, shore_a: float) -> tuple[SourcedValue, list[Breach]]:
-        """Return Young's modulus, Pa, and what leaves the range of the relation."""
         from underfoot import material
 
         modulus = float(material.youngs_modulus_ruess(shore_a))
@@ -92,7 +90,6 @@ class ExponentialContact(RoughContactOption):
     source: ClassVar[str] = "Persson 2007, low-load form"
 
     def build(self, context: Context) -> PressureGapLaw:
-        """Return the law of pressure and permeability against the mean gap."""
         from underfoot.rough_contact import ExponentialLaw
 
         return ExponentialLaw(context.youngs_modulus, context.poisson_ratio, context.rq_value)
@@ -112,7 +109,6 @@ class ContactTableOption(RoughContactOption):
     )
 
     def build(self, context: Context) -> PressureGapLaw:
-        """Return the law of pressure and permeability against the mean gap."""
         from underfoot.rough_contact import ContactTable
         from underfoot.surface import self_affine
 
@@ -171,7 +167,6 @@ class LayeredCompliance(ComplianceOption):
     source: ClassVar[str] = "outsole layer with free edges"
 
     def build(self, context: Context, sole: SoleMap) -> Compliance:
-        """Return the map from pressure to deflection on the grid of ``sole``."""
         from underfoot.sole_contact.compliance import layered_compliance
 
         return layered_compliance(sole, **_layers(context))
@@ -184,7 +179,6 @@ class FiniteElementCompliance(ComplianceOption):
     source: ClassVar[str] = "linear finite elements, condensed to the sole's surface"
 
     def build(self, context: Context, sole: SoleMap) -> Compliance:
-        """Return the map from pressure to deflection on the grid of ``sole``."""
         from underfoot.sole_contact.finite_element import finite_element_compliance
 
         return finite_element_compliance(
@@ -202,7 +196,6 @@ class HalfSpaceCompliance(ComplianceOption):
     source: ClassVar[str] = "Boussinesq half-space"
 
     def build(self, context: Context, sole: SoleMap) -> Compliance:
-        """Return the map from pressure to deflection on the grid of ``sole``."""
         from underfoot.sole_contact.compliance import half_space_compliance
 
         return half_space_compliance(
@@ -236,7 +229,6 @@ class ReynoldsFilm(FilmOption):
     source: ClassVar[str] = "Reynolds equation with cavitation, wedge and squeeze (Eq. 4, 5)"
 
     def build(self, context: Context) -> float | None:
-        """Return the viscosity of the film, Pa s; None on a dry floor."""
         return context.viscosity_value
 
 
@@ -247,5 +239,4 @@ class NoFilm(FilmOption):
     source: ClassVar[str] = "none: the fluid builds up no pressure"
 
     def build(self, context: Context) -> float | None:
-        """Return None."""
         return None

@@ -31,8 +31,12 @@ class ContaminantSection(Option):
         """Return the dynamic viscosity, Pa s."""
 
     def breaches(self) -> list[Breach]:
-        """Return what leaves the range on which a viscosity relation was tested."""
         return []
+
+    @property
+    def is_oil(self) -> bool:
+        """Whether the fluid is an oil; else it is aqueous."""
+        return False
 
 
 class MeasuredFluid(ContaminantSection):
@@ -49,8 +53,16 @@ class MeasuredFluid(ContaminantSection):
         '"constant" or "table", and no film',
     )
 
+    family: Literal["aqueous", "oil"] = default(
+        "aqueous", "aqueous", "not given: taken as no oil", assumed=True
+    )
+
+    @property
+    def is_oil(self) -> bool:
+        """Whether the fluid is an oil; else it is aqueous."""
+        return self.family == "oil"
+
     def build(self) -> SourcedValue:
-        """Return the dynamic viscosity, Pa s."""
         return self.sourced("viscosity")
 
 
@@ -68,14 +80,12 @@ class GlycerolWater(ContaminantSection):
     temperature: Temperature = default(293.15, "20 degC", "room temperature", assumed=True)
 
     def build(self) -> SourcedValue:
-        """Return the dynamic viscosity, Pa s."""
         from underfoot.fluid import glycerol_water
 
         mixture = glycerol_water(self.glycerol_fraction, self.temperature, self.fraction_basis)
         return mixture.viscosity
 
     def breaches(self) -> list[Breach]:
-        """Return what leaves the range on which the relation was tested."""
         from underfoot.fluid import glycerol_water_breaches
 
         return glycerol_water_breaches(self.glycerol_fraction, self.temperature)

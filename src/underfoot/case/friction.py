@@ -17,7 +17,8 @@ from underfoot.core.catalogue import Catalogue
 from .context import Context
 from .quantity import Force, Friction, Pressure, Quantity, Speed, Viscosity, required
 from .section import CaseView, Option, Section
-from .tables import as_written, table_columns, table_source
+from .surfaces import SurfaceRoughness
+from .tables import as_written, plain, table_columns, table_source, with_checksum
 
 if TYPE_CHECKING:
     from underfoot.friction import AsperityScale, BoundaryFriction, FrictionLaw, SpeedEffectLaw
@@ -27,6 +28,13 @@ PIN = ("setup", "pin_on_disk_g2")
 RIVAL_DEVIATION = {"mean_film_sharing": 0.095, "viscoelastic_area": 0.241}
 """Root mean square error of COF of five fluids predicted blind from 50 % glycerol with their COF_BL
 (docs/studies/g2.md); what stands behind ``asperity_ehl`` is in ``friction.asperity_ehl``."""
+SOLE_RQ, FLOOR_RQ = (1.25e-6, 10e-6), (0.3e-6, 4e-6)
+"""Rq (m) of soles (Ra 1 to 8 um) and of smooth to matt floors, where none is given (assumed)."""
+HYSTERESIS_WAVES = (2.5e-6, 0.2e-3, 0.8e-3)
+"""Shortest wave, roll-off and longest wave (m) of the floor that make hysteresis: with these and a
+loss tangent of 0.2 theory gives the closed form of ``friction.pair_contact``."""
+HYSTERESIS_PRESSURE = 300e3
+"""Pa: hysteresis in partial contact hardly depends on it."""
 SAME_VISCOSITY = 0.01
 """Relative difference up to which two viscosities are the same fluid."""
 COLUMNS = {
@@ -45,7 +53,7 @@ class FrictionOption(Option):
     """
 
     slot: ClassVar[str] = "friction"
-    usual: ClassVar[str | None] = "stribeck"
+    usual: ClassVar[str | None] = "pair"
     dry: ClassVar[bool] = False
     """Whether the law holds without a fluid."""
 
@@ -54,7 +62,6 @@ class FrictionOption(Option):
         """Return the law."""
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield a dry floor under a law of films."""
         if case.contaminant is None and not self.dry:
             yield InputError(
                 "a dry case needs a measured coefficient of friction",
@@ -63,6 +70,44 @@ class FrictionOption(Option):
                 'friction.model = "constant" and friction.cof = 0.8 (and hysteresis_cof, its '
                 "hysteresis part)",
             )
+
+
+class PairOption(FrictionOption):
+    """Contact friction from what is known of compound, both roughnesses and fluid.
+
+    Its constants are calibrated on published measurements; the interval is that of a pair that
+    nobody measured. Roughness that is not given is drawn.
+    """
+
+    name: ClassVar[str] = "pair"
+    source: ClassVar[str] = "calibrated on published measurements of other pairs"
+    reads: ClassVar[tuple[str, ...]] = ("contaminant.family",)
+    uncounted: ClassVar[tuple[str, ...]] = ("draws_file",)
+
+    draws_file: str | None = Field(
+        default=None,
+        description="draws calibrated to readings of your own by underfoot calibrate pair; the "
+        "path counts from the case file's folder",
+    )
+    sha256: str | None = Field(default=None, description="checksum of the file that is meant")
+
+    @classmethod
+    def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+        return with_checksum(table, "draws_file", folder, where)
+
+    def build(self, context: Context) -> FrictionLaw:
+        from underfoot.friction import Pair, PairContactLaw, packaged_pair_draws, read_pair_draws
+
+        assert context.contaminant is not None  # a dry case is refused
+        draws = read_pair_draws(Path(self.draws_file)) if self.draws_file else None
+        pair = Pair(
+            shore_a=_hardness(context),
+            sole_rq=_span(context.shoe.roughness, SOLE_RQ),
+            floor_rq=_span(context.floor.roughness, FLOOR_RQ),
+            oil=context.contaminant.is_oil,
+            hysteresis=_hysteresis(context),
+        )
+        return PairContactLaw(pair, _viscosity(context), draws or packaged_pair_draws())
 
 
 class _Measured(FrictionOption):
@@ -103,7 +148,6 @@ class BoundaryOption(_Measured):
     source: ClassVar[str] = "boundary friction of the pair and fluid"
 
     def build(self, context: Context) -> FrictionLaw:
-        """Return the law."""
         from underfoot.friction import BoundaryLaw, boundary_friction_at
 
         others, own = measured_fluids(context.catalogue), self.measured(context)
@@ -122,12 +166,12 @@ class StribeckOption(_Measured):
 
     name: ClassVar[str] = "stribeck"
     source: ClassVar[str] = "friction of the pair and fluid as measured at the speed"
+    chosen_by: ClassVar[tuple[str, ...]] = ("cof_bl", "tau_hydro", "cof_asymptote")
 
     tau_hydro: Speed | None = Field(default=None, description="decay speed (Eq. 17)")
     cof_asymptote: Friction | None = Field(default=None, description="COF at high speed (Eq. 17)")
 
     def build(self, context: Context) -> FrictionLaw:
-        """Return the law."""
         from underfoot.friction import BoundaryLaw, StribeckLaw, stribeck_law_at
 
         others, own = measured_fluids(context.catalogue), self.measured(context)
@@ -161,7 +205,6 @@ class AdhesionBlockingOption(FrictionOption):
     pair: str | None = Field(default=None, description="sole and floor it was measured on")
 
     def build(self, context: Context) -> FrictionLaw:
-        """Return the law."""
         from underfoot.fluid import AdhesionBlocking
         from underfoot.friction import AdhesionBlockingLaw
 
@@ -184,7 +227,6 @@ class ConstantOption(FrictionOption):
     hysteresis_cof: Friction | None = Field(default=None, description="its hysteresis part")
 
     def build(self, context: Context) -> FrictionLaw:
-        """Return the law."""
         from underfoot.friction import ConstantLaw
 
         hysteresis, sourced = self.hysteresis_cof or 0.0, self.sourced("cof")
@@ -197,7 +239,6 @@ class ConstantOption(FrictionOption):
         )
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield a hysteresis part above the whole."""
         if (self.hysteresis_cof or 0.0) > self.cof:
             yield RangeError(
                 f"{self.hysteresis_cof:g} is more than the whole",
@@ -257,7 +298,6 @@ class AsperityEhlOption(_Mechanism):
     )
 
     def build(self, context: Context) -> FrictionLaw:
-        """Return the law."""
         return self._asperity_law(context)
 
 
@@ -270,7 +310,6 @@ class MeanFilmSharingOption(_Mechanism):
     source: ClassVar[str] = "load shared with the mean film of a pin"
 
     def build(self, context: Context) -> FrictionLaw:
-        """Return the law."""
         from underfoot.friction import MeanFilmSharing
 
         pin = context.catalogue.entry(*PIN)
@@ -299,7 +338,6 @@ class ViscoelasticAreaOption(_Mechanism):
     reads: ClassVar[tuple[str, ...]] = (*_Mechanism.reads, "interface.shortest_wave")
 
     def build(self, context: Context) -> FrictionLaw:
-        """Return the law."""
         from underfoot.friction import ViscoelasticArea, modulus_exponent
 
         rubber, wave = context.rubber(), context.interface.shortest_wave
@@ -311,7 +349,6 @@ class ViscoelasticAreaOption(_Mechanism):
         return self._rival(ViscoelasticArea(exponent), context)
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield a compound without relaxation spectrum too."""
         yield from super().problems(case, where)
         if case.shoe.material.relaxation is None:
             yield InputError(
@@ -348,7 +385,6 @@ class BowdenTaborOption(FrictionOption):
     )
 
     def build(self, context: Context) -> FrictionLaw:
-        """Return the law."""
         from underfoot.friction import BowdenTaborLaw, ShearStrength
 
         stiffness = context.plane_strain_modulus
@@ -404,9 +440,7 @@ class TableOption(FrictionOption):
 
     @classmethod
     def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
-        """Return the table with the readings of its file."""
-        name = table.get("table_file")
-        name = getattr(getattr(name, "leaf", None), "given", name)
+        name = plain(table.get("table_file"))
         if not isinstance(name, str):
             return table
         if "readings" in table:
@@ -419,7 +453,6 @@ class TableOption(FrictionOption):
         return {"readings_source": source, **table, "readings": readings}
 
     def build(self, context: Context) -> FrictionLaw:
-        """Return the law."""
         from underfoot.friction import SpeedTableLaw
 
         readings, viscosity = self.readings, context.viscosity_value
@@ -457,7 +490,6 @@ class TableOption(FrictionOption):
         )
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield readings at one speed only."""
         if len({reading.speed for reading in self.readings}) < 2:
             yield InputError(
                 "of one speed only" if self.readings else "are missing",
@@ -509,6 +541,54 @@ def measured_fluids(catalogue: Catalogue) -> tuple[BoundaryFriction, ...]:
             )
         )
     return tuple(fluids)
+
+
+def _hardness(context: Context) -> float:
+    """Return Shore A, or where a modulus is given that of an equal ratio to Shore A 60."""
+    from underfoot.friction.pair_contact import GENT_SLOPE, REFERENCE_HARDNESS
+    from underfoot.material import youngs_modulus_gent
+
+    shore = context.shoe.material.shore_a
+    if shore is not None:
+        return shore
+    ratio = context.youngs_modulus / youngs_modulus_gent(REFERENCE_HARDNESS)
+    return REFERENCE_HARDNESS + math.log(ratio) / GENT_SLOPE
+
+
+def _span(roughness: SurfaceRoughness, unknown: tuple[float, float]) -> tuple[float, float]:
+    """Return Rq (m) twice, or its 95 % range where it has a spread; ``unknown`` without one."""
+    rq, spread = roughness.rq_or_estimate, roughness.rq_uncertainty
+    if rq is None:
+        return unknown
+    factor = math.exp(1.96 * (spread or 0.0) / rq)
+    return rq / factor, rq * factor
+
+
+def _hysteresis(context: Context) -> float | None:
+    """Return the hysteresis COF of the compound's spectrum on the floor; None without one."""
+    from underfoot.rough_contact import persson
+
+    if context.shoe.material.relaxation is None:
+        return None
+    rubber, rq = (
+        context.rubber(),
+        context.floor.roughness.rq_or_estimate or math.sqrt(FLOOR_RQ[0] * FLOOR_RQ[1]),
+    )
+    shortest, roll_off, longest = HYSTERESIS_WAVES
+    wavenumber = np.geomspace(2 * math.pi / longest, 2 * math.pi / shortest, 60)
+    shape = wavenumber * roll_off / (2 * math.pi)
+    spectrum = np.where(shape < 1, 1.0, shape ** (-2 * (1 + context.interface.hurst)))
+    spectrum *= rq**2 / (2 * math.pi * np.trapezoid(wavenumber * spectrum, wavenumber))
+    contact = persson(
+        HYSTERESIS_PRESSURE,
+        wavenumber,
+        spectrum,
+        rubber.complex_modulus,
+        context.motion.speed,
+        context.poisson_ratio,
+    )
+    assert contact.cof_hysteresis is not None  # the rubber is viscoelastic
+    return float(contact.cof_hysteresis[0])
 
 
 def _viscosity(context: Context) -> float:

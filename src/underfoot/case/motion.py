@@ -13,8 +13,8 @@ from pydantic import Field
 from underfoot.core import InputError, RangeError, display, to_si
 
 from .quantity import Flag, Force, Length, Quantity, Speed, default
-from .section import CaseView, Option, Section, origin_of
-from .tables import as_written, table_columns
+from .section import CaseView, Option, Section
+from .tables import as_written, plain, table_columns
 
 if TYPE_CHECKING:
     from underfoot.sole_contact.motion_history import MotionHistory
@@ -63,7 +63,6 @@ class Motion(Option):
         return max(self.duration, self.force_rise_time)
 
     def build(self) -> MotionHistory | None:
-        """Return the history that the shoe follows; None when load and speed are held."""
         return None
 
 
@@ -80,7 +79,6 @@ class HeldMotion(Motion):
         return self.steady
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield an end before the load."""
         if self.duration < self.force_rise_time:
             yield RangeError(
                 f"{display(self.duration, 's')} ends before the force has risen",
@@ -119,9 +117,8 @@ class MotionFromHistory(Motion):
 
     @classmethod
     def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
-        """Return the table with the points of its file, and what the last point says."""
         table = dict(table)
-        name, points = _plain(table.get("history")), _plain(table.get("history_points"))
+        name, points = plain(table.get("history")), plain(table.get("history_points"))
         if isinstance(name, str):
             if points is not None:
                 raise InputError(
@@ -152,7 +149,6 @@ class MotionFromHistory(Motion):
         return table
 
     def build(self) -> MotionHistory | None:
-        """Return the history that the shoe follows."""
         from underfoot.sole_contact.motion_history import MotionHistory
 
         points = self.history_points
@@ -165,7 +161,6 @@ class MotionFromHistory(Motion):
         )
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield a history that is none, or that ends elsewhere than the motion says."""
         listed = f"{where}.{'history' if self.history else 'history_points'}"
         try:
             history = self.build()
@@ -227,8 +222,3 @@ class Sensor(Section):
     scan_spacing: Length = default(10 * _mm, "10 mm", _TESTER)
     scans: Count = default(7, 7, _TESTER)
     array: FloorArray | None = None
-
-
-def _plain(given: Any) -> Any:
-    origin = origin_of(given)
-    return given if origin is None else origin.leaf.given

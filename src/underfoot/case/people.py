@@ -60,7 +60,6 @@ class ReportRisk(Risk):
     source: ClassVar[str] = f"{_REPORT}, G.6.3"
 
     def build(self) -> SlipModel:
-        """Return the slip model."""
         from underfoot.slip import ReportG6
 
         return ReportG6()
@@ -73,7 +72,6 @@ class BeschornerRisk(Risk):
     source: ClassVar[str] = "Beschorner et al. 2016"
 
     def build(self) -> SlipModel:
-        """Return the slip model."""
         from underfoot.slip import Beschorner2016
 
         return Beschorner2016()
@@ -86,7 +84,6 @@ class ChangRisk(Risk):
     source: ClassVar[str] = "Chang 2004"
 
     def build(self) -> SlipModel:
-        """Return the slip model."""
         from underfoot.slip import Chang2004
 
         return Chang2004()

@@ -14,7 +14,7 @@ from .quantity import Flag, Length, Quantity, default
 from .section import CATALOGUE, CaseView, Section, origin_of
 from .sole import SolePlan, TreadPattern
 from .surfaces import SurfaceRoughness
-from .tables import existing_file
+from .tables import plain, with_checksum
 from .wear import Wear
 
 Modulus = Annotated[float, Quantity("Pa", 1e4, 1e12)]
@@ -53,7 +53,6 @@ class Material(Section):
     relaxation: Relaxation | None = None
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield a compound without stiffness."""
         if self.shore_a is None and self.modulus is None:
             yield InputError(
                 "neither hardness nor modulus is given",
@@ -120,31 +119,9 @@ class OutsoleFile(Section):
 
     @classmethod
     def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
-        """Return the table with the full path and the checksum of the file."""
-        from underfoot.core.files import checksum
-
-        name, meant = _plain(table.get("file")), _plain(table.get("sha256"))
-        if not isinstance(name, str):
-            return table
-        path = (folder / name).resolve()
-        existing_file(path, f"{where}.file")
-        try:
-            present = checksum(path)
-        except OSError as error:
-            raise InputError(
-                f"{path} can't be read ({error.strerror})", where=f"{where}.file"
-            ) from error
-        if isinstance(meant, str) and meant.lower() != present:
-            raise InputError(
-                f"{path.name} is not the file that the case means: its checksum is "
-                f"{present[:12]}..., not {meant[:12]}...",
-                where=f"{where}.file",
-                remedy="Bring back that file, or remove sha256 to take this one",
-            )
-        return {**table, "file": str(path), "sha256": present}
+        return with_checksum(table, "file", folder, where)
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield directions on one axis and a map coarser than the grid."""
         down, forward = self.down, self.forward
         if down[0] in "+-" and forward[0] in "+-" and down[1] == forward[1]:
             yield InputError(
@@ -174,14 +151,13 @@ class Shoe(Section):
 
     @classmethod
     def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
-        """Return the table without heel and tread where a file gives the outsole."""
         outsole = table.get("outsole")
         if outsole is None:
             return {key: item for key, item in table.items() if key != "outsole"}
         for part in ("heel", "tread"):
             if table.get(part) and not from_catalogue(table[part]):
                 raise InputError(
-                    f"is not used: the outsole comes from {_plain(outsole.get('file'))}",
+                    f"is not used: the outsole comes from {plain(outsole.get('file'))}",
                     where=f"{where}.{part}",
                     remedy=f"Remove [shoe.{part}], or shoe.outsole.file",
                 )
@@ -194,8 +170,3 @@ def from_catalogue(item: Any) -> bool:
         return all(from_catalogue(value) for value in item.values())
     origin = origin_of(item)
     return origin is not None and origin.kind == CATALOGUE
-
-
-def _plain(given: Any) -> Any:
-    origin = origin_of(given)
-    return given if origin is None else origin.leaf.given

@@ -42,7 +42,6 @@ class FlatRear(RearProfile):
     name: ClassVar[str] = "flat"
 
     def build(self) -> Profile:
-        """Return the profile as geometry."""
         from underfoot.shoe import Flat
 
         return Flat()
@@ -58,7 +57,6 @@ class FacetRear(RearProfile):
     length: Length = Field(description="along the sole, from the rear")
 
     def build(self) -> Profile:
-        """Return the profile as geometry."""
         from underfoot.shoe import Facet, Flat
 
         return Facet(self.angle, self.length) if self.angle else Flat()
@@ -73,13 +71,11 @@ class RockerRear(RearProfile):
     start: Length = Field(description="from the rear end")
 
     def build(self) -> Profile:
-        """Return the profile as geometry."""
         from underfoot.shoe import Rocker
 
         return Rocker(self.radius, self.start)
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield a start beyond the radius."""
         if self.start >= self.radius:
             yield RangeError(
                 f"{display(self.start, 'm')} reaches beyond the rocker's radius",
@@ -135,7 +131,6 @@ class HeelPlan(SolePlan):
     front_radius: Rounding = default(0.0, "0 mm", "the heel goes on into the shoe")
 
     def build(self, tread: TreadPattern, outsole_thickness: float) -> SoleShape:
-        """Return the new heel with its tread."""
         from underfoot.shoe import Heel
 
         return Heel(
@@ -148,7 +143,6 @@ class HeelPlan(SolePlan):
         )
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield radii that do not fit the plan form."""
         limit = min(self.width, self.length) / 2
         for name in ("rear_radius", "front_radius", "edge_radius"):
             if getattr(self, name) > limit:
@@ -182,7 +176,6 @@ class WholePlan(SolePlan):
         return max(self.width, self.ball_width)
 
     def build(self, tread: TreadPattern, outsole_thickness: float) -> SoleShape:
-        """Return the new sole with its tread."""
         from underfoot.shoe.parametric import ShoeOutline, ToeSpring, WholeSole
 
         toe = None
@@ -196,7 +189,6 @@ class WholePlan(SolePlan):
         )
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield half a toe spring."""
         if (self.toe_spring is None) != (self.toe_start is None):
             missing = "toe_spring" if self.toe_spring is None else "toe_start"
             yield InputError(
@@ -241,7 +233,6 @@ class TreadPattern(Option):
         """Return the lugs; None for an untreaded sole."""
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield what does not fit the outsole or the grid."""
         if self.arc_channel is not None:
             yield from _through(case, self.arc_channel.depth, f"{where}.arc_channel.depth")
             yield from _resolved(case, f"{where}.arc_channel.width", self.arc_channel.width)
@@ -253,7 +244,6 @@ class NoTread(TreadPattern):
     name: ClassVar[str] = "none"
 
     def build(self) -> Tread | None:
-        """Return no lugs."""
         return None
 
 
@@ -272,7 +262,6 @@ class Lugs(TreadPattern):
     sipes: SipeCuts | None = None
 
     def build(self) -> Tread | None:
-        """Return the lugs."""
         from underfoot.shoe import Sipes, Tread
 
         cuts = self.sipes
@@ -290,7 +279,6 @@ class Lugs(TreadPattern):
         )
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield what does not fit the outsole, the lug or the grid."""
         yield from super().problems(case, where)
         if self.depth == 0.0:
             yield RangeError(
@@ -374,7 +362,6 @@ class ChevronTread(Lugs):
     angle: Turn = default(0.0, "0 deg", "of the arms against the transverse direction")
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield arms along the shoe too."""
         yield from super().problems(case, where)
         if abs(self.angle) > math.radians(75):
             yield RangeError(

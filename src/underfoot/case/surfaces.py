@@ -131,7 +131,6 @@ class CompositeInterface(Interface):
     )
 
     def rq(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> SourcedValue:
-        """Return Rq of the interface, m."""
         ours, theirs = shoe.rq_or_estimate, floor.rq_or_estimate
         if ours is None or theirs is None:
             raise InputError("no roughness is given", where="interface.effective_rq")
@@ -144,14 +143,12 @@ class CompositeInterface(Interface):
         )
 
     def rq_deviation(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> float | None:
-        """Return the standard deviation of Rq over itself; None when neither part has one."""
         heights = [(part.rq_or_estimate or 0.0, part.rq_uncertainty) for part in (shoe, floor)]
         squares = math.fsum(rq**2 for rq, _ in heights)
         known = [rq * spread for rq, spread in heights if spread is not None]
         return math.hypot(*known) / squares if known and squares > 0 else None
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield an unknown or impossible roughness."""
         unknown = [
             p for p in ("shoe", "floor") if getattr(case, p).roughness.rq_or_estimate is None
         ]
@@ -177,14 +174,11 @@ class MeasuredInterface(Interface):
     )
 
     def rq(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> SourcedValue:
-        """Return Rq of the interface, m."""
         return self.sourced("effective_rq")
 
     def rq_deviation(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> float | None:
-        """Return the standard deviation of Rq over itself; None when not given."""
         spread = self.sourced("effective_rq").uncertainty
         return None if spread is None else spread / self.effective_rq
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield an impossible roughness."""
         yield from self._too_rough(case, f"{where}.effective_rq")

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core import DataError, InputError, nearest_match, to_si
+
+from .section import origin_of
 
 if TYPE_CHECKING:
     from underfoot.trials.readers.sheet import Sheet
@@ -30,6 +32,43 @@ def existing_file(path: Path, where: str, pattern: str = "*") -> Path:
         nearest=nearest_match(path.name, near),
         remedy="The path counts from the folder of the case file",
     )
+
+
+def plain(given: Any) -> Any:
+    """Return a given value without its origin."""
+    origin = origin_of(given)
+    return given if origin is None else origin.leaf.given
+
+
+def with_checksum(table: dict[str, Any], key: str, folder: Path, where: str) -> dict[str, Any]:
+    """Return the table with the full path under ``key`` and the checksum of that file.
+
+    Raises
+    ------
+    InputError
+        No such file, or another one than ``sha256`` of the table means.
+    """
+    from underfoot.core.files import checksum
+
+    name, meant = plain(table.get(key)), plain(table.get("sha256"))
+    if not isinstance(name, str):
+        return table
+    path = (folder / name).resolve()
+    existing_file(path, f"{where}.{key}")
+    try:
+        present = checksum(path)
+    except OSError as error:
+        raise InputError(
+            f"{path} can't be read ({error.strerror})", where=f"{where}.{key}"
+        ) from error
+    if isinstance(meant, str) and meant.lower() != present:
+        raise InputError(
+            f"{path.name} is not the file that the case means: its checksum is "
+            f"{present[:12]}..., not {meant[:12]}...",
+            where=f"{where}.{key}",
+            remedy="Bring back that file, or remove sha256 to take this one",
+        )
+    return {**table, key: str(path), "sha256": present}
 
 
 def table_columns(

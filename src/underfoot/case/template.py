@@ -9,7 +9,6 @@ from pydantic.fields import FieldInfo
 from underfoot.core.catalogue import Catalogue
 
 from .compose import DRY
-from .friction import StribeckOption
 from .parts import CATALOGUE_SECTIONS, FILE_VERSION, field_at
 from .versions import RENAMED, SHORT
 
@@ -68,25 +67,14 @@ def template(
         lines += ["cof = 0.8  # measured on this shoe and floor, dry: set your own", ""]
     else:
         lines += ["[friction]"]
-        about = "# as measured with the fluid; others: underfoot explain friction.model"
-        lines += [_commented('# model = "stribeck"', about)]
-        lines += [*_friction(contaminant, catalogue), "", "[interface]"]
+        about = "# of compound, roughness and fluid; others: underfoot explain friction.model"
+        lines += [_commented('# model = "pair"', about), "", "[interface]"]
         about = "# interface against both stylus Rq together; assumed, uncertain: vary it"
         lines += [_commented("# roughness_beyond_cutoff = 2.0", about), ""]
     lines += ["[risk]"]
     lines += ["# rcof_mean = 0.20  # friction that the people who walk there need, and its"]
     lines += ["# rcof_sd = 0.03    # standard deviation between them"]
     return "\n".join(lines) + "\n"
-
-
-def _friction(contaminant: str, catalogue: Catalogue) -> list[str]:
-    """Return what the catalogue knows of friction under a fluid and the usual law takes."""
-    lines = []
-    for path, leaf in catalogue.entry("fluid", contaminant).under("boundary").items():
-        if path in StribeckOption.model_fields:
-            remark = _remark(field_at(f"friction.{path}"), assumed=leaf.assumed)
-            lines.append(_commented(f"# {path} = {_text(leaf.given)}", remark))
-    return lines
 
 
 def _overrides(section: str, name: str, catalogue: Catalogue) -> list[str]:

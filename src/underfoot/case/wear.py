@@ -42,7 +42,6 @@ class Wear(Option):
         """Return what is worn away as geometry; None where a contact must be solved for it."""
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield wear through the outsole."""
         thickness = case.shoe.sole.outsole_thickness
         if self.depth >= thickness:
             yield RangeError(
@@ -61,7 +60,6 @@ class PlaneWear(Wear):
     angle: WearAngle = default(0.0, "0 deg", "even wear")
 
     def build(self) -> SoleWear | None:
-        """Return the plane."""
         from underfoot.shoe import WearPlane
 
         return WearPlane(self.depth, self.angle)
@@ -84,7 +82,6 @@ class PatchWear(Wear):
     )
 
     def build(self) -> SoleWear | None:
-        """Return the patch."""
         from underfoot.shoe.worn import WornPatch
 
         return WornPatch(
@@ -98,7 +95,6 @@ class PatchWear(Wear):
         )
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield a patch larger than the shoe too."""
         yield from super().problems(case, where)
         heel = case.shoe.heel
         if heel is None or self.depth == 0.0:
@@ -136,11 +132,9 @@ class ArchardWear(Wear):
     )
 
     def build(self) -> SoleWear | None:
-        """Return None: the worn shape comes from solved contacts."""
         return None
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        """Yield an outsole from a file too, whose solid is not known."""
         yield from super().problems(case, where)
         if case.shoe.outsole is not None and self.depth > 0:
             yield InputError(

@@ -1,36 +1,54 @@
-"""The commands, each a thin module that imports what it needs when it runs."""
+"""The commands; each imports what it needs when it runs."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand
 
+from . import cases, tools
 from .calibrate import calibrate_app
-from .catalogue import catalogue
-from .check import check
-from .compare import compare
 from .contact import contact
-from .doctor import doctor
-from .explain import explain
-from .guard import guarded
-from .method import by_method
+from .guard import guarded, say
 from .micro import micro
-from .migrate import migrate
-from .new import new
 from .outsole import outsole_app
-from .renamed import Command
-from .risk import risk
-from .run import run
-from .schema import schema
-from .sensitivity import sensitivity
-from .slip import slip
 from .stribeck import stribeck
 from .studies import studies_app
 from .trials import trials_app
-from .validate import validate
-from .wear import wear
+
+RENAMED = {
+    "risk": {"--wanted": "--target"},
+    "slip": {"--fine": "--full"},
+    "explain": {"--full": "--all"},
+    "run": {"--no-changes": "--no-advice"},
+}
+"""New name of each old option, by command."""
+NOTES = {
+    ("slip", "--full"): "--full now selects the fine grid; --full-model simulates every walker "
+    "with the full model.",
+}
+"""What to know of an option whose meaning has changed."""
+
+
+class Command(TyperCommand):
+    """A command that takes the old names of its options, with a note, for one version."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Replace old names, with a note for each on standard error."""
+        renamed = RENAMED.get(self.name or "", {})
+        current = []
+        for text in args:
+            option, sign, value = text.partition("=")
+            if option in renamed:
+                say(f"note: {option} is now {renamed[option]}; the old name ends with 0.3.")
+                option = renamed[option]
+            elif (self.name, option) in NOTES:
+                say(f"note: {NOTES[self.name or '', option]}")
+            current.append(option + sign + value)
+        return super().parse_args(ctx, current)
+
 
 app = typer.Typer(
     name="underfoot",
@@ -39,37 +57,30 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     add_completion=False,
 )
-
-
-def _add(*commands: Callable[..., None]) -> None:
-    for command in commands:
-        app.command(cls=Command)(guarded(command))
-
-
-_add(
-    new,
-    check,
-    run,
-    slip,
-    compare,
-    sensitivity,
-    risk,
-    wear,
+COMMANDS: tuple[Callable[..., None], ...] = (
+    tools.new,
+    cases.check,
+    cases.run,
+    cases.slip,
+    cases.compare,
+    cases.sensitivity,
+    cases.risk,
+    cases.wear,
     stribeck,
     contact,
     micro,
-    explain,
-    catalogue,
-    schema,
-    migrate,
-    validate,
-    doctor,
+    tools.explain,
+    tools.catalogue,
+    tools.schema,
+    tools.migrate,
+    tools.validate,
+    tools.doctor,
 )
-app.command("test", cls=Command)(guarded(by_method))
-app.add_typer(trials_app)
-app.add_typer(calibrate_app)
-app.add_typer(studies_app)
-app.add_typer(outsole_app)
+for command in COMMANDS:
+    app.command(cls=Command)(guarded(command))
+app.command("test", cls=Command)(guarded(cases.by_method))
+for group in (trials_app, calibrate_app, studies_app, outsole_app):
+    app.add_typer(group)
 
 
 def _version(requested: bool) -> None:

@@ -8,10 +8,13 @@ from typing import Annotated
 import typer
 
 from .guard import guarded, say
-from .options import Overwrite
+from .options import AsJson, Overwrite, Quick
+from .output import finish
 
 calibrate_app = typer.Typer(
-    name="calibrate", help="Make laws of trials, with their uncertainty.", no_args_is_help=True
+    name="calibrate",
+    help="Make laws of trials and readings, with their uncertainty.",
+    no_args_is_help=True,
 )
 
 
@@ -73,9 +76,41 @@ def law(
     )
 
 
+def pair(
+    readings: Annotated[
+        Path, typer.Argument(help="Readings (TOML), each with the case of it.", show_default=False)
+    ],
+    out: Annotated[Path, typer.Option("--out", help="File of draws (CSV).", show_default=False)],
+    quick: Quick = True,
+    json: AsJson = False,
+    overwrite: Overwrite = False,
+) -> None:
+    """Narrow the friction of a pair by readings of your own tester or a certificate.
+
+    READINGS has tables [[reading]] with case = "my_case.toml", cof = 0.24 and, where known,
+    sd = 0.02 and kind = "lower" (a certificate's limit). A case uses what it writes with
+    friction.draws_file = "FILE".
+    """
+    from underfoot.calibrate.pair_readings import calibrated_pair, read_pair_readings
+    from underfoot.core import InputError
+    from underfoot.core.progress import bar
+
+    if out.exists() and not overwrite:
+        raise InputError(f"{out} exists", where="--out", remedy="Add --overwrite to replace it")
+    given = read_pair_readings(readings)
+    with bar("Calibrating the law of the pair") as progress:
+        calibration = calibrated_pair(given, quick=quick, progress=progress)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    calibration.draws.write(out)
+    finish(calibration, None, json=json)
+    if not json:
+        print(f'\nwrote {out}\nUse it: friction.draws_file = "{out.name}"')
+
+
 calibrate_app.command()(guarded(law))
+calibrate_app.command()(guarded(pair))
 
 
 @calibrate_app.callback()
 def _group() -> None:
-    """Make laws of trials, with their uncertainty."""
+    """Make laws of trials and readings, with their uncertainty."""

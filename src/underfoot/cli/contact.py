@@ -7,11 +7,12 @@ from typing import Annotated
 
 import typer
 
-from .options import AsJson, OutFolder, Overwrite, ShowAll
-from .output import answer
+from .options import Shared, sharing
 
 
+@sharing(without=("quick", "set_", "processes", "catalogue"))
 def contact(
+    shared: Shared,
     surface: Annotated[
         Path | None,
         typer.Argument(help="Measured profile or height map.", show_default=False),
@@ -57,10 +58,6 @@ def contact(
     cutoffs: Annotated[
         bool, typer.Option("--cutoffs", help="Show how it depends on the shortest wave.")
     ] = False,
-    out: OutFolder = None,
-    json: AsJson = False,
-    everything: ShowAll = False,
-    overwrite: Overwrite = False,
 ) -> None:
     """Press and slide rubber over a rough surface: real contact, hysteresis, gap, leakage.
 
@@ -68,19 +65,24 @@ def contact(
     is mirrored. Dry, without adhesion.
     """
     from underfoot.core import to_si
-    from underfoot.questions.contact import RubberChoice, SurfaceChoice, rough_contact
+    from underfoot.questions.contact import rough_contact, rubber_from, surface_from
 
     load = to_si(pressure, "Pa", where="--pressure")
     velocity = to_si(speed, "m/s", where="--speed")
-    rubber = RubberChoice(modulus, shore, spectrum, material)
-    floor = SurfaceChoice(surface, rms, hurst, longest, shortest, checkerboard, points, seed)
-    answer(
+    rubber = rubber_from(modulus=modulus, shore=shore, spectrum=spectrum, name=material)
+    floor = surface_from(
+        surface,
+        rms=rms,
+        hurst=hurst,
+        longest=longest,
+        shortest=shortest,
+        checkerboard=checkerboard,
+        points=points,
+        seed=seed,
+    )
+    shared.answer(
         "rough contact",
         lambda progress: rough_contact(
             floor, rubber, pressure=load, speed=velocity, poisson_ratio=poisson, scales=cutoffs
         ),
-        out=out,
-        overwrite=overwrite,
-        json=json,
-        everything=everything,
     )

@@ -9,12 +9,10 @@ import signal
 import sys
 from collections.abc import Callable
 from types import FrameType
-from typing import ParamSpec, TypeVar
+from typing import Any
 
 import typer
 
-P = ParamSpec("P")
-R = TypeVar("R")
 INTERRUPTED, TERMINATED, INTERNAL = 130, 143, 70
 """Exit codes after Ctrl-C, after SIGTERM and after an error of the program itself."""
 _FILE_ERRORS = {
@@ -34,17 +32,17 @@ class Terminated(KeyboardInterrupt):
     """The process was asked to end (SIGTERM); it cleans up as after Ctrl-C."""
 
 
-def guarded(command: Callable[P, R]) -> Callable[P, R]:
+def guarded(command: Callable[..., None]) -> Callable[..., None]:
     """Return the command with its errors on standard error; UNDERFOOT_DEBUG=1 shows tracebacks."""
 
     @functools.wraps(command)
-    def run(*args: P.args, **kwargs: P.kwargs) -> R:
+    def run(*args: Any, **kwargs: Any) -> None:
         from underfoot.core.errors import Cancelled, UnderfootError
 
         if os.environ.get("UNDERFOOT_DEBUG") == "1":
             return command(*args, **kwargs)
         try:
-            return command(*args, **kwargs)
+            command(*args, **kwargs)
         except Terminated:
             say("terminated; no partial output was left behind")
             raise typer.Exit(TERMINATED) from None

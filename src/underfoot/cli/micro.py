@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from .guard import say
-from .micro_input import TEMPLATE, MicroCase, micro_case
 from .options import AsJson, Overwrite
 
 if TYPE_CHECKING:
     from underfoot.block import MicroResult
+
+    from .micro_input import MicroCase
 
 
 def micro(
@@ -58,6 +59,8 @@ def micro(
     from underfoot.core import InputError
     from underfoot.core.files import check_writable_folder, whole_folder
     from underfoot.core.progress import bar
+
+    from .micro_input import TEMPLATE, micro_case
 
     if template:
         print(TEMPLATE, end="")

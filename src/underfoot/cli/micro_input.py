@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
+import shutil
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from underfoot.block import (
-        ExplicitSettings,
-        MicroBlock,
-        MicroLoading,
-        MicroMaterial,
-        MicroResult,
-        MicroSurface,
-    )
-    from underfoot.core import Progress
+from underfoot import block as model
+from underfoot import material
+from underfoot.core import DataError, InputError, Progress, to_si, unknown_name
+from underfoot.core.cache import content_hash, default_folder
+from underfoot.core.checks import choice, exactly_one
+from underfoot.core.files import read_toml
+from underfoot.surface import HeightMap, periodised, read_surface
 
 TEMPLATE = """\
 # A rough rubber block on a rough rigid floor. What is left out takes the value shown.
@@ -61,29 +61,19 @@ hourglass = "stiffness"         # or "viscous", which makes friction of its own
 contact_damping = 0.3           # of critical
 precision = "double"            # or "single"
 """
-KEYS: Mapping[str, frozenset[str]] = {
-    "": frozenset(
-        {"name", "solver", "finite_strain", "block", "floor", "material", "loading", "explicit"}
-    ),
-    "block": frozenset(
-        {"size", "elements", "bottom_layer", "roughness_layers", "sides", "roughness"}
-    ),
-    "block.roughness": frozenset({"peak_to_valley", "wavelength", "form", "file"}),
-    "floor": frozenset({"peak_to_valley", "wavelength", "form", "file"}),
-    "material": frozenset({"report", "power_law", "spectrum", "poisson_ratio", "bulk_modulus"}),
-    "material.power_law": frozenset({"shear_modulus", "exponent"}),
-    "explicit": frozenset({"mass_scaling", "hourglass", "contact_damping", "precision"}),
-    "loading": frozenset(
-        {
-            "mean_pressure",
-            "speeds",
-            "slide_distance",
-            "control",
-            "press_time",
-            "hold_time",
-            "ramp_time",
-        }
-    ),
+_DEFAULTS = tomllib.loads(TEMPLATE)
+_CHOICES = ("peak_to_valley", "report")
+"""Keys in whose place others may stand: a section that is given does not take the template's."""
+_ROUGHNESS = {"peak_to_valley", "wavelength", "form", "file"}
+_KEYS: Mapping[str, set[str]] = {
+    "": set(_DEFAULTS),
+    "block": set(_DEFAULTS["block"]),
+    "block.roughness": _ROUGHNESS,
+    "floor": _ROUGHNESS,
+    "material": {"report", "power_law", "spectrum", "poisson_ratio", "bulk_modulus"},
+    "material.power_law": {"shear_modulus", "exponent"},
+    "loading": set(_DEFAULTS["loading"]),
+    "explicit": set(_DEFAULTS["explicit"]),
 }
 
 
@@ -93,14 +83,14 @@ class MicroCase:
 
     name: str
     solver: str
-    block: MicroBlock
-    floor: MicroSurface
-    material: MicroMaterial
-    loading: MicroLoading
+    block: model.MicroBlock
+    floor: model.MicroSurface
+    material: model.MicroMaterial
+    loading: model.MicroLoading
     speeds: tuple[float, ...]
-    assumed: tuple[str, ...] = ()
-    finite_strain: bool = False
-    settings: ExplicitSettings | None = None
+    assumed: tuple[str, ...]
+    finite_strain: bool
+    settings: model.ExplicitSettings
     _condensed: list[Any] = field(default_factory=list)
 
     def result(
@@ -110,52 +100,43 @@ class MicroCase:
         *,
         snapshots: int = 0,
         folder: Path | None = None,
-    ) -> MicroResult:
+    ) -> model.MicroResult:
         """Return the history at one speed; ``folder`` gets the snapshots of explicit elements."""
         loading = replace(self.loading, speed=speed)
         if self.solver == "explicit":
             return self._explicit(loading, progress, snapshots, folder)
-        from underfoot.block import (
-            condensed_block,
-            condensed_poisson_ratio,
-            condensed_sliding,
-            pressed_block,
-            pressure_ratio_of,
-        )
-
         if not self._condensed:
-            nu = condensed_poisson_ratio(self.material)
+            nu = model.condensed_poisson_ratio(self.material)
+            ratio = model.pressure_ratio_of(self.material, loading)
             self._condensed.append(
-                pressed_block(
-                    self.block, nu, pressure_ratio_of(self.material, loading), progress=progress
-                )
+                model.pressed_block(self.block, nu, ratio, progress=progress)
                 if self.finite_strain
-                else condensed_block(self.block, nu, progress=progress)
+                else model.condensed_block(self.block, nu, progress=progress)
             )
-        return condensed_sliding(
+        return model.condensed_sliding(
             self._condensed[0], self.floor, self.material, loading, progress=progress
         )
 
     def _explicit(
-        self, loading: MicroLoading, progress: Progress, snapshots: int, folder: Path | None
-    ) -> MicroResult:
+        self, loading: model.MicroLoading, progress: Progress, snapshots: int, folder: Path | None
+    ) -> model.MicroResult:
         """March on from where an earlier run of the same case was stopped, if there is one."""
-        import shutil
-
-        from underfoot.block import explicit_sliding
-        from underfoot.core import DataError
-        from underfoot.core.cache import content_hash, default_folder
-
         parts = (self.block, self.floor, self.material, loading, self.settings)
         kept = default_folder() / "micro" / content_hash(*parts, snapshots)
         restart = kept / "restart.npz"
-        run: dict[str, Any] = {"output": kept, "overwrite": True, "progress": progress}
-        run["snapshots"] = snapshots
+        run = partial(
+            model.explicit_sliding,
+            *parts,
+            output=kept,
+            overwrite=True,
+            snapshots=snapshots,
+            progress=progress,
+        )
         try:
-            result = explicit_sliding(*parts, restart=restart if restart.is_file() else None, **run)
+            result = run(restart=restart if restart.is_file() else None)
         except DataError:  # left by another version
             shutil.rmtree(kept)
-            result = explicit_sliding(*parts, **run)
+            result = run()
         if folder is not None:
             for path in sorted(kept.glob("block*")):
                 folder.mkdir(parents=True, exist_ok=True)
@@ -190,86 +171,76 @@ def micro_case(path: Path, *, solver: str | None = None) -> MicroCase:
         A file that is no TOML, an unknown key, a value without its unit, and what block, surface,
         material and loading refuse.
     """
-    import tomllib
+    case = _completed(read_toml(path), {**_DEFAULTS, "name": path.stem}, "", str(path))
+    chosen = choice(str(solver or case["solver"]), ("condensed", "explicit"), "solver")
+    if not isinstance(case["finite_strain"], bool):
+        raise InputError(
+            f"{case['finite_strain']!r}", where="finite_strain", allowed="true or false"
+        )
+    block, loading = case["block"], case["loading"]
+    control = choice(str(loading["control"]), ("height", "load"), "loading.control")
+    speeds = loading["speeds"]
+    size: Any = tuple(to_si(side, "m", where=f"{path}, block.size") for side in block["size"])
+    rubber, assumed = _material(case["material"], path)
 
-    from underfoot.block import ExplicitSettings, MicroBlock, MicroLoading
-    from underfoot.core import InputError, to_si, unknown_name
+    def si(section: str, key: str, unit: str) -> float:
+        return to_si(case[section][key], unit, where=f"{path}, {section}.{key}")
 
-    try:
-        given = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"is no TOML file ({error})", where=str(path)) from error
-    _check_keys(given, "", str(path))
-    chosen = solver or given.get("solver", "condensed")
-    if chosen not in ("condensed", "explicit"):
-        raise unknown_name("solver", str(chosen), ("condensed", "explicit"), where="solver")
-    finite_strain = given.get("finite_strain", False)
-    if not isinstance(finite_strain, bool):
-        raise InputError(f"{finite_strain!r}", where="finite_strain", allowed="true or false")
-    where = str(path)
-    block = given.get("block", {})
-    values: dict[str, Any] = {
-        key: block[key] for key in ("roughness_layers", "sides") if key in block
-    }
-    if "size" in block:
-        values["size"] = tuple(to_si(v, "m", where=f"{where}, block.size") for v in block["size"])
-    if "elements" in block:
-        values["elements"] = tuple(block["elements"])
-    if "bottom_layer" in block:
-        values["bottom_layer"] = to_si(block["bottom_layer"], "m", where=f"{where}, block")
-    rough = block.get("roughness", {"peak_to_valley": "35.1 um", "wavelength": "0.5 mm"})
-    floor = given.get("floor", {"peak_to_valley": "35.1 um", "wavelength": "0.4 mm"})
-    loading = given.get("loading", {})
-    speeds = loading.get("speeds", ["0.1 m/s", "1 m/s"])
-    times = ("press_time", "hold_time", "ramp_time")
-    pressing: dict[str, Any] = {
-        key: to_si(loading[key], "s", where=f"{where}, loading.{key}")
-        for key in times
-        if key in loading
-    }
-    control = loading.get("control", "height")
-    if control not in ("height", "load"):
-        raise unknown_name("control", str(control), ("height", "load"), where="loading.control")
-    material, assumed = _material(given.get("material", {"report": "rubber"}), path)
     return MicroCase(
-        str(given.get("name", path.stem)),
-        str(chosen),
-        MicroBlock(**values, roughness=_surface(rough, path, "block.roughness")),
-        _surface(floor, path, "floor"),
-        material,
-        MicroLoading(
-            mean_pressure=to_si(
-                loading.get("mean_pressure", "160 kPa"), "Pa", where="loading.mean_pressure"
-            ),
-            slide_distance=to_si(
-                loading.get("slide_distance", "1.2 mm"), "m", where="loading.slide_distance"
-            ),
+        str(case["name"]),
+        chosen,
+        model.MicroBlock(
+            size,
+            tuple(block["elements"]),
+            si("block", "bottom_layer", "m"),
+            _surface(block["roughness"], path, "block.roughness"),
+            block["roughness_layers"],
+            block["sides"],
+        ),
+        _surface(case["floor"], path, "floor"),
+        rubber,
+        model.MicroLoading(
+            mean_pressure=si("loading", "mean_pressure", "Pa"),
+            slide_distance=si("loading", "slide_distance", "m"),
             control="load" if control == "load" else "displacement",
-            **pressing,
+            **{key: si("loading", key, "s") for key in ("press_time", "hold_time", "ramp_time")},
         ),
         tuple(
-            to_si(v, "m/s", where="loading.speeds")
-            for v in (speeds if isinstance(speeds, list) else [speeds])
+            to_si(speed, "m/s", where=f"{path}, loading.speeds")
+            for speed in (speeds if isinstance(speeds, list) else [speeds])
         ),
-        tuple(assumed),
-        finite_strain,
-        ExplicitSettings(**given.get("explicit", {})),
+        assumed,
+        case["finite_strain"],
+        model.ExplicitSettings(**case["explicit"]),
     )
 
 
-def _surface(given: Mapping[str, Any], path: Path, where: str) -> MicroSurface:
-    from underfoot.block import MicroSurface
-    from underfoot.core import InputError, to_si
+def _completed(
+    given: Mapping[str, Any], defaults: Mapping[str, Any], section: str, path: str
+) -> dict[str, Any]:
+    """Return a section with the template's values where it has none; refuse unknown keys."""
+    completed = {**defaults, **given}
+    for key, value in given.items():
+        if key not in _KEYS[section]:
+            place = f"{path}, {section}" if section else path
+            raise unknown_name("key", key, _KEYS[section], where=place)
+        inner = f"{section}.{key}" if section else key
+        if inner in _KEYS:
+            if not isinstance(value, Mapping):
+                raise InputError(f"{value!r} is no section", where=f"{path}, {inner}")
+            kept = {k: v for k, v in defaults.get(key, {}).items() if k not in _CHOICES}
+            completed[key] = _completed(value, kept, inner, path)
+    return completed
 
+
+def _surface(given: Mapping[str, Any], path: Path, where: str) -> model.MicroSurface:
     if "file" in given:
-        from underfoot.surface import HeightMap, periodised, read_surface
-
-        found = read_surface(path.parent / str(given["file"]))
-        if not isinstance(found, HeightMap):
+        surface = read_surface(path.parent / str(given["file"]))
+        if not isinstance(surface, HeightMap):
             raise InputError(
                 "holds a profile", where=f"{path}, {where}.file", allowed="a height map"
             )
-        return MicroSurface.of_map(found if found.periodic else periodised(found))
+        return model.MicroSurface.of_map(surface if surface.periodic else periodised(surface))
     if "peak_to_valley" not in given:
         raise InputError(
             "no roughness",
@@ -278,81 +249,38 @@ def _surface(given: Mapping[str, Any], path: Path, where: str) -> MicroSurface:
         )
     height = to_si(given["peak_to_valley"], "m", where=f"{path}, {where}.peak_to_valley")
     if height == 0.0:
-        return MicroSurface()
-    return MicroSurface(
-        str(given.get("form", "cosine")),
-        height,
-        to_si(given.get("wavelength", "0.4 mm"), "m", where=f"{path}, {where}.wavelength"),
-    )
+        return model.MicroSurface()
+    wavelength = to_si(given["wavelength"], "m", where=f"{path}, {where}.wavelength")
+    return model.MicroSurface(str(given.get("form", "cosine")), height, wavelength)
 
 
-def _material(given: Mapping[str, Any], path: Path) -> tuple[MicroMaterial, list[str]]:
-    from underfoot.block import MicroMaterial
-    from underfoot.core import InputError, to_si
-    from underfoot.material import (
-        RelaxationSpectrum,
-        bulk_modulus,
-        power_law_spectrum,
-        read_prony,
-        report_elastomer,
-        shear_from_young,
-        youngs_modulus_from_shear,
-    )
-
-    kinds = [key for key in ("report", "power_law", "spectrum") if key in given]
-    if len(kinds) != 1:
-        raise InputError(
-            "no relaxation data" if not kinds else f"{' and '.join(kinds)} together",
-            where=f"{path}, material",
-            allowed='one of: report = "rubber", power_law = {...}, spectrum = "prony.csv"',
-        )
-    nu = float(given.get("poisson_ratio", 0.499))
-    if not 0.0 < nu < 0.5:
-        raise InputError(
-            f"Poisson's ratio {nu:g}",
-            where=f"{path}, material.poisson_ratio",
-            allowed="0 to 0.5, both excluded",
-            remedy="Choose 0.499 for rubber: at 0.5 the bulk modulus is infinite",
-        )
-    assumed = []
-    if kinds[0] == "report":
-        young = report_elastomer(str(given["report"])).modulus
-        assert isinstance(young, RelaxationSpectrum)
-        shear = shear_from_young(young)
-    elif kinds[0] == "power_law":
+def _material(given: Mapping[str, Any], path: Path) -> tuple[model.MicroMaterial, tuple[str, ...]]:
+    where = f"{path}, material"
+    kinds = {key: given.get(key) for key in ("report", "power_law", "spectrum")}
+    allowed = 'one of: report = "rubber", power_law = {...}, spectrum = "prony.csv"'
+    kind = exactly_one(kinds, "no relaxation data", where, allowed)
+    nu = float(given["poisson_ratio"])
+    if kind == "report":
+        young = material.report_elastomer(str(given["report"])).modulus
+        assert isinstance(young, material.RelaxationSpectrum)
+        shear = material.shear_from_young(young)
+    elif kind == "power_law":
         law = given["power_law"]
-        if not isinstance(law, Mapping) or "shear_modulus" not in law or "exponent" not in law:
+        if len(law) < 2:
             raise InputError(
                 f"{law!r}",
-                where=f"{path}, material.power_law",
+                where=f"{where}.power_law",
                 allowed='{ shear_modulus = "0.44 MPa", exponent = 0.12 }',
             )
-        shear = power_law_spectrum(
-            to_si(law["shear_modulus"], "Pa", where="material.power_law.shear_modulus"),
-            float(law["exponent"]),
-            terms_per_decade=2,
+        modulus = to_si(law["shear_modulus"], "Pa", where=f"{where}.power_law.shear_modulus")
+        shear = material.power_law_spectrum(modulus, float(law["exponent"]), terms_per_decade=2)
+    else:
+        shear = material.shear_from_young(
+            material.read_prony(path.parent / str(given["spectrum"])), nu
         )
-    else:
-        shear = shear_from_young(read_prony(path.parent / str(given["spectrum"])), nu)
-    if shear.assumed:
-        assumed.append(f"material: {shear.source}")
+    at = "equilibrium" if shear.equilibrium_modulus else "instantaneous"
+    rubber = model.MicroMaterial.from_poisson(shear, nu, at=at)
     if "bulk_modulus" in given:
-        k = to_si(given["bulk_modulus"], "Pa", where="material.bulk_modulus")
-    else:
-        g = shear.equilibrium_modulus or shear.instantaneous_modulus
-        k = float(bulk_modulus(youngs_modulus_from_shear(g, nu), nu))
-    return MicroMaterial(shear, k, source=shear.source), assumed
-
-
-def _check_keys(given: Mapping[str, Any], section: str, path: str) -> None:
-    from underfoot.core import InputError, unknown_name
-
-    for key, value in given.items():
-        if key not in KEYS[section]:
-            place = f"{path}, {section}" if section else path
-            raise unknown_name("key", key, KEYS[section], where=place)
-        inner = f"{section}.{key}" if section else key
-        if inner in KEYS:
-            if not isinstance(value, Mapping):
-                raise InputError(f"{value!r} is no section", where=f"{path}, {inner}")
-            _check_keys(value, inner, path)
+        bulk_modulus = to_si(given["bulk_modulus"], "Pa", where=f"{where}.bulk_modulus")
+        rubber = replace(rubber, bulk_modulus=bulk_modulus)
+    return rubber, (f"material: {shear.source}",) if shear.assumed else ()

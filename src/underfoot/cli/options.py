@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import inspect
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from .output import answer
+
 if TYPE_CHECKING:
     from underfoot.case import Case
     from underfoot.core.catalogue import Catalogue
+    from underfoot.core.presentation import Presentable
 
 CasePath = Annotated[Path, typer.Argument(help="Case file (TOML).", show_default=False)]
 CatalogueFolders = Annotated[
@@ -68,6 +74,69 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print JSON in SI units ins
 ShowAll = Annotated[
     bool, typer.Option("--all", help="Print every assumption and remark, not the first three.")
 ]
+
+
+def optional(text: str, *names: str) -> Any:
+    """Return an option with its help text, whose default is not shown."""
+    return typer.Option(*names, help=text, show_default=False)
+
+
+@dataclass
+class Shared:
+    """Options of most commands as given; those that a command does not have keep their default."""
+
+    out: OutFolder = None
+    quick: Quick = False
+    set_: Settings = None
+    processes: Processes = None
+    json: AsJson = False
+    everything: ShowAll = False
+    overwrite: Overwrite = False
+    catalogue: CatalogueFolders = None
+
+    def case(self, path: Path, settings: Sequence[str] = ()) -> Case:
+        """Return the case of a file with ``settings`` and the changes of ``--set``."""
+        return loaded(path, self.catalogue, [*(self.set_ or ()), *settings])
+
+    def answer(self, title: str, compute: Callable[..., Presentable]) -> None:
+        """Compute, write and print the answer of ``compute(progress)``."""
+        answer(
+            title,
+            compute,
+            out=self.out,
+            overwrite=self.overwrite,
+            json=self.json,
+            everything=self.everything,
+        )
+
+    def ask(self, case: Case, question: Callable[..., Presentable], **arguments: Any) -> None:
+        """Answer a question about a case that is computed on several processes."""
+        arguments |= {"quick": self.quick, "processes": self.processes}
+        self.answer(case.name, lambda progress: question(case, progress=progress, **arguments))
+
+
+def sharing(
+    *, quick: bool = False, without: tuple[str, ...] = ()
+) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Give a command the options of ``Shared`` after its own, and them as its first argument.
+
+    ``quick`` is the default of that option; ``without`` names the options that it does not have.
+    """
+    options = inspect.signature(Shared, eval_str=True).parameters.values()
+    options = [option for option in options if option.name not in without]
+    further = [each.replace(default=quick) if each.name == "quick" else each for each in options]
+
+    def decorate(command: Callable[..., None]) -> Callable[..., None]:
+        @wraps(command)
+        def run(**given: Any) -> None:
+            shared = Shared(**{option.name: given.pop(option.name) for option in options})
+            command(shared, **given)
+
+        _, *own = inspect.signature(command, eval_str=True).parameters.values()
+        vars(run)["__signature__"] = inspect.Signature([*own, *further])
+        return run
+
+    return decorate
 
 
 def catalogue_for(case: Path | None, folders: list[Path] | None) -> Catalogue:

@@ -1,7 +1,5 @@
 """``underfoot outsole ...``: outsoles from files, and files from a few lengths."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from .guard import guarded
-from .options import AsJson, PlateFrame, RampAngle
+from .options import AsJson, PlateFrame, RampAngle, optional
 from .trials_analyse import analyse, simulate
 from .trials_steps import definitions, edit, export
 
@@ -35,23 +35,12 @@ def describe(
     ],
     companion: Annotated[
         Path | None,
-        typer.Option(
-            "--with",
-            help="Second file of the same recording, as .forces beside .trc.",
-            show_default=False,
-        ),
+        optional("Second file of the same recording, as .forces beside .trc.", "--with"),
     ] = None,
-    profile: Annotated[
-        Path | None,
-        typer.Option(help="Profile (TOML) of columns, axes and heels.", show_default=False),
-    ] = None,
+    profile: Annotated[Path | None, optional("Profile (TOML) of columns, axes and heels.")] = None,
     definition: Annotated[str, typer.Option(help="Definition of RCOF.")] = "default",
-    vertical: Annotated[
-        str | None, typer.Option(help="Vertical axis, as z.", show_default=False)
-    ] = None,
-    walking: Annotated[
-        str | None, typer.Option(help="Walking direction, as +x.", show_default=False)
-    ] = None,
+    vertical: Annotated[str | None, optional("Vertical axis, as z.")] = None,
+    walking: Annotated[str | None, optional("Walking direction, as +x.")] = None,
     baseline: Annotated[
         bool, typer.Option(help="Subtract the force of the unloaded plate.")
     ] = True,

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from .guard import say
-from .options import CatalogueFolders, Overwrite, PlateFrame, RampAngle
+from .options import CatalogueFolders, Overwrite, PlateFrame, RampAngle, optional
 
 
 def analyse(
@@ -16,39 +16,28 @@ def analyse(
         Path | None, typer.Argument(help="Folder of trial files.", show_default=False)
     ] = None,
     protocol: Annotated[
-        str | None,
-        typer.Option(
-            help="How numbers are taken and judged; --list shows all.", show_default=False
-        ),
+        str | None, optional("How numbers are taken and judged; --list shows all.")
     ] = None,
-    out: Annotated[
-        Path | None, typer.Option(help="Folder for report, tables and figures.", show_default=False)
-    ] = None,
+    out: Annotated[Path | None, optional("Folder for report, tables and figures.")] = None,
     profile: Annotated[
         Path | None,
-        typer.Option(
-            help="What columns, axes and markers are called; else profile.toml in the folder.",
-            show_default=False,
-        ),
+        optional("What columns, axes and markers are called; else profile.toml in the folder."),
     ] = None,
     conditions: Annotated[
         Path | None,
-        typer.Option(
-            help='Table (CSV, XLSX) with a column "file"; by default conditions.csv in the folder.',
-            show_default=False,
+        optional(
+            'Table (CSV, XLSX) with a column "file"; by default conditions.csv in the folder.'
         ),
     ] = None,
     names: Annotated[
         str,
-        typer.Option(
-            help=r"Pattern of file names that gives conditions, as "
-            r"'S(?P<subject>\d+)_(?P<shoe>\w+?)_(?P<n>\d+)'; else the protocol's.",
-            show_default=False,
+        optional(
+            r"Pattern of file names that gives conditions, as "
+            r"'S(?P<subject>\d+)_(?P<shoe>\w+?)_(?P<n>\d+)'; else the protocol's."
         ),
     ] = "",
     merge_spelling: Annotated[
-        bool,
-        typer.Option("--merge-spelling", help='Take "hard", "Hard" and "HARD" as one level.'),
+        bool, typer.Option("--merge-spelling", help='Take "hard", "Hard" and "HARD" as one level.')
     ] = False,
     ramp: RampAngle = None,
     plate_frame: PlateFrame = None,
@@ -124,7 +113,7 @@ def analyse(
 
 def simulate(
     kind: Annotated[str, typer.Argument(help="slips, study, tester, pin_on_disk or relaxation.")],
-    out: Annotated[Path, typer.Option(help="Folder to be made.", show_default=False)],
+    out: Annotated[Path, optional("Folder to be made.")],
     count: Annotated[int, typer.Option(help="Number of trials, persons, scans or repeats.")] = 12,
     seed: Annotated[int, typer.Option(help="Another seed gives other trials.")] = 1,
     overwrite: Overwrite = False,

@@ -3,42 +3,32 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from .guard import say
-from .options import Overwrite
+from .options import Overwrite, optional
+
+if TYPE_CHECKING:
+    from underfoot.trials.gait import RequiredFriction
 
 ProfilePath = Annotated[
     Path | None,
-    typer.Option(
-        help="Profile (TOML) of columns, axes and heels; else profile.toml in the folder.",
-        show_default=False,
-    ),
+    optional("Profile (TOML) of columns, axes and heels; else profile.toml in the folder."),
 ]
 
 
 def edit(
     file: Annotated[Path, typer.Argument(help="Recording with force plates.", show_default=False)],
-    reason: Annotated[str, typer.Option(help="Why; it goes to the edit log.", show_default=False)],
+    reason: Annotated[str, optional("Why; it goes to the edit log.")],
     step: Annotated[
-        str,
-        typer.Option(
-            help='Number of the step as `describe` prints it, or a time in it, as "3.1 s".',
-            show_default=False,
-        ),
+        str, optional('Number of the step as `describe` prints it, or a time in it, as "3.1 s".')
     ],
-    contact: Annotated[
-        str | None, typer.Option(help='New time of contact, as "3.060 s".', show_default=False)
-    ] = None,
-    toe_off: Annotated[
-        str | None, typer.Option(help='New time of toe off, as "3.65 s".', show_default=False)
-    ] = None,
-    side: Annotated[str | None, typer.Option(help="left or right.", show_default=False)] = None,
-    plate: Annotated[
-        str | None, typer.Option(help='The plate the step is on, as "plate 2".', show_default=False)
-    ] = None,
+    contact: Annotated[str | None, optional('New time of contact, as "3.060 s".')] = None,
+    toe_off: Annotated[str | None, optional('New time of toe off, as "3.65 s".')] = None,
+    side: Annotated[str | None, optional("left or right.")] = None,
+    plate: Annotated[str | None, optional('The plate the step is on, as "plate 2".')] = None,
     exclude: Annotated[bool, typer.Option("--exclude", help="Leave the step out.")] = False,
     profile: ProfilePath = None,
 ) -> None:
@@ -47,9 +37,10 @@ def edit(
     An edit that names no step, changes nothing or contradicts another is refused.
     """
     from underfoot.core import InputError
+    from underfoot.trials.analyse.conditions import profile_of
     from underfoot.trials.analyse.edit_table import edit_from, edits_of, with_edit_row
     from underfoot.trials.gait import required_frictions
-    from underfoot.trials.readers import Profile, read_profile, read_trial
+    from underfoot.trials.readers import read_trial
 
     given = {"contact": contact, "toe off": toe_off, "side": side, "plate": plate}
     changes = [(what, value) for what, value in given.items() if value is not None]
@@ -62,9 +53,7 @@ def edit(
             allowed="one of --contact, --toe-off, --side, --plate, --exclude",
         )
     what, value = changes[0]
-    own = file.parent / "profile.toml"
-    path = profile or (own if own.is_file() else None)
-    read = read_profile(path) if path else Profile()
+    read, _ = profile_of(file.parent, profile)
     trial = read_trial(file, read)
     log = file.parent / "edits.csv"
     new = edit_from(step, what, value, reason, "this edit")
@@ -73,18 +62,14 @@ def edit(
     before = required_frictions(trial.with_edits(*earlier), **options)
     after = required_frictions(trial.with_edits(*earlier, new), **options)
     for old, one in zip(before, after, strict=True):
-        if old.stance.by_hand == one.stance.by_hand:
-            continue
-        print(f"{old.stance.label}: {_words(old)} -> {_words(one)}")
+        if old.stance.by_hand != one.stance.by_hand:
+            print(f"{old.stance.label}: {_words(old)} -> {_words(one)}")
     text = log.read_text(encoding="utf-8-sig") if log.is_file() else ""
     log.write_text(with_edit_row(text, (file.name, step, what, value, reason)), encoding="utf-8")
     say(f"written to {log}")
 
 
-def _words(step: object) -> str:
-    from underfoot.trials.gait import RequiredFriction
-
-    assert isinstance(step, RequiredFriction)
+def _words(step: RequiredFriction) -> str:
     stance, value = step.stance, step.measurement.value
     number = f"RCOF {value:.4f}" if value is not None else step.measurement.reason
     return f"{stance.side}, {stance.contact:.4f} to {stance.toe_off:.4f} s, {number}"
@@ -92,9 +77,7 @@ def _words(step: object) -> str:
 
 def definitions(
     folder: Annotated[Path, typer.Argument(help="Folder of walking trials.", show_default=False)],
-    out: Annotated[
-        Path | None, typer.Option(help="Folder for both tables (CSV).", show_default=False)
-    ] = None,
+    out: Annotated[Path | None, optional("Folder for both tables (CSV).")] = None,
     profile: ProfilePath = None,
     overwrite: Overwrite = False,
 ) -> None:
@@ -120,10 +103,9 @@ def definitions(
 
 def export(
     file: Annotated[Path, typer.Argument(help="Recording.", show_default=False)],
-    out: Annotated[Path, typer.Option(help="C3D file to be written.", show_default=False)],
+    out: Annotated[Path, optional("C3D file to be written.")],
     companion: Annotated[
-        Path | None,
-        typer.Option("--with", help="Second file of the same recording.", show_default=False),
+        Path | None, optional("Second file of the same recording.", "--with")
     ] = None,
     profile: ProfilePath = None,
 ) -> None:

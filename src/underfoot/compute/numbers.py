@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -30,9 +31,18 @@ _INPUTS = {
     "fine_roughness": "fine roughness",
     "roughness_factor": "roughness",
     "shear_strength": "shear strength",
+    "film": "boundary film",
+    "dry": "dry-like part",
+    "kappa": "fading of the dry-like part",
+    "laboratory": "difference between laboratories",
+    "pair": "difference between pairs",
     "model": "the law itself",
     "tread_position": "position of the tread",
+    "film load": "load on the film",
 }
+FILM_ERROR = math.log(1.41)
+"""Standard deviation of ln F / (W - F), F the load on the film: the model's error on the untreaded
+heels of the report's slip tester (docs/studies/calibration.md), assumed of every sole."""
 GRID_ORDER = 1.0
 """Order of convergence: steps and rims of the film are first order on square cells."""
 GRID_NAMES = ("fluid_load", "fluid_load_sensor", "peak_fluid_pressure_sensor")
@@ -136,8 +146,10 @@ def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
     if sampled.left_out:
         names = ", ".join(_INPUTS.get(name, name) for name in sampled.left_out)
         parts.append(f"taken as exact: {names}")
-    held = "at each position of the tread" if "tread_position" in sampled.share else "as computed"
-    drawn = f"{sampled.cof.size} draws, seed {sampled.seed}; contact and film {held}"
+    held = "film thickness as computed"
+    if "tread_position" in sampled.share:
+        held = "contact and film at each position of the tread in turn"
+    drawn = f"{sampled.cof.size} draws, seed {sampled.seed}; {held}"
     return {"cof_spread_from": ", ".join(parts), "cof_spread_how": drawn}
 
 

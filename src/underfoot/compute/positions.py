@@ -96,6 +96,8 @@ class TreadPositions:
     def averaged(self, numbers: Mapping[str, SourcedValue]) -> dict[str, SourcedValue]:
         """Return the numbers with means over the positions, and the spread of COF over them."""
         found = dict(numbers)
+        if len(self.places) == 1:
+            return found
         for name, values in self.values.items():
             if not name.startswith("cof"):
                 found[name] = replace(numbers[name], value=float(values.mean()))
@@ -117,7 +119,6 @@ class TreadPositions:
         if len(self.places) == 1:
             return {"tread_position": f"as the case describes it; {failed} of the average"}
         return {
-            "cof_spread_basis": "spread of friction law and tread position",
             "tread_position": f"COF {self._range('cof')}, load on the film "
             f"{self._range('fluid_load', 'N')} over {len(self.places)} positions of the pattern. "
             "Numbers are means over them; maps and histories show the position that the case "

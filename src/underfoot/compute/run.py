@@ -24,6 +24,7 @@ from underfoot.core import (
 
 from .contact import Recorder, history_fields, refuse_too_large, scanned, solved_motion
 from .numbers import (
+    FILM_ERROR,
     grid_errors,
     grid_words,
     readings,
@@ -118,6 +119,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         speed=speed,
         wet=contact.wet,
         fluid_inputs={} if context.viscosity is None else {"viscosity": context.viscosity},
+        film_error=FILM_ERROR,
         seed=case.numerics.seed,
     )
     friction = cof(
@@ -154,6 +156,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             numbers = positions.averaged(numbers)
         share = (numbers["fluid_load"].value or 0.0) / contact.normal_force
         labels = {**regime(share), **spread_origin(sampled)}
+        if basis := getattr(law, "spread_basis", ""):
+            labels["cof_spread_basis"] = basis
         if positions:
             labels |= positions.labels()
         if remark := peak_pressure(sole, contact.total_pressure).remark:
@@ -198,6 +202,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             sensor,
             parts.total - np.where(contact.wet, 0.0, parts.viscous),
             history_fields(contact, recorder),
+            None if sampled is None else sampled.cof,
         ).assign(positions.fields() if positions else {}),
         status=status,
         breaches=_texts(breaches),
@@ -305,6 +310,7 @@ def _fields(
     sensor: SensorReading,
     shear: object,
     in_time: tuple[dict[str, Any], dict[str, Any]],
+    draws: np.ndarray | None,
 ) -> xarray.Dataset:
     import xarray
 
@@ -332,6 +338,11 @@ def _fields(
             "outline_x": ("outline", sole.outline[:, 0], {"units": "m"}),
             "outline_y": ("outline", sole.outline[:, 1], {"units": "m"}),
             **histories,
+            **(
+                {}
+                if draws is None
+                else {"cof_draws": ("draw", draws, {"units": "1", "long_name": "draws of COF"})}
+            ),
         },
         coords={
             "x": ("x", sole.x, {"units": "m", "long_name": "along the walking direction"}),

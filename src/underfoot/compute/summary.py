@@ -95,9 +95,13 @@ def headline(
     if not status.usable:
         return (f"No result: {status}. {status.remedy}",)
     cof = scalars["cof"]
-    basis = labels.get("cof_spread_basis", "spread of the friction law alone")
-    known = cof.uncertainty is not None
-    sentences = [f"Available COF {value_text('cof', cof)}{f' ({basis})' if known else ''}."]
+    text = value_text("cof", cof)
+    if cof.uncertainty is not None:
+        measure = "one standard deviation" if "±" in text else "95 % interval"
+        text += f", {measure} {labels.get('cof_spread_basis', 'of friction law and film load')}"
+    if "cof_tread_position" in scalars:
+        text += ", mean over positions of the tread"
+    sentences = [f"Available COF {text}."]
     regime = f" ({labels['regime']})" if "regime" in labels else ""
     limit = str(friction_limit(scalars))
     sentences.append(limit.replace(" of the load", f" of the load{regime}", 1))

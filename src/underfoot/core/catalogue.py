@@ -8,7 +8,6 @@ the ``source`` of the entry, or tables with ``value`` and any of ``uncertainty``
 from __future__ import annotations
 
 import os
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache
@@ -17,6 +16,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from .errors import InputError, unknown_name
+from .files import read_toml
 from .leaves import INHERITED, Leaf, leaves
 from .presentation import Presentable, Table
 from .values import SourcedValue
@@ -202,11 +202,7 @@ def _folder_tables(
         if built_in and file.parent.name in ("statements", "measurements"):
             continue
         origin = BUILT_IN if built_in else str(file)
-        try:
-            content = tomllib.loads(file.read_text(encoding="utf-8"))
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise InputError(f"is no TOML file ({error})", where=str(file)) from error
-        for kind, entries in content.items():
+        for kind, entries in read_toml(file).items():
             if kind not in KINDS:
                 raise unknown_name("kind of catalogue entry", kind, KINDS, where=str(file))
             if not isinstance(entries, dict):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -62,6 +62,15 @@ def choice(value: str, allowed: Iterable[str], where: str) -> str:
     if value not in allowed:
         raise unknown_name(where.rpartition(".")[2].replace("_", " "), value, allowed, where=where)
     return value
+
+
+def exactly_one(given: Mapping[str, object], missing: str, where: str, allowed: str) -> str:
+    """Return the key whose value is given; refuse none (``missing`` says of what) and several."""
+    names = [name for name, value in given.items() if value is not None]
+    if len(names) != 1:
+        what = f"{' and '.join(names)} together" if names else missing
+        raise InputError(what, where=where, allowed=allowed)
+    return names[0]
 
 
 def poisson_ratio(value: float, where: str = "poisson_ratio") -> float:

@@ -1,93 +1,46 @@
 """Fluid film between sole and floor: Reynolds and cavitation, wedge, squeeze, soft EHL, regimes."""
 
-from ._kernels.faces import Upwinding, upwinding
-from .operator import Cavity, Conductance, FilmOperator, Stencil, divergence, film_operator
-from .patir_cheng_1978 import (
-    patir_cheng_breaches,
-    patir_cheng_mean_gap,
-    patir_cheng_pressure_factors,
-)
-from .patir_cheng_1979 import patir_cheng_shear_factor, patir_cheng_shear_flow
-from .pattern import Pattern
-from .pressure import Film, FilmPressure, film_history, film_pressure
-from .regimes import (
-    SHARE_LIMITS,
-    Lubrication,
-    RegimeComparison,
-    RegimeMap,
-    compare_regimes,
-    fluid_load_share,
-    lubrication_by_lambda,
-    lubrication_by_load_share,
-    regime_map,
-)
-from .soft_ehl import (
-    FilmRegime,
-    SoftEhlFilm,
-    effective_modulus,
-    film_regime,
-    lambda_ratio,
-    radius_of_parabola,
-    soft_ehl,
-)
-from .squeeze_times import (
-    rectangle_torsion_constant,
-    squeeze_gap,
-    squeeze_time_disc,
-    squeeze_time_rectangle,
-)
-from .tapered_wedge import (
-    TaperedWedge,
-    side_leakage,
-    tapered_wedge,
-    wedge_film,
-    wedge_load_factor,
-)
-from .wall_shear import wall_shear
-
-__all__ = [
-    "SHARE_LIMITS",
-    "Cavity",
-    "Conductance",
-    "Film",
-    "FilmOperator",
-    "FilmPressure",
-    "FilmRegime",
-    "Lubrication",
-    "Pattern",
-    "RegimeComparison",
-    "RegimeMap",
-    "SoftEhlFilm",
-    "Stencil",
-    "TaperedWedge",
-    "Upwinding",
-    "compare_regimes",
-    "divergence",
-    "effective_modulus",
-    "film_history",
-    "film_operator",
-    "film_pressure",
-    "film_regime",
-    "fluid_load_share",
-    "lambda_ratio",
-    "lubrication_by_lambda",
-    "lubrication_by_load_share",
-    "patir_cheng_breaches",
-    "patir_cheng_mean_gap",
-    "patir_cheng_pressure_factors",
-    "patir_cheng_shear_factor",
-    "patir_cheng_shear_flow",
-    "radius_of_parabola",
-    "rectangle_torsion_constant",
-    "regime_map",
-    "side_leakage",
-    "soft_ehl",
-    "squeeze_gap",
-    "squeeze_time_disc",
-    "squeeze_time_rectangle",
-    "tapered_wedge",
-    "upwinding",
-    "wall_shear",
-    "wedge_film",
-    "wedge_load_factor",
-]
+from ._kernels.faces import Upwinding as Upwinding
+from ._kernels.faces import upwinding as upwinding
+from .operator import Cavity as Cavity
+from .operator import Conductance as Conductance
+from .operator import FilmOperator as FilmOperator
+from .operator import Stencil as Stencil
+from .operator import divergence as divergence
+from .operator import film_operator as film_operator
+from .patir_cheng_1978 import patir_cheng_breaches as patir_cheng_breaches
+from .patir_cheng_1978 import patir_cheng_mean_gap as patir_cheng_mean_gap
+from .patir_cheng_1978 import patir_cheng_pressure_factors as patir_cheng_pressure_factors
+from .patir_cheng_1979 import patir_cheng_shear_factor as patir_cheng_shear_factor
+from .patir_cheng_1979 import patir_cheng_shear_flow as patir_cheng_shear_flow
+from .pattern import Pattern as Pattern
+from .pressure import Film as Film
+from .pressure import FilmPressure as FilmPressure
+from .pressure import film_history as film_history
+from .pressure import film_pressure as film_pressure
+from .regimes import SHARE_LIMITS as SHARE_LIMITS
+from .regimes import Lubrication as Lubrication
+from .regimes import RegimeComparison as RegimeComparison
+from .regimes import RegimeMap as RegimeMap
+from .regimes import compare_regimes as compare_regimes
+from .regimes import fluid_load_share as fluid_load_share
+from .regimes import lubrication_by_lambda as lubrication_by_lambda
+from .regimes import lubrication_by_load_share as lubrication_by_load_share
+from .regimes import regime_map as regime_map
+from .soft_ehl import FilmRegime as FilmRegime
+from .soft_ehl import SoftEhlFilm as SoftEhlFilm
+from .soft_ehl import effective_modulus as effective_modulus
+from .soft_ehl import film_regime as film_regime
+from .soft_ehl import lambda_ratio as lambda_ratio
+from .soft_ehl import radius_of_parabola as radius_of_parabola
+from .soft_ehl import soft_ehl as soft_ehl
+from .squeeze_times import rectangle_torsion_constant as rectangle_torsion_constant
+from .squeeze_times import squeeze_gap as squeeze_gap
+from .squeeze_times import squeeze_time_disc as squeeze_time_disc
+from .squeeze_times import squeeze_time_rectangle as squeeze_time_rectangle
+from .tapered_wedge import TaperedWedge as TaperedWedge
+from .tapered_wedge import side_leakage as side_leakage
+from .tapered_wedge import tapered_wedge as tapered_wedge
+from .tapered_wedge import wedge_film as wedge_film
+from .tapered_wedge import wedge_load_factor as wedge_load_factor
+from .wall_shear import wall_shear as wall_shear

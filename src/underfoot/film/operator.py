@@ -169,23 +169,15 @@ def film_operator(
 ) -> FilmOperator:
     """Return the mass balance of a film of given gap.
 
-    Parameters
-    ----------
-    gap
-        (nx, ny) m, finite and above 0.
-    along, across
-        Conductance along x and along y.
-    spacing
-        Cell size along x and along y, m.
-    speed
-        U, mean speed of the walls on the grid along +x, m/s (minus half the sliding speed where
-        the grid moves with the sole).
-    storage
-        Area of a cell over the time step, m^2/s; 0 for a steady film.
-    roughness_flow
-        s, flow per width that roughness carries besides, (nx, ny), m^2/s.
-    upwinding
-        Of the x faces; None for rigid walls.
+    Parameters:
+        gap: (nx, ny) m, finite and above 0.
+        along, across: Conductance along x and along y.
+        spacing: Cell size along x and along y, m.
+        speed: U, mean speed of the walls on the grid along +x, m/s (minus half the sliding speed
+            where the grid moves with the sole).
+        storage: Area of a cell over the time step, m^2/s; 0 for a steady film.
+        roughness_flow: s, flow per width that roughness carries besides, (nx, ny), m^2/s.
+        upwinding: Of the x faces; None for rigid walls.
     """
     dx, dy = spacing
     k, dk = along

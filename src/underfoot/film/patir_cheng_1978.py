@@ -42,21 +42,15 @@ def patir_cheng_pressure_factors(
 
     Between the table's gammas the factor is linear in ln gamma.
 
-    Parameters
-    ----------
-    gap
-        h, distance of the undeformed mean planes, m, any shape, above 0. Below H = 0.5 the value
-        at 0.5 is held (``patir_cheng_breaches`` names it).
-    rq
-        Roughness of both walls together, (Rq1^2 + Rq2^2)^(1/2), m.
-    anisotropy
-        gamma, correlation length along the motion over that across, 1/9 to 9: above 1 for
-        grooves along the motion, which let more flow through.
+    Parameters:
+        gap: h, distance of the undeformed mean planes, m, any shape, above 0. Below H = 0.5 the
+            value at 0.5 is held (``patir_cheng_breaches`` names it).
+        rq: Roughness of both walls together, (Rq1^2 + Rq2^2)^(1/2), m.
+        anisotropy: gamma, correlation length along the motion over that across, 1/9 to 9: above 1
+            for grooves along the motion, which let more flow through.
 
-    Raises
-    ------
-    InputError, RangeError
-        Values that are not physical; gamma beyond the table.
+    Raises:
+        InputError, RangeError: Values that are not physical; gamma beyond the table.
 
     Gaussian heights, no deformation, contact as overlap: at H below 1 a soft rubber conforms and
     leaves other channels than this. Source: Patir and Cheng (1978) J. Lubr. Technol. 100:12-17.

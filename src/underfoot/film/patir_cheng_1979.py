@@ -37,13 +37,10 @@ def patir_cheng_shear_factor(gap: ArrayLike, rq: float, *, anisotropy: float = 1
     Between the table's gammas linear in ln gamma. 0 for grooves without end along the motion, and
     for gaps far above the roughness.
 
-    Parameters
-    ----------
-    gap
-        h, distance of the undeformed mean planes, m, any shape, above 0. Below H = 0.5 the value
-        at 0.5 is held.
-    rq, anisotropy
-        As ``patir_cheng_pressure_factors``; gamma of the rough wall.
+    Parameters:
+        gap: h, distance of the undeformed mean planes, m, any shape, above 0. Below H = 0.5 the
+            value at 0.5 is held.
+        rq, anisotropy: As ``patir_cheng_pressure_factors``; gamma of the rough wall.
 
     Source: Patir and Cheng (1979) J. Lubr. Technol. 101:220-229.
     """

@@ -34,37 +34,26 @@ FEWEST_CELLS = 32
 class Film:
     """Walls, liquid and rim of a film; arrays (nx, ny), scalars stand for uniform fields.
 
-    Parameters
-    ----------
-    gap
-        m, above 0 where there is film, inf where the surroundings are open.
-    spacing
-        Cell size in m, one or (along x, along y).
-    viscosity, speed
-        Pa s; V, sliding speed of the upper wall along +x over the lower one, m/s. A gap that widens
-        towards +x builds pressure.
-    upper_speed
-        Speed of the upper wall along +x on the grid, m/s. 0: the grid moves with it (a sole that
-        slides over a floor); equal to ``speed``: the grid rests on the lower wall; with ``speed``
-        0: both walls move alike (rolling).
-    mask
-        True where there is film; elsewhere the pressure is ``rim_pressure`` and liquid enters with
-        ``rim_fraction`` (at the cell's centre, or at its face where its gap is inf). None: all
-        cells but the outermost. Nothing flows through the edges of the array.
-    flow_factor
-        phi, one or (along x, along y).
-    shear_flow
-        s = sigma phi_s, m: flow that roughness carries, positive where the upper wall's roughness
-        carries more (``patir_cheng_shear_flow``).
-    rim_pressure, rim_fraction
-        Pa above the pressure in cavities (so the ambient pressure, 1e5 Pa, if cavities hold
-        vapour; 0 if they fill with air), 0 or more; 0 to 1, below 1 only where that pressure is 0
-        (a starved inlet).
+    Parameters:
+        gap: m, above 0 where there is film, inf where the surroundings are open.
+        spacing: Cell size in m, one or (along x, along y).
+        viscosity, speed: Pa s; V, sliding speed of the upper wall along +x over the lower one, m/s.
+            A gap that widens towards +x builds pressure.
+        upper_speed: Speed of the upper wall along +x on the grid, m/s. 0: the grid moves with it (a
+            sole that slides over a floor); equal to ``speed``: the grid rests on the lower wall;
+            with ``speed`` 0: both walls move alike (rolling).
+        mask: True where there is film; elsewhere the pressure is ``rim_pressure`` and liquid enters
+            with ``rim_fraction`` (at the cell's centre, or at its face where its gap is inf). None:
+            all cells but the outermost. Nothing flows through the edges of the array.
+        flow_factor: phi, one or (along x, along y).
+        shear_flow: s = sigma phi_s, m: flow that roughness carries, positive where the upper wall's
+            roughness carries more (``patir_cheng_shear_flow``).
+        rim_pressure, rim_fraction: Pa above the pressure in cavities (so the ambient pressure, 1e5
+            Pa, if cavities hold vapour; 0 if they fill with air), 0 or more; 0 to 1, below 1 only
+            where that pressure is 0 (a starved inlet).
 
-    Raises
-    ------
-    InputError
-        Values that are not finite or not physical.
+    Raises:
+        InputError: Values that are not finite or not physical.
     """
 
     gap: ArrayLike
@@ -123,23 +112,16 @@ def film_pressure(
     cavitates it is Reynolds' equation. Load of second order in the cell size; the liquid of a
     cavity is carried upwind and stepped by implicit Euler, both of first order.
 
-    Parameters
-    ----------
-    film
-        Walls, liquid and rim.
-    before, time_step
-        Liquid per area (m) at the start of a step of ``time_step`` (s), at whose end the walls are
-        those of ``film``. Neither: a steady film. Walls that close at v over a full film:
-        ``before = gap + v time_step``.
-    backend
-        Sparse factorization: "pardiso", "superlu" or None for the fastest installed.
+    Parameters:
+        film: Walls, liquid and rim.
+        before, time_step: Liquid per area (m) at the start of a step of ``time_step`` (s), at whose
+            end the walls are those of ``film``. Neither: a steady film. Walls that close at v over
+            a full film: ``before = gap + v time_step``.
+        backend: Sparse factorization: "pardiso", "superlu" or None for the fastest installed.
 
-    Raises
-    ------
-    InputError
-        Values that are not finite or not physical.
-    ConvergenceError
-        The set of full cells did not settle.
+    Raises:
+        InputError: Values that are not finite or not physical.
+        ConvergenceError: The set of full cells did not settle.
 
     Source: Reynolds 1886; Jakobsson and Floberg 1957, Olsson 1965; pressure-fraction form of Bayada
     and of Giacopini et al. (2010, J. Tribol. 132:041702); semismooth Newton after Woloszynski,

@@ -64,24 +64,18 @@ def soft_ehl(
     H_c   = 7.32 (1 - 0.72 exp(-0.28 k)) U^0.64 W^-0.22
     H = h / R',  U = eta u / (E' R'),  W = F / (E' R'^2)
 
-    Parameters
-    ----------
-    viscosity, speed, load, radius
-        Pa s; sliding speed, m/s (0 gives no film); N; reduced radius R' along the motion, m.
-        Scalars or arrays that go together.
-    effective_modulus
-        E', Pa: 2 E / (1 - nu^2) of the soft body against a rigid wall (``effective_modulus``).
-    ellipticity
-        k, 1 for a circle.
-    speed_is
-        "entrainment": u = half the sliding speed, the mean of both surfaces, as the formula was
-        made; "sliding": u = the sliding speed, as the report put it (films 1.57 times
-        as thick).
+    Parameters:
+        viscosity, speed, load, radius: Pa s; sliding speed, m/s (0 gives no film); N; reduced
+            radius R' along the motion, m. Scalars or arrays that go together.
+        effective_modulus: E', Pa: 2 E / (1 - nu^2) of the soft body against a rigid wall
+            (``effective_modulus``).
+        ellipticity: k, 1 for a circle.
+        speed_is: "entrainment": u = half the sliding speed, the mean of both surfaces, as the
+            formula was made; "sliding": u = the sliding speed, as the report put it (films 1.57
+            times as thick).
 
-    Raises
-    ------
-    InputError
-        Values that are not finite or not physical.
+    Raises:
+        InputError: Values that are not finite or not physical.
 
     Fully flooded, smooth, no change of viscosity with pressure, half-space behind the contact.
     ``breaches`` of the result names what leaves the fitted ``RANGES``.
@@ -168,14 +162,12 @@ def film_regime(
     piezoviscous-rigid 141 g_V^0.375 (1 - exp(-0.0387 a));
     piezoviscous-elastic 3.42 g_V^0.49 g_E^0.17 (1 - exp(-0.68 k)); k = a^(2 / pi).
 
-    Parameters
-    ----------
-    viscosity, entrainment_speed, load, radius, effective_modulus
-        As in ``soft_ehl``; the speed is the mean of both surfaces, above 0.
-    radius_ratio
-        a, radius across over radius along the motion.
-    pressure_viscosity
-        xi, 1/Pa; 0 leaves the two piezoviscous theories out. For oils some 2e-8.
+    Parameters:
+        viscosity, entrainment_speed, load, radius, effective_modulus: As in ``soft_ehl``; the speed
+            is the mean of both surfaces, above 0.
+        radius_ratio: a, radius across over radius along the motion.
+        pressure_viscosity: xi, 1/Pa; 0 leaves the two piezoviscous theories out. For oils some
+            2e-8.
 
     Source: Hamrock and Dowson 1979; Esfahanian and Hamrock 1991, Tribol. Trans. 34:628-632
     (coefficients as in public lecture codes; 141 and 128 from memory).

@@ -26,12 +26,9 @@ def squeeze_time_disc(
 
     t = 3 pi eta R^4 / (4 F) (1 / h2^2 - 1 / h1^2)
 
-    Parameters
-    ----------
-    viscosity, load
-        Pa s, N; scalars or arrays.
-    radius, start_gap, end_gap
-        m; h1 > h2 > 0.
+    Parameters:
+        viscosity, load: Pa s, N; scalars or arrays.
+        radius, start_gap, end_gap: m; h1 > h2 > 0.
 
     Rigid, smooth, parallel, fully flooded, no inertia; a soft sole traps a thicker pocket in its
     middle and takes longer to empty it. Source: Stefan 1874.

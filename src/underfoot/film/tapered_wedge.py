@@ -42,14 +42,10 @@ def tapered_wedge(
     (h^3 f')' = -mu^2 h^3 f, each of which decays from the sides as cosh(mu y): no grid. Ten digits
     in the load; pressure 0 all round, no cavitation (none in a wedge that narrows), no flexing.
 
-    Parameters
-    ----------
-    viscosity, speed
-        Pa s; sliding speed, m/s.
-    length, width
-        l along the motion, b across it, m.
-    leading_gap, trailing_gap
-        h1 > h0 > 0, m.
+    Parameters:
+        viscosity, speed: Pa s; sliding speed, m/s.
+        length, width: l along the motion, b across it, m.
+        leading_gap, trailing_gap: h1 > h0 > 0, m.
 
     Source: Reynolds 1886; separation after Michell 1905.
     """

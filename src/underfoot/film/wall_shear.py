@@ -27,15 +27,11 @@ def wall_shear(
     one, which slides at V along +x, along -x. Where the film has ruptured, the streamers that are
     left shear over the share theta of the area.
 
-    Parameters
-    ----------
-    pressure, gap, fraction
-        (nx, ny) Pa, m, theta; as ``film_pressure`` gives them.
-        An open gap (inf) has no shear.
-    spacing
-        Cell size along x, m.
-    viscosity, speed
-        Pa s; sliding speed V, m/s.
+    Parameters:
+        pressure, gap, fraction: (nx, ny) Pa, m, theta; as ``film_pressure`` gives them. An open gap
+            (inf) has no shear.
+        spacing: Cell size along x, m.
+        viscosity, speed: Pa s; sliding speed V, m/s.
 
     Newtonian fluid, no slip at the walls, smooth. Second order inside, first at the array's ends.
     Source: Reynolds 1886.

@@ -1,7 +1,5 @@
 """Viscosity of glycerol-water mixtures: Cheng (2008)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -30,25 +28,19 @@ def glycerol_water_viscosity(
     mu = mu_w^a mu_g^(1-a), a = 1 - C + A B C (1-C) / (A C + B (1-C)), with C the mass fraction,
     A = 0.705 - 0.0017 T, B = (4.9 + 0.036 T) A^2.5 and T in degrees Celsius.
 
-    Parameters
-    ----------
-    fraction
-        Glycerol fraction, 0 to 1 (0.25, not 25).
-    temperature
-        K; tested from 273.15 to 373.15.
-    basis
-        "mass" or "volume" (volumes before mixing, at ``temperature``). The same percentage
-        differs by up to 60 % in viscosity between the two: it has to be known.
+    Parameters:
+        fraction: Glycerol fraction, 0 to 1 (0.25, not 25).
+        temperature: K; tested from 273.15 to 373.15.
+        basis: "mass" or "volume" (volumes before mixing, at ``temperature``). The same percentage
+            differs by up to 60 % in viscosity between the two: it has to be known.
 
     Arrays broadcast; a float comes back for scalars. Cheng states a deviation of at most 5 %
     from the tabulated data for 0 to 100 degC and every concentration.
 
-    Raises
-    ------
-    RangeError
-        Fraction outside 0 to 1, temperature outside 0 to 100 degC (the fit has no meaning there).
-    InputError
-        Unknown basis; a value that is not finite.
+    Raises:
+        RangeError: Fraction outside 0 to 1, temperature outside 0 to 100 degC (the fit has no
+            meaning there).
+        InputError: Unknown basis; a value that is not finite.
     """
     share, celsius = _checked(fraction, temperature, basis)
     mass = share if basis == "mass" else _mass_fraction(share, celsius)

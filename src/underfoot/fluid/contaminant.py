@@ -1,7 +1,5 @@
 """What is spilled on the floor."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -19,18 +17,12 @@ CHENG_DEVIATION = 0.05
 class Contaminant:
     """A Newtonian liquid on the floor.
 
-    Parameters
-    ----------
-    name
-        What a person calls it.
-    viscosity
-        Dynamic, Pa s, measured (preferred) or computed; its source says which.
-    density
-        kg/m^3, where known.
-    temperature
-        K, at which the viscosity holds, where known.
-    blocking
-        How much adhesion it leaves (Eq. 26), where measured.
+    Parameters:
+        name: What a person calls it.
+        viscosity: Dynamic, Pa s, measured (preferred) or computed; its source says which.
+        density: kg/m^3, where known.
+        temperature: K, at which the viscosity holds, where known.
+        blocking: How much adhesion it leaves (Eq. 26), where measured.
     """
 
     name: str

@@ -1,7 +1,5 @@
 """Adhesion left under a fluid in boundary lubrication: Strobel et al. (2012), Eq. 26."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -113,10 +111,8 @@ BLOCKING: Mapping[str, AdhesionBlocking] = MappingProxyType(
 def adhesion_blocking(fluid: str) -> AdhesionBlocking:
     """Return alpha and beta of one of the six fluids of Table 5.
 
-    Raises
-    ------
-    InputError
-        Another fluid: Eq. 26 has no rule from viscosity to alpha and beta.
+    Raises:
+        InputError: Another fluid: Eq. 26 has no rule from viscosity to alpha and beta.
     """
     try:
         return BLOCKING[fluid]

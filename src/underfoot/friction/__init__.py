@@ -10,6 +10,7 @@ from .constant import ConstantLaw
 from .law import FrictionLaw, FrictionParts, UncertainInputs
 from .measured import BoundaryFriction, boundary_friction_at, friction_left, viscous_decay
 from .moore_2012 import StribeckLaw, stribeck_cof, stribeck_law_at
+from .pair_contact import Pair, PairContactLaw, PairDraws, packaged_pair_draws, read_pair_draws
 from .propagation import Propagated, propagated
 from .rival_speed_effects import MeanFilmSharing, ViscoelasticArea, modulus_exponent
 from .sampled_cof import SampledCof, sampled_cof, sampled_points
@@ -31,6 +32,9 @@ __all__ = [
     "FrictionLaw",
     "FrictionParts",
     "MeanFilmSharing",
+    "Pair",
+    "PairContactLaw",
+    "PairDraws",
     "Propagated",
     "SampledCof",
     "ShearStrength",
@@ -46,7 +50,9 @@ __all__ = [
     "cof_with_speed",
     "friction_left",
     "modulus_exponent",
+    "packaged_pair_draws",
     "propagated",
+    "read_pair_draws",
     "sampled_cof",
     "sampled_points",
     "self_affine_scale",

@@ -61,6 +61,7 @@ def propagated(
     samples: int = 1000,
     seed: int = 0,
     shares: bool = True,
+    joint: Mapping[str, Array] | None = None,
 ) -> Propagated:
     """Return the spread of ``function`` of ``inputs`` with that of the model on top.
 
@@ -78,9 +79,10 @@ def propagated(
         Values with their standard deviations; one without is taken as exact and listed.
     model_deviation
         From residuals of a calibration or of blind predictions; None counts none.
-
     shares
         False leaves out which input causes how much: it takes draws of each input alone.
+    joint
+        (samples,) draws of inputs that depend on each other, by name; they are not drawn anew.
 
     Raises
     ------
@@ -97,10 +99,10 @@ def propagated(
             raise InputError(f"has no value: {quantity.reason}", where=name)
         centre[name] = quantity.value
     generator = np.random.default_rng(seed)
-    drawn = {
+    drawn = dict(joint or {}) | {
         name: _draws(quantity.value or 0.0, quantity.uncertainty, samples, generator)
         for name, quantity in inputs.items()
-        if quantity.uncertainty
+        if quantity.uncertainty and name not in (joint or {})
     }
     value = _result(function, centre)
     points = ({k: float(draws[i]) for k, draws in drawn.items()} for i in range(samples))

@@ -20,6 +20,7 @@ CLASSES = 64
 """Classes of contact pressure that stand for the cells under the sole in the draws."""
 SAMPLES = 500
 MODEL = "model"
+FILM = "film load"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,16 +66,19 @@ def sampled_cof(
     speed: float,
     wet: ArrayLike | None = None,
     fluid_inputs: Mapping[str, SourcedValue] | None = None,
+    film_error: float = 0.0,
     confidence: float = 0.95,
     samples: int = SAMPLES,
     seed: int = 0,
 ) -> SampledCof | None:
     """Return draws of Eq. (1): the inputs of the law within their spreads, and the law's own error.
 
-    Contact, film and fluid pressure stay as they were computed. The model's error is one normal
-    draw for the whole sole, in proportion to the load on the contact; contact friction is not
-    drawn below 0. Cells are put into classes of equal pressure (with their film); what the classes
-    miss of each part is made up for by a factor.
+    Contact and film stay as they were computed, but for the load that the film carries: the
+    logarithm of its odds F / (W - F) has the standard deviation ``film_error``, and the contact
+    carries the rest in the same distribution. The law's own error is one normal draw for the whole
+    sole, in proportion to the load on the contact; contact friction is not drawn below 0. Cells
+    are put into classes of equal pressure (with their film); what the classes miss of each part is
+    made up for by a factor.
 
     Parameters
     ----------
@@ -84,6 +88,8 @@ def sampled_cof(
         m/s.
     fluid_inputs
         "viscosity" (Pa s) with its standard deviation; where it has none it counts as exact.
+    film_error
+        Standard deviation of ln F / (W - F), 1; 0 takes the film load as exact.
 
     Returns None when one of the law's own inputs has no standard deviation, or when nothing has
     one: an interval of the rest alone would be too narrow.
@@ -91,6 +97,8 @@ def sampled_cof(
     inputs = _inputs(law, fluid_inputs)
     if inputs is None:
         return None
+    if film_error and np.any(fluid_pressure):
+        inputs[FILM] = SourcedValue(0.0, "1", "", film_error)
     contact = np.asarray(contact_pressure, dtype=float)
     film = np.broadcast_to(np.asarray(film_thickness, dtype=float), contact.shape)
     mask = np.ones(contact.shape, bool) if wet is None else np.asarray(wet, dtype=bool)
@@ -107,16 +115,24 @@ def sampled_cof(
     factor = np.where(coarse > 0, exact / np.where(coarse > 0, coarse, 1.0), 1.0)
 
     def parts(values: Mapping[str, float]) -> Array:
-        drawn = law.at({k: v for k, v in values.items() if k != MODEL})
+        drawn = law.at({k: v for k, v in values.items() if k not in (MODEL, FILM)})
         adhesion, hysteresis, viscous = factor * sums(
             drawn(pressure, speed, gap), counts, wet_counts
         )
         solid = max(adhesion + hysteresis + values.get(MODEL, 0.0) * carried, 0.0)
+        share = 1.0 / (carried + (1.0 - carried) * np.exp(values.get(FILM, 0.0)))
+        solid, hysteresis = solid * share, hysteresis * share
         hysteresis = min(hysteresis, solid)
         return np.array([solid + viscous, solid - hysteresis, hysteresis, viscous])
 
     spread = propagated(
-        parts, inputs, confidence=confidence, samples=samples, seed=seed, shares=False
+        parts,
+        inputs,
+        confidence=confidence,
+        samples=samples,
+        seed=seed,
+        shares=False,
+        joint=_joint(law, samples, seed),
     )
     return SampledCof(
         *spread.draws.T,
@@ -153,7 +169,14 @@ def sampled_points(
         solid = (shear.adhesion + shear.hysteresis) / pressure + values.get(MODEL, 0.0)
         return np.maximum(solid, 0.0) + shear.viscous / pressure
 
-    return propagated(points, inputs, samples=samples, seed=seed, shares=False)
+    return propagated(
+        points,
+        inputs,
+        samples=samples,
+        seed=seed,
+        shares=False,
+        joint=_joint(law, samples, seed),
+    )
 
 
 def _inputs(
@@ -166,6 +189,12 @@ def _inputs(
     if law.error_of_model:
         inputs[MODEL] = SourcedValue(0.0, "1", law.source, law.error_of_model)
     return inputs if any(value.uncertainty for value in inputs.values()) else None
+
+
+def _joint(law: FrictionLaw, samples: int, seed: int) -> Mapping[str, Array]:
+    """Return joint draws of inputs that depend on each other, where the law has such."""
+    draws: Any = getattr(law, "joint_draws", None)
+    return {} if draws is None else draws(samples, seed)
 
 
 def _shares(spread: Propagated) -> dict[str, float]:

@@ -1,87 +1,47 @@
 """Rubber: hardness to modulus, relaxation spectra and how to get them from tests."""
 
-from .bs903_1950 import bs903_breaches, youngs_modulus_bs903
-from .compression import (
-    CompressionForces,
-    CompressionModuli,
-    compression_forces,
-    compression_moduli,
-)
-from .curves import DynamicSweep, RelaxationCurve
-from .elastic import (
-    bulk_modulus,
-    plane_strain_modulus,
-    poisson_ratio_from_moduli,
-    shear_modulus,
-    youngs_modulus_from_shear,
-)
-from .elastomer import Elastomer, shear_from_young, young_from_shear
-from .gent_1958 import gent_breaches, shore_a_gent, youngs_modulus_gent
-from .master_curve import (
-    DynamicMasterCurve,
-    RelaxationMasterCurve,
-    ShiftTable,
-    dynamic_master_curve,
-    relaxation_master_curve,
-)
-from .power_law import power_law_spectrum
-from .read import read_dynamic, read_prony, read_relaxation
-from .reduce import ReducedSpectrum, reduced
-from .report_rubber import report_elastomer
-from .ruess import ruess_breaches, youngs_modulus_ruess
-from .shift_laws import ArrheniusShift, WlfShift, fit_arrhenius, fit_wlf
-from .single_exponential import (
-    SingleExponentialFit,
-    fit_single_exponential,
-    single_exponential_spectrum,
-)
-from .spectrum import RelaxationSpectrum
-from .spectrum_fit import ModulusBand, SpectrumFit, fit_dynamic, fit_relaxation
-
-__all__ = [
-    "ArrheniusShift",
-    "CompressionForces",
-    "CompressionModuli",
-    "DynamicMasterCurve",
-    "DynamicSweep",
-    "Elastomer",
-    "ModulusBand",
-    "ReducedSpectrum",
-    "RelaxationCurve",
-    "RelaxationMasterCurve",
-    "RelaxationSpectrum",
-    "ShiftTable",
-    "SingleExponentialFit",
-    "SpectrumFit",
-    "WlfShift",
-    "bs903_breaches",
-    "bulk_modulus",
-    "compression_forces",
-    "compression_moduli",
-    "dynamic_master_curve",
-    "fit_arrhenius",
-    "fit_dynamic",
-    "fit_relaxation",
-    "fit_single_exponential",
-    "fit_wlf",
-    "gent_breaches",
-    "plane_strain_modulus",
-    "poisson_ratio_from_moduli",
-    "power_law_spectrum",
-    "read_dynamic",
-    "read_prony",
-    "read_relaxation",
-    "reduced",
-    "relaxation_master_curve",
-    "report_elastomer",
-    "ruess_breaches",
-    "shear_from_young",
-    "shear_modulus",
-    "shore_a_gent",
-    "single_exponential_spectrum",
-    "young_from_shear",
-    "youngs_modulus_bs903",
-    "youngs_modulus_from_shear",
-    "youngs_modulus_gent",
-    "youngs_modulus_ruess",
-]
+from .bs903_1950 import bs903_breaches as bs903_breaches
+from .bs903_1950 import youngs_modulus_bs903 as youngs_modulus_bs903
+from .compression import CompressionForces as CompressionForces
+from .compression import CompressionModuli as CompressionModuli
+from .compression import compression_forces as compression_forces
+from .compression import compression_moduli as compression_moduli
+from .curves import DynamicSweep as DynamicSweep
+from .curves import RelaxationCurve as RelaxationCurve
+from .elastic import bulk_modulus as bulk_modulus
+from .elastic import plane_strain_modulus as plane_strain_modulus
+from .elastic import poisson_ratio_from_moduli as poisson_ratio_from_moduli
+from .elastic import shear_modulus as shear_modulus
+from .elastic import youngs_modulus_from_shear as youngs_modulus_from_shear
+from .elastomer import Elastomer as Elastomer
+from .elastomer import shear_from_young as shear_from_young
+from .elastomer import young_from_shear as young_from_shear
+from .gent_1958 import gent_breaches as gent_breaches
+from .gent_1958 import shore_a_gent as shore_a_gent
+from .gent_1958 import youngs_modulus_gent as youngs_modulus_gent
+from .master_curve import DynamicMasterCurve as DynamicMasterCurve
+from .master_curve import RelaxationMasterCurve as RelaxationMasterCurve
+from .master_curve import ShiftTable as ShiftTable
+from .master_curve import dynamic_master_curve as dynamic_master_curve
+from .master_curve import relaxation_master_curve as relaxation_master_curve
+from .power_law import power_law_spectrum as power_law_spectrum
+from .read import read_dynamic as read_dynamic
+from .read import read_prony as read_prony
+from .read import read_relaxation as read_relaxation
+from .reduce import ReducedSpectrum as ReducedSpectrum
+from .reduce import reduced as reduced
+from .report_rubber import report_elastomer as report_elastomer
+from .ruess import ruess_breaches as ruess_breaches
+from .ruess import youngs_modulus_ruess as youngs_modulus_ruess
+from .shift_laws import ArrheniusShift as ArrheniusShift
+from .shift_laws import WlfShift as WlfShift
+from .shift_laws import fit_arrhenius as fit_arrhenius
+from .shift_laws import fit_wlf as fit_wlf
+from .single_exponential import SingleExponentialFit as SingleExponentialFit
+from .single_exponential import fit_single_exponential as fit_single_exponential
+from .single_exponential import single_exponential_spectrum as single_exponential_spectrum
+from .spectrum import RelaxationSpectrum as RelaxationSpectrum
+from .spectrum_fit import ModulusBand as ModulusBand
+from .spectrum_fit import SpectrumFit as SpectrumFit
+from .spectrum_fit import fit_dynamic as fit_dynamic
+from .spectrum_fit import fit_relaxation as fit_relaxation

@@ -1,7 +1,5 @@
 """Text tables of instruments: separators, decimal commas, unit rows, what is missing."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -108,10 +106,8 @@ def read_table(path: Path | str) -> TestTable:
     Separators may be comma, semicolon, tab or blanks; decimal commas are read where commas do
     not separate; a row of units may follow the headings, or units stand in brackets there.
 
-    Raises
-    ------
-    DataError
-        No headings, no numbers, rows of different length, text among the numbers.
+    Raises:
+        DataError: No headings, no numbers, rows of different length, text among the numbers.
     """
     path = Path(path)
     if not path.is_file():

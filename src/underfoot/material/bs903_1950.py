@@ -1,7 +1,5 @@
 """Rubber hardness to Young's modulus: the error-function relation of BS 903 (1950)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -26,10 +24,8 @@ def youngs_modulus_bs903(shore_a: ArrayLike) -> Any:
     Better than Gent's relation below about 40 and above 80, because both ends are bounded by
     experiment. ``shore_a`` of any shape, 0 <= S < 100.
 
-    Raises
-    ------
-    RangeError
-        Hardness outside 0 to below 100.
+    Raises:
+        RangeError: Hardness outside 0 to below 100.
     """
     hardness = checked_hardness(shore_a, below=100.0)
     return scalar_or_array((erfinv(hardness / 100.0) / 3.186e-4) ** 2)

@@ -1,7 +1,5 @@
 """Short and long time modulus from a compression relaxation test: Eq. 13 to 16."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,21 +40,15 @@ def compression_moduli(
     K_0 = (F_0 - F_0.02) / (0.18 T), E_0 = K_0 2T / A (Eq. 13, 14) and the same with F_inf
     (Eq. 15, 16).
 
-    Parameters
-    ----------
-    force_2_percent, peak_force, asymptotic_force
-        F_0.02, F_0 and F_inf, N.
-    thickness, area
-        T of one block, m, and A, m^2.
-    travel
-        Displacement between F_0.02 and F_0 in units of T. The printed 0.18 holds when the pair
-        (2 T thick) is compressed by 10 %, 0.2 T, and F_0.02 is read at 0.02 T. If F_0.02 is read
-        at 2 % of the pair it is 0.16.
+    Parameters:
+        force_2_percent, peak_force, asymptotic_force: F_0.02, F_0 and F_inf, N.
+        thickness, area: T of one block, m, and A, m^2.
+        travel: Displacement between F_0.02 and F_0 in units of T. The printed 0.18 holds when the
+            pair (2 T thick) is compressed by 10 %, 0.2 T, and F_0.02 is read at 0.02 T. If F_0.02
+            is read at 2 % of the pair it is 0.16.
 
-    Raises
-    ------
-    InputError
-        Sizes not positive, forces not in the order F_0.02 <= F_inf <= F_0.
+    Raises:
+        InputError: Sizes not positive, forces not in the order F_0.02 <= F_inf <= F_0.
     """
     for name, value in (("thickness", thickness), ("area", area), ("travel", travel)):
         if not (np.isfinite(value) and value > 0.0):
@@ -97,10 +89,8 @@ def compression_forces(
     largest force; F_inf the mean over the last tenth of the record after it. Unloading has to be
     cut off. ``time`` s ascending, ``displacement`` m, ``force`` N, compression positive, (n,).
 
-    Raises
-    ------
-    DataError
-        Missing values, no hold after the peak, a ramp that does not pass 2 %.
+    Raises:
+        DataError: Missing values, no hold after the peak, a ramp that does not pass 2 %.
     """
     t, d, f = (np.asarray(x, dtype=float) for x in (time, displacement, force))
     if not (t.ndim == 1 and t.shape == d.shape == f.shape and t.size >= 10):

@@ -1,7 +1,5 @@
 """Measured curves: relaxation and dynamic sweeps, and what is wrong with them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Isotropic elastic constants from one another."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A rubber: Young's modulus (elastic or viscoelastic) with its Poisson ratio."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,19 +16,13 @@ from .spectrum import RelaxationSpectrum
 class Elastomer:
     """A shoe or floor material for small strains.
 
-    Parameters
-    ----------
-    modulus
-        Young's modulus: Pa (elastic) or a ``RelaxationSpectrum`` (viscoelastic).
-    poisson_ratio
-        The same at every time: bulk and shear relax together. Right for rubber near 0.5, not
-        for foams.
-    name, source
-        What it is and where the numbers come from.
-    density
-        kg/m^3, where known.
-    assumed
-        True when no measurement of this material stands behind the modulus.
+    Parameters:
+        modulus: Young's modulus: Pa (elastic) or a ``RelaxationSpectrum`` (viscoelastic).
+        poisson_ratio: The same at every time: bulk and shear relax together. Right for rubber near
+            0.5, not for foams.
+        name, source: What it is and where the numbers come from.
+        density: kg/m^3, where known.
+        assumed: True when no measurement of this material stands behind the modulus.
     """
 
     modulus: float | RelaxationSpectrum

@@ -1,7 +1,5 @@
 """Shore A hardness to Young's modulus: Gent (1958)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -37,10 +35,8 @@ def youngs_modulus_gent(shore_a: ArrayLike) -> Any:
     a static one (the durometer is read after seconds) and carries tens of percent of uncertainty:
     a relaxation or dynamic test is better.
 
-    Raises
-    ------
-    RangeError
-        Hardness outside 0 to below 100.
+    Raises:
+        RangeError: Hardness outside 0 to below 100.
     """
     hardness = checked_hardness(shore_a, below=100.0)
     modulus = 0.0981e6 * (56.0 + 7.62336 * hardness) / (0.137505 * (254.0 - 2.54 * hardness))
@@ -50,10 +46,8 @@ def youngs_modulus_gent(shore_a: ArrayLike) -> Any:
 def shore_a_gent(youngs_modulus: ArrayLike) -> Any:
     """Return the Shore A hardness at which ``youngs_modulus_gent`` gives ``youngs_modulus`` (Pa).
 
-    Raises
-    ------
-    RangeError
-        A modulus below that of Shore A 0 (0.157 MPa), or not finite.
+    Raises:
+        RangeError: A modulus below that of Shore A 0 (0.157 MPa), or not finite.
     """
     modulus = np.asarray(youngs_modulus, dtype=float)
     lowest = 0.0981e6 * 56.0 / (0.137505 * 254.0)

@@ -1,7 +1,5 @@
 """Time-temperature superposition: one master curve from tests at many temperatures."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
@@ -104,27 +102,19 @@ def dynamic_master_curve(
     Each sweep is shifted along log frequency onto its colder neighbour so that both follow one
     common cubic best; the steps add up. There is no vertical shift.
 
-    Parameters
-    ----------
-    sweeps
-        In any order.
-    reference_temperature
-        K, within the temperatures tested (by default the middle one); between two of them the
-        shift is interpolated.
-    shift_by
-        "storage": E' decides, E'' then shows whether superposition holds; "both": each counts by
-        its own scatter. Where the two disagree (resonance of the instrument, a material that
-        is not thermorheologically simple), E' is the safer one.
+    Parameters:
+        sweeps: In any order.
+        reference_temperature: K, within the temperatures tested (by default the middle one);
+            between two of them the shift is interpolated.
+        shift_by: "storage": E' decides, E'' then shows whether superposition holds; "both": each
+            counts by its own scatter. Where the two disagree (resonance of the instrument, a
+            material that is not thermorheologically simple), E' is the safer one.
 
-    Raises
-    ------
-    InputError
-        Another ``shift_by``.
-    DataError
-        Fewer than two temperatures, a temperature missing or given twice, neighbours whose
-        moduli do not overlap.
-    RangeError
-        Reference temperature outside those tested.
+    Raises:
+        InputError: Another ``shift_by``.
+        DataError: Fewer than two temperatures, a temperature missing or given twice, neighbours
+            whose moduli do not overlap.
+        RangeError: Reference temperature outside those tested.
     """
     if shift_by not in ("storage", "both"):
         raise InputError(f'"{shift_by}"', where="shift_by", allowed='"storage" or "both"')

@@ -1,7 +1,5 @@
 """A broad spectrum from a power law: a stand-in where no dynamic test exists."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -25,16 +23,12 @@ def power_law_spectrum(
     filled rubber shows it. It is a stand-in with a chosen loss level, marked ``assumed``, and
     not a measurement of anything.
 
-    Parameters
-    ----------
-    modulus
-        |E*| at 1 rad/s, Pa, above 0 (or |G*|, for a shear spectrum).
-    exponent
-        0 to below 1; 0.12 gives tan delta 0.19.
-    shortest_time, longest_time
-        First and last relaxation time, s.
-    terms_per_decade
-        2 follows the loss tangent to 1 % away from the ends; 1 leaves a ripple of 6 %.
+    Parameters:
+        modulus: |E*| at 1 rad/s, Pa, above 0 (or |G*|, for a shear spectrum).
+        exponent: 0 to below 1; 0.12 gives tan delta 0.19.
+        shortest_time, longest_time: First and last relaxation time, s.
+        terms_per_decade: 2 follows the loss tangent to 1 % away from the ends; 1 leaves a ripple of
+            6 %.
 
     The fit is a non-negative least squares one to real and imaginary part, each relative to
     |E*|, at eight frequencies a decade from 1 / longest_time to 1 / shortest_time.

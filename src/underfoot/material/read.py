@@ -1,7 +1,5 @@
 """Readers of relaxation tests, dynamic sweeps and Prony series."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
@@ -36,10 +34,8 @@ def read_dynamic(path: Path | str, *, units: Mapping[str, str] | None = None) ->
     other make a sweep). Units stand in the headings, in the row below, or in ``units`` by column
     name. The temperature of a sweep is the mean of its rows.
 
-    Raises
-    ------
-    DataError
-        Columns, units or values missing; values at or below zero; the file unreadable.
+    Raises:
+        DataError: Columns, units or values missing; values at or below zero; the file unreadable.
     """
     table, column_units = read_table(path), dict(units or {})
     w = table.required(FREQUENCY, "rad/s", column_units, "frequency")
@@ -59,10 +55,8 @@ def read_relaxation(
     Columns: time, relaxation modulus, and temperature and ``Set`` as in ``read_dynamic``. Rows
     of a set may run from late to early as a whole; otherwise times have to ascend.
 
-    Raises
-    ------
-    DataError
-        Columns, units or values missing; times neither ascending nor descending.
+    Raises:
+        DataError: Columns, units or values missing; times neither ascending nor descending.
     """
     table, column_units = read_table(path), dict(units or {})
     time = table.required(TIME, "s", column_units, "time")
@@ -96,12 +90,10 @@ def read_prony(
     ``instantaneous_modulus`` as text with unit, optional ``poisson_ratio`` and ``source``, and
     ``[[term]]`` tables with ``relaxation_time`` and ``modulus`` (text with unit) or ``fraction``.
 
-    Raises
-    ------
-    DataError
-        Nothing to fix the level by, fractions that sum to more than one, columns missing.
-    InputError
-        Negative terms or times.
+    Raises:
+        DataError: Nothing to fix the level by, fractions that sum to more than one, columns
+            missing.
+        InputError: Negative terms or times.
     """
     path = Path(path)
     if path.suffix.casefold() == ".toml":

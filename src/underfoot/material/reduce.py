@@ -1,7 +1,5 @@
 """The same material with fewer terms."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,10 +33,8 @@ def reduced(
     a decade of terms beyond each end; faster terms act as part of the last one, slower ones as
     part of the equilibrium modulus.
 
-    Raises
-    ------
-    InputError
-        Range not ascending, fewer than one term a decade, no loss in the range.
+    Raises:
+        InputError: Range not ascending, fewer than one term a decade, no loss in the range.
     """
     from scipy.optimize import nnls
 

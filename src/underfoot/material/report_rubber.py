@@ -1,7 +1,5 @@
 """The one-term materials of the grant report: Eq. 7 with Table 2."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from types import MappingProxyType
 
@@ -30,10 +28,8 @@ def report_elastomer(name: str) -> Elastomer:
     bulk modulus follows from nu = 0.499; Table 2's 2180 MPa for rubber is ten times what that
     rule gives (neolite's 9324 MPa obeys it).
 
-    Raises
-    ------
-    InputError
-        Another name.
+    Raises:
+        InputError: Another name.
     """
     if name not in SHEAR_CONSTANTS:
         raise unknown_name("material of the report", name, SHEAR_CONSTANTS)

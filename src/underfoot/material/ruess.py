@@ -1,7 +1,5 @@
 """Shore A hardness to Young's modulus: the logarithmic relation ascribed to Ruess."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -29,10 +27,8 @@ def youngs_modulus_ruess(shore_a: ArrayLike) -> Any:
 
     ``shore_a`` of any shape, 0 <= S < 100; best from 30 to 60 (``ruess_breaches`` tells).
 
-    Raises
-    ------
-    RangeError
-        Hardness outside 0 to below 100.
+    Raises:
+        RangeError: Hardness outside 0 to below 100.
     """
     hardness = checked_hardness(shore_a, below=100.0)
     return scalar_or_array(1e6 * 10.0 ** (0.0235 * hardness - 0.6403))

@@ -1,7 +1,5 @@
 """How the shift factor depends on temperature: Williams-Landel-Ferry and Arrhenius."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -32,10 +30,8 @@ class WlfShift:
     def log10_shift_factor(self, temperature: ArrayLike) -> Any:
         """Return log10 a_T for temperatures in K, any shape.
 
-        Raises
-        ------
-        RangeError
-            At or below T_ref - C2, where the law has its pole.
+        Raises:
+            RangeError: At or below T_ref - C2, where the law has its pole.
         """
         away = np.asarray(temperature, dtype=float) - self.reference_temperature
         if not np.all(self.c2 + away > 0.0):

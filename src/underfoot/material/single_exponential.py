@@ -1,7 +1,5 @@
 """One-term relaxation: Eq. 7 of the grant report, and its fit."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

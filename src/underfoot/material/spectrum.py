@@ -1,9 +1,7 @@
 """Relaxation spectrum: a generalised Maxwell material with any number of terms."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,26 +15,19 @@ from underfoot.core.presentation import Presentable, Table
 class RelaxationSpectrum(Presentable):
     """Linear viscoelastic Young's modulus E(t) = E_inf + sum E_i exp(-t / tau_i).
 
-    Parameters
-    ----------
-    equilibrium_modulus
-        E_inf, Pa, >= 0 (0: a liquid).
-    term_moduli
-        E_i, Pa, (n,), each >= 0.
-    relaxation_times
-        tau_i, s, (n,), each > 0; stored in ascending order.
-    source
-        Where the numbers come from.
-    assumed
-        True when no measurement stands behind them.
+    Parameters:
+        equilibrium_modulus: E_inf, Pa, >= 0 (0: a liquid).
+        term_moduli: E_i, Pa, (n,), each >= 0.
+        relaxation_times: tau_i, s, (n,), each > 0; stored in ascending order.
+        source: Where the numbers come from.
+        assumed: True when no measurement stands behind them.
 
     The same object serves for a shear modulus: then every modulus it returns is one of shear
     (``young_from_shear`` and ``shear_from_young`` convert).
 
-    Raises
-    ------
-    InputError
-        Negative or non-finite moduli or times, arrays of different length, all moduli zero.
+    Raises:
+        InputError: Negative or non-finite moduli or times, arrays of different length, all moduli
+            zero.
     """
 
     equilibrium_modulus: float
@@ -139,11 +130,11 @@ class RelaxationSpectrum(Presentable):
             result = modulus.imag / modulus.real
         return scalar_or_array(result)
 
-    def scaled(self, factor: float, *, source: str | None = None) -> RelaxationSpectrum:
+    def scaled(self, factor: float, *, source: str | None = None) -> Self:
         """Return the spectrum with every modulus times ``factor`` (> 0)."""
         if not (np.isfinite(factor) and factor > 0.0):
             raise InputError(f"factor {factor:g}", where="factor", allowed="a positive number")
-        return RelaxationSpectrum(
+        return type(self)(
             self.equilibrium_modulus * factor,
             self.term_moduli * factor,
             self.relaxation_times,
@@ -151,13 +142,13 @@ class RelaxationSpectrum(Presentable):
             assumed=self.assumed,
         )
 
-    def shifted(self, shift_factor: float, *, source: str | None = None) -> RelaxationSpectrum:
+    def shifted(self, shift_factor: float, *, source: str | None = None) -> Self:
         """Return the spectrum at another temperature: every time times ``shift_factor`` (a_T)."""
         if not (np.isfinite(shift_factor) and shift_factor > 0.0):
             raise InputError(
                 f"shift factor {shift_factor:g}", where="shift_factor", allowed="a positive number"
             )
-        return RelaxationSpectrum(
+        return type(self)(
             self.equilibrium_modulus,
             self.term_moduli,
             self.relaxation_times * shift_factor,

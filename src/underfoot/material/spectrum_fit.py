@@ -1,7 +1,5 @@
 """Relaxation spectra fitted to measurements: non-negative, smooth, with an error band."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -123,26 +121,18 @@ def fit_relaxation(
     kept small. The smoothing is the largest that raises the rms residual by no more than 10 %
     over the unsmoothed one (or up to ``noise``).
 
-    Parameters
-    ----------
-    time
-        s, ascending, above 0, (n,).
-    modulus
-        Pa, above 0, (n,).
-    terms_per_decade
-        4 also follows a few sharp terms; 2 is enough for a broad spectrum.
-    noise
-        Relative standard deviation below which residuals are not chased (assumed 0.2 %: no
-        rheometer is better); 0 for exact data.
-    seed
-        Of the repetitions behind the error band.
+    Parameters:
+        time: s, ascending, above 0, (n,).
+        modulus: Pa, above 0, (n,).
+        terms_per_decade: 4 also follows a few sharp terms; 2 is enough for a broad spectrum.
+        noise: Relative standard deviation below which residuals are not chased (assumed 0.2 %: no
+            rheometer is better); 0 for exact data.
+        seed: Of the repetitions behind the error band.
 
     Frequencies from 1 / longest to 1 / shortest time are taken as measured.
 
-    Raises
-    ------
-    DataError
-        Times not ascending, values missing, negative or zero, fewer than four points.
+    Raises:
+        DataError: Times not ascending, values missing, negative or zero, fewer than four points.
     """
     t, values = checked_curve(time, modulus)
     times = _times(t[0], t[-1], terms_per_decade)
@@ -178,17 +168,12 @@ def fit_dynamic(
     As ``fit_relaxation``, on the relative errors of both; each is then weighted by the rms
     residual that it turned out to have, so that the noisier one does not spoil the other.
 
-    Parameters
-    ----------
-    angular_frequency
-        rad/s, above 0, in any order, (n,).
-    storage_modulus, loss_modulus
-        Pa, above 0, (n,).
+    Parameters:
+        angular_frequency: rad/s, above 0, in any order, (n,).
+        storage_modulus, loss_modulus: Pa, above 0, (n,).
 
-    Raises
-    ------
-    DataError
-        Values missing, negative or zero, fewer than four points.
+    Raises:
+        DataError: Values missing, negative or zero, fewer than four points.
     """
     w, storage = checked_curve(angular_frequency, storage_modulus, quantity="storage modulus")
     _, loss = checked_curve(angular_frequency, loss_modulus, quantity="loss modulus")

@@ -217,9 +217,10 @@ def compare(
 
     Notes
     -----
-    The probability that one COF is higher than another is Phi(d / s) with d their difference and
-    s = sqrt(s1^2 + s2^2). Errors common to both (the same floor, the same closures) cancel in part,
-    so s is an upper bound for similar cases.
+    The probability that one COF is higher than another is the share of the joint draws in which it
+    is: what two cases have in common (laboratory, compound, floor, law, the model's error of the
+    film) is drawn once for both and cancels. Results without draws, or of different laws or seeds,
+    count as independent: Phi(d / s), d their difference and s = sqrt(s1^2 + s2^2).
 
     Raises
     ------
@@ -304,9 +305,20 @@ def _ranking(results: Sequence[Result]) -> tuple[Rank, ...]:
     for place, k in enumerate(order):
         cof = results[k].scalars["cof"]
         after = order[place + 1 : place + 2]
-        chance = probability_higher(cof, results[after[0]].scalars["cof"]) if after else None
+        chance = _chance_higher(results[k], results[after[0]]) if after else None
         ranks.append(Rank(LETTERS[k], results[k].name, cof, _interval(cof), chance))
     return tuple(ranks)
+
+
+def _chance_higher(first: Result, second: Result) -> float | None:
+    """Return the probability that the first COF is higher, from shared draws where there are."""
+    draws = [result.fields.get("cof_draws") for result in (first, second)]
+    laws = {result.provenance.closures.get("friction") for result in (first, second)}
+    a, b = draws
+    if laws != {"pair"} or a is None or b is None or a.size != b.size:
+        return probability_higher(first.scalars["cof"], second.scalars["cof"])
+    higher, equal = np.mean(a.values > b.values), np.mean(a.values == b.values)
+    return float(higher + 0.5 * equal)
 
 
 def _interval(scalar: SourcedValue) -> tuple[float, float] | None:

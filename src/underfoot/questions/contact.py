@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
 
-from underfoot.core import InputError, display
+from underfoot import material, surface
+from underfoot.core import DataError, InputError, display, to_si
+from underfoot.core.checks import exactly_one
 from underfoot.core.presentation import Presentable, Table
 from underfoot.rough_contact import SteadySliding, steady_sliding
 from underfoot.rough_contact.cutoff import CutoffDependence, cutoff_dependence
 from underfoot.rough_contact.flow_factor import FlowFactors, flow_factors
-from underfoot.surface import HeightMap, rms_slope
-
-from .contact_input import RubberChoice, SurfaceChoice, rubber_from, surface_from
+from underfoot.surface import HeightMap, Profile, levelled
 
 ROWS = (
     ("Mean pressure", "pressure_Pa", "Pa", ""),
@@ -36,6 +37,7 @@ class RoughContact(Presentable):
     """One rough contact: the surface, the solution, the leakage of its gap."""
 
     kind: ClassVar[str] = "contact"
+    name: ClassVar[str] = "Rough contact"
 
     rubber: str
     floor: HeightMap
@@ -52,10 +54,6 @@ class RoughContact(Presentable):
         """Whether the numbers are a result."""
         return self.contact.status.usable
 
-    def heading(self) -> str:
-        """Return the title."""
-        return "Rough contact"
-
     def headline(self) -> tuple[str, ...]:
         """Return contact fraction and hysteresis at this pressure and speed."""
         found = self.contact
@@ -68,32 +66,23 @@ class RoughContact(Presentable):
         )
 
     def table(self) -> Table:
-        """Return the numbers of the contact."""
         content = self.to_dict()
         rows = [
-            (
-                label,
-                "not estimated" if content[key] is None else display(content[key], unit),
-                remark,
-            )
+            (label, _shown(content[key], unit, "not estimated"), remark)
             for label, key, unit, remark in ROWS
         ]
         status = (str(self.contact.status), f"{self.contact.iterations} iterations")
         return Table("Contact", ("Quantity", "Value", "Remark"), [*rows, ("Status", *status)])
 
     def tables(self) -> tuple[Table, ...]:
-        """Return the contact, and how it depends on the shortest wave if that was computed."""
         if self.scales is None:
             return (self.table(),)
         rows = [
-            (
-                display(entry["shortest_wave_m"], "m"),
-                *(
-                    "not converged" if entry[key] is None else display(entry[key], "1")
-                    for key in ("real_contact_fraction", "cof_hysteresis")
-                ),
-            )
-            for entry in self._scale_entries()
+            [
+                _shown(value, "m" if name.endswith("_m") else "1", "not converged")
+                for name, value in row.items()
+            ]
+            for row in self._scale_entries(self.scales)
         ]
         heads = ("Shortest wave", "Real contact fraction", "Hysteresis COF")
         return self.table(), Table("Dependence on the shortest wave", heads, rows)
@@ -120,7 +109,7 @@ class RoughContact(Presentable):
             "pressure_Pa": found.nominal_pressure,
             "speed_m_per_s": found.speed,
             "rms_height_m": floor.rms_height,
-            "rms_slope": rms_slope(floor),
+            "rms_slope": surface.rms_slope(floor),
             "grid": list(floor.shape),
             "spacing_m": floor.spacing,
             "shortest_wave_m": floor.resolution,
@@ -132,30 +121,34 @@ class RoughContact(Presentable):
             "breaches": [str(breach) for breach in found.breaches],
         }
         if self.scales is not None:
-            content["shortest_waves"] = self._scale_entries()
+            content["shortest_waves"] = self._scale_entries(self.scales)
         return content
 
     def _notes(self) -> tuple[str, ...]:
         return self.notes if self.scales is None else (self.scales.note, *self.notes)
 
-    def _scale_entries(self) -> list[dict[str, Any]]:
-        scales = self.scales
-        if scales is None:
-            return []
-        columns = (scales.shortest_wave, scales.real_contact_fraction, scales.cof_hysteresis)
-        names = ("shortest_wave_m", "real_contact_fraction", "cof_hysteresis")
+    def _scale_entries(self, scales: CutoffDependence) -> list[dict[str, Any]]:
+        columns = {
+            "shortest_wave_m": scales.shortest_wave,
+            "real_contact_fraction": scales.real_contact_fraction,
+            "cof_hysteresis": scales.cof_hysteresis,
+        }
         return [
             {
-                name: None if value != value else value
-                for name, value in zip(names, row, strict=True)
+                name: None if np.isnan(values[k]) else float(values[k])
+                for name, values in columns.items()
             }
-            for row in zip(*(column.tolist() for column in columns), strict=True)
+            for k in range(scales.shortest_wave.size)
         ]
 
 
+def _shown(value: float | None, unit: str, missing: str) -> str:
+    return missing if value is None else display(value, unit)
+
+
 def rough_contact(
-    surface: SurfaceChoice,
-    rubber: RubberChoice,
+    floor: HeightMap,
+    rubber: tuple[Any, str, Sequence[str]],
     *,
     pressure: float,
     speed: float = 0.0,
@@ -164,14 +157,22 @@ def rough_contact(
 ) -> RoughContact:
     """Return the contact of a rubber on a surface at a mean pressure (Pa) and speed (m/s).
 
-    ``scales`` also computes it for up to five shortest waves.
+    ``rubber`` is as ``rubber_from`` returns it; ``scales`` also computes the contact for up to five
+    shortest waves, each half the one before.
     """
-    modulus, described, assumed = rubber_from(rubber)
-    floor = surface_from(surface)
+    modulus, described, assumed = rubber
     contact, flow = solved(floor, modulus, speed, pressure, poisson_ratio)
-    dependence = (
-        scale_dependence(floor, modulus, speed, pressure, poisson_ratio) if scales else None
-    )
+    dependence = None
+    if scales:
+        last, side = max(floor.resolution or 0.0, 4.0 * floor.spacing), min(floor.size)
+        waves = [last * 2.0**n for n in range(4, -1, -1) if last * 2.0**n < 0.5 * side]
+        if len(waves) < 2:
+            raise InputError(
+                f"waves from {last:.3g} m on a side of {side:.3g} m: nothing to compare",
+                where="--cutoffs",
+                remedy="Take more --points or a surface with several scales",
+            )
+        dependence = cutoff_dependence(floor, modulus, speed, pressure, waves, poisson_ratio)
     notes = (*assumed, *contact.notes, *floor.processing)
     return RoughContact(described, floor, contact, flow, dependence, notes)
 
@@ -187,16 +188,132 @@ def solved(
     return contact, flow_factors(gap, floor.spacing)
 
 
-def scale_dependence(
-    floor: HeightMap, rubber: Any, speed: float, pressure: float, poisson_ratio: float
-) -> CutoffDependence:
-    """Return the contact at up to five shortest waves, each half the one before."""
-    last = max(floor.resolution or 0.0, 4.0 * floor.spacing)
-    waves = [last * 2.0**n for n in range(4, -1, -1) if last * 2.0**n < 0.5 * min(floor.size)]
-    if len(waves) < 2:
-        raise InputError(
-            f"waves from {last:.3g} m on a side of {min(floor.size):.3g} m: nothing to compare",
-            where="--cutoffs",
-            remedy="Take more --points or a surface with several scales",
+def surface_from(
+    file: Path | None = None,
+    *,
+    rms: str | None = None,
+    hurst: float = 0.8,
+    longest: str | None = None,
+    shortest: str | None = None,
+    checkerboard: tuple[str, str] | None = None,
+    points: int = 256,
+    seed: int = 0,
+) -> HeightMap:
+    """Return the periodic height map that the options of ``underfoot contact`` describe.
+
+    Lengths are text with units. Exactly one of ``file``, ``rms`` and ``checkerboard`` is given. A
+    profile becomes a random surface with its spectrum; a map that is not periodic is mirrored.
+    """
+    kinds = {"a file": file, "--rms": rms, "--checkerboard": checkerboard}
+    allowed = 'one of: FILE, --rms "5 um", --checkerboard "24.3 um" "0.4 mm"'
+    exactly_one(kinds, "no surface", "underfoot contact", allowed)
+    if not 8 <= points <= 8192:
+        raise InputError(f"{points}", where="--points", allowed="8 to 8192 a side")
+    last = None if shortest is None else to_si(shortest, "m", where="--shortest")
+    first = None if longest is None else to_si(longest, "m", where="--longest")
+    if checkerboard is not None:
+        height, wave = (to_si(text, "m", where="--checkerboard") for text in checkerboard)
+        return surface.checkerboard(points, wave / points, height, wave)
+    if rms is not None:
+        height, first = to_si(rms, "m", where="--rms"), 0.5e-3 if first is None else first
+        spacing = 2.0 * first / points
+        last = 8.0 * spacing if last is None else last
+        return surface.self_affine(points, spacing, height, hurst, first, last, seed)
+    assert file is not None
+    measured = surface.read_surface(file)
+    if isinstance(measured, Profile):
+        return _from_profile(measured, points, seed, first, last)
+    return measured if measured.periodic else mirrored(measured)
+
+
+def _from_profile(
+    profile: Profile, points: int, seed: int, longest: float | None, shortest: float | None
+) -> HeightMap:
+    """Return an isotropic random surface with the spectrum of a measured profile.
+
+    Two longest reliable waves make a side, eight grid points by default the shortest wave.
+    """
+    flat = levelled(profile)
+    spectrum = surface.isotropic_from_profile(surface.profile_spectrum(flat))
+    low, high = spectrum.reliable
+    if longest is not None:
+        low = max(low, 2.0 * np.pi / longest)
+    spacing = 4.0 * np.pi / low / points
+    shortest = 8.0 * spacing if shortest is None else shortest
+    part = spectrum.within(low, min(high, 2.0 * np.pi / shortest))
+    random = surface.surface_from_spectrum(part, points, spacing, seed)
+    note = (
+        f"the levelled profile has an rms height of {display(float(np.std(flat.heights)), 'm')}, "
+        f"this surface {display(random.rms_height, 'm')}: it keeps waves from "
+        f"{display(2.0 * np.pi / part.reliable[1], 'm')} to {display(2.0 * np.pi / low, 'm')}"
+    )
+    return replace(random, processing=(*random.processing, note))
+
+
+def mirrored(measured: HeightMap) -> HeightMap:
+    """Return the levelled map with its mirror images beside it: periodic, nothing invented."""
+    flat = levelled(measured)
+    row = np.concatenate([flat.heights, flat.heights[::-1]], axis=0)
+    note = (
+        "mirrored along both axes to close its edges: four times the area, and what differs "
+        "between sliding forwards and backwards is averaged out"
+    )
+    heights = np.concatenate([row, row[:, ::-1]], axis=1)
+    return replace(flat, heights=heights, periodic=True, processing=(*flat.processing, note))
+
+
+def rubber_from(
+    *,
+    modulus: str | None = None,
+    shore: float | None = None,
+    spectrum: Path | None = None,
+    name: str | None = None,
+) -> tuple[Any, str, list[str]]:
+    """Return (modulus for ``steady_sliding``, its description, what is assumed about it).
+
+    Exactly one is given: Young's modulus as text, hardness, a file, or a measured material.
+    """
+    kinds = {"--modulus": modulus, "--shore": shore, "--spectrum": spectrum, "--material": name}
+    allowed = 'one of: --modulus "5 MPa", --shore 60, --spectrum FILE, --material NAME'
+    exactly_one(kinds, "no rubber", "underfoot contact", allowed)
+    if modulus is not None:
+        young = to_si(modulus, "Pa", where="--modulus")
+        return young, f"elastic, Young's modulus {modulus}", []
+    if shore is not None:
+        young = float(material.youngs_modulus_gent(shore))
+        notes = [str(breach) for breach in material.gent_breaches(shore)]
+        notes.append("Young's modulus from hardness (Gent 1958): static, tens of percent uncertain")
+        return young, f"elastic, Shore A {shore:g}: {young * 1e-6:.3g} MPa", notes
+    if name is not None:
+        rubber = material.report_elastomer(name)
+        return rubber.spectrum, f"{rubber.name}, {rubber.source}", []
+    assert spectrum is not None
+    return _spectrum(spectrum)
+
+
+def _spectrum(path: Path) -> tuple[Any, str, list[str]]:
+    """Return a Prony series, or the spectrum fitted to one dynamic sweep."""
+    try:
+        return material.read_prony(path), f"Prony series of {path.name}", []
+    except DataError as first:
+        try:
+            sweeps = material.read_dynamic(path)
+        except DataError as second:
+            raise DataError(
+                f"{path} is neither a Prony series ({first.what}) nor a dynamic sweep "
+                f"({second.what})",
+                where="--spectrum",
+                allowed="TOML or CSV with tau and E_i; CSV with frequency, E' and E''",
+            ) from second
+    if len(sweeps) > 1:
+        raise DataError(
+            f"{path} holds sweeps at {len(sweeps)} temperatures",
+            where="--spectrum",
+            allowed="one temperature",
+            remedy="Make a master curve first (underfoot.material.dynamic_master_curve)",
         )
-    return cutoff_dependence(floor, rubber, speed, pressure, waves, poisson_ratio)
+    sweep = sweeps[0]
+    fit = material.fit_dynamic(sweep.angular_frequency, sweep.storage_modulus, sweep.loss_modulus)
+    low, high = fit.frequency_range
+    note = f"spectrum fitted to {low:.3g} to {high:.3g} rad/s, {100 * fit.rms_residual:.2g} % rms"
+    return fit.spectrum, f"dynamic sweep of {path.name}", [note]

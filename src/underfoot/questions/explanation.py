@@ -31,7 +31,7 @@ ROOMS = (
 _EQUATION = re.compile(r"eq(?:uation)?\.?\s*\(?(\d+)\)?", re.IGNORECASE)
 _IN_TEXT = re.compile(r"Eqs?\.\s*\(?(\d+)\)?(?:\s*(to|-|,|and)\s*\(?(\d+)\)?)?")
 _SOURCE = re.compile(r"Source: .*?(?=\n\n|$)", re.DOTALL)
-_SECTION = re.compile(r"\n\n(?=[A-Z][a-z]+\n-{3,})")
+_SECTION = re.compile(r"\n\n(?=[A-Z][a-z]+(?::\n|\n-{3,}))")
 
 
 class Explanation(str):
@@ -106,9 +106,8 @@ def _closures() -> Iterator[tuple[str, Any]]:
     """Yield the public functions and classes of the physics."""
     for room in ROOMS:
         module = import_module(f"underfoot.{room}")
-        for name in getattr(module, "__all__", ()):
-            item = getattr(module, name)
-            if callable(item):
+        for name, item in sorted(vars(module).items()):
+            if callable(item) and str(item.__module__).startswith("underfoot") and name[0] != "_":
                 yield name, item
 
 

@@ -6,7 +6,6 @@ The closed forms stand in ``underfoot.reference``; here the solvers are held aga
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,10 +38,17 @@ class Check:
         return self.relative_error <= self.tolerance
 
 
-def checks() -> Iterator[Check]:
-    """Yield every check, computed one after the other."""
-    for check in CHECKS:
-        yield check()
+def checks() -> list[Check]:
+    """Compute every check, from film to contact to fluid."""
+    glycerol = Check(
+        "glycerol 50 % by mass at 25 degC, viscosity (Pa s)",
+        glycerol_water_viscosity(0.5, 298.15, "mass"),
+        5.00e-3,
+        0.01,
+        "Cheng 2008, table",
+    )
+    solved = (inclined_bearing, squeeze_disc, hertz, westergaard, sliding_sinusoid)
+    return [*(check() for check in solved), glycerol]
 
 
 def inclined_bearing() -> Check:
@@ -134,25 +140,3 @@ def sliding_sinusoid() -> Check:
         1e-3,
         "q^2 a^2 Im E*(qv) / (4 p)",
     )
-
-
-def glycerol_water() -> Check:
-    """Viscosity of a glycerol-water mixture."""
-    return Check(
-        "glycerol 50 % by mass at 25 degC, viscosity (Pa s)",
-        glycerol_water_viscosity(0.5, 298.15, "mass"),
-        5.00e-3,
-        0.01,
-        "Cheng 2008, table",
-    )
-
-
-CHECKS: tuple[Callable[[], Check], ...] = (
-    inclined_bearing,
-    squeeze_disc,
-    hertz,
-    westergaard,
-    sliding_sinusoid,
-    glycerol_water,
-)
-"""Every check, from film to contact to fluid."""

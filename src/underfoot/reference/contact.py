@@ -4,8 +4,6 @@ Throughout, ``modulus`` is the plane-strain modulus E* = E/(1-nu^2) (Pa) of an e
 against a rigid body, and pressures are positive in compression.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -4,8 +4,6 @@ All films are incompressible and isoviscous; ``speed`` is the sliding speed of o
 other. SI throughout.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -28,12 +26,9 @@ def inclined_bearing_load(
 
     W = 6 eta u l^2 / h0^2 K(m), K = [ln(1 + m) - 2 m / (2 + m)] / m^2, m = h1 / h0 - 1.
 
-    Parameters
-    ----------
-    viscosity, speed, length
-        Pa s, m/s, m (length along the sliding direction).
-    leading_gap, trailing_gap
-        h1 > h0 > 0, m.
+    Parameters:
+        viscosity, speed, length: Pa s, m/s, m (length along the sliding direction).
+        leading_gap, trailing_gap: h1 > h0 > 0, m.
 
     Source: Reynolds 1886; Hamrock, Schmid and Jacobson, Fundamentals of Fluid Film Lubrication
     (2004), fixed-incline slider.
@@ -190,16 +185,12 @@ def soft_ehl_film(
     H_min = 7.43 (1 - 0.85 exp(-0.31 k)) U^0.65 W^-0.21
     H = h / R,  U = eta u / (E' R),  W = F / (E' R^2)
 
-    Parameters
-    ----------
-    viscosity, entrainment_speed
-        Pa s; mean speed of the two surfaces, half the sliding speed, m/s.
-    load, radius
-        N; reduced radius along the motion, m.
-    effective_modulus
-        E' = 2 E*, 2 / E' = (1 - nu1^2) / E1 + (1 - nu2^2) / E2, Pa.
-    ellipticity
-        k, 1 for a circle.
+    Parameters:
+        viscosity, entrainment_speed: Pa s; mean speed of the two surfaces, half the sliding speed,
+            m/s.
+        load, radius: N; reduced radius along the motion, m.
+        effective_modulus: E' = 2 E*, 2 / E' = (1 - nu1^2) / E1 + (1 - nu2^2) / E2, Pa.
+        ellipticity: k, 1 for a circle.
 
     Fitted by Hamrock and Dowson (1978, J. Lubr. Technol. 100:236-245) to 17 computed films with
     U from 0.5e-8 to 5.1e-8 and W from 0.2e-3 to 2.2e-3 (range from memory).

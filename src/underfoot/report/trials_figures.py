@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +15,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from underfoot.trials.analyse import FileResult, FolderAnalysis
+    from underfoot.trials.analyse import FileResult, Finding, FolderAnalysis
+
+Curve = Mapping[str, Any]
+_WINDOW = {"color": "tab:blue", "alpha": 0.12, "linewidth": 0}
+_SPREAD = 0.618034  # a fixed pattern instead of random numbers: the same folder, the same picture
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,12 +40,8 @@ def trial_figures(analysis: FolderAnalysis, *, details: int = 4) -> list[TrialFi
     details
         Number of single trials drawn in detail: first those with cautions, then accepted ones.
     """
-    figures = [TrialFigure(*made) for made in study_figures(analysis)]
-    chosen = _chosen(analysis.files, details)
-    for one in chosen:
-        figures += _details(one)
-    figures += _sheets(analysis)
-    return figures
+    single = [made for one in _chosen(analysis.files, details) for made in _details(one)]
+    return [*_study(analysis), *single, *_sheets(analysis)]
 
 
 def _chosen(files: Sequence[FileResult], details: int) -> list[FileResult]:
@@ -50,104 +50,93 @@ def _chosen(files: Sequence[FileResult], details: int) -> list[FileResult]:
     others = [one for one in drawn if one not in slips]
     # A slip first, then one without, then what needs a second look.
     order = [*slips[:1], *others[:1], *(f for f in drawn if f.verdict == "caution"), *drawn]
-    unique: dict[str, FileResult] = {}
-    for one in order:
-        unique.setdefault(one.file, one)
-    return list(unique.values())[:details]
+    return list({one.file: one for one in order}.values())[:details]
 
 
-def _details(one: FileResult) -> list[TrialFigure]:
-    made: list[TrialFigure] = []
-    makers: Mapping[str, tuple[Callable[[FileResult], Figure], str]] = {
-        "steps": (
-            _steps,
-            "{file}: force components (unfiltered) and ratio of shear to normal force (filtered), "
-            "with the gate and the peak taken as required friction",
-        ),
-        "heel": (_heel, "{file}: heel speed after contact with both minima and the peak"),
-        "track": (
-            _track,
-            "{file}: heel trajectory over the sensor array, and the pressures in its layout",
-        ),
-        "slide": (_slide, "{file}: forces and ratio, the averaging window shaded"),
-        "run": (_run, "{file}: COF against time, the averaging window shaded"),
-        "hold": (_hold, "{file}: force during the hold"),
-    }
-    for key, (maker, caption) in makers.items():
+def _details(one: FileResult) -> Iterator[TrialFigure]:
+    stem = re.sub(r"[^\w.-]+", "_", one.file.replace("#", "step_"))
+    for key, (maker, caption) in _TRIAL.items():
         if key in one.curves:
-            stem = re.sub(r"[^\w.-]+", "_", one.file.replace("#", "step_"))
-            words = caption.format(file=one.file)
-            figure = maker(one)
+            figure = maker(one.curves[key], one)
             figure.suptitle(one.file, fontsize=9, color="0.35", x=0.01, ha="left")
-            made.append(TrialFigure(f"{stem}_{key}", words, figure, "trials"))
-    return made
+            yield TrialFigure(f"{stem}_{key}", f"{one.file}: {caption}", figure, "trials")
 
 
-def new_figure(width: float, height: float) -> Figure:
-    """Return an empty figure with constrained layout."""
+def _empty(width: float, height: float) -> Figure:
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def plain(axes: Axes) -> None:
-    """Take away the frame's upper and right side."""
+def _single(width: float, height: float) -> tuple[Figure, Axes]:
+    figure = _empty(width, height)
+    return figure, figure.add_subplot()
+
+
+def _row(width: float, height: float, count: int) -> tuple[Figure, Sequence[Axes]]:
+    figure = _empty(width, height)
+    grid: Any = figure.subplots(1, count, squeeze=False, sharey=True)
+    return figure, grid[0]
+
+
+def _finish(
+    axes: Axes, x: str = "", y: str = "", *, beside: int = 0, small: str = "", **settings: Any
+) -> None:
+    """Name the axes; limits, a small title, a legend ``beside`` of that font size; no frame."""
+    axes.set(**settings, **{key: name for key, name in (("xlabel", x), ("ylabel", y)) if name})
     axes.spines[["top", "right"]].set_visible(False)
+    if small:
+        axes.set_title(small, fontsize=9)
+    if beside:
+        axes.legend(frameon=False, fontsize=beside, loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 
-def array(values: Sequence[float | None]) -> np.ndarray:
+def _array(values: Sequence[float | None]) -> np.ndarray:
     """Return a stored curve as floats; gaps are NaN."""
     return np.array([np.nan if v is None else v for v in values], dtype=float)
 
 
-def _steps(one: FileResult) -> Figure:
-    steps = one.curves["steps"]
-    figure = new_figure(3.3 * min(len(steps), 3) + 2.2, 4.4)
-    grid: Any = figure.subplots(2, min(len(steps), 3), squeeze=False, sharex="col", sharey="row")
-    for column, step in enumerate(steps[:3]):
-        time = 1e3 * array(step["time"])
-        top, low = grid[0][column], grid[1][column]
-        top.plot(time, array(step["normal"]), color="0.25", label="normal")
-        top.plot(time, array(step["along"]), color="tab:blue", label="along the walk")
-        top.plot(time, array(step["across"]), color="tab:orange", label="across")
+def _loaded(curve: Curve, least: float) -> np.ndarray:
+    """Return the ratio where the normal force is above ``least`` (N), else NaN."""
+    return np.where(_array(curve["normal"]) > least, _array(curve["ratio"]), np.nan)
+
+
+def _steps(steps: Sequence[Curve], _: FileResult) -> Figure:
+    count = min(len(steps), 3)
+    figure = _empty(3.3 * count + 2.2, 4.4)
+    grid: Any = figure.subplots(2, count, squeeze=False, sharex="col", sharey="row")
+    for (top, low), step in zip(grid.T, steps, strict=False):
+        time, peak = 1e3 * _array(step["time"]), (1e3 * step["peak_time"], step["peak"])
+        for key, colour, label in (
+            ("normal", "0.25", "normal"),
+            ("along", "tab:blue", "along the walk"),
+            ("across", "tab:orange", "across"),
+        ):
+            top.plot(time, _array(step[key]), color=colour, label=label)
         top.axhline(0, color="0.8", linewidth=0.8)
-        top.set_title(step["step"], fontsize=9)
-        ratio = np.where(array(step["normal"]) > 20, array(step["ratio"]), np.nan)
-        low.plot(time, ratio, color="tab:green")
+        _finish(top, small=step["step"])
+        low.plot(time, _loaded(step, 20), color="tab:green")
         low.axvline(1e3 * step["gate"], color="0.6", linestyle=":", label="gate passed")
-        low.plot(
-            1e3 * step["peak_time"], step["peak"], "o", color="black", label="required friction"
-        )
-        low.annotate(
-            f"{step['peak']:.3f}",
-            (1e3 * step["peak_time"], step["peak"]),
-            textcoords="offset points",
-            xytext=(6, 4),
-            fontsize=9,
-        )
-        low.set_xlabel("time after contact (ms)")
-        low.set_ylim(0, max(0.4, 1.4 * step["peak"]))
-        for axes in (top, low):
-            plain(axes)
-    grid[0][0].set_ylabel("force on the foot (N)")
-    grid[1][0].set_ylabel("shear / normal")
-    for row in grid:
-        row[-1].legend(frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
+        low.plot(*peak, "o", color="black", label="required friction")
+        low.annotate(f"{peak[1]:.3f}", peak, textcoords="offset points", xytext=(6, 4), fontsize=9)
+        _finish(low, "time after contact (ms)", ylim=(0, max(0.4, 1.4 * peak[1])))
+    for row, label in zip(grid, ("force on the foot (N)", "shear / normal"), strict=True):
+        row[0].set_ylabel(label)
+        _finish(row[-1], beside=8)
     return figure
 
 
-def _heel(one: FileResult) -> Figure:
-    heel = one.curves["heel"][0]
-    figure = new_figure(6.4, 3.0)
-    axes = figure.add_subplot()
-    time, speed = 1e3 * array(heel["time"]), array(heel["speed"])
+def _heel(curves: Sequence[Curve], _: FileResult) -> Figure:
+    heel = curves[0]
+    figure, axes = _single(6.4, 3.0)
+    time, speed, limit = 1e3 * _array(heel["time"]), _array(heel["speed"]), heel["threshold"]
     shown = time > -60
     axes.plot(time[shown], speed[shown], color="tab:blue")
     axes.axvline(0, color="0.5", linewidth=0.8)
-    axes.axhline(heel["threshold"], color="0.6", linestyle="--", linewidth=0.8)
+    axes.axhline(limit, color="0.6", linestyle="--", linewidth=0.8)
     axes.annotate(
-        f"slip above {heel['threshold']:g} m/s",
-        (1, heel["threshold"]),
+        f"slip above {limit:g} m/s",
+        (1, limit),
         xycoords=("axes fraction", "data"),
         ha="right",
         va="bottom",
@@ -162,39 +151,27 @@ def _heel(one: FileResult) -> Figure:
         label = f"peak {heel['peak']:.2f} m/s"
         axes.plot(1e3 * heel["peak_time"], heel["peak"], "o", color="black", label=label)
     inside = (time > -5) & (time < 1e3 * (heel["end"] or 0.5) + 120)
-    top = float(np.nanmax(np.append(speed[inside], heel["threshold"])))
-    axes.set_ylim(0, 1.15 * top)
-    axes.set_xlabel("time after heel contact (ms)")
-    axes.set_ylabel("heel speed (m/s)")
-    axes.legend(frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
-    plain(axes)
+    top = float(np.nanmax(np.append(speed[inside], limit)))
+    names = "time after heel contact (ms)", "heel speed (m/s)"
+    _finish(axes, *names, ylim=(0, 1.15 * top), beside=8)
     return figure
 
 
-def _track(one: FileResult) -> Figure:
-    track = one.curves["track"][0]
+def _track(curves: Sequence[Curve], _: FileResult) -> Figure:
+    track = curves[0]
     pulses = track["pulses"]
-    figure = new_figure(8.6, 3.9)
+    figure = _empty(8.6, 3.9)
     parts: Any = figure.subfigures(1, 2, width_ratios=(1, 1.9))
     left, right = parts
     axes = left.add_subplot()
-    across, along = 1e3 * array(track["across"]), 1e3 * array(track["along"])
+    across, along = 1e3 * _array(track["across"]), 1e3 * _array(track["along"])
     # The walker's left is drawn on the left, the walk goes up, as seen from above.
     axes.plot(-across, along, color="tab:blue", linewidth=2, label="heel")
-    if len(along):
-        axes.plot(-across[0], along[0], "o", color="tab:blue", label="heel contact")
-    axes.plot(
-        [-1e3 * p["across"] for p in pulses],
-        [1e3 * p["along"] for p in pulses],
-        "x",
-        color="0.2",
-        linestyle="none",
-        label="sensor",
-    )
-    axes.set_aspect("equal")
-    axes.set_xlim(-70, 70)
-    axes.set_xlabel("right of the middle (mm)")
-    axes.set_ylabel("along the walk (mm)")
+    axes.plot(-across[:1], along[:1], "o", color="tab:blue", label="heel contact")
+    places = 1e3 * np.array([(-p["across"], p["along"]) for p in pulses]).reshape(-1, 2)
+    axes.plot(*places.T, "x", color="0.2", linestyle="none", label="sensor")
+    names = "right of the middle (mm)", "along the walk (mm)"
+    _finish(axes, *names, aspect="equal", xlim=(-70, 70))
     axes.legend(
         frameon=False,
         fontsize=7,
@@ -204,183 +181,140 @@ def _track(one: FileResult) -> Figure:
         handletextpad=0.3,
         columnspacing=0.8,
     )
-    plain(axes)
-    rows = sorted({round(p["along"], 4) for p in pulses}, reverse=True)
-    columns = sorted({round(p["across"], 4) for p in pulses}, reverse=True)
+    rows, columns = (
+        sorted({round(p[key], 4) for p in pulses}, reverse=True) for key in ("along", "across")
+    )
     grid: Any = right.subplots(len(rows), len(columns), squeeze=False, sharex=True, sharey=True)
     for p in pulses:
         cell = grid[rows.index(round(p["along"], 4))][columns.index(round(p["across"], 4))]
-        cell.plot(1e3 * array(p["time"]), array(p["kPa"]), color="tab:blue", linewidth=1)
+        cell.plot(1e3 * _array(p["time"]), _array(p["kPa"]), color="tab:blue", linewidth=1)
         cell.set_title(p["sensor"], fontsize=7, pad=2)
         cell.tick_params(labelsize=7)
-        plain(cell)
+        _finish(cell)
     right.supxlabel("time after heel contact (ms)", fontsize=8)
     right.supylabel("fluid pressure (kPa)", fontsize=8)
     return figure
 
 
-def _slide(one: FileResult) -> Figure:
-    slide = one.curves["slide"][0]
-    figure = new_figure(6.4, 4.2)
+def _slide(curves: Sequence[Curve], one: FileResult) -> Figure:
+    slide, cof = curves[0], one.main.get("cof")
+    figure = _empty(6.4, 4.2)
     top, low = figure.subplots(2, 1, sharex=True)
-    time = array(slide["time"])
-    top.plot(time, array(slide["normal"]), color="0.25", label="normal")
-    top.plot(time, array(slide["shear"]), color="tab:blue", label="shear, resultant")
-    low.plot(time, array(slide["ratio"]), color="tab:green")
-    cof = one.main.get("cof")
+    time = _array(slide["time"])
+    top.plot(time, _array(slide["normal"]), color="0.25", label="normal")
+    top.plot(time, _array(slide["shear"]), color="tab:blue", label="shear, resultant")
+    low.plot(time, _array(slide["ratio"]), color="tab:green")
     if cof is not None:
-        low.set_ylim(0, 2.2 * cof)
         low.plot([slide["begin"], slide["end"]], [cof, cof], color="black", label=f"COF {cof:.3f}")
-        low.legend(frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
+        _finish(low, ylim=(0, 2.2 * cof), beside=8)
     for axes in (top, low):
-        axes.axvspan(slide["begin"], slide["end"], color="tab:blue", alpha=0.12, linewidth=0)
-        plain(axes)
-    top.set_ylabel("force (N)")
-    top.legend(frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
-    low.set_ylabel("shear / normal")
-    low.set_xlabel("time (s)")
+        axes.axvspan(slide["begin"], slide["end"], **_WINDOW)
+    _finish(top, ylabel="force (N)", beside=8)
+    _finish(low, "time (s)", "shear / normal")
     return figure
 
 
-def _run(one: FileResult) -> Figure:
-    run = one.curves["run"][0]
-    figure = new_figure(6.4, 2.6)
-    axes = figure.add_subplot()
-    ratio = array(run["ratio"])
-    axes.plot(array(run["time"]), ratio, color="tab:blue", linewidth=0.8)
-    axes.axvspan(run["begin"], run["end"], color="tab:blue", alpha=0.12, linewidth=0)
+def _run(curves: Sequence[Curve], _: FileResult) -> Figure:
+    run = curves[0]
+    figure, axes = _single(6.4, 2.6)
+    ratio = _array(run["ratio"])
+    axes.plot(_array(run["time"]), ratio, color="tab:blue", linewidth=0.8)
+    axes.axvspan(run["begin"], run["end"], **_WINDOW)
     axes.axhline(run["cof"], color="black", linewidth=1)
-    axes.set_ylim(0, 1.15 * float(np.nanmax(ratio)))
-    axes.set_xlabel("time (s)")
-    axes.set_ylabel("COF")
-    plain(axes)
+    _finish(axes, "time (s)", "COF", ylim=(0, 1.15 * float(np.nanmax(ratio))))
     return figure
 
 
-def _hold(one: FileResult) -> Figure:
-    hold = one.curves["hold"][0]
-    figure = new_figure(6.0, 2.8)
-    axes = figure.add_subplot()
-    time = array(hold["time"])
-    axes.semilogx(time[time > 0], array(hold["force"])[time > 0], color="tab:blue")
+def _hold(curves: Sequence[Curve], _: FileResult) -> Figure:
+    hold = curves[0]
+    figure, axes = _single(6.0, 2.8)
+    time, force = _array(hold["time"]), _array(hold["force"])
+    axes.semilogx(time[time > 0], force[time > 0], color="tab:blue")
     axes.axhline(hold["final"], color="0.4", linestyle="--", linewidth=0.9, label="F∞, last tenth")
-    axes.set_xlabel("time since the peak (s)")
-    axes.set_ylabel("force (N)")
     axes.legend(frameon=False, fontsize=8)
-    plain(axes)
+    _finish(axes, "time since the peak (s)", "force (N)")
     return figure
 
 
-def _sheets(analysis: FolderAnalysis) -> list[TrialFigure]:
-    made: list[TrialFigure] = []
-    for key, title, maker in (
-        ("steps", "Shear / normal of every step", _step_tiles),
-        ("heel", "Heel speed after contact of every trial (m/s)", _heel_tiles),
-        ("slide", "Shear / normal of every slide", _slide_tiles),
-        ("run", "COF of every run", _run_tiles),
-        ("hold", "Force of every hold, share of its start", _hold_tiles),
+_TRIAL = {
+    "steps": (
+        _steps,
+        "force components (unfiltered) and ratio of shear to normal force (filtered), "
+        "with the gate and the peak taken as required friction",
+    ),
+    "heel": (_heel, "heel speed after contact with both minima and the peak"),
+    "track": (_track, "heel trajectory over the sensor array, and the pressures in its layout"),
+    "slide": (_slide, "forces and ratio, the averaging window shaded"),
+    "run": (_run, "COF against time, the averaging window shaded"),
+    "hold": (_hold, "force during the hold"),
+}
+
+
+def _sheets(analysis: FolderAnalysis) -> Iterator[TrialFigure]:
+    # Curves, title, and the least seconds across and height of the common scales.
+    for keys, title, across, up in (
+        (("steps", "rejected"), "Shear / normal of every step", 0.8, 0.5),
+        (("heel",), "Heel speed after contact of every trial (m/s)", 0.8, 0.3),
+        (("slide",), "Shear / normal of every slide", 0.5, 0.1),
+        (("run",), "COF of every run", 0.5, 0.075),
+        (("hold",), "Force of every hold, share of its start", 1.0, 1.1),
     ):
-        tiles, x_range, y_range, line, words = maker(
-            [
-                one
-                for one in analysis.files
-                if key in one.curves or (key == "steps" and "rejected" in one.curves)
-            ]
-        )
-        empty = [one for one in analysis.files if not one.curves]
+        curves = [
+            (k, one, c) for one in analysis.files for k in keys for c in one.curves.get(k, [])
+        ]
+        if not curves:
+            continue
+        made = [_tile(key, one, curve) for key, one, curve in curves]
+        tiles = [tile for tile, _ in made]
+        ends = [t.x[-1] for t in tiles if keys[0] not in ("steps", "heel")]
         tiles += [
             Tile(one.file, one.verdict, np.empty(0), np.empty(0), reason="; ".join(one.reasons))
-            for one in empty
-            if tiles
+            for one in analysis.files
+            if not one.curves
         ]
+        line = curves[-1][2].get("threshold")
         pages = contact_sheets(
-            tiles, x_range=x_range, y_range=y_range, title=title, line=line, line_label=words
+            tiles,
+            x_range=(0.0, float(max([across, *ends]))),
+            y_range=(0.0, max([up, *(height for _, height in made)])),
+            title=title,
+            line=line,
+            line_label=f"slip above {line:g} m/s" if line is not None else "",
         )
         for number, page in enumerate(pages, start=1):
             caption = f"Contact sheet, {title[0].lower()}{title[1:]}"
-            made.append(TrialFigure(f"sheet_{key}_{number}", caption, page, "sheets"))
-    return made
+            yield TrialFigure(f"sheet_{keys[0]}_{number}", caption, page, "sheets")
 
 
-_Sheet = tuple[list[Tile], tuple[float, float], tuple[float, float], float | None, str]
-
-
-def _step_tiles(files: Sequence[FileResult]) -> _Sheet:
-    """Every contact in the order of the steps, rejected ones with their reason."""
-    tiles = []
-    for one in files:
-        for step in one.curves.get("steps", []):
-            ratio = np.where(array(step["normal"]) > 50, array(step["ratio"]), np.nan)
-            mark = ((step["peak_time"], step["peak"]),)
-            label, verdict = f"{one.file}, {step['step']}", step.get("verdict", one.verdict)
-            time = array(step["time"])
-            tiles.append(Tile(label, verdict, time, ratio, mark, f"{step['peak']:.3f}"))
-        for step in one.curves.get("rejected", []):
-            ratio = np.where(array(step["normal"]) > 50, array(step["ratio"]), np.nan)
-            label = f"{one.file}, {step['step']}"
-            time = array(step["time"])
-            tiles.append(Tile(label, "rejected", time, ratio, reason=step["reason"]))
-    return tiles, (0.0, 0.8), (0.0, 0.5), None, ""
-
-
-def _heel_tiles(files: Sequence[FileResult]) -> _Sheet:
-    tiles, tops = [], [0.3]
-    threshold = 0.2
-    for one in files:
-        heel = one.curves["heel"][0]
-        threshold = heel["threshold"]
-        marks = ()
-        remark = "not judged"
-        if heel["peak"] is not None and heel["peak_time"] is not None:
-            marks = ((heel["peak_time"], heel["peak"]),)
-            remark = f"{heel['peak']:.2f}"
-            tops.append(heel["peak"])
-        time, speed = array(heel["time"]), array(heel["speed"])
-        until = (heel["end"] or 0.8) + 0.03
-        tiles.append(
-            Tile(one.file, one.verdict, time[time < until], speed[time < until], marks, remark)
-        )
-    top = float(np.ceil(10 * max(tops)) / 10)
-    return tiles, (0.0, 0.8), (0.0, top), threshold, f"slip above {threshold:g} m/s"
-
-
-def _slide_tiles(files: Sequence[FileResult]) -> _Sheet:
-    tiles, highest, ends = [], 0.05, [0.5]
-    for one in files:
-        slide = one.curves["slide"][0]
-        cof = one.main.get("cof")
-        remark = "no COF" if cof is None else f"{cof:.3f}"
-        highest = max(highest, cof or 0.0)
-        time = array(slide["time"])
-        ends.append(float(time[-1]))
-        ratio = np.where(array(slide["normal"]) > 50, array(slide["ratio"]), np.nan)
-        tiles.append(Tile(one.file, one.verdict, time, ratio, (), remark))
-    return tiles, (0.0, max(ends)), (0.0, 2.0 * highest), None, ""
-
-
-def _run_tiles(files: Sequence[FileResult]) -> _Sheet:
-    tiles, highest, ends = [], 0.05, [0.5]
-    for one in files:
-        run = one.curves["run"][0]
-        time = array(run["time"])
-        highest = max(highest, run["cof"] or 0.0)
-        ends.append(float(time[-1]))
-        marks = ((run["begin"], run["cof"]), (run["end"], run["cof"]))
-        tiles.append(
-            Tile(one.file, one.verdict, time, array(run["ratio"]), marks, f"{run['cof']:.3f}")
-        )
-    return tiles, (0.0, max(ends)), (0.0, 1.5 * highest), None, ""
-
-
-def _hold_tiles(files: Sequence[FileResult]) -> _Sheet:
-    tiles, ends = [], [1.0]
-    for one in files:
-        hold = one.curves["hold"][0]
-        time, force = array(hold["time"]), array(hold["force"])
-        ends.append(float(time[-1]))
-        share = hold["final"] / force[0]
-        tiles.append(Tile(one.file, one.verdict, time, force / force[0], (), f"{share:.2f}"))
-    return tiles, (0.0, max(ends)), (0.0, 1.1), None, ""
+def _tile(key: str, one: FileResult, curve: Curve) -> tuple[Tile, float]:
+    """Return the tile of a curve and the height that it needs (0 for the least one)."""
+    time = _array(curve["time"])
+    if key == "rejected":
+        label = f"{one.file}, {curve['step']}"
+        return Tile(label, key, time, _loaded(curve, 50), reason=curve["reason"]), 0.0
+    if key == "steps":
+        label, verdict = f"{one.file}, {curve['step']}", curve.get("verdict", one.verdict)
+        mark = ((curve["peak_time"], curve["peak"]),)
+        return Tile(label, verdict, time, _loaded(curve, 50), mark, f"{curve['peak']:.3f}"), 0.0
+    marks: tuple[tuple[float, float], ...] = ()
+    if key == "heel":
+        values, remark, height, peak = _array(curve["speed"]), "not judged", 0.0, curve["peak"]
+        if peak is not None and curve["peak_time"] is not None:
+            marks, remark = ((curve["peak_time"], peak),), f"{peak:.2f}"
+            height = float(np.ceil(10 * peak) / 10)
+        until = time < (curve["end"] or 0.8) + 0.03
+        time, values = time[until], values[until]
+    elif key == "slide":
+        values, cof = _loaded(curve, 50), one.main.get("cof")
+        remark, height = ("no COF", 0.0) if cof is None else (f"{cof:.3f}", 2.0 * cof)
+    elif key == "run":
+        values, cof = _array(curve["ratio"]), curve["cof"]
+        marks = ((curve["begin"], cof), (curve["end"], cof))
+        remark, height = f"{cof:.3f}", 1.5 * (cof or 0.0)
+    else:
+        force = _array(curve["force"])
+        values, remark, height = force / force[0], f"{curve['final'] / force[0]:.2f}", 0.0
+    return Tile(one.file, one.verdict, time, values, marks, remark), height
 
 
 _NAMES = {
@@ -396,252 +330,207 @@ _NAMES = {
 }
 
 
-def study_figures(analysis: FolderAnalysis) -> list[tuple[str, str, Figure]]:
-    """Return (name, caption, figure) of what the folder says as a whole."""
+def _study(analysis: FolderAnalysis) -> Iterator[TrialFigure]:
+    """Yield the figures of what the folder says as a whole."""
     curves = analysis.study.curves
-    made: list[tuple[str, str, Figure]] = []
-    if curves.get("risk"):
-        words = (
-            "Slip outcomes (points, spread a little for the eye) and curves with 95 % bands: "
-            + "; ".join(dict.fromkeys(one["method"] for one in curves["risk"]))
-        )
-        made.append(("risk", words, _risk(curves["risk"])))
-    if curves.get("maps"):
-        words = "Fluid pressure under the shoe; white lines are the scans, the cross is the peak"
-        made.append(("maps", words, _maps(curves["maps"])))
-    if curves.get("fits"):
-        words = "COF against sliding speed with the fit of Eq. 17, and its residuals"
-        made.append(("stribeck", words, _fits(curves["fits"])))
-    if curves.get("master"):
-        words = "All COF against viscosity × speed, and one falling curve through them"
-        made.append(("master_curve", words, _master(curves["master"])))
-    if curves.get("line"):
-        words = "Peak slipping speed against the largest pressure of a trial"
-        made.append(("speed_pressure", words, _line(curves["line"])))
-    if curves.get("alpha_beta"):
-        words = "Adhesion with a fluid against dry adhesion, lines of Eq. 26"
-        made.append(("alpha_beta", words, _alpha_beta(curves["alpha_beta"])))
-    made += _groups(analysis)
-    return made
+    methods = "; ".join(dict.fromkeys(one["method"] for one in curves.get("risk") or ()))
+    for key, (name, maker, caption) in _FOLDER.items():
+        if curves.get(key):
+            yield TrialFigure(name, caption.format(methods=methods), maker(curves[key]))
+    for finding in analysis.study.findings:
+        if len(finding.values) > 1:
+            yield _groups(finding)
 
 
-def _risk(risk: Sequence[dict[str, Any]]) -> Figure:
-    figure = new_figure(3.4 * len(risk), 3.1)
-    grid: Any = figure.subplots(1, len(risk), squeeze=False, sharey=True)
-    for axes, one in zip(grid[0], risk, strict=True):
+def _risk(risk: Sequence[Curve]) -> Figure:
+    figure, row = _row(3.4 * len(risk), 3.1, len(risk))
+    for axes, one in zip(row, risk, strict=True):
         axes.fill_between(one["grid"], one["low"], one["high"], color="tab:blue", alpha=0.18, lw=0)
         axes.plot(one["grid"], one["risk"], color="tab:blue")
         y = np.array(one["y"], dtype=float)
-        # A fixed pattern instead of random numbers: the same folder gives the same picture.
-        shift = 0.035 * ((np.arange(len(y)) * 0.618034) % 1.0)
-        axes.plot(
-            one["x"], np.where(y > 0.5, y + shift, y - shift), "o", ms=3.5, color="0.2", alpha=0.6
-        )
-        axes.set_xlabel(_NAMES.get(one["name"], one["name"]))
-        slope = f"slope {one['slope']:.1f}"
+        shift = 0.035 * ((np.arange(len(y)) * _SPREAD) % 1.0)
+        spread = np.where(y > 0.5, y + shift, y - shift)
+        axes.plot(one["x"], spread, "o", ms=3.5, color="0.2", alpha=0.6)
         inside = one["grid"][0] < one["half"] < one["grid"][-1]
-        axes.set_title(slope + (f", 50 % at {one['half']:.3f}" if inside else ""), fontsize=9)
-        axes.set_ylim(-0.06, 1.06)
+        title = f"slope {one['slope']:.1f}" + (f", 50 % at {one['half']:.3f}" if inside else "")
+        _finish(axes, _NAMES.get(one["name"], str(one["name"])), small=title, ylim=(-0.06, 1.06))
         axes.locator_params(axis="x", nbins=5)
-        plain(axes)
-    grid[0][0].set_ylabel("slip (1) or not (0), risk")
+    row[0].set_ylabel("slip (1) or not (0), risk")
     return figure
 
 
-def _maps(maps: Sequence[dict[str, Any]]) -> Figure:
-    figure = new_figure(3.3 * len(maps) + 0.6, 4.6)
-    grid: Any = figure.subplots(1, len(maps), squeeze=False, sharey=True)
+def _maps(maps: Sequence[Curve]) -> Figure:
+    figure, row = _row(3.3 * len(maps) + 0.6, 4.6, len(maps))
     top = max(1e-3 * float(np.max(one["pressure"])) for one in maps)
-    image = None
-    for axes, one in zip(grid[0], maps, strict=True):
-        lateral, along = 1e3 * np.array(one["lateral"]), 1e3 * np.array(one["along"])
-        pressure = 1e-3 * np.array(one["pressure"])
+    image: Any = None
+    for axes, one in zip(row, maps, strict=True):
+        right, along = -1e3 * np.array(one["lateral"]), 1e3 * np.array(one["along"])
         # Each scan stands for the strip around it: no smoothing between scans.
         image = axes.pcolormesh(
-            -lateral,
+            right,
             along,
-            pressure.T,
+            1e-3 * np.array(one["pressure"]).T,
             cmap="viridis",
             vmin=0,
             vmax=top,
             shading="nearest",
             rasterized=True,
         )
-        for x in -lateral:
+        for x in right:
             axes.axvline(x, color="white", linewidth=0.4, alpha=0.6)
         axes.plot(-1e3 * one["peak_lateral"], 1e3 * one["peak_along"], "+", color="red", ms=9)
         words = f"{one['load']:.3g} N, peak {1e-3 * one['peak']:.3g} kPa"
         axes.set_title(f"{one['label']}\n{words}", fontsize=9)
-        axes.set_aspect("equal")
+        axes.set(aspect="equal", xlabel="right of heel's middle (mm)")
         axes.locator_params(axis="x", nbins=3)
-        axes.set_xlabel("right of heel's middle (mm)")
-    grid[0][0].set_ylabel("forward of the heel's back (mm)")
-    if image is not None:
-        figure.colorbar(image, ax=grid[0].tolist(), label="fluid pressure (kPa)", shrink=0.8)
+    row[0].set_ylabel("forward of the heel's back (mm)")
+    figure.colorbar(image, ax=list(row), label="fluid pressure (kPa)", shrink=0.8)
     return figure
 
 
-def _fits(fits: Sequence[dict[str, Any]]) -> Figure:
-    groups = list(dict.fromkeys(one["group"] for one in fits))
+def _fits(fits: Sequence[Curve]) -> Figure:
+    groups = {name: [f for f in fits if f["group"] == name] for name in [f["group"] for f in fits]}
     across = min(3, len(groups))
     down = -(-len(groups) // across)
-    figure = new_figure(3.3 * across, 3.3 * down)
+    figure = _empty(3.3 * across, 3.3 * down)
     outer: Any = figure.subfigures(down, across, squeeze=False)
     highest = max(max(one["cof"]) for one in fits)
-    for i, group in enumerate(groups):
-        inner: Any = outer[i // across][i % across].subplots(
-            2, 1, sharex=True, height_ratios=(2.6, 1)
-        )
-        for number, one in enumerate(f for f in fits if f["group"] == group):
+    for i, (group, own) in enumerate(groups.items()):
+        top, low = outer.flat[i].subplots(2, 1, sharex=True, height_ratios=(2.6, 1))
+        for number, one in enumerate(own):
             colour = f"C{number % 10}"
             speed, cof = np.array(one["speed"]), np.array(one["cof"])
             grid = np.linspace(0, 1.02 * speed.max(), 120)
-            inner[0].plot(grid, _curve(one, grid), color=colour, linewidth=0.9)
-            inner[0].plot(speed, cof, "o", ms=2.6, color=colour)
-            inner[1].plot(speed, cof - _curve(one, speed), "o", ms=2.2, color=colour)
-        verdicts = [f["verdict"] for f in fits if f["group"] == group]
+            top.plot(grid, _fitted(one, grid), color=colour, linewidth=0.9)
+            top.plot(speed, cof, "o", ms=2.6, color=colour)
+            low.plot(speed, cof - _fitted(one, speed), "o", ms=2.2, color=colour)
+        verdicts = [f["verdict"] for f in own]
         words = ", ".join(f"{verdicts.count(v)} {v}" for v in dict.fromkeys(verdicts))
-        inner[0].set_title(f"{group or 'all files'} ({words})", fontsize=9)
-        inner[0].set_ylim(0, 1.1 * highest)
-        inner[1].axhline(0, color="0.7", linewidth=0.8)
-        inner[1].set_xlabel("sliding speed (m/s)", fontsize=8)
+        low.axhline(0, color="0.7", linewidth=0.8)
+        low.set_xlabel("sliding speed (m/s)", fontsize=8)
         if i % across == 0:
-            inner[0].set_ylabel("COF", fontsize=8)
-            inner[1].set_ylabel("residual", fontsize=8)
-        for axes in inner:
+            top.set_ylabel("COF", fontsize=8)
+            low.set_ylabel("residual", fontsize=8)
+        _finish(top, small=f"{group or 'all files'} ({words})", ylim=(0, 1.1 * highest))
+        _finish(low)
+        for axes in (top, low):
             axes.tick_params(labelsize=7)
-            plain(axes)
     return figure
 
 
-def _curve(one: dict[str, Any], speed: np.ndarray) -> np.ndarray:
+def _fitted(one: Curve, speed: np.ndarray) -> np.ndarray:
     if one["verdict"] == "mean":
         return np.full(len(speed), one["mean"])
     boundary, tau, asymptote = one["raw"]
     return asymptote + (boundary - asymptote) * np.exp(-speed / tau)
 
 
-def _master(master: dict[str, Any]) -> Figure:
-    figure = new_figure(6.2, 3.6)
-    axes = figure.add_subplot()
-    product, cof = np.array(master["product"]), np.array(master["cof"])
-    labels = np.array(master["label"])
+def _master(master: Curve) -> Figure:
+    figure, axes = _single(6.2, 3.6)
+    product, cof, labels = (np.array(master[key]) for key in ("product", "cof", "label"))
     for number, label in enumerate(dict.fromkeys(master["label"])):
         mine = labels == label
         axes.semilogx(product[mine], cof[mine], "o", ms=3, color=f"C{number % 10}", label=label)
     axes.semilogx(master["grid"], master["fitted"], color="black", linewidth=1.2, label="one curve")
-    axes.set_xlabel("viscosity × speed (N/m)")
-    axes.set_ylabel("COF")
-    axes.set_ylim(bottom=0)
     words = f"R² {master['r_squared']:.3f}, residual sd {master['residual_sd']:.3f}"
-    axes.set_title(words, fontsize=9)
-    axes.legend(frameon=False, fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5))
-    plain(axes)
+    _finish(axes, "viscosity × speed (N/m)", "COF", ylim=(0, None), small=words, beside=7)
     return figure
 
 
-def _line(line: dict[str, Any]) -> Figure:
-    figure = new_figure(4.4, 3.2)
-    axes = figure.add_subplot()
+def _line(line: Curve) -> Figure:
+    figure, axes = _single(4.4, 3.2)
     x = np.array(line["x"])
     axes.plot(x, line["y"], "o", ms=4, color="0.2")
     ends = np.array([0.0, 1.05 * x.max()])
     axes.plot(ends, line["intercept"] + line["slope"] * ends, color="tab:blue")
-    axes.set_xlabel("peak pressure (kPa)")
-    axes.set_ylabel("peak slipping speed (m/s)")
-    axes.set_ylim(bottom=0)
-    axes.set_title(f"r = {line['r']:.2f}", fontsize=9)
-    plain(axes)
+    names = "peak pressure (kPa)", "peak slipping speed (m/s)"
+    _finish(axes, *names, ylim=(0, None), small=f"r = {line['r']:.2f}")
     return figure
 
 
-def _alpha_beta(found: dict[str, Any]) -> Figure:
-    figure = new_figure(5.4, 3.4)
-    axes = figure.add_subplot()
-    fluids, dry, wet = np.array(found["fluid"]), np.array(found["dry"]), np.array(found["wet"])
+def _alpha_beta(found: Curve) -> Figure:
+    figure, axes = _single(5.4, 3.4)
+    fluids, dry, wet = (np.array(found[key]) for key in ("fluid", "dry", "wet"))
     ends = np.array([dry.min(), dry.max()])
     for number, (fluid, alpha, beta) in enumerate(found["lines"]):
         colour = f"C{number % 10}"
         axes.plot(dry[fluids == fluid], wet[fluids == fluid], "o", ms=4, color=colour, label=fluid)
         axes.plot(ends, alpha + beta * ends, color=colour)
-    axes.set_xlabel("dry adhesion (N)")
-    axes.set_ylabel("adhesion with the fluid (N)")
-    axes.legend(frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
-    plain(axes)
+    _finish(axes, "dry adhesion (N)", "adhesion with the fluid (N)", beside=8)
     return figure
 
 
-def _groups(analysis: FolderAnalysis) -> list[tuple[str, str, Figure]]:
-    """Group means with SD, the units' own values, and Tukey's letters where a factor was tested.
+_FOLDER = {
+    "risk": (
+        "risk",
+        _risk,
+        "Slip outcomes (points, spread a little for the eye) and curves with 95 % bands: {methods}",
+    ),
+    "maps": (
+        "maps",
+        _maps,
+        "Fluid pressure under the shoe; white lines are the scans, the cross is the peak",
+    ),
+    "fits": (
+        "stribeck",
+        _fits,
+        "COF against sliding speed with the fit of Eq. 17, and its residuals",
+    ),
+    "master": (
+        "master_curve",
+        _master,
+        "All COF against viscosity × speed, and one falling curve through them",
+    ),
+    "line": (
+        "speed_pressure",
+        _line,
+        "Peak slipping speed against the largest pressure of a trial",
+    ),
+    "alpha_beta": (
+        "alpha_beta",
+        _alpha_beta,
+        "Adhesion with a fluid against dry adhesion, lines of Eq. 26",
+    ),
+}
+
+
+def _groups(finding: Finding) -> TrialFigure:
+    """Draw means with SD, the single values, and Tukey's letters of the levels of a factor.
 
     Where persons repeat, points are persons' means and grey lines join one person's.
     """
-    made = []
-    for finding in analysis.study.findings:
-        if not finding.marks:
-            continue
-        response, factor, letters = finding.response, finding.factor, finding.marks
-        values = _values(analysis, response, factor)
-        if len(values) < 2:
-            continue
-        figure = new_figure(max(3.2, 1.05 * len(values) + 1.3), 3.1)
-        axes = figure.add_subplot()
-        names = list(values)
-        persons: dict[str, list[tuple[float, float]]] = {}
-        for i, name in enumerate(names):
-            points = np.array(list(values[name].values()))
-            axes.bar(i, points.mean(), width=0.62, color="tab:blue", alpha=0.35)
-            spread = points.std(ddof=1) if len(points) > 1 else 0.0
-            axes.errorbar(i, points.mean(), spread, color="0.2", capsize=3, linewidth=1)
-            shift = 0.3 * ((np.arange(len(points)) * 0.618034) % 1.0) - 0.15
-            axes.plot(i + shift, points, "o", ms=2.6, color="0.2", alpha=0.5)
-            for x, (who, y) in zip(i + shift, values[name].items(), strict=True):
-                persons.setdefault(who, []).append((float(x), y))
-            height = max(points.max(), points.mean() + spread)
-            axes.annotate(
-                letters.get(name, ""),
-                (i, height),
-                textcoords="offset points",
-                xytext=(0, 5),
-                ha="center",
-                weight="bold",
-            )
-        lines = [path for path in persons.values() if len(path) > 1]
-        for path in lines:
-            axes.plot(*zip(*path, strict=True), color="0.6", linewidth=0.5, zorder=0)
-        axes.set_xticks(range(len(names)), [name.replace(", ", "\n") for name in names])
-        longest = max(len(part) for name in names for part in name.split(", "))
-        axes.tick_params(axis="x", labelsize=9 if longest < 14 else 7)
-        label = _NAMES.get(response, response.replace("_", " "))
-        axes.set_ylabel(label)
-        axes.margins(y=0.14)
-        axes.set_ylim(bottom=0)
-        plain(axes)
-        units = "means of persons (lines join one person)" if lines else "single values"
-        words = (
-            f"{label} by {factor}: means, standard deviations, {units}; groups that share a "
-            "letter do not differ (Tukey, 0.05)"
+    names = list(finding.values)
+    figure, axes = _single(max(3.2, 1.05 * len(names) + 1.3), 3.1)
+    persons: dict[str, list[tuple[float, float]]] = {}
+    for i, (name, values) in enumerate(finding.values.items()):
+        points = np.array(list(values.values()))
+        spread = points.std(ddof=1) if len(points) > 1 else 0.0
+        axes.bar(i, points.mean(), width=0.62, color="tab:blue", alpha=0.35)
+        axes.errorbar(i, points.mean(), spread, color="0.2", capsize=3, linewidth=1)
+        places = i + 0.3 * ((np.arange(len(points)) * _SPREAD) % 1.0) - 0.15
+        axes.plot(places, points, "o", ms=2.6, color="0.2", alpha=0.5)
+        for x, (who, y) in zip(places, values.items(), strict=True):
+            persons.setdefault(who, []).append((float(x), y))
+        axes.annotate(
+            finding.marks.get(name, ""),
+            (i, max(points.max(), points.mean() + spread)),
+            textcoords="offset points",
+            xytext=(0, 5),
+            ha="center",
+            weight="bold",
         )
-        made.append((f"groups_{response}_{factor}", words, figure))
-    return made
-
-
-def _values(analysis: FolderAnalysis, response: str, factor: str) -> dict[str, dict[str, float]]:
-    """Return the mean of each person (or file) by level of a factor."""
-    parameters = analysis.study.curves.get("parameters", {})
-    if response in parameters:
-        found: dict[str, dict[str, float]] = {}
-        for number, (group, value) in enumerate(parameters[response]):
-            found.setdefault(group, {})[str(number)] = value
-        return found
-    usable = [f for f in analysis.files if f.usable and response in f.main]
-    person = analysis.person
-    values: dict[str, dict[str, list[float]]] = {}
-    for one in usable:
-        if factor in one.conditions:
-            who = str(one.conditions.get(person, one.file)) if person else one.file
-            own = values.setdefault(str(one.conditions[factor]), {})
-            own.setdefault(who, []).append(one.main[response])
-    return {
-        level: {who: float(np.mean(v)) for who, v in own.items()} for level, own in values.items()
-    }
+    lines = [path for path in persons.values() if len(path) > 1]
+    for path in lines:
+        axes.plot(*zip(*path, strict=True), color="0.6", linewidth=0.5, zorder=0)
+    axes.set_xticks(range(len(names)), [name.replace(", ", "\n") for name in names])
+    longest = max(len(part) for name in names for part in name.split(", "))
+    axes.tick_params(axis="x", labelsize=9 if longest < 14 else 7)
+    axes.margins(y=0.14)
+    label = _NAMES.get(finding.response, finding.response.replace("_", " "))
+    _finish(axes, ylabel=label, ylim=(0, None))
+    units = "means of persons (lines join one person)" if lines else "single values"
+    words = (
+        f"{label} by {finding.factor}: means, standard deviations, {units}; groups that share a "
+        "letter do not differ (Tukey, 0.05)"
+    )
+    return TrialFigure(f"groups_{finding.response}_{finding.factor}", words, figure)

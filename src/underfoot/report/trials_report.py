@@ -6,7 +6,6 @@ inside archives.
 
 from __future__ import annotations
 
-import base64
 import csv
 import io
 import math
@@ -23,7 +22,7 @@ from underfoot.core.files import check_writable_folder
 from underfoot.core.pool import in_processes
 from underfoot.core.progress import part
 
-from .html import environment
+from .html import embedded, environment, png
 from .trials_figures import TrialFigure, trial_figures
 
 if TYPE_CHECKING:
@@ -35,7 +34,7 @@ STORE = ".files"
 _MARK = "analysis.txt"
 _LONG = 60  # rows of a table shown on the page; the spreadsheet has all
 _DATE = (1980, 1, 1, 0, 0, 0)  # the oldest a zip archive can hold
-_STAMP = "1980-01-01T00:00:00Z"
+_STAMP = b"1980-01-01T00:00:00Z"
 _WIDEST = 60
 _MANY = 24  # figures from which other processes draw faster than this one alone
 
@@ -61,12 +60,17 @@ def write_trials_report(
         Number of processes that draw many figures; by default the number of processors.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    written = [folder / _MARK]
-    written[0].write_text(
+    written: list[Path] = []
+
+    def write(name: str, text: str) -> None:
+        written.append(folder / name)
+        written[-1].write_text(text, encoding="utf-8")
+
+    write(
+        _MARK,
         f"Analysis of trials by the protocol {analysis.protocol.name}.\n"
         "report.html: all on one page. trials.xlsx and tables/: every number. figures/: pictures.\n"
         f"{STORE}/: results of single files, so that an interrupted analysis can go on.\n",
-        encoding="utf-8",
     )
     for name in ("tables", "figures"):
         (folder / name).mkdir(exist_ok=True)
@@ -75,9 +79,7 @@ def write_trials_report(
     cautions = {f.table.name: f.cautions for f in analysis.study.findings}
     tables = analysis.tables
     for table in tables:
-        written.append(folder / "tables" / f"{table.name}.csv")
-        text = csv_text(table, cautions.get(table.name, ()))
-        written[-1].write_text(text, encoding="utf-8")
+        write(f"tables/{table.name}.csv", csv_text(table, cautions.get(table.name, ())))
     figures = trial_figures(analysis, details=details)
     jobs: list[tuple[Any, ...]] = [(tables, analysis.methods, folder / "trials.xlsx")]
     jobs += [(one, folder / "figures", vector and one.chapter != "sheets") for one in figures]
@@ -86,8 +88,7 @@ def write_trials_report(
     for _, paths in sorted(in_processes(_written, jobs, count, progress=drawing, stage="drawing")):
         written += paths
     pictures = [(one, (folder / "figures" / f"{one.name}.png").read_bytes()) for one in figures]
-    written.append(folder / "report.html")
-    written[-1].write_text(trials_page(analysis, tables, pictures), encoding="utf-8")
+    write("report.html", trials_page(analysis, tables, pictures))
     progress("drawing", 1.0)
     return written
 
@@ -99,7 +100,7 @@ def _written(job: tuple[Any, ...]) -> list[Path]:
         return [job[2]]
     one, folder, vector = job
     paths = [folder / f"{one.name}.png"]
-    paths[0].write_bytes(_png(one.figure, 110 if one.chapter == "sheets" else 130))
+    paths[0].write_bytes(png(one.figure, 110 if one.chapter == "sheets" else 130))
     if vector:
         paths.append(folder / f"{one.name}.svg")
         _svg(one.figure, paths[1])
@@ -124,11 +125,10 @@ def trials_page(
     study = list(analysis.study.tables)
     summary = study.pop(0) if study and study[0].name not in ("steps",) else None
     chapters: dict[str, list[dict[str, str]]] = {"study": [], "trials": [], "sheets": []}
-    for one, png in pictures:
-        source = "data:image/png;base64," + base64.b64encode(png).decode("ascii")
+    for one, picture in pictures:
         width = f"{5.3 * one.figure.get_figwidth():.1f}"
         chapters[one.chapter].append(
-            {"caption": one.caption, "source": source, "name": one.name, "width": width}
+            {"caption": one.caption, "source": embedded(picture), "width": width}
         )
     noted = {name for one in analysis.files for name in one.conditions}
     reasons = Counter(
@@ -146,15 +146,11 @@ def trials_page(
             lead=lead_sentence(analysis),
             reasons=reasons.most_common(4),
             summary=None if summary is None else _page_table(_on_page(summary)),
-            headline=[_page_table(f.table) | {"cautions": f.cautions}
-                      for f in analysis.study.findings[:1]],
             first=chapters["study"][:1],
             figures={**chapters, "study": chapters["study"][1:]},
             study=[_page_table(_on_page(table)) for table in study],
-            findings=[
-                {"title": f.title, "table": _page_table(f.table), "cautions": f.cautions}
-                for f in analysis.study.findings
-            ],
+            findings=[_page_table(f.table) | {"cautions": f.cautions}
+                      for f in analysis.study.findings],
             files=_page_table(_on_page(tables["files"], noted), limit=10_000),
             edits=_page_table(tables["edits"]) if "edits" in tables else None,
         )
@@ -221,38 +217,30 @@ def _on_page(table: Table, conditions: Collection[str] = ()) -> Table:
     if table.name == "files":
         keep = [i for i, c in enumerate(table.columns) if c not in conditions][:9]
         keep += [i for i, c in enumerate(table.columns) if c == "reasons" and i not in keep]
-        rows = tuple(tuple(row[i] for i in keep) for row in table.rows)
-        return replace(table, columns=tuple(table.columns[i] for i in keep), rows=rows)
+        return table.only(keep)
     return table
 
 
 def _compact(table: Table) -> Table:
     """Return a table of several quantities with mean, SD and interval of each in one cell."""
-    ends = [i for i, c in enumerate(table.columns) if c.endswith(" 95 % low")]
-    if len(ends) < 2:
+    starts = [i - 2 for i, c in enumerate(table.columns) if c.endswith(" 95 % low")]
+    if len(starts) < 2:
         return table
-    columns: list[str] = []
-    rows: list[list[Any]] = [[] for _ in table.rows]
-    i = 0
-    while i < len(table.columns):
-        name = table.columns[i]
-        if i + 2 not in ends:
-            columns.append(name)
-            for out, row in zip(rows, table.rows, strict=True):
-                out.append(row[i])
-            i += 1
-            continue
-        columns.append(f"{name}: mean (SD), 95 %")
-        places = table.decimals.get(name, 3)
-        for out, row in zip(rows, table.rows, strict=True):
-            values = [v for v in row[i : i + 4] if isinstance(v, int | float)]
-            texts = [f"{v:.{places}f}" for v in values]
-            full = len(texts) == 4
-            out.append(
-                f"{texts[0]} ({texts[1]}), {texts[2]} to {texts[3]}" if full else "".join(texts[:1])
-            )
-        i += 4
-    return replace(table, columns=tuple(columns), rows=tuple(map(tuple, rows)))
+    inside = {i + k for i in starts for k in (1, 2, 3)}
+    kept = [i for i in range(len(table.columns)) if i not in inside]
+
+    def cell(row: Sequence[Any], i: int) -> Any:
+        if i not in starts:
+            return row[i]
+        places = table.decimals.get(table.columns[i], 3)
+        texts = [f"{v:.{places}f}" for v in row[i : i + 4] if isinstance(v, int | float)]
+        if len(texts) < 4:
+            return "".join(texts[:1])
+        return f"{texts[0]} ({texts[1]}), {texts[2]} to {texts[3]}"
+
+    names = (table.columns[i] + (": mean (SD), 95 %" if i in starts else "") for i in kept)
+    rows = tuple(tuple(cell(row, i) for i in kept) for row in table.rows)
+    return replace(table, columns=tuple(names), rows=rows)
 
 
 # Long text: below its row, over the whole width, so that no column runs out of a page.
@@ -262,16 +250,12 @@ _LONG_TEXT = ("reasons", "reason", "cautions", "flags", "rejected because", "rem
 def _page_table(table: Table, *, limit: int = _LONG) -> dict[str, Any]:
     rows = table.rows[:limit]
     # Columns that say nothing in any row are noise on a page; the spreadsheet keeps them.
-    filled = [
-        i for i in range(len(table.columns)) if any(row[i] not in (None, "") for row in table.rows)
-    ]
-    below = [i for i in filled if table.columns[i] in _LONG_TEXT]
-    filled = [i for i in filled if i not in below]
+    below = [i for i in table.filled() if table.columns[i] in _LONG_TEXT]
+    filled = [i for i in table.filled() if i not in below]
     notes = list(table.notes)
     if len(table.rows) > limit:
         notes.append(f"{len(table.rows) - limit} more rows are in the spreadsheet.")
     return {
-        "name": table.name,
         "title": table.title,
         "columns": [table.columns[i] for i in filled],
         "rows": [
@@ -304,24 +288,20 @@ def _shown(value: Any, column: str, decimals: Mapping[str, int]) -> str:
     return display(value, "1", 3)
 
 
-def _png(figure: Figure, dpi: int) -> bytes:
-    stream = io.BytesIO()
-    figure.savefig(stream, format="png", dpi=dpi, metadata={"Software": None})
-    return stream.getvalue()
-
-
 def _svg(figure: Figure, path: Path) -> None:
     import matplotlib as mpl
 
     # The layout was worked out for the PNG and takes most of the drawing time.
     figure.set_layout_engine("none")
+    stream = io.StringIO()
     with mpl.rc_context({"svg.hashsalt": "underfoot"}):
-        figure.savefig(path, format="svg", metadata={"Date": None, "Creator": None})
+        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     # matplotlib names clip paths after memory addresses; in order of appearance they repeat
-    text = path.read_text(encoding="utf-8")
     seen: dict[str, str] = {}
     text = re.sub(
-        r"\bp[0-9a-f]{10}\b", lambda found: seen.setdefault(found[0], f"clip{len(seen)}"), text
+        r"\bp[0-9a-f]{10}\b",
+        lambda found: seen.setdefault(found[0], f"clip{len(seen)}"),
+        stream.getvalue(),
     )
     path.write_text(text, encoding="utf-8")
 
@@ -334,10 +314,9 @@ def csv_text(table: Table, cautions: Sequence[str] = ()) -> str:
     """
     stream = io.StringIO(newline="")
     writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow([*table.columns, *(["cautions"] if cautions else [])])
     extra = ["; ".join(cautions)] if cautions else []
-    writer.writerow([*table.columns, *(["cautions"] if extra else [])])
-    for row in table.rows:
-        writer.writerow([*map(_cell, row), *extra])
+    writer.writerows([*map(_cell, row), *extra] for row in table.rows)
     return stream.getvalue()
 
 
@@ -382,7 +361,7 @@ def _without_dates(data: bytes) -> bytes:
         for name in sorted(old.namelist()):
             content = old.read(name)
             if name == "docProps/core.xml":
-                content = re.sub(rb"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", _STAMP.encode(), content)
+                content = re.sub(rb"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", _STAMP, content)
             entry = zipfile.ZipInfo(name, _DATE)
             entry.compress_type = zipfile.ZIP_DEFLATED
             entry.external_attr = 0o644 << 16
@@ -408,9 +387,7 @@ def _number_or_text(value: Any) -> Any:
 
 def _safe(text: str) -> str:
     """Text that a spreadsheet would run as a formula is kept as text."""
-    cleaned = text
-    if not text.isprintable():
-        cleaned = "".join(letter for letter in text if letter.isprintable() or letter in "\n\t")
+    cleaned = "".join(letter for letter in text if letter.isprintable() or letter in "\n\t")
     return "'" + cleaned if cleaned.startswith(("=", "+", "@")) else cleaned
 
 

@@ -1,35 +1,22 @@
 """Dry rough contact: sliding half-space, theories, pressure-gap laws, tables of both."""
 
-from .composite import composite_surface
-from .contact_table import ContactTable, leave_out_errors
-from .cutoff import CutoffDependence, cutoff_dependence
-from .flow_factor import FlowFactors, flow_factors
-from .greenwood_williamson_1966 import greenwood_williamson
-from .persson import persson
-from .pressure_gap_law import ExponentialLaw, PressureGapLaw, TabulatedLaw, persson_law
-from .steady import SlidingSettings, SteadySliding, steady_sliding
-from .theory import TheoryContact
-from .transient import TransientSettings, TransientSliding, transient_sliding
-
-__all__ = [
-    "ContactTable",
-    "CutoffDependence",
-    "ExponentialLaw",
-    "FlowFactors",
-    "PressureGapLaw",
-    "SlidingSettings",
-    "SteadySliding",
-    "TabulatedLaw",
-    "TheoryContact",
-    "TransientSettings",
-    "TransientSliding",
-    "composite_surface",
-    "cutoff_dependence",
-    "flow_factors",
-    "greenwood_williamson",
-    "leave_out_errors",
-    "persson",
-    "persson_law",
-    "steady_sliding",
-    "transient_sliding",
-]
+from .composite import composite_surface as composite_surface
+from .contact_table import ContactTable as ContactTable
+from .contact_table import leave_out_errors as leave_out_errors
+from .cutoff import CutoffDependence as CutoffDependence
+from .cutoff import cutoff_dependence as cutoff_dependence
+from .flow_factor import FlowFactors as FlowFactors
+from .flow_factor import flow_factors as flow_factors
+from .greenwood_williamson_1966 import greenwood_williamson as greenwood_williamson
+from .persson import persson as persson
+from .pressure_gap_law import ExponentialLaw as ExponentialLaw
+from .pressure_gap_law import PressureGapLaw as PressureGapLaw
+from .pressure_gap_law import TabulatedLaw as TabulatedLaw
+from .pressure_gap_law import persson_law as persson_law
+from .steady import SlidingSettings as SlidingSettings
+from .steady import SteadySliding as SteadySliding
+from .steady import steady_sliding as steady_sliding
+from .theory import TheoryContact as TheoryContact
+from .transient import TransientSettings as TransientSettings
+from .transient import TransientSliding as TransientSliding
+from .transient import transient_sliding as transient_sliding

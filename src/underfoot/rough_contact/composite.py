@@ -35,10 +35,8 @@ def composite_surface(
 
     Both maps are periodic, of one shape and spacing, each positive away from its own solid.
 
-    Raises
-    ------
-    InputError
-        Different shape or spacing, or a map that is not periodic.
+    Raises:
+        InputError: Different shape or spacing, or a map that is not periodic.
     """
     if floor.shape != shoe.shape or not np.isclose(floor.spacing, shoe.spacing, rtol=1e-9):
         raise InputError(

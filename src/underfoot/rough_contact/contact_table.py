@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import pickle
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.interpolate import PchipInterpolator
 
 from underfoot.core import (
     Breach,
@@ -34,7 +35,7 @@ from underfoot.core.presentation import Presentable, Table
 from underfoot.core.provenance import version
 from underfoot.surface import HeightMap
 
-from ._kernels.monotone import interpolated, interpolated_grid, pchip_slopes
+from ._kernels.monotone import interpolated_grid
 from .composite import RESTING, composite_surface
 from .flow_factor import flow_factors
 from .pressure_gap_law import TabulatedLaw
@@ -51,6 +52,8 @@ QUANTITIES = {
 Outside = Literal["error", "extend"]
 Direction = Literal["along", "across", "mean"]
 _FORMAT = 1
+_ARRAYS = ("pressure", "speed", "realizations")
+_TEXTS = ("description", "key", "notes", "out_of_range")
 ROOM = "contact_table-2"
 """Of the cache; raised when the numbers or the form of a part change."""
 _REFINEMENT = 8
@@ -65,19 +68,11 @@ class ContactTable(Presentable):
     ``outside="extend"`` holds the edge value, except that below the lowest pressure the contact
     fraction is proportional to pressure and the gap grows as pressure decays exponentially.
 
-    Parameters
-    ----------
-    pressure, speed
-        Pa and m/s, rising, (n,) and (m,).
-    values, deviation
-        Mean and sample standard deviation over the surfaces, (n, m), per name in QUANTITIES; a
-        deviation is not a number where fewer than two surfaces were computed.
-    realizations
-        Number of surfaces behind every node, (n, m).
-    ranges
-        Tested box: the grid.
-    notes
-        What a reader must know: surfaces, missing nodes, assumptions, why friction is zero.
+    ``pressure`` (Pa, (n,)) and ``speed`` (m/s, (m,)) rise. ``values`` and ``deviation`` hold mean
+    and sample standard deviation over the surfaces, (n, m), per name in QUANTITIES (a deviation is
+    not a number where fewer than two surfaces were computed), ``realizations`` the number of
+    surfaces behind every node. ``notes`` say what a reader must know: surfaces, missing nodes,
+    assumptions, why friction is zero.
     """
 
     pressure: np.ndarray
@@ -112,50 +107,48 @@ class ContactTable(Presentable):
         Every node is ``steady_sliding`` followed by ``flow_factors`` on its gap, with contact
         closed. The contact fraction is the perimeter-corrected one.
 
-        Parameters
-        ----------
-        surfaces
-            Periodic height maps (``HeightMap``), one or more (seeds of one texture); the spread
-            between them becomes the uncertainty. Their shortest wave decides the contact fraction:
-            see ``cutoff_dependence``.
-        modulus, poisson_ratio, layer_thickness
-            As in ``steady_sliding``.
-        pressure, speed
-            Nodes: Pa and m/s, rising, > 0; at least 4 pressures, 1 speed.
-        shoe_surfaces
-            The rubber's own roughness, one periodic map for each of ``surfaces``: contact, gap and
-            flow are those of ``composite_surface`` at each speed, hysteresis that of the floor
-            alone; its limits are noted.
-        processes
-            Worker processes; with more than 1 the modulus must be picklable (no lambda).
-        cache
-            Where finished parts are kept; None takes the user's cache.
-        progress
-            Receives the fraction done; may raise ``Cancelled``: finished parts stay in the cache.
+        Parameters:
+            surfaces: Periodic height maps (``HeightMap``), one or more (seeds of one texture); the
+                spread between them becomes the uncertainty. Their shortest wave decides the contact
+                fraction: see ``cutoff_dependence``.
+            modulus, poisson_ratio, layer_thickness: As in ``steady_sliding``.
+            pressure, speed: Nodes: Pa and m/s, rising, > 0; at least 4 pressures, 1 speed.
+            shoe_surfaces: The rubber's own roughness, one periodic map for each of ``surfaces``:
+                contact, gap and flow are those of ``composite_surface`` at each speed, hysteresis
+                that of the floor alone; its limits are noted.
+            processes: Worker processes; with more than 1 the modulus must be picklable (no lambda).
+            cache: Where finished parts are kept; None takes the user's cache.
+            progress: Receives the fraction done; may raise ``Cancelled``: finished parts stay in
+                the cache.
 
-        Raises
-        ------
-        InputError
-            No surface, not periodic, nodes not rising, modulus that can't be sent to a process.
-        ConvergenceError
-            A node where no surface converged.
+        Raises:
+            InputError: No surface, not periodic, nodes not rising, modulus that can't be sent to a
+                process.
+            ConvergenceError: A node where no surface converged.
         """
         p, v = _nodes("pressure", pressure, 4), _nodes("speed", speed, 1)
         _check_surfaces(surfaces)
         store = Cache(ROOM) if cache is None else cache
-        parts = [
-            _part(floor, shoe, modulus, float(u), p, poisson_ratio, layer_thickness)
-            for floor, shoe in _pairs(surfaces, shoe_surfaces)
-            for u in v
-        ]
+        parts = []
+        for floor, shoe in _pairs(surfaces, shoe_surfaces):
+            alone = np.asarray(floor.heights)
+            for u in v.tolist():
+                both = None if shoe is None else composite_surface(floor, shoe, modulus, u).heights
+                given = (floor.spacing, modulus, u, p, poisson_ratio, layer_thickness)
+                parts.append(
+                    _Part(alone if both is None else both, *given, None if both is None else alone)
+                )
         keys = [part.key for part in parts]
         columns = [store.load(key) for key in keys]
         missing = [n for n, column in enumerate(columns) if column is None]
+        if processes > 1 and len(missing) > 1:
+            _check_sendable(modulus)
         done = len(parts) - len(missing)
         progress("contact table", done / len(parts))
-        for n, column in _computed(parts, missing, processes):
-            store.store(keys[n], column)
-            columns[n] = column
+        rest = [parts[n] for n in missing]
+        for index, column in in_processes(_column, rest, max(processes, 1)):
+            columns[missing[index]] = column
+            store.store(keys[missing[index]], column)
             done += 1
             progress("contact table", done / len(parts))
         about = [_about(surfaces), *([RESTING] if shoe_surfaces is not None else [])]
@@ -164,12 +157,12 @@ class ContactTable(Presentable):
 
     def table(self) -> Table:
         """Return the nodes, one row a pressure and speed, with the spread between surfaces."""
-        quantities = [(name, self.values[name], self.deviation[name]) for name in QUANTITIES]
         columns = [
             label for name in QUANTITIES for label in (f"{name.replace('_', ' ')}", f"{name} ±")
         ]
+        numbers = [part[name] for name in QUANTITIES for part in (self.values, self.deviation)]
         rows = [
-            [p, v, *(x for _, mean, spread in quantities for x in (mean[i, j], spread[i, j]))]
+            [p, v, *(array[i, j] for array in numbers)]
             for i, p in enumerate(self.pressure.tolist())
             for j, v in enumerate(self.speed.tolist())
         ]
@@ -201,18 +194,19 @@ class ContactTable(Presentable):
         self, pressure: ArrayLike, speed: ArrayLike, outside: Outside = "error"
     ) -> Array:
         """Return the real over the nominal contact area at p (Pa) and v (m/s)."""
-        p, x, y = self._at(pressure, speed, outside)
+        p, *at = self._at(pressure, speed, outside)
         floor = np.finfo(float).tiny
-        logarithm = np.log(np.maximum(self.values["real_contact_fraction"], floor))
-        value, _ = interpolated_grid(*self._axes, logarithm, x, y)
+        value, _ = self._through(
+            np.log(np.maximum(self.values["real_contact_fraction"], floor)), at
+        )
         return np.exp(value) * np.minimum(p / self.pressure[0], 1.0)
 
     def cof_hysteresis(
         self, pressure: ArrayLike, speed: ArrayLike, outside: Outside = "error"
     ) -> Array:
         """Return the hysteresis COF; it takes the sign of the speed."""
-        _, x, y = self._at(pressure, speed, outside)
-        value, _ = interpolated_grid(*self._axes, self.values["cof_hysteresis"], x, y)
+        _, *at = self._at(pressure, speed, outside)
+        value, _ = self._through(self.values["cof_hysteresis"], at)
         return value * np.where(np.asarray(speed, dtype=float) < 0.0, -1.0, 1.0)
 
     def mean_gap(self, pressure: ArrayLike, speed: ArrayLike, outside: Outside = "error") -> Array:
@@ -220,8 +214,8 @@ class ContactTable(Presentable):
 
         In the extension a pressure of zero counts as a millionth of the lowest one.
         """
-        p, x, y = self._at(pressure, speed, outside)
-        value, slope = interpolated_grid(*self._axes, self.values["mean_gap"], x, y)
+        p, *at = self._at(pressure, speed, outside)
+        value, slope = self._through(self.values["mean_gap"], at)
         below = np.log(np.clip(p / self.pressure[0], 1e-6, 1.0))
         return value + np.where(below < 0.0, slope * below, 0.0)
 
@@ -233,21 +227,22 @@ class ContactTable(Presentable):
         outside: Outside = "error",
     ) -> Array:
         """Return the pressure flow factor phi; flow is phi h^3/(12 eta) with h the mean gap."""
-        _, x, y = self._at(pressure, speed, outside)
-        return interpolated_grid(*self._axes, self._flow(direction), x, y)[0]
+        _, *at = self._at(pressure, speed, outside)
+        chosen = ("along", "across") if direction == "mean" else (direction,)
+        nodes = np.mean([self.values[f"flow_factor_{name}"] for name in chosen], axis=0)
+        return self._through(nodes, at)[0]
 
     def sourced(self, quantity: str, pressure: float, speed: float) -> SourcedValue:
         """Return one interpolated quantity with the spread between surfaces as uncertainty."""
         if quantity not in QUANTITIES:
             raise unknown_name("quantity", quantity, QUANTITIES, where=self.name)
-        _, x, y = self._at(pressure, speed, "error")
+        _, *at = self._at(pressure, speed, "error")
+        value, _ = self._through(self.values[quantity], at)
         if quantity == "real_contact_fraction":
             value = self.real_contact_fraction(pressure, speed)
-        else:
-            value, _ = interpolated_grid(*self._axes, self.values[quantity], x, y)
         spread, reason = None, "only one surface was computed"
         if np.all(np.isfinite(self.deviation[quantity])):
-            deviation, _ = interpolated_grid(*self._axes, self.deviation[quantity], x, y)
+            deviation, _ = self._through(self.deviation[quantity], at)
             spread, reason = max(float(deviation), 0.0), ""
         return SourcedValue(
             value=float(value),
@@ -295,7 +290,13 @@ class ContactTable(Presentable):
 
     def save(self, path: str | Path) -> None:
         """Write the table as one compressed NumPy archive (.npz)."""
-        arrays: dict[str, Any] = dict(self._arrays())
+        text = {name: getattr(self, name) for name in _TEXTS}
+        arrays: dict[str, Any] = {
+            "text": np.array(json.dumps({"format": _FORMAT, **text})),
+            **{name: getattr(self, name) for name in _ARRAYS},
+            **{f"value_{name}": self.values[name] for name in QUANTITIES},
+            **{f"deviation_{name}": self.deviation[name] for name in QUANTITIES},
+        }
         with Path(path).open("wb") as stream:
             np.savez_compressed(stream, **arrays)
 
@@ -304,7 +305,18 @@ class ContactTable(Presentable):
         """Return a table written by ``save``; DataError when the file is no such table."""
         try:
             with np.load(path, allow_pickle=False) as stored:
-                return cls._restored({name: stored[name] for name in stored.files})
+                text = json.loads(str(stored["text"]))
+                if text["format"] != _FORMAT:
+                    raise ValueError(f"format {text['format']}, this program reads {_FORMAT}")
+                return cls(
+                    **{name: stored[name] for name in _ARRAYS},
+                    values={name: stored[f"value_{name}"] for name in QUANTITIES},
+                    deviation={name: stored[f"deviation_{name}"] for name in QUANTITIES},
+                    description=text["description"],
+                    key=text["key"],
+                    notes=tuple(text["notes"]),
+                    out_of_range=tuple(text["out_of_range"]),
+                )
         except (OSError, ValueError, KeyError, EOFError) as error:
             raise DataError(
                 f"{path} is not a contact table ({error})",
@@ -312,17 +324,9 @@ class ContactTable(Presentable):
                 allowed="a file written by ContactTable.save",
             ) from error
 
-    @property
-    def _axes(self) -> tuple[np.ndarray, np.ndarray]:
-        return np.log(self.pressure), np.log(self.speed)
-
-    def _flow(self, direction: Direction) -> np.ndarray:
-        along, across = self.values["flow_factor_along"], self.values["flow_factor_across"]
-        if direction == "along":
-            return along
-        if direction == "across":
-            return across
-        return 0.5 * (along + across)
+    def _through(self, nodes: np.ndarray, at: Sequence[np.ndarray]) -> tuple[Array, Array]:
+        """Return value and slope by ln(pressure) of the cubic through ``nodes``."""
+        return interpolated_grid(np.log(self.pressure), np.log(self.speed), nodes, *at)
 
     def _at(
         self, pressure: ArrayLike, speed: ArrayLike, outside: Outside
@@ -348,45 +352,8 @@ class ContactTable(Presentable):
         x = np.log(np.clip(p, self.pressure[0], self.pressure[-1]))
         return p, x, np.log(np.clip(v, self.speed[0], self.speed[-1]))
 
-    def _arrays(self) -> dict[str, np.ndarray]:
-        text = {
-            "format": _FORMAT,
-            "description": self.description,
-            "key": self.key,
-            "notes": list(self.notes),
-            "out_of_range": list(self.out_of_range),
-        }
-        arrays = {
-            "pressure": self.pressure,
-            "speed": self.speed,
-            "realizations": self.realizations,
-            "text": np.array(json.dumps(text)),
-        }
-        for name in QUANTITIES:
-            arrays[f"value_{name}"] = self.values[name]
-            arrays[f"deviation_{name}"] = self.deviation[name]
-        return arrays
 
-    @classmethod
-    def _restored(cls, arrays: Mapping[str, np.ndarray]) -> ContactTable:
-        text = json.loads(str(arrays["text"]))
-        if text["format"] != _FORMAT:
-            raise ValueError(f"format {text['format']}, this program reads {_FORMAT}")
-        return cls(
-            pressure=arrays["pressure"],
-            speed=arrays["speed"],
-            values={name: arrays[f"value_{name}"] for name in QUANTITIES},
-            deviation={name: arrays[f"deviation_{name}"] for name in QUANTITIES},
-            realizations=arrays["realizations"],
-            description=text["description"],
-            key=text["key"],
-            notes=tuple(text["notes"]),
-            out_of_range=tuple(text["out_of_range"]),
-        )
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Part:
+class _Part(NamedTuple):
     """One surface at one speed: the unit of work and of the cache.
 
     ``floor_heights`` is the floor alone where ``heights`` is a composite: its hysteresis counts.
@@ -406,45 +373,7 @@ class _Part:
         """Return the content key: program version, heights, loads, modulus at every frequency."""
         q = 2.0 * np.pi * np.fft.rfftfreq(self.heights.shape[0], self.spacing)
         young = modulus_function(self.modulus, q * self.speed)(q * self.speed)
-        return content_hash(
-            version(),
-            self.heights,
-            self.spacing,
-            young,
-            self.speed,
-            self.pressure,
-            self.poisson_ratio,
-            self.layer_thickness,
-            self.floor_heights,
-        )
-
-
-def _part(
-    floor: Any,
-    shoe: Any,
-    modulus: Modulus,
-    speed: float,
-    pressure: np.ndarray,
-    poisson_ratio: float,
-    layer_thickness: float | None,
-) -> _Part:
-    """Return the part of one floor (with its shoe or None) at one speed."""
-    alone = np.asarray(floor.heights)
-    if shoe is None:
-        heights, floor_heights = alone, None
-    else:
-        heights = composite_surface(floor, shoe, modulus, speed).heights
-        floor_heights = alone
-    return _Part(
-        heights,
-        floor.spacing,
-        modulus,
-        speed,
-        pressure,
-        poisson_ratio,
-        layer_thickness,
-        floor_heights,
-    )
+        return content_hash(version(), *self._replace(modulus=young))
 
 
 def _column(part: _Part) -> dict[str, np.ndarray]:
@@ -492,23 +421,15 @@ def _column(part: _Part) -> dict[str, np.ndarray]:
     return column
 
 
-def _computed(
-    parts: list[_Part], missing: list[int], processes: int
-) -> Iterator[tuple[int, dict[str, np.ndarray]]]:
-    if processes <= 1 or len(missing) < 2:
-        for n in missing:
-            yield n, _column(parts[n])
-        return
+def _check_sendable(modulus: Modulus) -> None:
     try:
-        pickle.dumps(parts[missing[0]].modulus)
+        pickle.dumps(modulus)
     except Exception as error:
         raise InputError(
             f"the modulus can't be sent to another process ({error})",
             where="modulus",
             remedy="Use a material or a named function instead of a lambda, or processes=1",
         ) from error
-    for index, column in in_processes(_column, [parts[n] for n in missing], processes):
-        yield missing[index], column
 
 
 def _table(
@@ -531,10 +452,8 @@ def _table(
         mean = np.where(usable, array, 0.0).sum(axis=0) / np.maximum(count, 1)
         for row, hole in enumerate(holes):
             if hole.any():
-                slopes = pchip_slopes(np.log(p[~hole]), mean[row, ~hole])
-                mean[row, hole], _ = interpolated(
-                    np.log(p[~hole]), mean[row, ~hole], slopes, np.log(p[hole])
-                )
+                through = PchipInterpolator(np.log(p[~hole]), mean[row, ~hole])
+                mean[row, hole] = through(np.log(p[hole]))
         square = np.where(usable, (array - mean) ** 2, 0.0).sum(axis=0)
         spread = np.sqrt(square / np.maximum(count - 1, 1))
         values[name] = mean.T
@@ -643,10 +562,8 @@ def leave_out_errors(table: ContactTable, axis: str = "pressure") -> dict[str, f
     the others absolute. ``axis`` is "pressure" or "speed". The node distance is doubled, so that
     the table itself is several times better than this between its nodes.
 
-    Raises
-    ------
-    InputError
-        Fewer than 5 pressures or 5 speeds.
+    Raises:
+        InputError: Fewer than 5 pressures or 5 speeds.
     """
     nodes = {"pressure": table.pressure, "speed": table.speed}[axis]
     if nodes.size < 5:

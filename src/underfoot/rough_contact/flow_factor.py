@@ -55,21 +55,14 @@ def flow_factors(
     size for smooth gaps. The factor refers to the MEAN gap, contact included; Patir and Cheng
     refer to the distance of the undeformed mean planes, which is the same where nothing touches.
 
-    Parameters
-    ----------
-    gap
-        (nx, ny) gap, m, >= 0; small negative values (rounding) count as contact.
-    spacing
-        Cell size, m, or (along axis 0, along axis 1); only their ratio matters.
-    closed
-        Gap at and below which a cell is closed, m.
+    Parameters:
+        gap: (nx, ny) gap, m, >= 0; small negative values (rounding) count as contact.
+        spacing: Cell size, m, or (along axis 0, along axis 1); only their ratio matters.
+        closed: Gap at and below which a cell is closed, m.
 
-    Raises
-    ------
-    InputError
-        Not a 2-D map, not finite, or negative beyond rounding.
-    ConvergenceError
-        The flow balance was not met (badly scaled gaps).
+    Raises:
+        InputError: Not a 2-D map, not finite, or negative beyond rounding.
+        ConvergenceError: The flow balance was not met (badly scaled gaps).
 
     Source: Reynolds equation without cavitation or shear flow; the average-flow idea is that of
     Patir and Cheng (1978) J. Lubr. Technol. 100:12-17, here on the deformed gap itself.

@@ -8,15 +8,15 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.interpolate import CubicHermiteSpline, PPoly
 
 from underfoot.core import Breach, InputError, Range, breaches
 from underfoot.core.arrays import Array
 from underfoot.core.checks import poisson_ratio, positive
 from underfoot.core.presentation import Presentable, Table
 
-from . import yang_persson_2008
-from ._kernels.monotone import interpolated, pchip_slopes
-from .persson_2001 import cumulative
+from ._kernels.monotone import pchip_slopes
+from .persson import GAP_SOURCE, cumulative, yang_persson_mean_gap
 from .theory import checked_spectrum
 
 DECAY_OVER_RQ, INTERCEPT_OVER_MODULUS = 0.5, 0.375
@@ -96,17 +96,9 @@ class ExponentialLaw(_PresentableLaw):
 
     Below h = 0 the pressure continues along its tangent, p0 (1 - h / u0).
 
-    Parameters
-    ----------
-    modulus
-        Young's modulus of the softer body at the rate of the asperities, Pa.
-    poisson_ratio
-        Of the softer body; 0.5 for rubber.
-    rq
-        Root-mean-square roughness of the two surfaces together, m.
+    ``modulus`` (Pa, Young's, at the rate of the asperities) and ``poisson_ratio`` (0.5 for rubber)
+    are those of the softer body, ``rq`` (m) the rms roughness of the two surfaces together.
 
-    Notes
-    -----
     Persson, Physical Review Letters 99 (2007) 125502 gives the form p = beta E* exp(-u / u0). For a
     self-affine surface of Hurst exponent 0.8 and many scales the theory (Yang and Persson 2008,
     stored energy times 0.45) gives u0 = 0.45 sqrt(0.32 / pi) (10 / 3) Rq = 0.479 Rq, so 0.5 holds
@@ -178,16 +170,9 @@ class TabulatedLaw(_PresentableLaw):
     tends to 1; below the smallest gap the pressure rises along its tangent and the flow factor
     decays to 0. Both tails continue the end slopes; leaving the nodes is a breach.
 
-    Parameters
-    ----------
-    gap
-        Mean gaps, m, rising, (n,), n >= 3; contact counts as zero gap.
-    node_pressure
-        Pa, falling, > 0.
-    node_flow_factor
-        phi of h^3/(12 eta) with h the mean gap.
-    speed
-        m/s at which the nodes were computed; None when they do not depend on it.
+    ``gap`` are mean gaps (m, rising, (n,), n >= 3; contact counts as zero gap), ``node_pressure``
+    (Pa) falls and is above 0, ``node_flow_factor`` is phi of h^3/(12 eta) with h the mean gap.
+    ``speed`` (m/s) is that at which the nodes were computed; None when they do not depend on it.
     """
 
     name: str
@@ -197,9 +182,9 @@ class TabulatedLaw(_PresentableLaw):
     node_flow_factor: np.ndarray
     speed: float | None = None
     ranges: dict[str, Range] = field(default_factory=dict)
-    _log: np.ndarray = field(init=False, repr=False)
-    _log_slope: np.ndarray = field(init=False, repr=False)
-    _flow_slope: np.ndarray = field(init=False, repr=False)
+    _log: np.ndarray = field(init=False, repr=False)  # coefficients of the cubics
+    _flow: np.ndarray = field(init=False, repr=False)
+    _last_slopes: np.ndarray = field(init=False, repr=False)  # of both, exact where they are 0
 
     def __post_init__(self) -> None:
         gap, pressure, flow = (
@@ -237,20 +222,25 @@ class TabulatedLaw(_PresentableLaw):
             ("gap", gap),
             ("node_pressure", pressure),
             ("node_flow_factor", flow),
-            ("_log", logarithm),
-            ("_log_slope", slope),
-            ("_flow_slope", flow_slope),
+            ("_log", CubicHermiteSpline(gap, logarithm, slope).c),
+            ("_flow", CubicHermiteSpline(gap, flow, flow_slope).c),
+            ("_last_slopes", np.array([slope[-1], flow_slope[-1]])),
         ):
             values.setflags(write=False)
             object.__setattr__(self, name, values)
 
     def pressure(self, gap: ArrayLike) -> Array:
         """Return the asperity pressure (Pa) at mean gap ``gap`` (m), any sign and shape."""
-        return self._pressure_and_slope(gap)[0]
+        g, first = np.asarray(gap, dtype=float), self.node_pressure[0]
+        above = np.maximum(g - self.gap[-1], 0.0)
+        pressure = np.exp(self._cubic(self._log, g) + self._last_slopes[0] * above)
+        tangent = first * (1.0 + self._log[2, 0] * (g - self.gap[0]))
+        return np.where(g < self.gap[0], tangent, pressure)
 
     def stiffness(self, gap: ArrayLike) -> Array:
         """Return -d pressure / d gap (Pa/m), > 0."""
-        return -self._pressure_and_slope(gap)[1]
+        g = np.asarray(gap, dtype=float)
+        return -self.pressure(np.maximum(g, self.gap[0])) * self._cubic(self._log, g, 1)
 
     def flow_factor(self, gap: ArrayLike) -> Array:
         """Return phi, which multiplies h^3/(12 eta) with h the mean gap."""
@@ -263,12 +253,9 @@ class TabulatedLaw(_PresentableLaw):
     def mean_gap(self, pressure: ArrayLike) -> Array:
         """Return the gap (m) that carries ``pressure`` (Pa, > 0); negative in the lower tail."""
         p = _positive_pressures(pressure, self.name)
-        low = np.full(p.shape, self.gap[0])
-        first = self.node_pressure[0]
-        low = np.where(p > first, self.gap[0] + (p / first - 1.0) / self._log_slope[0], low)
-        high = np.maximum(
-            self.gap[-1], self.gap[-1] + (np.log(p) - self._log[-1]) / self._log_slope[-1]
-        )
+        first, last = self.node_pressure[[0, -1]]
+        low = self.gap[0] + np.maximum(p / first - 1.0, 0.0) / self._log[2, 0]
+        high = self.gap[-1] + np.minimum(np.log(p / last), 0.0) / self._last_slopes[0]
         for _ in range(60):
             middle = 0.5 * (low + high)
             above = self.pressure(middle) > p
@@ -281,27 +268,21 @@ class TabulatedLaw(_PresentableLaw):
             self.name, self.ranges, {"pressure": pressure, "speed": np.abs(np.asarray(speed))}
         )
 
-    def _pressure_and_slope(self, gap: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-        g = np.asarray(gap, dtype=float)
-        logarithm, slope = interpolated(self.gap, self._log, self._log_slope, g)
-        above = np.maximum(g - self.gap[-1], 0.0)
-        pressure = np.exp(logarithm + self._log_slope[-1] * above)
-        derivative = pressure * slope
-        tangent = self.node_pressure[0] * self._log_slope[0]
-        below = g < self.gap[0]
-        pressure = np.where(below, self.node_pressure[0] + tangent * (g - self.gap[0]), pressure)
-        return pressure, np.where(below, tangent, derivative)
+    def _cubic(self, coefficients: np.ndarray, gap: ArrayLike, slope: int = 0) -> Array:
+        """Return a cubic of the gap or its slope, beyond the nodes that of the outermost node."""
+        inside = np.clip(gap, self.gap[0], self.gap[-1])
+        return PPoly.construct_fast(coefficients, self.gap)(inside, slope)
 
     def _flow_and_slope(self, gap: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         g = np.asarray(gap, dtype=float)
-        flow, slope = interpolated(self.gap, self.node_flow_factor, self._flow_slope, g)
-        first, rate = self.node_flow_factor[0], self._flow_slope[0]
+        flow, slope = (self._cubic(self._flow, g, order) for order in (0, 1))
+        first, rate = self.node_flow_factor[0], self._flow[2, 0]
         if first > 0.0:
             fall = first * np.exp(rate / first * np.minimum(g - self.gap[0], 0.0))
             slope = np.where(g < self.gap[0], fall * rate / first, slope)
             flow = np.where(g < self.gap[0], fall, flow)
         # towards 1 with the end's value and slope: 1 + (a + b x) exp(-x / length)
-        last, rate = self.node_flow_factor[-1] - 1.0, self._flow_slope[-1]
+        last, rate = self.node_flow_factor[-1] - 1.0, self._last_slopes[1]
         length = -last / rate if last * rate < 0.0 else self.gap[-1]
         x = np.maximum(g - self.gap[-1], 0.0)
         linear = rate + last / length
@@ -326,18 +307,12 @@ def persson_law(
 ) -> TabulatedLaw:
     """Return the law p(u) of Yang and Persson's mean gap u between 1e-4 and 0.5 of E* h'.
 
-    Parameters
-    ----------
-    wavenumber, spectrum
-        q (rad/m, rising) and C(q) (m^4), <h^2> = 2 pi int q C dq.
-    modulus
-        Young's modulus of the rubber at the rate of its asperities, Pa.
-    flow_factor
-        phi of the mean gap (m), 0 or more and not falling; None leaves it at 1, which lets too
-        much fluid through at small gaps.
+    Parameters:
+        wavenumber, spectrum: q (rad/m, rising) and C(q) (m^4), <h^2> = 2 pi int q C dq.
+        modulus: Young's modulus of the rubber at the rate of its asperities, Pa.
+        flow_factor: phi of the mean gap (m), 0 or more and not falling; None leaves it at 1, which
+            lets too much fluid through at small gaps.
 
-    Notes
-    -----
     Within 2 % of half-space gaps up to a tenth of E* h', 7 % at 0.3 and 20 % at 0.5 (self-affine,
     Hurst exponent 0.8). Without hysteresis: at speed take the modulus at the asperities' rate.
     """
@@ -346,11 +321,11 @@ def persson_law(
     gradient = float(np.sqrt(2.0 * np.pi * cumulative(q**3 * c, q)[-1]))
     full = modulus / (1.0 - poisson_ratio**2) * gradient
     pressure = np.geomspace(_HEAVIEST, _LIGHTEST, _NODES) * full
-    gap = yang_persson_2008.yang_persson_mean_gap(pressure, q, c, modulus, poisson_ratio)
+    gap = yang_persson_mean_gap(pressure, q, c, modulus, poisson_ratio)
     flow = np.ones_like(gap) if flow_factor is None else np.asarray(flow_factor(gap), dtype=float)
     return TabulatedLaw(
         name="persson",
-        source=yang_persson_2008.SOURCE,
+        source=GAP_SOURCE,
         gap=gap,
         node_pressure=pressure,
         node_flow_factor=flow,

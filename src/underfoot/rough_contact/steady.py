@@ -13,13 +13,13 @@ from numpy.typing import ArrayLike
 from underfoot.core import Breach, Progress, Status, display, silent
 from underfoot.core.fourier import transform
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.status import worst
 from underfoot.core.threads import converter, namespace, threads_limited
 
+from ._kernels import spectra
 from ._kernels.area import contact_fractions
 from ._kernels.nested import NestedSolution, solve_nested
 from ._kernels.operators import Body
-from ._kernels.spectra import dissipation, slope_numbers, work_against_slope
-from ._kernels.symbols import odd_wavenumbers, sliding_moduli, unit_compliance, wavenumbers
 from .sliding_input import (
     Modulus,
     checked_contact_input,
@@ -33,16 +33,10 @@ from .sliding_input import (
 class SlidingSettings:
     """How ``steady_sliding`` solves: numbers that change cost and error, not the physics.
 
-    Parameters
-    ----------
-    tolerance
-        On ``complementarity_error``.
-    max_iterations
-        Active-set steps on the full grid before the result is marked as not converged.
-    threads
-        Of the Fourier transforms and matrix products; everything else runs on one.
-    fft
-        "mkl" (Intel's library, used when installed), "scipy", or "auto".
+    ``tolerance`` is that on ``complementarity_error``, ``max_iterations`` the active-set steps on
+    the full grid before the result is marked as not converged, ``threads`` those of the Fourier
+    transforms and matrix products (everything else runs on one), ``fft`` "mkl" (Intel's library,
+    used when installed), "scipy" or "auto".
     """
 
     tolerance: float = 1e-6
@@ -55,44 +49,23 @@ class SlidingSettings:
 class SteadySliding(Presentable):
     """Steady contact under sliding.
 
-    Parameters
-    ----------
-    pressure
-        Contact pressure, Pa, (nx, ny); its mean is the nominal pressure.
-    gap
-        Distance between the surfaces, m, (nx, ny).
-    nominal_pressure, speed
-        Pa and m/s, as given.
-    mean_gap
-        m, contact counted as zero.
-    real_contact_fraction
-        Share of the nodes in contact.
-    real_contact_fraction_corrected
-        The same with the grid's staircase taken off the edge of every spot (Yastrebov et al.
-        2017): closer to the continuous surface on a coarse grid.
-    cof_hysteresis
-        Energy lost in the material per sliding distance and normal load.
-    cof_slope
-        Mean of pressure times slope over the mean pressure: the same number on a fine grid.
-    rms_slope
-        Of the surface, over all directions.
-    full_contact
-        True when the surfaces touch everywhere (closed form, no iteration).
-    iterations, operator_applications
-        Active-set steps, and FFT products (forward and back; a product on a coarser grid counts by
-        its share of the points).
-    complementarity_error
-        Largest of the deepest penetration and the pressure-weighted mean |gap|, both over the rms
-        height, and the relative error of the load, before the last projection onto p, gap >= 0.
-    history
-        That error after each iteration on the full grid.
-    status, notes
-        How it ended, and what a reader must know (why the friction is zero, what was assumed).
-    breaches
-        Ranges that were left, such as a slope too steep or a grid too coarse.
-    negligible_loss
-        Why the hysteresis is negligible where the material hardly loses energy at the frequencies
-        of this surface and speed; "" otherwise.
+    ``pressure`` (Pa, with the mean ``nominal_pressure``) and ``gap`` (m) are maps (nx, ny); the
+    ``mean_gap`` counts contact as zero; ``speed`` in m/s. ``real_contact_fraction`` is the share of
+    nodes in contact; corrected, the grid's staircase is taken off the edge of every spot (Yastrebov
+    et al. 2017): closer to the continuous surface on a coarse grid. ``cof_hysteresis`` is the
+    energy lost in the material per sliding distance and normal load, ``cof_slope`` the mean of
+    pressure times slope over the mean pressure: the same number on a fine grid. ``rms_slope`` is
+    that of the surface over all directions.
+
+    ``full_contact``: the surfaces touch everywhere (closed form, no iteration). ``iterations``
+    counts active-set steps, ``operator_applications`` FFT products (forward and back; a product on
+    a coarser grid counts by its share of the points). ``complementarity_error`` is the largest of
+    the deepest penetration and the pressure-weighted mean |gap|, both over the rms height, and the
+    relative error of the load, before the last projection onto p, gap >= 0; ``history`` holds it
+    after each iteration on the full grid. ``status`` and ``notes`` tell how it ended and what a
+    reader must know, ``breaches`` the ranges that were left (a slope too steep, a grid too coarse),
+    ``negligible_loss`` why the hysteresis is negligible where the material hardly loses energy at
+    the frequencies of this surface and speed ("" otherwise).
     """
 
     pressure: np.ndarray
@@ -160,38 +133,27 @@ def steady_sliding(
     u(q) = 2 (1 - nu^2) p(q) / (|q| E*(q_x v)), so that p >= 0, gap = d + u - h >= 0, p gap = 0 and
     mean p = ``pressure`` hold the whole history of any relaxation spectrum: no time march.
 
-    Parameters
-    ----------
-    height
-        m, (nx, ny), positive towards the rubber, periodic; axis 0 along sliding.
-    spacing
-        m, one number or (along axis 0, along axis 1).
-    modulus
-        Young's modulus of the rubber: an object with ``complex_modulus``, a callable E*(angular
-        frequency, rad/s >= 0) in Pa with positive real part and loss E'' >= 0, or a number
-        (elastic).
-    speed
-        m/s, of the rubber relative to the surface; 0 is the elastic contact of the relaxed
-        rubber, a negative one slides towards -x and gives a negative COF.
-    pressure
-        Mean contact pressure, Pa, > 0.
-    poisson_ratio
-        Constant in time, 0 to 0.5.
-    layer_thickness
-        m, of a layer bonded to a rigid base; None: half-space.
-    settings
-        Tolerance, iterations, threads, Fourier transforms.
-    progress
-        Receives the stage, the fraction done and the error; may raise ``Cancelled``.
+    Parameters:
+        height: m, (nx, ny), positive towards the rubber, periodic; axis 0 along sliding.
+        spacing: m, one number or (along axis 0, along axis 1).
+        modulus: Young's modulus of the rubber: an object with ``complex_modulus``, a callable
+            E*(angular frequency, rad/s >= 0) in Pa with positive real part and loss E'' >= 0, or a
+            number (elastic).
+        speed: m/s, of the rubber relative to the surface; 0 is the elastic contact of the relaxed
+            rubber, a negative one slides towards -x and gives a negative COF.
+        pressure: Mean contact pressure, Pa, > 0.
+        poisson_ratio: Constant in time, 0 to 0.5.
+        layer_thickness: m, of a layer bonded to a rigid base; None: half-space.
+        settings: Tolerance, iterations, threads, Fourier transforms.
+        progress: Receives the stage, the fraction done and the error; may raise ``Cancelled``.
 
     Validity: small slopes (tested below an rms slope of 0.5, assumed), smooth rubber, no
     adhesion, no friction at the spots themselves, inertia negligible (speed far below the shear
     wave speed).
 
-    Raises
-    ------
-    InputError
-        Heights missing or not a map, pressure, spacing or modulus not positive, speed not finite.
+    Raises:
+        InputError: Heights missing or not a map, pressure, spacing or modulus not positive, speed
+            not finite.
 
     Source: frame of the rough surface and complex modulus, e.g. Carbone and Putignano (2013)
     J. Mech. Phys. Solids 61:1822; active set of Hintermueller, Ito and Kunisch (2002) SIAM J.
@@ -204,16 +166,16 @@ def steady_sliding(
     )
     shape: tuple[int, int] = h.shape
     xp = namespace(h)
-    qx, qy = wavenumbers(shape, steps)
+    qx, qy = spectra.wavenumbers(shape, steps)
     length = shape[0] * steps[0]
     frequencies = 2.0 * math.pi / length * abs(speed) * np.arange(shape[0] // 2 + 1)
     young = modulus_function(modulus, frequencies)
     table = young(frequencies)
     asarray = converter(h)
-    odd = asarray(odd_wavenumbers(shape, steps))
+    odd = asarray(spectra.odd_wavenumbers(shape, steps))
     body = Body(
-        partial(sliding_moduli, table, length, speed > 0.0),
-        lambda q: unit_compliance(q, layer_thickness, poisson_ratio),
+        partial(spectra.sliding_moduli, table, length, speed > 0.0),
+        lambda q: spectra.unit_compliance(q, layer_thickness, poisson_ratio),
         steps,
         xp=xp,
         asarray=asarray,
@@ -223,7 +185,7 @@ def steady_sliding(
     with threads_limited(threads):
         exact = transform(shape, xp.float64, xp=xp, threads=threads, library=fft)
         surface = 1.0 * exact.forward(h)
-        slope, short = slope_numbers(
+        slope, short = spectra.slope_numbers(
             surface, asarray(qx**2 + qy**2), shape, 0.5 * math.pi / max(steps)
         )
         if slope == 0.0:
@@ -243,13 +205,18 @@ def steady_sliding(
             report=lambda error: progress("rough contact", _done(error, tolerance), error),
         )
         p, gap = _physical(solved, unit, rms, float(pressure), xp)
-        spectrum = exact.forward(p)
-        on_slope = work_against_slope(spectrum, surface, odd, shape) * rms
+        transformed = exact.forward(p)
+        on_slope = spectra.work_against_slope(transformed, surface, odd, shape) * rms
         lost = 0.0
         if np.any(table.imag):
             operators = solved.operators
-            lost = dissipation(spectrum, operators.unit, operators.rows, odd, shape) * rms / unit
+            lost = (
+                rms
+                / unit
+                * spectra.dissipation(transformed, operators.unit, operators.rows, odd, shape)
+            )
     state = solved.state
+    status = Status.CONVERGED if state.converged else Status.NOT_CONVERGED
     plain, corrected = contact_fractions(p > 0.0, steps, xp)
     negligible = loss_reason(table, frequencies)
     notes = []
@@ -284,7 +251,7 @@ def steady_sliding(
         operator_applications=solved.applications,
         complementarity_error=state.error,
         history=tuple(state.history),
-        status=_status(state.converged, out_of_range),
+        status=worst(status, Status.OUT_OF_RANGE) if out_of_range else status,
         notes=tuple(notes),
         breaches=out_of_range,
         negligible_loss=negligible,
@@ -324,12 +291,6 @@ def _flat(height: Any, pressure: float, speed: float, xp: Any) -> SteadySliding:
         notes=("the surface is flat: full contact, no deformation, no hysteresis",),
         breaches=(),
     )
-
-
-def _status(converged: bool, out_of_range: tuple[Breach, ...]) -> Status:
-    if not converged:
-        return Status.NOT_CONVERGED
-    return Status.OUT_OF_RANGE if out_of_range else Status.CONVERGED
 
 
 def _done(error: float, tolerance: float) -> float:

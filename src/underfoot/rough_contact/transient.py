@@ -19,11 +19,10 @@ from underfoot.material._kernels.prony_march import (
     relaxed_memory,
 )
 
-from ._kernels.complementarity import ContactState, solve_on_grid, solve_with_mattress
+from ._kernels.complementarity import ContactState, Search, solved_contact
 from ._kernels.krylov import Workspace
 from ._kernels.operators import Body, Operators
-from ._kernels.shift import ShiftedMap
-from ._kernels.symbols import unit_compliance
+from ._kernels.spectra import ShiftedMap, unit_compliance
 from .sliding_input import checked_contact_input
 
 
@@ -31,21 +30,12 @@ from .sliding_input import checked_contact_input
 class TransientSettings:
     """How ``transient_sliding`` marches.
 
-    Parameters
-    ----------
-    start
-        "relaxed" (long rest before sliding) or "fresh" (pressed on at the instant sliding starts).
-    steps_per_spacing
-        Time steps while the floor moves by one spacing; with 8 nodes to the shortest wave, 2 keep
-        the COF within 2 %, 1 within 5 % (second order).
-    max_periods
-        Passages of the whole floor map at most.
-    steady_tolerance
-        The run ends when the COF of two periods running agrees to this, relative to the larger.
-    tolerance
-        On the contact of each step (penetration over rms height).
-    threads, fft
-        As in ``SlidingSettings``.
+    ``start`` is "relaxed" (long rest before sliding) or "fresh" (pressed on at the instant sliding
+    starts). ``steps_per_spacing`` are the time steps while the floor moves by one spacing: with 8
+    nodes to the shortest wave, 2 keep the COF within 2 %, 1 within 5 % (second order). The run ends
+    after ``max_periods`` passages of the whole floor map, or when the COF of two periods running
+    agrees to ``steady_tolerance``, relative to the larger. ``tolerance`` is that on the contact of
+    each step (penetration over rms height); ``threads`` and ``fft`` as in ``SlidingSettings``.
     """
 
     start: str = "relaxed"
@@ -65,7 +55,7 @@ class TransientSettings:
 
 
 class MaxwellSpectrum(Protocol):
-    """A generalised Maxwell material (Young's moduli, Pa; relaxation times, s)."""
+    """A generalised Maxwell material: E_inf, E_i (Young's moduli, Pa) and tau_i (s)."""
 
     @property
     def equilibrium_modulus(self) -> float:
@@ -167,27 +157,16 @@ class _March:
 
     def _loaded(self, height: np.ndarray, guess: np.ndarray, mean: float) -> ContactState:
         guess = guess * np.float32(mean / max(float(guess.mean()), 1e-30))
-        for solver in (solve_on_grid, solve_with_mattress):
-            state = solver(
-                self.operators,
-                height,
-                guess,
-                mean,
-                self.workspace,
-                tolerance=self.tolerance,
-                max_steps=40,
-                exact=False,
-            )
-            if state.converged:
-                return state
-        self.failures += 1
-        return state  # pyright: ignore[reportPossiblyUnbound]  # the loop runs at least once
+        search = Search(self.tolerance, max_steps=40, exact=False)
+        state = solved_contact(self.operators, height, guess, mean, self.workspace, search)
+        self.failures += not state.converged
+        return state
 
     def _at_height(self, height: np.ndarray, guess: np.ndarray, goal: float) -> ContactState:
         """Return the contact whose mean planes are ``goal`` apart: secant on the load."""
         if goal >= float(height.max()):
             zero = np.zeros(self.shape, np.float32)
-            return ContactState(zero, goal - height, 0, 0, 0.0, True, [])
+            return ContactState(zero, goal - height, 0, 0.0, True, [])
         mean = max(float(guess.mean()), 1e-6)
         before: tuple[float, float] | None = None
         state = self._loaded(height, guess, mean)
@@ -220,27 +199,14 @@ def _separation(state: ContactState, height: np.ndarray, operators: Operators) -
 class TransientSliding:
     """History of a sliding contact; arrays have one value per time step.
 
-    Parameters
-    ----------
-    time, distance
-        s and m since the start of sliding.
-    pressure
-        Mean contact pressure, Pa.
-    shear
-        Mean of pressure times floor slope, Pa: friction by hysteresis, positive against sliding;
-        with a rough shoe it also swings elastically about its mean.
-    real_contact_fraction, mean_gap
-        Share of nodes in contact; m.
-    period_cof
-        Mean shear over mean pressure in each period of the floor.
-    cof_hysteresis
-        Of the last whole period; NaN when none was finished.
-    contact_pressure, gap
-        Last state, Pa and m, in the frame of the rubber.
-    steady
-        True when two periods running agreed within the tolerance asked for.
-    status, notes
-        How it ended.
+    ``time`` (s) and ``distance`` (m) since the start of sliding; ``pressure`` the mean contact
+    pressure (Pa); ``shear`` (Pa) the mean of pressure times floor slope: friction by hysteresis,
+    positive against sliding; with a rough shoe it also swings elastically about its mean.
+    ``real_contact_fraction`` is the share of nodes in contact, ``mean_gap`` in m. ``period_cof`` is
+    mean shear over mean pressure in each period of the floor, ``cof_hysteresis`` that of the last
+    whole one (NaN when none was finished). ``contact_pressure`` (Pa) and ``gap`` (m) are the last
+    state in the frame of the rubber. ``steady``: two periods running agreed within the tolerance
+    asked for. ``status`` and ``notes`` tell how it ended.
     """
 
     time: np.ndarray
@@ -280,31 +246,21 @@ def transient_sliding(
     p >= 0, p gap = 0. Exact in time for a displacement linear in time, second order otherwise, for
     any number of terms; terms much faster than a step act through E0.
 
-    Parameters
-    ----------
-    floor_height, shoe_height
-        m, (nx, ny), periodic, each positive out of its own body; None: smooth rubber.
-    spacing
-        m, one number or (along axis 0, along axis 1).
-    modulus
-        Generalised Maxwell material (Young's moduli).
-    speed
-        m/s, > 0.
-    pressure, separation
-        Exactly one: mean pressure (Pa, > 0) for a fixed load, or the distance of the mean planes
-        of deformed rubber and floor (m) for a fixed height.
-    poisson_ratio, layer_thickness
-        As in ``steady_sliding``.
-    settings
-        Start, steps, periods, tolerances, threads.
-    progress
-        As in ``steady_sliding``; ``Cancelled`` raised by it ends the run early.
+    Parameters:
+        floor_height, shoe_height: m, (nx, ny), periodic, each positive out of its own body; None:
+            smooth rubber.
+        spacing: m, one number or (along axis 0, along axis 1).
+        modulus: Generalised Maxwell material (Young's moduli).
+        speed: m/s, > 0.
+        pressure, separation: Exactly one: mean pressure (Pa, > 0) for a fixed load, or the distance
+            of the mean planes of deformed rubber and floor (m) for a fixed height.
+        poisson_ratio, layer_thickness: As in ``steady_sliding``.
+        settings: Start, steps, periods, tolerances, threads.
+        progress: As in ``steady_sliding``; ``Cancelled`` raised by it ends the run early.
 
-    Raises
-    ------
-    InputError
-        As ``steady_sliding``; a material without relaxation terms; both or neither of pressure and
-        separation; maps of different shape.
+    Raises:
+        InputError: As ``steady_sliding``; a material without relaxation terms; both or neither of
+            pressure and separation; maps of different shape.
 
     Source: recursive convolution of Taylor, Pister and Goudreau (1970) Int. J. Numer. Methods Eng.
     2:45, with the half-space of Johnson (1985) Contact Mechanics, chapter 13.

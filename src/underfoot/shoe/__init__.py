@@ -1,26 +1,16 @@
 """Geometry of shoes: parametric soles, outsole files, treads, wear and their measures."""
 
-from .geometry import SoleMap
-from .heel import Heel
-from .heel_grid import heel_map, heel_surface
-from .profile import Facet, Flat, Profile, Rocker
-from .sole_surface import SoleSurface, surface_map
-from .tread import ArcChannel, Sipes, Tread
-from .worn.plane import WearPlane
-
-__all__ = [
-    "ArcChannel",
-    "Facet",
-    "Flat",
-    "Heel",
-    "Profile",
-    "Rocker",
-    "Sipes",
-    "SoleMap",
-    "SoleSurface",
-    "Tread",
-    "WearPlane",
-    "heel_map",
-    "heel_surface",
-    "surface_map",
-]
+from .geometry import SoleMap as SoleMap
+from .heel import Heel as Heel
+from .heel_grid import heel_map as heel_map
+from .heel_grid import heel_surface as heel_surface
+from .profile import Facet as Facet
+from .profile import Flat as Flat
+from .profile import Profile as Profile
+from .profile import Rocker as Rocker
+from .sole_surface import SoleSurface as SoleSurface
+from .sole_surface import surface_map as surface_map
+from .tread import ArcChannel as ArcChannel
+from .tread import Sipes as Sipes
+from .tread import Tread as Tread
+from .worn.plane import WearPlane as WearPlane

@@ -1,13 +1,11 @@
 """The undeformed sole over the floor: what every source of geometry produces."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import Breach, InputError
+from underfoot.core.arrays import Array, Mask
 
 CELLS_REFUSED = 2.0
 """A channel or lug of fewer cells is refused: its width would be wrong by half or more."""
@@ -21,34 +19,28 @@ class SoleMap:
 
     Axes: x forward (towards the toe), y across, both in the floor; arrays have shape (nx, ny).
 
-    Parameters
-    ----------
-    x, y
-        Cell centres in m, (nx,) and (ny,). x = 0 is the rear end of the sole.
-    clearance
-        Height above the floor after tilting, m; its smallest value is 0, inf outside the sole.
-    inside
-        True within the plan form (lugs and channels).
-    land
-        True where the sole can touch the floor: on a lug or an untreaded surface, not in a channel.
-    tread_depth
-        Height of the lug at this node in m, normal to the sole; 0 where untreaded or in a channel.
-    spacing
-        Side of a cell, m.
-    outline
-        (n, 2) closed polygon of the plan form in m, for drawings.
-    breaches
-        What the grid resolves too coarsely to be trusted.
+    Parameters:
+        x, y: Cell centres in m, (nx,) and (ny,). x = 0 is the rear end of the sole.
+        clearance: Height above the floor after tilting, m; its smallest value is 0, inf outside the
+            sole.
+        inside: True within the plan form (lugs and channels).
+        land: True where the sole can touch the floor: on a lug or an untreaded surface, not in a
+            channel.
+        tread_depth: Height of the lug at this node in m, normal to the sole; 0 where untreaded or
+            in a channel.
+        spacing: Side of a cell, m.
+        outline: (n, 2) closed polygon of the plan form in m, for drawings.
+        breaches: What the grid resolves too coarsely to be trusted.
     """
 
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
-    clearance: NDArray[np.float64]
-    inside: NDArray[np.bool_]
-    land: NDArray[np.bool_]
-    tread_depth: NDArray[np.float64]
+    x: Array
+    y: Array
+    clearance: Array
+    inside: Mask
+    land: Mask
+    tread_depth: Array
     spacing: float
-    outline: NDArray[np.float64]
+    outline: Array
     breaches: tuple[Breach, ...] = field(default=())
 
     def __post_init__(self) -> None:

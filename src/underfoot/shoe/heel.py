@@ -1,46 +1,34 @@
 """Heel described by a few lengths and angles."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import InputError
+from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative, positive
 
 from .profile import Flat, Profile
 from .shape import SoleShape, SoleWear, check_depths
 from .tread import ArcChannel, Tread
 
-Array = NDArray[np.float64]
-
 
 @dataclass(frozen=True, slots=True)
 class Heel(SoleShape):
     """A heel in its own frame: x from its rear end towards the toe, y across, z up into the shoe.
 
-    Parameters
-    ----------
-    length, width
-        Of the plan form, m.
-    rear_radius, front_radius
-        Of the corners of the plan form, m, at most half the width.
-    outsole_thickness
-        From the bottom of the lugs to the midsole, m: bounds tread depth and wear.
-    profile
-        ``Flat()``, ``Facet(angle, length)``, ``Rocker(radius, start)`` or anything with
-        ``height(x)``.
-    edge_radius
-        Rounding of the lower edge all around, m.
-    crown_radius
-        Radius of a sole that bulges across, m; None for none.
-    tread, arc_channel
-        Channels in the sole; a depth of 0 is none.
-    wear
-        What was removed, as a plane, a patch or a map; None for a new sole.
+    Parameters:
+        length, width: Of the plan form, m.
+        rear_radius, front_radius: Of the corners of the plan form, m, at most half the width.
+        outsole_thickness: From the bottom of the lugs to the midsole, m: bounds tread depth and
+            wear.
+        profile: ``Flat()``, ``Facet(angle, length)``, ``Rocker(radius, start)`` or anything with
+            ``height(x)``.
+        edge_radius: Rounding of the lower edge all around, m.
+        crown_radius: Radius of a sole that bulges across, m; None for none.
+        tread, arc_channel: Channels in the sole; a depth of 0 is none.
+        wear: What was removed, as a plane, a patch or a map; None for a new sole.
     """
 
     length: float

@@ -1,14 +1,12 @@
 """A tilted heel on a grid of square cells in the floor's frame."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import Breach, InputError, Range, breaches
+from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import between, not_negative, positive
 
 from .geometry import CELLS_REFUSED, CELLS_WANTED, SoleMap
@@ -16,7 +14,6 @@ from .heel import Heel
 from .shape import SoleShape
 from .sole_surface import SoleSurface
 
-Array = NDArray[np.float64]
 _BISECTIONS = 48
 
 
@@ -29,22 +26,15 @@ def heel_map(
     follows the land surface exactly; a channel keeps its depth straight above the land it cuts.
     Tread and land are decided in the untilted frame.
 
-    Parameters
-    ----------
-    heel
-        The heel in its own frame.
-    shoe_angle
-        a, rad, toe up positive, -30 to 60 deg.
-    spacing
-        Side of a cell, m. A channel or lug of fewer than 2 cells is refused, one of fewer than 4
-        is listed in ``SoleMap.breaches``.
-    padding
-        Free margin around the plan form, m.
+    Parameters:
+        heel: The heel in its own frame.
+        shoe_angle: a, rad, toe up positive, -30 to 60 deg.
+        spacing: Side of a cell, m. A channel or lug of fewer than 2 cells is refused, one of fewer
+            than 4 is listed in ``SoleMap.breaches``.
+        padding: Free margin around the plan form, m.
 
-    Raises
-    ------
-    InputError
-        Grid too coarse for the plan form, a channel or a lug; angle out of range.
+    Raises:
+        InputError: Grid too coarse for the plan form, a channel or a lug; angle out of range.
     """
     positive(spacing, "grid.spacing")
     not_negative(padding, "grid.padding")
@@ -102,7 +92,7 @@ def _solved(
 
 def cut_heel(
     heel: SoleShape, x: Array, y: Array, spacing: float = 0.0
-) -> tuple[Array, NDArray[np.bool_], Array]:
+) -> tuple[Array, Mask, Array]:
     """Return height over the sole plane, land and lug height, all in the frame of the sole.
 
     Sipes narrower than two cells of ``spacing`` are left out: closed slits.
@@ -134,8 +124,8 @@ def cut_heel(
 
 
 def _cut(
-    height: Array, land: NDArray[np.bool_], channel: NDArray[np.bool_], bottom: Array, base: Array
-) -> tuple[Array, NDArray[np.bool_]]:
+    height: Array, land: Mask, channel: Mask, bottom: Array, base: Array
+) -> tuple[Array, Mask]:
     """Return height and land with a channel; where wear has reached its bottom it is land."""
     open_channel = channel & (bottom > base)
     height = np.where(channel, np.maximum(np.where(open_channel, height, base), base), height)

@@ -1,18 +1,14 @@
 """Shape of a sole along the shoe before tilting."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import InputError
+from underfoot.core.arrays import Array
 from underfoot.core.checks import between, positive
-
-Array = NDArray[np.float64]
 
 
 class Profile(Protocol):
@@ -36,12 +32,10 @@ class Flat:
 class Facet:
     """A plane bevel at the rear, moulded or worn.
 
-    Parameters
-    ----------
-    angle
-        Between facet and sole, rad: at a shoe angle equal to it the facet lies flat on the floor.
-    length
-        Of the facet along the sole, from the rear end, m.
+    Parameters:
+        angle: Between facet and sole, rad: at a shoe angle equal to it the facet lies flat on the
+            floor.
+        length: Of the facet along the sole, from the rear end, m.
     """
 
     angle: float
@@ -60,12 +54,9 @@ class Facet:
 class Rocker:
     """A rear part rounded along x.
 
-    Parameters
-    ----------
-    radius
-        Of the rounding, m.
-    start
-        Distance from the rear end at which the rounding begins, m.
+    Parameters:
+        radius: Of the rounding, m.
+        start: Distance from the rear end at which the rounding begins, m.
     """
 
     radius: float

@@ -6,14 +6,13 @@ from abc import ABC, abstractmethod
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import InputError
+from underfoot.core.arrays import Array
 
 from .profile import Profile
 from .tread import ArcChannel, Tread
 
-Array = NDArray[np.float64]
 _CENTRE_LINE_NODES = 4001
 
 

@@ -1,7 +1,5 @@
 """The bottom of a sole in its own frame: what files, generators and wear produce and consume."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 
@@ -9,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core import Breach, InputError, Range, breaches
+from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import between, not_negative, positive
 
 from ._kernels.land import carried_on, nearest_true
@@ -16,8 +15,6 @@ from ._kernels.local_width import local_width
 from ._kernels.tilt import tilted_rows
 from .geometry import CELLS_REFUSED, CELLS_WANTED, SoleMap
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 HALF, NARROW = 50.0, 10.0
 """Percentiles of the local width by area: what is refused, and what is listed."""
 
@@ -29,27 +26,17 @@ class SoleSurface:
     Axes: x from the rear end towards the toe, y across, positive to the left as seen from above
     looking forward, z up into the shoe. Arrays have shape (nx, ny), values at cell centres.
 
-    Parameters
-    ----------
-    x, y
-        Cell centres in m, (nx,) and (ny,), evenly spaced by ``spacing``.
-    height
-        Height above the sole plane in m; nan outside the plan form.
-    land
-        True where the sole can touch the floor: on a lug or an untreaded surface.
-    tread_depth
-        Height of the lug at this cell, m; 0 in channels and where untreaded.
-    spacing
-        Side of a cell, m.
-    outline
-        (n, 2) closed polygon of the plan form, m.
-    name
-        What it was made from, for people.
-    remarks
-        Decisions and repairs on the way, a sentence each.
-    base
-        (nx, ny) height in m that the land would have without its channels; None to carry the land
-        on across them (linear between the land on both sides).
+    Parameters:
+        x, y: Cell centres in m, (nx,) and (ny,), evenly spaced by ``spacing``.
+        height: Height above the sole plane in m; nan outside the plan form.
+        land: True where the sole can touch the floor: on a lug or an untreaded surface.
+        tread_depth: Height of the lug at this cell, m; 0 in channels and where untreaded.
+        spacing: Side of a cell, m.
+        outline: (n, 2) closed polygon of the plan form, m.
+        name: What it was made from, for people.
+        remarks: Decisions and repairs on the way, a sentence each.
+        base: (nx, ny) height in m that the land would have without its channels; None to carry the
+            land on across them (linear between the land on both sides).
     """
 
     x: Array
@@ -130,21 +117,15 @@ def surface_map(
     follows the land (bilinear between cells) exactly, of several points over one cell the lowest;
     a channel keeps its depth straight above the land it cuts, as in ``heel_map``.
 
-    Parameters
-    ----------
-    surface
-        The sole in its own frame.
-    shoe_angle
-        a, rad, toe up positive, -30 to 60 deg.
-    spacing
-        Side of a cell, m.
-    padding
-        Free margin around the plan form, m.
+    Parameters:
+        surface: The sole in its own frame.
+        shoe_angle: a, rad, toe up positive, -30 to 60 deg.
+        spacing: Side of a cell, m.
+        padding: Free margin around the plan form, m.
 
-    Raises
-    ------
-    InputError
-        Grid too coarse for the plan form or for most of the channels; angle out of range.
+    Raises:
+        InputError: Grid too coarse for the plan form or for most of the channels; angle out of
+            range.
     """
     positive(spacing, "grid.spacing")
     not_negative(padding, "grid.padding")
@@ -211,10 +192,8 @@ def resolution_breaches(surface: SoleSurface, spacing: float) -> list[Breach]:
     width: listed when more than a tenth of the area of channels or of lugs is narrower than 4
     cells.
 
-    Raises
-    ------
-    InputError
-        More than half of the channels' or of the lugs' area is narrower than 2 cells.
+    Raises:
+        InputError: More than half of the channels' or of the lugs' area is narrower than 2 cells.
     """
     channel = surface.inside & ~surface.land
     if not channel.any():

@@ -3,15 +3,14 @@
 Sipes are slits in the lugs, too narrow to drain much; they let a lug bend and open its edges.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import InputError, unknown_name
+from underfoot.core.arrays import Array
 from underfoot.core.checks import between, not_negative, positive
 
 from ._kernels.tread_pattern import (
@@ -23,7 +22,6 @@ from ._kernels.tread_pattern import (
     rotated,
 )
 
-Array = NDArray[np.float64]
 PATTERNS = (
     "grid",
     "transverse",
@@ -41,17 +39,12 @@ LATTICES = ("circles", "hexagons")
 class Sipes:
     """Parallel slits through all lugs.
 
-    Parameters
-    ----------
-    width, depth
-        Of a slit, m; the depth at most that of the tread.
-    spacing
-        Between the middles of two slits, m.
-    angle
-        Of the slits against the transverse direction, rad, anticlockwise seen from above.
-    offset
-        Distance of the first slit's middle from the rear end at angle 0, m, before the pattern is
-        shifted; by default half the spacing.
+    Parameters:
+        width, depth: Of a slit, m; the depth at most that of the tread.
+        spacing: Between the middles of two slits, m.
+        angle: Of the slits against the transverse direction, rad, anticlockwise seen from above.
+        offset: Distance of the first slit's middle from the rear end at angle 0, m, before the
+            pattern is shifted; by default half the spacing.
     """
 
     width: float
@@ -93,31 +86,22 @@ class Sipes:
 class Tread:
     """Lugs of one kind between channels of one width.
 
-    Parameters
-    ----------
-    pattern
-        "grid" (square lugs), "blocks" (rectangular lugs), "transverse" (channels across the shoe),
-        "longitudinal" (channels along it), "bars" (straight channels, across the shoe at angle 0),
-        "chevrons" (zigzag bars, tips forward), "circles" and "hexagons" (triangular lattices).
-    lug_width, channel_width
-        m; of bars and chevrons normal to their walls, the diameter of circles, the width across
-        flats of hexagons; the channel where it is narrowest.
-    depth
-        Height of the lugs, m; 0 is an untreaded sole.
-    edge_radius
-        Rounding of the lower edges of the lugs, m.
-    offset
-        Shift (x, y) of the pattern with its sipes, m. At (0, 0) the first lug begins at the rear
-        end of the sole and a lug is centred on the centre line.
-    angle
-        Turns the pattern as a whole, rad, anticlockwise seen from above; for chevrons it is the
-        angle of the arms against the transverse direction instead.
-    lug_length
-        Of "blocks" along the shoe, m.
-    arm_length
-        Of "chevrons": extent of one arm across the shoe, m.
-    sipes
-        Fine slits in the lugs.
+    Parameters:
+        pattern: "grid" (square lugs), "blocks" (rectangular lugs), "transverse" (channels across
+            the shoe), "longitudinal" (channels along it), "bars" (straight channels, across the
+            shoe at angle 0), "chevrons" (zigzag bars, tips forward), "circles" and "hexagons"
+            (triangular lattices).
+        lug_width, channel_width: m; of bars and chevrons normal to their walls, the diameter of
+            circles, the width across flats of hexagons; the channel where it is narrowest.
+        depth: Height of the lugs, m; 0 is an untreaded sole.
+        edge_radius: Rounding of the lower edges of the lugs, m.
+        offset: Shift (x, y) of the pattern with its sipes, m. At (0, 0) the first lug begins at the
+            rear end of the sole and a lug is centred on the centre line.
+        angle: Turns the pattern as a whole, rad, anticlockwise seen from above; for chevrons it is
+            the angle of the arms against the transverse direction instead.
+        lug_length: Of "blocks" along the shoe, m.
+        arm_length: Of "chevrons": extent of one arm across the shoe, m.
+        sipes: Fine slits in the lugs.
     """
 
     pattern: str
@@ -194,7 +178,7 @@ class Tread:
         frame = np.array(rows.get(self.pattern, [along, across]))
         return np.column_stack(rotated(frame[:, 0], frame[:, 1], -self.angle))
 
-    def moved(self, shift: tuple[float, float]) -> Tread:
+    def moved(self, shift: tuple[float, float]) -> Self:
         """Return the pattern shifted by (x, y), m."""
         x, y = self.offset
         return replace(self, offset=(x + shift[0], y + shift[1]))
@@ -235,14 +219,10 @@ class Tread:
 class ArcChannel:
     """One channel that follows the rounded rear of the heel.
 
-    Parameters
-    ----------
-    position
-        Distance of the channel's middle from the rear end, on the centre line, m.
-    radius
-        Radius of the channel's middle line, m; its centre lies at position + radius.
-    width, depth
-        Of the channel, m.
+    Parameters:
+        position: Distance of the channel's middle from the rear end, on the centre line, m.
+        radius: Radius of the channel's middle line, m; its centre lies at position + radius.
+        width, depth: Of the channel, m.
     """
 
     position: float

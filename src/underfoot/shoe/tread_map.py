@@ -1,18 +1,14 @@
 """Land, channels and lug heights of a sole that is known by its heights alone."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from underfoot.core.arrays import Array, Mask
 
 from ._kernels.land import carried_on, nearest_true
 from ._kernels.pieces import distance_to, without_specks
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 WIDEST_CHANNEL = 16e-3
 """A hollow wider than this is shape of the sole, not tread, m."""
@@ -52,16 +48,11 @@ def tread_map(
     the base, sigma the noise of the heights. Lug height: the depth of the nearest channel, 0 on
     land more than 10 mm away from all channels.
 
-    Parameters
-    ----------
-    height
-        (nx, ny) m in the untilted frame, z up into the shoe, nan outside the plan form.
-    spacing
-        Side of a cell, m.
-    widest
-        Of a channel, m.
-    channels
-        Cells that are known to be channel beside those found.
+    Parameters:
+        height: (nx, ny) m in the untilted frame, z up into the shoe, nan outside the plan form.
+        spacing: Side of a cell, m.
+        widest: Of a channel, m.
+        channels: Cells that are known to be channel beside those found.
     """
     from scipy.ndimage import maximum_filter, minimum_filter
 

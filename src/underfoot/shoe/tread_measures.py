@@ -1,19 +1,16 @@
 """Measures of a tread: land, channels, how they drain, lugs and the largest untreaded patch."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from underfoot.core.arrays import Array, Mask
 
 from ._kernels.local_width import local_width
 from ._kernels.pieces import distance_within, pieces, rim
 from .sole_surface import SoleSurface
 from .tread_map import SMALLEST_PIECE
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 SHARES = (10, 50, 90)
 """Percentiles by area at which distributions are given."""
 
@@ -22,27 +19,18 @@ SHARES = (10, 50, 90)
 class TreadMeasures:
     """Numbers of a tread; lengths in m, areas in m^2, shares 0 to 1, None where there is none.
 
-    Parameters
-    ----------
-    length, width, plan_area
-        Of the plan form.
-    land_ratio
-        Land area / plan area.
-    channel_depth
-        10, 50 and 90 % by channel area of the depth below the land around.
-    channel_width
-        The same of the local width: the largest disc in the channel that covers a place.
-    drained_share
-        Of the channel area: connected through channels to the rim of the plan form.
-    lug_count
-        Pieces of land of 1 mm^2 and more, not connected by an edge of a cell.
-    lug_area
-        10, 50 and 90 % of the area of these pieces (each counts once).
-    patch_area, patch_length, patch_width, patch_circle
-        Of the largest piece of land: its area, extent along and across the shoe, and the diameter
-        of the largest circle in it.
-    free_circle
-        Diameter of the largest circle without channel anywhere in the plan form.
+    Parameters:
+        length, width, plan_area: Of the plan form.
+        land_ratio: Land area / plan area.
+        channel_depth: 10, 50 and 90 % by channel area of the depth below the land around.
+        channel_width: The same of the local width: the largest disc in the channel that covers a
+            place.
+        drained_share: Of the channel area: connected through channels to the rim of the plan form.
+        lug_count: Pieces of land of 1 mm^2 and more, not connected by an edge of a cell.
+        lug_area: 10, 50 and 90 % of the area of these pieces (each counts once).
+        patch_area, patch_length, patch_width, patch_circle: Of the largest piece of land: its area,
+            extent along and across the shoe, and the diameter of the largest circle in it.
+        free_circle: Diameter of the largest circle without channel anywhere in the plan form.
     """
 
     length: float

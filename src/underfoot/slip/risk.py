@@ -25,15 +25,15 @@ _NODES = 201
 class SlipRisk(Presentable):
     """Probability that a step of the population slips.
 
-    ``probability`` is that at the best estimate of ACOF, its uncertainty the standard deviation
+    ``probability`` is the mean over the uncertain ACOF, its uncertainty the standard deviation
     that the ACOF's uncertainty makes. ``low`` and ``high`` bound 95 % of it; None when the ACOF
-    came without uncertainty. ``expected`` is the mean over the uncertain ACOF.
+    came without uncertainty. ``at_best_estimate`` is the probability at the best estimate of ACOF.
     """
 
     probability: SourcedValue
     low: float | None
     high: float | None
-    expected: float | None
+    at_best_estimate: float
     model: str
     rcof: RcofPopulation
     assumptions: tuple[str, ...]
@@ -45,7 +45,7 @@ class SlipRisk(Presentable):
             ("probability of a slip", self.probability.value),
             ("95 % interval, low", self.low),
             ("95 % interval, high", self.high),
-            ("mean over the uncertain ACOF", self.expected),
+            ("at the best estimate of ACOF", self.at_best_estimate),
             ("RCOF, mean of the population", self.rcof.mean),
             ("RCOF, standard deviation", self.rcof.sd),
             ("model", self.model),
@@ -108,7 +108,8 @@ def slip_risk(
     if acof.value is None:
         raise InputError(f"the available friction was not determined: {acof.reason}", where="acof")
     middle = float(chosen.population(acof.value, rcof.mean, rcof.sd))
-    low = high = expected = spread = None
+    low = high = spread = None
+    expected = middle
     if samples is not None:
         drawn = np.maximum(np.asarray(samples, dtype=float), 0.0)
         values = chosen.population(drawn, rcof.mean, rcof.sd)
@@ -134,7 +135,7 @@ def slip_risk(
         )
     return SlipRisk(
         probability=SourcedValue(
-            middle,
+            expected,
             "1",
             source=chosen.source,
             uncertainty=spread,
@@ -145,7 +146,7 @@ def slip_risk(
         ),
         low=low,
         high=high,
-        expected=expected,
+        at_best_estimate=middle,
         model=chosen.name,
         rcof=rcof,
         assumptions=tuple(assumptions),

@@ -1,66 +1,40 @@
 """Heights and profiles: read, level, filter, roughness numbers, spectrum, generate."""
 
-from .areal_numbers import ArealRoughness, areal_roughness, rms_slope
-from .autocorrelation import autocorrelation, correlation_length
-from .filter import long_waves, short_waves
-from .from_spectrum import surface_from_spectrum
-from .height_map import HeightMap
-from .isotropic_inversion import isotropic_from_profile
-from .moments import Asperities, SpectralMoments, asperities, spectral_moments
-from .patterns import checkerboard, sinusoidal
-from .periodise import periodised
-from .prepare import filled, levelled
-from .profile import Profile, profile_from_positions
-from .profile_numbers import (
-    HeightNumbers,
-    ProfileRoughness,
-    height_numbers,
-    profile_roughness,
-)
-from .read_dektak import InstrumentResult, read_dektak
-from .read_instrument import read_instrument, read_surface
-from .read_text import read_map, read_profile
-from .resolution import Resolution, shortest_reliable_wavelength
-from .self_affine import self_affine
-from .spectrum import IsotropicSpectrum, ProfileSpectrum, isotropic_spectrum, profile_spectrum
-
-__all__ = [
-    "ArealRoughness",
-    "Asperities",
-    "HeightMap",
-    "HeightNumbers",
-    "InstrumentResult",
-    "IsotropicSpectrum",
-    "Profile",
-    "ProfileRoughness",
-    "ProfileSpectrum",
-    "Resolution",
-    "SpectralMoments",
-    "areal_roughness",
-    "asperities",
-    "autocorrelation",
-    "checkerboard",
-    "correlation_length",
-    "filled",
-    "height_numbers",
-    "isotropic_from_profile",
-    "isotropic_spectrum",
-    "levelled",
-    "long_waves",
-    "periodised",
-    "profile_from_positions",
-    "profile_roughness",
-    "profile_spectrum",
-    "read_dektak",
-    "read_instrument",
-    "read_map",
-    "read_profile",
-    "read_surface",
-    "rms_slope",
-    "self_affine",
-    "short_waves",
-    "shortest_reliable_wavelength",
-    "sinusoidal",
-    "spectral_moments",
-    "surface_from_spectrum",
-]
+from .areal_numbers import ArealRoughness as ArealRoughness
+from .areal_numbers import areal_roughness as areal_roughness
+from .areal_numbers import rms_slope as rms_slope
+from .autocorrelation import autocorrelation as autocorrelation
+from .autocorrelation import correlation_length as correlation_length
+from .filter import long_waves as long_waves
+from .filter import short_waves as short_waves
+from .from_spectrum import surface_from_spectrum as surface_from_spectrum
+from .height_map import HeightMap as HeightMap
+from .isotropic_inversion import isotropic_from_profile as isotropic_from_profile
+from .moments import Asperities as Asperities
+from .moments import SpectralMoments as SpectralMoments
+from .moments import asperities as asperities
+from .moments import spectral_moments as spectral_moments
+from .patterns import checkerboard as checkerboard
+from .patterns import sinusoidal as sinusoidal
+from .periodise import periodised as periodised
+from .prepare import filled as filled
+from .prepare import levelled as levelled
+from .profile import Profile as Profile
+from .profile import profile_from_positions as profile_from_positions
+from .profile_numbers import HeightNumbers as HeightNumbers
+from .profile_numbers import ProfileRoughness as ProfileRoughness
+from .profile_numbers import height_numbers as height_numbers
+from .profile_numbers import profile_roughness as profile_roughness
+from .read_dektak import InstrumentResult as InstrumentResult
+from .read_dektak import read_dektak as read_dektak
+from .read_instrument import read_instrument as read_instrument
+from .read_instrument import read_surface as read_surface
+from .read_text import read_map as read_map
+from .read_text import read_profile as read_profile
+from .resolution import Resolution as Resolution
+from .resolution import shortest_reliable_wavelength as shortest_reliable_wavelength
+from .self_affine import self_affine as self_affine
+from .spectrum import IsotropicSpectrum as IsotropicSpectrum
+from .spectrum import ProfileSpectrum as ProfileSpectrum
+from .spectrum import isotropic_spectrum as isotropic_spectrum
+from .spectrum import profile_spectrum as profile_spectrum

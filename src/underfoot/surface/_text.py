@@ -1,7 +1,5 @@
 """Numbers and headings of text files."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -45,10 +43,8 @@ def read_numbers(path: Path | str) -> TextNumbers:
 
     Separators comma, semicolon, tab or blanks; decimal commas where commas do not separate.
 
-    Raises
-    ------
-    DataError
-        No such file, a binary file, no numbers, rows of different length.
+    Raises:
+        DataError: No such file, a binary file, no numbers, rows of different length.
     """
     path = Path(path)
     if not path.is_file():

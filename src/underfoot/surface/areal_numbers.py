@@ -1,7 +1,5 @@
 """Areal roughness numbers by ISO 25178-2."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -57,12 +55,9 @@ def areal_roughness(
 
     Sdq = sqrt(mean(z_x^2 + z_y^2)), see ``rms_slope``.
 
-    Raises
-    ------
-    RangeError
-        Short cut-off below what the measurement resolves.
-    DataError, InputError
-        See ``long_waves``.
+    Raises:
+        RangeError: Short cut-off below what the measurement resolves.
+        DataError, InputError: See ``long_waves``.
     """
     # The slope of a periodic map is taken in Fourier space, which needs no spare points.
     limit = (shortest_reliable_wavelength if surface.periodic else shortest_derivable_wavelength)(

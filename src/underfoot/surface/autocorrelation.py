@@ -1,7 +1,5 @@
 """Autocorrelation along a profile or across a map, and the length over which it falls."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from underfoot.core import InputError
@@ -20,10 +18,8 @@ def autocorrelation(
     Line or plane are removed from surfaces that are not periodic; their value at a lag is the
     mean over the pairs that exist, up to half the length. Periodic ones are continued.
 
-    Raises
-    ------
-    InputError
-        A flat surface.
+    Raises:
+        InputError: A flat surface.
     """
     z = surface.heights
     if not surface.periodic:
@@ -49,10 +45,8 @@ def correlation_length(
 
     1/e by default; 0.2 is the level of Sal in ISO 25178-2.
 
-    Raises
-    ------
-    InputError
-        Level outside 0 to 1, or not reached within half the length.
+    Raises:
+        InputError: Level outside 0 to 1, or not reached within half the length.
     """
     if not 0.0 < level < 1.0:
         raise InputError(f"level {level:g}", where="level", allowed="between 0 and 1")

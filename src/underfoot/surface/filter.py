@@ -1,7 +1,5 @@
 """Gaussian filter of ISO 16610-21 (profiles) and, along both axes, ISO 16610-61 (maps)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from underfoot.core import DataError, InputError
@@ -31,12 +29,10 @@ def long_waves(surface: Surface, cutoff: float, ends: str = "drop") -> Surface:
     - "periodic": the surface is continued by itself; only for surfaces that say they are
       periodic.
 
-    Raises
-    ------
-    InputError
-        Another ``ends``; "periodic" for a surface that is not; cut-off below two spacings.
-    DataError
-        Surface shorter than the cut-off needs.
+    Raises:
+        InputError: Another ``ends``; "periodic" for a surface that is not; cut-off below two
+            spacings.
+        DataError: Surface shorter than the cut-off needs.
     """
     long, _ = _split(surface, cutoff, ends)
     return long

@@ -1,7 +1,5 @@
 """A random surface with a given spectrum."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from underfoot.core import InputError, RangeError
@@ -24,12 +22,9 @@ def surface_from_spectrum(
 
     ``shape`` points along x and y, ``spacing`` m, ``seed``: same seed, same surface.
 
-    Raises
-    ------
-    RangeError
-        No wave of the grid lies within the spectrum.
-    InputError
-        Grid below 4 x 4; all densities zero.
+    Raises:
+        RangeError: No wave of the grid lies within the spectrum.
+        InputError: Grid below 4 x 4; all densities zero.
     """
     nx, ny = (shape, shape) if isinstance(shape, int | np.integer) else shape
     check_length("spacing", spacing)

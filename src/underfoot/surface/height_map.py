@@ -14,26 +14,20 @@ from underfoot.core.units import metres
 class HeightMap:
     """Heights of a surface on a square grid.
 
-    Parameters
-    ----------
-    heights
-        m, (nx, ny); axis 0 along sliding (x), axis 1 across (y), positive away from the solid.
-    spacing
-        m, the same along both axes.
-    periodic
-        True when the right edge continues at the left one and the far edge at the near one.
-    resolution
-        m, shortest wavelength the instrument resolves; None when not known (then the grid
-        decides).
-    source
-        Instrument, file or generator.
-    processing
-        What was done to the heights, in order.
+    Parameters:
+        heights: m, (nx, ny); axis 0 along sliding (x), axis 1 across (y), positive away from the
+            solid.
+        spacing: m, the same along both axes.
+        periodic: True when the right edge continues at the left one and the far edge at the near
+            one.
+        resolution: m, shortest wavelength the instrument resolves; None when not known (then the
+            grid decides).
+        source: Instrument, file or generator.
+        processing: What was done to the heights, in order.
 
-    Raises
-    ------
-    InputError
-        Missing heights, not two-dimensional, fewer than 2 points a side, spacing not positive.
+    Raises:
+        InputError: Missing heights, not two-dimensional, fewer than 2 points a side, spacing not
+            positive.
     """
 
     heights: np.ndarray

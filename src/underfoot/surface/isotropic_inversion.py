@@ -1,7 +1,5 @@
 """Two-dimensional spectrum of an isotropic surface from the spectrum of its profiles."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from underfoot.core import InputError
@@ -22,10 +20,8 @@ def isotropic_from_profile(spectrum: ProfileSpectrum) -> IsotropicSpectrum:
     minimum is the least change). Beyond the last wave number the power law of the last half
     decade is taken on. The notes say so.
 
-    Raises
-    ------
-    InputError
-        Less than half a decade of reliable wave numbers.
+    Raises:
+        InputError: Less than half a decade of reliable wave numbers.
     """
     q, c = _averaged(spectrum)
     falling = np.minimum.accumulate(c)

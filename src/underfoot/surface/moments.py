@@ -1,7 +1,5 @@
 """Spectral moments and the asperities of Greenwood and Williamson that they imply."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -56,10 +54,8 @@ def spectral_moments(
     From a profile spectrum m_n = 2 int q^n C dq; from an isotropic one
     m_n = int cos^n(phi) q^n C d^2q, so m0, m2 / 2 and 3 m4 / 8 of the radial integrals.
 
-    Raises
-    ------
-    InputError
-        No wave number in the band, or no roughness there.
+    Raises:
+        InputError: No wave number in the band, or no roughness there.
     """
     low, high = band if band is not None else spectrum.reliable
     q = spectrum.wavenumber
@@ -86,10 +82,8 @@ def asperities(moments: SpectralMoments) -> Asperities:
     density = m4 / (6 pi sqrt(3) m2), radius = 3 sqrt(pi) / (8 sqrt(m4)),
     height_sd^2 = (1 - 0.8968 / alpha) m0, mean_height = 4 sqrt(m0 / (pi alpha)).
 
-    Raises
-    ------
-    InputError
-        alpha below 1.5: not an isotropic random surface.
+    Raises:
+        InputError: alpha below 1.5: not an isotropic random surface.
     """
     alpha = moments.bandwidth
     if alpha < 1.5 * (1.0 - 1e-6):

@@ -1,7 +1,5 @@
 """Regular surfaces: waves and the checkerboard of the grant report."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from underfoot.core import InputError
@@ -15,10 +13,8 @@ def sinusoidal(
 ) -> HeightMap:
     """Return a wave along x: heights amplitude cos(2 pi x / wavelength), periodic.
 
-    Raises
-    ------
-    InputError
-        Wavelength that does not fit into the length a whole number of times.
+    Raises:
+        InputError: Wavelength that does not fit into the length a whole number of times.
     """
     nx, ny = _shape(shape)
     _check(nx, spacing, wavelength, "x")
@@ -42,10 +38,9 @@ def checkerboard(
     valleys, as linear elements that are moved up and down at every other node make it: grant
     report G.1.1). Periodic.
 
-    Raises
-    ------
-    InputError
-        Wavelength that does not fit into both lengths a whole number of times, another form.
+    Raises:
+        InputError: Wavelength that does not fit into both lengths a whole number of times, another
+            form.
     """
     nx, ny = _shape(shape)
     for n, name in ((nx, "x"), (ny, "y")):

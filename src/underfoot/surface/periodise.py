@@ -1,7 +1,5 @@
 """Make a measured map periodic, saying what was done."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from underfoot.core import InputError
@@ -25,10 +23,8 @@ def periodised(surface: HeightMap, method: str = "taper", *, share: float = 0.1)
 
     What was done, with the rms height before and after, stands in ``processing``.
 
-    Raises
-    ------
-    InputError
-        Another method; ``share`` outside 0 to 0.5.
+    Raises:
+        InputError: Another method; ``share`` outside 0 to 0.5.
     """
     if surface.periodic:
         return surface

@@ -1,7 +1,5 @@
 """Fill missing heights and remove form, saying so."""
 
-from __future__ import annotations
-
 from typing import TypeVar
 
 import numpy as np
@@ -22,10 +20,8 @@ def filled(heights: ArrayLike, *, largest_share: float = 0.05) -> tuple[np.ndarr
     nearest one at the rim. More than ``largest_share`` missing is refused: the result would be
     invented.
 
-    Raises
-    ------
-    DataError
-        Too many heights missing.
+    Raises:
+        DataError: Too many heights missing.
     """
     z = np.array(heights, dtype=float)
     missing = ~np.isfinite(z)
@@ -61,10 +57,8 @@ def levelled(surface: Surface, degree: int = 1) -> Surface:
     0 removes the mean, 1 the line or plane, 2 and more also a curved form; on a map all terms up
     to the total degree.
 
-    Raises
-    ------
-    InputError
-        Degree negative, or more coefficients than heights.
+    Raises:
+        InputError: Degree negative, or more coefficients than heights.
     """
     if degree < 0:
         raise InputError(f"degree {degree}", where="degree", allowed="0 or more")

@@ -17,27 +17,17 @@ from .height_map import check_heights, check_length
 class Profile:
     """Heights of a surface along a line, evenly spaced.
 
-    Parameters
-    ----------
-    heights
-        m, (n,), n >= 2, positive away from the solid.
-    spacing
-        m.
-    tip_radius
-        m, of the stylus, where known.
-    resolution
-        m, shortest wavelength the instrument resolves, where known.
-    periodic
-        True when the last point continues at the first one.
-    source
-        Instrument or file.
-    processing
-        What was done to the heights, in order.
+    Parameters:
+        heights: m, (n,), n >= 2, positive away from the solid.
+        spacing: m.
+        tip_radius: m, of the stylus, where known.
+        resolution: m, shortest wavelength the instrument resolves, where known.
+        periodic: True when the last point continues at the first one.
+        source: Instrument or file.
+        processing: What was done to the heights, in order.
 
-    Raises
-    ------
-    InputError
-        Missing heights, not one-dimensional, spacing not positive.
+    Raises:
+        InputError: Missing heights, not one-dimensional, spacing not positive.
     """
 
     heights: np.ndarray
@@ -77,10 +67,8 @@ class Profile:
     def section(self, start: float, end: float) -> Profile:
         """Return the part with start <= x <= end (m from the first point).
 
-        Raises
-        ------
-        InputError
-            A part outside the profile or with fewer than two points.
+        Raises:
+            InputError: A part outside the profile or with fewer than two points.
         """
         x, slack = self.positions, 1e-9 * self.spacing
         inside = (x >= start - slack) & (x <= end + slack)
@@ -122,10 +110,8 @@ def profile_from_positions(
     then heights are interpolated linearly to an even grid with as many points, and the profile
     says so.
 
-    Raises
-    ------
-    DataError
-        Positions missing, not ascending, uneven without ``resample``, heights missing.
+    Raises:
+        DataError: Positions missing, not ascending, uneven without ``resample``, heights missing.
     """
     x, z = np.asarray(positions, dtype=float), np.asarray(heights, dtype=float)
     if x.ndim != 1 or x.shape != z.shape or x.size < 2:

@@ -1,7 +1,5 @@
 """Roughness numbers of a profile by ISO 21920-2 and ISO 4287."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -115,33 +113,24 @@ def profile_roughness(
     The evaluation length is ``sections`` times the long cut-off, from the middle of what the
     filter leaves. The straight line is removed first.
 
-    Parameters
-    ----------
-    long_cutoff
-        Lambda_c, m: 0.8e-3 for most floors and soles.
-    short_cutoff
-        Lambda_s, m, or None; needed for slope and curvature. Below the resolution of the
-        measurement it is refused.
-    sections
-        Sections (ISO 21920) or sampling lengths (ISO 4287), each one long cut-off; 5 by default.
-    ends
-        See ``long_waves``.
-    standard
-        "ISO 21920-2:2021": Ra, Rq, Rsk, Rku, Rdq over the evaluation length; Rz, Rp, Rv means
-        over the sections. "ISO 4287:1997": all of them means over the sampling lengths. Rt and
-        RSm are of the whole evaluation length in both.
+    Parameters:
+        long_cutoff: Lambda_c, m: 0.8e-3 for most floors and soles.
+        short_cutoff: Lambda_s, m, or None; needed for slope and curvature. Below the resolution of
+            the measurement it is refused.
+        sections: Sections (ISO 21920) or sampling lengths (ISO 4287), each one long cut-off; 5 by
+            default.
+        ends: See ``long_waves``.
+        standard: "ISO 21920-2:2021": Ra, Rq, Rsk, Rku, Rdq over the evaluation length; Rz, Rp, Rv
+            means over the sections. "ISO 4287:1997": all of them means over the sampling lengths.
+            Rt and RSm are of the whole evaluation length in both.
 
     RSm counts profile elements whose hill and dale both exceed 10 % of Rz, between upward
     crossings of the mean line.
 
-    Raises
-    ------
-    InputError
-        Unknown standard, fewer than one section, short cut-off not below the long one.
-    RangeError
-        Short cut-off below what the measurement resolves.
-    DataError
-        Profile too short.
+    Raises:
+        InputError: Unknown standard, fewer than one section, short cut-off not below the long one.
+        RangeError: Short cut-off below what the measurement resolves.
+        DataError: Profile too short.
     """
     _check(profile, long_cutoff, short_cutoff, sections, standard)
     flat = profile if profile.periodic else _without_line(profile)

@@ -1,7 +1,5 @@
 """Dektak stylus profiles (CSV) with the results that the instrument printed itself."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -39,10 +37,8 @@ def read_dektak(path: Path | str) -> tuple[Profile, tuple[InstrumentResult, ...]
     Spacing and tip radius come from the header; printed positions are rounded and only checked
     against it.
 
-    Raises
-    ------
-    DataError
-        No such file, another format, heights missing.
+    Raises:
+        DataError: No such file, another format, heights missing.
     """
     path = Path(path)
     if not path.is_file():

@@ -1,7 +1,5 @@
 """Instrument formats, read through the package SurfaceTopography."""
 
-from __future__ import annotations
-
 import warnings
 from pathlib import Path
 from typing import Any
@@ -34,13 +32,10 @@ def read_instrument(
     Formats: those of SurfaceTopography (SDF, X3P, SUR, PLUX, OPD, OPDx, AL3D, VK4, DATX, Nanoscope,
     Gwyddion and others). ``length_unit`` is needed where the file has none.
 
-    Raises
-    ------
-    MissingExtraError
-        SurfaceTopography is not installed.
-    DataError
-        Not a format it reads, no unit, heights missing without ``fill_missing``, cells not
-        square, uneven positions without ``resample``.
+    Raises:
+        MissingExtraError: SurfaceTopography is not installed.
+        DataError: Not a format it reads, no unit, heights missing without ``fill_missing``, cells
+            not square, uneven positions without ``resample``.
     """
     path = Path(path)
     if not path.is_file():

@@ -1,7 +1,5 @@
 """Profiles and maps from text files."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -32,10 +30,8 @@ def read_profile(
     heights are refused unless ``fill_missing`` (then up to 5 % are interpolated). Both are said
     in ``processing``.
 
-    Raises
-    ------
-    DataError
-        Unreadable, units missing, positions uneven, heights missing.
+    Raises:
+        DataError: Unreadable, units missing, positions uneven, heights missing.
     """
     data = read_numbers(path)
     columns = data.rows.shape[1]
@@ -88,10 +84,8 @@ def read_map(
     with square cells. Units come from the heading unless given: the first for x and y, the last
     for z.
 
-    Raises
-    ------
-    DataError
-        Unreadable, units missing, no full grid, cells not square, heights missing.
+    Raises:
+        DataError: Unreadable, units missing, no full grid, cells not square, heights missing.
     """
     data = read_numbers(path)
     units = data.units()

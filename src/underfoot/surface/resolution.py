@@ -1,7 +1,5 @@
 """Down to which wavelength a measurement can be believed."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Random self-affine surfaces with roll-off and cut-offs."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from underfoot.core import InputError, RangeError
@@ -28,32 +26,22 @@ def self_affine(
     constant for 2 pi / long_cutoff < q < 2 pi / roll_off, zero elsewhere; amplitudes are those
     of the spectrum, phases random (Persson et al. 2005, J. Phys.: Condens. Matter 17, R1).
 
-    Parameters
-    ----------
-    shape
-        Points along x and y (one number: square).
-    spacing
-        m.
-    rms_height
-        m, about the mean plane; zero gives a flat surface.
-    hurst
-        0 to 1; 0.8 is common for worn or sand-blasted surfaces.
-    long_cutoff
-        Longest wavelength, m, at most the shorter side.
-    short_cutoff
-        Shortest wavelength, m, at least twice the spacing.
-    seed
-        Same seed, same surface.
-    roll_off
-        Wavelength, m, where the spectrum turns flat; by default ``long_cutoff`` (no flat part).
-    anisotropy
-        Stretch of the pattern along x relative to y: 3 gives ridges along the sliding direction
-        three times longer than wide. Cut-offs then hold along y.
+    Parameters:
+        shape: Points along x and y (one number: square).
+        spacing: m.
+        rms_height: m, about the mean plane; zero gives a flat surface.
+        hurst: 0 to 1; 0.8 is common for worn or sand-blasted surfaces.
+        long_cutoff: Longest wavelength, m, at most the shorter side.
+        short_cutoff: Shortest wavelength, m, at least twice the spacing.
+        seed: Same seed, same surface.
+        roll_off: Wavelength, m, where the spectrum turns flat; by default ``long_cutoff`` (no flat
+            part).
+        anisotropy: Stretch of the pattern along x relative to y: 3 gives ridges along the sliding
+            direction three times longer than wide. Cut-offs then hold along y.
 
-    Raises
-    ------
-    RangeError, InputError
-        Wavelengths that the grid can't hold or in the wrong order, Hurst exponent outside 0 to 1.
+    Raises:
+        RangeError, InputError: Wavelengths that the grid can't hold or in the wrong order, Hurst
+            exponent outside 0 to 1.
     """
     nx, ny = (shape, shape) if isinstance(shape, int | np.integer) else shape
     turn = long_cutoff if roll_off is None else roll_off

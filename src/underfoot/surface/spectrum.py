@@ -23,16 +23,11 @@ class ProfileSpectrum:
     Two-sided, C(q) = 1/(2 pi) int <h(x) h(0)> exp(-i q x) dx, given for q > 0 only: the mean
     square height is 2 int_0^inf C dq.
 
-    Parameters
-    ----------
-    wavenumber
-        2 pi / wavelength, rad/m, ascending, (m,).
-    density
-        m^3, (m,).
-    reliable
-        Lowest and highest wave number, rad/m, that can be believed.
-    notes
-        Window, form removed, averaging, what limits it.
+    Parameters:
+        wavenumber: 2 pi / wavelength, rad/m, ascending, (m,).
+        density: m^3, (m,).
+        reliable: Lowest and highest wave number, rad/m, that can be believed.
+        notes: Window, form removed, averaging, what limits it.
     """
 
     wavenumber: np.ndarray
@@ -56,19 +51,13 @@ class IsotropicSpectrum:
     C(q) = 1/(2 pi)^2 int <h(x) h(0)> exp(-i q x) d^2x (Persson's convention): the mean square
     height is 2 pi int_0^inf q C dq.
 
-    Parameters
-    ----------
-    wavenumber
-        rad/m, ascending, (m,).
-    density
-        m^4, (m,).
-    area
-        Part of the wave number plane that each value stands for, rad^2/m^2, (m,): the mean
-        square height is sum C area.
-    reliable
-        Lowest and highest wave number that can be believed, rad/m.
-    notes
-        Window, form removed, inversion, what limits it.
+    Parameters:
+        wavenumber: rad/m, ascending, (m,).
+        density: m^4, (m,).
+        area: Part of the wave number plane that each value stands for, rad^2/m^2, (m,): the mean
+            square height is sum C area.
+        reliable: Lowest and highest wave number that can be believed, rad/m.
+        notes: Window, form removed, inversion, what limits it.
     """
 
     wavenumber: np.ndarray

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -43,19 +44,9 @@ def sensor_array_reading(
 ) -> SensorArrayReading:
     """Return pressures, passages and the heel's track of one slip over a sensor array.
 
-    Parameters
-    ----------
-    found
-        The slip; without a heel path there are pressures only.
-    sensors
-        Place of each sensor in lab axes (m); the names are those of its pressure channel.
-    up, walking
-        Unit vectors (3,).
-
-    Errors
-    ------
-    DataError
-        A sensor without a channel, or no sensors.
+    Without a heel path in the slip ``found`` there are pressures only. ``sensors`` are places in
+    lab axes (m) by the name of the pressure channel; ``up`` and ``walking`` unit vectors (3,). A
+    sensor without a channel, or no sensors, are a DataError.
 
     Source: grant report G.5.1.
     """
@@ -65,33 +56,15 @@ def sensor_array_reading(
         name: pressure_pulse(name, trial.channel(name), found.contact, definition=definition)
         for name in sensors
     }
-    estimated = {n: p.peak for n, p in pulses.items() if p.peak.value is not None}
-    if estimated:
-        best = max(estimated, key=lambda name: estimated[name].value or 0.0)
-        peak = estimated[best]
-    else:
-        best = next(iter(pulses))
-        peak = pulses[best].peak
+    seen = {n: p.peak.value for n, p in pulses.items() if p.peak.value is not None}
+    best = max(seen, key=lambda name: seen[name]) if seen else next(iter(pulses))
     passed: dict[str, Passage] = {}
     track, crossed = np.empty((0, 2)), False
     if found.motion is not None and found.end > found.contact:
         said = found.peak_speed.conventions
-        for one in passages(
-            found.motion,
-            sensors,
-            up=up,
-            walking=walking,
-            contact=found.contact,
-            until=found.end,
-            conventions={k: v for k, v in said.items() if k not in ("threshold", "uncertainty")},
-        ):
+        said = {k: v for k, v in said.items() if k not in ("threshold", "uncertainty")}
+        span: Any = {"up": up, "walking": walking, "contact": found.contact, "until": found.end}
+        for one in passages(found.motion, sensors, conventions=said, **span):
             passed[one.sensor] = one
-        track, crossed = heel_track(
-            found.motion,
-            sensors,
-            up=up,
-            walking=walking,
-            contact=found.contact,
-            until=found.end,
-        )
-    return SensorArrayReading(pulses, passed, track, crossed, peak, best)
+        track, crossed = heel_track(found.motion, sensors, **span)
+    return SensorArrayReading(pulses, passed, track, crossed, pulses[best].peak, best)

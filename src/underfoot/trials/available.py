@@ -35,16 +35,9 @@ def mean_friction(
     reaches ``target``. The uncertainty is the standard error with the number of samples lowered
     for their correlation, n (1 - r) / (1 + r) with r the correlation of neighbours.
 
-    Parameters
-    ----------
-    normal, shear
-        Shape (n,), N; the shear as a resultant (not negative).
-    rate
-        Samples per second.
-    target
-        Normal force that opens the window (N).
-    window
-        Length (s): 0.2 in the grant report (G.6.1); 0.05 is enough by Iraqi et al. (PMC6922306).
+    ``normal`` and ``shear``: shape (n,), N; the shear as a resultant (not negative). ``rate``:
+    samples per second. ``target``: normal force that opens the window (N). ``window``: length (s):
+    0.2 in the grant report (G.6.1); 0.05 is enough by Iraqi et al. (PMC6922306).
     """
     normal, shear = np.asarray(normal, dtype=float), np.asarray(shear, dtype=float)
     said = {
@@ -53,41 +46,30 @@ def mean_friction(
     }
     if normal.shape != shear.shape or not target > 0 or not window > 0:
         raise InputError("normal and shear must match; target and window be positive", where=name)
+
+    def without(reason: str) -> Measurement:
+        return Measurement.not_estimated(name, reason, conventions=said)
+
     reached = np.flatnonzero(normal >= target)
     if not len(reached):
         top = float(np.nanmax(normal, initial=0.0))
-        return Measurement.not_estimated(
-            name, f"the normal force reaches {top:.0f} N, not {target:g} N", conventions=said
-        )
+        return without(f"the normal force reaches {top:.0f} N, not {target:g} N")
     start = int(reached[0])
     count = max(1, round(window * rate))
     if start + count > len(normal):
-        return Measurement.not_estimated(
-            name, "the recording ends inside the window", conventions=said
-        )
+        return without("the recording ends inside the window")
     part, across = normal[start : start + count], shear[start : start + count]
     if not (np.isfinite(part).all() and np.isfinite(across).all()):
-        return Measurement.not_estimated(
-            name, "samples without a number inside the window", conventions=said
-        )
+        return without("samples without a number inside the window")
+    falls = f"the normal force falls to {part.min():.0f} N in the window"
     if part.min() < 0.2 * target:
-        return Measurement.not_estimated(
-            name, f"the normal force falls to {part.min():.0f} N in the window", conventions=said
-        )
+        return without(falls)
     ratio = across / part
-    flags = ()
-    if part.min() < 0.9 * target:
-        flags = (caution(f"the normal force falls to {part.min():.0f} N in the window"),)
+    flags = (caution(falls),) if part.min() < 0.9 * target else ()
     error = _standard_error(ratio)
-    return Measurement(
-        name,
-        float(ratio.mean()),
-        uncertainty=error,
-        reason="" if error is not None else "too few samples for a scatter",
-        n=count,
-        flags=flags,
-        conventions=said,
-    )
+    reason = "" if error is not None else "too few samples for a scatter"
+    value = float(ratio.mean())
+    return Measurement(name, value, "1", error, reason, count, flags, said)
 
 
 def available_friction(
@@ -103,10 +85,7 @@ def available_friction(
     Resultant shear over normal force, see ``mean_friction``. Not filtered unless ``low_pass``
     is given: the average does that.
 
-    Parameters
-    ----------
-    up
-        Unit vector out of the floor, lab axes; by default the plate's normal, or z.
+    ``up``: unit vector out of the floor, lab axes; by default the plate's normal, or z.
     """
     if not plate.usable:
         return Measurement.not_estimated("acof", plate.problem or "the plate has no samples")
@@ -123,13 +102,8 @@ def available_friction(
     normal = force @ up
     shear = np.linalg.norm(force - np.outer(normal, up), axis=1)
     found = mean_friction(normal, shear, plate.rate, target=target, window=window)
-    said = {
-        **found.conventions,
-        "shear": SHEARS["resultant"],
-        "filter": words,
-        "baseline": baseline_words(plate),
-    }
-    return replace(found, conventions=said)
+    said = {"shear": SHEARS["resultant"], "filter": words, "baseline": baseline_words(plate)}
+    return replace(found, conventions={**found.conventions, **said})
 
 
 def available_frictions(

@@ -12,7 +12,7 @@ import numpy as np
 
 from underfoot.core import InputError
 
-from .plates import plate_axes, up_from_normal
+from .plates import plate_axes
 from .ramp import LEVEL, Ramp
 from .trial import Marker, Plate, Trial
 
@@ -68,15 +68,9 @@ class Axes:
 
 def axis_vector(text: str, where: str = "axis") -> np.ndarray:
     """Return the unit vector named ``"x"``, ``"+y"``, ``"-z"`` ..."""
-    if (
-        len(text) not in (1, 2)
-        or text[-1] not in _NAMES
-        or (len(text) == 2 and text[0] not in "+-")
-    ):
+    if not re.fullmatch("[+-]?[xyz]", text):
         raise InputError(f'"{text}" is no axis', where=where, allowed="x, y, z, +x, -x ...")
-    vector = np.zeros(3)
-    vector[_NAMES.index(text[-1])] = -1.0 if text[0] == "-" else 1.0
-    return vector
+    return np.eye(3)[_NAMES.index(text[-1])] * (-1.0 if text[0] == "-" else 1.0)
 
 
 def axis_name(vector: np.ndarray | None) -> str:
@@ -90,11 +84,7 @@ def axis_name(vector: np.ndarray | None) -> str:
 
 
 def axes_of(
-    trial: Trial,
-    *,
-    vertical: str | None = None,
-    walking: str | None = None,
-    ramp: Ramp = LEVEL,
+    trial: Trial, *, vertical: str | None = None, walking: str | None = None, ramp: Ramp = LEVEL
 ) -> Axes:
     """Return the axes of a trial: from overrides, plates, then markers.
 
@@ -102,10 +92,7 @@ def axes_of(
     axis along which the markers spread least over time. Walking: the path of the markers over
     the whole recording. For one step use ``walking_direction``, which looks at that step.
     """
-    if vertical:
-        up, how = axis_vector(vertical, "vertical"), "given"
-    else:
-        up, how = _up(trial)
+    up, how = (axis_vector(vertical, "vertical"), "given") if vertical else _up(trial)
     if walking:
         return Axes(up, how, _flat(axis_vector(walking, "walking"), up), "given", ramp)
     path = marker_velocity(trial, -np.inf, np.inf, up)
@@ -198,12 +185,8 @@ def _shear_swing(plate: Plate, start: int, stop: int, up: np.ndarray) -> np.ndar
 def heel_candidates(trial: Trial, heels: Mapping[str, str] | None = None) -> dict[str, list[str]]:
     """Return the markers that may be heels by side: ``left``, ``right``, ``unknown``.
 
-    ``heels`` (from a profile) names them and wins. The best-seen candidates come first.
-
-    Raises
-    ------
-    DataError
-        A marker named in ``heels`` is not in the trial.
+    ``heels`` (from a profile) names them and wins; one that is not in the trial is a DataError.
+    The best-seen candidates come first.
     """
     if heels:
         given = {side: [name] for side, name in heels.items() if trial.marker(name)}
@@ -237,38 +220,21 @@ def heel_of(trial: Trial, side: str, heels: Mapping[str, str] | None = None) -> 
 
 
 def _up(trial: Trial) -> tuple[np.ndarray, str]:
-    normals = []
-    for plate in trial.plates:
-        if plate.usable and plate.corners is not None:
-            normals.append(up_from_normal(plate_axes(plate.corners)[:, 2]))
-    if normals:
-        votes = Counter(int(np.argmax(np.abs(normal))) for normal in normals)
-        up = np.zeros(3)
-        up[votes.most_common(1)[0][0]] = 1.0
-        return up, "normal of the force plates"
-    loads = [np.nanpercentile(np.abs(p.force), 99, axis=0) for p in trial.plates if p.usable]
-    if loads:
-        up = np.zeros(3)
-        up[int(np.argmax(np.sum(loads, axis=0)))] = 1.0
-        return up, "axis that carries the load"
-    spans = [
-        np.ptp(marker.positions[~marker.missing], axis=0)
-        for marker in trial.markers.values()
-        if (~marker.missing).sum() > 2
-    ]
-    up = np.zeros(3)
-    if not spans:
-        up[2] = 1.0
-        return up, "assumed z: neither plates nor markers"
+    usable = [plate for plate in trial.plates if plate.usable]
+    framed = [plate_axes(p.corners)[:, 2] for p in usable if p.corners is not None]
+    if framed:
+        votes = Counter(int(np.argmax(np.abs(normal))) for normal in framed)
+        return np.eye(3)[votes.most_common(1)[0][0]], "normal of the force plates"
+    if usable:
+        loads = [np.nanpercentile(np.abs(plate.force), 99, axis=0) for plate in usable]
+        return np.eye(3)[int(np.argmax(np.sum(loads, axis=0)))], "axis that carries the load"
+    paths = [m.positions[~m.missing] for m in trial.markers.values() if (~m.missing).sum() > 2]
+    if not paths:
+        return np.eye(3)[2], "assumed z: neither plates nor markers"
     # Everything moves along the walkway or sways across it, feet most; heights return.
-    heights = np.array(
-        [
-            np.nanmedian(marker.positions, axis=0)
-            for marker in trial.markers.values()
-            if (~marker.missing).sum() > 2
-        ]
-    )
-    up[int(np.argmax(np.ptp(heights, axis=0) / (np.median(spans, axis=0) + 0.05)))] = 1.0
+    spans = np.median([np.ptp(path, axis=0) for path in paths], axis=0)
+    heights = np.ptp([np.median(path, axis=0) for path in paths], axis=0)
+    up = np.eye(3)[int(np.argmax(heights / (spans + 0.05)))]
     return up, "axis along which markers differ most and move least"
 
 

@@ -18,12 +18,8 @@ def unloaded(vertical: np.ndarray, rate: float) -> np.ndarray:
     whose mean lies more than 5 robust standard deviations (8 to 60 N) above it is loaded, and so
     is everything within 25 ms of it. Empty when the plate was never unloaded.
 
-    Parameters
-    ----------
-    vertical
-        Upward force on the foot (N), shape (n,); NaN samples count as loaded.
-    rate
-        Samples per second.
+    ``vertical``: upward force on the foot (N), shape (n,); NaN samples count as loaded. ``rate``:
+    samples per second.
     """
     none = np.zeros(len(vertical), dtype=bool)
     finite = np.isfinite(vertical)

@@ -9,16 +9,8 @@ import numpy as np
 
 from underfoot.core import DataError
 
-from .measurement import Measurement, remark
-from .statistics import (
-    AnovaTable,
-    Comparison,
-    LinearModel,
-    analysis_of_variance,
-    linear_model,
-    predictor,
-    tukey_hsd,
-)
+from . import statistics
+from .measurement import Flag, Measurement, remark
 
 _SAID = {
     "hysteresis": "friction with the blocking oil, all adhesion taken as blocked (Eq. 23)",
@@ -47,17 +39,10 @@ def friction_split(
     F_adhesion(lubricated) = F_lubricated - F_hysteresis (Eq. 25). Standard errors add in squares;
     all adhesions of a pair share the error of its hysteresis and are therefore correlated.
 
-    Parameters
-    ----------
-    dry, blocked
-        Friction forces (N) dry and with the oil that blocks adhesion (SAE 75W-140 in the report).
-    lubricated
-        Friction forces (N) by fluid.
+    ``dry`` and ``blocked``: friction forces (N) dry and with the oil that blocks adhesion (SAE
+    75W-140 in the report). ``lubricated``: friction forces (N) by fluid.
 
-    Errors
-    ------
-    DataError
-        No values, or values that are not finite.
+    DataError: no values, or values that are not finite.
     """
     total = _mean("dry friction", dry)
     hysteresis = _mean("hysteresis friction", blocked)
@@ -93,10 +78,10 @@ class AlphaBeta:
     """
 
     fluids: tuple[FluidCoefficients, ...]
-    model: LinearModel
-    type_two: AnovaTable
-    type_three: AnovaTable
-    comparisons: tuple[Comparison, ...]
+    model: statistics.LinearModel
+    type_two: statistics.AnovaTable
+    type_three: statistics.AnovaTable
+    comparisons: tuple[statistics.Comparison, ...]
     mean_absolute_residual: float
 
     def __getitem__(self, fluid: str) -> FluidCoefficients:
@@ -113,41 +98,40 @@ def alpha_beta(
     One regression with a slope and an intercept for each fluid and one residual variance; the
     fluids are compared (Tukey) at the mean dry adhesion.
 
-    Parameters
-    ----------
-    fluid, dry_adhesion, lubricated_adhesion
-        Shape (n,): name, N, N.
+    ``fluid``, ``dry_adhesion``, ``lubricated_adhesion``: shape (n,): name, N, N.
 
-    Errors
-    ------
-    DataError
-        As ``linear_model``; a fluid with fewer than two different dry adhesions.
+    DataError: as ``linear_model``; a fluid with fewer than two different dry adhesions.
     """
     names = [str(name) for name in fluid]
     x = np.asarray(dry_adhesion, dtype=float)
     y = np.asarray(lubricated_adhesion, dtype=float)
-    predictors = {"fluid": predictor("fluid", names), "dry adhesion": predictor("dry adhesion", x)}
+    predictors = {
+        "fluid": statistics.predictor("fluid", names),
+        "dry adhesion": statistics.predictor("dry adhesion", x),
+    }
     terms = ("fluid", "dry adhesion", "fluid:dry adhesion")
     for name in dict.fromkeys(names):
         if np.ptp(x[[n == name for n in names]]) == 0:
             raise DataError("one dry adhesion only: no slope", where=name)
-    model = linear_model(y, predictors, terms, name="lubricated adhesion")
+    model = statistics.linear_model(y, predictors, terms, name="lubricated adhesion")
     rows = []
     for i, name in enumerate(predictors["fluid"].levels):
         at = model.design.rows({"fluid": np.array([i, i]), "dry adhesion": np.array([0.0, 1.0])})
         contrasts = np.array([at[0], at[1] - at[0]])
         values = contrasts @ model.coefficients
         errors = np.sqrt(np.einsum("ij,jk,ik->i", contrasts, model.covariance, contrasts))
-        count = names.count(name)
-        alpha, beta = (float(v) for v in values)
-        alpha_error, beta_error = (float(e) for e in errors)
-        rows.append(FluidCoefficients(name, alpha, beta, alpha_error, beta_error, count))
+        numbers = map(float, (*values, *errors))
+        rows.append(FluidCoefficients(name, *numbers, n=names.count(name)))
     return AlphaBeta(
         tuple(rows),
         model,
-        analysis_of_variance(y, predictors, terms, ss_type=2, name="lubricated adhesion"),
-        analysis_of_variance(y, predictors, terms, ss_type=3, name="lubricated adhesion"),
-        tuple(tukey_hsd(model, "fluid")),
+        statistics.analysis_of_variance(
+            y, predictors, terms, ss_type=2, name="lubricated adhesion"
+        ),
+        statistics.analysis_of_variance(
+            y, predictors, terms, ss_type=3, name="lubricated adhesion"
+        ),
+        tuple(statistics.tukey_hsd(model, "fluid")),
         float(np.abs(y - model.fitted).mean()),
     )
 
@@ -157,15 +141,7 @@ def _mean(name: str, values: Sequence[float]) -> Measurement:
     if not len(forces) or not np.isfinite(forces).all():
         raise DataError("no finite forces", where=name)
     error = float(forces.std(ddof=1) / np.sqrt(len(forces))) if len(forces) > 1 else None
-    return Measurement(
-        name,
-        float(forces.mean()),
-        "N",
-        error,
-        "" if error is not None else "a single value has no scatter",
-        len(forces),
-        conventions=_SAID,
-    )
+    return _force(name, float(forces.mean()), error, len(forces))
 
 
 def _difference(name: str, first: Measurement, second: Measurement) -> Measurement:
@@ -175,16 +151,12 @@ def _difference(name: str, first: Measurement, second: Measurement) -> Measureme
     error = None
     if first.uncertainty is not None and second.uncertainty is not None:
         error = float(np.hypot(first.uncertainty, second.uncertainty))
-    flags = ()
-    if value < 0:
-        flags = (remark("negative: the oil does not block more adhesion than this condition"),)
-    return Measurement(
-        name,
-        value,
-        "N",
-        error,
-        "" if error is not None else "a single value has no scatter",
-        min(first.n, second.n),
-        flags,
-        _SAID,
-    )
+    negative = remark("negative: the oil does not block more adhesion than this condition")
+    return _force(name, value, error, min(first.n, second.n), (negative,) if value < 0 else ())
+
+
+def _force(
+    name: str, value: float, error: float | None, n: int, flags: tuple[Flag, ...] = ()
+) -> Measurement:
+    reason = "" if error is not None else "a single value has no scatter"
+    return Measurement(name, value, "N", error, reason, n, flags, _SAID)

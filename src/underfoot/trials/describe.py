@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from underfoot.core import InputError
+from underfoot.core import InputError, unknown_name
 
 from .axes import Axes, DirectionSource, axes_of, axis_name, heel_candidates
 from .gait import DEFINITIONS, RcofDefinition, RequiredFriction, required_frictions
@@ -34,31 +34,28 @@ class Description:
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
+        trial, axes = self.trial, self.axes
         return {
-            "name": self.trial.name,
-            "format": self.trial.source,
-            "checksum": self.trial.checksum,
-            "settings": dict(self.trial.settings),
-            "notes": list(self.trial.notes),
-            "edits": [_edit_words(e) for e in self.trial.edits],
+            "name": trial.name,
+            "format": trial.source,
+            "checksum": trial.checksum,
+            "settings": dict(trial.settings),
+            "notes": list(trial.notes),
+            "edits": [_edit_words(e) for e in trial.edits],
             "axes": {
-                "vertical": axis_name(self.axes.up),
-                "vertical_from": self.axes.up_from,
-                "walking": axis_name(self.axes.walking),
-                "walking_from": self.axes.walking_from,
-                "surface": self.axes.ramp.words,
+                "vertical": axis_name(axes.up),
+                "vertical_from": axes.up_from,
+                "walking": axis_name(axes.walking),
+                "walking_from": axes.walking_from,
+                "surface": axes.ramp.words,
             },
-            "plates": [_plate_data(plate) for plate in self.trial.plates],
-            "markers": list(self.trial.markers),
+            "plates": [_plate_data(plate) for plate in trial.plates],
+            "markers": list(trial.markers),
             "heels": self.heels,
             "channels": {
-                name: {"unit": channel.unit, "rate": channel.rate, "note": channel.note}
-                for name, channel in self.trial.channels.items()
+                name: _parts(channel, "unit rate note") for name, channel in trial.channels.items()
             },
-            "events": [
-                {"name": e.name, "side": e.side, "time": e.time, "source": e.source}
-                for e in self.trial.events
-            ],
+            "events": [_parts(event, "name side time source") for event in trial.events],
             "stances": [_stance_data(step) for step in self.steps],
             "conventions": self.conventions,
         }
@@ -129,28 +126,23 @@ class Description:
         if not self.steps:
             return [*lines, "  none"]
         for step in self.steps:
-            stance = step.stance
-            head = (
+            stance, own = step.stance, step.measurement
+            lines.append(
                 f"  {stance.number:2d}  {stance.contact:7.3f} s  {stance.plate}, "
                 f"{1e3 * stance.duration:.0f} ms, peak {stance.peak:.0f} N, {stance.side} foot, "
                 f"walking {axis_name(stance.walking)}"
             )
-            lines.append(head)
-            if (
-                stance.walking is not None
-                and stance.direction.source is not DirectionSource.MARKERS
-            ):
-                lines.append(f"             walking direction from {stance.direction.words}")
-            own = step.measurement
+            under = []
+            way = stance.direction
+            if way.vector is not None and way.source is not DirectionSource.MARKERS:
+                under.append(f"walking direction from {way.words}")
             if own.value is None:
-                lines.append(f"             rejected: {own.reason}")
+                under.append(f"rejected: {own.reason}")
             else:
+                number = f"{own.value:.3f} ± {own.uncertainty or 0:.3f}"
                 after = 1e3 * (step.peak_time - stance.contact)
-                lines.append(
-                    f"             {step.verdict}: RCOF {own.value:.3f} ± "
-                    f"{own.uncertainty or 0:.3f}, {after:.0f} ms after contact"
-                )
-            lines += [f"             ! {flag}" for flag in step.measurement.flags]
+                under.append(f"{step.verdict}: RCOF {number}, {after:.0f} ms after contact")
+            lines += [" " * 13 + text for text in (*under, *(f"! {flag}" for flag in own.flags))]
         good = [step.measurement for step in self.steps if step.measurement.estimated]
         doubtful = sum(bool(one.caution_flags) for one in good)
         if len(good) > 1:
@@ -176,23 +168,16 @@ def described(
 ) -> Description:
     """Return the description of a trial.
 
-    Parameters
-    ----------
-    vertical, walking
-        Overrides such as ``"z"``, ``"+x"``; a profile's are used when these are not given.
+    ``vertical`` and ``walking`` are overrides such as ``"z"``, ``"+x"``; a profile's are used when
+    these are not given.
     """
     profile = profile or Profile()
     definition = definition or DEFINITIONS["default"]
     vertical, walking = vertical or profile.vertical, walking or profile.walking
     axes = axes_of(trial, vertical=vertical, walking=walking, ramp=ramp)
     steps = required_frictions(trial, definition, axes=axes, walking=walking, heels=profile.heels)
-    return Description(
-        trial,
-        axes,
-        heel_candidates(trial, profile.heels),
-        tuple(steps),
-        {**definition.conventions(), "surface": ramp.words},
-    )
+    said = {**definition.conventions(), "surface": ramp.words}
+    return Description(trial, axes, heel_candidates(trial, profile.heels), tuple(steps), said)
 
 
 def described_file(
@@ -208,24 +193,11 @@ def described_file(
 ) -> tuple[Description, ...]:
     """Return the descriptions of the trials in a file (one a step for tribometer logs).
 
-    Parameters
-    ----------
-    companion
-        A second file of the same recording (.forces beside .trc); needs one trial in each.
-    definition
-        A name in ``DEFINITIONS``.
-    ramp
-        Slope of the walkway, and the axes in which its plates measure.
-
-    Raises
-    ------
-    DataError
-        The file can't be read.
-    InputError
-        The profile, an axis or the definition is wrong.
+    ``companion`` is a second file of the same recording (.forces beside .trc), with one trial in
+    each; ``definition`` a name in ``DEFINITIONS``; ``ramp`` the slope of the walkway with the axes
+    in which its plates measure. A file that can't be read is a DataError; a wrong profile, axis or
+    definition an InputError.
     """
-    from underfoot.core import unknown_name
-
     if definition not in DEFINITIONS:
         raise unknown_name("RCOF definition", definition, DEFINITIONS, where="definition")
     if profile is not None and not isinstance(profile, Profile):
@@ -236,17 +208,8 @@ def described_file(
         if len(trials) != 1 or len(others) != 1:
             raise InputError("only files that hold one trial each can be joined", where="--with")
         trials = (joined(trials[0], others[0]),)
-    return tuple(
-        described(
-            trial,
-            definition=DEFINITIONS[definition],
-            vertical=vertical,
-            walking=walking,
-            profile=profile,
-            ramp=ramp,
-        )
-        for trial in trials
-    )
+    chosen: Any = {"definition": DEFINITIONS[definition], "profile": profile, "ramp": ramp}
+    return tuple(described(t, vertical=vertical, walking=walking, **chosen) for t in trials)
 
 
 def _baseline(plate: Plate) -> str:
@@ -254,17 +217,14 @@ def _baseline(plate: Plate) -> str:
         return "not subtracted"
     if not np.abs(plate.baseline).max() > 5e-4:
         return f"zero ({plate.baseline_samples} unloaded samples)"
-    numbers = ", ".join(
-        f"{name} {value:.1f}" for name, value in zip("xyz", plate.baseline, strict=True)
-    )
+    pairs = zip("xyz", plate.baseline, strict=True)
+    numbers = ", ".join(f"{name} {value:.1f}" for name, value in pairs)
     return f"{numbers} N, mean of {plate.baseline_samples} unloaded samples, subtracted"
 
 
 def _edit_words(edit: Edit) -> str:
-    value = (
-        f" {edit.value:g} s" if isinstance(edit.value, float) else f" {edit.value or ''}".rstrip()
-    )
-    return f"{edit.step_words}: {edit.what}{value} ({edit.why})"
+    value = f"{edit.value:g} s" if isinstance(edit.value, float) else edit.value or ""
+    return f"{edit.step_words}: {f'{edit.what} {value}'.rstrip()} ({edit.why})"
 
 
 def _some(names: Sequence[str], most: int = _SHOWN) -> str:
@@ -272,15 +232,15 @@ def _some(names: Sequence[str], most: int = _SHOWN) -> str:
     return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
 
 
+def _parts(thing: object, names: str) -> dict[str, Any]:
+    return {name: getattr(thing, name) for name in names.split()}
+
+
 def _plate_data(plate: Plate) -> dict[str, Any]:
     return {
-        "name": plate.name,
-        "kind": plate.kind,
-        "problem": plate.problem,
-        "rate": plate.rate,
+        **_parts(plate, "name kind problem rate baseline_samples"),
         "samples": len(plate.force),
-        "baseline": None if plate.baseline is None else [float(v) for v in plate.baseline],
-        "baseline_samples": plate.baseline_samples,
+        "baseline": None if plate.baseline is None else plate.baseline.tolist(),
         "corners": None if plate.corners is None else plate.corners.tolist(),
         "notes": [*map(str, plate.flags), *plate.notes],
     }
@@ -289,18 +249,10 @@ def _plate_data(plate: Plate) -> dict[str, Any]:
 def _stance_data(step: RequiredFriction) -> dict[str, Any]:
     stance = step.stance
     return {
-        "plate": stance.plate,
-        "contact": stance.contact,
-        "toe_off": stance.toe_off,
-        "peak": stance.peak,
-        "side": stance.side,
-        "heel": stance.heel,
+        **_parts(stance, "plate contact toe_off peak side heel number accepted reason"),
         "walking": axis_name(stance.walking),
         "walking_from": stance.direction.words,
-        "number": stance.number,
-        "accepted": stance.accepted,
         "verdict": step.verdict,
-        "reason": stance.reason,
         "peak_time": None if math.isnan(step.peak_time) else step.peak_time,
         "rcof": step.measurement.as_dict(),
     }

@@ -26,10 +26,8 @@ def edited_contacts(found: Sequence[Stance], trial: Trial, up: np.ndarray) -> li
 
     An excluded contact, and one that is no step because another plate was named, have a reason.
 
-    Raises
-    ------
-    EditError
-        An edit names no contact, lies outside the record, changes nothing or contradicts another.
+    EditError: an edit names no contact, lies outside the record, changes nothing or contradicts
+    another.
     """
     contacts = list(found)
     seen: dict[tuple[int, str], Edit] = {}

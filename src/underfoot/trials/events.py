@@ -46,10 +46,7 @@ def stances(
     plates, samples without numbers, and contacts without a braking phase or while nobody walks.
     The trial's edits are applied first.
 
-    Raises
-    ------
-    EditError
-        An edit names no contact, changes nothing or contradicts another.
+    EditError: an edit names no contact, changes nothing or contradicts another.
     """
     axes = axes or axes_of(trial)
     plates = {plate.name: plate for plate in trial.plates if plate.usable}
@@ -61,57 +58,38 @@ def stances(
             peak = float(np.nanmax(vertical[start:stop]))
             found.append(Stance(plate.name, start, stop, float(time[0]), float(time[1]), peak))
     found.sort(key=lambda stance: stance.contact)
-    found = [replace(stance, number=i) for i, stance in enumerate(found, start=1)]
-    located = []
-    for stance in found:
+    feet = {plate.name: _Feet(trial, plate, axes, heels) for plate in plates.values()}
+
+    def located(stance: Stance) -> Stance:
         plate = plates[stance.plate]
         way = walking_direction(trial, plate, stance.start, stance.stop, axes.up, walking)
         stance = replace(stance, direction=way)
-        side, heel = _foot(trial, plate, stance, axes, heels)
-        located.append(replace(stance, side=side, heel=heel))
+        if "side" in stance.by_hand:
+            return replace(stance, heel=feet[plate.name].heels.get(stance.side, ""))
+        side, heel = feet[plate.name].foot(stance)
+        return replace(stance, side=side, heel=heel)
+
+    found = [located(replace(stance, number=i)) for i, stance in enumerate(found, start=1)]
     if trial.edits:
-        located = edited_contacts(located, trial, axes.up)
-        located = [_relocated(s, trial, plates[s.plate], axes, walking, heels) for s in located]
-    weight = body_weight(trial, axes)
+        found = edited_contacts(found, trial, axes.up)
+        found = [located(s) if s.by_hand and not s.reason else s for s in found]
+    weight, peaks = body_weight(trial, axes), [s.peak for s in found]
     judged = []
-    for stance in located:
-        others = [s for s in located if s.plate != stance.plate and not s.reason]
-        peaks = [s.peak for s in located]
-        reason = stance.reason or _reason(
-            trial, plates[stance.plate], stance, others, peaks, axes, heels, weight
-        )
-        judged.append(replace(stance, reason=reason))
+    for stance in found:
+        others = [s for s in found if s.plate != stance.plate and not s.reason]
+        plate = plates[stance.plate]
+        judge = (plate, stance, others, peaks, axes, feet[plate.name], weight)
+        judged.append(replace(stance, reason=stance.reason or _reason(*judge)))
     return judged
 
 
-def _relocated(
-    stance: Stance,
-    trial: Trial,
-    plate: Plate,
-    axes: Axes,
-    walking: str | None,
-    heels: Mapping[str, str] | None,
-) -> Stance:
-    """Return an edited contact with direction and heel of its new limits."""
-    if not stance.by_hand or stance.reason:
-        return stance
-    way = walking_direction(trial, plate, stance.start, stance.stop, axes.up, walking)
-    stance = replace(stance, direction=way)
-    if "side" in stance.by_hand:
-        names = heel_candidates(trial, heels)[stance.side]
-        return replace(stance, heel=names[0] if names else "")
-    side, heel = _foot(trial, plate, stance, axes, heels)
-    return replace(stance, side=side, heel=heel)
-
-
 def _reason(
-    trial: Trial,
     plate: Plate,
     stance: Stance,
     others: list[Stance],
     peaks: list[float],
     axes: Axes,
-    heels: Mapping[str, str] | None,
+    feet: _Feet,
     weight: BodyWeight | None,
 ) -> str:
     part = plate.force[stance.start : stance.stop]
@@ -141,10 +119,10 @@ def _reason(
         times = f"{stance.peak / expected:.1f} times body weight" if weight else ""
         times = times or f"{ratio:.1f} times the mean"
         return f"peak {stance.peak:.0f} N, {times}: an impact, not a walking step"
-    two = _two_feet(trial, plate, stance, axes, heels)
+    two = _two_feet(plate, stance, axes, feet)
     if two:
         return two
-    outside = _heel_outside(trial, plate, stance, axes, heels)
+    outside = feet.outside(stance)
     if outside > _OUTSIDE:
         return f"the heel stands {1e3 * outside:.0f} mm outside the plate: a partial hit"
     if stance.walking is None:
@@ -225,28 +203,22 @@ def body_weight(trial: Trial, axes: Axes | None = None) -> BodyWeight | None:
     return BodyWeight(newtons, "standing in this record", standing=True)
 
 
-def _two_feet(
-    trial: Trial, plate: Plate, stance: Stance, axes: Axes, heels: Mapping[str, str] | None
-) -> str:
-    seen = _heels_on_plate(trial, plate, stance, axes, heels)
-    if "left" in seen and "right" in seen:
+def _two_feet(plate: Plate, stance: Stance, axes: Axes, feet: _Feet) -> str:
+    if {"left", "right"} <= set(feet.on_plate(stance)):
         return "both heels are on the plate"
-    place = plate.centre_of_pressure
-    if (
-        place is None
-        or stance.walking is None
-        or stance.direction.source is DirectionSource.TREADMILL
-    ):
+    place, way = plate.centre_of_pressure, stance.direction
+    if place is None or way.vector is None or way.source is DirectionSource.TREADMILL:
         return ""
-    vertical = plate.force[stance.start : stance.stop] @ axes.up
-    firm = vertical > 0.2 * stance.peak
-    inside = place[stance.start : stance.stop][firm]
+    part = slice(stance.start, stance.stop)
+    inside = place[part][plate.force[part] @ axes.up > 0.2 * stance.peak]
     inside = inside[np.isfinite(inside).all(axis=1)]
     if len(inside) < 10:
         return ""
-    along = float(np.ptp(inside @ stance.walking))
-    sideways = float(np.ptp(inside @ np.cross(axes.up, stance.walking)))
-    if along > _FOOT_LENGTH or sideways > _FOOT_WIDTH + 0.5 * along * _turning(trial):
+    along = float(np.ptp(inside @ way.vector))
+    sideways = float(np.ptp(inside @ np.cross(axes.up, way.vector)))
+    # A foot set down at an angle to the path lets the centre of pressure move across.
+    turning = 1.0 if feet.trial.markers else 0.5
+    if along > _FOOT_LENGTH or sideways > _FOOT_WIDTH + 0.5 * along * turning:
         return (
             f"the centre of pressure moves {1e3 * along:.0f} mm along and {1e3 * sideways:.0f} mm "
             "across: more than one foot"
@@ -254,91 +226,82 @@ def _two_feet(
     return ""
 
 
-def _turning(trial: Trial) -> float:
-    """A foot set down at an angle to the path lets the centre of pressure move across."""
-    return 1.0 if trial.markers else 0.5
+class _Feet:
+    """The heels of a trial, the best-seen marker of each side, against one plate."""
 
+    def __init__(
+        self, trial: Trial, plate: Plate, axes: Axes, heels: Mapping[str, str] | None
+    ) -> None:
+        self.trial, self.plate, self.up = trial, plate, axes.up
+        self.heels = {s: names[0] for s, names in heel_candidates(trial, heels).items() if names}
+        self.markers = {side: trial.marker(name) for side, name in self.heels.items()}
+        if plate.corners is not None:
+            # In the plate's own axes: one that stands askew in the laboratory is no larger for it.
+            self.own = plate_axes(plate.corners)[:, :2]
+            self.middle = plate.corners.mean(axis=0)
+            self.half = np.abs((plate.corners - self.middle) @ self.own).max(axis=0)
 
-def _heels_on_plate(
-    trial: Trial, plate: Plate, stance: Stance, axes: Axes, heels: Mapping[str, str] | None
-) -> dict[str, tuple[str, float]]:
-    """Sides whose heel marker stays over the plate, low and slow, for 100 ms of the stance."""
-    if plate.corners is None:
-        return {}
-    # In the plate's own axes: a plate that stands askew in the laboratory is no larger for it.
-    own = plate_axes(plate.corners)[:, :2]
-    middle = plate.corners.mean(axis=0)
-    reach = np.abs((plate.corners - middle) @ own).max(axis=0) + 0.02
-    found = {}
-    for side, names in heel_candidates(trial, heels).items():
-        for name in names[:1]:
-            marker = trial.marker(name)
+    def beyond(self, places: np.ndarray) -> np.ndarray:
+        """How far places (..., 3) lie beyond the plate's edges along its two axes (m)."""
+        return np.abs((places - self.middle) @ self.own) - self.half
+
+    def on_plate(self, stance: Stance) -> dict[str, int]:
+        """Frames of the sides whose heel stays over the plate, low and slow, for 100 ms."""
+        found: dict[str, int] = {}
+        for side, marker in self.markers.items() if self.plate.corners is not None else ():
             time, at = marker.time, marker.positions
-            height = at @ axes.up
+            height = at @ self.up
             if not np.isfinite(height).any():
                 continue
             inside = (time >= stance.contact) & (time <= stance.toe_off) & ~marker.missing
-            inside &= (np.abs((at - middle) @ own) <= reach).all(axis=1)
+            inside &= (self.beyond(at) <= 0.02).all(axis=1)
             inside &= height < np.nanmin(height) + 0.06
             speed = np.linalg.norm(np.gradient(at, 1.0 / marker.rate, axis=0), axis=1)
             inside &= np.nan_to_num(speed, nan=9.0) < 0.8
             if inside.sum() >= 0.1 * marker.rate:
-                found[side] = (name, float(inside.sum()))
-    return found
+                found[side] = int(inside.sum())
+        return found
 
-
-def _foot(
-    trial: Trial, plate: Plate, stance: Stance, axes: Axes, heels: Mapping[str, str] | None
-) -> tuple[str, str]:
-    seen = _heels_on_plate(trial, plate, stance, axes, heels)
-    if seen:
-        side = max(seen, key=lambda key: seen[key][1])
-        return side, seen[side][0]
-    landing = _landing_heel(trial, plate, stance, axes, heels)
-    if landing[1]:
-        return landing
-    place = plate.centre_of_pressure
-    if place is None:
-        return "unknown", ""
-    # Without corners: the heel nearest to where the centre of pressure begins.
-    early = place[stance.start : stance.start + max(5, (stance.stop - stance.start) // 5)]
-    early = early[np.isfinite(early).all(axis=1)]
-    best, distance = ("unknown", ""), 0.15
-    for side, names in heel_candidates(trial, heels).items():
-        for name in names[:1]:
-            marker = trial.marker(name)
+    def foot(self, stance: Stance) -> tuple[str, str]:
+        """Side and heel marker of the foot on the plate."""
+        seen = self.on_plate(stance)
+        side = max(seen, key=lambda key: seen[key]) if seen else self.landing(stance)
+        # Without corners: the heel nearest to where the centre of pressure begins.
+        early = self.early(stance, max(5, (stance.stop - stance.start) // 5))
+        distance = 0.15
+        for name, marker in self.markers.items() if not side and len(early) else ():
             inside = (marker.time >= stance.contact) & (marker.time <= stance.contact + 0.2)
             inside &= ~marker.missing
-            if len(early) and inside.any():
-                gap = np.median(marker.positions[inside], axis=0) - np.median(early, axis=0)
-                away = float(np.linalg.norm(gap - (gap @ axes.up) * axes.up))
+            if inside.any():
+                away = self.flat(np.median(marker.positions[inside], axis=0), early)
                 if away < distance:
-                    best, distance = (side, name), away
-    return best
+                    side, distance = name, away
+        return (side, self.heels[side]) if side else ("unknown", "")
 
+    def early(self, stance: Stance, samples: int) -> np.ndarray:
+        """Centres of pressure (n, 3) of the first samples of a stance, where there are any."""
+        place = self.plate.centre_of_pressure
+        if place is None:
+            return np.empty((0, 3))
+        early = place[stance.start : stance.start + samples]
+        return early[np.isfinite(early).all(axis=1)]
 
-def _heel_outside(
-    trial: Trial, plate: Plate, stance: Stance, axes: Axes, heels: Mapping[str, str] | None
-) -> float:
-    """How far outside the plate (m) a heel stands within a foot's length of the first pressure.
+    def flat(self, place: np.ndarray, early: np.ndarray) -> float:
+        """Distance (m) in the floor's plane of a place (3,) and the first centres of pressure."""
+        gap = place - np.median(early, axis=0)
+        return float(np.linalg.norm(gap - (gap @ self.up) * self.up))
 
-    Zero when a heel stands on the plate, or when nothing is known. Standing: low and slow for
-    40 ms from contact.
-    """
-    place = plate.centre_of_pressure
-    if plate.corners is None or place is None or _heels_on_plate(trial, plate, stance, axes, heels):
-        return 0.0
-    early = place[stance.start : stance.start + max(5, round(0.05 * plate.rate))]
-    early = early[np.isfinite(early).all(axis=1)]
-    if not len(early):
-        return 0.0
-    own = plate_axes(plate.corners)[:, :2]
-    middle = plate.corners.mean(axis=0)
-    half = np.abs((plate.corners - middle) @ own).max(axis=0)
-    found = 0.0
-    for names in heel_candidates(trial, heels).values():
-        for name in names[:1]:
-            marker = trial.marker(name)
+    def outside(self, stance: Stance) -> float:
+        """How far outside the plate (m) a heel stands within a foot's length of the first pressure.
+
+        Zero when a heel stands on the plate, or when nothing is known. Standing: low and slow for
+        40 ms from contact.
+        """
+        early = self.early(stance, max(5, round(0.05 * self.plate.rate)))
+        if self.plate.corners is None or not len(early) or self.on_plate(stance):
+            return 0.0
+        found = 0.0
+        for marker in self.markers.values():
             at = marker.positions
             inside = (marker.time >= stance.contact) & (marker.time <= stance.contact + 0.04)
             inside &= ~marker.missing
@@ -346,34 +309,21 @@ def _heel_outside(
                 continue
             stand = np.median(at[inside], axis=0)
             speed = float(np.linalg.norm(np.ptp(at[inside], axis=0))) / 0.04
-            low = float(stand @ axes.up - np.nanmin(at @ axes.up)) < 0.06
-            gap = stand - np.median(early, axis=0)
-            near = float(np.linalg.norm(gap - (gap @ axes.up) * axes.up)) < _FOOT_LENGTH
-            if speed < 0.8 and low and near:
-                beyond = np.abs((stand - middle) @ own) - half
-                found = max(found, float(np.linalg.norm(np.maximum(beyond, 0.0))))
-    return found
+            low = float(stand @ self.up - np.nanmin(at @ self.up)) < 0.06
+            if speed < 0.8 and low and self.flat(stand, early) < _FOOT_LENGTH:
+                found = max(found, float(np.linalg.norm(np.maximum(self.beyond(stand), 0.0))))
+        return found
 
-
-def _landing_heel(
-    trial: Trial, plate: Plate, stance: Stance, axes: Axes, heels: Mapping[str, str] | None
-) -> tuple[str, str]:
-    """The lower of the heels that are low over the plate at contact: a slipping heel is fast."""
-    if plate.corners is None:
-        return "unknown", ""
-    own = plate_axes(plate.corners)[:, :2]
-    middle = plate.corners.mean(axis=0)
-    reach = np.abs((plate.corners - middle) @ own).max(axis=0) + 0.1
-    best, lowest = ("unknown", ""), 0.06
-    for side, names in heel_candidates(trial, heels).items():
-        for name in names[:1]:
-            marker = trial.marker(name)
+    def landing(self, stance: Stance) -> str:
+        """Side of the lower of the heels low over the plate at contact: a slipping heel is fast."""
+        best, lowest = "", 0.06
+        for side, marker in self.markers.items() if self.plate.corners is not None else ():
             near = np.abs(marker.time - stance.contact) < max(0.03, 1.0 / marker.rate)
             near &= ~marker.missing
             if not near.any():
                 continue
             place = np.median(marker.positions[near], axis=0)
-            lift = float(place @ axes.up - np.nanmin(marker.positions @ axes.up))
-            if lift < lowest and (np.abs((place - middle) @ own) <= reach).all():
-                best, lowest = (side, name), lift
-    return best
+            lift = float(place @ self.up - np.nanmin(marker.positions @ self.up))
+            if lift < lowest and (self.beyond(place) <= 0.1).all():
+                best, lowest = side, lift
+        return best

@@ -34,10 +34,7 @@ def exponential_sum(
     A logarithmic grid over the rates, each with its linear least squares, then a polish in the
     logarithms of the rates (variable projection).
 
-    Errors
-    ------
-    DataError
-        Fewer points than parameters, missing values, x that does not vary; 1 to 3 terms.
+    DataError: fewer points than parameters, missing values, x that does not vary; 1 to 3 terms.
     """
     from scipy.optimize import least_squares
 

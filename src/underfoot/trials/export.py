@@ -22,10 +22,7 @@ def c3d_with_events(trial: Trial, found: Sequence[Stance]) -> bytes:
     Forces are brought to a multiple of the marker rate by linear interpolation where they are
     not; plates without corners are written as channels. Other channels are left out.
 
-    Raises
-    ------
-    DataError
-        Neither markers nor usable plates.
+    DataError: neither markers nor usable plates.
     """
     plates = [plate for plate in trial.plates if plate.usable]
     markers = [(name, m) for name, m in trial.markers.items() if m.times is None]

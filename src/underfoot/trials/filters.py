@@ -49,12 +49,8 @@ MARKER_FILTER = LowPass(cutoff=10.0)
 def low_passed(values: np.ndarray, rate: float, low_pass: LowPass) -> np.ndarray:
     """Return ``values`` (n,) or (n, k) filtered along the first axis.
 
-    Errors
-    ------
-    DataError
-        NaN in the values, or too few samples to filter.
-    InputError
-        The cutoff is above 0.45 of the sampling rate.
+    DataError: NaN in the values, or too few samples to filter. InputError: the cutoff is above 0.45
+    of the sampling rate.
     """
     values = np.asarray(values, dtype=float)
     if low_pass.kind == "none":

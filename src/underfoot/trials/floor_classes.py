@@ -11,14 +11,9 @@ from underfoot.core import unknown_name
 class ClassScheme:
     """Classes in rising order: (smallest value, name). Below the first there is no class.
 
-    Parameters
-    ----------
-    quantity
-        ``"ptv"`` (pendulum test value), ``"angle"`` (degrees), ``"cof"``.
-    above
-        True where a value must exceed a limit, False where reaching it is enough.
-    whole
-        True where readings are rounded to whole numbers first.
+    ``quantity``: ``"ptv"`` (pendulum test value), ``"angle"`` (degrees), ``"cof"``. ``above``: True
+    where a value must exceed a limit, False where reaching it is enough. ``whole``: True where
+    readings are rounded to whole numbers first.
     """
 
     name: str
@@ -93,10 +88,7 @@ SCHEMES: dict[str, ClassScheme] = {
 def class_scheme(name: str) -> ClassScheme:
     """Return a scheme of classes.
 
-    Raises
-    ------
-    InputError
-        Unknown name, with the nearest one.
+    InputError: unknown name, with the nearest one.
     """
     if name not in SCHEMES:
         raise unknown_name("scheme of classes", name, SCHEMES, where="classes")

@@ -18,12 +18,7 @@ from .filters import FILTERS, FORCE_FILTER, LowPass, low_passed
 from .measurement import Flag, Measurement, remark
 from .outcome import Outcome
 from .plates import baseline_words, plate_axes, plate_named, up_from_normal
-from .plausibility import (
-    baseline_error,
-    other_foot_flags,
-    rcof_flags,
-    step_flags,
-)
+from .plausibility import baseline_error, other_foot_flags, rcof_flags, step_flags
 from .slips import Slip, slip_of
 from .stance import Stance
 from .trial import Plate, Trial
@@ -45,21 +40,10 @@ _TILT = math.radians(1.0)  # plates are levelled better than that; it shifts the
 class RcofDefinition:
     """What "required coefficient of friction" means; each choice goes with every number.
 
-    Parameters
-    ----------
-    filter
-        Low-pass of the forces.
-    gate
-        The normal force must have passed this (N), or ``gate_body_weight`` (share of body
-        weight) when that is given.
-    shear
-        A key of ``SHEARS``.
-    peak
-        A key of ``PEAKS``.
-    braking
-        Only while the floor pushes the foot backward (the foot pushes the floor forward).
-    part
-        Share of the stance, from contact, that is searched.
+    ``filter``: low-pass of the forces. ``gate``: the normal force must have passed this (N), or
+    ``gate_body_weight`` (share of body weight) when that is given. ``shear``: a key of ``SHEARS``.
+    ``peak``: a key of ``PEAKS``. ``braking``: only while the floor pushes the foot backward (the
+    foot pushes the floor forward). ``part``: share of the stance, from contact, that is searched.
     """
 
     filter: LowPass = field(default_factory=lambda: FORCE_FILTER)
@@ -82,13 +66,12 @@ class RcofDefinition:
 
     def conventions(self) -> dict[str, str]:
         """Return the choices in words."""
-        gate = f"normal force above {self.gate:g} N"
-        if self.gate_body_weight is not None:
-            gate = f"normal force above {100 * self.gate_body_weight:g} % of body weight"
+        share = self.gate_body_weight
+        gate = f"{self.gate:g} N" if share is None else f"{100 * share:g} % of body weight"
         direction = "while the reaction on the foot points backward (foot pushes forward)"
         return {
             "filter": str(self.filter),
-            "gate": gate,
+            "gate": f"normal force above {gate}",
             "shear": SHEARS[self.shear],
             "peak": PEAKS[self.peak],
             "direction": direction if self.braking else "any",
@@ -178,16 +161,10 @@ def required_friction(
     whose heel slides: there the ratio is the available friction. The uncertainty holds the
     baseline, the readings of the filter's name and the plate's specification.
 
-    Parameters
-    ----------
-    checked
-        Look whether the heel slides and whether signals and result are plausible; without it only
-        the number is taken.
+    ``checked``: look whether the heel slides and whether signals and result are plausible; without
+    it only the number is taken.
 
-    Raises
-    ------
-    InputError
-        The filter does not fit the sampling rate.
+    InputError: the filter does not fit the sampling rate.
 
     Source: definitions collected from Redfern 2001, Chang 2011, Beschorner 2016 and others; the
     default is the grant report's (G.6.1) made unambiguous, see docs/physics/required_friction.md.
@@ -195,17 +172,17 @@ def required_friction(
     definition = definition or DEFINITIONS["default"]
     axes = axes or axes_of(trial)
     plate = plate_named(trial, stance.plate)
+    belt = stance.direction.source is DirectionSource.TREADMILL
     said = {
         **definition.conventions(),
         "baseline": baseline_words(plate),
         "walking direction": stance.direction.words,
-        "surface": _surface_words(axes, stance),
+        "surface": f"treadmill ({axes.ramp.words})" if belt else axes.ramp.words,
     }
-    empty = np.empty(0)
     slip: Slip | None = None
 
     def without(reason: str) -> RequiredFriction:
-        missing = Measurement.not_estimated("rcof", reason, conventions=said)
+        missing, empty = Measurement.not_estimated("rcof", reason, conventions=said), np.empty(0)
         return RequiredFriction(missing, stance, empty, empty, empty, slip=slip)
 
     if not stance.accepted or stance.walking is None:
@@ -241,26 +218,22 @@ def required_friction(
     flags = plate.flags + stance.flags + _tilt_flags(plate, stance, axes)
     after = 1e3 * (at - passed[0]) / plate.rate
     if after < 2.0:
-        flags += (
-            remark(f"the peak lies {after:.0f} ms after the gate: the gate may have made it"),
-        )
+        words = f"the peak lies {after:.0f} ms after the gate: the gate may have made it"
+        flags += (remark(words),)
     uncertainty, parts = None, "not estimated"
     if checked:
         flags += step_flags(trial, stance, axes, definition.filter, weight, heels)
-        flags += rcof_flags(value, axes.ramp) + _sliding_flags(slip)
+        flags += rcof_flags(value, axes.ramp)
+        if slip is not None and slip.outcome is Outcome.MICROSLIP:
+            flags += tuple(f for f in slip.peak_speed.flags if f.name == "speed against distance")
         uncertainty, parts = _uncertainty(plate, stance, definition, surface, gate, at, curves)
+    unasked, said = "" if checked else "not asked for", {**said, "uncertainty": parts}
+    once = tuple(dict.fromkeys(flags))
     measurement = Measurement(
-        "rcof",
-        value,
-        "1",
-        uncertainty,
-        "" if checked else "not asked for",
-        flags=tuple(dict.fromkeys(flags)),
-        conventions={**said, "uncertainty": parts},
+        "rcof", value, "1", uncertainty, unasked, flags=once, conventions=said
     )
-    return RequiredFriction(
-        measurement, stance, time, ratio, normal, float(time[at]), float(time[passed[0]]), slip
-    )
+    instants = float(time[at]), float(time[passed[0]])
+    return RequiredFriction(measurement, stance, time, ratio, normal, *instants, slip)
 
 
 def required_frictions(
@@ -288,20 +261,12 @@ def stance_frictions(
     """Return the required friction of the stances given, each compared with the others."""
     steps = [required_friction(trial, s, definition, axes=axes, heels=heels) for s in found]
     values = [(s.stance, s.measurement.value) for s in steps if s.measurement.value is not None]
-    out = []
-    for step in steps:
+    for i, step in enumerate(steps):
         own = step.measurement
         if own.value is not None:
             more = other_foot_flags(step.stance, own.value, values)
-            step = replace(step, measurement=replace(own, flags=own.flags + more))
-        out.append(step)
-    return out
-
-
-def _surface_words(axes: Axes, stance: Stance) -> str:
-    if stance.direction.source is DirectionSource.TREADMILL:
-        return f"treadmill ({axes.ramp.words})"
-    return axes.ramp.words
+            steps[i] = replace(step, measurement=replace(own, flags=own.flags + more))
+    return steps
 
 
 def _tilt_flags(plate: Plate, stance: Stance, axes: Axes) -> tuple[Flag, ...]:
@@ -370,9 +335,7 @@ def _uncertainty(
     baseline = baseline_error(plate, stance, surface[0], float(normal[at]), value)
     readings = [value]
     if definition.filter.kind != "none":
-        for kind in FILTERS:
-            if kind in ("none", definition.filter.kind):
-                continue
+        for kind in set(FILTERS) - {"none", definition.filter.kind}:
             other = replace(definition, filter=replace(definition.filter, kind=kind))
             load, curve, push = _curves(plate, stance, other, surface, 0.2)
             top = _peak(other, curve, _allowed(other, load, push, gate))
@@ -385,12 +348,6 @@ def _uncertainty(
         f"%, {accuracy.source})"
     )
     return math.hypot(baseline, filtering, plate_part), words
-
-
-def _sliding_flags(slip: Slip | None) -> tuple[Flag, ...]:
-    if slip is None or slip.outcome is not Outcome.MICROSLIP:
-        return ()
-    return tuple(flag for flag in slip.peak_speed.flags if flag.name == "speed against distance")
 
 
 def _allowed(
@@ -406,15 +363,13 @@ def _allowed(
 
 
 def _peak(definition: RcofDefinition, ratio: np.ndarray, allowed: np.ndarray) -> int | None:
-    if definition.peak == "plain-maximum":
-        candidates = np.flatnonzero(allowed & np.isfinite(ratio))
-    else:
+    top = np.isfinite(ratio)
+    if definition.peak != "plain-maximum":
         filled = np.nan_to_num(ratio, nan=0.0)
         top = np.zeros(len(ratio), dtype=bool)
         top[1:-1] = (filled[1:-1] > filled[:-2]) & (filled[1:-1] >= filled[2:])
-        candidates = np.flatnonzero(allowed & top)
+    candidates = np.flatnonzero(allowed & top)
     if not len(candidates):
         return None
-    if definition.peak == "first-local-maximum":
-        return int(candidates[0])
-    return int(candidates[np.argmax(ratio[candidates])])
+    first = definition.peak == "first-local-maximum"
+    return int(candidates[0 if first else np.argmax(ratio[candidates])])

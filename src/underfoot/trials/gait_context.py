@@ -49,18 +49,22 @@ def gait_context(
     walk = marker_velocity(trial, stance.contact, stance.toe_off, axes.up)
     length, time = _step(trial, stance, found)
     angle = foot_angle(trial, stance, axes)
-    speed = None
-    if stance.heel and trial.marker(stance.heel).times is None:
-        motion = heel_motion(trial.marker(stance.heel), axes.up)
-        speed = _number(float(np.interp(stance.contact, motion.time, motion.speed)))
     return GaitContext(
         walking_speed=None if walk is None else _number(float(np.linalg.norm(walk))),
         step_length=length,
         step_time=time,
         cadence=1.0 / time if time else None,
         foot_angle=None if angle is None else _number(float(angle[1][0])),
-        heel_speed=speed,
+        heel_speed=heel_speed(trial, stance, axes),
     )
+
+
+def heel_speed(trial: Trial, stance: Stance, axes: Axes) -> float | None:
+    """Return the heel's speed at contact in the plane of the floor (m/s), None where unknown."""
+    if not stance.heel or trial.marker(stance.heel).times is not None:
+        return None
+    motion = heel_motion(trial.marker(stance.heel), axes.up)
+    return _number(float(np.interp(stance.contact, motion.time, motion.speed)))
 
 
 def _step(
@@ -79,17 +83,15 @@ def _step(
     time = stance.contact - other.contact
     if not (stance.heel and other.heel) or stance.walking is None:
         return None, time
-    places = [_standing_place(trial.marker(one.heel), one) for one in (other, stance)]
-    if places[0] is None or places[1] is None:
-        return None, time
-    return _number(float((places[1] - places[0]) @ stance.walking)), time
+    first, second = (_standing_place(trial.marker(one.heel), one) for one in (other, stance))
+    return _number(float((second - first) @ stance.walking)), time
 
 
-def _standing_place(heel: Marker, stance: Stance) -> np.ndarray | None:
-    """Median place (3,) of a heel between 10 and 40 % of its stance."""
+def _standing_place(heel: Marker, stance: Stance) -> np.ndarray:
+    """Median place (3,) of a heel between 10 and 40 % of its stance; NaN where it is not seen."""
     share = (heel.time - stance.contact) / max(stance.duration, 1e-9)
     inside = (share > 0.1) & (share < 0.4) & ~heel.missing
-    return np.median(heel.positions[inside], axis=0) if inside.sum() > 2 else None
+    return np.median(heel.positions[inside], axis=0) if inside.sum() > 2 else np.full(3, np.nan)
 
 
 def foot_angle(trial: Trial, stance: Stance, axes: Axes) -> tuple[np.ndarray, np.ndarray] | None:

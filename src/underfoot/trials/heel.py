@@ -31,22 +31,11 @@ _AROUND = 3  # frames to each side that a jump is judged by
 class SlipDefinition:
     """What counts as a slip and how its speed is got.
 
-    Parameters
-    ----------
-    threshold
-        Peak slipping speed above which it is a slip (m/s).
-    plane
-        A key of ``PLANES``.
-    filter
-        Low-pass of the marker's path; its cutoff also sets the window of Savitzky-Golay.
-    derivative
-        A key of ``DERIVATIVES``.
-    longest_gap
-        Gaps of the marker up to this are bridged (s).
-    prominence
-        A local minimum or peak of the speed must stand out by this (m/s), or it is noise.
-    heel_lift
-        Height over its lowest since contact at which the heel has left the floor (m).
+    Above the peak slipping speed ``threshold`` (m/s) it is a slip. ``plane`` and ``derivative`` are
+    keys of ``PLANES`` and ``DERIVATIVES``; ``filter`` is the low-pass of the marker's path, its
+    cutoff also sets the window of Savitzky-Golay. Gaps of the marker up to ``longest_gap`` (s) are
+    bridged. A local minimum or peak of the speed must stand out by ``prominence`` (m/s), or it is
+    noise; at ``heel_lift`` (m) over its lowest since contact the heel has left the floor.
     """
 
     threshold: float = SLIP_SPEED
@@ -63,24 +52,18 @@ class SlipDefinition:
         if self.derivative not in DERIVATIVES:
             raise unknown_name("derivative", self.derivative, DERIVATIVES, where="slip.derivative")
         if (
-            not self.threshold > 0
-            or self.longest_gap < 0
-            or self.prominence < 0
-            or self.heel_lift <= 0
+            min(self.longest_gap, self.prominence) < 0
+            or not min(self.threshold, self.heel_lift) > 0
         ):
-            raise InputError(
-                "threshold, gap, prominence and heel lift can't be negative", where="slip"
-            )
+            words = "threshold, gap, prominence and heel lift can't be negative"
+            raise InputError(words, where="slip")
 
     def conventions(self) -> dict[str, str]:
         """Return the choices in words."""
+        plain = self.derivative == "differences"
         return {
             "speed": PLANES[self.plane],
-            "marker filter": (
-                str(self.filter)
-                if self.derivative == "differences"
-                else f"cutoff {self.filter.cutoff:g} Hz"
-            ),
+            "marker filter": str(self.filter) if plain else f"cutoff {self.filter.cutoff:g} Hz",
             "derivative": DERIVATIVES[self.derivative],
             "slip start": "first local minimum of the heel's speed after contact",
             "gaps": f"bridged up to {1e3 * self.longest_gap:g} ms",
@@ -137,10 +120,7 @@ def heel_motion(
 ) -> HeelMotion:
     """Return the smoothed path, velocity and speed of a heel marker.
 
-    Raises
-    ------
-    InputError
-        The frames are not equally spaced, or the filter does not fit the rate.
+    Frames that are not equally spaced and a filter that does not fit the rate are InputErrors.
     """
     definition = definition or SlipDefinition()
     if marker.times is not None:
@@ -151,12 +131,10 @@ def heel_motion(
     position = np.full(path.shape, np.nan)
     velocity = np.full(path.shape, np.nan)
     residuals: list[np.ndarray] = []
-    half = _half_window(marker.rate, definition.filter.cutoff)
-    shortest = max(30, 2 * half + 1)
-    if definition.filter.kind == "none" and definition.derivative == "differences":
-        shortest = 3
-    seen = np.asarray(np.isfinite(path).all(axis=1))
-    for start, stop in runs(seen):
+    plain = definition.filter.kind == "none" and definition.derivative == "differences"
+    window = 2 * _half_window(marker.rate, definition.filter.cutoff) + 1
+    shortest = 3 if plain else max(30, window)
+    for start, stop in runs(np.asarray(np.isfinite(path).all(axis=1))):
         if stop - start < shortest:
             continue
         smooth, velocity[start:stop] = _smoothed(path[start:stop], marker.rate, definition)
@@ -167,22 +145,11 @@ def heel_motion(
     if residuals and sum(map(len, residuals)) > 3:
         steps = np.abs(np.concatenate(residuals))
         noise = 1.4826 * float(np.median(steps)) / math.sqrt(2.0)
-    seen_velocity = velocity
-    if definition.plane == "horizontal":
-        seen_velocity = velocity - np.outer(velocity @ up, up)
-    speed = np.linalg.norm(seen_velocity, axis=1)
+    vertical = np.outer(velocity @ up, up) if definition.plane == "horizontal" else 0.0
+    speed = np.linalg.norm(velocity - vertical, axis=1)
     gain, rate_gain = _noise_gains(marker.rate, definition)
-    return HeelMotion(
-        marker.time,
-        position,
-        velocity,
-        speed,
-        filled,
-        noise,
-        noise * gain,
-        jumps,
-        noise * rate_gain,
-    )
+    path_of = marker.time, position, velocity, speed
+    return HeelMotion(*path_of, filled, noise, noise * gain, jumps, noise * rate_gain)
 
 
 def contact_from_heel(

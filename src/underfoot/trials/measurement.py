@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
 import numpy as np
@@ -15,20 +15,11 @@ from underfoot.core.presentation import Presentable, Table
 
 @dataclass(frozen=True, slots=True)
 class Flag:
-    """Something a reader must know beside a number.
+    """Something a reader must know beside a number: the check's name and what was seen, in words.
 
-    Parameters
-    ----------
-    name
-        Name of the check, for example ``"baseline drift"``.
-    words
-        What was seen, as a clause.
-    matters
-        True when the number needs caution: the step and its file are then no longer "accepted".
-    measured, limit
-        What was seen and what is allowed, in ``unit``; None where the check has no number.
-    source
-        Where the limit comes from.
+    ``matters`` is True when the number needs caution: the step and its file are then no longer
+    "accepted". ``measured`` and ``limit``, in ``unit``, are what was seen and what is allowed (None
+    where the check has no number); ``source`` says where the limit comes from.
     """
 
     name: str
@@ -57,32 +48,14 @@ def remark(words: str) -> Flag:
 class Measurement(Presentable):
     """One measured number, or the reason why there is none.
 
-    Parameters
-    ----------
-    name
-        What was measured, for example ``"rcof"``.
-    value
-        In ``unit``; None when it could not be determined (then ``reason`` says why).
-    unit
-        SI unit, ``"1"`` when dimensionless.
-    uncertainty
-        Standard uncertainty of ``value`` in ``unit`` (of a mean: its standard error); None when
-        not estimated (then ``reason`` says why).
-    reason
-        Why the value or its uncertainty is missing.
-    n
-        Number of samples, steps or trials behind the value.
-    flags
-        What a reader must see beside the number; those that matter make it a caution.
-    conventions
-        The choices that made the number (filter, gate, definition ...), in words.
-    spread
-        Standard deviation between the ``n`` values of a mean; None for a single number.
-
-    Raises
-    ------
-    ValueError
-        A value that is not finite, a negative uncertainty, or no value and no reason.
+    ``value`` is in ``unit`` (SI, ``"1"`` when dimensionless) and None when it could not be
+    determined. ``uncertainty`` is the standard uncertainty of the value (of a mean: its standard
+    error), None when not estimated. ``reason`` says why either is missing. ``n`` counts the
+    samples, steps or trials behind the value, ``spread`` is the standard deviation between the
+    ``n`` values of a mean. ``flags`` are what a reader must see beside the number; those that
+    matter make it a caution. ``conventions`` are the choices that made the number (filter, gate,
+    definition ...), in words. A value that is not finite, a negative uncertainty, or neither value
+    nor reason is a ValueError.
     """
 
     name: str
@@ -96,12 +69,11 @@ class Measurement(Presentable):
     spread: float | None = None
 
     def __post_init__(self) -> None:
-        if self.value is None:
-            if not self.reason:
-                raise ValueError(f"{self.name} has neither a value nor a reason")
-            if self.uncertainty is not None:
-                raise ValueError(f"{self.name} has an uncertainty but no value")
-        elif not math.isfinite(self.value):
+        if self.value is None and not self.reason:
+            raise ValueError(f"{self.name} has neither a value nor a reason")
+        if self.value is None and self.uncertainty is not None:
+            raise ValueError(f"{self.name} has an uncertainty but no value")
+        if self.value is not None and not math.isfinite(self.value):
             raise ValueError(f"{self.name} is {self.value}; use None and a reason")
         if self.uncertainty is None:
             if not self.reason:
@@ -121,9 +93,8 @@ class Measurement(Presentable):
         conventions: Mapping[str, str] | None = None,
     ) -> Measurement:
         """Return a measurement without a value, saying why."""
-        return cls(
-            name, None, unit, reason=reason, n=n, flags=flags, conventions=dict(conventions or {})
-        )
+        said = dict(conventions or {})
+        return cls(name, None, unit, reason=reason, n=n, flags=flags, conventions=said)
 
     @property
     def estimated(self) -> bool:
@@ -172,37 +143,24 @@ class Measurement(Presentable):
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON and tables."""
         return {
-            "name": self.name,
-            "value": self.value,
-            "unit": self.unit,
-            "uncertainty": self.uncertainty,
-            "reason": self.reason,
-            "n": self.n,
+            **{part.name: getattr(self, part.name) for part in fields(self)},
             "flags": [asdict(flag) for flag in self.flags],
             "conventions": dict(self.conventions),
-            "spread": self.spread,
         }
 
 
 def mean_of(measurements: Sequence[Measurement], name: str | None = None) -> Measurement:
     """Return the mean of several measurements: standard error sd / sqrt(n), and the sd as spread.
 
-    Those without a value are left out and counted in a flag. Conventions must agree.
-
-    Raises
-    ------
-    InputError
-        Nothing given, or different units or conventions.
+    Those without a value are left out and counted in a flag. Units and conventions must agree.
     """
     if not measurements:
         raise InputError("nothing to average", where="mean_of")
-    first = measurements[0]
-    ignored = ("baseline", "walking direction", "uncertainty")
-    kept = {k: v for k, v in first.conventions.items() if k not in ignored}
-    for other in measurements:
-        theirs = {k: v for k, v in other.conventions.items() if k not in ignored}
-        if other.unit != first.unit or theirs != kept:
-            raise InputError("measurements of different conventions can't be averaged")
+    first, ignored = measurements[0], ("baseline", "walking direction", "uncertainty")
+    said = [{k: v for k, v in m.conventions.items() if k not in ignored} for m in measurements]
+    kept = said[0]
+    if any(m.unit != first.unit for m in measurements) or any(one != kept for one in said):
+        raise InputError("measurements of different conventions can't be averaged")
     values = np.array([m.value for m in measurements if m.value is not None])
     name = name or first.name
     lost = len(measurements) - len(values)

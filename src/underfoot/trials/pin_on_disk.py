@@ -24,18 +24,10 @@ _LIFTED = 0.1  # share of the median load below which the pin has left the disk
 class FrictionPoint:
     """Mean COF of one run, with what a figure needs.
 
-    Parameters
-    ----------
-    cof
-        Mean COF of the window; its uncertainty is the standard error of a correlated signal.
-    speed
-        Mean sliding speed in the window (m/s), or None.
-    normal, shear
-        Mean forces in the window (N); None when the file holds only the COF.
-    time, ratio
-        Shape (n,): the whole run.
-    window
-        (begin, end) in s.
+    ``cof``: mean COF of the window; its uncertainty is the standard error of a correlated signal.
+    ``speed``: mean sliding speed in the window (m/s), or None. ``normal`` and ``shear``: mean
+    forces in the window (N); None when the file holds only the COF. ``time`` and ``ratio``: shape
+    (n,): the whole run. ``window``: (begin, end) in s.
     """
 
     trial: str
@@ -57,17 +49,10 @@ def friction_point(
     pin has left the disk (below a tenth of the median load) are left out and counted. Without
     forces the file's own COF column is used, and said.
 
-    Parameters
-    ----------
-    window
-        (begin, end) in s; by default the steady part is found (see ``steady_window``).
-    speed
-        Sliding speed (m/s) when the file has no such column.
+    ``window``: (begin, end) in s; by default the steady part is found (see ``steady_window``).
+    ``speed``: sliding speed (m/s) when the file has no such column.
 
-    Errors
-    ------
-    DataError
-        Neither forces nor a COF column, no load, or nothing left in the window.
+    DataError: neither forces nor a COF column, no load, or nothing left in the window.
     """
     ratio, normal, shear, channel, said, flags = _ratio(trial)
     time = channel.time
@@ -133,15 +118,9 @@ def reduced_radius(
     The vertex and a tilt are fitted too (h = h0 + s x + B x^2): a profile is never recorded
     exactly from its vertex. B counts positive whichever way the instrument counts heights.
 
-    Parameters
-    ----------
-    position, height
-        Shape (n,), m.
+    ``position`` and ``height``: shape (n,), m.
 
-    Errors
-    ------
-    DataError
-        Fewer than ten points, missing values, or no curvature within two standard errors.
+    DataError: fewer than ten points, missing values, or no curvature within two standard errors.
     """
     x, h = np.asarray(position, dtype=float), np.asarray(height, dtype=float)
     if x.shape != h.shape or len(x) < 10 or not (np.isfinite(x).all() and np.isfinite(h).all()):

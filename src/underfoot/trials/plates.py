@@ -8,7 +8,7 @@ from underfoot.core import DataError
 
 from .baseline import SHEAR_WARNING, enough, saturated, unloaded
 from .measurement import Flag, remark
-from .trial import Plate, PlateAccuracy, Trial
+from .trial import Plate, Trial
 
 KINDS = {
     1: "type 1 (force, centre of pressure, free moment)",
@@ -27,11 +27,7 @@ def plate_axes(corners: np.ndarray) -> np.ndarray:
 
     Corner 1 lies at +x +y of the plate, 2 at -x +y, 3 at -x -y, 4 at +x -y (c3d.org); x is kept,
     y made normal to it, z = x cross y (down into the floor in a plate wired as the format says).
-
-    Raises
-    ------
-    DataError
-        Corners missing or without area.
+    Corners that are missing or without area are a DataError.
     """
     if corners.shape != (4, 3) or not np.isfinite(corners).all():
         raise DataError("the plate's corners are missing")
@@ -74,31 +70,18 @@ def channel_forces(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return force and moment about the surface's centre, plate axes, both (n, 3) in N and N m.
 
-    Parameters
-    ----------
-    kind
-        C3D plate type 1 to 4.
-    signals
-        Shape (n, 6) or (n, 8), SI (type 4: raw, the calibration matrix makes them SI).
-    origin
-        FORCE_PLATFORM:ORIGIN (m), shape (3,): from the transducers' origin to the surface's
-        centre (types 2, 4); half spacings a, b and depth of the sensors (type 3).
-    calibration
-        Shape (6, 6), type 4 only.
-
-    Raises
-    ------
-    DataError
-        Type or number of channels not supported.
+    ``kind`` is the C3D plate type, 1 to 4; ``signals`` (n, 6) or (n, 8) are SI (type 4: raw, the
+    ``calibration`` matrix (6, 6) makes them SI). ``origin`` (3,), m, is FORCE_PLATFORM:ORIGIN: from
+    the transducers' origin to the surface's centre (types 2, 4); half spacings a, b and depth of
+    the sensors (type 3). A DataError where type or number of channels is not supported.
 
     Source: c3d.org, the FORCE_PLATFORM group.
     """
     if kind not in CHANNELS:
         raise DataError(f"plate type {kind} is not supported", allowed="types 1 to 4")
     if signals.shape[1] != CHANNELS[kind]:
-        raise DataError(
-            f"type {kind} needs {CHANNELS[kind]} channels, the file names {signals.shape[1]}"
-        )
+        words = f"type {kind} needs {CHANNELS[kind]} channels, the file names {signals.shape[1]}"
+        raise DataError(words)
     if kind == 1:
         force = signals[:, :3]
         x, y, free = signals[:, 3], signals[:, 4], signals[:, 5]
@@ -108,13 +91,8 @@ def channel_forces(
         fx12, fx34, fy14, fy23, fz1, fz2, fz3, fz4 = signals.T
         a, b = float(origin[0]), float(origin[1])
         force = np.column_stack((fx12 + fx34, fy14 + fy23, fz1 + fz2 + fz3 + fz4))
-        moment = np.column_stack(
-            (
-                b * (fz1 + fz2 - fz3 - fz4),
-                a * (-fz1 + fz2 + fz3 - fz4),
-                b * (-fx12 + fx34) + a * (fy14 - fy23),
-            )
-        )
+        across, along = b * (fz1 + fz2 - fz3 - fz4), a * (-fz1 + fz2 + fz3 - fz4)
+        moment = np.column_stack((across, along, b * (-fx12 + fx34) + a * (fy14 - fy23)))
         to_surface = np.array([0.0, 0.0, origin[2]])
     else:
         if kind == 4:
@@ -142,19 +120,13 @@ def finished_plate(
     kind: str = "",
     notes: tuple[str, ...] = (),
     flags: tuple[Flag, ...] = (),
-    accuracy: PlateAccuracy | None = None,
     subtract_baseline: bool = True,
 ) -> Plate:
     """Return the plate with sign checked, baseline subtracted and centre of pressure worked out.
 
-    Parameters
-    ----------
-    force, moment, centre_of_pressure
-        Shape (n, 3), lab axes; the moment about the centre of the surface.
-    up
-        Unit vector out of the floor, shape (3,).
-    raw
-        Channels before any arithmetic (n, k), searched for saturation.
+    ``force``, ``moment`` (about the centre of the surface) and ``centre_of_pressure`` have shape
+    (n, 3), lab axes; ``up`` (3,) is the unit vector out of the floor; ``raw`` (n, k), the channels
+    before any arithmetic, are searched for saturation.
     """
     force = np.array(force, dtype=float)
     seen = list(flags)
@@ -180,9 +152,8 @@ def finished_plate(
         if across > SHEAR_WARNING:
             seen.append(remark(f"shear baseline of {across:.1f} N was subtracted"))
     else:
-        seen.append(
-            Flag("baseline", "baseline not subtracted: the plate is never unloaded for long enough")
-        )
+        words = "baseline not subtracted: the plate is never unloaded for long enough"
+        seen.append(Flag("baseline", words))
     channels = force if raw is None else raw
     cut = any(saturated(channels[:, i], rate) for i in range(channels.shape[1]))
     if cut:
@@ -199,21 +170,9 @@ def finished_plate(
     if centre_of_pressure is None and moment is not None and corners is not None:
         centre_of_pressure = _centre_of_pressure(force, moment, up, corners.mean(axis=0))
     return Plate(
-        name=name,
-        force=force,
-        rate=rate,
-        start=start,
-        moment=moment,
-        centre_of_pressure=centre_of_pressure,
-        corners=corners,
-        baseline=baseline,
-        baseline_samples=samples,
-        kind=kind,
-        notes=notes,
-        saturated=cut,
-        flags=tuple(seen),
-        accuracy=accuracy or PlateAccuracy(),
-    )
+        name, force, rate, start, moment, centre_of_pressure, corners, baseline, samples, kind,
+        notes=notes, saturated=cut, flags=tuple(seen),
+    )  # fmt: skip
 
 
 def refused_plate(name: str, problem: str, *, rate: float = 0.0, kind: str = "") -> Plate:
@@ -222,13 +181,7 @@ def refused_plate(name: str, problem: str, *, rate: float = 0.0, kind: str = "")
 
 
 def plate_named(trial: Trial, name: str) -> Plate:
-    """Return the plate called ``name``.
-
-    Raises
-    ------
-    DataError
-        There is none.
-    """
+    """Return the plate called ``name``; a DataError where there is none."""
     for plate in trial.plates:
         if plate.name == name:
             return plate

@@ -54,6 +54,7 @@ MEAN_LOW = Limit(
     "two stances of 58 to 66 % of a stride carry body weight together: 0.76 to 0.86",
 )  # fmt: skip
 MEAN_HIGH = Limit("mean over body weight", 0.97, "1", MEAN_LOW.source)
+HUMP = Limit("single hump", 1.05, "1")  # largest mid-stance force over both humps
 LOADING_RATE = Limit("loading rate", 100.0, "1/s")
 LONG_STANCE = Limit("stance time", 1.0, "s")
 SHORT_STANCE = Limit("stance time", 0.45, "s")
@@ -83,7 +84,6 @@ CLIMB = Limit("climb", 0.15, "m/s")
 PLATE_HEIGHT = Limit("plate height", 0.03, "m")
 FAST = Limit("walking speed", 2.2, "m/s", "people run above 2.0 to 2.1 m/s (textbook value)")
 LATE = Limit("forces against markers", 0.06, "s")
-_HUMP = 1.05  # largest mid-stance force over both humps at which a step is no walk
 _QUIET = 0.2  # s of unloaded record looked at before and after a step
 _MARGIN = 0.025  # s away from the load
 
@@ -112,10 +112,8 @@ def rcof_flags(value: float, ramp: Ramp = LEVEL) -> tuple[Flag, ...]:
     On a ramp the limits of level walking widen by the tangent of the angle, which is what a body
     at rest there adds or takes off.
     """
-    slope = math.tan(abs(ramp.angle))
-    where = (
-        f"straight walking on a {ramp.words.split(',')[0]}" if slope else "level, straight walking"
-    )
+    slope, ground = math.tan(abs(ramp.angle)), ramp.words.split(",")[0]
+    where = f"straight walking on a {ground}" if slope else "level, straight walking"
     if value > RCOF.value + slope:
         return (RCOF.flag(value, f"RCOF {value:.2f} is more than {where} needs"),)
     if value < LOW_RCOF.value - slope:
@@ -151,12 +149,9 @@ def _force_flags(
     thirds = len(normal) // 3
     humps = max(normal[:thirds].max(), normal[2 * thirds :].max())
     middle = float(normal[thirds : 2 * thirds].max())
-    if middle > _HUMP * humps:
-        yield Flag(
-            "single hump",
-            "the force is largest in mid-stance: running or hopping, not walking",
-            True, middle / float(humps), _HUMP, "1", _ASSUMED,
-        )  # fmt: skip
+    if middle > HUMP.value * humps:
+        words = "the force is largest in mid-stance: running or hopping, not walking"
+        yield HUMP.flag(middle / float(humps), words)
     if weight is not None:
         ratio, mean = stance.peak / weight.newtons, float(normal.mean()) / weight.newtons
         if ratio > HIGH_PEAK.value:
@@ -184,12 +179,8 @@ def _sample_flags(plate: Plate, stance: Stance, up: np.ndarray) -> Iterator[Flag
     part = plate.force[max(0, stance.start - margin) : stance.stop + margin]
     normal = part @ up
     shear = part - np.outer(normal, up)
-    spikes = [
-        (float(size), limit)
-        for values, limit in ((normal[:, None], NORMAL_SPIKE), (shear, SHEAR_SPIKE))
-        for size in [_spike(values, rate)]
-        if size > limit.value
-    ]
+    spikes = [(_spike(normal[:, None], rate), NORMAL_SPIKE), (_spike(shear, rate), SHEAR_SPIKE)]
+    spikes = [(size, limit) for size, limit in spikes if size > limit.value]
     if spikes:
         size, limit = max(spikes, key=lambda pair: pair[0])
         yield limit.flag(size, f"a spike of {size:.0f} N lasts three samples at most")
@@ -244,20 +235,24 @@ def unloaded_levels(plate: Plate, stance: Stance, up: np.ndarray) -> list[np.nda
     """
     rate = plate.rate
     margin, quiet = round(_MARGIN * rate), round(_QUIET * rate)
-    loaded = np.zeros(len(plate.force), dtype=bool)
-    for start, stop in contacts(plate.force @ up, rate):
-        loaded[max(0, start - margin) : stop + margin] = True
-    loaded[max(0, stance.start - margin) : stance.stop + margin] = True
+    free = _unloaded(plate, up, margin)
+    begin, end = max(0, stance.start - margin), stance.stop + margin
+    free[begin:end] = False
     found = []
-    for window in (
-        slice(max(0, stance.start - margin - quiet), max(0, stance.start - margin)),
-        slice(stance.stop + margin, stance.stop + margin + quiet),
-    ):
-        force = plate.force[window][~loaded[window]]
+    for window in (slice(max(0, begin - quiet), begin), slice(end, end + quiet)):
+        force = plate.force[window][free[window]]
         force = force[np.isfinite(force).all(axis=1)]
         if len(force) >= max(5, 0.02 * rate):
             found.append(force.mean(axis=0))
     return found
+
+
+def _unloaded(plate: Plate, up: np.ndarray, margin: int) -> np.ndarray:
+    """Mask of the samples (n,) further than ``margin`` from any contact."""
+    free = np.ones(len(plate.force), dtype=bool)
+    for start, stop in contacts(plate.force @ up, plate.rate):
+        free[max(0, start - margin) : stop + margin] = False
+    return free
 
 
 def baseline_error(
@@ -285,12 +280,8 @@ def _level_flags(plate: Plate, stance: Stance, up: np.ndarray, low_pass: LowPass
 
 def unloaded_noise(plate: Plate, up: np.ndarray, low_pass: LowPass) -> float:
     """Return the standard deviation (N) of the filtered shear about its slow level, unloaded."""
-    margin = round(2 * _MARGIN * plate.rate)
-    free = np.ones(len(plate.force), dtype=bool)
-    for start, stop in contacts(plate.force @ up, plate.rate):
-        free[max(0, start - margin) : stop + margin] = False
     parts = []
-    for start, stop in runs(free):
+    for start, stop in runs(_unloaded(plate, up, round(2 * _MARGIN * plate.rate))):
         part = plate.force[start:stop]
         if stop - start < max(40, 0.1 * plate.rate) or not np.isfinite(part).all():
             continue
@@ -298,9 +289,9 @@ def unloaded_noise(plate: Plate, up: np.ndarray, low_pass: LowPass) -> float:
             part = low_passed(part, plate.rate, low_pass)
         except UnderfootError:
             continue
-        line = np.linspace(0.0, 1.0, len(part))[:, None]
+        line = np.linspace(-0.5, 0.5, len(part))[:, None]
         part = part - part.mean(axis=0)
-        part = part - (line - 0.5) * ((line - 0.5) * part).sum(axis=0) / ((line - 0.5) ** 2).sum()
+        part = part - line * (line * part).sum(axis=0) / (line**2).sum()
         parts.append(part - np.outer(part @ up, up))
     if not parts:
         return 0.0
@@ -348,11 +339,9 @@ def _path_flags(trial: Trial, stance: Stance, axes: Axes) -> Iterator[Flag]:
     second = marker_velocity(trial, middle, stance.toe_off, axes.up)
     if first is None or second is None:
         return
-    speeds = float(np.linalg.norm(first)), float(np.linalg.norm(second))
-    if min(speeds) < 0.3:
+    if min(np.linalg.norm(first), np.linalg.norm(second)) < 0.3:
         return
-    cosine = float(first @ second) / (speeds[0] * speeds[1])
-    angle = math.acos(min(1.0, max(-1.0, cosine)))
+    angle = _angle(first, second)
     if angle > TURN.value:
         words = f"the walk turns by {math.degrees(angle):.0f} deg during the step"
         yield TURN.flag(angle, words)
@@ -369,36 +358,33 @@ def _braking_to_driving(plate: Plate, stance: Stance, axes: Axes) -> float:
     along = shear @ forward
     braking = shear[:half][along[:half] < 0].sum(axis=0)
     driving = shear[half:][along[half:] > 0].sum(axis=0)
-    size = float(np.linalg.norm(braking) * np.linalg.norm(driving))
-    return math.acos(min(1.0, max(-1.0, -float(braking @ driving) / size))) if size else 0.0
+    return _angle(braking, -driving)
+
+
+def _angle(first: np.ndarray, second: np.ndarray) -> float:
+    size = float(np.linalg.norm(first) * np.linalg.norm(second))
+    return math.acos(min(1.0, max(-1.0, float(first @ second) / size))) if size else 0.0
 
 
 def _marker_flags(
     trial: Trial, stance: Stance, axes: Axes, heels: Mapping[str, str] | None
 ) -> Iterator[Flag]:
+    by_hand = "side" in stance.by_hand
     for event in trial.events:
-        if (
-            event.name == "heel contact"
-            and event.side in ("left", "right")
-            and stance.side in ("left", "right")
-            and abs(event.time - stance.contact) < 0.15
-            and event.side != stance.side
-            and "side" not in stance.by_hand
-        ):
+        sides = {event.side, stance.side}
+        near = event.name == "heel contact" and abs(event.time - stance.contact) < 0.15
+        if near and sides == {"left", "right"} and not by_hand:
             yield Flag(
                 "side",
                 f"the {stance.side} heel stands here, the file's own event at {event.time:.2f} s "
                 f"says {event.side}: markers exchanged?",
             )
-    candidates = heel_candidates(trial, heels)
-    names = [found[0] for found in candidates.values() if found]
-    if not names:
+    if not any(heel_candidates(trial, heels).values()):
         return
-    plate = plate_named(trial, stance.plate)
-    if not stance.heel and plate.corners is not None and "side" not in stance.by_hand:
-        words = "no heel marker comes down on the plate: are forces and markers in time?"
-        yield Flag("foot", words)
     if not stance.heel:
+        if plate_named(trial, stance.plate).corners is not None and not by_hand:
+            words = "no heel marker comes down on the plate: are forces and markers in time?"
+            yield Flag("foot", words)
         return
     heel = trial.marker(stance.heel)
     if heel.times is None:

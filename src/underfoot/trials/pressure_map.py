@@ -24,20 +24,12 @@ _BASELINE = 100
 class PressureScan:
     """Pressure along one line under the shoe, in the shoe's frame.
 
-    Parameters
-    ----------
-    along
-        Place of the sensor forward of the heel's back (m), falling with time, shape (n,).
-    pressure
-        Baseline subtracted (Pa), shape (n,).
-    lateral
-        Place of the sensor to the left of the heel's middle (m), mean over the scan.
-    speed
-        Sliding speed (m/s), mean over the scan, and ``speed_change``: its range over its mean.
-    baseline_sd
-        Noise of the sensor (Pa).
-    sample_load
-        Line load of the scan (N/m): the sum of pressure times displacement per sample.
+    ``along`` (n,) is the place of the sensor forward of the heel's back (m), falling with time;
+    ``pressure`` (n,), Pa, has its baseline subtracted; ``lateral`` is the place of the sensor to
+    the left of the heel's middle (m), mean over the scan. ``speed`` is the mean sliding speed (m/s)
+    and ``speed_change`` its range over its mean; ``baseline_sd`` the noise of the sensor (Pa);
+    ``sample_load`` the line load of the scan (N/m): the sum of pressure times displacement per
+    sample.
     """
 
     trial: str
@@ -55,24 +47,13 @@ class PressureScan:
 class PressureMap:
     """Scans joined by position, and what they carry.
 
-    Parameters
-    ----------
-    lateral
-        Place of each scan to the left of the heel's middle (m), ascending, shape (m,).
-    along
-        Forward of the heel's back (m), ascending, shape (k,).
-    pressure
-        Pa, shape (m, k); NaN where a scan did not reach.
-    load
-        Load carried by the fluid (N), Eq. 27.
-    peak
-        Largest pressure (Pa); ``peak_along`` and ``peak_lateral`` say where (m).
-    line_loads
-        Line load of each scan (N/m), shape (m,).
-    outer_share
-        Share of the load in the two outermost scans.
-    half_spacing_change
-        Largest relative change of the load when every second scan is left out.
+    ``lateral`` (m,) is the place of each scan to the left of the heel's middle and ``along`` (k,)
+    that forward of the heel's back (m), both ascending; ``pressure`` (m, k), Pa, is NaN where a
+    scan did not reach. ``load`` is what the fluid carries (N), Eq. 27; ``peak`` the largest
+    pressure (Pa) at ``peak_along`` and ``peak_lateral`` (m); ``line_loads`` (m,) the line load of
+    each scan (N/m); ``outer_share`` the share of the load in the two outermost scans;
+    ``half_spacing_change`` the largest relative change of the load when every second scan is left
+    out.
     """
 
     lateral: np.ndarray
@@ -108,25 +89,12 @@ def pressure_scan(
     which place of the shoe is over the sensor. The baseline is the mean of the sensor before
     that place enters the shoe from the front; fewer than 100 such samples are flagged.
 
-    Parameters
-    ----------
-    sensor
-        Pressure (Pa).
-    marker
-        A marker fixed to the shoe.
-    position
-        Place of the sensor in lab axes (m), shape (3,).
-    sliding
-        Direction in which the shoe slides, (3,); by default the marker's own path.
-    heel_back, heel_middle
-        Place of the heel's back ahead of, and of the heel's middle to the left of, the marker (m).
-    back, front
-        Part of the shoe that is scanned, from the heel's back (m).
-
-    Errors
-    ------
-    DataError
-        The sensor's unit is no pressure, the marker is lost, or the shoe never passes the sensor.
+    ``sensor`` is in Pa; ``marker`` is fixed to the shoe; ``position`` (3,) is the sensor's place in
+    lab axes (m); ``sliding`` (3,) the direction in which the shoe slides, by default the marker's
+    own path. ``heel_back`` and ``heel_middle`` are the place of the heel's back ahead of, and of
+    the heel's middle to the left of, the marker (m); from ``back`` to ``front`` of the heel's back
+    the shoe is scanned (m). A sensor whose unit is no pressure, a lost marker and a shoe that never
+    passes the sensor are DataErrors.
     """
     where = trial.name
     if sensor.unit != "Pa":
@@ -153,10 +121,9 @@ def pressure_scan(
     inside = (at >= time[0]) & (at <= time[-1]) & np.isfinite(sensor.values)
     along = np.interp(at, time, ahead)
     velocity = -np.gradient(ahead, time)
-    under = inside & (along <= front) & (along >= back)
     # Only the slide itself: not the way back of a tester that scans twice.
     moving = np.interp(at, time, velocity) > 0.02
-    under &= moving
+    under = inside & (along <= front) & (along >= back) & moving
     if under.sum() < 5:
         raise DataError(
             "the shoe never passes the sensor",
@@ -168,10 +135,8 @@ def pressure_scan(
     flags: list[str] = []
     if quiet.sum() < _BASELINE:
         flags.append(f"baseline of {int(quiet.sum())} samples before the shoe reaches the sensor")
-    if quiet.sum() >= 10:
-        baseline, deviation = float(sensor.values[quiet].mean()), float(sensor.values[quiet].std())
-    else:
-        baseline, deviation = 0.0, 0.0
+    rest = sensor.values[quiet] if quiet.sum() >= 10 else np.zeros(1)
+    baseline, deviation = float(rest.mean()), float(rest.std())
     if saturated(sensor.values, sensor.rate):
         flags.append("the sensor is saturated: the peak is a lower bound")
     if filled[seen].any():
@@ -183,15 +148,15 @@ def pressure_scan(
     if change > 0.2:
         flags.append(f"the speed varies by {100 * change:.0f} %: Eq. 27 takes it as steady")
     if along[under].max() < front - 0.01 or along[under].min() > back + 0.01:
-        flags.append(
-            f"scanned from {1e3 * along[under].min():.0f} to {1e3 * along[under].max():.0f} mm only"
-        )
+        ends = f"{1e3 * along[under].min():.0f} to {1e3 * along[under].max():.0f} mm"
+        flags.append(f"scanned from {ends} only")
     line_load = float(np.sum(pressure * speed) / sensor.rate)
+    lateral = float(np.interp(at[under], time, sideways).mean())
     return PressureScan(
         where,
         along[under],
         pressure,
-        float(np.interp(at[under], time, sideways).mean()),
+        lateral,
         mean_speed,
         change,
         deviation,
@@ -215,20 +180,10 @@ def pressure_map(
     and the change of the load when every second scan is left out (what the spacing could hide;
     bumps narrower than about 1.5 spacings can slip through).
 
-    Parameters
-    ----------
-    spacing
-        Distance between scans (m) if it is to be taken as set rather than as measured.
-    inlet_diameter
-        Of the sensor (m): averaging over it lowers a peak by about (d^2 / 32) times the
-        curvature, which is then estimated and said.
-    step
-        Of the map along the shoe (m).
-
-    Errors
-    ------
-    DataError
-        Fewer than two scans, or two at one place.
+    ``spacing`` is the distance between scans (m) if it is to be taken as set rather than as
+    measured, ``step`` that of the map along the shoe (m). Averaging over the sensor's inlet, of
+    ``inlet_diameter`` (m), lowers a peak by about (d^2 / 32) times the curvature, which is then
+    estimated and said. Fewer than two scans, or two at one place, are a DataError.
     """
     if len(scans) < 2:
         raise DataError(f"{len(scans)} scans are no map", allowed="two or more")
@@ -288,41 +243,21 @@ def pressure_map(
             said["inlet"] = (
                 f"{1e3 * inlet_diameter:g} mm wide: lowers the peak by about {lost / 1e3:.1f} kPa"
             )
-    return PressureMap(
-        lateral,
-        grid,
-        pressure,
-        Measurement(
-            "fluid load",
-            load,
-            "N",
-            sensor_error,
-            n=len(ordered),
-            flags=tuple(map(remark, flags)),
-            conventions=said,
-        ),
-        Measurement(
-            "peak fluid pressure",
-            peak,
-            "Pa",
-            deviation,
-            n=len(ordered),
-            flags=tuple(map(remark, peak_flags)),
-            conventions=said,
-        ),
-        Measurement("peak along", float(ordered[which].along[top]), "m", step, conventions=said),
-        Measurement(
-            "peak lateral",
-            float(lateral[which]),
-            "m",
-            mean_gap / np.sqrt(12.0),
-            conventions={**said, "uncertainty": "half a spacing, taken as evenly likely"},
-        ),
-        loads,
-        outer_share,
-        change,
-        ordered,
-    )
+    largest = Measurement(
+        "peak fluid pressure", peak, "Pa", deviation, n=len(ordered),
+        flags=tuple(map(remark, peak_flags)), conventions=said,
+    )  # fmt: skip
+    whole = Measurement(
+        "fluid load", load, "N", sensor_error, n=len(ordered), flags=tuple(map(remark, flags)),
+        conventions=said,
+    )  # fmt: skip
+    forward = float(ordered[which].along[top])
+    at_along = Measurement("peak along", forward, "m", step, conventions=said)
+    even = {**said, "uncertainty": "half a spacing, taken as evenly likely"}
+    place, sd = float(lateral[which]), mean_gap / np.sqrt(12.0)
+    at_lateral = Measurement("peak lateral", place, "m", sd, conventions=even)
+    places = whole, largest, at_along, at_lateral
+    return PressureMap(lateral, grid, pressure, *places, loads, outer_share, change, ordered)
 
 
 def _widths(gaps: np.ndarray) -> np.ndarray:
@@ -334,11 +269,9 @@ def _widths(gaps: np.ndarray) -> np.ndarray:
 def _half_spacing(lateral: np.ndarray, loads: np.ndarray, load: float) -> float | None:
     if len(lateral) < 5 or load == 0:
         return None
-    changes = []
-    for first in (0, 1):
-        kept = slice(first, None, 2)
-        changes.append(loads[kept] @ _widths(np.diff(lateral[kept])) / load - 1.0)
-    return float(np.max(np.abs(changes)))
+    halves = slice(0, None, 2), slice(1, None, 2)
+    kept = [loads[half] @ _widths(np.diff(lateral[half])) for half in halves]
+    return float(np.max(np.abs(np.array(kept) / load - 1.0)))
 
 
 def _rate(scan: PressureScan) -> float:

@@ -22,14 +22,9 @@ BASELINE_SAMPLES = 500  # fewer let noise pass 5 standard deviations in 1 % of e
 class PulseDefinition:
     """What counts as pressure above the baseline.
 
-    Parameters
-    ----------
-    deviations
-        Threshold over the baseline's mean in its standard deviations (5 in report G.5.1).
-    margin
-        The baseline ends this long before contact (s).
-    run
-        Samples in a row that must be above: one alone is noise.
+    ``deviations``: threshold over the baseline's mean in its standard deviations (5 in report
+    G.5.1). ``margin``: the baseline ends this long before contact (s). ``run``: samples in a row
+    that must be above, one alone is noise.
     """
 
     deviations: float = 5.0
@@ -86,17 +81,10 @@ def pressure_pulse(
 ) -> Pulse:
     """Return the peak and the duration of a sensor's pressure after contact.
 
-    With fewer than 500 baseline samples the numbers carry a flag; with fewer than 20 there are
-    none. A pressure that never passes the threshold has a peak (flagged) and no duration.
-
-    Parameters
-    ----------
-    channel
-        Pressure (Pa), shape (n,).
-    contact
-        Time of heel contact (s).
-    until
-        End of the search (s); by default the end of the record.
+    ``channel`` is in Pa; ``contact`` is the time of heel contact (s), ``until`` the end of the
+    search (s), by default the end of the record. With fewer than 500 baseline samples the numbers
+    carry a flag; with fewer than 20 there are none. A pressure that never passes the threshold has
+    a peak (flagged) and no duration.
     """
     definition = definition or PulseDefinition()
     said = definition.conventions()
@@ -104,18 +92,25 @@ def pressure_pulse(
     values = channel.values
     quiet = values[(time < contact - definition.margin) & np.isfinite(values)]
 
+    flags: tuple[Flag, ...] = ()
+
+    def measured(
+        name: str, value: float | str, unit: str, sd: float = 0.0, why: str = ""
+    ) -> Measurement:
+        if isinstance(value, str):
+            return Measurement.not_estimated(name, value, unit=unit, flags=flags, conventions=said)
+        words = {**said, "uncertainty": why} if why else said
+        n = len(quiet) if unit == "Pa" else 1
+        return Measurement(name, value, unit, sd, n=n, flags=flags, conventions=words)
+
     def without(reason: str) -> Pulse:
-        peak, duration = (
-            Measurement.not_estimated(name, reason, unit=unit, conventions=said)
-            for name, unit in (("peak pressure", "Pa"), ("pressure duration", "s"))
-        )
-        return Pulse(sensor, peak, duration, math.nan, math.nan)
+        peak = measured("peak pressure", reason, "Pa")
+        return Pulse(sensor, peak, measured("pressure duration", reason, "s"), math.nan, math.nan)
 
     if channel.unit != "Pa":
         return without(f'the unit of the channel is "{channel.unit}", not a pressure')
     if len(quiet) < 20:
         return without(f"{len(quiet)} samples before contact are no baseline (500 wanted)")
-    flags: tuple[Flag, ...] = ()
     if len(quiet) < BASELINE_SAMPLES:
         flags = (remark(f"baseline of {len(quiet)} samples: 500 keep false alarms at 0.1 %"),)
     mean, deviation = float(quiet.mean()), float(quiet.std(ddof=1))
@@ -131,50 +126,22 @@ def pressure_pulse(
     limit = definition.deviations * deviation
     above = np.asarray(np.nan_to_num(over, nan=-np.inf) > limit)
     stretches = [(a, b) for a, b in runs(above) if b - a >= definition.run]
+    known, top_time = float(over[top]), float(time[top])
     if not stretches:
-        peak = Measurement(
-            "peak pressure",
-            float(over[top]),
-            "Pa",
-            deviation,
-            n=len(quiet),
-            flags=(*flags, remark("within the noise: never above the threshold")),
-            conventions=said,
-        )
-        reason = f"never above the threshold of {limit:.0f} Pa"
-        none = Measurement.not_estimated(
-            "pressure duration", reason, unit="s", flags=flags, conventions=said
-        )
-        return Pulse(sensor, peak, none, mean, deviation, float(time[top]))
+        none = measured("pressure duration", f"never above the threshold of {limit:.0f} Pa", "s")
+        flags += (remark("within the noise: never above the threshold"),)
+        peak = measured("peak pressure", known, "Pa", deviation)
+        return Pulse(sensor, peak, none, mean, deviation, top_time)
     first, last = stretches[0][0], stretches[-1][1] - 1
     if last == np.flatnonzero(inside)[-1]:
         flags += (remark("still above the threshold when the search ends"),)
-    step = 1.0 / channel.rate
-    return Pulse(
-        sensor,
-        Measurement(
-            "peak pressure",
-            float(over[top]),
-            "Pa",
-            deviation,
-            n=len(quiet),
-            flags=flags,
-            conventions={**said, "uncertainty": "standard deviation of the baseline"},
-        ),
-        Measurement(
-            "pressure duration",
-            float(time[last] - time[first]),
-            "s",
-            step / math.sqrt(6.0),
-            flags=flags,
-            conventions={**said, "uncertainty": "time between samples"},
-        ),
-        mean,
-        deviation,
-        float(time[top]),
-        float(time[first]),
-        float(time[last]),
+    begin, end = float(time[first]), float(time[last])
+    step, why = 1.0 / channel.rate / math.sqrt(6.0), "standard deviation of the baseline"
+    peak = measured("peak pressure", known, "Pa", deviation, why)
+    duration = measured(
+        "pressure duration", float(time[last] - time[first]), "s", step, "time between samples"
     )
+    return Pulse(sensor, peak, duration, mean, deviation, top_time, begin, end)
 
 
 def sensor_rows(
@@ -185,16 +152,13 @@ def sensor_rows(
     Sensors whose places along the walk differ by less than a third of the largest gap between
     neighbours share a row.
     """
-    places = {name: float(np.dot(position, walking)) for name, position in sensors.items()}
-    ordered = sorted(places, key=lambda name: places[name])
-    gaps = np.diff([places[name] for name in ordered])
+    places = np.array([np.dot(position, walking) for position in sensors.values()])
+    order = np.argsort(places, kind="stable")
+    gaps = np.diff(places[order])
     limit = max(float(gaps.max()) / 3.0, 1e-4) if len(gaps) else 0.0
-    rows, row = {}, 1
-    for i, name in enumerate(ordered):
-        if i and gaps[i - 1] > limit:
-            row += 1
-        rows[name] = row
-    return rows
+    rows = 1 + np.concatenate(([0], np.cumsum(gaps > limit)))
+    names = list(sensors)
+    return {names[at]: int(row) for at, row in zip(order, rows, strict=True)}
 
 
 def passages(
@@ -209,15 +173,9 @@ def passages(
 ) -> list[Passage]:
     """Return for each sensor when, how fast and how far to the side the heel passed it.
 
-    The heel passes a sensor when it first comes level with it along the walk after contact;
-    the instant is interpolated between frames.
-
-    Parameters
-    ----------
-    sensors
-        Places in lab axes (m).
-    until
-        End of the slip (s): later passages are those of the swing.
+    The heel passes a sensor when it first comes level with it along the walk after contact; the
+    instant is interpolated between frames. ``sensors`` are places in lab axes (m); passages after
+    ``until``, the end of the slip (s), are those of the swing.
 
     Source: grant report G.5.1.
     """
@@ -226,46 +184,27 @@ def passages(
     across = np.cross(up, walking)
     rows = sensor_rows(sensors, walking)
     said = dict(conventions or {})
+    signed = {**said, "sign": "positive: heel to the walker's left"}
+    names = ("instantaneous slipping speed", "m/s"), ("medio-lateral distance", "m")
     inside = np.flatnonzero((motion.time >= contact) & (motion.time <= until))
     found = []
     for name, place in sensors.items():
-        ahead = (motion.position[inside] - np.asarray(place)) @ walking
-        reason, at = _crossing(ahead)
+        away = motion.position - np.asarray(place)
+        reason, at = _crossing(away[inside] @ walking)
         if reason:
             speed, lateral = (
                 Measurement.not_estimated(what, reason, unit=unit, conventions=said)
-                for what, unit in (
-                    ("instantaneous slipping speed", "m/s"),
-                    ("medio-lateral distance", "m"),
-                )
+                for what, unit in names
             )
             found.append(Passage(name, rows[name], math.nan, speed, lateral))
             continue
-        index = inside[int(at)]
-        share = at - int(at)
-        when = _between(motion.time, index, share)
-        side = _between((motion.position - np.asarray(place)) @ across, index, share)
-        found.append(
-            Passage(
-                name,
-                rows[name],
-                when,
-                Measurement(
-                    "instantaneous slipping speed",
-                    _between(motion.speed, index, share),
-                    "m/s",
-                    motion.speed_noise,
-                    conventions=said,
-                ),
-                Measurement(
-                    "medio-lateral distance",
-                    side,
-                    "m",
-                    motion.noise,
-                    conventions={**said, "sign": "positive: heel to the walker's left"},
-                ),
-            )
+        index, share = inside[int(at)], at - int(at)
+        when, fast, side = (
+            _between(values, index, share) for values in (motion.time, motion.speed, away @ across)
         )
+        speed = Measurement(names[0][0], fast, "m/s", motion.speed_noise, conventions=said)
+        lateral = Measurement(names[1][0], side, "m", motion.noise, conventions=signed)
+        found.append(Passage(name, rows[name], when, speed, lateral))
     return found
 
 

@@ -131,10 +131,8 @@ class Protocol:
 def protocol(name: str, folders: Iterable[Path | str] = ()) -> Protocol:
     """Return a protocol of the catalogue (built in, or from a user's folders).
 
-    Raises
-    ------
-    InputError
-        Unknown name (with the nearest one), kind, quantity or severity; a limit without unit.
+    InputError: unknown name (with the nearest one), kind, quantity or severity; a limit without
+    unit.
     """
     catalogue = Catalogue.load(folders)
     return _from_entry(catalogue.entry("protocol", name, where="--protocol"))

@@ -20,18 +20,11 @@ _STEEPEST = math.radians(30.0)
 class Ramp:
     """Slope of a walkway along the walk.
 
-    Parameters
-    ----------
-    angle
-        Against the horizontal (rad), positive where the walk goes up, negative where it goes
-        down; 0 is a level walkway.
-    plate_frame
-        A key of ``PLATE_FRAMES``; it has a meaning on a slope only.
+    ``angle``: against the horizontal (rad), positive where the walk goes up, negative where it goes
+    down; 0 is a level walkway. ``plate_frame``: a key of ``PLATE_FRAMES``; it has a meaning on a
+    slope only.
 
-    Raises
-    ------
-    InputError
-        An angle beyond 30 degrees, an unknown frame, a slope without a frame.
+    InputError: an angle beyond 30 degrees, an unknown frame, a slope without a frame.
     """
 
     angle: float = 0.0
@@ -79,10 +72,7 @@ LEVEL = Ramp()
 def ramp_from(angle: object, plate_frame: str = "", *, where: str = "ramp") -> Ramp:
     """Return the ramp of an angle with its unit, as "5 deg" (up) or "-5 deg" (down).
 
-    Raises
-    ------
-    InputError
-        No angle, no unit, or what ``Ramp`` refuses.
+    InputError: no angle, no unit, or what ``Ramp`` refuses.
     """
     return Ramp(to_si(angle, "rad", where=where), plate_frame)
 

@@ -19,22 +19,12 @@ DISPLACEMENT = ("displacement", "compression", "position", "crosshead", "axial d
 class RelaxationReading:
     """What a ramp and hold says, compression positive.
 
-    Parameters
-    ----------
-    force_2_percent, peak_force, final_force
-        F_0.02, F_0 and F_inf (N) of Eq. 13 and 15.
-    time, displacement, force
-        Loading and hold, without unloading (s, m, N), shape (n,); time from the first load.
-    hold_start
-        Index at which the displacement reaches its level (the peak, if that comes first).
-    peak_displacement
-        Compression held (m).
-    ramp_time, hold_time
-        Durations (s).
-    thickness
-        Of what is compressed between the plates (m).
-    notes
-        What was found odd.
+    ``force_2_percent``, ``peak_force``, ``final_force``: F_0.02, F_0 and F_inf (N) of Eq. 13 and
+    15. ``time``, ``displacement``, ``force``: loading and hold, without unloading (s, m, N), shape
+    (n,); time from the first load. ``hold_start``: index at which the displacement reaches its
+    level (the peak, if that comes first). ``peak_displacement``: compression held (m).
+    ``ramp_time`` and ``hold_time``: durations (s). ``thickness``: of what is compressed between the
+    plates (m). ``notes``: what was found odd.
     """
 
     force_2_percent: Measurement
@@ -72,19 +62,11 @@ def relaxation_reading(
     displacement leaves its level by 2 % of the compression. F_0.02 is interpolated on the ramp,
     F_0 is the largest force, F_inf the mean over the last tenth of the hold.
 
-    Parameters
-    ----------
-    thickness
-        Of one block, T in Eq. 13-16 (m): F_0.02 is the force at a displacement of 0.02 T.
-    force, displacement
-        Channel names; by default usual names are tried.
+    ``thickness``: of one block, T in Eq. 13-16 (m): F_0.02 is the force at a displacement of 0.02
+    T. ``force`` and ``displacement``: channel names; by default usual names are tried.
 
-    Errors
-    ------
-    DataError
-        Channels missing or broken, no load, no hold of ten samples, ramp not recorded.
-    InputError
-        A thickness that is not positive.
+    DataError: channels missing or broken, no load, no hold of ten samples, ramp not recorded.
+    InputError: a thickness that is not positive.
     """
     where = trial.name
     if not thickness > 0:

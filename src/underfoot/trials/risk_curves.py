@@ -33,12 +33,8 @@ class LogisticLine:
 class RiskCurve:
     """A fitted risk curve on a grid, with its band.
 
-    Parameters
-    ----------
-    x, risk, low, high
-        Shape (m,).
-    half
-        x at a risk of one half, and its standard error (delta method).
+    ``x``, ``risk``, ``low``, ``high``: shape (m,). ``half``: x at a risk of one half, and its
+    standard error (delta method).
     """
 
     name: str
@@ -61,15 +57,9 @@ def risk_curve(
     the curve, not single persons. With errors by person (``clustered_logistic``) it is as wide as
     the number of persons asks for.
 
-    Parameters
-    ----------
-    x
-        Where to evaluate, shape (m,); by default where the risk runs from 0.5 % to 99.5 %.
+    ``x``: where to evaluate, shape (m,); by default where the risk runs from 0.5 % to 99.5 %.
 
-    Raises
-    ------
-    InputError
-        A fit with several predictors, or a slope of zero.
+    InputError: a fit with several predictors, or a slope of zero.
     """
     from scipy.stats import norm
 

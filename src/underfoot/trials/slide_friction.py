@@ -48,10 +48,7 @@ def slide_friction(trial: Trial, protocol: Protocol, axes: Axes | None = None) -
     ``"sliding"``: from the start of sliding, seen in a speed channel, else in a marker's path,
     else in the rise of the shear force (half of its later level).
 
-    Errors
-    ------
-    DataError
-        No usable force plate, no load, or no sliding.
+    DataError: no usable force plate, no load, or no sliding.
     """
     plate = next((plate for plate in trial.plates if plate.usable), None)
     if plate is None:

@@ -51,12 +51,12 @@ def slip_course(
     trailing = _trailing_way(trial, stance, one, axes)
     misstep = _misstep(trial, stance, axes)
     flags = []
-    if toe is not None and toe > limits.microslip:
-        words = f"the toe slides by {1e3 * toe:.0f} mm: a toe slip"
-        flags.append(Flag("toe slip", words, True, toe, limits.microslip, "m"))
-    if trailing is not None and trailing > limits.microslip:
-        words = f"the trailing foot slides by {1e3 * trailing:.0f} mm"
-        flags.append(Flag("trailing foot", words, True, trailing, limits.microslip, "m"))
+    for name, way, words in (
+        ("toe slip", toe, "the toe slides by {:.0f} mm: a toe slip"),
+        ("trailing foot", trailing, "the trailing foot slides by {:.0f} mm"),
+    ):
+        if way is not None and way > limits.microslip:
+            flags.append(Flag(name, words.format(1e3 * way), True, way, limits.microslip, "m"))
     if misstep:
         flags.append(Flag("misstep", f"misstep: {misstep}"))
     return SlipCourse(body, why, toe, trailing, misstep, tuple(flags))
@@ -66,21 +66,20 @@ def _body(trial: Trial, one: Slip, axes: Axes) -> tuple[str, str]:
     """Recovery or fall by the height of the pelvis's markers."""
     if not one.slides:
         return "", "no slide to recover from"
-    names = [name for name in trial.markers if _PELVIS.search(name.rsplit(":", 1)[-1].strip())]
-    heights = []
-    for name in names:
-        marker = trial.markers[name]
-        if marker.times is None:
-            heights.append((marker.time, marker.positions @ axes.up))
-    if not heights:
+    markers = [
+        marker
+        for name, marker in trial.markers.items()
+        if _PELVIS.search(name.rsplit(":", 1)[-1].strip()) and marker.times is None
+    ]
+    if not markers:
         return "", "no marker of the pelvis"
-    time = heights[0][0]
-    same = [height for when, height in heights if len(when) == len(time)]
-    seen = np.isfinite(same).any(axis=0)
+    time = markers[0].time
+    heights = np.array([m.positions @ axes.up for m in markers if len(m.positions) == len(time)])
+    seen = np.isfinite(heights).any(axis=0)
     if not seen.any():
         return "", "no marker of the pelvis is seen"
     height = np.full(len(time), np.nan)
-    height[seen] = np.nanmean(np.array(same)[:, seen], axis=0)
+    height[seen] = np.nanmean(heights[:, seen], axis=0)
     before = height[(time > one.contact - 0.6) & (time < one.contact)]
     after = height[(time >= one.contact) & (time < one.contact + _AFTER)]
     if not (np.isfinite(before).any() and np.isfinite(after).any()):
@@ -98,9 +97,8 @@ def _toe_way(trial: Trial, stance: Stance, axes: Axes) -> float | None:
     toes = toe_candidates(trial)[stance.side] if stance.side != "unknown" else []
     if not toes:
         return None
-    share = (0.4, 0.8)
-    times = [stance.contact + part * stance.duration for part in share]
-    return _way(trial.marker(toes[0]), times[0], times[1], axes)
+    begin, end = (stance.contact + share * stance.duration for share in (0.4, 0.8))
+    return _way(trial.marker(toes[0]), begin, end, axes)
 
 
 def _trailing_way(trial: Trial, stance: Stance, one: Slip, axes: Axes) -> float | None:

@@ -16,6 +16,9 @@ from .plates import plate_named
 from .stance import Stance
 from .trial import Marker, Trial
 
+_MEASURED = {
+    "slip start": "s", "peak slipping speed": "m/s", "slip distance": "m", "slip margin": "m/s",
+}  # fmt: skip
 FALSE_ALARMS = "up to 0.23 m/s and 16 mm in 34 steps of dry walking"
 _WIDTH = math.sqrt(math.log(2.0) / 2.0) / math.pi
 """Standard deviation of the Gaussian whose gain is one half at 1 Hz (s): the filters here halve
@@ -62,21 +65,14 @@ def slip(
     """Return the slip (or its absence) after a heel contact.
 
     Slip start is the first local minimum of the heel's speed after contact, less the shift that
-    the filter gives a minimum between unlike sides; the peak slipping
-    speed is the largest speed between it and the second local minimum, the moment the foot
-    leaves the plate, the heel lifts by 30 mm, or the record ends, whichever is first. Distance
-    is the displacement of the heel in the floor's plane between start and end.
+    the filter gives a minimum between unlike sides; the peak slipping speed is the largest speed
+    between it and the second local minimum, the moment the foot leaves the plate, the heel lifts
+    by 30 mm, or the record ends, whichever is first. Distance is the displacement of the heel in
+    the floor's plane between start and end.
 
-    Parameters
-    ----------
-    marker
-        Heel marker; None gives "not estimated".
-    contact
-        Time of heel contact (s).
-    up, walking
-        Unit vectors (3,); ``walking`` only to say whether the heel went backward.
-    leaves
-        Time at which the foot leaves the plate (s), if there is a plate.
+    Without ``marker`` (the heel's) it is "not estimated". ``contact`` is the time of heel contact
+    and ``leaves`` that at which the foot leaves the plate (s), if there is one; ``up`` and
+    ``walking`` are unit vectors (3,), ``walking`` only to say whether the heel went backward.
 
     Source: grant report G.5.1 and G.6.1; horizontal plane by default because heel lift adds
     vertical speed at the end.
@@ -87,12 +83,7 @@ def slip(
     def without(reason: str, motion: HeelMotion | None = None) -> Slip:
         start, speed, distance, margin = (
             Measurement.not_estimated(name, reason, unit=unit, flags=flags, conventions=said)
-            for name, unit in (
-                ("slip start", "s"),
-                ("peak slipping speed", "m/s"),
-                ("slip distance", "m"),
-                ("slip margin", "m/s"),
-            )
+            for name, unit in _MEASURED.items()
         )
         return Slip(contact, start, math.nan, speed, distance, margin, None, motion)
 
@@ -116,13 +107,11 @@ def slip(
         return without("fewer than five frames of the heel after contact", motion)
     reach = round(0.5 * marker.rate / definition.filter.cutoff)
     minima = _minima(motion.speed, first, last, reach, definition.prominence)
-    if len(minima) and minima[0] < first:
-        early = 1e3 * (contact - motion.time[minima[0]])
-        flags += (
-            caution(f"the speed's minimum lies {early:.0f} ms before contact: the filter's blur"),
-        )
     if not len(minima):
         return without(f"the heel's speed has no local minimum after contact until {ended}", motion)
+    if minima[0] < first:
+        early = f"{1e3 * (contact - motion.time[minima[0]]):.0f} ms before contact"
+        flags += (caution(f"the speed's minimum lies {early}: the filter's blur"),)
     begin = int(minima[0])
     stop = int(minima[1]) if len(minima) > 1 else last
     by = "second local minimum" if len(minima) > 1 else ended
@@ -137,17 +126,15 @@ def slip(
     count = int((motion.filled & ~motion.jumps)[first : stop + 1].sum())
     if count:
         flags += (caution(f"{count} frames of the heel marker were bridged"),)
-    later = motion.speed[stop : last + 1]
-    if len(later) and peak <= definition.threshold < float(np.nanmax(later)):
-        flags += (
-            caution(f"the heel reaches {float(np.nanmax(later)):.2f} m/s after the search's end"),
-        )
+    later = float(np.nanmax(motion.speed[stop : last + 1], initial=0.0))
+    if peak <= definition.threshold < later:
+        flags += (caution(f"the heel reaches {later:.2f} m/s after the search's end"),)
     if walking is not None and motion.velocity[top] @ walking < -0.5 * peak and peak > 0.05:
         flags += (caution("the heel moves backward at its peak speed"),)
     if top == stop and len(minima) < 2:
         flags += (caution(f"the speed still grows when the search ends: {by}"),)
     moved = motion.position[stop] - motion.position[begin]
-    moved = moved - (moved @ up) * up
+    moved -= (moved @ up) * up
     distance = float(np.linalg.norm(moved))
     outcome = (limits or OutcomeLimits()).outcome(distance)
     slipped = peak > definition.threshold
@@ -165,21 +152,21 @@ def slip(
     said["slip start"] += f", less {1e3 * shift:.1f} ms that the filter shifts it"
     said["uncertainty"] = "marker noise through the filter; for the start, the filter's shift too"
 
-    def value(name: str, number: float, unit: str, sd: float) -> Measurement:
-        return Measurement(name, number, unit, sd, flags=flags, conventions=said)
+    def value(name: str, number: float, sd: float) -> Measurement:
+        return Measurement(name, number, _MEASURED[name], sd, flags=flags, conventions=said)
 
     return Slip(
-        contact=contact,
-        start=value("slip start", start, "s", start_uncertainty),
-        end=float(motion.time[stop]),
-        peak_speed=value("peak slipping speed", peak, "m/s", motion.speed_noise),
-        distance=value("slip distance", distance, "m", math.sqrt(2.0) * motion.noise),
-        margin=value("slip margin", peak - definition.threshold, "m/s", motion.speed_noise),
-        slipped=slipped,
-        motion=motion,
-        peak_time=float(motion.time[top]),
-        outcome=outcome,
-        way=_way(moved, walking, up) if outcome is not Outcome.NO_SLIP else "",
+        contact,
+        value("slip start", start, start_uncertainty),
+        float(motion.time[stop]),
+        value("peak slipping speed", peak, motion.speed_noise),
+        value("slip distance", distance, math.sqrt(2.0) * motion.noise),
+        value("slip margin", peak - definition.threshold, motion.speed_noise),
+        slipped,
+        motion,
+        float(motion.time[top]),
+        outcome,
+        _way(moved, walking, up) if outcome is not Outcome.NO_SLIP else "",
     )
 
 
@@ -251,15 +238,9 @@ def slip_of(
     if walking is not None:
         up, walking = axes.ramp.surface(up, walking)  # a heel slides along the surface
     return slip(
-        marker,
-        stance.contact,
-        up=up,
-        walking=walking,
-        leaves=stance.toe_off,
-        definition=definition,
-        limits=limits,
-        flags=flags,
-    )
+        marker, stance.contact, up=up, walking=walking, leaves=stance.toe_off,
+        definition=definition, limits=limits, flags=flags,
+    )  # fmt: skip
 
 
 def _window_end(

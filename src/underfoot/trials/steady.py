@@ -32,10 +32,7 @@ def steady_window(values: np.ndarray) -> SteadyWindow:
     window in units of the scatter about it; a cut at half of the record, or a drift above 2,
     means that the record never became steady.
 
-    Errors
-    ------
-    DataError
-        Fewer than 50 samples, or samples without a number.
+    DataError: fewer than 50 samples, or samples without a number.
 
     Source: K. P. White, Simulation 69 (1997) 323.
     """

@@ -24,16 +24,9 @@ NOT_IDENTIFIED = "not identified in this speed range"
 class FitParameter:
     """One parameter of Eq. 17.
 
-    Parameters
-    ----------
-    value
-        None where the report's rule gives no value.
-    standard_error
-        From the curvature at the optimum; None on a bound.
-    low, high
-        Profile-likelihood interval; None where the profile does not close.
-    remark
-        ``"not identified in this speed range"`` or empty.
+    ``value`` is None where the report's rule gives none; ``standard_error``, from the curvature at
+    the optimum, is None on a bound; ``low`` and ``high``, the profile-likelihood interval, are None
+    where the profile does not close. ``remark``: ``"not identified in this speed range"`` or empty.
     """
 
     name: str
@@ -89,21 +82,10 @@ def stribeck_fit(
     speed range" when its profile does not close, or when tau exceeds the largest speed (the
     report's own remark for water).
 
-    Parameters
-    ----------
-    speed
-        Shape (n,), m/s, positive; repeats are welcome.
-    cof
-        Shape (n,).
-    method
-        ``"separable"`` (default) or ``"nelder_mead"``.
-    boundary
-        Known COF_BL (for example from a test at 0.01 m/s), then not fitted.
-
-    Errors
-    ------
-    DataError
-        Fewer than one more speed than parameters, missing values, negative speeds.
+    ``speed`` (n,) is in m/s, positive, repeats are welcome; ``method`` is ``"separable"`` or
+    ``"nelder_mead"``; a known COF_BL (for example from a test at 0.01 m/s) is given as ``boundary``
+    and not fitted. Fewer than one more speed than parameters, missing values and negative speeds
+    are a DataError.
 
     Source: grant report G.2.1, Eq. 17. Separable: G. H. Golub, V. Pereyra, SIAM J. Numer. Anal.
     10 (1973) 413.
@@ -139,28 +121,18 @@ def stribeck_fit(
         warnings.append(f"R^2 {r_squared:.2f} is below {MODERATE}: COF_BL is the mean COF")
         mean = float(y.mean())
         error = float(y.std(ddof=1) / np.sqrt(len(y)))
-        dropped = f"R^2 below {MODERATE}"
         parameters = (
             FitParameter("cof_bl", mean, "1", error, remark="mean COF"),
-            FitParameter("tau_hydro", None, "m/s", remark=dropped),
-            FitParameter("cof_asymptote", None, "1", remark=dropped),
+            FitParameter("tau_hydro", None, "m/s", remark=f"R^2 below {MODERATE}"),
+            FitParameter("cof_asymptote", None, "1", remark=f"R^2 below {MODERATE}"),
         )
     else:
         parameters = _parameters(v, y, (asymptote, start, tau, rss), boundary, confidence)
         if tau > v.max():
             warnings.append(f"tau {tau:.3g} m/s exceeds the largest speed {v.max():.3g} m/s")
-    return StribeckFit(
-        *parameters,
-        r_squared,
-        rss,
-        len(y),
-        method,
-        verdict,
-        v,
-        y,
-        (start, tau, asymptote),
-        tuple(warnings),
-    )
+    raw = start, tau, asymptote
+    quality = r_squared, rss, len(y), method, verdict
+    return StribeckFit(*parameters, *quality, v, y, raw, tuple(warnings))
 
 
 def _parameters(
@@ -191,27 +163,20 @@ def _parameters(
         return best_decay(v, y, low, high, start=value)[3]
 
     scale = float(np.ptp(y))
-    ends = {
-        "cof_asymptote": _interval(of_asymptote, asymptote, limit, 0.02 * scale, 20 * scale),
-        "tau_hydro": _log_interval(of_tau, tau, limit, low, high),
-        "cof_bl": (None, None)
-        if boundary is not None
-        else _interval(of_boundary, start, limit, 0.02 * scale, 20 * scale),
-    }
-    made = {}
-    for name, value, unit in (
-        ("cof_bl", start, "1"),
-        ("tau_hydro", tau, "m/s"),
-        ("cof_asymptote", asymptote, "1"),
-    ):
-        bottom, top = ends[name]
-        given = name == "cof_bl" and boundary is not None
-        unknown = not given and (bottom is None or top is None)
-        if name == "tau_hydro" and tau > v.max():
-            unknown = True
-        remark = "given" if given else NOT_IDENTIFIED if unknown else ""
-        made[name] = FitParameter(name, value, unit, errors.get(name), bottom, top, remark)
-    return made["cof_bl"], made["tau_hydro"], made["cof_asymptote"]
+    ends = {"cof_asymptote": _interval(of_asymptote, asymptote, limit, 0.02 * scale, 20 * scale)}
+    ends["tau_hydro"] = _log_interval(of_tau, tau, limit, low, high)
+    if boundary is None:
+        ends["cof_bl"] = _interval(of_boundary, start, limit, 0.02 * scale, 20 * scale)
+
+    def parameter(name: str, value: float, unit: str = "1") -> FitParameter:
+        bottom, top = ends.get(name, (None, None))
+        beyond = name == "tau_hydro" and tau > v.max()
+        unknown = NOT_IDENTIFIED if bottom is None or top is None or beyond else ""
+        remark = unknown if name in ends else "given"
+        return FitParameter(name, value, unit, errors.get(name), bottom, top, remark)
+
+    first, last = parameter("cof_bl", start), parameter("cof_asymptote", asymptote)
+    return first, parameter("tau_hydro", tau, "m/s"), last
 
 
 def _errors(
@@ -238,21 +203,17 @@ def _interval(
     function: Callable[[float], float], best: float, limit: float, step: float, reach: float
 ) -> tuple[float | None, float | None]:
     """Return where a residual sum passes ``limit`` on both sides; a bound at zero is no end."""
-    from scipy.optimize import brentq
-
-    ends: list[float | None] = []
     if function(best) >= limit:
         return None, None
-    for direction in (-1.0, 1.0):
-        inner, width, end = best, step, None
+    ends: list[float | None] = [None, None]
+    for side, direction in enumerate((-1.0, 1.0)):
+        inner, width = best, step
         while abs(inner - best) < reach and not (direction < 0 and inner <= 0.0):
             outer = max(inner + direction * width, 0.0)
             if function(outer) > limit:
-                root: Any = brentq(lambda x: function(x) - limit, inner, outer, xtol=1e-8)
-                end = float(root)
+                ends[side] = _passes(function, limit, inner, outer, xtol=1e-8)
                 break
             inner, width = outer, 1.5 * width
-        ends.append(end)
     return ends[0], ends[1]
 
 
@@ -260,23 +221,29 @@ def _log_interval(
     function: Callable[[float], float], best: float, limit: float, low: float, high: float
 ) -> tuple[float | None, float | None]:
     """Return where a residual sum of a logarithm passes ``limit``, within ``low`` to ``high``."""
-    from scipy.optimize import brentq
-
-    ends: list[float | None] = []
     if function(best) >= limit:
         return None, None
-    for factor, stop in ((0.8, low), (1.25, high)):
-        inner, end = best, None
+    ends: list[float | None] = [None, None]
+    for side, (factor, stop) in enumerate(((0.8, low), (1.25, high))):
+        inner = best
         while (inner > stop) == (factor < 1) and inner != stop:
             outer = inner * factor
             if function(outer) > limit:
                 a, b = np.log(inner), np.log(outer)
-                root: Any = brentq(lambda x: function(float(np.exp(x))) - limit, a, b)
-                end = float(np.exp(root))
+                log = _passes(lambda x: function(float(np.exp(x))), limit, a, b)
+                ends[side] = float(np.exp(log))
                 break
             inner = outer
-        ends.append(end)
     return ends[0], ends[1]
+
+
+def _passes(
+    function: Callable[[float], float], limit: float, a: float, b: float, xtol: float = 2e-12
+) -> float:
+    from scipy.optimize import brentq
+
+    root: Any = brentq(lambda x: function(x) - limit, a, b, xtol=xtol)
+    return float(root)
 
 
 def _nelder_mead(

@@ -22,20 +22,11 @@ _T = TypeVar("_T")
 class Channel:
     """A measured quantity against time.
 
-    Parameters
-    ----------
-    values
-        Shape (n,), in ``unit``; NaN where nothing was measured.
-    unit
-        SI unit; ``"1"`` dimensionless, ``""`` unknown (raw numbers of the file).
-    rate
-        Samples per second (the median one when ``times`` is given).
-    start
-        Time of the first sample (s).
-    times
-        Shape (n,), s; only when the samples are not equally spaced.
-    note
-        What was done on reading, for example the unit in the file.
+    ``values`` (n,) are in ``unit``, NaN where nothing was measured: a SI unit, ``"1"`` when
+    dimensionless, ``""`` when unknown (raw numbers of the file). ``rate`` is in samples per second
+    (the median one when ``times`` is given), ``start`` the time of the first sample (s). ``times``
+    (n,), s, is there only when the samples are not equally spaced. ``note`` says what was done on
+    reading, for example the unit in the file.
     """
 
     values: np.ndarray
@@ -55,12 +46,7 @@ class Channel:
 class Marker:
     """Path of one motion-capture marker in the laboratory's axes.
 
-    Parameters
-    ----------
-    positions
-        Shape (n, 3), m; NaN where the marker was not seen.
-    rate, start, times
-        As for ``Channel``.
+    ``positions`` (n, 3) are in m, NaN where the marker was not seen; the rest as in ``Channel``.
     """
 
     positions: np.ndarray
@@ -82,16 +68,10 @@ class Marker:
 
 @dataclass(frozen=True, slots=True)
 class PlateAccuracy:
-    """Limits of a force plate's errors, as in its data sheet.
+    """Limits of a force plate's errors, as in its data sheet, and where they come from.
 
-    Parameters
-    ----------
-    gain
-        Largest relative error of a force component.
-    crosstalk
-        Largest shear that a vertical force makes by itself, as a share of it.
-    source
-        Where both come from.
+    ``gain`` is the largest relative error of a force component, ``crosstalk`` the largest shear
+    that a vertical force makes by itself, as a share of it.
     """
 
     gain: float = 0.01
@@ -107,36 +87,15 @@ class PlateAccuracy:
 class Plate:
     """One force plate: the force of the floor **on the foot**, in the laboratory's axes.
 
-    Parameters
-    ----------
-    name
-        For example ``"plate 1"``.
-    force
-        Shape (n, 3), N; empty when ``problem`` is set. Baseline already subtracted.
-    moment
-        Shape (n, 3), N m, about the centre of the plate's surface, or None.
-    centre_of_pressure
-        Shape (n, 3), m, NaN where the plate is unloaded, or None.
-    rate, start
-        Samples per second and time of the first sample (s).
-    corners
-        Shape (4, 3), m, or None when the file does not hold them.
-    baseline
-        Force that was subtracted (N), shape (3,), laboratory axes; None when nothing was.
-    baseline_samples
-        Number of unloaded samples it is the mean of.
-    kind
-        Plate type in words.
-    problem
-        Why this plate can't be used; empty when it can.
-    notes
-        What reading assumed: units, ZERO ...
-    saturated
-        True when a channel is cut flat at its extreme.
-    flags
-        What a reader must know: baseline, saturation, unlikely size ...
-    accuracy
-        What the plate's specification says about its errors.
+    ``force`` (n, 3), N, has its baseline subtracted and is empty when ``problem`` says why the
+    plate can't be used. ``moment`` (n, 3), N m, is about the centre of the plate's surface;
+    ``centre_of_pressure`` (n, 3), m, is NaN where the plate is unloaded; ``corners`` (4, 3), m.
+    Each is None when the file does not hold it. ``rate`` (samples per second) and ``start`` (s)
+    give the time. ``baseline`` (3,), N, is what was subtracted, None when nothing was, and
+    ``baseline_samples`` the number of unloaded samples it is the mean of. ``kind`` is the plate's
+    type in words, ``notes`` what reading assumed (units, ZERO ...), ``flags`` what a reader must
+    know (baseline, saturation, unlikely size ...); ``saturated`` is True when a channel is cut flat
+    at its extreme, ``accuracy`` what the specification says about the errors.
     """
 
     name: str
@@ -183,24 +142,11 @@ EDITS = ("contact", "toe off", "exclude", "side", "plate")
 class Edit:
     """A change by hand to one step.
 
-    Parameters
-    ----------
-    step
-        Number of the contact as ``describe`` prints it (int), or a time within it (float, s).
-    what
-        One of ``EDITS``.
-    value
-        New time (s) for "contact" and "toe off"; "left" or "right"; the plate's name; None for
-        "exclude".
-    why
-        The reason; it goes to the edit log.
-    where
-        File and line of the edit, for messages.
-
-    Raises
-    ------
-    InputError
-        An unknown kind of edit, a value that does not fit it, no reason.
+    ``step`` is the number of the contact as ``describe`` prints it (int), or a time within it
+    (float, s); ``what`` one of ``EDITS``; ``value`` the new time (s) for "contact" and "toe off",
+    "left" or "right", the plate's name, or None for "exclude". ``why``, the reason, goes to the
+    edit log; ``where`` is file and line of the edit, for messages. An unknown kind of edit, a value
+    that does not fit it and a missing reason are InputErrors.
     """
 
     step: int | float
@@ -233,26 +179,13 @@ class Edit:
 class Trial(Presentable):
     """One recording. Frozen: changes return a new trial.
 
-    Parameters
-    ----------
-    name
-        File name without folder, with the step for files that hold several.
-    channels
-        By the name in the file (made unique); see ``channel`` for a forgiving look-up.
-    plates, markers
-        Force plates and marker paths; empty for tribometer logs.
-    source
-        Format and reader in words.
-    checksum
-        SHA-256 of the file's bytes (hex).
-    notes
-        What reading found or did: units converted, duplicates renamed, plates refused.
-    events
-        Events written in the file.
-    edits
-        Changes by hand; ``stances`` applies them.
-    settings
-        Facts of the header as text (set load, step type, subject mass in kg ...).
+    ``name`` is the file's without folder, with the step for files that hold several. ``channels``
+    are by the name in the file (made unique); ``channel`` is a forgiving look-up. ``plates`` and
+    ``markers`` are empty for tribometer logs. ``source`` names format and reader; ``checksum`` is
+    the SHA-256 of the file's bytes (hex). ``notes`` tell what reading found or did (units
+    converted, duplicates renamed, plates refused), ``events`` are those written in the file,
+    ``edits`` the changes by hand that ``stances`` applies, ``settings`` facts of the header as text
+    (set load, step type, subject mass in kg ...).
     """
 
     name: str
@@ -269,34 +202,13 @@ class Trial(Presentable):
     def channel(self, *names: str) -> Channel:
         """Return the first channel that has one of ``names`` (capitals and blanks ignored).
 
-        Raises
-        ------
-        DataError
-            None of them is there: names what is, and the nearest match.
+        A DataError, with what there is and the nearest match, when none of them is there.
         """
-        folded = {_folded(name): name for name in reversed(list(self.channels))}
-        for name in names:
-            if name in self.channels:
-                return self.channels[name]
-            if _folded(name) in folded:
-                return self.channels[folded[_folded(name)]]
-        raise missing("channel", names, self.channels, self.name)
+        return _named("channel", names, self.channels, self.name)
 
     def marker(self, *names: str) -> Marker:
-        """Return the first marker that has one of ``names`` (capitals and blanks ignored).
-
-        Raises
-        ------
-        DataError
-            None of them is there: names what is, and the nearest match.
-        """
-        folded = {_folded(name): name for name in reversed(list(self.markers))}
-        for name in names:
-            if name in self.markers:
-                return self.markers[name]
-            if _folded(name) in folded:
-                return self.markers[folded[_folded(name)]]
-        raise missing("marker", names, self.markers, self.name)
+        """Return the first marker that has one of ``names``, as ``channel`` does."""
+        return _named("marker", names, self.markers, self.name)
 
     def with_edits(self, *edits: Edit) -> Trial:
         """Return the trial with further edits; ``stances`` applies them or raises."""
@@ -314,18 +226,15 @@ class Trial(Presentable):
 
     def table(self) -> Table:
         """Return plates, markers and channels: kind, samples, rate, remarks."""
-        rows = [
-            ("plate", p.name, len(p.force), p.rate, p.problem or "; ".join(map(str, p.flags)))
-            for p in self.plates
-        ]
-        rows += [
-            ("marker", name, len(m.positions), m.rate, f"{int(m.missing.sum())} frames missing")
-            for name, m in self.markers.items()
-        ]
-        rows += [
-            ("channel", name, len(c.values), c.rate, c.unit or "unit not known")
-            for name, c in self.channels.items()
-        ]
+        rows: list[tuple[str, str, int, float, str]] = []
+        for p in self.plates:
+            remarks = p.problem or "; ".join(map(str, p.flags))
+            rows.append(("plate", p.name, len(p.force), p.rate, remarks))
+        for name, m in self.markers.items():
+            lost = f"{int(m.missing.sum())} frames missing"
+            rows.append(("marker", name, len(m.positions), m.rate, lost))
+        for name, c in self.channels.items():
+            rows.append(("channel", name, len(c.values), c.rate, c.unit or "unit not known"))
         return Table(self.name, ("kind", "name", "samples", "rate (Hz)", "remarks"), rows)
 
 
@@ -334,22 +243,22 @@ def joined(first: Trial, second: Trial) -> Trial:
 
     Both must count time from the same instant. Names that both use get the ending `` (2)``.
     """
+
+    def both(one: Mapping[str, _T], other: Mapping[str, _T]) -> dict[str, _T]:
+        return {**one, **{f"{n} (2)" if n in one else n: value for n, value in other.items()}}
+
     return Trial(
-        name=f"{first.name} + {second.name}",
-        channels={**first.channels, **_other_names(second.channels, first.channels)},
-        plates=(*first.plates, *second.plates),
-        markers={**first.markers, **_other_names(second.markers, first.markers)},
-        source=f"{first.source} + {second.source}",
-        checksum=hashlib.sha256(f"{first.checksum}{second.checksum}".encode()).hexdigest(),
-        notes=(*first.notes, *second.notes),
-        events=(*first.events, *second.events),
-        edits=(*first.edits, *second.edits),
-        settings={**first.settings, **second.settings},
+        f"{first.name} + {second.name}",
+        both(first.channels, second.channels),
+        (*first.plates, *second.plates),
+        both(first.markers, second.markers),
+        f"{first.source} + {second.source}",
+        hashlib.sha256(f"{first.checksum}{second.checksum}".encode()).hexdigest(),
+        (*first.notes, *second.notes),
+        (*first.events, *second.events),
+        (*first.edits, *second.edits),
+        {**first.settings, **second.settings},
     )
-
-
-def _other_names(added: Mapping[str, _T], present: Mapping[str, object]) -> dict[str, _T]:
-    return {f"{name} (2)" if name in present else name: value for name, value in added.items()}
 
 
 def file_checksum(path: Path) -> str:
@@ -357,13 +266,14 @@ def file_checksum(path: Path) -> str:
     return hashlib.sha256(Path(path).read_bytes()).hexdigest()
 
 
-def missing(
-    kind: str, names: tuple[str, ...], known: Mapping[str, object], where: str
-) -> DataError:
-    """Return the error for a channel or marker that is not in a trial."""
+def _named(kind: str, names: tuple[str, ...], known: Mapping[str, _T], where: str) -> _T:
+    folded = {_folded(name): value for name, value in reversed(list(known.items()))}
+    for name in names:
+        if name in known or _folded(name) in folded:
+            return known[name] if name in known else folded[_folded(name)]
     listed = list(known)
     shown = ", ".join(listed[:12]) + (f" and {len(listed) - 12} more" if len(listed) > 12 else "")
-    return DataError(
+    raise DataError(
         f"no {kind} named {' or '.join(names)}",
         where=where,
         allowed=shown or f"the trial has no {kind}s",

@@ -19,16 +19,10 @@ METHODS = {
 class MasterCurve:
     """One curve through all conditions.
 
-    Parameters
-    ----------
-    product
-        Viscosity times speed (N/m), ascending, shape (n,).
-    cof, fitted
-        Measured and fitted COF, shape (n,).
-    residual_sd
-        Scatter about the curve: the price of taking all fluids as one.
-    r_squared
-        Share of the variation that the product of viscosity and speed describes.
+    ``product``: viscosity times speed (N/m), ascending, shape (n,). ``cof`` and ``fitted``:
+    measured and fitted COF, shape (n,). ``residual_sd``: scatter about the curve: the price of
+    taking all fluids as one. ``r_squared``: share of the variation that the product of viscosity
+    and speed describes.
     """
 
     product: np.ndarray
@@ -52,17 +46,10 @@ def master_curve(
 ) -> MasterCurve:
     """Return the curve of COF against log10(viscosity x speed).
 
-    Parameters
-    ----------
-    viscosity, speed, cof
-        Shape (n,): Pa s, m/s, 1.
-    method
-        ``"isotonic"`` or ``"spline"``.
+    ``viscosity``, ``speed``, ``cof``: shape (n,): Pa s, m/s, 1. ``method``: ``"isotonic"`` or
+    ``"spline"``.
 
-    Errors
-    ------
-    DataError
-        Fewer than six points, values missing or not positive.
+    DataError: fewer than six points, values missing or not positive.
     """
     eta, v, y = (np.asarray(a, dtype=float) for a in (viscosity, speed, cof))
     if method not in METHODS:

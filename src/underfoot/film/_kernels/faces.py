@@ -76,18 +76,13 @@ def upwind_blend(
 def upwinding(gap: Array, carried: Array, conductance: Array, *, from_a: bool) -> Upwinding:
     """Return how far the x faces lean upstream, from a known gap (that of the last time step).
 
-    Parameters
-    ----------
-    gap, conductance
-        (nx, ny) m and m^3/(Pa s).
-    carried
-        |U| times spacing times deflection per pressure, (nx, ny), m^3/(Pa s): what the shear flow
-        carries of a pressure change. Over the conductance it is the cell Peclet number.
-    from_a
-        True when the flow comes from +x.
+    Parameters:
+        gap, conductance: (nx, ny) m and m^3/(Pa s).
+        carried: |U| times spacing times deflection per pressure, (nx, ny), m^3/(Pa s): what the
+            shear flow carries of a pressure change. Over the conductance it is the cell Peclet
+            number.
+        from_a: True when the flow comes from +x.
 
-    Notes
-    -----
     The correction is half the limited slope (van Leer) of the upstream cell: second order without
     widening the Newton matrix.
     """

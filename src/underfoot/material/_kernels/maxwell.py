@@ -1,7 +1,5 @@
 """Smooth non-negative least squares for Maxwell terms; pure functions of arrays."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

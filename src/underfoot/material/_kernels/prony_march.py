@@ -1,7 +1,5 @@
 """Exact step of a generalised Maxwell surface whose displacement is linear within the step."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

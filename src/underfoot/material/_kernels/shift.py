@@ -1,7 +1,5 @@
 """Horizontal shift between two measured curves; pure functions of arrays."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from underfoot.core.arrays import AnyArray
 
-from .krylov import Workspace, residual_correction
+from .krylov import Restriction, Workspace, residual_correction
 from .operators import Operators
-from .restriction import Restriction
 
 _SWITCH = 1e-5
 """Error at which the residual is taken in double precision: ten times the rounding of single."""
@@ -31,39 +30,87 @@ class ContactState:
     pressure: AnyArray
     gap: AnyArray
     steps: int
-    inner: int
     error: float
     converged: bool
     history: list[float]
     full: bool = False
 
 
-def solve_on_grid(
+def _unheard(error: float) -> None:
+    pass
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """How far a contact is solved.
+
+    ``exact``: the last steps take their residual in double precision. Without ``settle`` a solution
+    with some negative pressures will do, as a start for a finer grid. ``reduction`` is the share of
+    its residual that an inner solve leaves; ``report`` receives the error of each step.
+    """
+
+    tolerance: float
+    max_steps: int
+    exact: bool
+    settle: bool = True
+    reduction: float = 0.15
+    report: Callable[[float], None] = _unheard
+
+
+def solved_contact(
     operators: Operators,
     height: AnyArray,
     pressure: AnyArray,
     mean_pressure: float,
     workspace: Workspace,
-    *,
-    tolerance: float,
-    max_steps: int,
-    exact: bool,
-    settle: bool = True,
-    reduction: float = 0.15,
-    report: Callable[[float], None] = lambda error: None,
+    search: Search,
 ) -> ContactState:
     """Return the contact of ``height`` from a first guess of the pressure (its support counts).
 
-    Each step solves A p = h - d on the present contact with the load as a side condition, not more
-    exactly than by ``reduction``, then takes nodes with p <= 0 out and nodes that the gap of that
-    solution penetrates in. The gap of the unclipped solution decides, and a first guess with too
-    much contact is better than one with too little: both keep the set from cycling (inverse of an
-    M-matrix: Hintermueller, Ito and Kunisch 2002). The error is the largest of the deepest
-    penetration, the pressure-weighted mean |gap| and the relative error of the load; it counts only
-    when no pressure is negative.
-    With ``exact`` the last steps take their residual in double precision; without ``settle`` a
-    solution with some negative pressures will do, as a start for a finer grid.
+    Where the active set cycles (strong loss over a narrow band of speeds), by way of ever thinner
+    mattresses on the body: a mattress (compliance + constant) makes the problem diagonally
+    dominant, so that the set settles from any start; each thinner one starts from the contact of
+    the one before. Slower.
     """
+    state = _on_grid(operators, height, pressure, mean_pressure, workspace, search)
+    if state.converged:
+        return state
+    least, softness = operators.softness_range()
+    workspace = Workspace(_HARD_STEPS, operators.xp, height)
+    last = replace(search, reduction=min(search.reduction, 0.03))
+    soft = Search(max(_MATTRESS_TOLERANCE, search.tolerance), 12, False, reduction=last.reduction)
+    steps = 0
+    while softness > 0.1 * least:
+        with operators.softened(softness):
+            state = _on_grid(operators, height, pressure, mean_pressure, workspace, soft)
+        steps += state.steps
+        if state.converged:
+            pressure = state.pressure
+        softness *= _THINNER
+    with operators.softened(0.0):
+        state = _on_grid(operators, height, pressure, mean_pressure, workspace, last)
+    state.steps += steps
+    return state
+
+
+def _on_grid(
+    operators: Operators,
+    height: AnyArray,
+    pressure: AnyArray,
+    mean_pressure: float,
+    workspace: Workspace,
+    search: Search,
+) -> ContactState:
+    """Return the contact by the active set alone.
+
+    Each step solves A p = h - d on the present contact with the load as a side condition, then
+    takes nodes with p <= 0 out and nodes that the gap of that solution penetrates in. The gap of
+    the unclipped solution decides, and a first guess with too much contact is better than one with
+    too little: both keep the set from cycling (inverse of an M-matrix: Hintermueller, Ito and
+    Kunisch 2002). The error is the largest of the deepest penetration, the pressure-weighted mean
+    |gap| and the relative error of the load; it counts only when no pressure is negative.
+    """
+    tolerance, exact, reduction = search.tolerance, search.exact, search.reduction
     xp = operators.xp
     points = height.shape[0] * height.shape[1]
     load = mean_pressure * points
@@ -74,20 +121,19 @@ def solve_on_grid(
     p = pressure
     gap: AnyArray = None
     history: list[float] = []
-    inner = 0
     error = float("inf")
     known: AnyArray = None  # S 1 on a recent contact
     lowest = -1.0
     changed = 0
     best, since, rounds = error, 0, 0
     step = 0
-    for step in range(1, max_steps + 1):
+    for step in range(1, search.max_steps + 1):
         if bool(xp.all(contact)):
             closed = operators.exact_pressure(height) if exact else operators.pressure(single)
             p = closed + mean_pressure
             contact, gap = p > 0.0, None
             if bool(xp.all(contact)):
-                state = ContactState(p, xp.zeros_like(p), step, inner, 0.0, True, [*history, 0.0])
+                state = ContactState(p, xp.zeros_like(p), step, 0.0, True, [*history, 0.0])
                 state.full = True
                 return state
             p = xp.astype(p, xp.float64 if double else xp.float32)
@@ -114,11 +160,9 @@ def solve_on_grid(
         mean = float(xp.sum(residual)) / part.nodes
         residual = xp.astype(-residual, xp.float32)
         part.shift(residual, mean)
-        correction, count = residual_correction(
-            operators, part, residual, response, reduction, 0.0, workspace
+        p = p + part.spread(
+            residual_correction(operators, part, residual, response, reduction, workspace)
         )
-        inner += count
-        p = p + part.spread(correction)
         gap = _gap(operators, p, height if double else single, double)
         gap -= float(xp.sum(part.take(gap))) / part.nodes
         lowest = float(xp.min(p))
@@ -126,22 +170,22 @@ def solve_on_grid(
         unbalanced = abs(float(xp.sum(p)) / load - 1.0)
         error = max(-float(xp.min(gap)), carried, unbalanced)
         history.append(error)
-        report(error)
+        search.report(error)
         best, since = (error, 0) if error < best else (best, since + 1)
         if since >= _PATIENCE:
             reduction, since, rounds = max(0.1 * reduction, 1e-4), 0, rounds + 1
         if rounds >= _HOPELESS or not error < 1e6:
             break
         kept = p > 0.0
-        settled = lowest >= 0.0 or not settle
+        settled = lowest >= 0.0 or not search.settle
         if error <= tolerance and settled and (double or not exact):
-            return ContactState(p, gap, step, inner, error, True, history)
+            return ContactState(p, gap, step, error, True, history)
         if error <= tolerance and double:
             # a node on the very edge may change sides for ever: see whether it matters
             trial, its_gap, its_error = _clipped(operators, p, height, load, double)
             if its_error <= tolerance:
                 history[-1] = its_error
-                return ContactState(trial, its_gap, step, inner, its_error, True, history)
+                return ContactState(trial, its_gap, step, its_error, True, history)
         before, contact = contact, kept | ((gap < 0.0) & ~contact)
         changed = int(xp.count_nonzero(contact != before))
         if exact and not double and error <= max(_SWITCH, 3.0 * tolerance):
@@ -151,66 +195,7 @@ def solve_on_grid(
         elif lowest < 0.0:
             gap = None
     p, gap, error = _clipped(operators, p, height if double else single, load, double)
-    return ContactState(p, gap, step, inner, error, False, history)
-
-
-def solve_with_mattress(
-    operators: Operators,
-    height: AnyArray,
-    pressure: AnyArray,
-    mean_pressure: float,
-    workspace: Workspace,
-    *,
-    tolerance: float,
-    max_steps: int,
-    exact: bool,
-    settle: bool = True,
-    reduction: float = 0.03,
-    report: Callable[[float], None] = lambda error: None,
-) -> ContactState:
-    """Return the contact of ``solve_on_grid`` by way of ever thinner mattresses on the body.
-
-    A mattress (compliance + constant) makes the problem diagonally dominant, so that the active
-    set settles from any start; each thinner one starts from the contact of the one before. Slower,
-    for strong loss over a narrow band of speeds, where the direct way cycles.
-    """
-    least, softness = operators.softness_range()
-    workspace = Workspace(_HARD_STEPS, operators.xp, height)
-    inner = steps = 0
-    while softness > 0.1 * least:
-        with operators.softened(softness):
-            state = solve_on_grid(
-                operators,
-                height,
-                pressure,
-                mean_pressure,
-                workspace,
-                tolerance=max(_MATTRESS_TOLERANCE, tolerance),
-                max_steps=12,
-                exact=False,
-                reduction=min(reduction, 0.03),
-            )
-        inner, steps = inner + state.inner, steps + state.steps
-        if state.converged:
-            pressure = state.pressure
-        softness *= _THINNER
-    with operators.softened(0.0):
-        state = solve_on_grid(
-            operators,
-            height,
-            pressure,
-            mean_pressure,
-            workspace,
-            tolerance=tolerance,
-            max_steps=max_steps,
-            exact=exact,
-            settle=settle,
-            reduction=min(reduction, 0.03),
-            report=report,
-        )
-    state.inner += inner
-    state.steps += steps
-    return state
+    return ContactState(p, gap, step, error, False, history)
 
 
 def _clipped(

@@ -1,4 +1,4 @@
-"""Minimum-residual correction of the pressure on a given contact."""
+"""Minimum-residual correction of the pressure on a given contact, a part of the grid."""
 
 from __future__ import annotations
 
@@ -9,10 +9,62 @@ import numpy as np
 from underfoot.core.arrays import AnyArray
 
 from .operators import Operators
-from .restriction import Restriction
 
 _DEPENDENT = 1e-5
 """Share of an image left after orthogonalisation below which it is rounding."""
+_GATHER_BELOW = 0.7
+"""Share of the grid below which gathering costs less than masked fields (measured, NumPy)."""
+
+
+class Restriction:
+    """Single-precision vectors on the nodes where ``inside`` is true.
+
+    Gathered: a vector holds those nodes. Masked: it is the whole field, zero elsewhere. Arrays that
+    are not NumPy's are always masked: assignment by index is no part of the array API.
+    """
+
+    def __init__(self, inside: AnyArray, xp: Any, work: AnyArray) -> None:
+        self.xp = xp
+        self._flat = xp.reshape(inside, (-1,))
+        self.nodes = int(xp.count_nonzero(self._flat))
+        self.gathered = xp is np and self.nodes < _GATHER_BELOW * self._flat.shape[0]
+        self._shape = inside.shape
+        if self.gathered:
+            self._index = xp.nonzero(self._flat)[0]
+            self._work = work
+            work[...] = 0.0
+            self.size = self.nodes
+        else:
+            self._mask = xp.astype(self._flat, xp.float32)
+            self.size = self._flat.shape[0]
+
+    def take(self, field: AnyArray) -> AnyArray:
+        """Return a new vector with the values of ``field`` on the nodes."""
+        flat = self.xp.reshape(field, (-1,))
+        if self.gathered:
+            return self.xp.take(flat, self._index, axis=0)
+        return flat * self._mask
+
+    def spread(self, vector: AnyArray) -> AnyArray:
+        """Return the field of a vector: a shared buffer or a view, not to be written to."""
+        if not self.gathered:
+            return self.xp.reshape(vector, self._shape)
+        flat = self.xp.reshape(self._work, (-1,))
+        flat[self._index] = vector
+        return self._work
+
+    def constant(self) -> AnyArray:
+        """Return the vector of ones."""
+        if self.gathered:
+            return self.xp.ones(self.size, dtype=self.xp.float32)
+        return self._mask
+
+    def shift(self, vector: AnyArray, value: float) -> None:
+        """Add ``value`` to the vector on its nodes, in place."""
+        if self.gathered:
+            vector += value
+        else:
+            vector += self._mask * self.xp.asarray(value, dtype=self.xp.float32)
 
 
 class Workspace:
@@ -45,15 +97,14 @@ def residual_correction(
     residual: AnyArray,
     response: AnyArray,
     reduction: float,
-    floor: float,
     workspace: Workspace,
-) -> tuple[AnyArray, int]:
-    """Return the correction c with sum c = 0 and A c = residual up to a constant, and the steps.
+) -> AnyArray:
+    """Return the correction c with sum c = 0 and A c = residual up to a constant.
 
     Generalised conjugate residuals in single precision: directions z = S r, brought to zero sum
     with ``response`` (S 1 on the contact), images A z orthonormal. Stops when the residual's norm
-    has fallen by ``reduction`` or below ``floor``, or after the workspace's steps. ``residual``
-    has zero mean and is overwritten.
+    has fallen by ``reduction``, or after the workspace's steps. ``residual`` has zero mean and is
+    overwritten.
     """
     xp = operators.xp
     images, directions = workspace.rows(part.size)
@@ -61,7 +112,7 @@ def residual_correction(
     weights = np.zeros(workspace.steps)
     r = residual
     left = _norm(r)
-    goal = max(reduction * left, floor)
+    goal = reduction * left
     total = float(xp.sum(response))
     step = 0
     while left > goal and step < workspace.steps:
@@ -87,9 +138,9 @@ def residual_correction(
         left = max(left**2 - weight**2, 0.0) ** 0.5  # the images are orthonormal
         step += 1
     if step == 0:
-        return xp.zeros_like(r), 0
+        return xp.zeros_like(r)
     y = np.linalg.solve(triangle[:step, :step], weights[:step]).astype(np.float32)
-    return operators.asarray(y) @ directions[:step, :], step
+    return operators.asarray(y) @ directions[:step, :]
 
 
 def _norm(vector: AnyArray) -> float:

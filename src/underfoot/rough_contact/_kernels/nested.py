@@ -9,7 +9,7 @@ from typing import Any
 from underfoot.core.arrays import AnyArray
 from underfoot.core.fourier import Transform
 
-from .complementarity import ContactState, solve_on_grid, solve_with_mattress
+from .complementarity import ContactState, Search, solved_contact
 from .krylov import Workspace
 from .operators import Body, Operators
 
@@ -29,7 +29,6 @@ class NestedSolution:
     state: ContactState
     operators: Operators
     applications: float
-    levels: int
 
 
 def solve_nested(
@@ -41,7 +40,7 @@ def solve_nested(
     exact: Transform,
     tolerance: float,
     max_steps: int,
-    report: Callable[[float], None] = lambda error: None,
+    report: Callable[[float], None],
 ) -> NestedSolution:
     """Return the contact of a scaled ``height`` (zero mean, unit rms) under ``mean_pressure``.
 
@@ -56,6 +55,8 @@ def solve_nested(
     pressure: AnyArray = None
     before = (1, 1)
     cost = 0.0
+    search = Search(tolerance, max_steps, True, True, _REDUCTION, report)
+    coarse = Search(max(_COARSE_TOLERANCE, tolerance), max_steps, False, False, _COARSE_REDUCTION)
     state: ContactState | None = None
     operators = fine
     for factor, heights in levels:
@@ -66,29 +67,15 @@ def solve_nested(
             pressure = xp.where(guess > 0.0, guess, xp.zeros_like(guess))
         else:
             pressure = repeated(pressure, (before[0] // factor[0], before[1] // factor[1]), xp)
-        for solver in (solve_on_grid, solve_with_mattress):
-            state = solver(
-                operators,
-                heights,
-                pressure,
-                mean_pressure,
-                workspace,
-                tolerance=tolerance if last else max(_COARSE_TOLERANCE, tolerance),
-                max_steps=max_steps,
-                exact=last,
-                settle=last,
-                reduction=_REDUCTION if last else _COARSE_REDUCTION,
-                report=report if last else lambda error: None,
-            )
-            if state.converged:
-                break
-        found = state.pressure
-        pressure = xp.where(found > 0.0, found, xp.zeros_like(found))
+        state = solved_contact(
+            operators, heights, pressure, mean_pressure, workspace, search if last else coarse
+        )
+        pressure = xp.where(state.pressure > 0.0, state.pressure, xp.zeros_like(state.pressure))
         before = factor
         cost += operators.count * heights.shape[0] * heights.shape[1]
     assert state is not None
     points = height.shape[0] * height.shape[1]
-    return NestedSolution(state, operators, cost / points, len(levels))
+    return NestedSolution(state, operators, cost / points)
 
 
 def low_pass(

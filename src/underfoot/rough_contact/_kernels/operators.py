@@ -12,7 +12,7 @@ import numpy as np
 from underfoot.core.arrays import AnyArray
 from underfoot.core.fourier import Transform, transform
 
-from .symbols import wavenumbers
+from .spectra import wavenumbers
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,15 +1,12 @@
 """Closed curves of arcs that meet without a kink: exact signed distance and joining arcs."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from underfoot.core.arrays import Array
 from underfoot.core.optional import njit
 
-Array = NDArray[np.float64]
 STRAIGHT = 1e6  # m: a radius this large is a line
 
 

@@ -1,13 +1,11 @@
 """Triangles to height maps: the lowest and the highest point over every cell centre."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
+from underfoot.core.arrays import Array
 from underfoot.core.optional import njit
 
-Array = NDArray[np.float64]
 Triangles = NDArray[np.float32]
 
 
@@ -37,23 +35,15 @@ def height_buffer(
 ) -> tuple[Array, Array, NDArray[np.int8]]:
     """Return the lowest and highest z over every cell centre and which way the lowest faces.
 
-    Parameters
-    ----------
-    triangles
-        (n, 3, 3): triangle, corner, coordinate.
-    rotation
-        (3, 3), rows are the axes of the map; may hold a scale.
-    first
-        (x, y) of the first cell centre in the rotated frame.
-    spacing, shape
-        Of the cells.
+    Parameters:
+        triangles: (n, 3, 3): triangle, corner, coordinate.
+        rotation: (3, 3), rows are the axes of the map; may hold a scale.
+        first: (x, y) of the first cell centre in the rotated frame.
+        spacing, shape: Of the cells.
 
-    Returns
-    -------
-    lowest, highest
-        (nx, ny), nan where no triangle lies over the centre.
-    facing
-        -1 where the lowest triangle's normal points down, 1 where up, 0 where none.
+    Returns:
+        lowest, highest: (nx, ny), nan where no triangle lies over the centre.
+        facing: -1 where the lowest triangle's normal points down, 1 where up, 0 where none.
     """
     lowest = np.full(shape, np.inf)
     highest = np.full(shape, -np.inf)

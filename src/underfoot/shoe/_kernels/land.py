@@ -1,12 +1,9 @@
 """The land of a sole carried on across its channels."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from underfoot.core.arrays import Array, Mask
 
 
 def nearest_true(mask: Mask) -> tuple[NDArray[np.intp], ...]:

@@ -1,14 +1,10 @@
 """Local width of a plane region: the largest disc inside it that covers each cell."""
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
+
+from underfoot.core.arrays import Array, Mask
 
 from .pieces import distance_within
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 
 def local_width(region: Mask, spacing: float) -> Array:

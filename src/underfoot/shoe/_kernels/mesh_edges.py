@@ -1,10 +1,9 @@
 """Edges and faces of a triangle soup as keys that can be sorted: who shares what."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
+from underfoot.core.arrays import Array
 from underfoot.core.optional import njit
 
 Keys = NDArray[np.uint64]
@@ -102,7 +101,7 @@ def shared_edges(edges: Keys) -> tuple[int, int, int]:
 @njit(cache=True, error_model="numpy")
 def overlap_lines(
     triangles: Triangles,
-    axes: NDArray[np.float64],
+    axes: Array,
     first: tuple[float, float],
     pitch: float,
     shape: tuple[int, int],

@@ -1,13 +1,12 @@
 """Connected pieces of masks and their neighbourhoods, with plain types."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-Mask = NDArray[np.bool_]
+from underfoot.core.arrays import Array, Mask
+
 Labels = NDArray[np.intp]
 
 
@@ -56,7 +55,7 @@ def without_specks(mask: Mask, fewest: int) -> Mask:
     return keep[numbers]
 
 
-def distance_within(mask: Mask) -> NDArray[np.float64]:
+def distance_within(mask: Mask) -> Array:
     """Return the distance (cells) to the nearest cell outside; beyond the array is outside."""
     from scipy import ndimage
 
@@ -64,7 +63,7 @@ def distance_within(mask: Mask) -> NDArray[np.float64]:
     return np.asarray(distance, dtype=np.float64)[1:-1, 1:-1]
 
 
-def distance_to(mask: Mask) -> NDArray[np.float64]:
+def distance_to(mask: Mask) -> Array:
     """Return the distance (cells) to the nearest cell of the mask."""
     from scipy import ndimage
 

@@ -1,14 +1,9 @@
 """A height map seen from a floor that is tilted about the y axis."""
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
 
+from underfoot.core.arrays import Array, Mask
 from underfoot.core.optional import njit
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 
 @njit(cache=True, error_model="numpy")
@@ -26,16 +21,11 @@ def tilted_rows(
     linear between rows, each run of cells carried on by half a cell at its ends. nan where no part
     of the sole lies over the cell.
 
-    Parameters
-    ----------
-    source, target
-        (x, y) of the cell centres of the map and of the floor, evenly spaced, m.
-    height
-        (nx, ny) m, finite everywhere.
-    inside
-        (nx, ny), the plan form.
-    cosine, sine
-        Of the tilt; x' = x cosine - z sine, z' = x sine + z cosine.
+    Parameters:
+        source, target: (x, y) of the cell centres of the map and of the floor, evenly spaced, m.
+        height: (nx, ny) m, finite everywhere.
+        inside: (nx, ny), the plan form.
+        cosine, sine: Of the tilt; x' = x cosine - z sine, z' = x sine + z cosine.
     """
     x, y = source
     floor_x, floor_y = target

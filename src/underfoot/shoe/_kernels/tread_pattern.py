@@ -4,14 +4,12 @@ All functions take coordinates in the frame of the pattern (m) and return m. The
 nearest wall is exact on both sides, so that edges can be rounded and fillets agree with solids.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from underfoot.core.arrays import Array
+
 _ROUNDING = 1e-12  # m: keeps a cell centre on an edge from falling on either side by rounding
 
 

@@ -1,15 +1,12 @@
 """Repairs of a height map from a file, each with a remark: stray parts, holes, spikes, ledges."""
 
-from __future__ import annotations
-
 import numpy as np
-from numpy.typing import NDArray
+
+from underfoot.core.arrays import Array, Mask
 
 from .._kernels.land import carried_on
 from .._kernels.pieces import grown, pieces, rim, without_holes
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 LARGEST_HOLE = 1e-4
 """A hole of more area is an opening of the sole, not a gap of the scan, m^2."""
 SMALLEST_PART = 0.02

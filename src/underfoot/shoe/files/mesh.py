@@ -1,7 +1,5 @@
 """Triangles as a file holds them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,16 +10,11 @@ from numpy.typing import NDArray
 class Mesh:
     """Triangles as a file holds them.
 
-    Parameters
-    ----------
-    triangles
-        (n, 3, 3) float32: triangle, corner, coordinate, in the unit of the file.
-    format
-        "STL (binary)", "STL (text)", "STEP", "OBJ" or "PLY".
-    unit
-        Length of the file's unit in m, None when the format does not say.
-    remarks
-        Remarks of the reader, sentences.
+    Parameters:
+        triangles: (n, 3, 3) float32: triangle, corner, coordinate, in the unit of the file.
+        format: "STL (binary)", "STL (text)", "STEP", "OBJ" or "PLY".
+        unit: Length of the file's unit in m, None when the format does not say.
+        remarks: Remarks of the reader, sentences.
     """
 
     triangles: NDArray[np.float32]

@@ -1,7 +1,5 @@
 """How an outsole lies in its file: axes, ground side, heel end, foot and resting plane."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -9,16 +7,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
+from underfoot.core.arrays import Array, Mask
+
 from .._kernels.pieces import shrunk, without_specks
 from ..tread_map import tread_map
 from .settings import DIRECTIONS, FileSettings
 from .view import View
 
-Array = NDArray[np.float64]
 _SAMPLE = 200_000  # triangles: more change the axes by less than the snapping
 _SNAP = math.cos(math.radians(20))
 _NEARLY = 1.10  # a box along the file's axes may be this much larger than the smallest one
-Mask = NDArray[np.bool_]
 _TREAD_SHARE = 0.03  # of the plan form: fewer channels decide nothing
 _TREAD_RATIO = 1.5  # channels on the ground's side against the other
 _RIM_RISE = 0.5e-3  # m by which a ground side's rim must turn up more than the other's
@@ -254,12 +252,9 @@ def resting_plane(height: Array, spacing: float) -> tuple[float, float, float]:
     one over the centroid of the plan form: a sole pressed there stands on that face's corners. x
     and y count from the first cell, m.
 
-    Parameters
-    ----------
-    height
-        (nx, ny) m, z up, nan outside.
-    spacing
-        Of its cells, m.
+    Parameters:
+        height: (nx, ny) m, z up, nan outside.
+        spacing: Of its cells, m.
     """
     points = _low_points(height, spacing)
     inside = np.isfinite(height)

@@ -1,15 +1,13 @@
 """From a file to the bottom of a sole in its own frame, with a remark on every decision."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import InputError
+from underfoot.core.arrays import Array
 
 from .._kernels.mesh_edges import overlap_lines
 from ..sole_surface import SoleSurface
@@ -32,7 +30,6 @@ from .soundness import Soundness, soundness
 from .units import HEEL, length_unit
 from .view import View, extents, view
 
-Array = NDArray[np.float64]
 _COARSE = 400  # cells along the sole for finding sides and plane
 _NEARLY_SQUARE = 1.3
 _LEVEL = math.radians(0.05)  # a tilt below it is that of noise and roundings
@@ -45,21 +42,15 @@ _SHEET = 0.05e-3
 class FileOutsole:
     """An outsole read from a file.
 
-    Parameters
-    ----------
-    surface
-        Its bottom in its own frame; ``surface.remarks`` lists what was determined,
-        assumed, repaired or tolerated.
-    format, unit, down, forward, foot, faces
-        What the file is; ``unit`` in m, directions in the file's axes, ``foot`` "" if not
-        determined.
-    soundness
-        Counts of what is wrong with the mesh.
-    thickness
-        Median distance of both sides of the file's body over the land, m; None for a surface
-        without thickness.
-    whole_length
-        Of the sole before the region was cut, m.
+    Parameters:
+        surface: Its bottom in its own frame; ``surface.remarks`` lists what was determined,
+            assumed, repaired or tolerated.
+        format, unit, down, forward, foot, faces: What the file is; ``unit`` in m, directions in the
+            file's axes, ``foot`` "" if not determined.
+        soundness: Counts of what is wrong with the mesh.
+        thickness: Median distance of both sides of the file's body over the land, m; None for a
+            surface without thickness.
+        whole_length: Of the sole before the region was cut, m.
     """
 
     surface: SoleSurface
@@ -77,10 +68,8 @@ class FileOutsole:
 def outsole_from_file(path: Path | str, settings: FileSettings | None = None) -> FileOutsole:
     """Return the outsole in a STEP, STL, OBJ or PLY file.
 
-    Raises
-    ------
-    InputError, DataError
-        See ``read_mesh`` and ``outsole_from_mesh``.
+    Raises:
+        InputError, DataError: See ``read_mesh`` and ``outsole_from_mesh``.
     """
     path = Path(path)
     return outsole_from_mesh(read_mesh(path), settings, name=path.name, where=str(path))
@@ -95,12 +84,10 @@ def outsole_from_mesh(
     order; each decision and each repair is a sentence of ``surface.remarks``, guesses begin with
     "Assumed".
 
-    Raises
-    ------
-    InputError
-        No unit makes it a sole; a region it doesn't have; a grid too fine or too coarse.
-    DataError
-        No face with an area.
+    Raises:
+        InputError: No unit makes it a sole; a region it doesn't have; a grid too fine or too
+            coarse.
+        DataError: No face with an area.
     """
     chosen = settings or FileSettings()
     mesh = replace(mesh, triangles=np.ascontiguousarray(mesh.triangles, dtype=np.float32))

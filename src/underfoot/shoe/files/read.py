@@ -1,7 +1,5 @@
 """Triangles from a file, whatever its format; the content decides, not the name."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -28,12 +26,9 @@ SUFFIXES = {
 def read_mesh(path: Path | str) -> Mesh:
     """Return the triangles of an STL, STEP, OBJ or PLY file.
 
-    Raises
-    ------
-    InputError
-        No such file, or an ending that is none of these.
-    DataError
-        Empty, truncated or corrupt; not what its name promises; no faces.
+    Raises:
+        InputError: No such file, or an ending that is none of these.
+        DataError: Empty, truncated or corrupt; not what its name promises; no faces.
     """
     path = Path(path)
     head = _head(path)
@@ -106,10 +101,8 @@ def _first_characters(head: bytes) -> str:
 def _obj_or_ply(path: Path) -> Mesh:
     """Return the triangles of an OBJ or PLY file; polygons come as triangles.
 
-    Raises
-    ------
-    DataError
-        Damaged, or points without faces.
+    Raises:
+        DataError: Damaged, or points without faces.
     """
     trimesh = optional_module("trimesh", "cad", "Reading OBJ and PLY")
     with path.open("rb") as stream:

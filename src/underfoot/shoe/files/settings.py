@@ -1,7 +1,5 @@
 """Options for reading an outsole file; "auto" leaves an option to be determined."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -21,25 +19,16 @@ SHARES = {"whole": 1.0, "heel": 0.30, "forepart": 0.45}
 class FileSettings:
     """How to read an outsole file.
 
-    Parameters
-    ----------
-    unit
-        "mm", "cm", "m", "inch", or "auto": the one that makes the length that of a sole.
-    down
-        Where the ground is, in the file's axes ("-z", ...); "auto" finds it by the tread, "flip"
-        takes the opposite side.
-    forward
-        Where the toe is ("+x", ...); "auto" or "flip".
-    foot
-        Which foot the file shows, "left" or "right"; "auto" finds it by the bend of the sole.
-    mirror
-        Take the other shoe of the pair.
-    region
-        "whole", "heel" (rear 30 % of a whole sole) or "forepart" (front 45 %).
-    region_length
-        Length of the region, m; None for these shares.
-    spacing
-        Of the height map, m.
+    Parameters:
+        unit: "mm", "cm", "m", "inch", or "auto": the one that makes the length that of a sole.
+        down: Where the ground is, in the file's axes ("-z", ...); "auto" finds it by the tread,
+            "flip" takes the opposite side.
+        forward: Where the toe is ("+x", ...); "auto" or "flip".
+        foot: Which foot the file shows, "left" or "right"; "auto" finds it by the bend of the sole.
+        mirror: Take the other shoe of the pair.
+        region: "whole", "heel" (rear 30 % of a whole sole) or "forepart" (front 45 %).
+        region_length: Length of the region, m; None for these shares.
+        spacing: Of the height map, m.
     """
 
     unit: str = "auto"

@@ -1,7 +1,5 @@
 """Defects of a mesh and why a height map tolerates them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,18 +15,13 @@ from .mesh import Mesh
 class Soundness:
     """Counts of what a sound closed mesh has none of.
 
-    Parameters
-    ----------
-    faces
-        In the file.
-    degenerate, not_finite
-        Faces without area; faces with a corner that is no number.
-    open_edges, crowded_edges, turned_edges
-        Edges of one face; of more than two; of two faces that are turned opposite ways.
-    duplicates
-        Faces that are there more than once.
-    volume
-        Signed volume in the file's unit cubed: negative when the normals point inward.
+    Parameters:
+        faces: In the file.
+        degenerate, not_finite: Faces without area; faces with a corner that is no number.
+        open_edges, crowded_edges, turned_edges: Edges of one face; of more than two; of two faces
+            that are turned opposite ways.
+        duplicates: Faces that are there more than once.
+        volume: Signed volume in the file's unit cubed: negative when the normals point inward.
     """
 
     faces: int
@@ -78,10 +71,8 @@ class Soundness:
 def soundness(mesh: Mesh, where: str) -> Soundness:
     """Return what is wrong with a mesh; corners are the same when their coordinates are.
 
-    Raises
-    ------
-    DataError
-        No face with an area.
+    Raises:
+        DataError: No face with an area.
     """
     triangles = mesh.triangles
     if (triangles == 0).any():

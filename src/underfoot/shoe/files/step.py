@@ -1,7 +1,5 @@
 """STEP: exact surfaces with a unit, turned into triangles by netgen."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Callable, Iterator
@@ -34,10 +32,8 @@ def read_step(path: Path) -> Mesh:
     Sides are at most 3 mm and at most a fifth of the radius of curvature, but 0.4 mm need not be
     undercut: a chord is within 0.04 mm of a radius of 28 mm. The triangles are kept in the cache.
 
-    Raises
-    ------
-    DataError
-        No STEP geometry, no surfaces, or surfaces that cannot be turned into triangles.
+    Raises:
+        DataError: No STEP geometry, no surfaces, or surfaces that cannot be turned into triangles.
     """
     cache = Cache("outsole_step-1")
     key = content_hash(checksum(path), [LONGEST_SIDE, SHORTEST_SIDE, SIDES_PER_RADIUS])

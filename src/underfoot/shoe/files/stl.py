@@ -1,7 +1,5 @@
 """STL, binary and text: no unit, no topology, often large."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 
@@ -40,10 +38,8 @@ def looks_like_stl(head: bytes, path: Path) -> bool:
 def read_stl(path: Path) -> Mesh:
     """Return the triangles of an STL file.
 
-    Raises
-    ------
-    DataError
-        Truncated, or a text STL whose corners don't make triangles.
+    Raises:
+        DataError: Truncated, or a text STL whose corners don't make triangles.
     """
     size = path.stat().st_size
     with path.open("rb") as stream:

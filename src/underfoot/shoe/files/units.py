@@ -1,7 +1,5 @@
 """Which unit a file is in: a sole is 150 to 350 mm long, a heel piece 40 to 110 mm."""
 
-from __future__ import annotations
-
 from underfoot.core import InputError
 
 from .settings import UNITS
@@ -20,19 +18,13 @@ def length_unit(
 ) -> tuple[float, str]:
     """Return the file's unit in m and a remark on how it was determined.
 
-    Parameters
-    ----------
-    length, width
-        Longest extent and the one across, in the file's unit.
-    chosen
-        Unit the user names, or "auto".
-    in_file
-        Unit stated in the file (STEP), m.
+    Parameters:
+        length, width: Longest extent and the one across, in the file's unit.
+        chosen: Unit the user names, or "auto".
+        in_file: Unit stated in the file (STEP), m.
 
-    Raises
-    ------
-    InputError
-        No unit makes it as long as a sole, or the chosen unit makes it absurd.
+    Raises:
+        InputError: No unit makes it as long as a sole, or the chosen unit makes it absurd.
     """
     if chosen != "auto":
         unit = UNITS[chosen]

@@ -1,7 +1,5 @@
 """A mesh seen from both sides as height maps."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -9,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core import InputError
+from underfoot.core.arrays import Array, Mask
 
 from .._kernels.height_buffer import extents as _extents
 from .._kernels.height_buffer import height_buffer
 
-Array = NDArray[np.float64]
 _MOST_CELLS = 60_000_000
 
 
@@ -32,7 +30,7 @@ class View:
     facing: NDArray[np.int8]
 
     @property
-    def covered(self) -> NDArray[np.bool_]:
+    def covered(self) -> Mask:
         """True over some part of the mesh."""
         return np.isfinite(self.lowest)
 
@@ -45,10 +43,8 @@ def extents(triangles: NDArray[np.float32], axes: Array) -> tuple[Array, Array]:
 def view(triangles: NDArray[np.float32], axes: Array, spacing: float) -> View:
     """Return the mesh seen along the third row of ``axes`` on cells of ``spacing`` (m).
 
-    Raises
-    ------
-    InputError
-        More cells than memory is good for.
+    Raises:
+        InputError: More cells than memory is good for.
     """
     axes = np.ascontiguousarray(axes, dtype=np.float64)
     low, high = extents(triangles, axes)

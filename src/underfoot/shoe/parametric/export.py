@@ -1,7 +1,5 @@
 """Soles as files for the CAD, the printer and the mould maker."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -40,21 +38,14 @@ class SoleFile:
 def write_sole(shape: SoleShape, path: Path | str, *, solid: SoleSolid | None = None) -> SoleFile:
     """Write the new sole as STEP, STL, OBJ or PLY in mm and read it back.
 
-    Parameters
-    ----------
-    shape
-        The sole in metres.
-    path
-        Ends with the kind of file.
-    solid
-        Of the same shape, where it was made already.
+    Parameters:
+        shape: The sole in metres.
+        path: Ends with the kind of file.
+        solid: Of the same shape, where it was made already.
 
-    Raises
-    ------
-    InputError
-        Another kind of file; a sole that cannot be made.
-    UnderfootError
-        The file read back is not the solid: not watertight, or of another volume.
+    Raises:
+        InputError: Another kind of file; a sole that cannot be made.
+        UnderfootError: The file read back is not the solid: not watertight, or of another volume.
     """
     path = Path(path)
     kind = path.suffix.lower()

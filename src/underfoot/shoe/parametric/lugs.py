@@ -1,18 +1,15 @@
 """Outlines of the lugs of a tread that meet a sole, for solids."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from underfoot.core.arrays import Array
 
 from ..shape import SoleShape
 from ..tread import Tread
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,18 +1,15 @@
 """Wires, faces and prisms of the modelling kernel from arrays in m; the kernel counts in mm."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
 
 from .lugs import Outline
 
-Array = NDArray[np.float64]
 MM = 1e3
 
 

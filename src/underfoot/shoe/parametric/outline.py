@@ -1,16 +1,13 @@
 """Plan form of a whole shoe sole from a few widths."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import InputError, unknown_name
+from underfoot.core.arrays import Array
 from underfoot.core.checks import positive
 
-Array = NDArray[np.float64]
 SIDES = ("left", "right")
 HEEL_AT, WAIST_AT, LATERAL_BALL_AT, MEDIAL_BALL_AT = 0.16, 0.42, 0.62, 0.72
 """Places of the widths along the sole, as shares of its length (assumed: common lasts)."""
@@ -24,15 +21,12 @@ TOE_OFFSET = 0.12
 class ShoeOutline:
     """Rim of a sole: arcs without a kink through the heel, both waists, both balls and the tip.
 
-    Parameters
-    ----------
-    length
-        m.
-    heel_width, waist_width, ball_width
-        Across the heel, the narrowest place and the ball of the foot, m. The ball width is the sum
-        of its largest extents on both sides, which lie at different places along the sole.
-    side
-        "left" or "right": the left sole, as seen from above, has its medial side at y < 0.
+    Parameters:
+        length: m.
+        heel_width, waist_width, ball_width: Across the heel, the narrowest place and the ball of
+            the foot, m. The ball width is the sum of its largest extents on both sides, which lie
+            at different places along the sole.
+        side: "left" or "right": the left sole, as seen from above, has its medial side at y < 0.
     """
 
     length: float

@@ -4,8 +4,6 @@ Run as ``python -m underfoot.shoe.parametric.rounding IN OUT RADIUS_MM EDGE ...`
 files and the indices of edges in the order of the shape.
 """
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import tempfile

@@ -1,20 +1,18 @@
 """The body between the land surface of a sole and its top, as wide as needed."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from underfoot.core.arrays import Array
 
 from ..profile import Facet, Profile, Rocker
 from ..shape import SoleShape
 from .modelling import MM, kernel
 from .toe_spring import SoleProfile, ToeSpring
 
-Array = NDArray[np.float64]
 MARGIN = 0.02  # m on both sides of the plan form
 ENDS = 0.5e-3  # m behind and before it, where profiles still have their formula
 _CROWN_NODES = 15

@@ -1,13 +1,11 @@
 """A whole sole described by widths, profile and tread."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import InputError
+from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative, positive
 
 from ..profile import Flat, Profile
@@ -16,25 +14,17 @@ from ..tread import ArcChannel, Tread
 from .outline import ShoeOutline
 from .toe_spring import SoleProfile, ToeSpring
 
-Array = NDArray[np.float64]
-
 
 @dataclass(frozen=True, slots=True)
 class WholeSole(SoleShape):
     """A sole from heel to toe in its own frame: x from the rear end, y to the left, z up.
 
-    Parameters
-    ----------
-    outline
-        Plan form.
-    outsole_thickness
-        From the bottom of the lugs to the midsole, m.
-    rear_profile
-        ``Flat()``, ``Facet(angle, length)`` or ``Rocker(radius, start)`` at the heel.
-    toe_spring
-        Bend of the toe; None for none.
-    edge_radius, crown_radius, tread, arc_channel, wear
-        As of ``Heel``.
+    Parameters:
+        outline: Plan form.
+        outsole_thickness: From the bottom of the lugs to the midsole, m.
+        rear_profile: ``Flat()``, ``Facet(angle, length)`` or ``Rocker(radius, start)`` at the heel.
+        toe_spring: Bend of the toe; None for none.
+        edge_radius, crown_radius, tread, arc_channel, wear: As of ``Heel``.
     """
 
     outline: ShoeOutline

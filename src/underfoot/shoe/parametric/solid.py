@@ -1,7 +1,5 @@
 """The sole as a solid: plan form, profile, lugs, sipes and rounded edges."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -44,10 +42,8 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
     straight above it: on a bevel of 10 degrees they differ by less than 2 % of the radius. Wear is
     left out.
 
-    Raises
-    ------
-    InputError
-        A lug, channel or sipe too small to be made; a toe or bevel through the top.
+    Raises:
+        InputError: A lug, channel or sipe too small to be made; a toe or bevel through the top.
     """
     check_printable(shape)
     remarks: list[str] = []

@@ -1,32 +1,24 @@
 """Profile of a whole sole: the heel's own, and a toe that bends up."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import InputError
+from underfoot.core.arrays import Array
 from underfoot.core.checks import positive
 
 from ..profile import Profile
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class ToeSpring:
     """An arc that lifts the toe, tangent to the sole where it begins.
 
-    Parameters
-    ----------
-    height_at_tip
-        Of the tip over the sole plane, m.
-    start
-        Distance of its beginning from the rear end, m.
-    length
-        Of the sole, m.
+    Parameters:
+        height_at_tip: Of the tip over the sole plane, m.
+        start: Distance of its beginning from the rear end, m.
+        length: Of the sole, m.
     """
 
     height_at_tip: float

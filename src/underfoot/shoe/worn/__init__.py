@@ -1,7 +1,5 @@
 """Wear of soles: patches, maps, Archard wear step by step, and how worn a sole is."""
 
-from __future__ import annotations
-
 from .archard import ArchardStep, archard_wear
 from .map import WornMap
 from .measures import WearMeasures, surface_wear_measures, wear_measures

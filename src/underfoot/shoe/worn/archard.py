@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import InputError, Progress, silent
+from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative, positive
 
 from .map import WornMap
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from ..geometry import SoleMap
     from ..shape import SoleShape
 
-Array = NDArray[np.float64]
 Contact = Callable[["SoleShape", float], tuple["SoleMap", Array]]
 """Sole and shoe angle (rad) to its map on the floor and the contact pressure (nx, ny) in Pa."""
 BLUR = 0.6
@@ -55,29 +54,18 @@ def archard_wear(
     which the sole wears, equal sliding at each; its length ds is such that the largest dz is
     ``step``. The next step meets the worn sole.
 
-    Parameters
-    ----------
-    shape
-        The sole when new; wear that it has already is not counted.
-    angles
-        Shoe angles at which it wears, rad.
-    depth
-        Thickness lost at the most worn place, m.
-    contact
-        Contact pressure under a sole at an angle.
-    wear_rate
-        k, m^2/N (volume per load and way). It sets the way alone, not the shape.
-    spacing
-        Of the map of wear, m.
-    step
-        Largest thickness lost between two contacts, m.
-    begin
-        Go on from here instead of from the new sole.
+    Parameters:
+        shape: The sole when new; wear that it has already is not counted.
+        angles: Shoe angles at which it wears, rad.
+        depth: Thickness lost at the most worn place, m.
+        contact: Contact pressure under a sole at an angle.
+        wear_rate: k, m^2/N (volume per load and way). It sets the way alone, not the shape.
+        spacing: Of the map of wear, m.
+        step: Largest thickness lost between two contacts, m.
+        begin: Go on from here instead of from the new sole.
 
-    Raises
-    ------
-    InputError
-        No angle; values that are not positive; a sole that nowhere touches the floor.
+    Raises:
+        InputError: No angle; values that are not positive; a sole that nowhere touches the floor.
     """
     positive(wear_rate, "wear.wear_rate")
     positive(spacing, "wear.spacing")

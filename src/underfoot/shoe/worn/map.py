@@ -6,26 +6,21 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import InputError
+from underfoot.core.arrays import Array
 
 if TYPE_CHECKING:
     from ..shape import SoleShape
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class WornMap:
     """Removed thickness of the land on a grid in the frame of the sole, bilinear between nodes.
 
-    Parameters
-    ----------
-    x, y
-        Evenly spaced nodes, m.
-    removed
-        (nx, ny), normal to the sole, m; beyond the grid its nearest value holds.
+    Parameters:
+        x, y: Evenly spaced nodes, m.
+        removed: (nx, ny), normal to the sole, m; beyond the grid its nearest value holds.
     """
 
     x: Array

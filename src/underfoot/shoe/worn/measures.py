@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
+
+from underfoot.core.arrays import Array, Mask
 
 from ..heel_grid import cut_heel
 
@@ -15,8 +16,6 @@ if TYPE_CHECKING:
     from ..shape import SoleShape
     from ..sole_surface import SoleSurface
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 MEASURING_CELL = 0.5e-3  # m
 SHALLOW = 0.5
@@ -27,18 +26,14 @@ SHALLOW = 0.5
 class WearMeasures:
     """State of wear of one sole.
 
-    Parameters
-    ----------
-    removed_depth
-        Largest thickness removed from the land, m.
-    tread_left, mean_tread_left
-        Height of the lugs that is left where it is least, and on average, m.
-    worn_patch_area
-        Largest connected area in which the lugs are worn down to the channel floor, m^2.
-    worn_patch_length, worn_patch_width
-        Its extents along and across the shoe, m.
-    removed_volume
-        m^3.
+    Parameters:
+        removed_depth: Largest thickness removed from the land, m.
+        tread_left, mean_tread_left: Height of the lugs that is left where it is least, and on
+            average, m.
+        worn_patch_area: Largest connected area in which the lugs are worn down to the channel
+            floor, m^2.
+        worn_patch_length, worn_patch_width: Its extents along and across the shoe, m.
+        removed_volume: m^3.
     """
 
     removed_depth: float

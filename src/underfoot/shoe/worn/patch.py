@@ -7,15 +7,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import InputError, unknown_name
+from underfoot.core.arrays import Array
 from underfoot.core.checks import between, not_negative, positive
 
 if TYPE_CHECKING:
     from ..shape import SoleShape
 
-Array = NDArray[np.float64]
 PATCHES = ("ellipse", "rectangle")
 
 
@@ -26,20 +25,14 @@ class WornPatch:
     Outside the patch the removed thickness falls off as a slope: removed = depth - tan(taper) d,
     not below 0, with the distance d from the patch.
 
-    Parameters
-    ----------
-    depth
-        Removed within the patch, m: the depth of the tread wears it down to the channel floor.
-    length, width
-        Of the patch along and across the shoe, m.
-    position
-        Distance of its middle from the rear end, m; None: it begins at the rear end.
-    lateral
-        Place of its middle across, m, positive to the left.
-    form
-        "ellipse" or "rectangle".
-    taper
-        Angle between the worn slope around the patch and the unworn sole, rad.
+    Parameters:
+        depth: Removed within the patch, m: the depth of the tread wears it down to the channel
+            floor.
+        length, width: Of the patch along and across the shoe, m.
+        position: Distance of its middle from the rear end, m; None: it begins at the rear end.
+        lateral: Place of its middle across, m, positive to the left.
+        form: "ellipse" or "rectangle".
+        taper: Angle between the worn slope around the patch and the unworn sole, rad.
     """
 
     depth: float

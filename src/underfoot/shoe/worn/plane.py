@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from underfoot.core.arrays import Array
 from underfoot.core.checks import between, not_negative
 
 if TYPE_CHECKING:
     from ..shape import SoleShape
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,12 +22,9 @@ class WearPlane:
     The plane first meets the point that would touch a floor at this shoe angle and then removes
     ``depth`` there; this also makes the worn facet at the rear of a heel.
 
-    Parameters
-    ----------
-    depth
-        Largest thickness removed, normal to the sole, m.
-    angle
-        Shoe angle at which the sole wears, rad, toe up positive; 0 wears the sole evenly.
+    Parameters:
+        depth: Largest thickness removed, normal to the sole, m.
+        angle: Shoe angle at which the sole wears, rad, toe up positive; 0 wears the sole evenly.
     """
 
     depth: float

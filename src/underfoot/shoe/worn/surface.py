@@ -6,14 +6,13 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
+
+from underfoot.core.arrays import Array
 
 from ..sole_surface import SoleSurface
 
 if TYPE_CHECKING:
     from ..shape import SoleShape, SoleWear
-
-Array = NDArray[np.float64]
 
 
 def worn_surface(surface: SoleSurface, wear: SoleWear) -> SoleSurface:
@@ -22,10 +21,8 @@ def worn_surface(surface: SoleSurface, wear: SoleWear) -> SoleSurface:
     The land wears to z' = wear(z); a channel keeps its floor until the land has come down to it,
     then it is land, too. Lugs lose what their land loses.
 
-    Raises
-    ------
-    InputError
-        A patch larger than the sole or beside it.
+    Raises:
+        InputError: A patch larger than the sole or beside it.
     """
     base = surface.land_base
     known = np.where(np.isfinite(base), base, 0.0)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from pathlib import Path
 
@@ -15,16 +14,16 @@ from underfoot.trials.axes import Axes, axes_of, marker_velocity
 from underfoot.trials.events import body_mass
 from underfoot.trials.filters import low_passed
 from underfoot.trials.gait import RcofDefinition, RequiredFriction, required_frictions
-from underfoot.trials.heel import heel_motion
+from underfoot.trials.gait_context import FLAT, heel_speed
 from underfoot.trials.plates import plate_named
 from underfoot.trials.readers import read_trial
+from underfoot.trials.stance import Stance
 from underfoot.trials.trial import Marker, Trial
 
 from .gait import LEAST_LOAD, GaitHistory
 
 DUTY = 0.62  # stance over stride of level walking (assumed, textbook value)
 RATE = 200.0  # Hz of the tables
-FLAT = (0.3, 0.5)  # share of the stance in which the foot lies flat
 _TOE = re.compile(r"toe$|mt2$|mt1$", re.IGNORECASE)
 
 
@@ -80,41 +79,33 @@ def step_history(
     size = np.linalg.norm(shear, axis=1) * np.where(shear @ stance.walking < 0, 1.0, -1.0)
     ratio = np.where(normal > LEAST_LOAD * weight, size / np.maximum(normal, 1.0), 0.0)
     time = np.arange(0.0, since[-1] + 0.5 / plate.rate, 1 / RATE)
-    heel_speed, angle = _heel(trial, step, axes, time)
     how = f"{own:g} kg" if own else f"estimated {weight:.0f} N: mean normal force x 2 x {DUTY:g}"
     return GaitHistory(
         name or stance.plate,
         time,
         np.interp(time, since, normal / weight),
         np.interp(time, since, ratio),
-        angle,
+        _foot_angle(trial, stance, axes, time),
         walking_speed=_walking_speed(trial, stance.contact, stance.toe_off, axes),
-        heel_speed=heel_speed,
+        heel_speed=heel_speed(trial, stance, axes),
         source=how,
     )
 
 
-def _heel(
-    trial: Trial, step: RequiredFriction, axes: Axes, time: Array
-) -> tuple[float | None, Array | None]:
-    """Return the heel's speed at contact and the foot's angle at ``time``, where recorded."""
-    stance = step.stance
+def _foot_angle(trial: Trial, stance: Stance, axes: Axes, time: Array) -> Array | None:
+    """Return the foot's angle at ``time`` since contact, where heel and toe are recorded."""
     heel = trial.marker(stance.heel) if stance.heel else None
-    if heel is None or stance.walking is None:
-        return None, None
-    motion = heel_motion(heel, axes.up)
-    speed = float(np.interp(stance.contact, motion.time, motion.speed))
-    toe = _toe_of(trial, stance.heel)
-    if toe is None or len(toe.positions) != len(heel.positions):
-        return (speed if math.isfinite(speed) else None), None
+    toe = _toe_of(trial, stance.heel) if heel else None
+    if heel is None or toe is None or len(toe.positions) != len(heel.positions):
+        return None
     line = toe.positions - heel.positions
     tilt = np.arctan2(line @ axes.up, line @ stance.walking)
-    share = (motion.time - stance.contact) / stance.duration
+    share = (heel.time - stance.contact) / stance.duration
     flat = (share > FLAT[0]) & (share < FLAT[1])
     if not (flat.any() and np.isfinite(tilt[flat]).all()):
-        return speed, None
-    angle = np.interp(time + stance.contact, motion.time, tilt - np.median(tilt[flat]))
-    return speed, (angle if np.isfinite(angle).all() else None)
+        return None
+    angle = np.interp(time + stance.contact, heel.time, tilt - np.median(tilt[flat]))
+    return angle if np.isfinite(angle).all() else None
 
 
 def _toe_of(trial: Trial, heel: str) -> Marker | None:
@@ -125,7 +116,6 @@ def _toe_of(trial: Trial, heel: str) -> Marker | None:
 
 
 def _walking_speed(trial: Trial, begin: float, end: float, axes: Axes) -> float | None:
-
     velocity = marker_velocity(trial, begin, end, axes.up)
     if velocity is None or not np.isfinite(velocity).all():
         return None

@@ -3,21 +3,14 @@
 NGSolve and netgen are loaded only when a sole is meshed.
 """
 
-from .compliance import FiniteElementCompliance, finite_element_compliance, sole_land
-from .elasticity import LandCompliance, Rubber, land_compliance
-from .mesh import Layers, SoleMesh, sole_mesh
-from .plan import Plan, plan_of
-
-__all__ = [
-    "FiniteElementCompliance",
-    "LandCompliance",
-    "Layers",
-    "Plan",
-    "Rubber",
-    "SoleMesh",
-    "finite_element_compliance",
-    "land_compliance",
-    "plan_of",
-    "sole_land",
-    "sole_mesh",
-]
+from .compliance import FiniteElementCompliance as FiniteElementCompliance
+from .compliance import finite_element_compliance as finite_element_compliance
+from .compliance import sole_land as sole_land
+from .elasticity import LandCompliance as LandCompliance
+from .elasticity import Rubber as Rubber
+from .elasticity import land_compliance as land_compliance
+from .mesh import Layers as Layers
+from .mesh import SoleMesh as SoleMesh
+from .mesh import sole_mesh as sole_mesh
+from .plan import Plan as Plan
+from .plan import plan_of as plan_of

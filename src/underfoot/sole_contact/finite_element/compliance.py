@@ -104,25 +104,18 @@ def finite_element_compliance(
 ) -> FiniteElementCompliance:
     """Return the compliance of a sole from finite elements of its real shape.
 
-    Parameters
-    ----------
-    sole
-        Plan form, profile and tread; meshed as its cells show them.
-    modulus, poisson_ratio, thickness
-        Of the outsole: Pa, 1 (0 to 0.495), m (from the plane of the sole to the midsole, lugs
-        included).
-    shoe_angle
-        Tilt of the sole's plane against the floor, rad.
-    midsole_modulus, midsole_thickness, midsole_poisson_ratio
-        Of the layer between outsole and rigid foot; None for none.
-    cache
-        Where the condensed land is kept; a sole of the same shape and the same ratio of moduli is
-        not computed again. None computes afresh.
+    Parameters:
+        sole: Plan form, profile and tread; meshed as its cells show them.
+        modulus, poisson_ratio, thickness: Of the outsole: Pa, 1 (0 to 0.495), m (from the plane of
+            the sole to the midsole, lugs included).
+        shoe_angle: Tilt of the sole's plane against the floor, rad.
+        midsole_modulus, midsole_thickness, midsole_poisson_ratio: Of the layer between outsole and
+            rigid foot; None for none.
+        cache: Where the condensed land is kept; a sole of the same shape and the same ratio of
+            moduli is not computed again. None computes afresh.
 
-    Raises
-    ------
-    InputError
-        The profile or a channel goes through the outsole; Poisson's ratio above 0.495.
+    Raises:
+        InputError: The profile or a channel goes through the outsole; Poisson's ratio above 0.495.
     """
     land = sole_land(
         sole,

@@ -1,7 +1,5 @@
 """Gaussian profile filter as a convolution along one axis; pure functions of arrays."""
 
-from __future__ import annotations
-
 import numpy as np
 
 ALPHA = np.sqrt(np.log(2.0) / np.pi)

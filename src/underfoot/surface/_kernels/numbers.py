@@ -1,7 +1,5 @@
 """Slopes, curvatures and crossings of evenly spaced heights; pure functions of arrays."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

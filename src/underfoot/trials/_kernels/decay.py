@@ -14,12 +14,7 @@ def linear_part(
 
     Both levels are kept at zero or above; a given ``start`` or ``end`` is not fitted.
 
-    Parameters
-    ----------
-    x, y
-        Shape (n,).
-    tau
-        Decay constants to try, shape (m,).
+    ``x`` and ``y``: shape (n,). ``tau``: decay constants to try, shape (m,).
     """
     e = np.exp(-x / np.maximum(tau[:, None], 1e-300))
     rise = 1.0 - e

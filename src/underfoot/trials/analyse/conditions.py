@@ -12,17 +12,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from underfoot.core import (
-    DataError,
-    InputError,
-    nearest_match,
-    units,
-)
+from underfoot.core import DataError, InputError, nearest_match, units
 
-from ..readers import SUFFIXES
+from ..readers import SUFFIXES, Profile, read_profile
 from ..readers.sheet import is_workbook, workbook_rows
 from ..readers.text import decoded, is_number, name_and_unit
 from ..readers.unit_factors import si_unit
+from .file_result import FileResult
 
 NAMES = ("conditions.csv", "conditions.xlsx")
 REPORT_MARK = "analysis.txt"  # stands in the folder of a report, which holds no trials
@@ -38,6 +34,10 @@ _PERSON_FOLDER = re.compile(
     r"(s|p|vp|sub|subj|subject|person|participant|proband|id)[-_ ]?0*\d+\w?$", re.IGNORECASE
 )
 _FORCES = (".forces", ".mot", ".sto")
+
+
+def _label(path: Path, folder: Path) -> str:
+    return path.relative_to(folder).as_posix()
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,9 +89,9 @@ def study_folder(
     """
     groups, notes = _groups(folder)
     labels = [_label(group[0], folder) for group in groups]
-    own: list[dict[str, Any]] = [dict(_session(group[0], folder)) for group in groups]
-    for label, found in zip(labels, _from_names(labels, names), strict=True):
-        _add(own[labels.index(label)], found, label)
+    own = [_session(group[0], folder) for group in groups]
+    for noted, label, found in zip(own, labels, _from_names(labels, names), strict=True):
+        _add(noted, found, label)
     members = {_label(p, folder): i for i, group in enumerate(groups) for p in group}
     for table, below in _tables(folder, conditions):
         for file, found in conditions_of(below, table).items():
@@ -130,10 +130,6 @@ def named_file(name: str, labels: Sequence[str], below: str = ".") -> str | None
     return same[0] if same else None
 
 
-def _label(path: Path, folder: Path) -> str:
-    return path.relative_to(folder).as_posix()
-
-
 def _groups(folder: Path) -> tuple[list[list[Path]], list[str]]:
     """Return trial files, markers joined with the forces of the same name, and notes."""
     if not folder.is_dir():
@@ -157,13 +153,12 @@ def _groups(folder: Path) -> tuple[list[list[Path]], list[str]]:
             elif ending in SUFFIXES:
                 trials.append(path)
             else:
-                text = "not a measurement file by its ending, left aside"
-                notes.append(f"{_label(path, folder)}: {text}")
+                notes.append(
+                    f"{_label(path, folder)}: not a measurement file by its ending, left aside"
+                )
     if not trials:
         raise InputError(
-            f"the folder {folder} holds no trial file",
-            where="FOLDER",
-            allowed=", ".join(SUFFIXES),
+            f"the folder {folder} holds no trial file", where="FOLDER", allowed=", ".join(SUFFIXES)
         )
     markers = {_stem(path): path for path in trials if path.suffix.casefold() == ".trc"}
     partners = {p for p in trials if p.suffix.casefold() in _FORCES and _stem(p) in markers}
@@ -233,9 +228,7 @@ def _from_names(labels: Sequence[str], names: str) -> list[dict[str, Any]]:
 def _from_folders(labels: Sequence[str]) -> list[dict[str, Any]]:
     parents = [label.split("/")[:-1] for label in labels]
     noted: list[dict[str, Any]] = [{} for _ in labels]
-    depth = min(map(len, parents))
-    for level in range(depth):
-        values = [p[level] for p in parents]
+    for level, values in enumerate(zip(*parents, strict=False)):
         if len(set(values)) < 2 and not _PERSON_FOLDER.match(values[0]):
             continue
         person = all(_PERSON_FOLDER.match(value) for value in values)
@@ -290,9 +283,9 @@ def _same_spelling(noted: Sequence[dict[str, Any]], merge: bool) -> None:
                     own[key] = usual
 
 
-def person_condition(conditions: Iterable[Mapping[str, Any]], preferred: str = "") -> str:
+def person_condition(files: Iterable[FileResult], preferred: str = "") -> str:
     """Return the name of the condition that says which person a file is of, or nothing."""
-    names = {name for noted in conditions for name in noted}
+    names = {name for one in files for name in one.conditions}
     return next((n for n in (preferred, *PERSON) if n in names), "")
 
 
@@ -312,40 +305,54 @@ def conditions_of(folder: Path, table: Path | None = None) -> dict[str, dict[str
     InputError
         The table has no column "file", names a file twice, or can't be read.
     """
-    path = table
-    if path is None:
-        path = next((folder / name for name in NAMES if (folder / name).is_file()), None)
+    path = table or next((folder / name for name in NAMES if (folder / name).is_file()), None)
     if path is None:
         return {}
-    rows = [row for row in table_rows(path) if any(cell for cell in row)]
-    heads = [name_and_unit(cell) for cell in rows[0]] if rows else []
-    names = [name.casefold() for name, _ in heads]
-    if "file" not in names:
+    cells = {name.casefold(): (unit, own) for name, unit, own in table_columns(path)[0]}
+    if "file" not in cells:
         raise InputError(
             'the table of conditions has no column "file"',
             where=path.name,
-            allowed=", ".join(names) or "headings in the first line",
-            nearest=nearest_match("file", names),
+            allowed=", ".join(cells) or "headings in the first line",
+            nearest=nearest_match("file", cells),
         )
-    columns = {
-        name: _column([row[i] if i < len(row) else "" for row in rows[1:]], unit, path.name, name)
-        for i, (name, (_, unit)) in enumerate(zip(names, heads, strict=True))
-        if name and name != "file"
-    }
     # A person called 1, 2, 3 is a name, not a number.
-    for name in set(columns) & set(PERSON):
-        columns[name] = [row[names.index(name)] if names.index(name) < len(row) else ""
-                         for row in rows[1:]]  # fmt: skip
+    columns = {
+        name: own if name in PERSON else _column(own, unit, path.name, name)
+        for name, (unit, own) in cells.items()
+        if name != "file"
+    }
     noted: dict[str, dict[str, Any]] = {}
-    at = names.index("file")
-    for number, row in enumerate(rows[1:]):
-        file = row[at] if at < len(row) else ""
+    for number, file in enumerate(cells["file"][1]):
         if not file:
             continue
         if file in noted:
             raise InputError(f'"{file}" is named twice', where=path.name)
         noted[file] = {n: c[number] for n, c in columns.items() if c[number] not in ("", None)}
     return noted
+
+
+def table_columns(path: Path) -> tuple[list[tuple[str, str, list[str]]], list[int]]:
+    """Return (heading, unit, cells) of each column of a table, and the line number of each row.
+
+    Empty lines and columns without a heading are left out; the first line holds the headings.
+    """
+    rows = [(line, row) for line, row in enumerate(table_rows(path), start=1) if any(row)]
+    heads = [name_and_unit(cell) for cell in rows[0][1]] if rows else []
+    columns = [
+        (name, unit, [row[i] if i < len(row) else "" for _, row in rows[1:]])
+        for i, (name, unit) in enumerate(heads)
+        if name
+    ]
+    return columns, [line for line, _ in rows[1:]]
+
+
+def profile_of(folder: Path, given: Path | None) -> tuple[Profile, str]:
+    """Return the given profile, else that of the folder, else the plain one; and its text."""
+    path = given or folder / "profile.toml"
+    if given is None and not path.is_file():
+        return Profile(), ""
+    return read_profile(path), path.read_text(encoding="utf-8-sig")
 
 
 def table_rows(path: Path) -> list[list[str]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import reduce
 from pathlib import Path
 
 import numpy as np
@@ -13,11 +14,11 @@ from ..axes import axes_of
 from ..edits import EditError
 from ..events import stances
 from ..gait import DEFINITIONS, required_friction, stance_frictions
-from ..readers import Profile, read_profile, read_trials
+from ..readers import Profile, read_trials
 from ..trial import Trial, joined
-from .conditions import study_folder
+from .conditions import profile_of, study_folder
 from .edit_table import edits_of
-from .tables import Cell, Table
+from .tables import Cell, Table, mean_and_interval
 
 
 def definition_tables(
@@ -33,20 +34,14 @@ def definition_tables(
         No such folder, no trial in it, a wrong profile or a wrong edit.
     """
     folder = Path(folder)
-    own = folder / "profile.toml"
-    path = profile or (own if own.is_file() else None)
-    read = read_profile(path) if path else Profile()
+    read, _ = profile_of(folder, profile)
     recordings = study_folder(folder).recordings
     edits = edits_of(folder, [recording.name for recording in recordings])
     rows: list[tuple[Cell, ...]] = []
     notes = []
     for number, recording in enumerate(recordings, start=1):
         try:
-            trial: Trial | None = None
-            for file in recording.paths:
-                part = read_trials(file, read)[0]
-                trial = part if trial is None else joined(trial, part)
-            assert trial is not None  # a recording has files
+            trial = reduce(joined, (read_trials(file, read)[0] for file in recording.paths))
             trial = trial.with_edits(*edits.get(recording.name, []))
             rows += [(recording.name, *row) for row in _steps(trial, read)]
         except EditError:
@@ -87,18 +82,12 @@ def _summary(rows: Sequence[tuple[Cell, ...]]) -> Table:
         known = np.isfinite(values[:, i])
         numbers = values[known, i]
         change = numbers - values[known, 0]
-        said = definition.conventions()
-        out.append(
-            (
-                name,
-                len(numbers),
-                float(numbers.mean()) if len(numbers) else None,
-                float(numbers.std(ddof=1)) if len(numbers) > 1 else None,
-                float(change.mean()) if len(numbers) else None,
-                float(np.abs(change).max()) if len(numbers) else None,
-                "; ".join(said.values()),
-            )
+        mean, spread, *_ = mean_and_interval(numbers)
+        changes = (
+            (float(change.mean()), float(np.abs(change).max())) if len(change) else (None,) * 2
         )
+        choices = "; ".join(definition.conventions().values())
+        out.append((name, len(numbers), mean, spread, *changes, choices))
     columns = ("definition", "steps", "mean RCOF", "SD", "mean change", "largest change", "choices")
     return Table(
         "definitions",

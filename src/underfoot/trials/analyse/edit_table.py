@@ -11,12 +11,15 @@ from typing import Any
 from underfoot.core import InputError, nearest_match, to_si
 
 from ..edits import EditError
-from ..readers.text import is_number, name_and_unit
-from ..trial import EDITS, Edit
-from .conditions import named_file, table_rows
+from ..readers.text import is_number
+from ..trial import Edit
+from .conditions import named_file, table_columns
 
 NAMES = ("edits.csv", "edits.xlsx")
 COLUMNS = ("file", "step", "edit", "value", "why")
+EDIT_COLUMNS = (
+    "step", "what", "before", "after", "quantity", "number before", "number after", "why"
+)  # fmt: skip
 
 
 def edits_of(folder: Path, labels: Sequence[str], *, others: bool = False) -> dict[str, list[Edit]]:
@@ -41,32 +44,24 @@ def edits_of(folder: Path, labels: Sequence[str], *, others: bool = False) -> di
     path = next((folder / name for name in NAMES if (folder / name).is_file()), None)
     if path is None:
         return {}
-    rows = table_rows(path)
-    heads = [name_and_unit(cell) for cell in rows[0]] if rows else []
-    names = [name.casefold() for name, _ in heads]
-    lacking = [name for name in COLUMNS if name not in names]
+    columns, lines = table_columns(path)
+    cells = {name.casefold(): (unit, own) for name, unit, own in columns}
+    lacking = [name for name in COLUMNS if name not in cells]
     if lacking:
         raise EditError(
             f'there is no column "{lacking[0]}"', where=path.name, allowed=", ".join(COLUMNS)
         )
-    at = {name: names.index(name) for name in COLUMNS}
-    unit = heads[at["value"]][1]
     found: dict[str, list[Edit]] = {}
-    for number, row in enumerate(rows[1:], start=2):
-        if not any(row):
-            continue
-        cells = {name: row[i] if i < len(row) else "" for name, i in at.items()}
-        where = f"{path.name}, line {number}"
-        file = named_file(cells["file"], labels)
+    rows = zip(*(cells[name][1] for name in COLUMNS), strict=True)
+    for line, (name, step, what, value, why) in zip(lines, rows, strict=True):
+        where = f"{path.name}, line {line}"
+        file = named_file(name, labels)
         if file is None and others:
             continue
         if file is None:
-            raise EditError(
-                f'there is no file "{cells["file"]}"',
-                where=where,
-                nearest=nearest_match(cells["file"], labels),
-            )
-        edit = edit_from(cells["step"], cells["edit"], cells["value"], cells["why"], where, unit)
+            nearest = nearest_match(name, labels)
+            raise EditError(f'there is no file "{name}"', where=where, nearest=nearest)
+        edit = edit_from(step, what, value, why, where, cells["value"][0])
         found.setdefault(file, []).append(edit)
     return found
 
@@ -91,9 +86,8 @@ def edit_from(step: str, what: str, value: str, why: str, where: str, unit: str 
     except EditError:
         raise
     except InputError as error:
-        raise EditError(
-            error.what, where=where, allowed=error.allowed, nearest=error.nearest
-        ) from error
+        text, allowed, nearest = error.what, error.allowed, error.nearest
+        raise EditError(text, where=where, allowed=allowed, nearest=nearest) from error
 
 
 def _time(text: str, unit: str, where: str) -> float:
@@ -119,9 +113,7 @@ def with_edit_row(text: str, row: Sequence[str]) -> str:
 
 
 def edit_log(
-    edits: Sequence[Edit],
-    before: Sequence[dict[str, Any]],
-    after: Sequence[dict[str, Any]],
+    edits: Sequence[Edit], before: Sequence[dict[str, Any]], after: Sequence[dict[str, Any]]
 ) -> list[dict[str, Any]]:
     """Return one row per edit: the event and the number before and after it.
 
@@ -129,29 +121,18 @@ def edit_log(
     """
     rows = []
     for edit in edits:
-        old = _step_named(edit, before)
+        if isinstance(edit.step, int):
+            old = next(step for step in before if step["number"] == edit.step)
+        else:
+            at = float(edit.step)
+            old = min(before, key=lambda step: abs(step["contact"] - at))
         new = next(step for step in after if step["number"] == old["number"])
         quantity = "peak slipping speed" if "peak_slipping_speed" in old else "rcof"
         key = quantity.replace(" ", "_")
-        rows.append(
-            {
-                "step": old["item"],
-                "what": edit.what,
-                "before": _event(edit.what, old),
-                "after": _event(edit.what, new),
-                "quantity": quantity,
-                "number before": old[key],
-                "number after": new[key],
-                "why": edit.why,
-            }
-        )
+        events = _event(edit.what, old), _event(edit.what, new)
+        row = (old["item"], edit.what, *events, quantity, old[key], new[key], edit.why)
+        rows.append(dict(zip(EDIT_COLUMNS, row, strict=True)))
     return rows
-
-
-def _step_named(edit: Edit, steps: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    if isinstance(edit.step, int):
-        return next(step for step in steps if step["number"] == edit.step)
-    return min(steps, key=lambda step: abs(step["contact"] - float(edit.step)))
 
 
 def _event(what: str, step: dict[str, Any]) -> str:
@@ -160,6 +141,3 @@ def _event(what: str, step: dict[str, Any]) -> str:
     if what == "side":
         return str(step["side"])
     return "no step: " + step["reason"] if step["reason"] else "step"
-
-
-__all__ = ["COLUMNS", "EDITS", "edit_from", "edit_log", "edits_of", "with_edit_row"]

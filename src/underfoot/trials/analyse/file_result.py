@@ -71,20 +71,18 @@ class FileResult:
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> FileResult:
         """Return the result written by ``as_dict``."""
-        plain: dict[str, Any] = dict(data)
-        plain["reasons"] = tuple(plain["reasons"])
-        plain["measurements"] = tuple(plain["measurements"])
-        plain["edits"] = tuple(plain["edits"])
-        plain["steps"] = tuple(plain["steps"])
+        plain: dict[str, Any] = {
+            key: tuple(v) if isinstance(v, list) else v for key, v in data.items()
+        }
         return cls(**plain)
 
 
 class Draft:
     """Collects what one file gives while it is analysed."""
 
-    def __init__(self, file: str, conditions: Mapping[str, Any]) -> None:
+    def __init__(self, file: str, conditions: Mapping[str, Any], checksum: str = "") -> None:
         self.file = file
-        self.checksum = ""
+        self.checksum = checksum
         self.conditions = dict(conditions)
         self.measurements: list[dict[str, Any]] = []
         self.main: dict[str, float] = {}
@@ -108,18 +106,14 @@ class Draft:
             if isinstance(values, np.ndarray):
                 step = max(1, math.ceil(len(values) / _POINTS))
                 out[key] = [_rounded(v) for v in np.asarray(values, dtype=float)[::step].tolist()]
-            elif isinstance(values, float):
-                out[key] = _rounded(values)
             else:
-                out[key] = values
+                out[key] = _rounded(values) if isinstance(values, float) else values
         self.curves.setdefault(name, []).append(out)
 
     def finished(self, protocol: Protocol) -> FileResult:
         """Check the rules and return the result with its verdict."""
         for rule in protocol.rules:
-            if rule.quantity not in self.facts:
-                continue
-            broken = rule.broken_by(self.facts[rule.quantity])
+            broken = rule.quantity in self.facts and rule.broken_by(self.facts[rule.quantity])
             if broken:
                 (self.refusals if rule.severity == "refuse" else self.cautions).append(broken)
         for entry in self.measurements:

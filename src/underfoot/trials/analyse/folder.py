@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -16,9 +15,9 @@ from underfoot.core.provenance import version
 
 from ..edits import EditError
 from ..protocols import Protocol
-from ..readers import Profile, read_profile, read_trials, with_channels
+from ..readers import Profile, read_trials, with_channels
 from ..trial import Edit, Trial, file_checksum, joined
-from .conditions import person_condition, study_folder
+from .conditions import person_condition, profile_of, study_folder
 from .edit_table import edits_of
 from .file_result import REFUSED, Draft, FileResult
 from .kinds import STEP_KINDS, analysed_trial
@@ -29,7 +28,8 @@ from .steps import check_ramp
 from .study import Study, study_of
 from .tables import Table, edit_table, file_table, measurement_table
 
-_STEP = "#"
+_CODE = "2"  # raised when the numbers of a file change, so that stored results are made again
+_DIED = "the process that analysed it ended without an answer"
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,18 +49,16 @@ class FolderAnalysis:
     @property
     def person(self) -> str:
         """Name of the condition that says whom a file is of, or nothing."""
-        return person_condition((f.conditions for f in self.files), self.protocol.text("subject"))
+        return person_condition(self.files, self.protocol.text("subject"))
 
     @property
     def tables(self) -> tuple[Table, ...]:
         """All tables: files, study, tests, edits, steps, curves over stance, measurements."""
+        files = self.files
         tests = (finding.table for finding in self.study.findings)
-        edits = edit_table(self.files)
-        log = () if edits is None else (edits,)
-        files = file_table(self.files)
-        curves = curve_table(self.files)
-        steps = (*step_tables(self.files), *(() if curves is None else (curves,)))
-        return (files, *self.study.tables, *tests, *log, *steps, measurement_table(self.files))
+        found = (edit_table(files), *step_tables(files), curve_table(files))
+        steps = (table for table in found if table is not None)
+        return (file_table(files), *self.study.tables, *tests, *steps, measurement_table(files))
 
 
 def analyse_folder(
@@ -103,59 +101,37 @@ def analyse_folder(
     """
     folder = Path(folder)
     check_ramp(protocol)
+    names = names or protocol.text("names")
     study_files = study_folder(
-        folder,
-        conditions=conditions,
-        names=names or protocol.text("names"),
-        merge_spelling=merge_spelling,
+        folder, conditions=conditions, names=names, merge_spelling=merge_spelling
     )
-    profile_path = profile or (
-        folder / "profile.toml" if (folder / "profile.toml").is_file() else None
-    )
-    read = with_channels(
-        read_profile(profile_path) if profile_path else Profile(),
-        protocol.text("friction"),
-        protocol.text("normal"),
-        where=f"protocol {protocol.name}",
-    )
+    read, text = profile_of(folder, profile)
+    columns = protocol.text("friction"), protocol.text("normal")
+    read = with_channels(read, *columns, where=f"protocol {protocol.name}")
     edits = edits_of(folder, [recording.name for recording in study_files.recordings])
-    base = content_hash(protocol.key, _profile_key(profile_path), version(), _code_version())
-    place = None if store is None else str(store)
-    jobs = [
-        (
-            recording.name,
-            tuple(map(str, recording.paths)),
-            dict(recording.conditions),
-            edits.get(recording.name, []),
-            read,
-            protocol,
-            base,
-            place,
-        )
-        for recording in study_files.recordings
+    base = content_hash(protocol.key, text and content_hash(text), version(), _CODE)
+    jobs: list[tuple[Any, ...]] = [
+        (one.name, one.paths, one.conditions, edits.get(one.name, []), read, protocol, base, store)
+        for one in study_files.recordings
     ]
-    results = _run(jobs, processes or available_processors(), progress)
-    files = tuple(sorted((one for part in results for one in part), key=lambda one: one.file))
+    # A process takes longer to start than a file.
+    count = (processes or available_processors()) if len(jobs) >= 4 else 1
+    answers = in_processes(
+        _job, jobs, count, progress=progress, stage="analysing files", died=_died
+    )
+    results = (one for _, part in answers for one in part)
+    files = tuple(sorted(results, key=lambda one: one.file))
     study = study_of(files, protocol)
     methods = tuple(methods_paragraphs(files, protocol, study, version()))
     return FolderAnalysis(protocol, files, study, methods, study_files.notes)
 
 
-def _run(jobs: list[tuple[Any, ...]], processes: int, progress: Progress) -> list[list[FileResult]]:
-    count = processes if len(jobs) >= 4 else 1  # a process takes longer to start than a file
-    stage = "analysing files"
-    answers = in_processes(_job, jobs, count, progress=progress, stage=stage, died=_died)
-    return [results for _, results in answers]
-
-
 def _died(job: tuple[Any, ...]) -> list[FileResult]:
-    reason = "the process that analysed it ended without an answer"
-    return [FileResult(job[0], "", REFUSED, (reason,))]
+    return [FileResult(job[0], "", REFUSED, (_DIED,))]
 
 
 def _job(job: tuple[Any, ...]) -> list[FileResult]:
-    name, paths, noted, edits, profile, protocol, base, store = job
-    files = [Path(path) for path in paths]
+    name, files, noted, edits, *_, base, store = job
     try:
         checksums = [file_checksum(path) for path in files]
     except OSError as error:
@@ -164,19 +140,28 @@ def _job(job: tuple[Any, ...]) -> list[FileResult]:
     key = content_hash(
         base, checksums, name, [p.name for p in files], noted, list(map(repr, edits))
     )
-    kept = _load(store, key)
-    if kept is not None:
-        return kept
-    results = _analysed(name, files, checksums[0], noted, edits, profile, protocol)
-    _keep(store, key, results)
+    if store is None:
+        return _analysed(checksums[0], *job[:6])
+    path = store / f"{key}.json"
+    try:
+        kept = json.loads(path.read_text(encoding="utf-8"))
+        return [FileResult.from_dict(one) for one in kept]
+    except (OSError, ValueError, TypeError):
+        pass
+    results = _analysed(checksums[0], *job[:6])
+    store.mkdir(parents=True, exist_ok=True)
+    handle, part = tempfile.mkstemp(dir=store, suffix=".part")
+    with os.fdopen(handle, "w", encoding="utf-8") as stream:
+        stream.write(json.dumps([one.as_dict() for one in results]))  # faster than json.dump
+    os.replace(part, path)
     return results
 
 
 def _analysed(
-    name: str,
-    files: list[Path],
     checksum: str,
-    noted: Mapping[str, Any],
+    name: str,
+    files: tuple[Path, ...],
+    noted: dict[str, Any],
     edits: list[Edit],
     profile: Profile,
     protocol: Protocol,
@@ -211,12 +196,22 @@ def _analysed(
     for number, trial in enumerate(trials, start=1):
         if isinstance(mass, float):
             trial = replace(trial, settings={**trial.settings, "body mass (kg)": f"{mass:g}"})
-        if protocol.kind in STEP_KINDS:
-            trial = trial.with_edits(*edits)
-        else:
-            trial = trial.with_edits(*(edit for edit in edits if edit.step == number))
-        label = name if len(trials) == 1 else f"{name} {_STEP}{number}"
-        results.append(_one(trial, label, checksum, noted, profile, protocol, notes))
+        steps = protocol.kind in STEP_KINDS
+        trial = trial.with_edits(*(edit for edit in edits if steps or edit.step == number))
+        label = name if len(trials) == 1 else f"{name} #{number}"
+        draft = Draft(label, noted, checksum)
+        draft.cautions += notes
+        try:
+            analysed_trial(trial, draft, protocol, profile)
+        except EditError as error:
+            error.what = f"{label}: {error.what}"
+            raise
+        except UnderfootError as error:
+            draft.refusals.append(str(error))
+        except Exception as error:
+            # One odd file must not end the work on hundreds of others; the cause is kept.
+            draft.refusals.append(f"the analysis failed ({type(error).__name__}: {error})")
+        results.append(draft.finished(protocol))
     return results
 
 
@@ -235,62 +230,3 @@ def _check_whole_edits(edits: list[Edit], trials: int, protocol: Protocol) -> No
             )
         if any(edit.step == other.step for other in edits[:i]):
             raise EditError(f"{edit.step_words} is excluded twice", where=edit.where)
-
-
-def _one(
-    trial: Trial,
-    label: str,
-    checksum: str,
-    noted: Mapping[str, Any],
-    profile: Profile,
-    protocol: Protocol,
-    notes: list[str],
-) -> FileResult:
-    draft = Draft(label, noted)
-    draft.checksum = checksum
-    draft.cautions += notes
-    try:
-        analysed_trial(trial, draft, protocol, profile)
-    except EditError as error:
-        raise EditError(
-            f"{label}: {error.what}",
-            where=error.where,
-            allowed=error.allowed,
-            nearest=error.nearest,
-            remedy=error.remedy,
-        ) from error
-    except UnderfootError as error:
-        draft.refusals.append(str(error))
-    except Exception as error:
-        # One odd file must not end the work on hundreds of others; the cause is kept.
-        draft.refusals.append(f"the analysis failed ({type(error).__name__}: {error})")
-    return draft.finished(protocol)
-
-
-def _profile_key(path: Path | None) -> str:
-    return "" if path is None else content_hash(path.read_text(encoding="utf-8-sig"))
-
-
-def _code_version() -> str:
-    """Raise this when the numbers of a file change, so that stored results are made again."""
-    return "2"
-
-
-def _load(store: str | None, key: str) -> list[FileResult] | None:
-    if store is None:
-        return None
-    try:
-        data = json.loads((Path(store) / f"{key}.json").read_text(encoding="utf-8"))
-        return [FileResult.from_dict(one) for one in data]
-    except (OSError, ValueError, TypeError):
-        return None
-
-
-def _keep(store: str | None, key: str, results: list[FileResult]) -> None:
-    if store is None:
-        return
-    Path(store).mkdir(parents=True, exist_ok=True)
-    handle, part = tempfile.mkstemp(dir=store, suffix=".part")
-    with os.fdopen(handle, "w", encoding="utf-8") as stream:
-        stream.write(json.dumps([one.as_dict() for one in results]))  # faster than json.dump
-    os.replace(part, Path(store) / f"{key}.json")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import fields
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from ..readers import Profile
 from ..relaxation_test import relaxation_reading
 from ..slide_friction import slide_friction
 from ..trial import Trial
+from .edit_table import EDIT_COLUMNS
 from .file_result import Draft, rates
 from .steps import STEP_KINDS, analysed_steps
 
@@ -35,18 +37,8 @@ def analysed_trial(trial: Trial, draft: Draft, protocol: Protocol, profile: Prof
         return
     for edit in trial.edits:
         draft.refusals.append(f"excluded by hand: {edit.why}")
-        draft.edits.append(
-            {
-                "step": draft.file,
-                "what": edit.what,
-                "before": "used",
-                "after": "excluded",
-                "quantity": "",
-                "number before": None,
-                "number after": None,
-                "why": edit.why,
-            }
-        )
+        excluded = (draft.file, edit.what, "used", "excluded", "", None, None, edit.why)
+        draft.edits.append(dict(zip(EDIT_COLUMNS, excluded, strict=True)))
     _KINDS[protocol.kind](trial, draft, protocol, profile)
 
 
@@ -55,40 +47,28 @@ def _slip_tester(trial: Trial, draft: Draft, protocol: Protocol, profile: Profil
     rates(trial, draft)
     draft.add("slide", found.cof, main="cof")
     draft.facts.update(found.facts)
-    draft.curve(
-        "slide",
-        time=found.time,
-        normal=found.normal,
-        shear=found.shear,
-        ratio=found.ratio,
-        begin=found.window[0],
-        end=found.window[1],
-    )
+    series = {key: getattr(found, key) for key in ("time", "normal", "shear", "ratio")}
+    draft.curve("slide", **series, begin=found.window[0], end=found.window[1])
     if not profile.sensors or not trial.markers:
         return
     name, position = next(iter(profile.sensors.items()))
-    sensor = trial.channel(name)
     marker = next(iter(trial.markers.values()))
+    sensor = trial.channel(name)
     try:
         scan = pressure_scan(trial, sensor, marker, position=position)
     except DataError as error:
         draft.cautions.append(f"no pressure scan: {error.what}")
         return
     draft.cautions += list(scan.flags)
-    draft.add(
-        "scan",
-        Measurement("peak fluid pressure", float(scan.pressure.max()), "Pa", scan.baseline_sd),
-        main="scan_peak_pressure",
-    )
-    draft.curves["scan"] = {
-        "along": [float(f"{v:.7g}") for v in scan.along],
-        "pressure": [float(f"{v:.7g}") for v in scan.pressure],
-        "lateral": scan.lateral,
-        "speed": scan.speed,
-        "speed_change": scan.speed_change,
-        "baseline_sd": scan.baseline_sd,
-        "sample_load": scan.sample_load,
+    highest = float(scan.pressure.max())
+    peak = Measurement("peak fluid pressure", highest, "Pa", scan.baseline_sd)
+    draft.add("scan", peak, main="scan_peak_pressure")
+    stored = {
+        f.name: getattr(scan, f.name) for f in fields(scan) if f.name not in ("trial", "flags")
     }
+    for name in ("along", "pressure"):
+        stored[name] = [float(f"{v:.7g}") for v in stored[name]]
+    draft.curves["scan"] = stored
 
 
 def _pin_on_disk(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
@@ -102,14 +82,9 @@ def _pin_on_disk(trial: Trial, draft: Draft, protocol: Protocol, profile: Profil
         draft.main["friction_force"] = point.shear
     if point.speed is not None:
         draft.facts["sliding_speed"] = draft.main["speed"] = point.speed
-    draft.curve(
-        "run",
-        time=point.time,
-        ratio=point.ratio,
-        begin=point.window[0],
-        end=point.window[1],
-        cof=point.cof.value or np.nan,
-    )
+    begin, end = point.window
+    cof = point.cof.value or np.nan
+    draft.curve("run", time=point.time, ratio=point.ratio, begin=begin, end=end, cof=cof)
 
 
 def _relaxation(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
@@ -121,9 +96,8 @@ def _relaxation(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile
             remedy='Add a column "thickness (mm)" to conditions.csv',
         )
     found = relaxation_reading(trial, thickness)
-    draft.add("test", found.force_2_percent, main="force_2_percent")
-    draft.add("test", found.peak_force, main="peak_force")
-    draft.add("test", found.final_force, main="final_force")
+    for name in ("force_2_percent", "peak_force", "final_force"):
+        draft.add("test", getattr(found, name), main=name)
     draft.facts["hold_time"] = found.hold_time
     draft.facts["compression"] = found.peak_displacement / (2.0 * thickness)
     time, force = found.hold

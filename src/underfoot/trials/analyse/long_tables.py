@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -60,19 +60,11 @@ def step_tables(files: Iterable[FileResult]) -> list[Table]:
             ]
     first = ("file", "file verdict", *noted, "step")
     units = [f"{n} ({u})" if u != "1" else n for n, u in STEP_NUMBERS.items()]
+    columns = (*first, *_TEXTS, "cautions", *units)
+    tidy = (*first, "side", "step verdict", "quantity", "value", "unit")
     return [
-        Table(
-            "steps_wide",
-            "Every step with its numbers",
-            (*first, *_TEXTS, "cautions", *units),
-            tuple(wide),
-        ),
-        Table(
-            "steps_long",
-            "Every number of every step",
-            (*first, "side", "step verdict", "quantity", "value", "unit"),
-            tuple(long),
-        ),
+        Table("steps_wide", "Every step with its numbers", columns, tuple(wide)),
+        Table("steps_long", "Every number of every step", tidy, tuple(long)),
     ]
 
 
@@ -85,7 +77,7 @@ def curve_table(files: Iterable[FileResult]) -> Table | None:
     files = [one for one in files if one.usable and one.curves.get("normalised")]
     if not files:
         return None
-    person = person_condition(one.conditions for one in files)
+    person = person_condition(files)
     keys = [
         name
         for name in dict.fromkeys(name for one in files for name in one.conditions)
@@ -99,30 +91,19 @@ def curve_table(files: Iterable[FileResult]) -> Table | None:
         key = tuple(str(one.conditions.get(name, "")) for name in keys)
         who = str(one.conditions.get(person, one.file))
         for curve in one.curves["normalised"]:
-            values = np.array([[_float(v) for v in curve[name]] for name in _CURVES])
+            values = np.array([curve[name] for name in _CURVES], dtype=float)  # None gives NaN
             groups.setdefault(key, {}).setdefault(who, []).append(values)
     rows: list[tuple[Cell, ...]] = []
     for key, people in groups.items():
         means = np.array([np.mean(curves, axis=0) for curves in people.values()])
         mean = means.mean(axis=0)
         spread = means.std(axis=0, ddof=1) if len(means) > 1 else np.full_like(mean, np.nan)
+        pairs = np.stack((mean, spread), axis=1).reshape(-1, len(PERCENT)).T.tolist()
         rows += [
-            (*key, int(percent), len(people), *_pairs(mean[:, i], spread[:, i]))
-            for i, percent in enumerate(PERCENT)
+            (*key, int(percent), len(people), *(v if np.isfinite(v) else None for v in own))
+            for percent, own in zip(PERCENT, pairs, strict=True)
         ]
     names = [f"{n} (N)" if n != "ratio" else n for n in _CURVES]
-    pairs = [column for name in names for column in (f"mean {name}", f"SD {name}")]
-    columns = (*keys, "percent of stance", "persons" if person else "files", *pairs)
+    both = [column for name in names for column in (f"mean {name}", f"SD {name}")]
+    columns = (*keys, "percent of stance", "persons" if person else "files", *both)
     return Table("stance_curves", "Forces over stance", columns, tuple(rows))
-
-
-def _pairs(mean: np.ndarray, spread: np.ndarray) -> Sequence[Cell]:
-    return [
-        cell
-        for m, s in zip(mean.tolist(), spread.tolist(), strict=True)
-        for cell in (m, s if np.isfinite(s) else None)
-    ]
-
-
-def _float(value: float | None) -> float:
-    return np.nan if value is None else float(value)

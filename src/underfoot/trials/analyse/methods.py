@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 
 from ..protocols import KINDS, Protocol
 from ..stance import CONTACT_FORCE
-from .file_result import CAUTION, REFUSED, FileResult
+from .file_result import CAUTION, MEAN_OF_STEPS, REFUSED, FileResult
 from .steps import protocol_ramp
 from .study import Study
 
@@ -64,10 +64,11 @@ def _surface(files: Sequence[FileResult], protocol: Protocol) -> str:
             if ramp.plate_frame == "horizontal"
             else "; body weight in standing is their normal force over the cosine of the angle."
         )
-    steps = [
-        m for one in files for m in one.measurements if m["name"] == "rcof" and m["conventions"]
-    ]
-    belts = sum(m["conventions"].get("surface", "").startswith("treadmill") for m in steps)
+    belts = sum(
+        m["name"] == "rcof" and m["conventions"].get("surface", "").startswith("treadmill")
+        for one in files
+        for m in one.measurements
+    )
     if belts:
         text += (
             f" {belts} contacts were on a treadmill, recognised by the centre of pressure that the "
@@ -111,8 +112,6 @@ _TOLD = {
     "peak force": "Forces of the relaxation test",
     "final force": "Force at the end of the hold",
 }
-
-
 _SENTENCES = {
     "rcof": (
         "Required friction (RCOF) was taken as the {peak} of shear ({shear}) over normal force in "
@@ -140,8 +139,6 @@ _SENTENCES = {
     ),
     "cof of a disk": "COF is {cof}, the {average} ({window}).",
 }
-
-
 _DONE = {
     "stribeck": (
         "COF against speed was fitted with COF = asymptote + (COF_BL - asymptote) exp(-v / tau) by "
@@ -159,8 +156,6 @@ _DONE = {
         "errors were added in squares."
     ),
 }
-
-
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 # What differs from file to file without being a choice: it stands with each number.
 _PRIVATE = ("search ends", "sign", "uncertainty")
@@ -171,12 +166,8 @@ def _conventions(files: Sequence[FileResult]) -> list[str]:
     numbers: dict[str, list[tuple[str, Mapping[str, str]]]] = {}
     for one in files:
         for m in one.measurements:
-            if (
-                m["value"] is not None
-                and m["name"] in _TOLD
-                and m["conventions"]
-                and m["item"] != "mean of the steps"
-            ):
+            known = m["value"] is not None and m["name"] in _TOLD and m["item"] != MEAN_OF_STEPS
+            if known and m["conventions"]:
                 place = f"{one.file}, {m['item']}"
                 numbers.setdefault(m["name"], []).append((place, m["conventions"]))
     sentences: list[str] = []
@@ -224,10 +215,8 @@ def _choices(key: str, made: Sequence[tuple[str, Mapping[str, str]]]) -> str:
 def _with_ranges(values: Sequence[str]) -> str:
     """Return one text of several that differ in numbers: "3 ms" and "9 ms" give "3 to 9 ms"."""
     columns = list(zip(*(_NUMBER.findall(value) for value in values), strict=True))
-    ranges = []
-    for column in columns:
-        low, high = min(column, key=float), max(column, key=float)
-        ranges.append(low if low == high else f"{low} to {high}")
+    ends = [(min(column, key=float), max(column, key=float)) for column in columns]
+    ranges = [low if low == high else f"{low} to {high}" for low, high in ends]
     pieces = _NUMBER.split(values[0])
     return "".join(a + b for a, b in zip(pieces, [*ranges, ""], strict=True))
 

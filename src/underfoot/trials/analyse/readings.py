@@ -14,8 +14,8 @@ from underfoot.core import DataError
 from ..floor_classes import class_scheme
 from ..measurement import Measurement, caution
 from ..protocols import Protocol
-from ..readers.text import is_number, name_and_unit
-from .conditions import table_rows
+from ..readers.text import is_number
+from .conditions import table_columns
 from .file_result import Draft, FileResult
 
 QUANTITIES = {
@@ -47,13 +47,8 @@ def reading_results(
     DataError
         No column that can be recognised as readings, or impossible values.
     """
-    table = [row for row in table_rows(path) if any(row)]
-    heads = [name_and_unit(cell) for cell in table[0]] if table else []
-    cells = {
-        head: [row[i] if i < len(row) else "" for row in table[1:]]
-        for i, (head, _) in enumerate(heads)
-        if head
-    }
+    columns, lines = table_columns(path)
+    cells = {head: column for head, _, column in columns}
     numbers = {
         head: column
         for head, column in cells.items()
@@ -64,11 +59,8 @@ def reading_results(
     top = _LARGEST[quantity]
     wrong = np.flatnonzero((values < (-0.1 * top)) | (values > top))
     if len(wrong):
-        raise DataError(
-            f"line {wrong[0] + 2}: {column} is {values[wrong[0]]:g}",
-            where=name,
-            allowed=f"0 to {top:g}",
-        )
+        text = f"line {lines[wrong[0]]}: {column} is {values[wrong[0]]:g}"
+        raise DataError(text, where=name, allowed=f"0 to {top:g}")
     runs = next((cells[c] for c in cells if c.casefold() in _RUN), None)
     texts = {
         k: v
@@ -84,8 +76,8 @@ def reading_results(
     for key, members in rows.items():
         label = ", ".join(part for part in key if part)
         own = {k.casefold(): v for k, v in zip(texts, key, strict=True) if v}
-        draft = Draft(f"{name}: {label}" if label and len(rows) > 1 else name, {**noted, **own})
-        draft.checksum = checksum
+        file = f"{name}: {label}" if label and len(rows) > 1 else name
+        draft = Draft(file, {**noted, **own}, checksum)
         words = [runs[i] if runs else "" for i in members]
         _one_sample(draft, values[members], words, quantity, protocol)
         results.append(draft.finished(protocol))
@@ -116,21 +108,12 @@ def _one_sample(
         "zero": f"mean of the zero runs, {offset:.4g}, taken off" if zero.any() else "not measured",
     }
     value = float(readings.mean()) - offset
-    draft.add(
-        "sample",
-        Measurement(
-            quantity,
-            value,
-            "deg" if quantity == "angle" else "1",
-            None if spread is None else spread / float(np.sqrt(len(readings))),
-            "a single reading has no scatter" if spread is None else "",
-            len(readings),
-            tuple(flags),
-            conventions,
-            spread,
-        ),
-        main=quantity,
-    )
+    scatter = (None, "a single reading has no scatter")
+    if spread is not None:
+        scatter = (spread / float(np.sqrt(len(readings))), "")
+    unit = "deg" if quantity == "angle" else "1"
+    noted = (len(readings), tuple(flags), conventions, spread)
+    draft.add("sample", Measurement(quantity, value, unit, *scatter, *noted), main=quantity)
     draft.curves["readings"] = [float(v) for v in readings - offset]
     name = protocol.text("classes")
     if name:

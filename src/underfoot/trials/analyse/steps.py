@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
 
-from underfoot.core import DataError, InputError, UnderfootError, nearest_match, unknown_name
+from underfoot.core import DataError, InputError, UnderfootError, unknown_name
 
 from ..array_pressures import sensor_array_reading
 from ..axes import Axes, axes_of
@@ -49,12 +48,7 @@ def rcof_definition(protocol: Protocol) -> RcofDefinition:
     known = [f"rcof_{key}" for key in _SETTINGS]
     for key in protocol.method:
         if key.startswith("rcof_") and key not in known:
-            raise InputError(
-                f'unknown setting "{key}"',
-                where=where,
-                allowed=", ".join(known),
-                nearest=nearest_match(key, known),
-            )
+            raise unknown_name("setting", key, known, where=where)
     name = protocol.text("definition", "default")
     if name not in DEFINITIONS:
         raise unknown_name("RCOF definition", name, DEFINITIONS, where=where)
@@ -84,8 +78,7 @@ def protocol_ramp(protocol: Protocol) -> Ramp:
     InputError
         No angle, or a slope without the axes of its plates.
     """
-    angle = protocol.number("ramp", "rad", 0.0)
-    return Ramp(angle, protocol.text("plate_frame"))
+    return Ramp(protocol.number("ramp", "rad", 0.0), protocol.text("plate_frame"))
 
 
 def check_ramp(protocol: Protocol) -> None:
@@ -117,42 +110,46 @@ def analysed_steps(trial: Trial, draft: Draft, protocol: Protocol, profile: Prof
         An edit by hand that can't be applied.
     """
     analysis = {"gait": _gait, "human_slip": _human_slip}[protocol.kind]
-    analysis(trial, draft, protocol, profile)
-    if trial.edits:
-        before = Draft(draft.file, draft.conditions)
-        analysis(replace(trial, edits=()), before, protocol, profile)
-        draft.edits += edit_log(trial.edits, before.steps, draft.steps)
-
-
-def _found(trial: Trial, protocol: Protocol, profile: Profile) -> tuple[list[Stance], Axes]:
     axes = axes_of(
         trial,
         vertical=profile.vertical,
         walking=profile.walking,
         ramp=protocol_ramp(protocol),
     )
-    found = stances(trial, axes=axes, walking=profile.walking, heels=profile.heels)
-    if not found:
-        raise DataError(no_contact_reason(trial, axes), where=trial.name)
-    return found, axes
+    analysis(_Walk(trial, draft, protocol, profile, axes))
+    if trial.edits:
+        before = Draft(draft.file, draft.conditions)
+        analysis(_Walk(replace(trial, edits=()), before, protocol, profile, axes))
+        draft.edits += edit_log(trial.edits, before.steps, draft.steps)
 
 
-def _gait(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
-    found, axes = _found(trial, protocol, profile)
-    rates(trial, draft)
-    if not _required(trial, draft, protocol, profile, found, axes, found):
-        draft.refusals.append("no clean step: " + "; ".join(_why(draft)))
+class _Walk:
+    """A recording with its contacts, analysed into a draft."""
+
+    def __init__(
+        self, trial: Trial, draft: Draft, protocol: Protocol, profile: Profile, axes: Axes
+    ) -> None:
+        self.trial, self.draft, self.axes = trial, draft, axes
+        self.protocol, self.profile = protocol, profile
+        self.found = stances(trial, axes=axes, walking=profile.walking, heels=profile.heels)
+        if not self.found:
+            raise DataError(no_contact_reason(trial, axes), where=trial.name)
+        rates(trial, draft)
 
 
-def _human_slip(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
-    found, axes = _found(trial, protocol, profile)
-    rates(trial, draft)
+def _gait(walk: _Walk) -> None:
+    if not _required(walk, walk.found):
+        reasons = dict.fromkeys(step["reason"] for step in walk.draft.steps if step["reason"])
+        walk.draft.refusals.append("no clean step: " + "; ".join(reasons or ["no peak found"]))
+
+
+def _human_slip(walk: _Walk) -> None:
+    draft, protocol, heels = walk.draft, walk.protocol, walk.profile.heels
     name = str(draft.conditions.get("slip plate") or protocol.text("slip_plate"))
-    on_plate = [s for s in found if not name or s.plate == name]
+    on_plate = [s for s in walk.found if not name or s.plate == name]
     if not on_plate:
-        raise DataError(f"no contact with the slippery plate ({name})", where=trial.name)
-    dry = [s for s in found if s not in on_plate]
-    _required(trial, draft, protocol, profile, dry, axes, found)
+        raise DataError(f"no contact with the slippery plate ({name})", where=walk.trial.name)
+    _required(walk, [s for s in walk.found if s not in on_plate])
     definition = SlipDefinition(
         threshold=protocol.number("slip_threshold", "m/s", 0.2),
         filter=LowPass(cutoff=protocol.number("marker_cutoff", "Hz", 10.0)),
@@ -165,17 +162,20 @@ def _human_slip(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile
     )
     usable = [s for s in on_plate if "exclude" not in s.by_hand]
     for stance in on_plate:
-        if stance not in usable or stance is not usable[0]:
+        if stance not in usable[:1]:
             reason = stance.reason or "a later contact with the slippery plate"
-            draft.steps.append(_step_entry(trial, stance, found, axes, profile, reason=reason))
+            draft.steps.append(_step_entry(walk, stance, reason=reason))
     if not usable:
         draft.refusals.append(on_plate[0].reason)
         return
-    stance = _with_side(usable[0], draft.conditions)
+    stance = usable[0]
+    side = str(draft.conditions.get("side", "")).casefold()
+    if side in ("left", "right") and "side" not in stance.by_hand:
+        stance = replace(stance, side=side, heel="")
     one = slip_of(
-        trial, stance, axes=axes, definition=definition, limits=limits, heels=profile.heels
+        walk.trial, stance, axes=walk.axes, definition=definition, limits=limits, heels=heels
     )
-    _slip_numbers(trial, draft, profile, stance, one, found, axes, limits)
+    _slip_numbers(walk, stance, one, limits)
     if one.motion is not None:
         motion = one.motion
         near = (motion.time > one.contact - 0.15) & (motion.time < one.contact + 0.9)
@@ -189,26 +189,17 @@ def _human_slip(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile
             peak=one.peak_speed.value or np.nan,
             threshold=definition.threshold,
         )
-    if profile.sensors and stance.walking is not None:
-        _sensors(trial, draft, one, profile, axes.up, stance.walking)
-    if "acof" in draft.conditions and "rcof" in draft.main:
-        acof = draft.conditions["acof"]
-        if isinstance(acof, float):
-            draft.main["acof"] = acof
-            draft.main["acof_minus_rcof"] = acof - draft.main["rcof"]
+    if walk.profile.sensors and stance.walking is not None:
+        _sensors(walk, one, stance.walking)
+    acof = draft.conditions.get("acof")
+    if isinstance(acof, float) and "rcof" in draft.main:
+        draft.main["acof"] = acof
+        draft.main["acof_minus_rcof"] = acof - draft.main["rcof"]
 
 
-def _slip_numbers(
-    trial: Trial,
-    draft: Draft,
-    profile: Profile,
-    stance: Stance,
-    one: Slip,
-    found: list[Stance],
-    axes: Axes,
-    limits: OutcomeLimits,
-) -> None:
-    course = slip_course(trial, stance, one, axes, limits)
+def _slip_numbers(walk: _Walk, stance: Stance, one: Slip, limits: OutcomeLimits) -> None:
+    draft = walk.draft
+    course = slip_course(walk.trial, stance, one, walk.axes, limits)
     item = f"slip on {stance.plate}"
     draft.add(item, one.start)
     draft.add(item, one.peak_speed, main="peak_slipping_speed")
@@ -221,7 +212,7 @@ def _slip_numbers(
         draft.main["slip"] = float(one.slipped)
     draft.steps.append(
         {
-            **_step_entry(trial, stance, found, axes, profile),
+            **_step_entry(walk, stance),
             "item": item,
             "verdict": "not estimated" if one.slipped is None else "accepted",
             "peak_slipping_speed": one.peak_speed.value,
@@ -239,20 +230,17 @@ def _slip_numbers(
     )
 
 
-def _sensors(
-    trial: Trial, draft: Draft, one: Any, profile: Profile, up: np.ndarray, walking: np.ndarray
-) -> None:
+def _sensors(walk: _Walk, one: Slip, walking: np.ndarray) -> None:
+    trial, draft, sensors, up = walk.trial, walk.draft, walk.profile.sensors, walk.axes.up
     try:
-        reading = sensor_array_reading(trial, one, profile.sensors, up=up, walking=walking)
+        reading = sensor_array_reading(trial, one, sensors, up=up, walking=walking)
     except UnderfootError as error:
         draft.cautions.append(f"pressures: {error.what}")
         return
     draft.add("sensor array", reading.peak, main="peak_pressure")
     draft.main["crossed_array"] = float(reading.crossed)
     across = np.cross(up, walking)
-    places = {
-        n: (float(np.dot(p, walking)), float(np.dot(p, across))) for n, p in profile.sensors.items()
-    }
+    places = {n: (float(np.dot(p, walking)), float(np.dot(p, across))) for n, p in sensors.items()}
     middle = np.mean([[min(c), max(c)] for c in zip(*places.values(), strict=True)], axis=1)
     pulses = []
     for name, pulse in reading.pulses.items():
@@ -291,25 +279,18 @@ def _sensors(
         draft.curve("track", along=track[:, 0], across=track[:, 1], pulses=pulses)
 
 
-def _required(
-    trial: Trial,
-    draft: Draft,
-    protocol: Protocol,
-    profile: Profile,
-    chosen: list[Stance],
-    axes: Axes,
-    found: list[Stance],
-) -> list[Measurement]:
-    """Add the RCOF of the chosen contacts; ``found`` are all contacts of the trial."""
-    definition = rcof_definition(protocol)
-    steps = stance_frictions(trial, chosen, definition, axes=axes, heels=profile.heels)
+def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
+    """Add the RCOF of the chosen contacts."""
+    trial, draft, axes = walk.trial, walk.draft, walk.axes
+    definition = rcof_definition(walk.protocol)
+    steps = stance_frictions(trial, chosen, definition, axes=axes, heels=walk.profile.heels)
     values = []
     for step in steps:
         stance, own = step.stance, step.measurement
         draft.add(stance.label, own)
-        draft.steps.append(_step_entry(trial, stance, found, axes, profile, step))
+        draft.steps.append(_step_entry(walk, stance, step))
         if own.value is None:
-            _rejected_curve(trial, draft, stance, axes)
+            _rejected_curve(walk, stance)
             continue
         values.append(own)
         assert stance.walking is not None  # an RCOF has one
@@ -336,14 +317,14 @@ def _required(
     return values
 
 
-def _rejected_curve(trial: Trial, draft: Draft, stance: Stance, axes: Axes) -> None:
+def _rejected_curve(walk: _Walk, stance: Stance) -> None:
     """Keep the ratio of a rejected contact: contact sheets show it with the reason."""
-    plate = plate_named(trial, stance.plate)
+    plate, axes = plate_named(walk.trial, stance.plate), walk.axes
     force = plate.force[stance.start : stance.stop]
     up = axes.up if stance.walking is None else axes.ramp.surface(axes.up, stance.walking)[0]
     normal = force @ up
     shear = np.linalg.norm(force - np.outer(normal, up), axis=1)
-    draft.curve(
+    walk.draft.curve(
         "rejected",
         step=stance.label,
         time=np.arange(len(force)) / plate.rate,
@@ -354,14 +335,7 @@ def _rejected_curve(trial: Trial, draft: Draft, stance: Stance, axes: Axes) -> N
 
 
 def _step_entry(
-    trial: Trial,
-    stance: Stance,
-    found: list[Stance],
-    axes: Axes,
-    profile: Profile,
-    step: RequiredFriction | None = None,
-    *,
-    reason: str = "",
+    walk: _Walk, stance: Stance, step: RequiredFriction | None = None, *, reason: str = ""
 ) -> dict[str, Any]:
     own = None if step is None else step.measurement
     return {
@@ -379,17 +353,5 @@ def _step_entry(
         "reason": reason or stance.reason or (own.reason if own and own.value is None else ""),
         "cautions": [] if own is None else [flag.words for flag in own.caution_flags],
         "by_hand": list(stance.by_hand),
-        **asdict(gait_context(trial, stance, found, axes, profile.heels)),
+        **asdict(gait_context(walk.trial, stance, walk.found, walk.axes, walk.profile.heels)),
     }
-
-
-def _with_side(stance: Stance, conditions: Mapping[str, Any]) -> Stance:
-    side = str(conditions.get("side", "")).casefold()
-    if side not in ("left", "right") or "side" in stance.by_hand:
-        return stance
-    return replace(stance, side=side, heel="")
-
-
-def _why(draft: Draft) -> list[str]:
-    reasons = (step["reason"] for step in draft.steps if step["reason"])
-    return list(dict.fromkeys(reasons)) or ["no peak found"]

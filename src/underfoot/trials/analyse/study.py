@@ -18,20 +18,11 @@ from ..statistics import precision
 from ..stribeck_fit import METHODS as FIT_METHODS
 from ..stribeck_fit import StribeckFit, stribeck_fit
 from ..viscosity_speed_curve import master_curve
+from . import tables
 from .conditions import NUMBERS, person_condition
 from .file_result import FileResult
-from .study_tests import Finding, comparison_findings, persons_of, slip_findings
-from .tables import (
-    Table,
-    condition_table,
-    counted_steps,
-    decimals_of,
-    mean_and_interval,
-    number_columns,
-    quantity_name,
-    scaled,
-    steps_table,
-)
+from .study_tests import Finding, comparison_findings, persons_of, slip_findings, varying
+from .tables import Table, condition_table, quantity_name
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,48 +41,41 @@ def study_of(files: Sequence[FileResult], protocol: Protocol) -> Study:
     A fit, map or test that can't be done is a note with its reason, never an end.
     """
     usable = [one for one in files if one.usable]
-    makers: dict[str, Callable[[list[FileResult], Protocol], Study]] = {
-        "pin_on_disk": _pin_on_disk,
-        "boundary": _boundary,
-        "slip_tester": _slip_tester,
-        "human_slip": _human_slip,
-        "gait": _gait,
-        "relaxation": _relaxation,
-        "readings": _readings,
-    }
     if not usable:
         return Study(notes=("no usable file",))
     try:
-        return makers[protocol.kind](usable, protocol)
+        return _STUDIES[protocol.kind](usable, protocol)
     except UnderfootError as error:
         # The numbers of the files are worth having even when they don't fit together.
         return Study(notes=(f"no result over all files: {error.what}",))
 
 
+def _keys(files: Sequence[FileResult], wanted: Sequence[str]) -> tuple[str, ...]:
+    """Return those of the wanted conditions that some file has."""
+    return tuple(key for key in wanted if any(key in f.conditions for f in files))
+
+
 def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
-    keys = [key for key in protocol.words("group") if any(key in f.conditions for f in files)]
-    groups = _grouped(files, keys)
+    keys = _keys(files, protocol.words("group"))
     rows, notes, fits = [], [], []
     parameters: dict[str, list[Any]] = {"cof_bl": [], "tau_hydro": [], "cof_asymptote": []}
-    for group, members in groups.items():
-        points = [
-            (f.main["speed"], f.main["cof"]) for f in members if {"speed", "cof"} <= {*f.main}
-        ]
+    for group, members in tables.grouped(files, keys).items():
         label = ", ".join(group) or "all files"
+        speed, cof = _speed_and_cof(members)
         try:
-            speed, cof = (np.array(c) for c in zip(*points, strict=True)) if points else ([], [])
             fit = stribeck_fit(speed, cof)
             simplex = stribeck_fit(speed, cof, method="nelder_mead")
         except UnderfootError as error:
             notes.append(f"{label}: not fitted ({error.what})")
             continue
         rows.append((*group, *_fit_cells(fit, simplex)))
+        first = group[0] if group else ""
         fits.append(
             {
                 "label": label,
-                "group": group[0] if group else "",
-                "speed": [float(v) for v in speed],
-                "cof": [float(v) for v in cof],
+                "group": first,
+                "speed": speed,
+                "cof": cof,
                 "raw": list(fit.raw),
                 "mean": float(np.mean(cof)),
                 "verdict": fit.verdict,
@@ -100,16 +84,16 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
         )
         for parameter in (fit.boundary, fit.tau, fit.asymptote):
             keep = parameter.value is not None and not parameter.remark.startswith("not identified")
-            value = parameter.value if keep else np.nan
-            parameters[parameter.name].append((group[0] if group else "", value))
+            parameters[parameter.name].append((first, parameter.value) if keep else None)
+    intervals = (
+        (name, "95 % low", "95 % high", "remark")
+        for name in ("COF_BL", "tau_hydro (m/s)", "COF_asymptote")
+    )
     columns = (
-        *keys, "n", "R^2", "verdict",
-        "COF_BL", "95 % low", "95 % high", "remark",
-        "tau_hydro (m/s)", "95 % low", "95 % high", "remark",
-        "COF_asymptote", "95 % low", "95 % high", "remark",
+        *keys, "n", "R^2", "verdict", *(name for four in intervals for name in four),
         "COF_BL by Nelder-Mead", "tau by Nelder-Mead", "asymptote by Nelder-Mead",
     )  # fmt: skip
-    tables = [
+    made = [
         Table(
             "stribeck",
             "COF = asymptote + (COF_BL - asymptote) exp(-speed / tau), Eq. 17",
@@ -123,31 +107,25 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
         )
     ]
     findings: list[Finding] = []
-    shown: dict[str, Any] = {}
     for name, values in parameters.items():
-        kept = [(g, v) for g, v in values if np.isfinite(v)]
-        shown[name] = kept
-        if len({g for g, _ in kept}) > 1:
+        kept = [pair for pair in values if pair is not None]
+        if len({group for group, _ in kept}) > 1:
             factor = protocol.text("compare", keys[0] if keys else "group")
-            groups_of = {factor: [g for g, _ in kept]}
-            made = comparison_findings(name, [v for _, v in kept], groups_of)
+            tests = comparison_findings(name, [v for _, v in kept], {factor: [g for g, _ in kept]})
             lost = len(values) - len(kept)
-            if lost and made:
+            if lost and tests:
                 text = f"{lost} of {len(values)} series left out: not identified, or no good fit"
-                made[0] = replace(made[0], cautions=(*made[0].cautions, text))
-            findings += made
-    curves: dict[str, Any] = {"fits": fits, "parameters": shown}
-    wanted = [
-        f for f in files if {"viscosity"} <= {*f.conditions} and {"speed", "cof"} <= {*f.main}
-    ]
+                tests[0] = replace(tests[0], cautions=(*tests[0].cautions, text))
+            findings += tests
+    curves: dict[str, Any] = {"fits": fits}
+    wanted = [f for f in files if "viscosity" in f.conditions and {"speed", "cof"} <= {*f.main}]
     if len(wanted) >= 6:
         viscosity = [float(f.conditions["viscosity"]) for f in wanted]
-        speed = [f.main["speed"] for f in wanted]
-        cof = [f.main["cof"] for f in wanted]
+        speed, cof = _speed_and_cof(wanted)
         try:
             curve = master_curve(viscosity, speed, cof)
             curves["master"] = {
-                "product": [float(p) for p in np.multiply(viscosity, speed)],
+                "product": np.multiply(viscosity, speed).tolist(),
                 "cof": cof,
                 "label": [str(f.conditions.get("fluid", "")) for f in wanted],
                 "grid": curve.product.tolist(),
@@ -155,7 +133,7 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
                 "residual_sd": curve.residual_sd,
                 "r_squared": curve.r_squared,
             }
-            tables.append(
+            made.append(
                 Table(
                     "master_curve",
                     "One curve of COF against viscosity times speed",
@@ -166,7 +144,12 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
             )
         except UnderfootError as error:
             notes.append(f"no master curve: {error.what}")
-    return Study(tuple(tables), tuple(findings), curves, tuple(notes))
+    return Study(tuple(made), tuple(findings), curves, tuple(notes))
+
+
+def _speed_and_cof(files: Sequence[FileResult]) -> tuple[list[float], list[float]]:
+    both = [(f.main["speed"], f.main["cof"]) for f in files if {"speed", "cof"} <= {*f.main}]
+    return [speed for speed, _ in both], [cof for _, cof in both]
 
 
 def _fit_cells(fit: StribeckFit, simplex: StribeckFit) -> list[Any]:
@@ -180,16 +163,14 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
     dry, blocked = protocol.text("dry", "dry"), protocol.text("blocked", "sae_75w140")
     keys = protocol.words("pair")
     rows, notes, fluids, dry_adhesions, wet = [], [], [], [], []
-    for pair, members in _grouped(files, keys).items():
+    for pair, members in tables.grouped(files, keys).items():
         by_fluid: dict[str, list[float]] = {}
         for f in members:
             if "friction_force" in f.main:
-                by_fluid.setdefault(str(f.conditions.get("fluid", "")), []).append(
-                    f.main["friction_force"]
-                )
-        label = " on ".join(pair)
+                fluid = str(f.conditions.get("fluid", ""))
+                by_fluid.setdefault(fluid, []).append(f.main["friction_force"])
         if dry not in by_fluid or blocked not in by_fluid:
-            notes.append(f"{label}: needs fluid {dry} and fluid {blocked}")
+            notes.append(f"{' on '.join(pair)}: needs fluid {dry} and fluid {blocked}")
             continue
         others = {k: v for k, v in by_fluid.items() if k not in (dry, blocked)}
         split = friction_split(by_fluid[dry], by_fluid[blocked], others)
@@ -204,7 +185,7 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
             fluids.append(fluid)
             dry_adhesions.append(split.adhesion.value or 0.0)
             wet.append(m.value or 0.0)
-    tables = [
+    made = [
         Table(
             "friction_split",
             "Adhesion and hysteresis, Eq. 22 to 25",
@@ -217,7 +198,7 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
     curves: dict[str, Any] = {}
     try:
         fit = alpha_beta(fluids, dry_adhesions, wet)
-        tables.append(
+        made.append(
             Table(
                 "alpha_beta",
                 "Adhesion a fluid leaves, Eq. 26",
@@ -240,26 +221,24 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
         }
     except (UnderfootError, ValueError) as error:
         notes.append(f"Eq. 26 was not fitted: {getattr(error, 'what', error)}")
-    return Study(tuple(tables), tuple(findings), curves, tuple(notes))
+    return Study(tuple(made), tuple(findings), curves, tuple(notes))
 
 
 def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
-    keys = [key for key in protocol.words("group") if any(key in f.conditions for f in files)]
-    tables, notes, maps = [], [], []
-    table = condition_table(files, tuple(keys), ("cof",), person=_sample(files))
-    if table:
-        tables.append(table)
-    rows = []
+    keys = _keys(files, protocol.words("group"))
+    notes, maps, rows = [], [], []
     wanted = next((r for r in protocol.rules if r.quantity == "repeats"), None)
-    for group, members in _grouped(files, keys).items():
+    for group, members in tables.grouped(files, keys).items():
         label = ", ".join(group) or "all files"
-        if wanted is not None and wanted.broken_by(float(len(members))):
-            notes.append(f"{label}: {wanted.broken_by(float(len(members)))}")
-        scans = [_scan(f) for f in members if "scan" in f.curves]
+        broken = wanted.broken_by(float(len(members))) if wanted is not None else ""
+        if broken:
+            notes.append(f"{label}: {broken}")
+        scans = [PressureScan(f.file, **_scan(f)) for f in members if "scan" in f.curves]
         if len(scans) < 2:
             continue
-        spacing = protocol.number("scan_spacing", "m", 0.0) or None
-        inlet = protocol.number("inlet_diameter", "m", 0.0) or None
+        spacing, inlet = (
+            protocol.number(name, "m", 0.0) or None for name in ("scan_spacing", "inlet_diameter")
+        )
         try:
             found = pressure_map(scans, spacing=spacing, inlet_diameter=inlet)
         except UnderfootError as error:
@@ -271,7 +250,7 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
                 len(scans),
                 found.load.value,
                 found.load.uncertainty,
-                scaled("peak_pressure", found.peak.value),
+                tables.scaled("peak_pressure", found.peak.value),
                 1e3 * (found.peak_along.value or 0.0),
                 1e3 * (found.peak_lateral.value or 0.0),
                 100 * found.outer_share,
@@ -286,17 +265,16 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
                 "label": label,
                 "lateral": found.lateral.tolist(),
                 "along": found.along[::thin].tolist(),
-                "pressure": np.where(np.isnan(found.pressure), 0.0, found.pressure)[
-                    :, ::thin
-                ].tolist(),
+                "pressure": np.nan_to_num(found.pressure[:, ::thin]).tolist(),
                 "load": found.load.value,
                 "peak": found.peak.value,
                 "peak_along": found.peak_along.value,
                 "peak_lateral": found.peak_lateral.value,
             }
         )
+    made = [condition_table(files, keys, ("cof",), person=_sample(files))]
     if rows:
-        tables.append(
+        made.append(
             Table(
                 "maps",
                 "Load carried by the fluid, Eq. 27",
@@ -312,66 +290,61 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
         )  # fmt: skip
     findings: list[Finding] = []
     labelled = [f for f in files if "cof" in f.main and all(k in f.conditions for k in keys)]
-    if keys and len({str(f.conditions[keys[0]]) for f in labelled}) > 1:
-        factors = {
-            k: [str(f.conditions[k]) for f in labelled]
-            for k in keys
-            if len({str(f.conditions[k]) for f in labelled}) > 1
-        }
-        findings += comparison_findings("cof", [f.main["cof"] for f in labelled], factors)
-    return Study(tuple(tables), tuple(findings), {"maps": maps}, tuple(notes))
+    factors = varying(labelled, keys)
+    if keys and keys[0] in factors:
+        findings = comparison_findings("cof", [f.main["cof"] for f in labelled], factors)
+    shown = tuple(table for table in made if table)
+    return Study(shown, tuple(findings), {"maps": maps}, tuple(notes))
+
+
+def _condition_tables(
+    files: list[FileResult], keys: Sequence[str], numbers: tuple[str, ...], person: str
+) -> list[Table]:
+    """Return the table of each condition alone, without those that have nothing to show."""
+    made = (
+        condition_table(files, (key,), numbers, person=person, name=f"conditions_{key}")
+        for key in keys
+    )
+    return [table for table in made if table]
 
 
 def _human_slip(files: list[FileResult], protocol: Protocol) -> Study:
-    keys = tuple(k for k in protocol.words("compare") if any(k in f.conditions for f in files))
+    keys = _keys(files, protocol.words("compare"))
     numbers = ("slip", "rcof", "acof", "peak_slipping_speed", "slip_distance", "peak_pressure")
-    person = person_condition((f.conditions for f in files), protocol.text("subject"))
-    tables = [condition_table(files, (), numbers, person=person)]
-    for key in keys:
-        name = f"conditions_{key}"
-        tables.append(condition_table(files, (key,), numbers, person=person, name=name))
-    findings, curves, notes = slip_findings(files, protocol, keys)
-    # The table of all trials says nothing that one by conditions does not.
-    made = [table for table in tables[1:] or tables if table]
-    return Study((*made, steps_table(files)), tuple(findings), curves, tuple(notes))
+    person = person_condition(files, protocol.text("subject"))
+    made = _condition_tables(files, keys, numbers, person)
+    if not keys:
+        # The table of all trials says nothing that one by conditions does not.
+        table = condition_table(files, (), numbers, person=person)
+        made = [table] if table else []
+    findings, curves = slip_findings(files, protocol, keys)
+    return Study((*made, tables.steps_table(files)), tuple(findings), curves)
 
 
 def _gait(files: list[FileResult], protocol: Protocol) -> Study:
     with_rcof = [f for f in files if "rcof" in f.main]
-    person = person_condition((f.conditions for f in files), protocol.text("subject"))
-    factors = _factors(with_rcof, protocol.words("compare"), person)
-    numbers = tuple(dict.fromkeys(["rcof", *(name for f in files for name in f.main)]))
-    persons = persons_of(with_rcof, person)
-    findings = comparison_findings("rcof", [f.main["rcof"] for f in with_rcof], factors, persons)
-    tables = [condition_table(with_rcof, tuple(factors), numbers, person=person)]
-    if len(factors) > 1:
-        tables += [
-            condition_table(with_rcof, (key,), numbers, person=person, name=f"conditions_{key}")
-            for key in factors
-        ]
-    if person:
-        tables.append(_person_table(with_rcof, tuple(factors), person))
-    return Study((*(t for t in tables if t), steps_table(files)), tuple(findings))
-
-
-def _factors(
-    files: Sequence[FileResult], compare: Sequence[str], person: str
-) -> dict[str, list[str]]:
-    """Return the conditions to be tested: named by the protocol, or all that group the files."""
-    keys = tuple(compare) or tuple(
+    person = person_condition(files, protocol.text("subject"))
+    keys = protocol.words("compare") or tuple(
         dict.fromkeys(
             key
-            for f in files
+            for f in with_rcof
             for key, value in f.conditions.items()
             if isinstance(value, str) and key != person and key not in NUMBERS
         )
     )
-    factors = {
-        key: [str(f.conditions[key]) for f in files]
-        for key in keys
-        if all(key in f.conditions for f in files)
-    }
-    return {k: v for k, v in factors.items() if 1 < len(set(v)) < max(len(files), 2)}
+    everywhere = [key for key in keys if all(key in f.conditions for f in with_rcof)]
+    several = max(len(with_rcof), 2)
+    factors = {k: v for k, v in varying(with_rcof, everywhere).items() if len(set(v)) < several}
+    numbers = tuple(dict.fromkeys(["rcof", *(name for f in files for name in f.main)]))
+    persons = persons_of(with_rcof, person)
+    findings = comparison_findings("rcof", [f.main["rcof"] for f in with_rcof], factors, persons)
+    table = condition_table(with_rcof, tuple(factors), numbers, person=person)
+    made = [table] if table else []
+    if len(factors) > 1:
+        made += _condition_tables(with_rcof, tuple(factors), numbers, person)
+    if person:
+        made.append(_person_table(with_rcof, tuple(factors), person))
+    return Study((*made, tables.steps_table(files)), tuple(findings))
 
 
 def _person_table(files: Sequence[FileResult], factors: tuple[str, ...], person: str) -> Table:
@@ -381,7 +354,7 @@ def _person_table(files: Sequence[FileResult], factors: tuple[str, ...], person:
         groups.setdefault(key, []).append(f)
     rows = tuple(
         (*key, float(np.mean([f.main["rcof"] for f in own])), len(own),
-         sum(map(counted_steps, own)))
+         sum(map(tables.counted_steps, own)))
         for key, own in sorted(groups.items())
     )  # fmt: skip
     columns = (person, *factors, "RCOF", "trials", "steps")
@@ -390,8 +363,7 @@ def _person_table(files: Sequence[FileResult], factors: tuple[str, ...], person:
 
 
 def _relaxation(files: list[FileResult], protocol: Protocol) -> Study:
-    key = protocol.text("compare", "material")
-    keys = (key,) if any(key in f.conditions for f in files) else ()
+    keys = _keys(files, (protocol.text("compare", "material"),))
     forces = ("force_2_percent", "peak_force", "final_force")
     table = condition_table(files, keys, forces, person=_sample(files))
     return Study((table,) if table else ())
@@ -400,8 +372,7 @@ def _relaxation(files: list[FileResult], protocol: Protocol) -> Study:
 def _readings(files: list[FileResult], protocol: Protocol) -> Study:
     """Return means by sample with their classes, and the precision over operators or machines."""
     quantity = next(q for q in ("ptv", "angle", "cof") if any(q in f.main for f in files))
-    keys = tuple(k for k in protocol.words("group") if any(k in f.conditions for f in files))
-    keys = keys or tuple(
+    keys = _keys(files, protocol.words("group")) or tuple(
         dict.fromkeys(k for f in files for k, v in f.conditions.items() if isinstance(v, str))
     )
     name = protocol.text("classes")
@@ -411,7 +382,7 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
         m = f.measurements[0]
         low = high = None
         if m["spread"] is not None:
-            _, _, low, high = mean_and_interval(np.array(f.curves["readings"]))
+            _, _, low, high = tables.mean_and_interval(f.curves["readings"])
         cells: list[Any] = [f.file, *(f.conditions.get(k) for k in keys)]
         cells += [m["n"], m["value"], m["spread"], low, high]
         if quantity == "ptv":
@@ -419,25 +390,25 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
         if scheme is not None:
             ends = {scheme.class_of(v) for v in (low, high) if v is not None}
             own = scheme.class_of(float(m["value"]))
-            cells.append(own)
-            cells.append(", ".join(sorted(ends - {own})) or None)
+            cells += [own, ", ".join(sorted(ends - {own})) or None]
         rows.append(tuple(cells))
-    columns = ["file", *keys, "readings", *number_columns(quantity)]
+    numbers = tables.number_columns(quantity)
+    columns = ["file", *keys, "readings", *numbers]
     columns += ["COF from PTV"] if quantity == "ptv" else []
-    columns += ["class", "interval reaches"] if scheme is not None else []
     notes = [
         "SD and 95 % interval (t) of the readings of one sample: they hold repeatability only."
     ]
     if scheme is not None:
+        columns += ["class", "interval reaches"]
         notes.append(f"Classes: {scheme.title}. {scheme.source[0].upper()}{scheme.source[1:]}.")
     spreads = [f.measurements[0]["uncertainty"] for f in files]
-    places = max((decimals_of(u) for u in spreads if u), default=2)
-    decimals = {**dict.fromkeys(number_columns(quantity), places), "COF from PTV": 3}
+    places = max((tables.decimals_of(u) for u in spreads if u), default=2)
+    decimals = {**dict.fromkeys(numbers, places), "COF from PTV": 3}
     title = f"Samples, {quantity_name(quantity)}"
-    tables = [Table("samples", title, tuple(columns), tuple(rows), tuple(notes), decimals)]
+    made = [Table("samples", title, tuple(columns), tuple(rows), tuple(notes), decimals)]
     for by in ("laboratory", "operator", "machine"):
-        tables += _precision(files, by, quantity, keys)
-    return Study(tuple(tables))
+        made += _precision(files, by, quantity, keys)
+    return Study(tuple(made))
 
 
 def _precision(
@@ -477,7 +448,7 @@ def _precision(
         *(tests or ("Cochran's and Grubbs' tests name no straggler or outlier.",)),
     )
     title = f"Repeatability and reproducibility by {by}"
-    places = max(decimals_of(row[-3]) for row in rows)
+    places = max(tables.decimals_of(row[-3]) for row in rows)
     return [Table(f"precision_{by}", title, columns, tuple(rows), notes,
                   dict.fromkeys(columns[-5:], places))]  # fmt: skip
 
@@ -487,25 +458,17 @@ def _sample(files: Sequence[FileResult]) -> str:
     return next((n for n in ("sample", "specimen") if any(n in f.conditions for f in files)), "")
 
 
-def _grouped(
-    files: Sequence[FileResult], keys: Sequence[str]
-) -> dict[tuple[str, ...], list[FileResult]]:
-    groups: dict[tuple[str, ...], list[FileResult]] = {}
-    for one in files:
-        if all(key in one.conditions for key in keys):
-            groups.setdefault(tuple(str(one.conditions[k]) for k in keys), []).append(one)
-    return groups
+def _scan(one: FileResult) -> dict[str, Any]:
+    stored = one.curves["scan"]
+    return {**stored, **{key: np.array(stored[key]) for key in ("along", "pressure")}}
 
 
-def _scan(one: FileResult) -> PressureScan:
-    c = one.curves["scan"]
-    return PressureScan(
-        one.file,
-        np.array(c["along"]),
-        np.array(c["pressure"]),
-        c["lateral"],
-        c["speed"],
-        c["speed_change"],
-        c["baseline_sd"],
-        c["sample_load"],
-    )
+_STUDIES: Mapping[str, Callable[[list[FileResult], Protocol], Study]] = {
+    "pin_on_disk": _pin_on_disk,
+    "boundary": _boundary,
+    "slip_tester": _slip_tester,
+    "human_slip": _human_slip,
+    "gait": _gait,
+    "relaxation": _relaxation,
+    "readings": _readings,
+}

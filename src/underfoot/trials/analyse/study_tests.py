@@ -2,46 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from underfoot.core import DataError, UnderfootError
 
+from .. import statistics
 from ..protocols import Protocol
 from ..risk_curves import risk_curve
-from ..statistics import (
-    AnovaTable,
-    ClusteredFit,
-    LinearModel,
-    LogisticFit,
-    MixedModel,
-    all_subsets,
-    analysis_of_variance,
-    clustered_logistic,
-    fisher_exact,
-    independence_warning,
-    letters,
-    logistic_regression,
-    mixed_model,
-    regression_line,
-    repeated_measures,
-    t_test,
-    tukey_hsd,
-)
 from ..statistics.logistic import METHODS
 from .conditions import person_condition
 from .file_result import FileResult
 from .tables import Cell, Table, decimals_of, quantity_name
+
+_Fit = TypeVar("_Fit")
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
     """One test: what was asked, the table, and cautions.
 
-    Comparisons after Tukey name ``response`` and ``factor``; ``marks`` are the letters by level.
+    Comparisons after Tukey name ``response`` and ``factor``; ``marks`` are the letters by level,
+    ``values`` the means of the persons (or the single values) by level.
     """
 
     name: str
@@ -51,16 +36,32 @@ class Finding:
     response: str = ""
     factor: str = ""
     marks: Mapping[str, str] = field(default_factory=dict)
+    values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     @classmethod
-    def of_anova(cls, found: AnovaTable, cautions: tuple[str, ...] = ()) -> Finding:
+    def of_anova(cls, found: statistics.AnovaTable, cautions: tuple[str, ...] = ()) -> Finding:
         """Return an analysis of variance as a finding."""
         rows = tuple((r.term, r.sum_of_squares, r.df, r.f, r.p) for r in found.rows)
         plain = "".join(c if c.isalnum() else "_" for c in found.model.response_name.casefold())
         name = f"anova_{plain}_type_{found.ss_type}"
         columns = ("term", "sum of squares", "df", "F", "p")
-        table = Table(name, found.title, columns, rows)
-        return cls(name, found.title, table, (*cautions, *found.warnings))
+        return _finding(name, found.title, columns, rows, cautions=(*cautions, *found.warnings))
+
+
+def _finding(
+    name: str,
+    title: str,
+    columns: tuple[str, ...],
+    rows: Sequence[tuple[Cell, ...]],
+    note: str = "",
+    cautions: Sequence[str] = (),
+) -> Finding:
+    table = Table(name, title, columns, tuple(rows), (note,) if note else ())
+    return Finding(name, title, table, tuple(cautions))
+
+
+def _not_done(name: str, title: str, error: UnderfootError) -> Finding:
+    return _finding(name, title, ("not done",), ((error.what,),))
 
 
 def comparison_findings(
@@ -77,34 +78,32 @@ def comparison_findings(
     """
     if not factors:
         return []
-    warning = independence_warning(persons)
+    warning = statistics.independence_warning(persons)
     name = quantity_name(response)
-    findings: list[Finding] = []
-    model: LinearModel | MixedModel | None = None
-    if warning:
-        mixed, model = _mixed(response, values, factors, persons)
-        findings += mixed
+    findings, model = _mixed(response, values, factors, persons) if warning else ([], None)
     try:
-        table = _anova(values, factors, name)
+        table = _crossed(
+            factors,
+            lambda terms: statistics.analysis_of_variance(values, factors, terms, name=name),
+        )
     except UnderfootError as error:
         title = f"Analysis of variance of {name}"
         return [*findings, _not_done(f"anova_{response}", title, error)]
     if model is None and not any("empty cells" in text for text in table.warnings):
         model = table.model
-    tukey = _tukey(response, model, factors) if model is not None else []
-    return (
-        [*findings, *tukey, Finding.of_anova(table, warning)]
-        if warning
-        else [Finding.of_anova(table), *tukey]
-    )
+    tukey = _tukey(response, model, values, factors, persons) if model is not None else []
+    anova = Finding.of_anova(table, warning)
+    return [*findings, *tukey, anova] if warning else [anova, *tukey]
 
 
-def _anova(values: Sequence[float], factors: Mapping[str, Sequence[str]], name: str) -> AnovaTable:
+def _crossed(
+    factors: Mapping[str, Sequence[str]], fit: Callable[[tuple[str, ...] | None], _Fit]
+) -> _Fit:
+    """Return a crossed model; the main effects alone where there are too few values for it."""
     try:
-        return analysis_of_variance(values, dict(factors), ss_type=3, name=name)
+        return fit(None)
     except DataError:
-        # Too few values for interactions: main effects alone.
-        return analysis_of_variance(values, dict(factors), tuple(factors), ss_type=3, name=name)
+        return fit(tuple(factors))
 
 
 def _mixed(
@@ -112,57 +111,64 @@ def _mixed(
     values: Sequence[float],
     factors: Mapping[str, Sequence[str]],
     persons: Sequence[str],
-) -> tuple[list[Finding], MixedModel | None]:
+) -> tuple[list[Finding], statistics.MixedModel | None]:
     name = quantity_name(response)
     title = f"Mixed model of {name}: means of persons, random intercept for each (REML)"
     key = f"mixed_{response}"
     try:
-        try:
-            model = mixed_model(values, factors, persons, name=name)
-        except DataError:
-            model = mixed_model(values, factors, persons, tuple(factors), name=name)
+        model = _crossed(
+            factors,
+            lambda terms: statistics.mixed_model(values, factors, persons, terms, name=name),
+        )
     except UnderfootError as error:
         return [_not_done(key, title, error)], None
-    rows = tuple((row.term, row.df, row.error_df, row.f, row.p) for row in model.tests)
-    notes = (
+    note = (
         f"{model.persons} persons, {model.trials} trials; standard deviation between persons "
         f"{model.person_sd:.3g}, within {model.residual_sd:.3g}. Wald F tests, type III, degrees "
-        "of freedom between and within persons.",
+        "of freedom between and within persons."
     )
     columns = ("term", "df", "df of error", "F", "p")
-    findings = [Finding(key, title, Table(key, title, columns, rows, notes), model.warnings)]
+
+    def cells(tests: Sequence[statistics.AnovaRow]) -> list[tuple[Cell, ...]]:
+        return [(row.term, row.df, row.error_df, row.f, row.p) for row in tests]
+
+    findings = [_finding(key, title, columns, cells(model.tests), note, model.warnings)]
     try:
-        repeated = repeated_measures(values, factors, persons)
+        repeated = statistics.repeated_measures(values, factors, persons)
     except UnderfootError:
         return findings, model
     title = f"Repeated-measures analysis of variance of {name}, means of persons"
-    key = f"repeated_{response}"
-    notes = ()
+    note = ""
     if repeated.epsilon is not None and repeated.p_corrected is not None:
-        notes = (
+        note = (
             f"Greenhouse-Geisser epsilon {repeated.epsilon:.3f}, p corrected with it "
-            f"{repeated.p_corrected:.4g}.",
+            f"{repeated.p_corrected:.4g}."
         )
-    rows = tuple((row.term, row.df, row.error_df, row.f, row.p) for row in repeated.rows)
-    return [*findings, Finding(key, title, Table(key, title, columns, rows, notes))], model
+    more = _finding(f"repeated_{response}", title, columns, cells(repeated.rows), note)
+    return [*findings, more], model
 
 
 def _tukey(
-    response: str, model: LinearModel | MixedModel, factors: Mapping[str, Sequence[str]]
+    response: str,
+    model: statistics.LinearModel | statistics.MixedModel,
+    values: Sequence[float],
+    factors: Mapping[str, Sequence[str]],
+    persons: Sequence[str],
 ) -> list[Finding]:
     findings = []
-    by = "mixed model" if isinstance(model, MixedModel) else "analysis of variance"
+    mixed = isinstance(model, statistics.MixedModel)
+    by = "mixed model" if mixed else "analysis of variance"
     for factor, levels in factors.items():
-        if len(set(levels)) < 3 and not isinstance(model, MixedModel):
+        if len(set(levels)) < 3 and not mixed:
             continue
         title = f"Tukey's comparisons of {quantity_name(response)} by {factor} ({by})"
         name = f"tukey_{response}_{factor}".replace(" ", "_")
         try:
-            comparisons = tukey_hsd(model, factor)
+            comparisons = statistics.tukey_hsd(model, factor)
         except UnderfootError as error:
             findings.append(_not_done(name, title, error))
             continue
-        marks = letters(comparisons)
+        marks = statistics.letters(comparisons)
         rows = tuple(
             (c.first, c.second, c.difference, c.standard_error, c.low, c.high, c.p)
             for c in comparisons
@@ -171,47 +177,45 @@ def _tukey(
         listed = ", ".join(f"{level} {mark}" for level, mark in marks.items())
         note = f"Levels that share a letter do not differ at 0.05: {listed}."
         places = decimals_of(min(c.standard_error for c in comparisons))
-        decimals = {str(column): places for column in columns[2:6]}
-        table = Table(name, title, columns, rows, (note,), decimals)
-        findings.append(Finding(name, title, table, (), response, factor, marks))
+        table = Table(name, title, columns, rows, (note,), dict.fromkeys(columns[2:6], places))
+        means = statistics.person_means(values, {factor: levels}, persons or range(len(values)))
+        drawn: dict[str, dict[str, float]] = {}
+        for who, level, mean in zip(means.person, means.factors[factor], means.mean, strict=True):
+            drawn.setdefault(level, {})[who] = float(mean)
+        findings.append(Finding(name, title, table, (), response, factor, marks, drawn))
     return findings
 
 
 def slip_findings(
     files: Sequence[FileResult], protocol: Protocol, keys: tuple[str, ...]
-) -> tuple[list[Finding], dict[str, Any], list[str]]:
-    """Return the tests a human-slip protocol asks for, curves for figures, and notes."""
+) -> tuple[list[Finding], dict[str, Any]]:
+    """Return the tests a human-slip protocol asks for, and curves for figures."""
     findings: list[Finding] = []
     curves: dict[str, Any] = {}
-    notes: list[str] = []
     wanted = protocol.words("tests")
     judged = [f for f in files if "slip" in f.main]
-    person = person_condition((f.conditions for f in files), protocol.text("subject"))
+    person = person_condition(files, protocol.text("subject"))
     for key in keys:
         if "fisher" in wanted:
-            findings += _fisher(judged, key, person)
+            findings.append(_fisher(judged, key, person))
         levels = {str(f.conditions.get(key)) for f in files if key in f.conditions}
         if "anova" not in wanted and len(levels) == 2:
             findings += _t_tests(files, key, sorted(levels), person)
     if "anova" in wanted:
         for name in ("rcof", "acof"):
             having = [f for f in files if name in f.main and all(k in f.conditions for k in keys)]
-            factors = {
-                k: [str(f.conditions[k]) for f in having]
-                for k in keys
-                if len({str(f.conditions[k]) for f in having}) > 1
-            }
             if having:
                 values = [f.main[name] for f in having]
-                findings += comparison_findings(name, values, factors, persons_of(having, person))
+                factors, persons = varying(having, keys), persons_of(having, person)
+                findings += comparison_findings(name, values, factors, persons)
     if "logistic" in wanted:
         found, curves["risk"] = _logistic(judged, person)
         findings += found
     if "line" in wanted:
-        findings += _line(files, curves, person)
+        findings.append(_line(files, curves, person))
     if "subsets" in wanted:
         findings += _subsets(files)
-    return findings, curves, notes
+    return findings, curves
 
 
 def persons_of(files: Sequence[FileResult], person: str) -> tuple[str, ...]:
@@ -221,26 +225,24 @@ def persons_of(files: Sequence[FileResult], person: str) -> tuple[str, ...]:
     return tuple(str(f.conditions.get(person, f.file)) for f in files)
 
 
-def _fisher(files: Sequence[FileResult], key: str, person: str) -> list[Finding]:
+def varying(files: Sequence[FileResult], keys: Sequence[str]) -> dict[str, list[str]]:
+    """Return the conditions that have several levels, each with its level by file."""
+    factors = {key: [str(f.conditions[key]) for f in files] for key in keys}
+    return {key: levels for key, levels in factors.items() if len(set(levels)) > 1}
+
+
+def _fisher(files: Sequence[FileResult], key: str, person: str) -> Finding:
     having = [f for f in files if key in f.conditions]
-    levels = list(dict.fromkeys(str(f.conditions[key]) for f in having))
-    counts = [
-        [
-            sum(str(f.conditions[key]) == level and f.main["slip"] == slip for f in having)
-            for slip in (1.0, 0.0)
-        ]
-        for level in levels
-    ]
+    counts: dict[str, list[int]] = {}
+    for f in having:
+        counts.setdefault(str(f.conditions[key]), [0, 0])[f.main["slip"] != 1.0] += 1
     title = f"Slips by {key}: Fisher's exact test"
     name = f"fisher_{key}"
     try:
-        found = fisher_exact(counts)
+        found = statistics.fisher_exact(list(counts.values()))
     except UnderfootError as error:
-        return [_not_done(name, title, error)]
-    rows = tuple(
-        (level, slips, none, slips / (slips + none) if slips + none else None)
-        for level, (slips, none) in zip(levels, counts, strict=True)
-    )
+        return _not_done(name, title, error)
+    rows = [(level, slips, none, slips / (slips + none)) for level, (slips, none) in counts.items()]
     note = f"Two-sided exact p = {found.p:.4g}, by enumeration of all tables with these margins."
     if found.p_error is not None:
         note = (
@@ -252,8 +254,8 @@ def _fisher(files: Sequence[FileResult], key: str, person: str) -> list[Finding]
             f" Odds ratio {found.odds_ratio:.3g} (conditional estimate; 95 % {found.low:.3g} to "
             f"{found.high:.3g})."
         )
-    table = Table(name, title, (key, "slips", "no slips", "share"), rows, (note,))
-    return [Finding(name, title, table, independence_warning(persons_of(having, person)))]
+    warning = statistics.independence_warning(persons_of(having, person))
+    return _finding(name, title, (key, "slips", "no slips", "share"), rows, note, warning)
 
 
 def _t_tests(
@@ -268,22 +270,22 @@ def _t_tests(
         if min(group.count(level) for level in levels) < 2:
             continue
         persons = persons_of(having, person)
-        if independence_warning(persons):
+        if statistics.independence_warning(persons):
             mixed, model = _mixed(name, values, {key: group}, persons)
-            findings += mixed + (_tukey(name, model, {key: group}) if model else [])
+            tukey = _tukey(name, model, values, {key: group}, persons) if model else []
+            findings += mixed + tukey
             continue
         samples = [[v for v, g in zip(values, group, strict=True) if g == lv] for lv in levels]
         for kind in ("welch", "pooled"):
             try:
-                t = t_test(samples[0], samples[1], kind=kind)
+                t = statistics.t_test(*samples, kind=kind)
             except UnderfootError:
                 continue
             rows.append((quantity_name(name), t.title, t.difference, t.t, t.df, t.p))
     if rows:
         title = f"t tests of {levels[0]} against {levels[1]} ({key})"
         columns = ("quantity", "test", "difference (SI)", "t", "df", "p")
-        table = Table(f"t_{key}", title, columns, tuple(rows))
-        findings.insert(0, Finding(f"t_{key}", title, table))
+        findings.insert(0, _finding(f"t_{key}", title, columns, rows))
     return findings
 
 
@@ -302,10 +304,10 @@ def _logistic(
         title = f"Logistic regression of slip on {quantity_name(name)}"
         rows: list[tuple[Cell, ...]] = []
         cautions: list[str] = []
-        best = None
+        best: statistics.LogisticFit | statistics.ClusteredFit | None = None
         for method in ("maximum_likelihood", "firth"):
             try:
-                fit = logistic_regression(y, {name: x}, method=method)
+                fit = statistics.logistic_regression(y, {name: x}, method=method)
             except UnderfootError as error:
                 cautions.append(f"{METHODS[method].split(' (')[0]}: {error.what}")
                 continue
@@ -314,40 +316,39 @@ def _logistic(
             c = fit[name]
             intercept = fit["intercept"].estimate
             rows.append((method.replace("_", " "), intercept, c.estimate, c.low, c.high, c.p))
-        curve_fit: LogisticFit | ClusteredFit | None = best
         persons = persons_of(having, subject)
-        if independence_warning(persons):
-            cautions += [*independence_warning(persons), "read the last line, errors by person"]
+        warning = statistics.independence_warning(persons)
+        if warning:
+            cautions += [*warning, "read the last line, errors by person"]
             try:
-                gee = clustered_logistic(y, {name: x}, persons)
+                best = gee = statistics.clustered_logistic(y, {name: x}, persons)
                 c = gee[name]
                 reach = float(student.ppf(0.975, gee.clusters - 2)) * c.corrected_error
                 rows.append(
                     ("estimating equations, errors by person", gee["intercept"].estimate,
                      c.estimate, c.estimate - reach, c.estimate + reach, c.p)
                 )  # fmt: skip
-                curve_fit = gee
             except UnderfootError as error:
                 cautions.append(f"estimating equations: {error.what}")
         columns = ("method", "intercept", "slope", "95 % low", "95 % high", "p")
         note = "Intervals of the first lines are profile likelihoods, p from likelihood ratios."
-        table = Table(f"logistic_{name}", title, columns, tuple(rows), (note,))
-        findings.append(Finding(f"logistic_{name}", title, table, tuple(dict.fromkeys(cautions))))
-        if curve_fit is not None:
+        cautions = list(dict.fromkeys(cautions))
+        findings.append(_finding(f"logistic_{name}", title, columns, rows, note, cautions))
+        if best is not None:
             reach = 0.1 * (max(x) - min(x))
-            curve = risk_curve(curve_fit, np.linspace(min(x) - reach, max(x) + reach, 121))
+            curve = risk_curve(best, np.linspace(min(x) - reach, max(x) + reach, 121))
             drawn.append(
                 {
                     "name": name, "x": x, "y": y, "grid": curve.x.tolist(),
                     "risk": curve.risk.tolist(), "low": curve.low.tolist(),
-                    "high": curve.high.tolist(), "method": METHODS[curve_fit.method],
-                    "slope": float(curve_fit[name].estimate), "half": curve.half,
+                    "high": curve.high.tolist(), "method": METHODS[best.method],
+                    "slope": float(best[name].estimate), "half": curve.half,
                 }
             )  # fmt: skip
     return findings, drawn
 
 
-def _line(files: Sequence[FileResult], curves: dict[str, Any], person: str) -> list[Finding]:
+def _line(files: Sequence[FileResult], curves: dict[str, Any], person: str) -> Finding:
     having = [
         f for f in files
         if {"peak_slipping_speed", "peak_pressure"} <= {*f.main} and f.main.get("crossed_array", 1)
@@ -356,15 +357,15 @@ def _line(files: Sequence[FileResult], curves: dict[str, Any], person: str) -> l
     y = [f.main["peak_slipping_speed"] for f in having]
     title = "Peak slipping speed against peak pressure"
     try:
-        line = regression_line(x, y)
+        line = statistics.regression_line(x, y)
     except UnderfootError as error:
-        return [_not_done("line", title, error)]
+        return _not_done("line", title, error)
     curves["line"] = {"x": x, "y": y, "slope": line.slope, "intercept": line.intercept, "r": line.r}
     columns = ("r", "p", "slope (m/s per kPa)", "SE", "intercept (m/s)", "n")
     row = (line.r, line.p, line.slope, line.slope_error, line.intercept, line.n)
     note = "Trials whose heel crossed the sensor array."
-    table = Table("line", title, columns, (row,), (note,))
-    return [Finding("line", title, table, independence_warning(persons_of(having, person)))]
+    warning = statistics.independence_warning(persons_of(having, person))
+    return _finding("line", title, columns, [row], note, warning)
 
 
 def _subsets(files: Sequence[FileResult]) -> list[Finding]:
@@ -375,14 +376,13 @@ def _subsets(files: Sequence[FileResult]) -> list[Finding]:
     if len(rows) < 12:
         return []
     pressure = [1e-3 * r["pressure"] for r in rows]
-    shared = {
-        "ML distance": [abs(r["ml"]) for r in rows],
-        "IRSS": [r["irss"] for r in rows],
-    }
+    shared = {"ML distance": [abs(r["ml"]) for r in rows], "IRSS": [r["irss"] for r in rows]}
     made = []
     for label, kind in (("as a factor (2 df)", str), ("as a trend (1 df)", float)):
         try:
-            found = all_subsets(pressure, {"SPRWD": [kind(r["row"]) for r in rows], **shared})
+            found = statistics.all_subsets(
+                pressure, {"SPRWD": [kind(r["row"]) for r in rows], **shared}
+            )
         except UnderfootError as error:
             return [_not_done("subsets", title, error)]
         made += [
@@ -392,9 +392,4 @@ def _subsets(files: Sequence[FileResult]) -> list[Finding]:
     columns = ("variables", "SPRWD enters", "adjusted R^2", "R^2", "n")
     note = "Sensor passages of trials with a slip; ML is the distance without its sign."
     caution = "Nine sensors of one slip are not independent: p values would be too small."
-    table = Table("subsets", title, columns, tuple(made), (note,))
-    return [Finding("subsets", title, table, (caution,))]
-
-
-def _not_done(name: str, title: str, error: UnderfootError) -> Finding:
-    return Finding(name, title, Table(name, title, ("not done",), ((error.what,),)))
+    return [_finding("subsets", title, columns, made, note, (caution,))]

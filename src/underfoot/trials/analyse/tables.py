@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -27,6 +27,19 @@ class Table:
     notes: tuple[str, ...] = ()
     decimals: Mapping[str, int] = field(default_factory=dict)
 
+    def filled(self, always: Collection[str] = ()) -> list[int]:
+        """Return the numbers of the columns with content, and of those named in ``always``."""
+        return [
+            i
+            for i, name in enumerate(self.columns)
+            if name in always or any(row[i] not in (None, "") for row in self.rows)
+        ]
+
+    def only(self, keep: Collection[int]) -> Table:
+        """Return the table with the columns of these numbers alone."""
+        rows = tuple(tuple(row[i] for i in keep) for row in self.rows)
+        return replace(self, columns=tuple(self.columns[i] for i in keep), rows=rows)
+
 
 # Name in words, unit shown, and what an SI value is multiplied by for it.
 _NAMES: dict[str, tuple[str, str, float]] = {
@@ -39,7 +52,6 @@ _NAMES: dict[str, tuple[str, str, float]] = {
     "cof_bl": ("COF_BL", "", 1.0),
     "tau_hydro": ("tau_hydro", "m/s", 1.0),
     "cof_asymptote": ("COF_asymptote", "", 1.0),
-    "slip": ("slip", "", 1.0),
     "crossed_array": ("heel crossed the array", "", 1.0),
     "peak_slipping_speed": ("peak slipping speed", "m/s", 1.0),
     "slip_distance": ("slip distance", "mm", 1e3),
@@ -54,30 +66,44 @@ _NAMES: dict[str, tuple[str, str, float]] = {
 }
 
 
+def _quantity(name: str) -> tuple[str, str, float]:
+    return _NAMES.get(name, (name.replace("_", " "), "", 1.0))
+
+
 def quantity_name(name: str) -> str:
     """Return a quantity's name as people write it."""
-    return _NAMES.get(name, (name.replace("_", " "), "", 1.0))[0]
+    return _quantity(name)[0]
 
 
-def heading(name: str) -> str:
-    """Return a column heading with its unit."""
-    text, unit, _ = _NAMES.get(name, (name.replace("_", " "), "", 1.0))
-    return f"{text} ({unit})" if unit else text
+def heading(name: str, what: str = "") -> str:
+    """Return a column heading of a quantity (its mean, or ``what`` of it) with its unit."""
+    text, unit, _ = _quantity(name)
+    return text + (f" {what}" if what else "") + (f" ({unit})" if unit else "")
 
 
 def scaled(name: str, value: float | None) -> float | None:
     """Return an SI value in the unit of its heading."""
-    return None if value is None else value * _NAMES.get(name, ("", "", 1.0))[2]
+    return None if value is None else value * _quantity(name)[2]
 
 
-def file_table(files: Iterable[FileResult]) -> Table:
+def grouped(
+    files: Iterable[FileResult], keys: Sequence[str]
+) -> dict[tuple[str, ...], list[FileResult]]:
+    """Return the files that have all the conditions ``keys``, by their levels."""
+    groups: dict[tuple[str, ...], list[FileResult]] = {}
+    for one in files:
+        if all(key in one.conditions for key in keys):
+            groups.setdefault(tuple(str(one.conditions[key]) for key in keys), []).append(one)
+    return groups
+
+
+def file_table(files: Sequence[FileResult]) -> Table:
     """Return one row per file: verdict, main numbers, conditions, reasons."""
-    files = list(files)
     numbers = list(dict.fromkeys(name for one in files for name in one.main))
     noted = list(dict.fromkeys(name for one in files for name in one.conditions))
     # A number that the analysis took over from the conditions is shown once.
     noted = [name for name in noted if name not in numbers]
-    rows = [
+    rows = tuple(
         (
             one.file,
             one.verdict,
@@ -86,58 +112,49 @@ def file_table(files: Iterable[FileResult]) -> Table:
             "; ".join(one.reasons),
         )
         for one in files
-    ]
-    columns = ("file", "verdict", *map(heading, numbers), *noted, "reasons")
-    return Table("files", "Every file with its verdict", columns, tuple(rows))
-
-
-def measurement_table(files: Iterable[FileResult]) -> Table:
-    """Return one row per number with uncertainty, reason, flags and conventions."""
-    files, rows = list(files), []
-    person = person_condition(one.conditions for one in files)
-    for one in files:
-        for m in one.measurements:
-            conventions = "; ".join(f"{key}: {value}" for key, value in m["conventions"].items())
-            rows.append(
-                (
-                    one.file,
-                    str(one.conditions.get(person, "")),
-                    m["item"],
-                    m["name"],
-                    m["value"],
-                    m["unit"],
-                    m["uncertainty"],
-                    m["reason"],
-                    m["n"],
-                    "yes" if any(flag["matters"] for flag in m["flags"]) else "",
-                    "; ".join(flag["words"] for flag in m["flags"]),
-                    conventions,
-                )
-            )
-    columns = (
-        "file",
-        "person",
-        "item",
-        "quantity",
-        "value",
-        "unit",
-        "standard uncertainty",
-        "not estimated because",
-        "n",
-        "caution",
-        "flags",
-        "conventions",
     )
-    return Table("measurements", "Every number with its conventions", columns, tuple(rows))
+    columns = ("file", "verdict", *map(heading, numbers), *noted, "reasons")
+    return Table("files", "Every file with its verdict", columns, rows)
+
+
+def measurement_table(files: Sequence[FileResult]) -> Table:
+    """Return one row per number with uncertainty, reason, flags and conventions."""
+    person = person_condition(files)
+    rows = tuple(
+        (
+            one.file,
+            str(one.conditions.get(person, "")),
+            *(m[key] for _, key in _NUMBER_COLUMNS),
+            "yes" if any(flag["matters"] for flag in m["flags"]) else "",
+            "; ".join(flag["words"] for flag in m["flags"]),
+            "; ".join(f"{key}: {value}" for key, value in m["conventions"].items()),
+        )
+        for one in files
+        for m in one.measurements
+    )
+    names = (name for name, _ in _NUMBER_COLUMNS)
+    columns = ("file", "person", *names, "caution", "flags", "conventions")
+    return Table("measurements", "Every number with its conventions", columns, rows)
+
+
+_NUMBER_COLUMNS = (
+    ("item", "item"),
+    ("quantity", "name"),
+    ("value", "value"),
+    ("unit", "unit"),
+    ("standard uncertainty", "uncertainty"),
+    ("not estimated because", "reason"),
+    ("n", "n"),
+)
 
 
 def edit_table(files: Iterable[FileResult]) -> Table | None:
     """Return the edit log: every edit by hand with event and number before and after, or None."""
-    keys = ("step", "what", "before", "after", "quantity", "number before", "number after", "why")
-    rows = tuple((one.file, *(e[key] for key in keys)) for one in files for e in one.edits)
-    if not rows:
+    edits = [(one.file, edit) for one in files for edit in one.edits]
+    if not edits:
         return None
-    return Table("edits", "Edits by hand", ("file", *keys), rows)
+    rows = tuple((file, *edit.values()) for file, edit in edits)
+    return Table("edits", "Edits by hand", ("file", *edits[0][1]), rows)
 
 
 # Column, entry of the step and decimals that a reader sees.
@@ -172,7 +189,7 @@ def steps_table(files: Iterable[FileResult]) -> Table:
         ("All that is known of a step is in tables/steps_wide.csv and steps_long.csv.",),
         {column: places for column, _, places in _STEP_COLUMNS if places is not None},
     )
-    return _without_empty(table, ("file", "step", "RCOF", "verdict", "reason", "cautions"))
+    return table.only(table.filled(("file", "step", "RCOF", "verdict", "reason", "cautions")))
 
 
 def condition_table(
@@ -193,18 +210,14 @@ def condition_table(
     numbers = tuple(n for n in numbers if any(n in f.main for f in usable))
     if not usable or not numbers:
         return None
-    groups: dict[tuple[str, ...], list[FileResult]] = {(): usable}
-    if keys:
-        groups = {}
-        for one in usable:
-            groups.setdefault(tuple(str(one.conditions[k]) for k in keys), []).append(one)
-        if len(groups) > 1:
-            groups[("all", *("" for _ in keys[1:]))] = usable
+    groups = grouped(usable, keys)
+    if len(groups) > 1:
+        groups[("all", *("" for _ in keys[1:]))] = usable
     unit = "persons" if person else "files"
     rows = []
     errors: dict[str, list[float]] = {}
     for group, members in groups.items():
-        people = [str(m.conditions.get(person, m.file)) if person else m.file for m in members]
+        people = [str(m.conditions.get(person, m.file)) for m in members]
         steps = sum(counted_steps(m) for m in members)
         cells: list[Cell] = [*group, len(set(people)), len(members), steps or None]
         for number in numbers:
@@ -212,35 +225,24 @@ def condition_table(
             for one, who in zip(members, people, strict=True):
                 if number in one.main:
                     values.setdefault(who, []).append(float(scaled(number, one.main[number]) or 0))
-            means = np.array([np.mean(v) for v in values.values()])
             if number == "slip":
                 trials = [x for v in values.values() for x in v]
-                cells += [
-                    float(np.mean(trials)) if trials else None,
-                    int(sum(max(v) > 0 for v in values.values())),
-                ]
+                cells += [float(np.mean(trials)) if trials else None]
+                cells += [sum(max(v) > 0 for v in values.values())]
                 continue
-            mean, spread, low, high = mean_and_interval(means)
+            mean, spread, low, high = mean_and_interval(
+                [float(np.mean(v)) for v in values.values()]
+            )
             cells += [mean, spread, low, high]
             if spread:
-                errors.setdefault(number, []).append(spread / np.sqrt(len(means)))
+                errors.setdefault(number, []).append(spread / np.sqrt(len(values)))
         rows.append(tuple(cells))
-    columns = [
-        *keys,
-        unit,
-        "trials" if person or any(f.steps for f in usable) else "readings",
-        "steps",
-    ]
-    for number in numbers:
-        columns += (
-            ["share of trials with a slip", f"{unit} who slipped"]
-            if number == "slip"
-            else number_columns(number)
-        )
-    notes = [
-        f"Mean, SD and 95 % interval (t) between {unit}"
-        + (", each person's trials averaged first." if person else ".")
-    ]
+    trials = "trials" if person or any(f.steps for f in usable) else "readings"
+    shares = ["share of trials with a slip", f"{unit} who slipped"]
+    named = (shares if number == "slip" else number_columns(number) for number in numbers)
+    columns = (*keys, unit, trials, "steps", *(name for names in named for name in names))
+    averaged = ", each person's trials averaged first." if person else "."
+    notes = [f"Mean, SD and 95 % interval (t) between {unit}{averaged}"]
     if not person and len(usable) > 1:
         notes.append(
             "No condition names the persons or samples: every file counts as one. Where files "
@@ -252,30 +254,26 @@ def condition_table(
         for column in number_columns(number)
     }
     title = "By " + ", ".join(keys) if keys else "All trials"
-    return _without_empty(
-        Table(name, title, tuple(columns), tuple(rows), tuple(notes), decimals), keys
-    )
+    table = Table(name, title, columns, tuple(rows), tuple(notes), decimals)
+    return table.only(table.filled(keys))
 
 
 def number_columns(name: str) -> list[str]:
     """Return the headings of mean, SD and interval of a quantity."""
-    text, unit, _ = _NAMES.get(name, (name.replace("_", " "), "", 1.0))
-    tail = f" ({unit})" if unit else ""
-    return [f"{text}{tail}", f"{text} SD{tail}", f"{text} 95 % low", f"{text} 95 % high"]
+    ends = [f"{quantity_name(name)} 95 % {end}" for end in ("low", "high")]
+    return [heading(name), heading(name, "SD"), *ends]
 
 
-def mean_and_interval(
-    values: np.ndarray,
-) -> tuple[float | None, float | None, float | None, float | None]:
+def mean_and_interval(values: Sequence[float] | np.ndarray) -> tuple[float | None, ...]:
     """Return mean, SD and the 95 % interval of the mean; None where there are too few values."""
     from scipy.stats import t
 
     if not len(values):
         return None, None, None, None
-    mean = float(values.mean())
+    mean = float(np.mean(values))
     if len(values) < 2:
         return mean, None, None, None
-    spread = float(values.std(ddof=1))
+    spread = float(np.std(values, ddof=1))
     reach = float(t.ppf(0.975, len(values) - 1) * spread / np.sqrt(len(values)))
     return mean, spread, mean - reach, mean + reach
 
@@ -293,16 +291,3 @@ def decimals_of(uncertainty: float) -> int:
     if not uncertainty > 0:
         return 3
     return int(np.clip(1 - np.floor(np.log10(uncertainty)), 0, 8))
-
-
-def _without_empty(table: Table, keys: tuple[str, ...]) -> Table:
-    filled = [
-        i
-        for i, name in enumerate(table.columns)
-        if name in keys or any(row[i] not in (None, "") for row in table.rows)
-    ]
-    return replace(
-        table,
-        columns=tuple(table.columns[i] for i in filled),
-        rows=tuple(tuple(row[i] for i in filled) for row in table.rows),
-    )

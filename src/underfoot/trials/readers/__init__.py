@@ -10,6 +10,7 @@ from pathlib import Path
 from underfoot.core import DataError, UnderfootError
 
 from ..trial import Trial
+from .draft import Draft
 from .profile import PlateColumns, Profile, profile_from, read_profile, with_channels
 from .sheet import Sheet, is_workbook, read_sheet
 from .text import utf16_of
@@ -32,23 +33,14 @@ SUFFIXES = (
     ".mat", ".json", ".asc", ".fgt", ".asf",
 )  # fmt: skip
 _LARGEST = 2_000_000_000  # bytes; a recording of hours stays far below
-# Format: module, function, and what it takes besides data, path and checksum.
-_READERS: dict[str, tuple[str, str, tuple[str, ...]]] = {
-    "C3D": ("c3d", "read_c3d", ("subtract_baseline",)),
-    "TRC": ("trc", "read_trc", ()),
-    "Cortex": ("cortex_forces", "read_cortex_forces", ("subtract_baseline",)),
-    "CETR": ("cetr", "read_cetr", ()),
-    "PCS": ("pcs", "read_pcs", ()),
-    "motion": ("motion", "read_motion", ("subtract_baseline",)),
-    "BioWare": ("bioware", "read_bioware", ("subtract_baseline",)),
-    "Qualisys": ("qualisys", "read_qualisys", ("subtract_baseline",)),
-    "Vicon": ("vicon_csv", "read_vicon_csv", ("subtract_baseline",)),
-    "JSON": ("pose_json", "read_pose_json", ()),
-    "MATLAB": ("matlab", "read_matlab", ("profile", "subtract_baseline")),
-    "Pedar": ("insoles", "read_pedar", ()),
-    "F-Scan": ("insoles", "read_fscan", ()),
-    "table": ("columns", "read_columns", ("profile", "subtract_baseline")),
-}
+_READERS = {
+    "C3D": "c3d.read_c3d", "TRC": "trc.read_trc", "Cortex": "cortex_forces.read_cortex_forces",
+    "CETR": "tribometer_logs.read_cetr", "PCS": "tribometer_logs.read_pcs",
+    "motion": "motion.read_motion", "BioWare": "bioware.read_bioware",
+    "Qualisys": "qualisys.read_qualisys", "Vicon": "vicon_csv.read_vicon_csv",
+    "JSON": "pose_json.read_pose_json", "MATLAB": "matlab.read_matlab",
+    "Pedar": "insoles.read_pedar", "F-Scan": "insoles.read_fscan", "table": "columns.read_columns",
+}  # fmt: skip
 
 
 def file_format(data: bytes, path: Path) -> str:
@@ -88,22 +80,14 @@ def read_trials(
 ) -> tuple[Trial, ...]:
     """Return the trials in a measurement file; most files hold one, tribometer logs one a step.
 
-    Parameters
-    ----------
-    path
-        C3D, TRC, MOT/STO, Cortex .forces, BioWare text, Qualisys TSV, Vicon CSV, MATLAB, JSON of
-        pose systems, Pedar or F-Scan text, CETR or PCS log, CSV, XLSX or XLS.
-    profile
-        What the columns, axes and heels are called: a ``Profile`` or a TOML file.
-    subtract_baseline
-        Subtract the mean force of the unloaded samples from each plate.
+    Understood are C3D, TRC, MOT/STO, Cortex .forces, BioWare text, Qualisys TSV, Vicon CSV,
+    MATLAB, JSON of pose systems, Pedar or F-Scan text, CETR or PCS log, CSV, XLSX or XLS.
 
-    Raises
-    ------
-    DataError
-        The file can't be read as any of these, with the reason.
-    InputError
-        The profile is wrong.
+    ``profile``: what the columns, axes and heels are called: a ``Profile`` or a TOML file.
+    ``subtract_baseline``: subtract the mean force of the unloaded samples from each plate.
+
+    DataError: the file can't be read as any of these, with the reason. InputError: the profile is
+    wrong.
     """
     path = Path(path)
     if profile is None:
@@ -111,11 +95,14 @@ def read_trials(
     elif not isinstance(profile, Profile):
         profile = read_profile(Path(profile))
     data = _bytes(path)
-    checksum = hashlib.sha256(data).hexdigest()
+    kind = file_format(data, path)
+    if kind == "BioWare" and profile.plates:
+        kind = "table"
+    module, _, function = _READERS[kind].partition(".")
+    reader = getattr(import_module(f".{module}", __package__), function)
+    subtracted = subtract_baseline and profile.subtract_baseline
     try:
-        trials = _read(
-            data, path, checksum, profile, subtract_baseline and profile.subtract_baseline
-        )
+        trials = reader(Draft(data, path.name, profile, subtracted))
     except UnderfootError:
         raise
     except (ValueError, IndexError, KeyError, TypeError, ArithmeticError, MemoryError) as error:
@@ -127,15 +114,16 @@ def read_trials(
             remedy="Export the file again; if it opens elsewhere, please report it",
         ) from error
     settings = {} if profile.body_mass is None else {"body mass (kg)": f"{profile.body_mass:g}"}
+    accuracy = {} if profile.accuracy is None else {"accuracy": profile.accuracy}
+    checksum = hashlib.sha256(data).hexdigest()
     return tuple(
         replace(
             trial,
+            checksum=checksum,
             settings={**trial.settings, **settings},
-            plates=trial.plates
-            if profile.accuracy is None
-            else tuple(replace(plate, accuracy=profile.accuracy) for plate in trial.plates),
+            plates=tuple(replace(plate, **accuracy) for plate in trial.plates),
         )
-        for trial in trials
+        for trial in (trials if isinstance(trials, tuple) else (trials,))
     )
 
 
@@ -148,22 +136,14 @@ def read_trial(
 ) -> Trial:
     """Return the one trial in a file, or trial number ``step`` (from 1) of several.
 
-    Raises
-    ------
-    DataError
-        As ``read_trials``; or several trials and no ``step``.
+    Errors as ``read_trials``; several trials without ``step`` are a DataError.
     """
-    trials = read_trials(path, profile, subtract_baseline=subtract_baseline)
+    trials, where = read_trials(path, profile, subtract_baseline=subtract_baseline), Path(path).name
     if step is None and len(trials) > 1:
-        raise DataError(
-            f"the file holds {len(trials)} steps",
-            where=Path(path).name,
-            remedy="Choose one with step=1 ...",
-        )
+        words, remedy = f"the file holds {len(trials)} steps", "Choose one with step=1 ..."
+        raise DataError(words, where=where, remedy=remedy)
     if not 1 <= (step or 1) <= len(trials):
-        raise DataError(
-            f"there is no step {step}", where=Path(path).name, allowed=f"1 to {len(trials)}"
-        )
+        raise DataError(f"there is no step {step}", where=where, allowed=f"1 to {len(trials)}")
     return trials[(step or 1) - 1]
 
 
@@ -173,22 +153,8 @@ def _bytes(path: Path) -> bytes:
             raise DataError("larger than any recording", where=path.name)
         data = path.read_bytes()
     except OSError as error:
-        raise DataError(
-            f"can't be read: {error.strerror or error}", where=path.name or str(path)
-        ) from error
+        words = f"can't be read: {error.strerror or error}"
+        raise DataError(words, where=path.name or str(path)) from error
     if not data:
         raise DataError("empty", where=path.name)
     return data
-
-
-def _read(
-    data: bytes, path: Path, checksum: str, profile: Profile, subtract: bool
-) -> tuple[Trial, ...]:
-    kind = file_format(data, path)
-    if kind == "BioWare" and profile.plates:
-        kind = "table"
-    module, function, takes = _READERS[kind]
-    options = {"profile": profile, "subtract_baseline": subtract}
-    reader = getattr(import_module(f".{module}", __package__), function)
-    trials = reader(data, path, checksum, **{name: options[name] for name in takes})
-    return trials if isinstance(trials, tuple) else (trials,)

@@ -2,120 +2,62 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 
 from underfoot.core import DataError
 
+from .. import plates
 from ..measurement import Flag
-from ..plates import (
-    CHANNELS,
-    KINDS,
-    channel_forces,
-    finished_plate,
-    ordered_corners,
-    plate_axes,
-    refused_plate,
-    up_from_normal,
-)
-from ..trial import Channel, Event, Marker, Plate, Trial
+from ..trial import Event, Trial
 from .c3d_bytes import C3DFile, parse
-from .text import unique_names
+from .draft import Draft
 from .unit_factors import si_unit
 
 _COMPUTED = ("ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS")
 _EVENT_NAMES = {
-    "foot strike": "heel contact",
-    "heel strike": "heel contact",
-    "foot off": "toe off",
+    "foot strike": "heel contact", "heel strike": "heel contact", "foot off": "toe off",
     "toe off": "toe off",
-}
+}  # fmt: skip
 
 
-def read_c3d(data: bytes, path: Path, checksum: str, *, subtract_baseline: bool = True) -> Trial:
+def read_c3d(draft: Draft) -> Trial:
     """Return the trial in a C3D file.
 
     A plate that can't be worked out is kept with its reason; the rest of the file is read.
-
-    Raises
-    ------
-    DataError
-        Not a C3D file, truncated or damaged.
     """
-    where = path.name
-    raw = parse(data, where)
-    notes: list[str] = []
-    scale = _length_unit(raw, notes)
-    start = (raw.first_frame - 1) / raw.point_rate if raw.first_frame > 0 else 0.0
-    units = raw.texts("ANALOG", "UNITS")
-    plates = tuple(
-        _plate(raw, index, units, scale, start, subtract_baseline)
-        for index in range(_plate_count(raw))
-    )
-    return Trial(
-        name=where,
-        channels=_channels(raw, units, start, notes),
-        plates=plates,
-        markers=_markers(raw, scale, start, notes),
-        source="C3D",
-        checksum=checksum,
-        notes=tuple(notes),
-        events=_events(raw),
-        settings=_settings(raw),
-    )
-
-
-def _length_unit(raw: C3DFile, notes: list[str]) -> float:
-    written = (raw.texts("POINT", "UNITS") or [""])[0]
-    unit = si_unit(written) if written else None
-    if unit and unit[0] == "m":
-        return unit[1]
+    raw = parse(draft.data, draft.name)
+    unit = (raw.texts("POINT", "UNITS") or [""])[0]
     size = np.nanmedian(np.abs(raw.points)) if np.isfinite(raw.points).any() else 1000.0
-    factor = 1e-3 if size > 20.0 else 1.0
-    notes.append(
-        f'unit of the markers "{written}" is not known: taken as {"mm" if factor < 1 else "m"} '
-        "from their size"
-    )
-    return factor
-
-
-def _markers(raw: C3DFile, scale: float, start: float, notes: list[str]) -> dict[str, Marker]:
-    count = raw.points.shape[1]
-    labels = raw.texts("POINT", "LABELS")[:count]
-    labels += [f"point {i + 1}" for i in range(len(labels), count)]
+    unknown = f'unit of the markers "{unit}" is not known'
+    scale = draft.length_unit(unit, float(size), unknown, "their size")
+    draft.start = (raw.first_frame - 1) / raw.point_rate if raw.first_frame > 0 else 0.0
+    units = raw.texts("ANALOG", "UNITS")
+    draft.rate = raw.analog_rate
+    for index in range(_plate_count(raw)):
+        _plate(draft, raw, index, units, scale)
+    labels = _labels(raw, "ANALOG", "channel", raw.analog.shape[1])
+    counts = _raw_columns(raw)
+    for i, name in enumerate(draft.names(labels, "channel")):
+        if i in counts:  # the unit belongs to what the plate's calibration matrix makes of them
+            draft.channel(name, raw.analog[:, i], note="before the plate's calibration")
+        else:
+            draft.channel(name, raw.analog[:, i], units[i] if i < len(units) else "")
+    draft.rate = raw.point_rate
+    labels = _labels(raw, "POINT", "point", raw.points.shape[1])
     computed = {label for group in _COMPUTED for label in raw.texts("POINT", group)}
-    names = unique_names(labels, "marker", notes)
+    for i, name in enumerate(draft.names(labels, "marker")):
+        if labels[i] not in computed:
+            draft.marker(name, raw.points[:, i] * scale)
     left_out = sum(label in computed for label in labels)
     if left_out:
-        notes.append(f"{left_out} points are computed angles, forces or powers: left out")
-    return {
-        name: Marker(raw.points[:, i] * scale, raw.point_rate, start)
-        for i, (name, label) in enumerate(zip(names, labels, strict=True))
-        if label not in computed
-    }
+        draft.notes.append(f"{left_out} points are computed angles, forces or powers: left out")
+    draft.events, draft.settings = _events(raw), _settings(raw)
+    return draft.trial("C3D")
 
 
-def _channels(raw: C3DFile, units: list[str], start: float, notes: list[str]) -> dict[str, Channel]:
-    count = raw.analog.shape[1]
-    labels = raw.texts("ANALOG", "LABELS")[:count]
-    labels += [f"channel {i + 1}" for i in range(len(labels), count)]
-    channels = {}
-    counts = _raw_columns(raw)
-    for i, name in enumerate(unique_names(labels, "channel", notes)):
-        written = units[i] if i < len(units) else ""
-        unit = si_unit(written) if written else None
-        if i in counts:  # the unit belongs to what the plate's calibration matrix makes of them
-            channels[name] = Channel(
-                raw.analog[:, i], "", raw.analog_rate, start, note="before the plate's calibration"
-            )
-            continue
-        si, factor, offset = unit if unit else ("", 1.0, 0.0)
-        note = f'in "{written}" in the file' if written else "no unit in the file"
-        channels[name] = Channel(
-            raw.analog[:, i] * factor + offset, si, raw.analog_rate, start, note=note
-        )
-    return channels
+def _labels(raw: C3DFile, group: str, kind: str, count: int) -> list[str]:
+    labels = raw.texts(group, "LABELS")[:count]
+    return labels + [f"{kind} {i + 1}" for i in range(len(labels), count)]
 
 
 def _raw_columns(raw: C3DFile) -> set[int]:
@@ -133,67 +75,61 @@ def _plate_count(raw: C3DFile) -> int:
     return int(min(max(used, 0), max(kinds, used if used < 32 else 0)))
 
 
-def _plate(
-    raw: C3DFile, index: int, units: list[str], scale: float, start: float, subtract: bool
-) -> Plate:
+def _plate(draft: Draft, raw: C3DFile, index: int, units: list[str], scale: float) -> None:
     name = f"plate {index + 1}"
     kinds = raw.whole_numbers("FORCE_PLATFORM", "TYPE").ravel(order="F")
     kind = int(kinds[index]) if index < kinds.size else 0
-    words = KINDS.get(kind, f"type {kind}")
+    words = plates.KINDS.get(kind, f"type {kind}")
     try:
-        if kind not in CHANNELS:
+        if kind not in plates.CHANNELS:
             raise DataError(f"plate type {kind} is not supported", allowed="types 1 to 4")
-        numbers = _column(raw.whole_numbers("FORCE_PLATFORM", "CHANNEL"), index, "CHANNEL")
-        columns = numbers[: CHANNELS[kind]] - 1
-        if len(columns) < CHANNELS[kind]:
-            raise DataError(f"{words} needs {CHANNELS[kind]} channels")
-        if columns.min() < 0 or columns.max() >= raw.analog.shape[1]:
-            raise DataError(
-                f"it names channel {int(columns.max()) + 1} of {raw.analog.shape[1]}"
-                if columns.max() >= raw.analog.shape[1]
-                else "it names a channel below 1"
-            )
-        corners, crossed = ordered_corners(_corners(raw, index) * scale)
-        flags = (
-            (Flag("corners", "its corners come in crossed order: re-ordered"),) if crossed else ()
-        )
-        axes = plate_axes(corners)
-        origin = _column(raw.numbers("FORCE_PLATFORM", "ORIGIN"), index, "ORIGIN") * scale
+        numbers = _of_plate(raw.whole_numbers("FORCE_PLATFORM", "CHANNEL"), index, "CHANNEL", 1)
+        columns = numbers[: plates.CHANNELS[kind]] - 1
+        if len(columns) < plates.CHANNELS[kind]:
+            raise DataError(f"{words} needs {plates.CHANNELS[kind]} channels")
+        most = raw.analog.shape[1]
+        if columns.max() >= most:
+            raise DataError(f"it names channel {int(columns.max()) + 1} of {most}")
+        if columns.min() < 0:
+            raise DataError("it names a channel below 1")
+        corners = _of_plate(raw.numbers("FORCE_PLATFORM", "CORNERS"), index, "CORNERS", 2, (3, 4)).T
+        corners, crossed = plates.ordered_corners(corners * scale)
+        flag = Flag("corners", "its corners come in crossed order: re-ordered")
+        axes = plates.plate_axes(corners)
+        origin = _of_plate(raw.numbers("FORCE_PLATFORM", "ORIGIN"), index, "ORIGIN", 1) * scale
         if origin.shape != (3,) or not np.isfinite(origin).all():
             raise DataError("ORIGIN is damaged")
         signals = raw.analog[:, columns]
         notes: list[str] = []
-        force, moment = channel_forces(
-            kind,
-            signals if kind == 4 else _in_si(signals, columns, units, kind, scale, notes),
-            origin,
-            _calibration(raw, index) if kind == 4 else None,
-        )
         if kind == 4:
+            matrix = raw.numbers("FORCE_PLATFORM", "CAL_MATRIX")
+            matrix = _of_plate(matrix, index, "CAL_MATRIX", 2, (6, 6))
+            force, moment = plates.channel_forces(kind, signals, origin, matrix)
             # The matrix turns raw counts into N and N times the file's unit of length.
-            moment = _rescaled_type_4(force, moment, origin, scale)
+            lever = np.cross(-origin if origin[2] > 0 else origin, force)
+            moment = (moment + lever) * scale - lever
+        else:
+            known = _in_si(signals, columns, units, kind, scale, notes)
+            force, moment = plates.channel_forces(kind, known, origin, None)
         if not np.isfinite(force).any() or np.abs(force[np.isfinite(force)]).max() > 1e9:
             raise DataError("its forces are not numbers of any possible size")
         zero = raw.numbers("FORCE_PLATFORM", "ZERO").ravel(order="F")
         if zero.size == 2 and zero[1] > zero[0] > 0:
             notes.append(f"ZERO names samples {int(zero[0])} to {int(zero[1])}")
-        return finished_plate(
-            name,
+        draft.plate(
             force @ axes.T,
-            rate=raw.analog_rate,
-            start=start,
-            up=up_from_normal(axes[:, 2]),
+            name,
+            up=plates.up_from_normal(axes[:, 2]),
             moment=moment @ axes.T,
             corners=corners,
             raw=signals,
             kind=words,
             notes=tuple(notes),
-            flags=flags,
-            subtract_baseline=subtract,
+            flags=(flag,) if crossed else (),
         )
     except DataError as error:
         reason = error.what + (f" ({error.allowed})" if error.allowed else "")
-        return refused_plate(name, reason, rate=raw.analog_rate, kind=words)
+        draft.plates.append(plates.refused_plate(name, reason, rate=raw.analog_rate, kind=words))
 
 
 def _in_si(
@@ -210,50 +146,27 @@ def _in_si(
     unknown = set()
     for i, (column, letter) in enumerate(zip(columns, wanted, strict=True)):
         written = units[column] if column < len(units) else ""
-        unit = si_unit(written) if written else None
-        si, assumed = kinds[letter]
+        si, factors[i] = kinds[letter]
+        unit = si_unit(written)
         if unit and unit[0] == si:
             factors[i] = unit[1]
         else:
-            factors[i] = assumed
-            unknown.add(f'"{written}" as {"N" if letter == "F" else si}')
+            unknown.add(f'"{written}" as {si}')
     if unknown:
         notes.append("units assumed: " + ", ".join(sorted(unknown)))
     return signals * factors
 
 
-def _rescaled_type_4(
-    force: np.ndarray, moment: np.ndarray, origin: np.ndarray, scale: float
+def _of_plate(
+    values: np.ndarray, index: int, name: str, dimensions: int, shape: tuple[int, ...] | None = None
 ) -> np.ndarray:
-    to_surface = -origin if origin[2] > 0 else origin
-    lever = np.cross(np.broadcast_to(to_surface, force.shape), force)
-    return (moment + lever) * scale - lever
-
-
-def _column(values: np.ndarray, index: int, name: str) -> np.ndarray:
-    if values.ndim == 1 and index == 0 and values.size:
-        return values
-    if values.ndim != 2 or index >= values.shape[1]:
+    """Part of a parameter that is one plate's; files with one plate may leave out the last axis."""
+    if values.ndim == dimensions and index == 0 and values.size:
+        values = values[..., None]
+    wanted = shape or values.shape[:-1]
+    if len(wanted) != dimensions or values.shape[:-1] != wanted or index >= values.shape[-1]:
         raise DataError(f"FORCE_PLATFORM:{name} does not describe it")
-    return values[:, index]
-
-
-def _corners(raw: C3DFile, index: int) -> np.ndarray:
-    values = raw.numbers("FORCE_PLATFORM", "CORNERS")
-    if values.ndim == 2 and values.shape == (3, 4) and index == 0:
-        return values.T
-    if values.ndim != 3 or values.shape[:2] != (3, 4) or index >= values.shape[2]:
-        raise DataError("FORCE_PLATFORM:CORNERS does not describe it")
-    return values[:, :, index].T
-
-
-def _calibration(raw: C3DFile, index: int) -> np.ndarray:
-    values = raw.numbers("FORCE_PLATFORM", "CAL_MATRIX")
-    if values.ndim == 2 and index == 0:
-        values = values[:, :, None]
-    if values.ndim != 3 or values.shape[:2] != (6, 6) or index >= values.shape[2]:
-        raise DataError("FORCE_PLATFORM:CAL_MATRIX does not describe it")
-    return values[:, :, index]
+    return values[..., index]
 
 
 def _events(raw: C3DFile) -> tuple[Event, ...]:
@@ -264,23 +177,21 @@ def _events(raw: C3DFile) -> tuple[Event, ...]:
         return ()
     labels, sides = raw.texts("EVENT", "LABELS"), raw.texts("EVENT", "CONTEXTS")
     found = []
-    for i in range(times.shape[1]):
-        when = float(times[0, i] * 60.0 + times[1, i])
-        if not np.isfinite(when):
-            continue
-        label = labels[i] if i < len(labels) else "event"
-        side = sides[i].casefold() if i < len(sides) else ""
-        name = _EVENT_NAMES.get(label.casefold(), label)
-        found.append(Event(name, when, side, source=f'file, "{label}"'))
+    for i, when in enumerate(times[0] * 60.0 + times[1]):
+        if np.isfinite(when):
+            label = labels[i] if i < len(labels) else "event"
+            side = sides[i].casefold() if i < len(sides) else ""
+            name = _EVENT_NAMES.get(label.casefold(), label)
+            found.append(Event(name, float(when), side, source=f'file, "{label}"'))
     return tuple(sorted(found, key=lambda event: event.time))
 
 
 def _settings(raw: C3DFile) -> dict[str, str]:
     found = {}
     for group in ("PROCESSING", "SUBJECTS"):
-        for name in ("BODYMASS", "MASS", "WEIGHT"):
+        for name in ("BODYMASS", "MASS"):
             mass = raw.number(group, name)
-            if 5.0 < mass < 300.0 and name != "WEIGHT":
+            if 5.0 < mass < 300.0:
                 found["body mass (kg)"] = f"{mass:.6g}"
     company = raw.texts("MANUFACTURER", "COMPANY")
     if company and company[0]:

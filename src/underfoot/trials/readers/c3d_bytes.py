@@ -14,6 +14,8 @@ import numpy as np
 
 from underfoot.core import DataError
 
+from .text import truncated
+
 BLOCK = 512
 _ENDIAN = {84: "<", 85: "<", 86: ">"}
 _VAX = 85
@@ -62,13 +64,7 @@ class C3DFile:
 
 
 def parse(data: bytes, where: str) -> C3DFile:
-    """Return what a C3D file holds.
-
-    Errors
-    ------
-    DataError
-        Not a C3D file, truncated, or inconsistent.
-    """
+    """Return what a C3D file holds; what is truncated or inconsistent is a DataError."""
     if len(data) < 2 * BLOCK or data[1] != 0x50 or data[0] == 0:
         raise DataError("not a C3D file", where=where, allowed="a file that begins as c3d.org says")
     start = (data[0] - 1) * BLOCK
@@ -91,9 +87,8 @@ def parse(data: bytes, where: str) -> C3DFile:
     per_frame = int(words[9])
     channels = n_analog // per_frame if per_frame else 0
     if per_frame and channels * per_frame != n_analog:
-        raise DataError(
-            f"{n_analog} analog values a frame in {per_frame} samples can't be", where=where
-        )
+        words = f"{n_analog} analog values a frame in {per_frame} samples can't be"
+        raise DataError(words, where=where)
     frames = last - first + 1
     data_start = (int(words[8]) - 1) * BLOCK
     real = bool(scale < 0)
@@ -121,11 +116,8 @@ def _check_size(length: int, start: int, frames: int, width: int, where: str) ->
         raise DataError("truncated: the data section is missing", where=where)
     whole = (length - start) // width
     if whole < frames:
-        raise DataError(
-            f"truncated or damaged: the header says {frames} frames, the file holds {whole}",
-            where=where,
-            remedy="Export or copy the file again",
-        )
+        words = f"truncated or damaged: the header says {frames} frames, the file holds {whole}"
+        raise truncated(words, where)
 
 
 def _frame_range(words: np.ndarray, shell: C3DFile) -> tuple[int, int]:

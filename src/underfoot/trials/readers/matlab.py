@@ -6,21 +6,19 @@ import pickle
 import re
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from io import BytesIO
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from underfoot.core import DataError
 
-from ..plates import finished_plate
-from ..trial import Marker, Plate, Trial
+from ..trial import Trial
 from .columns import trial_from_sheet
-from .profile import Profile
+from .draft import Draft
 from .sheet import Sheet
-from .text import unique_names
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _FORCE = re.compile(r"(^|[^a-z])(f|force|grf)\d*$", re.IGNORECASE)
@@ -29,25 +27,17 @@ _LARGEST = 200_000_000  # bytes of one array
 _PATIENCE = 15.0  # s
 
 
-def read_matlab(
-    data: bytes, path: Path, checksum: str, profile: Profile, *, subtract_baseline: bool = True
-) -> Trial:
+def read_matlab(draft: Draft) -> Trial:
     """Return the recording in a .mat file.
 
     Understood: the structure that Qualisys Track Manager writes, and plain arrays: vectors are
     columns; arrays of three columns are markers, or forces when called so (``F``, ``Force1``,
     ``GRF``); ``time`` or a scalar ``fs`` gives the rate.
-
-    Raises
-    ------
-    DataError
-        Damaged, or nothing that can be recognised.
     """
-    where = path.name
-    content = _content(data, where)
+    content = _content(draft.data, draft.name)
     for value in content.values():
         if isinstance(value, Mapping) and ("Trajectories" in value or "Force" in value):
-            return _qualisys(value, where, checksum, subtract_baseline)
+            return _qualisys(draft, value)
     numbers: dict[str, np.ndarray] = {}
     header: list[str] = []
     for name, value in _arrays(content):
@@ -60,17 +50,15 @@ def read_matlab(
             force = _FORCE.search(name)
             for i, axis in enumerate("xyz"):
                 numbers[f"{name} F{axis}" if force else f"{name}_{axis}"] = columns[:, i]
-    lengths = {len(v) for v in numbers.values()}
     if not numbers:
-        raise DataError("no array of samples", where=where, allowed=", ".join(content) or "arrays")
-    longest = max(lengths, key=lambda n: sum(len(v) == n for v in numbers.values()))
+        raise draft.error("no array of samples", allowed=", ".join(content) or "arrays")
+    lengths = Counter(len(v) for v in numbers.values())
+    longest = max(sorted(lengths), key=lambda n: lengths[n])
     other = [name for name, v in numbers.items() if len(v) != longest]
     notes = (f"arrays of another length are left out: {', '.join(other[:6])}",) if other else ()
     columns = {n: np.asarray(v, dtype=float) for n, v in numbers.items() if len(v) == longest}
-    sheet = Sheet(where, columns, {}, {}, tuple(header), notes)
-    return trial_from_sheet(
-        sheet, checksum, profile, source="MATLAB", subtract_baseline=subtract_baseline
-    )
+    sheet = Sheet(draft.name, columns, {}, {}, tuple(header), notes)
+    return trial_from_sheet(draft, sheet, "MATLAB")
 
 
 def _content(data: bytes, where: str) -> dict[str, Any]:
@@ -142,53 +130,39 @@ def _arrays(content: Mapping[str, Any], before: str = "") -> Iterator[tuple[str,
             yield f"{before}{name}", np.atleast_1d(value)
 
 
-def _qualisys(
-    value: Mapping[str, Any], where: str, checksum: str, subtract_baseline: bool
-) -> Trial:
-    notes: list[str] = []
-    markers: dict[str, Marker] = {}
+def _qualisys(draft: Draft, value: Mapping[str, Any]) -> Trial:
     labelled = _part(_part(value, "Trajectories"), "Labeled")
     if labelled:
         places = np.asarray(labelled["Data"], dtype=float)
         places = places[None] if places.ndim == 2 else places
         labels = [str(x) for x in np.atleast_1d(labelled["Labels"])]
-        rate = float(value["FrameRate"])
-        for i, name in enumerate(unique_names(labels, "marker", notes)):
-            markers[name] = Marker(1e-3 * places[i, :3].T, rate)
-    plates: list[Plate] = []
+        draft.rate = float(value["FrameRate"])
+        for i, name in enumerate(draft.names(labels, "marker")):
+            draft.marker(name, 1e-3 * places[i, :3].T)
     forces = value.get("Force", [])
     forces = [forces] if isinstance(forces, Mapping) else forces
     forces = [one for one in forces if isinstance(one, Mapping)]
     for number, one in enumerate(forces, start=1):
-        force = np.asarray(one.get("Force", []), dtype=float)
+        force, corners, place = (
+            np.asarray(one.get(key, []), dtype=float)
+            for key in ("Force", "ForcePlateLocation", "COP")
+        )
         if force.ndim != 2 or 3 not in force.shape:
-            notes.append(f"plate {number} holds no forces")
+            draft.notes.append(f"plate {number} holds no forces")
             continue
         force = force.T if force.shape[0] == 3 else force
-        corners = np.asarray(one.get("ForcePlateLocation", []), dtype=float)
-        place = np.asarray(one.get("COP", []), dtype=float)
-        plates.append(
-            finished_plate(
-                f"plate {number}",
-                force,
-                rate=float(one["Frequency"]),
-                up=np.array([0.0, 0.0, 1.0]),
-                centre_of_pressure=1e-3 * place.T if place.shape == force.T.shape else None,
-                corners=1e-3 * corners if corners.shape == (4, 3) else None,
-                kind="Qualisys MATLAB export, taken as laboratory axes",
-                subtract_baseline=subtract_baseline,
-            )
+        draft.rate = float(one["Frequency"])
+        draft.plate(
+            force,
+            f"plate {number}",
+            up=np.eye(3)[2],
+            centre_of_pressure=1e-3 * place.T if place.shape == force.T.shape else None,
+            corners=1e-3 * corners if corners.shape == (4, 3) else None,
+            kind="Qualisys MATLAB export, taken as laboratory axes",
         )
-    if not markers and not plates:
-        raise DataError("no markers and no forces", where=where)
-    return Trial(
-        where,
-        plates=tuple(plates),
-        markers=markers,
-        source="Qualisys MATLAB",
-        checksum=checksum,
-        notes=tuple(notes),
-    )
+    if not draft.markers and not draft.plates:
+        raise draft.error("no markers and no forces")
+    return draft.trial("Qualisys MATLAB")
 
 
 def _part(value: Mapping[str, Any], name: str) -> Mapping[str, Any]:

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from underfoot.core import DataError
-
-from ..trial import Marker, Trial
-from .text import decoded, rate_of
-from .unit_factors import si_unit
+from ..trial import Trial
+from .draft import Draft
+from .text import decoded
 
 _RATE = ("fps", "frame_rate", "framerate", "frequency", "rate", "sampling_rate")
 _POINTS = ("markers", "keypoints", "points", "joints", "landmarks")
@@ -25,75 +22,67 @@ _BODY_25 = {
 _MOST = 5_000_000
 
 
-def read_pose_json(data: bytes, path: Path, checksum: str) -> Trial:
+def read_pose_json(draft: Draft) -> Trial:
     """Return the points of a JSON file as markers.
 
     Understood: ``{"fps": 100, "unit": "m", "markers": {"LHeel": [[x, y, z], ...]}}`` (also
     "keypoints", "points", "joints"); a list "frames" of ``{"time": t, "markers": {"LHeel": [x, y,
     z]}}``; OpenPose frames with ``pose_keypoints_3d``. Points in pixels are refused: without a
     length there is no speed.
-
-    Raises
-    ------
-    DataError
-        No JSON, no points in space, no rate.
     """
-    where = path.name
     try:
-        content: Any = json.loads(decoded(data, where))
+        content: Any = json.loads(decoded(draft.data, draft.name))
     except (ValueError, RecursionError) as error:
-        raise DataError("not valid JSON", where=where, remedy="Export it again") from error
+        raise draft.error("not valid JSON", remedy="Export it again") from error
     top: Mapping[str, Any] = content if isinstance(content, Mapping) else {"frames": content}
     if "people" in top:
-        raise DataError(
+        raise draft.error(
             "a single frame of OpenPose holds no motion",
-            where=where,
             remedy="Join the frames in one file, in space (three coordinates)",
         )
-    points = next((top[k] for k in _POINTS if isinstance(top.get(k), Mapping)), None)
-    times: np.ndarray | None = None
+    points, times = _points(top), None
     if points is None:
-        points, times = _from_frames(top.get("frames"), where)
+        points, times = _from_frames(draft, top.get("frames"))
     rate = next((float(top[k]) for k in _RATE if isinstance(top.get(k), int | float)), None)
     if times is not None and len(times) > 1:
-        rate, start, uneven = rate_of(times, where)
+        draft.clock(times)
     elif rate is None or not 0 < rate < 1e6:
-        raise DataError("no frame rate and no times", where=where, allowed='"fps": 100')
+        raise draft.error("no frame rate and no times", allowed='"fps": 100')
     else:
-        start, uneven = 0.0, None
-    written = str(top.get("unit", top.get("units", "")))
-    notes = []
+        draft.rate = rate
     places = {}
     for name, path_of in points.items():
-        values = np.array(
-            [[np.nan] * 3 if v is None else list(v)[:3] for v in path_of], dtype=float
-        )
+        rows = [[np.nan] * 3 if v is None else list(v)[:3] for v in path_of]
+        places[str(name)] = values = np.array(rows, dtype=float)
         if values.ndim != 2 or values.shape[1] != 3 or values.size > _MOST:
-            raise DataError(f"{name} has no three coordinates a frame", where=where)
-        places[str(name)] = values
+            raise draft.error(f"{name} has no three coordinates a frame")
     if len({len(v) for v in places.values()}) != 1:
-        raise DataError("points have different numbers of frames", where=where)
-    unit = si_unit(written)
-    if unit is None or unit[0] != "m":
-        # Height above the floor is below 3 in m, above it in mm.
-        size = float(np.nanmedian([np.nanmax(np.abs(v)) for v in places.values()]))
-        unit = ("m", 1e-3 if size > 20.0 else 1.0, 0.0)
-        notes.append(f"no unit of length: taken as {'mm' if unit[1] < 1 else 'm'} from the size")
-    markers = {n: Marker(v * unit[1], rate, start, uneven) for n, v in places.items()}
-    return Trial(where, markers=markers, source="JSON", checksum=checksum, notes=tuple(notes))
+        raise draft.error("points have different numbers of frames")
+    # Height above the floor is below 3 in m, above it in mm.
+    sizes = [np.nanmax(np.abs(v)) for v in places.values() if np.isfinite(v).any()]
+    size = float(np.median(sizes)) if sizes else 0.0
+    written = str(top.get("unit", top.get("units", "")))
+    factor = draft.length_unit(written, size, "no unit of length", "the size")
+    for name, place in places.items():
+        draft.marker(name, place * factor)
+    return draft.trial("JSON")
 
 
-def _from_frames(frames: Any, where: str) -> tuple[dict[str, list[Any]], np.ndarray | None]:
+def _points(content: Mapping[str, Any]) -> Mapping[str, Any] | None:
+    return next((content[k] for k in _POINTS if isinstance(content.get(k), Mapping)), None)
+
+
+def _from_frames(draft: Draft, frames: Any) -> tuple[dict[str, list[Any]], np.ndarray | None]:
     if not isinstance(frames, Sequence) or not frames or isinstance(frames, str):
-        raise DataError("no points and no frames", where=where, allowed=", ".join(_POINTS))
+        raise draft.error("no points and no frames", allowed=", ".join(_POINTS))
     points: dict[str, list[Any]] = {}
     times = []
     for number, frame in enumerate(frames):
         if not isinstance(frame, Mapping):
-            raise DataError(f"frame {number + 1} is no object", where=where)
-        own = next((frame[k] for k in _POINTS if isinstance(frame.get(k), Mapping)), None)
+            raise draft.error(f"frame {number + 1} is no object")
+        own = _points(frame)
         if own is None:
-            own = _open_pose(frame, where)
+            own = _open_pose(draft, frame)
         for name in own:
             points.setdefault(str(name), [None] * number)
         for name, path_of in points.items():
@@ -103,21 +92,15 @@ def _from_frames(frames: Any, where: str) -> tuple[dict[str, list[Any]], np.ndar
     return points, np.array(times) if len(times) == len(frames) else None
 
 
-def _open_pose(frame: Mapping[str, Any], where: str) -> dict[str, Any]:
+def _open_pose(draft: Draft, frame: Mapping[str, Any]) -> dict[str, Any]:
     people = frame.get("people")
     person = people[0] if isinstance(people, list) and people else {}
     flat = person.get("pose_keypoints_3d") if isinstance(person, Mapping) else None
     if isinstance(people, list) and not people:
         return {}
     if not flat:
-        raise DataError(
-            "the points are in pixels of one picture",
-            where=where,
-            remedy="Export points in space (pose_keypoints_3d)",
-        )
+        remedy = "Export points in space (pose_keypoints_3d)"
+        raise draft.error("the points are in pixels of one picture", remedy=remedy)
     rows = [flat[i : i + 4] for i in range(0, len(flat) - 3, 4)]
-    return {
-        name: rows[i][:3] if rows[i][3] > 0 else None
-        for i, name in _BODY_25.items()
-        if i < len(rows)
-    }
+    seen = {name: rows[i] for i, name in _BODY_25.items() if i < len(rows)}
+    return {name: row[:3] if row[3] > 0 else None for name, row in seen.items()}

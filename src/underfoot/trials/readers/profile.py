@@ -3,15 +3,30 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from underfoot.core import InputError, nearest_match, to_si
 
 from ..trial import PlateAccuracy
 from .unit_factors import known_units, si_unit
+
+T = TypeVar("T")
+_DIRECTIONS = ("x", "y", "z", "+x", "+y", "+z", "-x", "-y", "-z")
+# Tables of a profile with the keys they may have; none: any key, as the laboratory's own names.
+_PARTS: dict[str, tuple[str, ...]] = {
+    "file": tuple("delimiter header_line sheet rate time time_unit subtract_baseline".split()),
+    "channels": (),
+    "plates": (),
+    "markers": (),
+    "axes": ("vertical", "walking"),
+    "heel": ("left", "right"),
+    "subject": ("mass",),
+    "sensors": (),
+    "accuracy": ("gain", "crosstalk", "source"),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,10 +72,7 @@ class Profile:
 def read_profile(path: Path) -> Profile:
     """Return the profile in a TOML file.
 
-    Raises
-    ------
-    InputError
-        Not TOML, an unknown key or unit, a wrong type; names the key and the nearest match.
+    InputError: not TOML, an unknown key or unit, a wrong type; names the key and the nearest match.
     """
     path = Path(path)
     try:
@@ -74,60 +86,36 @@ def read_profile(path: Path) -> Profile:
 
 def profile_from(data: Mapping[str, Any], *, where: str = "profile") -> Profile:
     """Return the profile in plain data (the parsed TOML); errors as ``read_profile``."""
-    parts = "name file channels plates markers axes heel subject sensors accuracy"
-    _known(data, tuple(parts.split()), where)
-    file = _part(data, "file", where)
-    _known(
-        file,
-        ("delimiter", "header_line", "sheet", "rate", "time", "time_unit", "subtract_baseline"),
-        f"{where}.file",
-    )
-    axes, heel = _part(data, "axes", where), _part(data, "heel", where)
-    _known(axes, ("vertical", "walking"), f"{where}.axes")
-    _known(heel, ("left", "right"), f"{where}.heel")
-    subject = _part(data, "subject", where)
-    _known(subject, ("mass",), f"{where}.subject")
-    for key, allowed in (("vertical", _DIRECTIONS), ("walking", _DIRECTIONS)):
-        if key in axes and axes[key] not in allowed:
-            raise InputError(
-                f'"{axes[key]}" is no axis', where=f"{where}.axes.{key}", allowed=", ".join(allowed)
-            )
+    _known(data, ("name", *_PARTS), where)
+    parts = {name: _part(data, name, keys, where) for name, keys in _PARTS.items()}
+    file, axes, subject = parts["file"], parts["axes"], parts["subject"]
+    for key, axis in axes.items():
+        if axis not in _DIRECTIONS:
+            allowed = ", ".join(_DIRECTIONS)
+            raise InputError(f'"{axis}" is no axis', where=f"{where}.axes.{key}", allowed=allowed)
     header = file.get("header_line")
     if header is not None and (not isinstance(header, int) or header < 1):
         raise InputError(f"{header!r} is no line number", where=f"{where}.file.header_line")
+
+    def each(name: str, read: Callable[[object, str], T]) -> dict[str, T]:
+        return {str(key): read(v, f"{where}.{name}.{key}") for key, v in parts[name].items()}
+
     return Profile(
         name=str(data.get("name", "")),
-        delimiter=_text(file, "delimiter", where),
+        **{key: _text(file, key, where) for key in ("delimiter", "sheet", "time", "time_unit")},
         header_line=header,
-        sheet=_text(file, "sheet", where),
-        rate=_quantity(file["rate"], "Hz", f"{where}.file.rate") if "rate" in file else None,
-        time=_text(file, "time", where),
-        time_unit=_text(file, "time_unit", where),
+        rate=_quantity(file, "rate", "Hz", f"{where}.file"),
         subtract_baseline=bool(file.get("subtract_baseline", True)),
-        channels={
-            str(key): _channel(value, f"{where}.channels.{key}")
-            for key, value in _part(data, "channels", where).items()
-        },
-        plates={
-            str(key): _plate(value, f"{where}.plates.{key}")
-            for key, value in _part(data, "plates", where).items()
-        },
-        markers={
-            str(key): _marker(value, f"{where}.markers.{key}")
-            for key, value in _part(data, "markers", where).items()
-        },
+        channels=each("channels", _channel),
+        plates=each("plates", _plate),
+        markers=each("markers", _marker),
         vertical=axes.get("vertical"),
         walking=axes.get("walking"),
-        heels={str(key): str(value) for key, value in heel.items()},
-        body_mass=(
-            _quantity(subject["mass"], "kg", f"{where}.subject.mass") if "mass" in subject else None
-        ),
-        sensors=_sensors(_part(data, "sensors", where), f"{where}.sensors"),
-        accuracy=_accuracy(_part(data, "accuracy", where), f"{where}.accuracy"),
+        heels=each("heel", lambda name, _: str(name)),
+        body_mass=_quantity(subject, "mass", "kg", f"{where}.subject"),
+        sensors=_sensors(parts["sensors"], f"{where}.sensors"),
+        accuracy=_accuracy(parts["accuracy"], f"{where}.accuracy"),
     )
-
-
-_DIRECTIONS = ("x", "y", "z", "+x", "+y", "+z", "-x", "-y", "-z")
 
 
 def _known(data: Mapping[str, Any], allowed: tuple[str, ...], where: str) -> None:
@@ -141,10 +129,14 @@ def _known(data: Mapping[str, Any], allowed: tuple[str, ...], where: str) -> Non
             )
 
 
-def _part(data: Mapping[str, Any], key: str, where: str) -> Mapping[str, Any]:
+def _part(
+    data: Mapping[str, Any], key: str, allowed: tuple[str, ...], where: str
+) -> Mapping[str, Any]:
     part = data.get(key, {})
     if not isinstance(part, Mapping):
         raise InputError(f"{part!r} is not a table", where=f"{where}.{key}", allowed=f"[{key}]")
+    if allowed:
+        _known(part, allowed, f"{where}.{key}")
     return part
 
 
@@ -166,10 +158,12 @@ def _unit(text: object, dimension: str, where: str) -> str:
     return str(text)
 
 
-def _quantity(value: object, unit: str, where: str) -> float:
-    number = to_si(value, unit, where=where)
+def _quantity(data: Mapping[str, Any], key: str, unit: str, where: str) -> float | None:
+    if key not in data:
+        return None
+    number = to_si(data[key], unit, where=f"{where}.{key}")
     if number <= 0:
-        raise InputError(f"{value!r} is not positive", where=where)
+        raise InputError(f"{data[key]!r} is not positive", where=f"{where}.{key}")
     return number
 
 
@@ -179,9 +173,13 @@ def _channel(value: object, where: str) -> tuple[str, str, float]:
     _known(value, ("column", "unit", "scale"), where)
     unit = _unit(value["unit"], "", f"{where}.unit") if "unit" in value else ""
     scale = value.get("scale", 1.0)
-    if isinstance(scale, bool) or not isinstance(scale, int | float):
+    if not _is_number(scale):
         raise InputError(f"{scale!r} is no number", where=f"{where}.scale")
     return value["column"], unit, float(scale)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _three(value: object, where: str) -> tuple[str, str, str]:
@@ -191,11 +189,7 @@ def _three(value: object, where: str) -> tuple[str, str, str]:
 
 
 def _numbers(value: object, where: str) -> tuple[float, float, float]:
-    if (
-        not isinstance(value, list)
-        or len(value) != 3
-        or any(isinstance(v, bool) or not isinstance(v, int | float) for v in value)
-    ):
+    if not isinstance(value, list) or len(value) != 3 or not all(map(_is_number, value)):
         raise InputError(f"{value!r} are not three numbers", where=where)
     return float(value[0]), float(value[1]), float(value[2])
 
@@ -214,20 +208,18 @@ def _plate(value: object, where: str) -> PlateColumns:
     if corners is not None and (not isinstance(corners, list) or len(corners) != 4):
         raise InputError("a plate has four corners", where=f"{where}.corners")
     three = {
-        key: _three(value[key], f"{where}.{key}") if key in value else None
+        key: _three(value[key], f"{where}.{key}")
         for key in ("centre_of_pressure", "moment")
+        if key in value
     }
     return PlateColumns(
-        force=force,
+        force,
         unit=_unit(value["unit"], "N", f"{where}.unit") if "unit" in value else "",
         force_is=force_is,
         sign=_numbers(value.get("sign", [1, 1, 1]), f"{where}.sign"),
-        centre_of_pressure=three["centre_of_pressure"],
-        moment=three["moment"],
         length_unit=_unit(value.get("length_unit", "m"), "m", f"{where}.length_unit"),
-        corners=(
-            tuple(_numbers(corner, f"{where}.corners") for corner in corners) if corners else None
-        ),
+        corners=tuple(_numbers(c, f"{where}.corners") for c in corners) if corners else None,
+        **three,
     )
 
 
@@ -259,20 +251,15 @@ def _force_columns(value: Mapping[str, Any], where: str) -> tuple[str, str, str]
 
 
 def with_channels(profile: Profile, friction: str, normal: str, *, where: str) -> Profile:
-    """Return the profile with the two channels of a tester that a protocol names.
-
-    Raises
-    ------
-    InputError
-        One channel only, the same twice, or the profile names plates too.
-    """
+    """Return the profile with the two channels of a tester that a protocol names."""
     if not friction and not normal:
         return profile
     if profile.plates:
         raise InputError(
-            "the protocol and the profile both name force columns", where=where,
+            "the protocol and the profile both name force columns",
+            where=where,
             remedy="Name them in one place",
-        )  # fmt: skip
+        )
     columns = _plate({"friction": friction, "normal": normal}, where)
     return replace(profile, plates={"tester": columns})
 
@@ -281,28 +268,23 @@ def _marker(value: object, where: str) -> tuple[tuple[str, str, str], str]:
     if not isinstance(value, Mapping) or "columns" not in value:
         raise InputError("a marker needs its three columns", where=where)
     _known(value, ("columns", "unit"), where)
-    return (
-        _three(value["columns"], f"{where}.columns"),
-        _unit(value.get("unit", "m"), "m", f"{where}.unit"),
-    )
+    unit = _unit(value.get("unit", "m"), "m", f"{where}.unit")
+    return _three(value["columns"], f"{where}.columns"), unit
 
 
 def _accuracy(part: Mapping[str, Any], where: str) -> PlateAccuracy | None:
     """Specification of the plates: gain and crosstalk as shares ("0.5 %"), and its source."""
     if not part:
         return None
-    _known(part, ("gain", "crosstalk", "source"), where)
-    standard = PlateAccuracy()
-    shares = [
-        to_si(part[key], "1", where=f"{where}.{key}") if key in part else getattr(standard, key)
+    shares = {
+        key: to_si(part[key], "1", where=f"{where}.{key}")
         for key in ("gain", "crosstalk")
-    ]
-    return PlateAccuracy(shares[0], shares[1], str(part.get("source", "profile")))
+        if key in part
+    }
+    return PlateAccuracy(**shares, source=str(part.get("source", "profile")))
 
 
 def _sensors(part: Mapping[str, Any], where: str) -> dict[str, tuple[float, float, float]]:
-    if not part:
-        return {}
     unit = si_unit(_unit(part.get("unit", "m"), "m", f"{where}.unit"))
     factor = unit[1] if unit else 1.0
     found = {}

@@ -13,22 +13,12 @@ import numpy as np
 
 from underfoot.core import DataError
 
-from .text import (
-    decoded,
-    delimiter_of,
-    is_number,
-    lines_of,
-    measurable,
-    name_and_unit,
-    split,
-    unique_names,
-    uses_decimal_comma,
-)
+from . import text
 from .unit_factors import si_unit
 
 _MOST_CELLS = 50_000_000
 _HEAD = 300  # lines in which the table must begin
-_NOTHING = ("", "nan", "na", "n/a", "none", "null", "-", "--", "#n/a", "#div/0!", "#value!")
+_NOTHING = (*text.NOTHING, "", "#div/0!", "#value!")
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,55 +50,43 @@ def read_sheet(
 ) -> Sheet:
     """Return a CSV, text or XLSX table as named columns, with text columns kept as text.
 
-    Parameters
-    ----------
-    sheet
-        Name of the worksheet; the first one by default.
-    delimiter
-        Found when not given.
-    header_line
-        Line (from 1) of the column names; found when not given.
-
-    Raises
-    ------
-    DataError
-        Can't be read, no table, or ragged beyond repair.
+    The worksheet is the first one, delimiter and line (from 1) of the column names are found,
+    where they are not given. What can't be read or holds no regular table is a DataError.
     """
     path = Path(path)
     try:
         data = path.read_bytes()
     except OSError as error:
         raise DataError(f"can't be read: {error.strerror}", where=path.name) from error
-    return sheet_from(data, path, sheet=sheet, delimiter=delimiter, header_line=header_line)
+    return sheet_from(data, path.name, sheet, delimiter, header_line)
 
 
 def sheet_from(
     data: bytes,
-    path: Path,
-    *,
+    where: str,
     sheet: str | None = None,
     delimiter: str | None = None,
     header_line: int | None = None,
 ) -> Sheet:
     """Return the table in a file's bytes; see ``read_sheet``."""
-    where = path.name
     notes: list[str] = []
     if is_workbook(data):
         rows = workbook_rows(data, where, sheet)
         table = _layout(rows, header_line, where)
         return _sheet(rows, table, rows[table.first :], None, where, notes)
-    lines = lines_of(decoded(data, where))
+    lines = text.lines_of(text.decoded(data, where))
     while lines and not lines[-1].strip():
         lines.pop()
     body = lines[len(lines) // 2 :]  # a free header may hold other signs: the body decides
     if delimiter is None:
-        delimiter = delimiter_of(body)
-    comma = uses_decimal_comma(body, delimiter)
+        delimiter = text.delimiter_of(body)
+    comma = text.uses_decimal_comma(body, delimiter)
     if comma:
         notes.append("decimal commas")
     rows = [_cells(line, delimiter, comma) for line in lines[: max(_HEAD, header_line or 0) + 2]]
     table = _layout(rows, header_line, where)
-    values = _all_numbers(lines[table.first :], delimiter, comma)
+    body = [line.replace(",", ".") if comma else line for line in lines[table.first :]]
+    values = text.plain_numbers(body, delimiter)
     if values is not None and (table.head is None or values.shape[1] == len(rows[table.head])):
         return _sheet(rows, table, [], values, where, notes)
     rest = [_cells(line, delimiter, comma) for line in lines[table.first :]]
@@ -137,76 +115,46 @@ def _sheet(
         labels.pop()
     body = [row for row in body if any(row)]
     if values is None and labels:
-        _check_rows(body, len(labels), table.first, where)
+        text.check_rows(body, len(labels), table.first + 1, where)
     width = len(labels) or (values.shape[1] if values is not None else max(map(len, body)))
     if not labels:
         labels = [f"column {i + 1}" for i in range(width)]
         notes.append("the table has no column names: numbered")
-    pairs = [name_and_unit(label) for label in labels]
+    pairs = [text.name_and_unit(label) for label in labels]
     written = rows[table.units] if table.units is not None else []
     numbers: dict[str, np.ndarray] = {}
     texts: dict[str, tuple[str, ...]] = {}
     units: dict[str, str] = {}
-    for i, name in enumerate(unique_names([name for name, _ in pairs], "column", notes)):
+    for i, name in enumerate(text.unique_names([name for name, _ in pairs], "column", notes)):
         units[name] = pairs[i][1] or (written[i] if i < len(written) else "")
         if values is not None:
-            numbers[name] = measurable(values[:, i], notes)
+            numbers[name] = text.measurable(values[:, i], notes)
             continue
         cells = [row[i] if i < len(row) else "" for row in body]
         column = _numeric(cells)
         if column is None:
             texts[name] = tuple(cells)
         else:
-            numbers[name] = measurable(column, notes)
+            numbers[name] = text.measurable(column, notes)
     above = rows[: table.head if table.head is not None else table.first]
     header = tuple(" ".join(cell for cell in row if cell) for row in above)
     return Sheet(where, numbers, texts, units, header, tuple(notes))
 
 
-def _check_rows(body: list[list[str]], width: int, first: int, where: str) -> None:
-    for i, row in enumerate(body):
-        if len(row) > width and any(row[width:]):
-            raise DataError(
-                f"row {i + 1} of the table has {len(row)} cells, the header {width}",
-                where=f"{where}, line {first + i + 1}",
-            )
-    lengths = [len(row) for row in body]
-    if len(body) > 1 and lengths[-1] < min(min(lengths[:-1]), width):
-        raise DataError(
-            "truncated: the last row is shorter than the others",
-            where=f"{where}, line {first + len(body)}",
-            remedy="Export or copy the file again",
-        )
-
-
 def _cells(line: str, delimiter: str, comma: bool) -> list[str]:
-    cells = split(line, delimiter)
-    return [_point(cell) for cell in cells] if comma else cells
-
-
-def _all_numbers(lines: list[str], delimiter: str, comma: bool) -> np.ndarray | None:
-    if comma:
-        lines = [line.replace(",", ".") for line in lines]
-    try:
-        return np.loadtxt(lines, delimiter=delimiter or None, ndmin=2, comments=None)
-    except (ValueError, OverflowError):
-        return None
+    """Cells of a line; numbers with a decimal point where the file writes a comma."""
+    cells = text.split(line, delimiter)
+    if not comma:
+        return cells
+    return [point if text.is_number(point := cell.replace(",", ".")) else cell for cell in cells]
 
 
 def _numeric(cells: list[str]) -> np.ndarray | None:
     try:
-        return np.array(cells, dtype=float)
+        plain = ["nan" if cell.casefold() in _NOTHING else cell for cell in cells]
+        return np.array(plain, dtype=float)
     except ValueError:
-        pass
-    values = np.full(len(cells), np.nan)
-    for i, cell in enumerate(cells):
-        if cell.casefold() in _NOTHING:
-            continue
-        try:
-            values[i] = float(cell)
-        except ValueError:
-            return None
-    return values
+        return None
 
 
 def _layout(rows: list[list[str]], header_line: int | None, where: str) -> _Layout:
@@ -236,31 +184,21 @@ def _layout(rows: list[list[str]], header_line: int | None, where: str) -> _Layo
 
 def _is_row(rows: list[list[str]], i: int) -> bool:
     """A row in which most cells are numbers and that looks like the one after it."""
-    filled = [cell for cell in rows[i] if cell]
-    numbers = sum(is_number(cell) for cell in filled)
-    if len(filled) < 1 or numbers < max(1, 0.5 * len(filled)):
+    pair = rows[i : i + 2]
+    shares = [[text.is_number(cell) for cell in row if cell] for row in pair]
+    if not any(shares[0]) or abs(len(pair[-1]) - len(pair[0])) > 1:
         return False
-    if i + 1 < len(rows):
-        following = [cell for cell in rows[i + 1] if cell]
-        return abs(len(rows[i + 1]) - len(rows[i])) <= 1 and sum(
-            is_number(cell) for cell in following
-        ) >= 0.5 * len(following)
-    return True
+    return all(sum(numbers) >= 0.5 * len(numbers) for numbers in shares)
 
 
 def _is_head(row: list[str], width: int) -> bool:
     filled = [cell for cell in row if cell]
-    return len(filled) >= max(1, 0.6 * width) and not any(is_number(cell) for cell in filled)
+    return len(filled) >= max(1, 0.6 * width) and not any(text.is_number(cell) for cell in filled)
 
 
 def _are_units(row: list[str]) -> bool:
     filled = [cell for cell in row if cell]
     return bool(filled) and all(si_unit(cell) for cell in filled)
-
-
-def _point(cell: str) -> str:
-    changed = cell.replace(",", ".")
-    return changed if is_number(changed) else cell
 
 
 def is_workbook(data: bytes) -> bool:
@@ -269,13 +207,7 @@ def is_workbook(data: bytes) -> bool:
 
 
 def workbook_rows(data: bytes, where: str, sheet: str | None = None) -> list[list[str]]:
-    """Return the cells of one sheet of an XLSX or XLS file as text, the first sheet by default.
-
-    Raises
-    ------
-    DataError
-        Damaged, too large, or no such sheet.
-    """
+    """Return the cells of one sheet of an XLSX or XLS file as text, the first sheet by default."""
     read = _xlsx if data[:4] == b"PK\x03\x04" else _xls
     try:
         with warnings.catch_warnings():

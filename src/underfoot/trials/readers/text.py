@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -12,28 +13,19 @@ from underfoot.core import DataError
 
 _COMMA_NUMBER = re.compile(r"(?<![\d.,])[+-]?\d+,\d+(?:[eE][+-]?\d+)?(?![\d.,])")
 _WITH_UNIT = re.compile(r"^(.*?\S)\s*[(\[]([^()\[\]]*)[)\]]$")
+NOTHING = ("nan", "na", "n/a", "-", "--", "null", "none", "#n/a")
 _NUMBER = re.compile(r"^\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?\s*$")
 
 
 def decoded(data: bytes, where: str) -> str:
-    """Return the text of a file: UTF-8, UTF-16, else Latin-1.
-
-    Raises
-    ------
-    DataError
-        Binary content.
-    """
+    """Return the text of a file: UTF-8, UTF-16, else Latin-1; a DataError for binary content."""
     wide = utf16_of(data)
-    if wide:
-        try:
-            text = data.decode(wide)
-        except UnicodeDecodeError as error:
+    try:
+        text = data.decode(wide or "utf-8-sig")
+    except UnicodeDecodeError as error:
+        if wide:
             raise DataError("damaged UTF-16 text", where=where) from error
-    else:
-        try:
-            text = data.decode("utf-8-sig")
-        except UnicodeDecodeError:
-            text = data.decode("latin-1")
+        text = data.decode("latin-1")
     if "\0" in text or not text.strip():
         raise DataError(
             "empty" if not text.strip("\0 \r\n\t") else "not a text file",
@@ -47,12 +39,10 @@ def utf16_of(data: bytes) -> str:
     """Return the name of the encoding when a file is UTF-16 (with or without its mark), or ""."""
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return "utf-16"
-    head = data[:400]
-    if len(head) > 20 and not any(head[1::2]) and all(head[::2]):
+    even, odd = data[:400:2], data[1:400:2]
+    if len(data) > 20 and not any(odd) and all(even):
         return "utf-16-le"
-    if len(head) > 20 and not any(head[::2]) and all(head[1::2]):
-        return "utf-16-be"
-    return ""
+    return "utf-16-be" if len(data) > 20 and not any(even) and all(odd) else ""
 
 
 def lines_of(text: str) -> list[str]:
@@ -74,12 +64,9 @@ def name_and_unit(label: str) -> tuple[str, str]:
 def delimiter_of(lines: Sequence[str]) -> str:
     """Return the delimiter (tab, semicolon, comma or blank ``""``) that divides most lines."""
     sample = [line for line in lines if line.strip()][:60]
-    for candidate in ("\t", ";"):
+    for candidate in ("\t", ";", ","):
         if sum(candidate in line for line in sample) > 0.5 * len(sample):
             return candidate
-    commas = sum("," in line for line in sample)
-    if commas > 0.5 * len(sample):
-        return ","
     return ""
 
 
@@ -96,39 +83,65 @@ def uses_decimal_comma(lines: Sequence[str], delimiter: str) -> bool:
     return any(_COMMA_NUMBER.search(line) for line in lines[:50])
 
 
+def truncated(what: str, where: str) -> DataError:
+    """Return the error for a file that holds less, or more, than it should."""
+    return DataError(what, where=where, remedy="Export or copy the file again")
+
+
 def table(
     lines: Sequence[str],
     delimiter: str,
     columns: int,
     where: str,
-    *,
+    notes: list[str],
     first_line: int = 1,
     ignored: frozenset[int] = frozenset(),
-) -> tuple[np.ndarray, list[str]]:
-    """Return the numbers (rows, columns) of a table and what was odd about it.
+) -> np.ndarray:
+    """Return the numbers (rows, columns) of a table; what is odd about it is added to ``notes``.
 
     Empty cells become NaN, decimal commas are understood, short rows are filled with NaN;
-    ``ignored`` columns hold text and become NaN.
-
-    Raises
-    ------
-    DataError
-        A cell that is no number, a row longer than the header, no rows.
+    ``ignored`` columns hold text and become NaN. A cell that is no number, a row longer than the
+    header and a table without rows are DataErrors.
     """
-    notes: list[str] = []
     rows = [line for line in lines if line.strip(" \t;,")]
     if not rows:
         raise DataError("the table has no rows", where=where)
     if uses_decimal_comma(rows, delimiter):
         rows = [row.replace(",", ".") for row in rows]
         notes.append("decimal commas")
-    values = _fast(rows, delimiter, columns)
-    if values is None:
-        values = _slow(rows, delimiter, columns, where, first_line, notes, ignored)
+    values = plain_numbers(rows, delimiter)
+    if values is None or values.shape[1] != columns:
+        cells = [split(row, delimiter) for row in rows]
+        check_rows(cells, columns, first_line, where)
+        values = np.full((len(rows), columns), np.nan)
+        for i, row in enumerate(cells):
+            for j, cell in enumerate(row[:columns]):
+                if cell and j not in ignored:
+                    values[i, j] = _number(cell, f"{where}, line {first_line + i}")
+        counts = [min(len(row), columns) for row in cells]
+        uneven = sum(count != max(counts) for count in counts)
+        if uneven:
+            notes.append(
+                f"{uneven} rows are shorter than the others: the missing cells have no value"
+            )
     values = measurable(values, notes)
     if not np.isfinite(values).any():
         raise DataError("the table holds no number", where=where)
-    return values, notes
+    return values
+
+
+def check_rows(rows: Sequence[Sequence[str]], width: int, first_line: int, where: str) -> None:
+    """Refuse rows with more cells than the header, and a last row shorter than all others."""
+    for i, row in enumerate(rows):
+        if len(row) > width and any(row[width:]):
+            raise DataError(
+                f"row {i + 1} of the table has {len(row)} cells, the header {width}",
+                where=f"{where}, line {first_line + i}",
+            )
+    lengths = [min(len(row), width) for row in rows]
+    if len(rows) > 1 and lengths[-1] < min(lengths[:-1]):
+        words = "truncated: the last row is shorter than the others"
+        raise truncated(words, f"{where}, line {first_line + len(rows) - 1}")
 
 
 def measurable(values: np.ndarray, notes: list[str]) -> np.ndarray:
@@ -140,67 +153,25 @@ def measurable(values: np.ndarray, notes: list[str]) -> np.ndarray:
     return values
 
 
-def _fast(rows: Sequence[str], delimiter: str, columns: int) -> np.ndarray | None:
+def plain_numbers(rows: Sequence[str], delimiter: str) -> np.ndarray | None:
+    """Return the numbers of a table that holds nothing else, or None."""
     try:
-        values = np.loadtxt(rows, delimiter=delimiter or None, ndmin=2, comments=None)
+        return np.loadtxt(rows, delimiter=delimiter or None, ndmin=2, comments=None)
     except (ValueError, OverflowError):
         return None
-    return values if values.shape[1] == columns else None
-
-
-def _slow(
-    rows: Sequence[str],
-    delimiter: str,
-    columns: int,
-    where: str,
-    first_line: int,
-    notes: list[str],
-    ignored: frozenset[int],
-) -> np.ndarray:
-    values = np.full((len(rows), columns), np.nan)
-    counts = []
-    for i, row in enumerate(rows):
-        cells = split(row, delimiter)
-        while len(cells) > columns and not cells[-1]:
-            cells.pop()
-        if len(cells) > columns:
-            raise DataError(
-                f"row {i + 1} of the table has {len(cells)} cells, the header {columns}",
-                where=f"{where}, line {first_line + i}",
-            )
-        counts.append(len(cells))
-        for j, cell in enumerate(cells):
-            if cell and j not in ignored:
-                values[i, j] = _number(cell, f"{where}, line {first_line + i}")
-    if len(counts) > 1 and counts[-1] < min(counts[:-1]):
-        raise DataError(
-            "truncated: the last row is shorter than the others",
-            where=f"{where}, line {first_line + len(rows) - 1}",
-            remedy="Export or copy the file again",
-        )
-    uneven = sum(count != max(counts) for count in counts)
-    if uneven:
-        notes.append(f"{uneven} rows are shorter than the others: the missing cells have no value")
-    return values
 
 
 def _number(cell: str, where: str) -> float:
     try:
         return float(cell)
     except ValueError:
-        if cell.casefold() in ("nan", "na", "n/a", "-", "--", "null", "none", "#n/a"):
+        if cell.casefold() in NOTHING:
             return math.nan
         raise DataError(f'"{cell[:40]}" is not a number', where=where) from None
 
 
 def number_after(line: str, where: str, delimiter: str = "=") -> float:
-    """Return the number behind ``delimiter`` in a header line.
-
-    Raises
-    ------
-    DataError
-        There is none.
-    """
+    """Return the number behind ``delimiter`` in a header line; a DataError without one."""
     text = line.split(delimiter, 1)[-1].strip().replace(",", ".")
     try:
         value = float(text)
@@ -213,32 +184,25 @@ def number_after(line: str, where: str, delimiter: str = "=") -> float:
 
 def unique_names(labels: Sequence[str], kind: str, notes: list[str]) -> list[str]:
     """Return the labels made unique (``name #2``); unnamed ones are numbered."""
-    seen: dict[str, int] = {}
-    names: list[str] = []
-    taken: set[str] = set()
+    seen: Counter[str] = Counter()
+    names: dict[str, None] = {}
     for i, label in enumerate(labels):
         base = label.strip() or f"{kind} {i + 1}"
-        seen[base] = seen.get(base, 0) + 1
-        name = base if seen[base] == 1 else f"{base} #{seen[base]}"
-        while name in taken:
+        seen[base] += 1
+        while (name := f"{base} #{seen[base]}" if seen[base] > 1 else base) in names:
             seen[base] += 1
-            name = f"{base} #{seen[base]}"
-        names.append(name)
-        taken.add(name)
+        names[name] = None
     repeated = [name for name, count in seen.items() if count > 1]
     if repeated:
         shown = ", ".join(repeated[:5]) + (" ..." if len(repeated) > 5 else "")
         notes.append(f"duplicate {kind} names, numbered #2, #3 ...: {shown}")
-    return names
+    return list(names)
 
 
 def rate_of(times: np.ndarray, where: str) -> tuple[float, float, np.ndarray | None]:
     """Return (rate, start, times or None) of a time column; times only when unequally spaced.
 
-    Raises
-    ------
-    DataError
-        Times missing, not increasing or fewer than two.
+    Times that are missing, that do not increase or fewer than two are a DataError.
     """
     if len(times) < 2 or not np.isfinite(times).all():
         raise DataError("the time column has holes or fewer than two rows", where=where)

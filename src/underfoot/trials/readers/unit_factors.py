@@ -10,62 +10,34 @@ import math
 
 _GRAVITY = 9.80665
 _FACTORS: dict[str, tuple[str, float]] = {
-    "n": ("N", 1.0),
-    "newton": ("N", 1.0),
-    "newtons": ("N", 1.0),
-    "kn": ("N", 1e3),
-    "mn": ("N", 1e-3),
-    "g": ("N", _GRAVITY * 1e-3),
-    "gf": ("N", _GRAVITY * 1e-3),
-    "kgf": ("N", _GRAVITY),
-    "lbf": ("N", 4.4482216152605),
-    "nm": ("N*m", 1.0),
-    "n*m": ("N*m", 1.0),
-    "nmm": ("N*m", 1e-3),
-    "n*mm": ("N*m", 1e-3),
-    "ncm": ("N*m", 1e-2),
-    "m": ("m", 1.0),
-    "meter": ("m", 1.0),
-    "meters": ("m", 1.0),
-    "cm": ("m", 1e-2),
-    "mm": ("m", 1e-3),
-    "um": ("m", 1e-6),
-    "micron": ("m", 1e-6),
-    "in": ("m", 0.0254),
-    "inch": ("m", 0.0254),
-    "s": ("s", 1.0),
-    "sec": ("s", 1.0),
-    "second": ("s", 1.0),
-    "seconds": ("s", 1.0),
-    "ms": ("s", 1e-3),
-    "msec": ("s", 1e-3),
-    "us": ("s", 1e-6),
-    "min": ("s", 60.0),
-    "h": ("s", 3600.0),
-    "m/s": ("m/s", 1.0),
-    "m/sec": ("m/s", 1.0),
-    "mm/s": ("m/s", 1e-3),
-    "mm/sec": ("m/s", 1e-3),
-    "cm/s": ("m/s", 1e-2),
-    "pa": ("Pa", 1.0),
-    "kpa": ("Pa", 1e3),
-    "mpa": ("Pa", 1e6),
-    "gpa": ("Pa", 1e9),
-    "bar": ("Pa", 1e5),
-    "mbar": ("Pa", 1e2),
-    "psi": ("Pa", 6894.757293168361),
-    "deg": ("rad", math.pi / 180.0),
-    "rad": ("rad", 1.0),
-    "rpm": ("rad/s", math.pi / 30.0),
-    "hz": ("Hz", 1.0),
-    "khz": ("Hz", 1e3),
-    "v": ("V", 1.0),
-    "mv": ("V", 1e-3),
-    "%": ("1", 1e-2),
-    "-": ("1", 1.0),
-    "1": ("1", 1.0),
-    "k": ("K", 1.0),
-}
+    name: (si, factor)
+    for si, spellings in {
+        "N": {
+            "n newton newtons": 1.0, "kn": 1e3, "mn": 1e-3, "g gf": _GRAVITY * 1e-3,
+            "kgf": _GRAVITY, "lbf": 4.4482216152605,
+        },
+        "N*m": {"nm n*m": 1.0, "nmm n*mm": 1e-3, "ncm": 1e-2},
+        "m": {
+            "m meter meters": 1.0, "cm": 1e-2, "mm": 1e-3, "um micron": 1e-6, "in inch": 0.0254,
+        },
+        "s": {
+            "s sec second seconds": 1.0, "ms msec": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0,
+        },
+        "m/s": {"m/s m/sec": 1.0, "mm/s mm/sec": 1e-3, "cm/s": 1e-2},
+        "Pa": {
+            "pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9, "bar": 1e5, "mbar": 1e2,
+            "psi": 6894.757293168361,
+        },
+        "rad": {"deg": math.pi / 180.0, "rad": 1.0},
+        "rad/s": {"rpm": math.pi / 30.0},
+        "Hz": {"hz": 1.0, "khz": 1e3},
+        "V": {"v": 1.0, "mv": 1e-3},
+        "1": {"%": 1e-2, "-": 1.0, "1": 1.0},
+        "K": {"k": 1.0},
+    }.items()
+    for names, factor in spellings.items()
+    for name in names.split()
+}  # fmt: skip
 # Spellings in which capitals decide between two units.
 _EXACT: dict[str, tuple[str, float]] = {
     "MN": ("N", 1e6),
@@ -91,6 +63,11 @@ def si_unit(text: str) -> tuple[str, float, float] | None:
         return "K", 1.0, 273.15
     found = _FACTORS.get(lowered)
     return (*found, 0.0) if found else None
+
+
+def in_si(text: str) -> tuple[str, float, float]:
+    """Return what ``si_unit`` does; an unknown unit is empty and keeps the numbers."""
+    return si_unit(text) or ("", 1.0, 0.0)
 
 
 def known_units() -> list[str]:

@@ -3,123 +3,78 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import numpy as np
 
 from underfoot.core import DataError
 
-from ..plates import finished_plate
-from ..trial import Channel, Marker, Plate, Trial
-from .text import decoded, is_number, lines_of, split, table, unique_names
+from ..trial import Trial
+from .draft import Draft
+from .text import is_number, split
 from .unit_factors import si_unit
 
 BLOCKS = ("devices", "trajectories", "model outputs", "joints", "segments")
 _PLATE = re.compile(r"^(?P<device>.*?)\s*-\s*(?P<what>force|moment|cop)$", re.IGNORECASE)
 
 
-def read_vicon_csv(
-    data: bytes, path: Path, checksum: str, *, subtract_baseline: bool = True
-) -> Trial:
-    """Return devices (force plates, channels) and trajectories of a Nexus export as one trial.
-
-    Raises
-    ------
-    DataError
-        No block, a block without rate or rows.
-    """
-    where = path.name
-    lines = lines_of(decoded(data, where))
-    starts = [i for i, line in enumerate(lines) if line.strip(' ,"').casefold() in BLOCKS]
+def read_vicon_csv(draft: Draft) -> Trial:
+    """Return devices (force plates, channels) and trajectories of a Nexus export as one trial."""
+    lines = draft.lines()
+    kinds = [line.strip(' ,"').casefold() for line in lines]
+    starts = [i for i, kind in enumerate(kinds) if kind in BLOCKS]
     if not starts:
-        raise DataError("no block of devices or trajectories", where=where)
-    channels: dict[str, Channel] = {}
-    plates: list[Plate] = []
-    markers: dict[str, Marker] = {}
-    notes: list[str] = []
+        raise draft.error("no block of devices or trajectories")
     for start, stop in zip(starts, [*starts[1:], len(lines)], strict=True):
-        kind = lines[start].strip(' ,"').casefold()
-        rate, names, axes, units, numbers = _block(lines[start:stop], where, start, notes)
-        if kind == "devices":
-            _devices(names, axes, units, numbers, rate, channels, plates, notes, subtract_baseline)
-        elif kind == "trajectories":
+        names, axes, units, numbers = _block(draft, lines[start:stop], start)
+        if kinds[start] == "devices":
+            _devices(draft, names, axes, units, numbers)
+        elif kinds[start] == "trajectories":
             for name in dict.fromkeys(names):
                 at = [i for i, n in enumerate(names) if n == name]
-                if not name or len(at) != 3:
-                    continue
-                unit = si_unit(units[at[0]]) or ("m", 1e-3, 0.0)
-                markers[name.rsplit(":", 1)[-1]] = Marker(numbers[:, at] * unit[1], rate)
+                if name and len(at) == 3:
+                    unit = si_unit(units[at[0]]) or ("m", 1e-3, 0.0)
+                    draft.marker(name.rsplit(":", 1)[-1], numbers[:, at] * unit[1])
         else:
-            notes.append(f"the block of {kind} was left out")
-    return Trial(
-        where,
-        channels=channels,
-        plates=tuple(plates),
-        markers=markers,
-        source="Vicon CSV",
-        checksum=checksum,
-        notes=tuple(dict.fromkeys(notes)),
-    )
+            draft.notes.append(f"the block of {kinds[start]} was left out")
+    return draft.trial("Vicon CSV")
 
 
 def _block(
-    lines: list[str], where: str, start: int, notes: list[str]
-) -> tuple[float, list[str], list[str], list[str], np.ndarray]:
+    draft: Draft, lines: list[str], start: int
+) -> tuple[list[str], list[str], list[str], np.ndarray]:
     rate = split(lines[1], ",")[0] if len(lines) > 1 else ""
     if not is_number(rate) or not 0 < float(rate) < 1e6 or len(lines) < 6:
-        raise DataError("a block has no rate or no rows", where=f"{where}, line {start + 2}")
+        where = f"{draft.name}, line {start + 2}"
+        raise DataError("a block has no rate or no rows", where=where)
+    draft.rate = float(rate)
     names, axes, units = (split(line, ",") for line in lines[2:5])
-    rows = [line for line in lines[5:] if line.strip(" ,")]
     width = len(axes)
-    padded = [(row + [""] * width)[:width] for row in (names, units)]
-    for i in range(1, width):
-        # A name stands over the first of its columns only.
-        if not padded[0][i] and i > 2:
-            padded[0][i] = padded[0][i - 1]
-    numbers, odd = table(rows, ",", width, where, first_line=start + 6)
-    notes += odd
-    return float(rate), padded[0], axes, padded[1], numbers
+    names, units = ((row + [""] * width)[:width] for row in (names, units))
+    for i in range(3, width):
+        names[i] = names[i] or names[i - 1]  # a name stands over the first of its columns only
+    return names, axes, units, draft.table(lines[5:], ",", width, start + 6)
 
 
 def _devices(
-    names: list[str],
-    axes: list[str],
-    units: list[str],
-    numbers: np.ndarray,
-    rate: float,
-    channels: dict[str, Channel],
-    plates: list[Plate],
-    notes: list[str],
-    subtract_baseline: bool,
+    draft: Draft, names: list[str], axes: list[str], units: list[str], numbers: np.ndarray
 ) -> None:
-    labels = unique_names(
-        [f"{name} {axis}".strip() for name, axis in zip(names, axes, strict=True)], "column", notes
-    )
-    groups: dict[str, dict[str, list[int]]] = {}
-    values = numbers.copy()
+    whole = [f"{name} {axis}".strip() for name, axis in zip(names, axes, strict=True)]
+    labels = draft.names(whole, "column")
+    groups: dict[str, dict[str, list[np.ndarray]]] = {}
     for i in range(2, len(labels)):
-        unit = si_unit(units[i]) if units[i] else None
-        si, factor, offset = unit if unit else ("", 1.0, 0.0)
-        values[:, i] = numbers[:, i] * factor + offset
-        channels[labels[i]] = Channel(values[:, i], si, rate)
+        draft.channel(labels[i], numbers[:, i], units[i])
         match = _PLATE.match(names[i])
         if match:
-            groups.setdefault(match["device"], {}).setdefault(match["what"].casefold(), []).append(
-                i
-            )
+            parts = groups.setdefault(match["device"], {})
+            parts.setdefault(match["what"].casefold(), []).append(draft.channels[labels[i]].values)
     for device, parts in groups.items():
         if len(parts.get("force", [])) != 3:
             continue
         place = parts.get("cop", [])
-        force = values[:, parts["force"]]
-        plates.append(
-            finished_plate(
-                f"plate {len(plates) + 1}",
-                force,
-                rate=rate,
-                up=np.eye(3)[int(np.argmax(np.nansum(np.abs(force), axis=0)))],
-                centre_of_pressure=values[:, place] if len(place) == 3 else None,
-                kind=f"Vicon CSV, {device}",
-                subtract_baseline=subtract_baseline,
-            )
+        force = np.column_stack(parts["force"])
+        draft.plate(
+            force,
+            up=np.eye(3)[int(np.argmax(np.nansum(np.abs(force), axis=0)))],
+            centre_of_pressure=np.column_stack(place) if len(place) == 3 else None,
+            kind=f"Vicon CSV, {device}",
         )

@@ -9,12 +9,21 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from .c3d_file import c3d_bytes
-from .walk import MARKER_RATE, RATE, WalkRecording, raised_cosines
+from .c3d_file import walk_c3d
+from .walk import (
+    GRAVITY,
+    MARKER_RATE,
+    RATE,
+    WalkRecording,
+    foot_markers,
+    heel_path,
+    plate_corners,
+    raised_cosines,
+    stance_load,
+    stance_ratio,
+)
 
 DURATION = 4.0
-_GRAVITY = 9.80665
-_FOOT = 0.2  # m from heel to toe marker
 Motion = tuple[
     list[np.ndarray], list[np.ndarray], list[np.ndarray], np.ndarray, tuple[float, float]
 ]
@@ -34,65 +43,25 @@ def activity(
         Record heels, toes and pelvis; without them only the plates tell.
     """
     time = np.arange(round(DURATION * RATE)) / RATE
-    forces, centres, heels, body, heights = _ACTIVITIES[name](time, mass * _GRAVITY)
+    forces, centres, heels, body, heights = _ACTIVITIES[name](time, mass * GRAVITY)
     noisy = [force + rng.normal(0.0, 0.6, force.shape) for force in forces]
     frames = np.arange(round(DURATION * MARKER_RATE)) / MARKER_RATE
-    found: dict[str, np.ndarray] = {}
-    for side, heel, across in zip("RL", heels, (-0.1, 0.1), strict=True):
-        path = np.column_stack([np.interp(frames, time, heel[:, i]) for i in range(3)])
-        found[f"{side}HEE"] = path
-        found[f"{side}TOE"] = path + np.array([_FOOT, 0.0, 0.02])
-        pelvis = np.column_stack([np.interp(frames, time, body[:, i]) for i in range(3)])
-        found[f"{side}ASI"] = pelvis + np.array([0.08, across, 0.0])
-        found[f"{side}PSI"] = pelvis + np.array([-0.1, 0.5 * across, 0.02])
+    left, right, pelvis = (
+        np.column_stack([np.interp(frames, time, path[:, i]) for i in range(3)])
+        for path in (heels[1], heels[0], body)
+    )
+    found = foot_markers({"R": right, "L": left}, pelvis, (0.2, 0.0, 0.02), 0.1, 0.05)
     noise = {key: path + rng.normal(0.0, 3e-4, path.shape) for key, path in found.items()}
     if not markers:
         noise = {"origin": np.full((len(frames), 3), 5.0)}
-    corners = [_corners(begin, height) for begin, height in zip((0.0, 0.65), heights, strict=True)]
-    return WalkRecording(
-        noise, (noisy[0], noisy[1]), (centres[0], centres[1]), {}, {}, (corners[0], corners[1])
-    )
+    corners = (plate_corners(0.0, 0.45, heights[0]), plate_corners(0.65, 0.45, heights[1]))
+    return WalkRecording(noise, (noisy[0], noisy[1]), (centres[0], centres[1]), {}, {}, corners)
 
 
 def activity_c3d(recording: WalkRecording, *, crossed: bool = False, mass: float = 0.0) -> bytes:
     """Return a recording of an activity as C3D; ``crossed`` writes corners 3 and 4 exchanged."""
-    analog: dict[str, tuple[np.ndarray, str]] = {}
-    plates = []
-    axes = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
-    for number, (force, centre, corners) in enumerate(
-        zip(recording.force, recording.centre, recording.corners, strict=True), start=1
-    ):
-        in_plate = force @ axes.T
-        moment = np.cross((centre - corners.mean(axis=0)) @ axes.T, in_plate)
-        names = [f"{letter}{number}" for letter in ("Fx", "Fy", "Fz", "Mx", "My", "Mz")]
-        for i in range(3):
-            analog[names[i]] = (in_plate[:, i], "N")
-            analog[names[3 + i]] = (1e3 * moment[:, i], "Nmm")
-        written = corners[[0, 1, 3, 2]] if crossed else corners
-        plates.append((written, np.zeros(3), names))
-    return c3d_bytes(recording.markers, MARKER_RATE, analog, RATE, plates, mass=mass)
-
-
-def _corners(begin: float, height: float) -> np.ndarray:
-    low, high = np.array([begin, -0.45]), np.array([begin + 0.6, 0.45])
-    flat = [[high[0], high[1]], [high[0], low[1]], [low[0], low[1]], [low[0], high[1]]]
-    return np.column_stack((flat, np.full(4, height)))
-
-
-def _walking_load(share: np.ndarray) -> np.ndarray:
-    """Vertical force over body weight of a walking step at a share of its stance."""
-    on = (share > 0) & (share < 1)
-    shape = np.exp(-(((share - 0.25) / 0.16) ** 2)) + np.exp(-(((share - 0.75) / 0.16) ** 2))
-    shape += 0.55 * np.exp(-(((share - 0.5) / 0.2) ** 2))
-    edge = np.clip(np.minimum(share / 0.08, (1 - share) / 0.08), 0, 1)
-    return np.where(on, shape * 0.5 * (1 - np.cos(np.pi * edge)), 0.0)
-
-
-def _walking_ratio(share: np.ndarray, rcof: float) -> np.ndarray:
-    """Braking shear over normal force of a walking step."""
-    return rcof * (
-        np.exp(-(((share - 0.17) / 0.11) ** 2)) - 0.9 * np.exp(-(((share - 0.84) / 0.1) ** 2))
-    )
+    order = (0, 1, 3, 2) if crossed else (0, 1, 2, 3)
+    return walk_c3d(recording, origin=0.0, order=order, mass=mass)
 
 
 def _impact(share: np.ndarray) -> np.ndarray:
@@ -104,37 +73,13 @@ def _heel(
     time: np.ndarray, contact: float, stance: float, place: np.ndarray, speed: float
 ) -> np.ndarray:
     """Heel that lands at ``place`` (3,), stands, and swings on at ``speed`` of the body (m/s)."""
-    swing = 4.0 * speed / 1.35
-    pace = raised_cosines(
-        time,
-        [
-            (contact - 0.4, 0.0),
-            (contact - 0.22, swing),
-            (contact + 0.03, 0.02),
-            (contact + 0.65 * stance, 0.02),
-            (contact + stance + 0.05, swing),
-            (contact + stance + 0.42, 0.0),
-        ],
-    )
-    x = np.cumsum(pace) / RATE
-    x += place[0] - x[int(np.searchsorted(time, contact))]
-    lift = contact + 0.5 * stance
-    z = (
-        place[2]
-        + 0.02
-        + raised_cosines(
-            time,
-            [
-                (contact - 0.4, 0.0),
-                (contact - 0.22, 0.12),
-                (contact, 0.0),
-                (lift, 0.0),
-                (lift + 0.28, 0.2),
-                (lift + 0.72, 0.0),
-            ],
-        )
-    )
-    return np.column_stack((x, np.full(len(time), place[1]), z))
+    swing, lift, end = 4.0 * speed / 1.35, contact + 0.5 * stance, contact + stance
+    before, top = contact - 0.4, contact - 0.22
+    still = [(contact + 0.03, 0.02), (contact + 0.65 * stance, 0.02)]
+    speeds = [(before, 0.0), (top, swing), *still, (end + 0.05, swing), (end + 0.42, 0.0)]
+    heights = [(before, 0.0), (top, 0.12), (contact, 0.0), (lift, 0.0)]
+    heights += [(lift + 0.28, 0.2), (lift + 0.72, 0.0)]
+    return heel_path(time, contact, place, speeds, heights)
 
 
 def _steps(
@@ -144,7 +89,7 @@ def _steps(
     stance: float = 0.66,
     pace: float = 0.55,
     speed: float = 1.3,
-    load: Callable[[np.ndarray], np.ndarray] = _walking_load,
+    load: Callable[[np.ndarray], np.ndarray] = stance_load,
     ratio: float = 0.2,
     rise: float = 0.0,
     turn: float = 0.0,
@@ -157,7 +102,7 @@ def _steps(
         place = np.array([0.15 + 0.62 * i, 0.08 * side, rise * i])
         normal = weight * (load(share) + _impact(share) * (load(share) > 0))
         angle = turn * np.clip((share - 0.2) / 0.6, 0, 1)
-        push = _walking_ratio(share, ratio) * normal
+        push = ratio * stance_ratio(share) * normal
         forces.append(
             np.column_stack((-push * np.cos(angle), -push * np.sin(angle) + 0.05 * push, normal))
         )

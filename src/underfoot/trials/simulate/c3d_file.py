@@ -66,89 +66,61 @@ def c3d_bytes(
         raise InputError("analog rate must be a multiple of the marker rate", where="c3d")
     if any(len(values) != frames * per_frame for values, _ in analog.values()):
         raise InputError("analog channels must cover the frames exactly", where="c3d")
-    names = list(analog)
-    groups: list[tuple[str, list[tuple[str, bytes]]]] = [
-        (
-            "POINT",
-            [
-                ("USED", _integers([len(markers)])),
-                ("FRAMES", _integers([frames])),
-                ("DATA_START", _integers([0])),
-                ("SCALE", _floats([-1.0])),
-                ("RATE", _floats([marker_rate])),
-                ("UNITS", _texts(["mm"], single=True)),
-                ("LABELS", _texts(list(markers))),
-                ("DESCRIPTIONS", _texts([description] * len(markers))),
-            ],
-        ),
-        (
-            "ANALOG",
-            [
-                ("USED", _integers([len(names)])),
-                ("GEN_SCALE", _floats([1.0])),
-                ("RATE", _floats([analog_rate])),
-                ("SCALE", _floats([1.0] * len(names), vector=True)),
-                ("OFFSET", _integers([0] * len(names), vector=True)),
-                ("UNITS", _texts([analog[name][1] for name in names])),
-                ("LABELS", _texts(names)),
-                ("DESCRIPTIONS", _texts([description] * len(names))),
-            ],
-        ),
-        (
-            "FORCE_PLATFORM",
-            [
-                ("USED", _integers([len(plates)])),
-                ("ZERO", _integers([0, 0], vector=True)),
-                ("TYPE", _integers([2] * len(plates), vector=True)),
-                ("CORNERS", _array(np.array([1e3 * corners for corners, _, _ in plates]))),
-                ("ORIGIN", _array(np.array([1e3 * origin for _, origin, _ in plates]))),
-                (
-                    "CHANNEL",
-                    _integer_table([[names.index(c) + 1 for c in own] for *_, own in plates]),
-                ),
-            ],
-        ),
-        ("MANUFACTURER", [("SOFTWARE", _texts([software], single=True))]),
-    ]
-    if not plates:
-        groups = [group for group in groups if group[0] != "FORCE_PLATFORM"]
+    names, count = list(analog), len(analog)
+    groups: dict[str, dict[str, bytes]] = {
+        "POINT": {
+            "USED": _integers([len(markers)]),
+            "FRAMES": _integers([frames]),
+            "DATA_START": _integers([0]),
+            "SCALE": _floats([-1.0]),
+            "RATE": _floats([marker_rate]),
+            "UNITS": _texts(["mm"], single=True),
+            "LABELS": _texts(list(markers)),
+            "DESCRIPTIONS": _texts([description] * len(markers)),
+        },
+        "ANALOG": {
+            "USED": _integers([count]),
+            "GEN_SCALE": _floats([1.0]),
+            "RATE": _floats([analog_rate]),
+            "SCALE": _floats([1.0] * count, vector=True),
+            "OFFSET": _integers([0] * count, vector=True),
+            "UNITS": _texts([unit for _, unit in analog.values()]),
+            "LABELS": _texts(names),
+            "DESCRIPTIONS": _texts([description] * count),
+        },
+    }
+    if plates:
+        channels = [[names.index(name) + 1 for name in own] for *_, own in plates]
+        groups["FORCE_PLATFORM"] = {
+            "USED": _integers([len(plates)]),
+            "ZERO": _integers([0, 0], vector=True),
+            "TYPE": _integers([2] * len(plates), vector=True),
+            "CORNERS": _array(np.array([1e3 * corners for corners, _, _ in plates])),
+            "ORIGIN": _array(np.array([1e3 * origin for _, origin, _ in plates])),
+            "CHANNEL": _array(np.array(channels), "<i2"),
+        }
+    groups["MANUFACTURER"] = {"SOFTWARE": _texts([software], single=True)}
     if mass:
-        groups.append(("PROCESSING", [("Bodymass", _floats([mass]))]))
+        groups["PROCESSING"] = {"Bodymass": _floats([mass])}
     if events:
         labels, contexts, times = (list(part) for part in zip(*events, strict=True))
         minutes = np.array([[time // 60.0, time % 60.0] for time in times])
-        content = [("USED", _integers([len(events)])), ("CONTEXTS", _texts(contexts))]
-        content += [("LABELS", _texts(labels)), ("TIMES", _array(minutes))]
-        groups.append(("EVENT", content))
+        groups["EVENT"] = {
+            "USED": _integers([len(events)]),
+            "CONTEXTS": _texts(contexts),
+            "LABELS": _texts(labels),
+            "TIMES": _array(minutes),
+        }
     body = _parameters(groups)
     blocks = -(-(len(body) + 4) // 512)
     first_data = 2 + blocks
     at = body.index(b"DATA_START") + len(b"DATA_START") + 2 + 1 + 1
     body = body[:at] + struct.pack("<h", first_data) + body[at + 2 :]
     parameters = (struct.pack("<BBBB", 1, 0x50, blocks, _INTEL) + body).ljust(512 * blocks, b"\0")
+    counts = (len(markers), count * per_frame, first_frame, first_frame + frames - 1)
     header = struct.pack(
-        "<BBHHHHHfHHf",
-        2,
-        0x50,
-        len(markers),
-        len(names) * per_frame,
-        first_frame,
-        first_frame + frames - 1,
-        0,
-        -1.0,
-        first_data,
-        per_frame,
-        marker_rate,
-    ).ljust(512, b"\0")
-    return header + parameters + _data(markers, analog, frames, per_frame)
-
-
-def _data(
-    markers: Mapping[str, np.ndarray],
-    analog: Mapping[str, tuple[np.ndarray, str]],
-    frames: int,
-    per_frame: int,
-) -> bytes:
+        "<BBHHHHHfHHf", 2, 0x50, *counts, 0, -1.0, first_data, per_frame, marker_rate
+    )
     points = np.zeros((frames, len(markers), 4), dtype="<f4")
     for i, positions in enumerate(markers.values()):
         lost = np.asarray(~np.isfinite(positions).all(axis=1))
@@ -158,15 +130,15 @@ def _data(
     signals = signals.reshape(len(analog), frames, per_frame).transpose(1, 2, 0)
     rows = np.concatenate((points.reshape(frames, -1), signals.reshape(frames, -1)), axis=1)
     data = np.ascontiguousarray(rows).tobytes()
-    return data + b"\0" * (-len(data) % 512)
+    return header.ljust(512, b"\0") + parameters + data + b"\0" * (-len(data) % 512)
 
 
-def _parameters(groups: list[tuple[str, list[tuple[str, bytes]]]]) -> bytes:
+def _parameters(groups: Mapping[str, Mapping[str, bytes]]) -> bytes:
     out = b""
-    for number, (group, parameters) in enumerate(groups, start=1):
+    for number, (group, parameters) in enumerate(groups.items(), start=1):
         name = group.encode("ascii")
         out += struct.pack("<bb", len(name), -number) + name + struct.pack("<hB", 3, 0)
-        for label, content in parameters:
+        for label, content in parameters.items():
             text = label.encode("ascii")
             out += struct.pack("<bb", len(text), number) + text
             out += struct.pack("<h", len(content) + 3) + content + b"\0"
@@ -177,19 +149,13 @@ def _integers(values: Sequence[int], *, vector: bool = False) -> bytes:
     return _content(2, [len(values)] if vector else [], struct.pack(f"<{len(values)}H", *values))
 
 
-def _integer_table(rows: Sequence[Sequence[int]]) -> bytes:
-    flat = [value for row in rows for value in row]
-    shape = [len(rows[0]), len(rows)] if rows else [0, 0]
-    return _content(2, shape, struct.pack(f"<{len(flat)}h", *flat))
-
-
 def _floats(values: Sequence[float], *, vector: bool = False) -> bytes:
     return _content(4, [len(values)] if vector else [], struct.pack(f"<{len(values)}f", *values))
 
 
-def _array(values: np.ndarray) -> bytes:
+def _array(values: np.ndarray, kind: str = "<f4") -> bytes:
     """C order with the last axis fastest is the format's order with dimensions reversed."""
-    return _content(4, list(values.shape[::-1]), values.astype("<f4").tobytes())
+    return _content(int(kind[2]), list(values.shape[::-1]), values.astype(kind).tobytes())
 
 
 def _texts(values: Sequence[str], *, single: bool = False) -> bytes:
@@ -202,23 +168,32 @@ def _content(kind: int, dimensions: list[int], data: bytes) -> bytes:
     return struct.pack("<bB", kind, len(dimensions)) + bytes(dimensions) + data
 
 
-def walk_c3d(recording: WalkRecording) -> bytes:
-    """Return a recording as a C3D file with two type-2 plates and the pressures in kPa."""
+def walk_c3d(
+    recording: WalkRecording,
+    *,
+    origin: float = -0.04,
+    order: Sequence[int] = (0, 1, 2, 3),
+    mass: float = 0.0,
+) -> bytes:
+    """Return a recording as a C3D file with two type-2 plates and the pressures in kPa.
+
+    The origin of the plates lies ``origin`` (m) along their z, their corners stand in ``order``;
+    ``mass`` (kg) of the person is left out at zero.
+    """
     analog: dict[str, tuple[np.ndarray, str]] = {}
     plates = []
-    origin = np.array([0.0, 0.0, -0.04])
+    below = np.array([0.0, 0.0, origin])
+    axes = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
     for number, (force, centre, corners) in enumerate(
         zip(recording.force, recording.centre, recording.corners, strict=True), start=1
     ):
-        axes = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
         in_plate = force @ axes.T
-        lever = (centre - corners.mean(axis=0)) @ axes.T + origin
-        moment = np.cross(lever, in_plate)
+        moment = np.cross((centre - corners.mean(axis=0)) @ axes.T + below, in_plate)
         names = [f"{letter}{number}" for letter in ("Fx", "Fy", "Fz", "Mx", "My", "Mz")]
         for i in range(3):
             analog[names[i]] = (in_plate[:, i], "N")
             analog[names[3 + i]] = (1e3 * moment[:, i], "Nmm")
-        plates.append((corners, origin, names))
+        plates.append((corners[list(order)], below, names))
     for name, values in recording.pressures.items():
         analog[name] = (1e-3 * values, "kPa")
-    return c3d_bytes(recording.markers, MARKER_RATE, analog, RATE, plates)
+    return c3d_bytes(recording.markers, MARKER_RATE, analog, RATE, plates, mass=mass)

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+import csv
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from underfoot.core import Progress, silent, unknown_name
+from underfoot.core import InputError, Progress, silent, unknown_name
 
 from .activities import ACTIVITIES, activity, activity_c3d
 from .c3d_file import NOTICE, walk_c3d
-from .study import simulated_study
-from .tester import SENSOR, ScanTruth, scan_columns
-from .tribometer import disk_run, relaxation
-from .walk import DURATION, Defects, SlipTruth, walk_with_slip
+from .tester import SENSOR, ScanTruth, disk_run, relaxation, scan_columns
+from .walk import SENSORS, Defects, SlipTruth, walk_with_slip
 
 KINDS = {
     "slips": "human slips over a sensor array (G.5, G.6), C3D",
@@ -47,6 +47,16 @@ _SHOES = {
 _OUTSOLES = {"hard": 0.150, "medium": 0.158, "soft": 0.182}
 
 
+SHOES: Mapping[str, float] = {"hard": 0.195, "medium": 0.205, "soft": 0.225}
+"""Study: mean required friction of all persons in each shoe."""
+NAMES = r"S(?P<subject>\d+)_(?P<shoe>[a-z]+)_(?P<n>\d+)"
+"""Study: pattern of the file names."""
+BETWEEN, OWN, TRIAL = 0.020, 0.006, 0.008
+"""Study: standard deviations between persons, of a person's own answer to a shoe, of trials."""
+_File = tuple[str, bytes, Mapping[str, str], Mapping[str, str]]
+"""Name, content, what a laboratory notes about it, the truth."""
+
+
 def simulated_folder(
     kind: str, out: Path, *, count: int = 12, seed: int = 1, progress: Progress = silent
 ) -> list[Path]:
@@ -68,23 +78,58 @@ def simulated_folder(
     InputError
         Unknown kind; count below one.
     """
-    from underfoot.core import InputError
-
-    makers: dict[str, Callable[[Path, int, np.random.Generator, Progress], list[Path]]] = {
-        "slips": _slips,
-        "study": _study,
-        "tester": _tester,
-        "pin_on_disk": _pin_on_disk,
-        "relaxation": _relaxation,
-        "activities": _activities,
-    }
-    if kind not in makers:
+    if kind not in _MAKERS:
         raise unknown_name("kind of data", kind, KINDS, where="simulate")
     if count < 1:
         raise InputError(f"{count} trials", where="count", allowed="one or more")
+    maker, each, usual, profile = _MAKERS[kind]
+    count = usual if count == 12 else count
+    if kind == "tester":
+        count = max(count, 2)
+    files = maker(count, np.random.default_rng(seed))
+    return _written(out, files, count * each or len(ACTIVITIES), profile, progress)
+
+
+def simulated_study(
+    out: Path, *, persons: int = 12, trials: int = 4, seed: int = 1, progress: Progress = silent
+) -> list[Path]:
+    """Write a study with named files (``S01_hard_1.c3d``) and return their paths.
+
+    RCOF of a trial = mean of the shoe + person + person in the shoe + trial, all normal with the
+    standard deviations of this module. Each file holds one step on one plate.
+
+    Parameters
+    ----------
+    persons, trials
+        Number of persons, and of trials of each in each shoe.
+    """
+    total = persons * len(SHOES) * trials
+    return _written(out, _walks(persons, trials, seed), total, _WALKWAY, progress)
+
+
+def _written(
+    out: Path, files: Iterable[_File], total: int, profile: str, progress: Progress
+) -> list[Path]:
     out.mkdir(parents=True, exist_ok=True)
     (out / "SYNTHETIC.txt").write_text(NOTICE, encoding="utf-8")
-    return makers[kind](out, count, np.random.default_rng(seed), progress)
+    if profile:
+        text = "# Made-up recordings: nothing was measured.\n" + profile
+        (out / "profile.toml").write_text(text, encoding="utf-8")
+    paths = []
+    tables: dict[str, list[Mapping[str, str]]] = {"conditions.csv": [], "truth.csv": []}
+    for name, content, *rows in files:
+        paths.append(out / name)
+        paths[-1].write_bytes(content)
+        for table, row in zip(tables.values(), rows, strict=True):
+            table += [{"file": name, **row}] if row else []
+        progress("writing made-up files", len(paths) / total)
+    for name, table in tables.items():
+        if table:
+            with (out / name).open("w", newline="", encoding="utf-8") as stream:
+                writer = csv.DictWriter(stream, list(table[0]), lineterminator="\n")
+                writer.writeheader()
+                writer.writerows(table)
+    return paths
 
 
 def slip_truth(number: int, seed: int) -> tuple[SlipTruth, Defects, dict[str, str]]:
@@ -132,143 +177,112 @@ def slip_truth(number: int, seed: int) -> tuple[SlipTruth, Defects, dict[str, st
     return truth, defects, conditions
 
 
-def _slips(out: Path, count: int, rng: np.random.Generator, progress: Progress) -> list[Path]:
-    paths, conditions, truths = [], [], []
+def _slips(count: int, rng: np.random.Generator) -> Iterator[_File]:
     seed = int(rng.integers(2**32))
-    sensors: Mapping[str, tuple[float, float, float]] = {}
     for number in range(count):
         truth, defects, noted = slip_truth(number, seed)
-        own = np.random.default_rng([seed, number])
-        recording = walk_with_slip(truth, defects, own, duration=DURATION)
-        sensors = recording.sensors
-        path = out / f"slip_{number + 1:03d}.c3d"
-        path.write_bytes(walk_c3d(recording))
-        paths.append(path)
-        conditions.append({"file": path.name, **noted, "acof": f"{truth.acof:.4f}"})
-        truths.append({"file": path.name, **{k: f"{v:.6g}" for k, v in recording.truth.items()}})
-        progress("writing made-up trials", (number + 1) / count)
-    lines = [
-        '# Made-up recordings: nothing was measured.\nname = "synthetic walkway"\n',
-        '[axes]\nvertical = "+z"\nwalking = "+x"\n',
-        '[heel]\nleft = "LHEE"\nright = "RHEE"\n',
-        '[sensors]\nunit = "mm"',
-    ]
-    lines += [f"{n} = [{1e3 * x:g}, {1e3 * y:g}, {1e3 * z:g}]" for n, (x, y, z) in sensors.items()]
-    (out / "profile.toml").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    _tables(out, conditions, truths)
-    return paths
+        recording = walk_with_slip(truth, defects, np.random.default_rng([seed, number]))
+        facts = {key: f"{value:.6g}" for key, value in recording.truth.items()}
+        conditions = {**noted, "acof": f"{truth.acof:.4f}"}
+        yield f"slip_{number + 1:03d}.c3d", walk_c3d(recording), conditions, facts
 
 
-def _study(out: Path, count: int, rng: np.random.Generator, progress: Progress) -> list[Path]:
-    return simulated_study(out, persons=count, seed=int(rng.integers(2**32)), progress=progress)
+def _study(count: int, rng: np.random.Generator) -> Iterator[_File]:
+    return _walks(count, 4, int(rng.integers(2**32)))
 
 
-def _activities(out: Path, count: int, rng: np.random.Generator, progress: Progress) -> list[Path]:
-    paths, truths = [], []
-    for number, (name, words) in enumerate(ACTIVITIES.items(), start=1):
-        path = out / f"{name}.c3d"
-        path.write_bytes(activity_c3d(activity(name, rng)))
-        paths.append(path)
-        truths.append({"file": path.name, "activity": words})
-        progress("writing made-up activities", number / len(ACTIVITIES))
-    _tables(out, truths, truths)
-    return paths
+def _walks(persons: int, trials: int, seed: int) -> Iterator[_File]:
+    for person in range(persons):
+        own = np.random.default_rng([seed, 1, person])
+        level, mass = BETWEEN * own.standard_normal(), float(own.uniform(55, 90))
+        for shoe, mean in SHOES.items():
+            answer = OWN * own.standard_normal()
+            for trial in range(trials):
+                rcof = mean + level + answer + TRIAL * own.standard_normal()
+                truth = SlipTruth(rcof=float(np.clip(rcof, 0.1, 0.4)), mass=mass, peak_speed=0.05)
+                made = walk_with_slip(truth, Defects(), own)
+                idle = own.normal(0.0, 1.0, made.force[1].shape)
+                made = replace(made, force=(made.force[0], idle), pressures={})
+                name = f"S{person + 1:02d}_{shoe}_{trial + 1}.c3d"
+                yield name, walk_c3d(made), {}, {"rcof": f"{made.truth['rcof']:.6g}"}
 
 
-def _tester(out: Path, count: int, rng: np.random.Generator, progress: Progress) -> list[Path]:
-    paths, conditions, truths = [], [], []
-    scans = max(count, 2) if count != 12 else 7
-    places = 0.01 * (np.arange(scans) - (scans - 1) / 2)
+def _activities(_: int, rng: np.random.Generator) -> Iterator[_File]:
+    for name, words in ACTIVITIES.items():
+        noted = {"activity": words}
+        yield f"{name}.c3d", activity_c3d(activity(name, rng)), noted, noted
+
+
+def _tester(count: int, rng: np.random.Generator) -> Iterator[_File]:
+    places = 0.01 * (np.arange(count) - (count - 1) / 2)
     for (shoe, fluid), truth in _SHOES.items():
-        for number, lateral in enumerate(places, start=1):
-            path = out / f"{shoe}_scan_{number}.csv"
-            _write_columns(path, scan_columns(truth, float(lateral), rng))
-            paths.append(path)
-            conditions.append(
-                {"file": path.name, "shoe": shoe, "fluid": fluid, "map": f"{shoe}, {fluid}"}
-            )
-            truths.append(
-                {
-                    "file": path.name,
-                    "cof": f"{truth.cof:.6g}",
-                    "fluid_load": f"{truth.covered_load(places, 0.01):.6g}",
-                    "peak_pressure": f"{truth.pressure:.6g}",
-                    "lateral": f"{lateral:.6g}",
-                }
-            )
-            progress("writing made-up scans", len(paths) / (len(_SHOES) * scans))
-    x, y, z = (1e3 * value for value in SENSOR)
-    (out / "profile.toml").write_text(
-        "# Made-up recordings: nothing was measured.\n"
-        'name = "synthetic slip tester"\n\n[axes]\nvertical = "+z"\nwalking = "+x"\n\n'
-        f'[sensors]\nunit = "mm"\npressure = [{x:g}, {y:g}, {z:g}]\n',
-        encoding="utf-8",
-    )
-    _tables(out, conditions, truths)
-    return paths
+        for number, lateral in enumerate(places.tolist(), start=1):
+            columns = scan_columns(truth, lateral, rng)
+            facts = {
+                "cof": truth.cof,
+                "fluid_load": truth.covered_load(places, 0.01),
+                "peak_pressure": truth.pressure,
+                "lateral": lateral,
+            }
+            noted = {"shoe": shoe, "fluid": fluid, "map": f"{shoe}, {fluid}"}
+            known = {key: f"{value:.6g}" for key, value in facts.items()}
+            yield f"{shoe}_scan_{number}.csv", _csv(columns), noted, known
 
 
-def _pin_on_disk(out: Path, count: int, rng: np.random.Generator, progress: Progress) -> list[Path]:
-    repeats = count if count != 12 else 5
-    paths, conditions, truths = [], [], []
+def _pin_on_disk(count: int, rng: np.random.Generator) -> Iterator[_File]:
     for fluid, (viscosity, boundary, tau, asymptote) in _FLUIDS.items():
-        for repeat in range(1, repeats + 1):
+        for repeat in range(1, count + 1):
             level = 1.0 + 0.04 * rng.standard_normal()
             for speed in _SPEEDS:
                 cof = level * (asymptote + (boundary - asymptote) * math.exp(-speed / tau))
                 cof = max(cof + 0.012 * rng.standard_normal(), 0.02)
-                path = out / f"{fluid}_{repeat}_{1e3 * speed:04.0f}.csv"
-                _write_columns(path, disk_run(cof, speed, rng))
-                paths.append(path)
-                conditions.append(
-                    {
-                        "file": path.name,
-                        "fluid": fluid,
-                        "repeat": f"run {repeat}",
-                        "viscosity (cP)": f"{viscosity:g}",
-                        "speed (m/s)": f"{speed:g}",
-                    }
-                )
-                truths.append({"file": path.name, "cof": f"{cof:.6g}"})
-        progress("writing made-up runs", len(paths) / (len(_FLUIDS) * repeats * len(_SPEEDS)))
-    _tables(out, conditions, truths)
-    return paths
+                noted = {
+                    "fluid": fluid,
+                    "repeat": f"run {repeat}",
+                    "viscosity (cP)": f"{viscosity:g}",
+                    "speed (m/s)": f"{speed:g}",
+                }
+                name = f"{fluid}_{repeat}_{1e3 * speed:04.0f}.csv"
+                yield name, _csv(disk_run(cof, speed, rng)), noted, {"cof": f"{cof:.6g}"}
 
 
-def _relaxation(out: Path, count: int, rng: np.random.Generator, progress: Progress) -> list[Path]:
-    paths, conditions, truths = [], [], []
+def _relaxation(count: int, rng: np.random.Generator) -> Iterator[_File]:
+    materials = (("neolite", 3000.0, 0.38, 0.013), ("rubber", 120.0, 0.25, 0.025))
     for number in range(1, count + 1):
-        material = ("neolite", "rubber")[number % 2]
-        peak, share, rate = {"neolite": (3000.0, 0.38, 0.013), "rubber": (120.0, 0.25, 0.025)}[
-            material
-        ]
+        material, peak, share, rate = materials[number % 2]
         peak *= 1.0 + 0.02 * rng.standard_normal()
-        path = out / f"{material}_{number:02d}.csv"
         columns = relaxation(rng, peak=peak, share=share, rate=rate)
-        _write_columns(path, columns)
-        paths.append(path)
-        conditions.append({"file": path.name, "material": material, "thickness (mm)": "5.5"})
         final = peak * (1 - share + share * math.exp(-rate * 228.0))
-        truths.append(
-            {"file": path.name, "peak_force": f"{peak:.6g}", "final_force": f"{final:.6g}"}
-        )
-        progress("writing made-up tests", number / count)
-    _tables(out, conditions, truths)
-    return paths
+        noted = {"material": material, "thickness (mm)": "5.5"}
+        known = {"peak_force": f"{peak:.6g}", "final_force": f"{final:.6g}"}
+        yield f"{material}_{number:02d}.csv", _csv(columns), noted, known
 
 
-def _write_columns(path: Path, columns: Mapping[str, np.ndarray]) -> None:
-    data = np.column_stack(list(columns.values()))
-    rows = "\n".join(",".join(f"{value:.6g}" for value in row) for row in data.tolist())
-    path.write_text(",".join(columns) + "\n" + rows + "\n", encoding="utf-8")
+def _csv(columns: Mapping[str, np.ndarray]) -> bytes:
+    data = np.column_stack(list(columns.values())).tolist()
+    rows = (",".join(f"{value:.6g}" for value in row) for row in data)
+    return "\n".join([",".join(columns), *rows, ""]).encode()
 
 
-def _tables(out: Path, conditions: list[dict[str, str]], truths: list[dict[str, str]]) -> None:
-    for name, rows in (("conditions.csv", conditions), ("truth.csv", truths)):
-        head = list(rows[0])
-        lines = [",".join(head), *(",".join(_cell(row[key]) for key in head) for row in rows)]
-        (out / name).write_text("\n".join(lines) + "\n", encoding="utf-8")
+def _sensors(places: Mapping[str, tuple[float, float, float]]) -> str:
+    rows = (f"{n} = [{1e3 * x:g}, {1e3 * y:g}, {1e3 * z:g}]\n" for n, (x, y, z) in places.items())
+    return '\n[sensors]\nunit = "mm"\n' + "".join(rows)
 
 
-def _cell(text: str) -> str:
-    return f'"{text}"' if "," in text else text
+_AXES = '\n[axes]\nvertical = "+z"\nwalking = "+x"\n'
+_WALKWAY = f'name = "synthetic walkway"\n{_AXES}\n[heel]\nleft = "LHEE"\nright = "RHEE"\n'
+# How files are made, how many for each one counted, the usual count, the profile.
+_Maker = Callable[[int, np.random.Generator], Iterator[_File]]
+_MAKERS: Mapping[str, tuple[_Maker, int, int, str]] = {
+    "slips": (_slips, 1, 12, _WALKWAY + _sensors(SENSORS)),
+    "study": (_study, 4 * len(SHOES), 12, _WALKWAY),
+    "tester": (
+        _tester,
+        len(_SHOES),
+        7,
+        f'name = "synthetic slip tester"\n{_AXES}' + _sensors({"pressure": SENSOR}),
+    ),
+    "pin_on_disk": (_pin_on_disk, len(_FLUIDS) * len(_SPEEDS), 5, ""),
+    "relaxation": (_relaxation, 1, 12, ""),
+    "activities": (_activities, 0, 12, ""),
+}

@@ -14,9 +14,19 @@ import numpy as np
 
 RATE, MARKER_RATE = 1000.0, 200.0
 DURATION = 5.0
+GRAVITY = 9.80665
 SENSOR_SPACING = 0.03
 FIRST_CONTACT, SLIP_CONTACT = 1.6, 2.2
 _HEEL_TO_PRESSURE = 0.02  # m; the pressure's middle lies ahead of the heel's back (report G.4)
+_MIDDLE = 0.82  # m along the walk
+SENSORS: Mapping[str, tuple[float, float, float]] = {
+    f"P{row + 1}{column + 1}": (
+        _MIDDLE + SENSOR_SPACING * (row - 1), SENSOR_SPACING * (1 - column), 0.0
+    )
+    for row in range(3)
+    for column in range(3)
+}  # fmt: skip
+"""Places (m) of the pressure sensors, rows along the walk, columns from left to right."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,41 +107,57 @@ def walk_with_slip(
     """
     time = np.arange(round(duration * RATE)) / RATE
     frames = np.arange(round(duration * MARKER_RATE)) / MARKER_RATE
-    corners = _plate_corners(0.0), _plate_corners(0.62)
-    array = np.array([0.82, 0.0])
-    sensors = {
-        f"P{row + 1}{column + 1}": (
-            float(array[0] + SENSOR_SPACING * (row - 1)),
-            float(array[1] + SENSOR_SPACING * (1 - column)),
-            0.0,
-        )
-        for row in range(3)
-        for column in range(3)
-    }
-    landing = np.array([array[0] - SENSOR_SPACING - 0.02 - _HEEL_TO_PRESSURE, truth.lateral])
-    left = _slipping_heel(time, landing, truth)
-    right = _walking_heel(time, np.array([0.15, -0.1]), FIRST_CONTACT)
-    pressures = _pressures(time, left, sensors, truth)
+    landing = np.array([_MIDDLE - SENSOR_SPACING - 0.02 - _HEEL_TO_PRESSURE, truth.lateral, 0.0])
+    begin = SLIP_CONTACT + truth.slip_start
+    end = begin + truth.rise + truth.fall
+    left = _slipping_heel(time, landing, truth, begin, end)
+    # A heel turns about the ball of the foot: it rises by centimetres before it goes forward.
+    at = FIRST_CONTACT
+    right = heel_path(
+        time,
+        at,
+        np.array([0.15, -0.1, 0.0]),
+        [
+            *_swing(at, 4.2),
+            (at + 0.03, 0.02),
+            (at + 0.43, 0.03),
+            (at + 0.65, 4.4),
+            (at + 0.95, 0.0),
+        ],
+        [*_swing(at, 0.12), (at, 0.0), (at + 0.35, 0.0), (at + 0.6, 0.2), (at + 0.9, 0.0)],
+    )
+    pressures = _pressures(time, left, truth)
     dry, dry_centre, rcof = _dry_step(time, right, truth)
     slip, slip_centre = _slip_step(time, left, truth)
-    path = _speed_of(left)
-    begin = int(np.searchsorted(time, SLIP_CONTACT))
+    # Only the slip counts: the swing after it is faster.
+    speed = np.linalg.norm(np.gradient(left[:, :2], 1.0 / RATE, axis=0), axis=1)
     facts = {
         "rcof": rcof,
         "acof": truth.acof,
-        "peak_slipping_speed": float(path[begin:].max()) if truth.peak_speed > 0 else 0.0,
-        "slip_start": SLIP_CONTACT + truth.slip_start,
+        "peak_slipping_speed": float(speed[(time >= begin) & (time <= end)].max()),
+        "slip_start": begin,
         "heel_contact": SLIP_CONTACT,
+        **{f"peak_pressure_{name}": float(values.max()) for name, values in pressures.items()},
     }
-    # Only the slip counts: the swing after it is faster.
-    end = SLIP_CONTACT + truth.slip_start + truth.rise + truth.fall
-    window = (time >= SLIP_CONTACT + truth.slip_start) & (time <= end)
-    facts["peak_slipping_speed"] = float(path[window].max())
-    facts |= {f"peak_pressure_{name}": float(values.max()) for name, values in pressures.items()}
-    markers = _markers(frames, time, left, right, defects, rng)
+    body = np.column_stack(
+        (1.35 * (frames - FIRST_CONTACT) - 0.1, np.zeros(len(frames)), np.full(len(frames), 0.95))
+    )
+    heels = {
+        side: np.column_stack([np.interp(frames, time, path[:, i]) for i in range(3)])
+        for side, path in (("L", left), ("R", right))
+    }
+    markers = foot_markers(heels, body, (0.2, 0.0, 0.03), 0.12, 0.05)
+    for name, path in markers.items():
+        markers[name] = path + rng.normal(0, defects.marker_noise, path.shape)
+    if defects.missing_frames:
+        at = int(rng.uniform(SLIP_CONTACT + 0.15, SLIP_CONTACT + 0.3) * MARKER_RATE)
+        markers["LHEE"][at : at + defects.missing_frames] = np.nan
     for name, values in pressures.items():
         noisy = values + defects.pressure_offset + rng.normal(0, defects.pressure_noise, len(time))
-        pressures[name] = _dropped(noisy, defects.dropped_samples, rng)
+        if defects.dropped_samples:
+            at = int(rng.integers(0, len(values) - defects.dropped_samples))
+            noisy[at : at + defects.dropped_samples] = np.nan
+        pressures[name] = noisy
     forces = []
     for force in (dry, slip):
         offset = defects.force_offset * rng.uniform(-1, 1, 3)
@@ -141,23 +167,35 @@ def walk_with_slip(
         (forces[0], forces[1]),
         (dry_centre, slip_centre),
         pressures,
-        sensors,
-        corners,
+        SENSORS,
+        (plate_corners(0.0), plate_corners(0.62)),
         facts,
     )
 
 
-def _plate_corners(begin: float) -> np.ndarray:
-    """Corners of a 0.6 x 0.6 m plate; plate axes x = lab y, y = lab x, z down."""
-    low, high = np.array([begin, -0.3, 0.0]), np.array([begin + 0.6, 0.3, 0.0])
-    return np.array(
-        [
-            [high[0], high[1], 0.0],
-            [high[0], low[1], 0.0],
-            [low[0], low[1], 0.0],
-            [low[0], high[1], 0.0],
-        ]
-    )
+def plate_corners(begin: float, half_width: float = 0.3, height: float = 0.0) -> np.ndarray:
+    """Return the corners of a plate of 0.6 m; plate axes x = lab y, y = lab x, z down."""
+    right, left, end = -half_width, half_width, begin + 0.6
+    flat = [(end, left), (end, right), (begin, right), (begin, left)]
+    return np.column_stack((flat, np.full(4, height)))
+
+
+def foot_markers(
+    heels: Mapping[str, np.ndarray],
+    pelvis: np.ndarray,
+    toe: tuple[float, float, float],
+    front: float,
+    back: float,
+) -> dict[str, np.ndarray]:
+    """Return heel, toe and pelvis markers by side; ``front`` and ``back`` are half widths (m)."""
+    found = {}
+    for side, heel in heels.items():
+        sign = 1.0 if side == "L" else -1.0
+        found[f"{side}HEE"] = heel
+        found[f"{side}TOE"] = heel + np.array(toe)
+        found[f"{side}ASI"] = pelvis + np.array([0.08, front * sign, 0.0])
+        found[f"{side}PSI"] = pelvis + np.array([-0.1, back * sign, 0.02])
+    return found
 
 
 def raised_cosines(time: np.ndarray, knots: list[tuple[float, float]]) -> np.ndarray:
@@ -170,90 +208,66 @@ def raised_cosines(time: np.ndarray, knots: list[tuple[float, float]]) -> np.nda
     return out
 
 
-def _slipping_heel(time: np.ndarray, landing: np.ndarray, truth: SlipTruth) -> np.ndarray:
-    start = SLIP_CONTACT + truth.slip_start
-    peak = start + truth.rise
-    end = peak + truth.fall
-    speed = raised_cosines(
-        time,
-        [
-            (SLIP_CONTACT - 0.45, 0.0),
-            (SLIP_CONTACT - 0.25, 4.2),
-            (start, 0.02),
-            (peak, truth.peak_speed),
-            (end, 0.03),
-            (end + 0.2, 0.035),
-            (end + 0.45, 1.5),
-            (end + 0.8, 0.0),
-        ],
-    )
-    turn = np.where(time < start, 0.0, truth.angle)
-    x = np.cumsum(speed * np.cos(turn)) / RATE
-    y = np.cumsum(speed * np.sin(turn)) / RATE
-    at = int(np.searchsorted(time, SLIP_CONTACT))
-    x += landing[0] - x[at]
-    y += landing[1] - y[at]
-    lift = end + 0.12
-    z = 0.02 + raised_cosines(
-        time,
-        [
-            (SLIP_CONTACT - 0.45, 0.0),
-            (SLIP_CONTACT - 0.25, 0.12),
-            (SLIP_CONTACT, 0.0),
-            (lift, 0.0),
-            (lift + 0.25, 0.15),
-            (lift + 0.5, 0.0),
-        ],
-    )
-    return np.column_stack((x, y, z))
+def heel_path(
+    time: np.ndarray,
+    contact: float,
+    landing: np.ndarray,
+    speeds: list[tuple[float, float]],
+    heights: list[tuple[float, float]],
+    angle: np.ndarray | float = 0.0,
+) -> np.ndarray:
+    """Return a heel (n, 3) that is at ``landing`` at contact, from its speed in ``angle`` (rad)."""
+    speed = raised_cosines(time, speeds)
+    plane = np.column_stack((speed * np.cos(angle), speed * np.sin(angle))).cumsum(axis=0) / RATE
+    plane += landing[:2] - plane[int(np.searchsorted(time, contact))]
+    return np.column_stack((plane, landing[2] + 0.02 + raised_cosines(time, heights)))
 
 
-def _walking_heel(time: np.ndarray, landing: np.ndarray, contact: float) -> np.ndarray:
-    # A heel turns about the ball of the foot: it rises by centimetres before it goes forward.
-    speed = raised_cosines(
+def _swing(contact: float, most: float) -> list[tuple[float, float]]:
+    return [(contact - 0.45, 0.0), (contact - 0.25, most)]
+
+
+def _slipping_heel(
+    time: np.ndarray, landing: np.ndarray, truth: SlipTruth, begin: float, end: float
+) -> np.ndarray:
+    peak, at, lift = begin + truth.rise, SLIP_CONTACT, end + 0.12
+    slide = [(begin, 0.02), (peak, truth.peak_speed), (end, 0.03), (end + 0.2, 0.035)]
+    turn = np.where(time < begin, 0.0, truth.angle)
+    return heel_path(
         time,
-        [
-            (contact - 0.45, 0.0),
-            (contact - 0.25, 4.2),
-            (contact + 0.03, 0.02),
-            (contact + 0.43, 0.03),
-            (contact + 0.65, 4.4),
-            (contact + 0.95, 0.0),
-        ],
+        at,
+        landing,
+        [*_swing(at, 4.2), *slide, (end + 0.45, 1.5), (end + 0.8, 0.0)],
+        [*_swing(at, 0.12), (at, 0.0), (lift, 0.0), (lift + 0.25, 0.15), (lift + 0.5, 0.0)],
+        turn,
     )
-    x = np.cumsum(speed) / RATE
-    x += landing[0] - x[int(np.searchsorted(time, contact))]
-    z = 0.02 + raised_cosines(
-        time,
-        [
-            (contact - 0.45, 0.0),
-            (contact - 0.25, 0.12),
-            (contact, 0.0),
-            (contact + 0.35, 0.0),
-            (contact + 0.6, 0.2),
-            (contact + 0.9, 0.0),
-        ],
-    )
-    return np.column_stack((x, np.full(len(time), landing[1]), z))
+
+
+def stance_load(share: np.ndarray, second: float = 1.0) -> np.ndarray:
+    """Return the vertical force over body weight at a share of stance; ``second`` peak's height."""
+    on = (share > 0) & (share < 1)
+    shape = np.exp(-(((share - 0.25) / 0.16) ** 2))
+    shape += second * np.exp(-(((share - 0.75) / 0.16) ** 2))
+    shape += 0.55 * np.exp(-(((share - 0.5) / 0.2) ** 2))
+    edge = np.clip(np.minimum(share / 0.08, (1 - share) / 0.08), 0, 1)
+    return np.where(on, shape * 0.5 * (1 - np.cos(np.pi * edge)), 0.0)
+
+
+def stance_ratio(share: np.ndarray) -> np.ndarray:
+    """Return the braking shear over normal force at a share of stance, as a share of its peak."""
+    return np.exp(-(((share - 0.17) / 0.11) ** 2)) - 0.9 * np.exp(-(((share - 0.84) / 0.1) ** 2))
 
 
 def _dry_step(
     time: np.ndarray, heel: np.ndarray, truth: SlipTruth
 ) -> tuple[np.ndarray, np.ndarray, float]:
     """Return force (n, 3), centre of pressure (n, 3) and the true RCOF of the dry step."""
-    length = 0.65
-    s = (time - FIRST_CONTACT) / length
-    on = (s > 0) & (s < 1)
-    weight = truth.mass * 9.80665
-    shape = np.exp(-(((s - 0.25) / 0.16) ** 2)) + 1.02 * np.exp(-(((s - 0.75) / 0.16) ** 2))
-    shape += 0.55 * np.exp(-(((s - 0.5) / 0.2) ** 2))
-    edge = np.clip(np.minimum(s / 0.08, (1 - s) / 0.08), 0, 1)
-    normal = np.where(on, weight * shape * 0.5 * (1 - np.cos(np.pi * edge)), 0.0)
-    ratio = np.exp(-(((s - 0.17) / 0.11) ** 2)) - 0.9 * np.exp(-(((s - 0.84) / 0.1) ** 2))
-    braking = truth.rcof * ratio
+    s = (time - FIRST_CONTACT) / 0.65
+    normal = truth.mass * GRAVITY * stance_load(s, 1.02)
+    braking = truth.rcof * stance_ratio(s)
     sideways = 0.1 * truth.rcof * np.sin(np.pi * np.clip(s, 0, 1))
     force = np.column_stack((-braking * normal, sideways * normal, normal))
-    firm = on & (s < 0.5) & (normal > 100.0)
+    firm = (s < 0.5) & (normal > 100.0)
     rcof = float(np.hypot(braking[firm], sideways[firm]).max())
     x0 = heel[int(np.searchsorted(time, FIRST_CONTACT + 0.1)), 0]
     centre = np.column_stack(
@@ -267,10 +281,13 @@ def _slip_step(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return force and centre of pressure while sliding at ``truth.acof``."""
     end = truth.slip_start + truth.rise + truth.fall + 0.15
-    weight = truth.mass * 9.80665
-    normal = weight * raised_cosines(
-        time - SLIP_CONTACT,
-        [(0.0, 0.0), (0.1, 0.8), (max(0.55, end) - 0.1, 0.75), (max(0.6, end), 0.0)],
+    normal = (
+        truth.mass
+        * GRAVITY
+        * raised_cosines(
+            time - SLIP_CONTACT,
+            [(0.0, 0.0), (0.1, 0.8), (max(0.55, end) - 0.1, 0.75), (max(0.6, end), 0.0)],
+        )
     )
     ratio = truth.acof * np.clip((time - SLIP_CONTACT) / 0.02, 0, 1)
     force = np.column_stack(
@@ -281,56 +298,14 @@ def _slip_step(
     return force, centre
 
 
-def _pressures(
-    time: np.ndarray,
-    heel: np.ndarray,
-    sensors: Mapping[str, tuple[float, float, float]],
-    truth: SlipTruth,
-) -> dict[str, np.ndarray]:
+def _pressures(time: np.ndarray, heel: np.ndarray, truth: SlipTruth) -> dict[str, np.ndarray]:
     """A Gaussian pressure under the moving heel, fading from row to row as the film thins."""
     loaded = (time >= SLIP_CONTACT) & (heel[:, 2] < 0.025)
     # The load comes on in 40 ms, and the pressure with it.
     onset = 0.5 * (1 - np.cos(np.pi * np.clip((time - SLIP_CONTACT) / 0.04, 0, 1)))
     found = {}
-    for name, (x, y, _) in sensors.items():
+    for name, (x, y, _) in SENSORS.items():
         away = (x - heel[:, 0] - _HEEL_TO_PRESSURE) ** 2 + (y - heel[:, 1]) ** 2
         height = truth.pressure * truth.row_decay ** (int(name[1]) - 1)
         found[name] = np.where(loaded, onset * height * np.exp(-away / (2 * truth.width**2)), 0.0)
     return found
-
-
-def _markers(
-    frames: np.ndarray,
-    time: np.ndarray,
-    left: np.ndarray,
-    right: np.ndarray,
-    defects: Defects,
-    rng: np.random.Generator,
-) -> dict[str, np.ndarray]:
-    body = np.column_stack(
-        (1.35 * (frames - FIRST_CONTACT) - 0.1, np.zeros(len(frames)), np.full(len(frames), 0.95))
-    )
-    found = {}
-    for side, path, sign in (("L", left, 1.0), ("R", right, -1.0)):
-        heel = np.column_stack([np.interp(frames, time, path[:, i]) for i in range(3)])
-        found[f"{side}HEE"] = heel
-        found[f"{side}TOE"] = heel + np.array([0.2, 0.0, 0.03])
-        found[f"{side}ASI"] = body + np.array([0.08, 0.12 * sign, 0.0])
-        found[f"{side}PSI"] = body + np.array([-0.1, 0.05 * sign, 0.02])
-    for name in found:
-        found[name] = found[name] + rng.normal(0, defects.marker_noise, found[name].shape)
-    if defects.missing_frames:
-        middle = int(rng.uniform(SLIP_CONTACT + 0.15, SLIP_CONTACT + 0.3) * MARKER_RATE)
-        found["LHEE"][middle : middle + defects.missing_frames] = np.nan
-    return found
-
-
-def _dropped(values: np.ndarray, count: int, rng: np.random.Generator) -> np.ndarray:
-    if count:
-        begin = int(rng.integers(0, len(values) - count))
-        values[begin : begin + count] = np.nan
-    return values
-
-
-def _speed_of(path: np.ndarray) -> np.ndarray:
-    return np.linalg.norm(np.gradient(path[:, :2], 1.0 / RATE, axis=0), axis=1)

@@ -148,9 +148,8 @@ def design(predictors: Mapping[str, Predictor], terms: Sequence[str]) -> Design:
         A term names no predictor, or appears twice.
     """
     coded = {name: p.columns() for name, p in predictors.items()}
-    matrices, slices = [], {}
-    length = len(next(iter(predictors.values())).values)
-    matrices.append(np.ones((length, 1)))
+    matrices = [np.ones((len(next(iter(coded.values()))), 1))]
+    slices: dict[str, slice] = {}
     at = 1
     for term in terms:
         for name in parts(term):

@@ -59,14 +59,11 @@ def fisher_exact(table: Sequence[Sequence[int]] | np.ndarray) -> ExactTest:
     if counts.ndim != 2 or (counts < 0).any() or not np.equal(np.mod(counts, 1), 0).all():
         raise InputError("counts must be whole and not negative", where="table")
     counts = counts.astype(int)
-    as_tuples = tuple(tuple(int(x) for x in row) for row in counts)
+    as_tuples = tuple(map(tuple, counts.tolist()))
     counts = counts[counts.sum(axis=1) > 0][:, counts.sum(axis=0) > 0]
     if min(counts.shape) < 2:
-        raise InputError(
-            "fewer than two rows or columns hold counts",
-            where="table",
-            remedy="An exact test needs two groups and two outcomes",
-        )
+        remedy = "An exact test needs two groups and two outcomes"
+        raise InputError("fewer than two rows or columns hold counts", where="table", remedy=remedy)
     error = None
     try:
         p = _exact(counts if counts.shape[0] <= counts.shape[1] else counts.T)
@@ -78,10 +75,10 @@ def fisher_exact(table: Sequence[Sequence[int]] | np.ndarray) -> ExactTest:
 
     ratio = odds_ratio(counts, kind="conditional")
     interval = ratio.confidence_interval(0.95)
-    a, b, c, d = (float(x) for x in counts.ravel())
+    a, b, c, d = counts.astype(float).ravel().tolist()
     sample = a * d / (b * c) if b * c else float("inf")
-    ends = (float(ratio.statistic), float(interval.low), float(interval.high))
-    return ExactTest(p, as_tuples, error, *ends, sample)
+    odds, low, high = map(float, (ratio.statistic, interval.low, interval.high))
+    return ExactTest(p, as_tuples, error, odds, low, high, sample)
 
 
 def _monte_carlo(counts: np.ndarray) -> tuple[float, float]:
@@ -114,12 +111,15 @@ class _Weights:
         self.logs = logs[first]
         self.ways = np.add.reduceat(ways, np.flatnonzero(first))
 
+    @classmethod
+    def joined(cls, parts: Sequence[tuple[np.ndarray, np.ndarray]]) -> _Weights:
+        return cls(*(np.concatenate(part) for part in zip(*parts, strict=True)))
+
 
 def _exact(counts: np.ndarray) -> float:
     # Small columns first: they make the few row sums from which the rest is completed.
     counts = counts[:, np.argsort(counts.sum(axis=0), kind="stable")]
-    rows = tuple(int(r) for r in counts.sum(axis=1))
-    columns = tuple(int(c) for c in counts.sum(axis=0))
+    rows, columns = (tuple(counts.sum(axis=axis).tolist()) for axis in (1, 0))
     log_factorial = np.array([lgamma(i + 1.0) for i in range(int(counts.sum()) + 1)])
     search = _Enumeration(log_factorial)
     constant = log_factorial[list(rows)].sum() + log_factorial[list(columns)].sum()
@@ -156,10 +156,7 @@ class _Enumeration:
                 added = self.log_factorial[cells].sum(axis=1)
                 for left, weight in zip((np.array(rest) - cells).tolist(), added, strict=True):
                     grown.setdefault(tuple(left), []).append((before.logs - weight, before.ways))
-            states = {
-                key: _Weights(*(np.concatenate(part) for part in zip(*parts, strict=True)))
-                for key, parts in grown.items()
-            }
+            states = {key: _Weights.joined(parts) for key, parts in grown.items()}
         return states
 
     def completions(self, rest: tuple[int, ...], columns: tuple[int, ...]) -> _Weights:
@@ -182,7 +179,7 @@ class _Enumeration:
                 later = self.completions(tuple(row), columns[1:])
                 self._spend(len(later.logs) + _STEP)
                 parts.append((log + later.logs, later.ways))
-            weights = _Weights(*(np.concatenate(part) for part in zip(*parts, strict=True)))
+            weights = _Weights.joined(parts)
         self.known[key] = weights
         return weights
 

@@ -7,10 +7,12 @@ packages reorder the terms of a type I analysis and drop empty cells in silence.
 from __future__ import annotations
 
 import warnings as python_warnings
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import Any, Protocol
+from string import ascii_lowercase
+from typing import Any
 
 import numpy as np
 
@@ -27,27 +29,37 @@ EXACT = 1e-18  # share of the variation left over below which a fit is exact, ro
 
 
 @dataclass(frozen=True, slots=True)
-class LinearModel:
-    """A least-squares fit.
+class FittedModel(ABC):
+    """What comparisons need of a model.
 
     Parameters
     ----------
     coefficients, covariance
-        Shapes (p,) and (p, p), sum-to-zero coding; pseudo-inverse of dependent columns.
-    residual_sum, residual_df
-        Residual sum of squares and its degrees of freedom.
-    warnings
-        Rows left out, empty cells, dependent columns, an exact fit.
+        Of the fixed effects, shapes (p,) and (p, p), sum-to-zero coding.
     """
 
     response_name: str
-    response: np.ndarray
     design: Design
     coefficients: np.ndarray
     covariance: np.ndarray
+    warnings: tuple[str, ...]
+
+    @abstractmethod
+    def df(self, factor: str) -> float:
+        """Return the degrees of freedom of comparisons between levels of ``factor``."""
+
+
+@dataclass(frozen=True, slots=True)
+class LinearModel(FittedModel):
+    """A least-squares fit, with the pseudo-inverse where columns depend on each other.
+
+    ``warnings`` name rows left out, empty cells, dependent columns, an exact fit;
+    ``residual_sum`` is the residual sum of squares, with ``residual_df`` degrees of freedom.
+    """
+
+    response: np.ndarray
     residual_sum: float
     residual_df: int
-    warnings: tuple[str, ...]
 
     @property
     def residual_mean_square(self) -> float:
@@ -62,9 +74,8 @@ class LinearModel:
     @property
     def exact(self) -> bool:
         """True when nothing but rounding is left over: F and p then mean nothing."""
-        return self.residual_sum <= EXACT * max(
-            self.total_sum, float(self.response @ self.response)
-        )
+        largest = max(self.total_sum, float(self.response @ self.response))
+        return self.residual_sum <= EXACT * largest
 
     @property
     def r_squared(self) -> float:
@@ -82,31 +93,8 @@ class LinearModel:
         return self.design.matrix @ self.coefficients
 
     def df(self, factor: str) -> float:
-        """Return the degrees of freedom of comparisons between levels of ``factor``."""
+        """Return those of the residual."""
         return self.residual_df
-
-
-class Comparable(Protocol):
-    """What comparisons need of a model: ``LinearModel`` and ``MixedModel`` have it."""
-
-    @property
-    def design(self) -> Design:
-        """Coded predictors."""
-        ...
-
-    @property
-    def coefficients(self) -> np.ndarray:
-        """Shape (p,)."""
-        ...
-
-    @property
-    def covariance(self) -> np.ndarray:
-        """Shape (p, p)."""
-        ...
-
-    def df(self, factor: str) -> float:
-        """Return the degrees of freedom of comparisons between levels of ``factor``."""
-        ...
 
 
 def linear_model(
@@ -143,12 +131,12 @@ def linear_model(
             remedy="Drop interactions or measure more",
         )
     fit = _least_squares(y, built.matrix)
-    model = LinearModel(
-        name, y, built, fit.params, fit.cov_params(), float(fit.ssr), int(fit.df_resid), ()
-    )
-    if model.exact:
-        warnings.append("the model fits the data exactly: no scatter is left for a test")
-    return replace(model, warnings=tuple(warnings))
+    left = float(fit.ssr), int(fit.df_resid)
+    model = LinearModel(name, built, fit.params, fit.cov_params(), tuple(warnings), y, *left)
+    if not model.exact:
+        return model
+    exact = "the model fits the data exactly: no scatter is left for a test"
+    return replace(model, warnings=(*warnings, exact))
 
 
 def model_data(
@@ -323,7 +311,7 @@ class Comparison:
     high: float
 
 
-def least_squares_means(model: Comparable, factor: str) -> list[AdjustedMean]:
+def least_squares_means(model: FittedModel, factor: str) -> list[AdjustedMean]:
     """Return the least-squares mean of each level of ``factor``.
 
     Predictions on the grid of all levels, averaged with equal weights over the other factors,
@@ -343,7 +331,7 @@ def least_squares_means(model: Comparable, factor: str) -> list[AdjustedMean]:
     ]
 
 
-def tukey_hsd(model: Comparable, factor: str, *, confidence: float = 0.95) -> list[Comparison]:
+def tukey_hsd(model: FittedModel, factor: str, *, confidence: float = 0.95) -> list[Comparison]:
     """Return all pairwise differences of least-squares means, adjusted after Tukey and Kramer.
 
     p = P(Q > sqrt(2) |t|) with Q the studentized range of k means and the degrees of freedom of
@@ -374,9 +362,8 @@ def tukey_hsd(model: Comparable, factor: str, *, confidence: float = 0.95) -> li
         t = difference / error
         p = float(np.clip(studentized_range.sf(np.sqrt(2.0) * abs(t), k, df), 0.0, 1.0))
         low, high = difference - critical * error, difference + critical * error
-        comparisons.append(
-            Comparison(levels[i], levels[j], difference, error, t, p, float(low), float(high))
-        )
+        ends = float(low), float(high)
+        comparisons.append(Comparison(levels[i], levels[j], difference, error, t, p, *ends))
     return comparisons
 
 
@@ -406,9 +393,7 @@ def letters(comparisons: list[Comparison], *, alpha: float = 0.05) -> dict[str, 
         ]
     groups.sort(key=lambda group: [order.index(x) for x in sorted(group, key=order.index)])
     return {
-        level: "".join(
-            "abcdefghijklmnopqrstuvwxyz"[i] for i, group in enumerate(groups) if level in group
-        )
+        level: "".join(ascii_lowercase[i] for i, group in enumerate(groups) if level in group)
         for level in order
     }
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
@@ -57,28 +57,20 @@ def separation(matrix: np.ndarray, outcome: np.ndarray) -> Separation:
 
     scale = np.abs(matrix).max(axis=0)
     signed = np.where(outcome > 0.5, 1.0, -1.0)[:, None] * matrix / scale
-    p = matrix.shape[1]
-    bounds = [(-1.0, 1.0)] * p
-    infinite = []
-    for j in range(p):
-        reach = 0.0
-        for sign in (1.0, -1.0):
-            objective = np.zeros(p)
-            objective[j] = -sign
-            found = linprog(objective, A_ub=-signed, b_ub=np.zeros(len(signed)), bounds=bounds)
-            reach = max(reach, -float(found.fun) if found.success else 0.0)
-        infinite.append(reach > 1e-7)
+    n, p = signed.shape
+
+    def most(direction: np.ndarray, sides: np.ndarray, *margin: tuple[float, float]) -> float:
+        """Return the largest step in a direction that leaves every observation on its side."""
+        bounds = [(-1.0, 1.0)] * p + list(margin)
+        found = linprog(-direction, A_ub=-sides, b_ub=np.zeros(n), bounds=bounds)
+        return -float(found.fun) if found.success else 0.0
+
+    infinite = tuple(max(most(e, signed), most(-e, signed)) > 1e-7 for e in np.eye(p))
     if not any(infinite):
-        return Separation("none", tuple(infinite))
+        return Separation("none", infinite)
     # Complete: every observation can be put on its side by one and the same margin.
-    with_margin = np.column_stack((-signed, np.ones(len(signed))))
-    objective = np.zeros(p + 1)
-    objective[-1] = -1.0
-    found = linprog(
-        objective, A_ub=with_margin, b_ub=np.zeros(len(signed)), bounds=[*bounds, (0.0, 1.0)]
-    )
-    complete = bool(found.success) and -float(found.fun) > 1e-7
-    return Separation("complete" if complete else "quasi-complete", tuple(infinite))
+    together = most(np.eye(p + 1)[p], np.column_stack((signed, -np.ones(n))), (0.0, 1.0))
+    return Separation("complete" if together > 1e-7 else "quasi-complete", infinite)
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,12 +96,38 @@ class Coefficient:
 
 
 @dataclass(frozen=True, slots=True)
-class LogisticFit:
+class ClusteredCoefficient:
+    """Estimate with the sandwich error, its small-sample form, and p from t (clusters - p df)."""
+
+    name: str
+    estimate: float
+    robust_error: float
+    corrected_error: float
+    p: float
+
+
+_Term = TypeVar("_Term", Coefficient, ClusteredCoefficient)
+
+
+@dataclass(frozen=True, slots=True)
+class _Fit(Generic[_Term]):
+    method: str
+    coefficients: tuple[_Term, ...]
+    covariance: np.ndarray
+
+    def __getitem__(self, name: str) -> _Term:
+        return next(c for c in self.coefficients if c.name == name)
+
+    @property
+    def estimates(self) -> np.ndarray:
+        """Coefficients, intercept first, shape (p,)."""
+        return np.array([c.estimate for c in self.coefficients])
+
+
+@dataclass(frozen=True, slots=True)
+class LogisticFit(_Fit[Coefficient]):
     """A fitted logistic model log(p / (1 - p)) = b0 + b1 x1 + ..."""
 
-    method: str
-    coefficients: tuple[Coefficient, ...]
-    covariance: np.ndarray
     log_likelihood: float
     null_log_likelihood: float
     penalised_log_likelihood: float | None
@@ -117,14 +135,6 @@ class LogisticFit:
     events: int
     separation: Separation
     warnings: tuple[str, ...]
-
-    def __getitem__(self, name: str) -> Coefficient:
-        return next(c for c in self.coefficients if c.name == name)
-
-    @property
-    def estimates(self) -> np.ndarray:
-        """Coefficients, intercept first, shape (p,)."""
-        return np.array([c.estimate for c in self.coefficients])
 
     @property
     def deviance(self) -> float:
@@ -191,53 +201,47 @@ def logistic_regression(
     rarer = int(min(y.sum(), len(y) - y.sum()))
     if rarer < 5 * len(predictors):
         warnings.append(f"{rarer} of the rarer outcome for {len(predictors)} predictors: overfits")
-    scale = np.concatenate(([1.0], matrix[:, 1:].std(axis=0)))
-    centre = np.concatenate(([0.0], matrix[:, 1:].mean(axis=0)))
-    centred = (matrix - centre) / scale
-    raw = matrix / scale
+    centred, scale, back = _scaled(matrix)
     start = np.zeros(len(names))
-    start[0] = np.log(y.mean() / (1.0 - y.mean()))
+    mean = float(y.mean())
+    start[0] = np.log(mean / (1.0 - mean))
     if not firth:
         start = _maximum_likelihood(y, centred)
     # From the maximum this only adds the value of the objective that profiles are measured from.
-    beta_c, best, converged = maximised(centred, y, start, np.ones(len(names), dtype=bool), firth)
+    scaled, best, converged = maximised(centred, y, start, np.ones(len(names), dtype=bool), firth)
     if not converged:
         raise ConvergenceError("the likelihood did not settle", where="logistic regression")
-    beta = beta_c / scale
-    beta[0] = beta_c[0] - float(np.sum(centre[1:] * beta[1:]))
+    beta = back @ scaled
     eta = matrix @ beta
-    covariance = _covariance(centred, eta, scale, centre)
+    covariance = back @ np.linalg.inv(information(centred, eta)) @ back.T
     errors = np.sqrt(np.diag(covariance))
     coefficients = []
     for j, name in enumerate(names):
-        work = raw if j == 0 else centred
-        at = beta * scale if j == 0 else beta_c
-        low, high, p = _profile(work, y, at, j, firth, best, confidence, errors[j] * scale[j])
-        coefficients.append(
-            Coefficient(
-                name,
-                float(beta[j]),
-                float(errors[j]),
-                None if low is None else float(low / scale[j]),
-                None if high is None else float(high / scale[j]),
-                p,
-            )
-        )
-    mean = float(y.mean())
-    null = float(np.sum(y * np.log(mean) + (1 - y) * np.log(1 - mean)))
-    penalised = objective(matrix, eta, y, True) if firth else None
+        work, at = (matrix / scale, beta * scale) if j == 0 else (centred, scaled)
+        *ends, p = _profile(work, y, at, j, firth, best, confidence, errors[j] * scale[j])
+        low, high = (None if end is None else float(end / scale[j]) for end in ends)
+        coefficients.append(Coefficient(name, float(beta[j]), float(errors[j]), low, high, p))
     return LogisticFit(
         method,
         tuple(coefficients),
         covariance,
         log_likelihood(eta, y),
-        null,
-        penalised,
+        float(np.sum(y * np.log(mean) + (1 - y) * np.log(1 - mean))),
+        objective(matrix, eta, y, True) if firth else None,
         len(y),
         int(y.sum()),
         found,
         tuple(warnings),
     )
+
+
+def _scaled(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the centred and scaled matrix, the scales, and what brings coefficients back."""
+    scale = np.concatenate(([1.0], matrix[:, 1:].std(axis=0)))
+    centre = np.concatenate(([0.0], matrix[:, 1:].mean(axis=0)))
+    back = np.diag(1.0 / scale)
+    back[0, 1:] = -centre[1:] / scale[1:]
+    return (matrix - centre) / scale, scale, back
 
 
 def _maximum_likelihood(y: np.ndarray, matrix: np.ndarray) -> np.ndarray:
@@ -298,16 +302,6 @@ def _profile(
     return low, high, p
 
 
-def _covariance(
-    centred: np.ndarray, eta: np.ndarray, scale: np.ndarray, centre: np.ndarray
-) -> np.ndarray:
-    """Return the inverse information in the original coefficients."""
-    inner = np.linalg.inv(information(centred, eta))
-    back = np.diag(1.0 / scale)
-    back[0, 1:] = -centre[1:] / scale[1:]
-    return back @ inner @ back.T
-
-
 def _checked(
     outcome: Sequence[int] | np.ndarray, predictors: Mapping[str, Sequence[float] | np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray, list[str]]:
@@ -333,37 +327,15 @@ def _checked(
 
 
 @dataclass(frozen=True, slots=True)
-class ClusteredCoefficient:
-    """Estimate with the sandwich error, its small-sample form, and p from t (clusters - p df)."""
-
-    name: str
-    estimate: float
-    robust_error: float
-    corrected_error: float
-    p: float
-
-
-@dataclass(frozen=True, slots=True)
-class ClusteredFit:
+class ClusteredFit(_Fit[ClusteredCoefficient]):
     """Population-averaged logistic model with exchangeable working correlation.
 
     ``covariance`` is the small-sample one, shape (p, p), intercept first.
     """
 
-    coefficients: tuple[ClusteredCoefficient, ...]
-    covariance: np.ndarray
     correlation: float
     clusters: int
     n: int
-    method: str = "clustered"
-
-    def __getitem__(self, name: str) -> ClusteredCoefficient:
-        return next(c for c in self.coefficients if c.name == name)
-
-    @property
-    def estimates(self) -> np.ndarray:
-        """Coefficients, intercept first, shape (p,)."""
-        return np.array([c.estimate for c in self.coefficients])
 
 
 def clustered_logistic(
@@ -406,39 +378,28 @@ def clustered_logistic(
     order = {label: i for i, label in enumerate(dict.fromkeys(labels))}
     df = len(order) - len(names)
     if df <= 1:
-        raise DataError(
-            f"{len(order)} clusters for {len(names)} parameters",
-            where="cluster",
-            allowed="more clusters",
-        )
+        text = f"{len(order)} clusters for {len(names)} parameters"
+        raise DataError(text, where="cluster", allowed="more clusters")
     # Refuses separated data with its own message, and starts the iteration at its answer.
     start = logistic_regression(y.astype(int), dict(predictors)).estimates
-    scale = np.concatenate(([1.0], matrix[:, 1:].std(axis=0)))
-    centre = np.concatenate(([0.0], matrix[:, 1:].mean(axis=0)))
-    gamma = start * scale
-    gamma[0] = start[0] + float(np.sum(centre[1:] * start[1:]))
+    centred, _, back = _scaled(matrix)
     groups = np.array([order[label] for label in labels])
     structure = Exchangeable()
-    model = GEE(y, (matrix - centre) / scale, groups, family=Binomial(), cov_struct=structure)
-    fit: Any = model.fit(
-        maxiter=200, ctol=1e-12, start_params=gamma, first_dep_update=0, cov_type="bias_reduced"
+    fit: Any = GEE(y, centred, groups, family=Binomial(), cov_struct=structure).fit(
+        maxiter=200,
+        ctol=1e-12,
+        start_params=np.linalg.solve(back, start),
+        first_dep_update=0,
+        cov_type="bias_reduced",
     )
     if not fit.converged:
         raise ConvergenceError("the estimating equations did not settle", where="clusters")
-    back = np.diag(1.0 / scale)
-    back[0, 1:] = -centre[1:] / scale[1:]
     estimates = back @ np.asarray(fit.params)
     robust, corrected = (back @ np.asarray(c) @ back.T for c in (fit.cov_robust, fit.cov_robust_bc))
-    errors = np.sqrt(np.diag(corrected))
+    columns = estimates, np.sqrt(np.diag(robust)), np.sqrt(np.diag(corrected))
     coefficients = tuple(
-        ClusteredCoefficient(
-            name,
-            float(estimates[j]),
-            float(np.sqrt(robust[j, j])),
-            float(errors[j]),
-            2.0 * float(student.sf(abs(estimates[j]) / errors[j], df)),
-        )
-        for j, name in enumerate(names)
+        ClusteredCoefficient(name, b, plain, error, 2.0 * float(student.sf(abs(b) / error, df)))
+        for name, b, plain, error in zip(names, *(c.tolist() for c in columns), strict=True)
     )
     dependence = float(np.asarray(structure.dep_params))
-    return ClusteredFit(coefficients, corrected, dependence, len(order), len(y))
+    return ClusteredFit("clustered", coefficients, corrected, dependence, len(order), len(y))

@@ -15,8 +15,8 @@ import numpy as np
 
 from underfoot.core import DataError
 
-from .design import Design, parts
-from .linear import AnovaRow, linear_model, model_data
+from .design import parts
+from .linear import AnovaRow, FittedModel, linear_model, model_data
 
 
 def independence_warning(persons: Sequence[object]) -> tuple[str, ...]:
@@ -71,13 +71,11 @@ def person_means(
 
 
 @dataclass(frozen=True, slots=True)
-class MixedModel:
+class MixedModel(FittedModel):
     """Linear model of person means with a random intercept for each person (REML).
 
     Parameters
     ----------
-    coefficients, covariance
-        Of the fixed effects, sum-to-zero coding, shapes (p,) and (p, p).
     person_sd, residual_sd
         Standard deviations between persons, and of a person's mean in one condition about it.
     within_df, between_df
@@ -86,10 +84,6 @@ class MixedModel:
         Factors of which at least one person has several levels.
     """
 
-    response_name: str
-    design: Design
-    coefficients: np.ndarray
-    covariance: np.ndarray
     person_sd: float
     residual_sd: float
     within_df: int
@@ -97,10 +91,9 @@ class MixedModel:
     within: frozenset[str]
     persons: int
     trials: int
-    warnings: tuple[str, ...]
 
     def df(self, factor: str) -> float:
-        """Return the degrees of freedom of comparisons between levels of ``factor``."""
+        """Return those within persons where a person has several levels, else those between."""
         inside = any(name in self.within for name in parts(factor))
         return self.within_df if inside else self.between_df
 
@@ -159,53 +152,42 @@ def mixed_model(
         raise DataError(
             notes[0], where=name, remedy="Name fewer factors, or leave out interactions"
         )
-    people = {p: i for i, p in enumerate(dict.fromkeys(means.person))}
-    who = np.array([people[p] for p in means.person])
+    people = list(dict.fromkeys(means.person))
+    who = np.array([people.index(p) for p in means.person])
     x = built.matrix
-    varies = [bool(np.ptp(x[who == i], axis=0).any()) for i in range(len(people))]
-    columns = np.array(
-        [any(np.ptp(x[who == i, j]) > 0 for i in range(len(people))) for j in range(x.shape[1])]
-    )
+    varies = np.array([np.ptp(x[who == i], axis=0) > 0 for i in range(len(people))])
+    inside = int(varies.any(axis=0).sum())
     within = frozenset(
-        n for n, levels in means.factors.items()
-        if any(len({levels[r] for r in np.flatnonzero(who == i)}) > 1 for i in range(len(people)))
-    )  # fmt: skip
-    between_df = len(people) - int((~columns).sum())
-    within_df = len(y) - len(people) - int(columns.sum())
-    if between_df < 1 or (any(varies) and within_df < 1):
+        factor
+        for factor, levels in means.factors.items()
+        if len(set(zip(means.person, levels, strict=True))) > len(people)
+    )
+    between_df = len(people) - (x.shape[1] - inside)
+    within_df = len(y) - len(people) - inside
+    if between_df < 1 or (varies.any() and within_df < 1):
         raise DataError(
             f"{len(people)} persons leave nothing to estimate the scatter of {x.shape[1]} "
             "parameters",
             where=name,
             remedy="Measure more persons, or name fewer factors",
         )
-    total = int(means.trials.sum())
-    if not any(varies):
+    counted = within, len(people), int(means.trials.sum())
+    if not varies.any():
         # Nobody repeats a condition: the means of persons are independent.
         plain = linear_model(y, means.factors, built.terms, name=name)
+        fixed = plain.coefficients, plain.covariance, plain.warnings
         spread = float(np.sqrt(plain.residual_mean_square))
-        return MixedModel(
-            name, built, plain.coefficients, plain.covariance, spread, 0.0, 0, plain.residual_df,
-            within, len(people), total, plain.warnings,
-        )  # fmt: skip
+        return MixedModel(name, built, *fixed, spread, 0.0, 0, plain.residual_df, *counted)
     person_sd, residual_sd = _standard_deviations(y, x, who)
     share = person_sd**2 / residual_sd**2
-    precision = np.zeros((x.shape[1], x.shape[1]))
-    score = np.zeros(x.shape[1])
-    for i in range(len(people)):
-        rows = x[who == i]
-        shrink = share / (1.0 + share * len(rows))
-        inverse = (np.eye(len(rows)) - shrink) / residual_sd**2
-        precision += rows.T @ inverse @ rows
-        score += rows.T @ inverse @ y[who == i]
-    covariance = np.linalg.inv(precision)
+    shrink = share / (1.0 + share * np.bincount(who)[who])
+    inverse = (np.eye(len(y)) - shrink * (who[:, None] == who)) / residual_sd**2
+    covariance = np.linalg.inv(x.T @ inverse @ x)
     warning = ()
     if person_sd < 1e-3 * residual_sd:
         warning = ("persons differ no more than by chance: their variance is estimated as zero",)
-    return MixedModel(
-        name, built, covariance @ score, covariance, person_sd, residual_sd, within_df, between_df,
-        within, len(people), total, warning,
-    )  # fmt: skip
+    fixed = covariance @ (x.T @ inverse @ y), covariance, warning
+    return MixedModel(name, built, *fixed, person_sd, residual_sd, within_df, between_df, *counted)
 
 
 def _standard_deviations(y: np.ndarray, x: np.ndarray, who: np.ndarray) -> tuple[float, float]:
@@ -259,18 +241,15 @@ def repeated_measures(
     from statsmodels.stats.anova import AnovaRM
 
     means = person_means(response, factors, person)
-    frame = pd.DataFrame({"person": means.person, "y": means.mean})
     # Neutral column names: statsmodels builds formulas of them.
     named = {f"factor{i}": name for i, name in enumerate(means.factors)}
-    for column, name in named.items():
-        frame[column] = means.factors[name]
-    cells = int(np.prod([len(set(levels)) for levels in means.factors.values()]))
-    people = sorted(set(means.person))
-    if len(frame) != cells * len(people) or len(people) < 2 or cells < 2:
-        raise DataError(
-            "not every person has every condition", where="repeated measures",
-            remedy="Use the mixed model",
-        )  # fmt: skip
+    levels = {column: means.factors[name] for column, name in named.items()}
+    frame = pd.DataFrame({"person": means.person, "y": means.mean, **levels})
+    cells = int(np.prod([len(set(column)) for column in levels.values()]))
+    persons = len(set(means.person))
+    if len(frame) != cells * persons or persons < 2 or cells < 2:
+        where, remedy = "repeated measures", "Use the mixed model"
+        raise DataError("not every person has every condition", where=where, remedy=remedy)
     table: Any = AnovaRM(frame, "y", "person", within=list(named)).fit().anova_table
     rows = tuple(
         AnovaRow(
@@ -284,14 +263,12 @@ def repeated_measures(
         for term, row in table.iterrows()
     )
     if len(named) > 1:
-        return RepeatedMeasures(rows, None, None, len(people))
+        return RepeatedMeasures(rows, None, None, persons)
     wide = frame.pivot(index="person", columns="factor0", values="y").to_numpy()
     k = wide.shape[1]
     centring = np.eye(k) - 1.0 / k
     inner = centring @ np.atleast_2d(np.cov(wide.T)) @ centring
     epsilon = min(float(np.trace(inner) ** 2 / ((k - 1) * np.sum(inner**2))), 1.0)
-    one = rows[0]
-    assert one.f is not None
-    assert one.error_df is not None
-    p = float(stats.f.sf(one.f, epsilon * one.df, epsilon * one.error_df))
-    return RepeatedMeasures(rows, epsilon, p, len(people))
+    own: Any = rows[0]  # with F and the degrees of freedom of its error
+    p = float(stats.f.sf(own.f, epsilon * own.df, epsilon * own.error_df))
+    return RepeatedMeasures(rows, epsilon, p, persons)

@@ -102,15 +102,8 @@ def precision(readings: Mapping[str, Sequence[float] | np.ndarray]) -> Precision
     n0 = (total - float(np.sum(sizes**2)) / total) / (p - 1)
     spread = float(np.sum(sizes * (means - grand) ** 2)) / (p - 1)
     between = max(0.0, (spread - within) / n0)
-    return Precision(
-        grand,
-        float(np.sqrt(within)),
-        float(np.sqrt(between)),
-        float(np.sqrt(within + between)),
-        p,
-        total,
-        tuple(_outliers(groups, means)),
-    )
+    s_r, s_l, both = np.sqrt([within, between, within + between]).tolist()
+    return Precision(grand, s_r, s_l, both, p, total, tuple(_outliers(groups, means)))
 
 
 def _outliers(groups: Mapping[str, np.ndarray], means: np.ndarray) -> list[OutlierTest]:

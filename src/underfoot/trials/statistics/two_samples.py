@@ -68,17 +68,9 @@ def t_test(
         if kind == "paired"
         else stats.ttest_ind(a, b, equal_var=kind == "pooled")
     )
-    low, high = test.confidence_interval(confidence)
-    difference = float(a.mean() - b.mean())
-    return TTest(
-        kind,
-        float(test.statistic),
-        float(test.df),
-        float(test.pvalue),
-        difference,
-        float(low),
-        float(high),
-    )
+    ends = test.confidence_interval(confidence)
+    numbers = (test.statistic, test.df, test.pvalue, a.mean() - b.mean(), *ends)
+    return TTest(kind, *map(float, numbers))
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +109,5 @@ def regression_line(x: Sequence[float] | np.ndarray, y: Sequence[float] | np.nda
         raise DataError("x or y is constant", where="regression")
     fit: Any = stats.linregress(a, b)
     spread = float(np.sqrt(np.sum((b - fit.intercept - fit.slope * a) ** 2) / (len(a) - 2)))
-    slope, intercept, r, p = (float(v) for v in fit[:4])
-    return Line(
-        slope, intercept, float(fit.stderr), float(fit.intercept_stderr), r, p, spread, len(a)
-    )
+    slope, intercept, r, p, *errors = map(float, (*fit[:4], fit.stderr, fit.intercept_stderr))
+    return Line(slope, intercept, errors[0], errors[1], r, p, spread, len(a))

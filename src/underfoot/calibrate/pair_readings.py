@@ -1,0 +1,271 @@
+"""Readings of a user's own tester, or a certificate, and what they teach of a pair's friction.
+
+The draws of the law of the pair are weighted by how well each predicts the readings, each computed
+as the whole case that describes it (contact and film as solved), and drawn anew by weight. The
+error of the laboratory and that of each pair become known as far as the readings go; other pairs
+of the same laboratory profit too.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+from scipy.stats import norm
+
+from underfoot.case import Case
+from underfoot.compute.numbers import FILM_ERROR
+from underfoot.compute.resolve import resolved
+from underfoot.compute.run import run
+from underfoot.core import (
+    ConvergenceError,
+    DataError,
+    InputError,
+    Progress,
+    nearest_match,
+    silent,
+    unknown_name,
+)
+from underfoot.core.arrays import Array
+from underfoot.core.presentation import Presentable, Table
+from underfoot.core.progress import part
+from underfoot.friction import PairContactLaw, PairDraws, packaged_pair_draws, sampled_cof
+from underfoot.friction.pair_contact import DRY_PART, LABORATORY
+
+REPEATS = 20
+"""Draws of the errors for each draw of the constants."""
+COUNT = 1000
+"""Draws that are kept."""
+READING = 0.10
+"""Standard deviation of ln COF of one reading where none is given: repeats of one tester."""
+FEWEST = 50
+"""Effective draws below which the readings are too far from the law to be weighed."""
+KINDS = ("value", "lower", "upper")
+KEYS = ("case", "cof", "sd", "kind")
+
+
+@dataclass(frozen=True, slots=True)
+class PairReading:
+    """COF that was read under the conditions of a case, or a bound of it ("lower", "upper")."""
+
+    case: Case
+    cof: float
+    sd: float | None = None
+    kind: str = "value"
+
+    def log_weight(self, cof: Array) -> Array:
+        """Return the logarithm of the likelihood of the reading at predicted COF (draws,)."""
+        deviation = READING if self.sd is None else self.sd / self.cof
+        rest = (np.log(np.maximum(cof, 1e-6)) - np.log(self.cof)) / deviation
+        if self.kind == "value":
+            return norm.logpdf(rest)
+        return norm.logcdf(rest if self.kind == "lower" else -rest)
+
+
+@dataclass(frozen=True, slots=True)
+class PairCalibration(Presentable):
+    """Draws of the law calibrated to readings, and what each reading's case was and is.
+
+    ``before`` and ``after`` are (readings, 3): COF at 2.5, 50 and 97.5 %. ``effective`` is the
+    number of equal draws that the weighted ones are worth.
+    """
+
+    kind: ClassVar[str] = "pair_calibration"
+
+    readings: tuple[PairReading, ...]
+    draws: PairDraws
+    before: Array
+    after: Array
+    effective: float
+
+    def heading(self) -> str:
+        """Return the title."""
+        return "Friction of a pair, calibrated to readings"
+
+    def headline(self) -> tuple[str, ...]:
+        """Return what the readings are worth."""
+        names = "one reading" if len(self.readings) == 1 else f"{len(self.readings)} readings"
+        before, after = (np.sqrt(rows[0, 2] / rows[0, 0]) for rows in (self.before, self.after))
+        return (
+            f"Law of the pair calibrated to {names}: the 95 % interval of the first went from a "
+            f"factor of {before:.2g} to one of {after:.2g} either way.",
+        )
+
+    def table(self) -> Table:
+        """Return each reading beside the prediction before and after."""
+        rows = [
+            (
+                reading.case.name,
+                {"lower": "at least ", "upper": "at most "}.get(reading.kind, "")
+                + f"{reading.cof:.3g}",
+                *("{1:.3f} ({0:.3f} to {2:.3f})".format(*row) for row in (before, after)),
+            )
+            for reading, before, after in zip(self.readings, self.before, self.after, strict=True)
+        ]
+        return Table("Readings", ("case", "measured COF", "predicted before", "after"), rows)
+
+
+def read_pair_readings(path: Path) -> tuple[PairReading, ...]:
+    """Return the readings in a TOML file of tables ``[[reading]]``.
+
+    Each has ``case`` (file, from the folder of this one) and ``cof``; ``sd`` and ``kind``
+    ("value", "lower", "upper") where known.
+
+    Raises
+    ------
+    InputError
+        No such file, no reading, an unknown key, a value that is missing or no COF.
+    """
+    try:
+        table = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except FileNotFoundError:
+        near = nearest_match(path.name, [file.name for file in path.parent.glob("*.toml")])
+        raise InputError(f"there is no file {path}", where="READINGS", nearest=near) from None
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path.name} can't be read ({error})", where="READINGS") from error
+    entries = table.pop("reading", None)
+    if table or not isinstance(entries, list) or not entries:
+        raise InputError(
+            f"{path.name} holds no table [[reading]]" if not table else f"unknown: {[*table]}",
+            where=str(path),
+            allowed="tables [[reading]] alone",
+            remedy='Write [[reading]], case = "my_case.toml", cof = 0.24, sd = 0.02',
+        )
+    return tuple(
+        _reading(entry, path.parent, f"{path.name}, reading {number}")
+        for number, entry in enumerate(entries, start=1)
+    )
+
+
+def _reading(entry: Any, folder: Path, where: str) -> PairReading:
+    if not isinstance(entry, dict):
+        raise InputError(f"{entry!r} is no table", where=where, allowed=", ".join(KEYS))
+    for key in entry:
+        if key not in KEYS:
+            raise unknown_name("key", key, KEYS, where=where)
+    kind = entry.get("kind", "value")
+    if kind not in KINDS:
+        raise unknown_name("kind", str(kind), KINDS, where=f"{where}.kind")
+    numbers: dict[str, float] = {}
+    for key in ("cof", "sd"):
+        value = entry.get(key)
+        if value is None and key == "sd":
+            continue
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < 5:
+            raise InputError(f"{value!r}", where=f"{where}.{key}", allowed="above 0, below 5")
+        numbers[key] = float(value)
+    if not isinstance(entry.get("case"), str):
+        raise InputError("is missing", where=f"{where}.case", allowed="the path of a case file")
+    return PairReading(Case.load(folder / entry["case"]), kind=kind, **numbers)
+
+
+def calibrated_pair(
+    readings: Sequence[PairReading],
+    *,
+    draws: PairDraws | None = None,
+    quick: bool = True,
+    seed: int = 0,
+    progress: Progress = silent,
+) -> PairCalibration:
+    """Return the law of the pair calibrated to readings of one laboratory.
+
+    Parameters
+    ----------
+    readings
+        Each with the case that describes it; cases of one sole, floor and fluid share its error.
+    draws
+        Those to begin with; the packaged ones by default.
+    quick
+        Solve the cases on the coarse grid.
+    seed
+        Of the draws.
+
+    Raises
+    ------
+    InputError
+        A case that is dry or has another law of friction; readings so far from the law that fewer
+        than 50 effective draws are left.
+    """
+    start = packaged_pair_draws() if draws is None else draws
+    wide = start.rows(np.tile(np.arange(start.count), REPEATS))
+    laws: list[PairContactLaw] = []
+    for reading in readings:
+        law = reading.case.friction.build(resolved(reading.case))
+        if not isinstance(law, PairContactLaw):
+            raise InputError(
+                f'the law of {reading.case.name} is "{law.name}"',
+                where="friction.model",
+                allowed='"pair"',
+            )
+        laws.append(law)
+    errors = {
+        LABORATORY: wide.error(LABORATORY, wide.sd_laboratory, seed),
+        DRY_PART: wide.error(DRY_PART, wide.sd_dry_part, seed),
+    }
+    for law in laws:
+        name = law.pair.compound_and_floor
+        errors[name] = wide.error(name, wide.sd_pair, seed)
+    wide = replace(wide, errors=errors)
+    predicted = np.empty((len(readings), wide.count))
+    for row, (reading, law) in enumerate(zip(readings, laws, strict=True)):
+        here = part(progress, row / len(readings), (row + 1) / len(readings))
+        predicted[row] = _whole_cof(reading.case, law, wide, quick, seed, here)
+    log_weight = sum(
+        reading.log_weight(row) for reading, row in zip(readings, predicted, strict=True)
+    )
+    weight = np.exp(log_weight - np.max(log_weight))
+    weight /= weight.sum()
+    effective = float(1 / (weight**2).sum())
+    if effective < FEWEST:
+        raise InputError(
+            f"the readings lie so far from what the law allows that only {effective:.0f} of "
+            f"{wide.count} draws agree with them",
+            where="READINGS",
+            remedy="Check COF, sd, and the conditions in the cases; readings that contradict each "
+            'other, or a friction of their own, belong to friction.model = "table"',
+        )
+    generator = np.random.default_rng(seed)
+    places = (np.arange(COUNT) + generator.random()) / COUNT
+    rows = generator.permutation(
+        np.searchsorted(np.cumsum(weight), places).clip(max=wide.count - 1)
+    )
+    names = "; ".join(f"{reading.case.name}: {reading.cof:g}" for reading in readings)
+    source = f"{start.source}; calibrated to readings of one laboratory ({names})"
+    levels = (0.025, 0.5, 0.975)
+    return PairCalibration(
+        tuple(readings),
+        replace(wide.rows(rows), source=source),
+        np.quantile(predicted, levels, axis=1).T,
+        np.quantile(predicted[:, rows], levels, axis=1).T,
+        effective,
+    )
+
+
+def _whole_cof(
+    case: Case, law: PairContactLaw, draws: PairDraws, quick: bool, seed: int, progress: Progress
+) -> Array:
+    """Return COF (draws,) of the whole sole at each draw, contact and film solved once."""
+    result = run(case, quick=quick, progress=progress)
+    if not result.usable:
+        raise ConvergenceError(
+            f"the case {case.name} gave no result: {result.status}", history=(), where=case.name
+        )
+    fields = result.fields
+    sampled = sampled_cof(
+        PairContactLaw(law.pair, law.viscosity, draws),
+        fields["contact_pressure"].values,
+        fields["fluid_pressure"].values,
+        fields["film_thickness"].values,
+        wet=fields["wet"].values,
+        speed=case.motion.speed,
+        film_error=FILM_ERROR,
+        samples=draws.count,
+        seed=seed,
+    )
+    if sampled is None:
+        raise DataError("the law of the pair has no spread", where=case.name)
+    return sampled.cof

@@ -1,0 +1,264 @@
+"""Commands on a case: ``check``, ``run``, ``slip``, ``compare``, ``risk``, ``test`` and so on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .guard import say
+from .options import CasePath, Shared, catalogue_for, sharing
+from .output import finish
+
+
+@sharing(without=("out", "quick", "processes", "overwrite"))
+def check(shared: Shared, case: CasePath) -> None:
+    """Read a case and print its values, sources, assumptions and the cost of a run."""
+    from underfoot.questions.check import case_check
+
+    answer = case_check(shared.case(case))
+    finish(answer, None, json=shared.json, everything=shared.everything)
+
+
+@sharing()
+def run(
+    shared: Shared,
+    case: CasePath,
+    no_advice: Annotated[
+        bool,
+        typer.Option(
+            "--no-advice", help="Do not simulate possible changes (never done with --quick)."
+        ),
+    ] = False,
+) -> None:
+    """Compute the friction of a case, then the effect of possible changes on the coarse grid.
+
+    Data, maps and report.html go to --out, by default out/CASE. With --json and no --out nothing
+    is written.
+    """
+    from underfoot.compute.run import run as result_of
+    from underfoot.core.files import check_writable_folder
+    from underfoot.core.progress import bar
+    from underfoot.questions.risk import risk_assessment
+    from underfoot.report import write_report
+
+    given = shared.case(case)
+    folder = shared.out if shared.out is not None or shared.json else Path("out") / case.stem
+    if folder is not None:
+        check_writable_folder(folder, overwrite=shared.overwrite)
+    with bar(given.name) as progress:
+        result = result_of(given, quick=shared.quick, progress=progress)
+    advice = None
+    if result.usable and not (shared.quick or no_advice):
+        with bar("effect of possible changes") as progress:
+            advice = risk_assessment(given, processes=shared.processes, progress=progress)
+    written = None
+    if folder is not None:
+        written = write_report(result, folder, overwrite=shared.overwrite, advice=advice)
+    finish(result, written, json=shared.json, everything=shared.everything, advice=advice)
+
+
+@sharing(quick=True, without=("processes",))
+def slip(
+    shared: Shared,
+    case: CasePath,
+    subjects: Annotated[
+        int | None,
+        typer.Option("--subjects", min=1, help="Number of walkers.", show_default=False),
+    ] = None,
+    full_model: Annotated[
+        bool,
+        typer.Option("--full-model", help="Full model for every walker: seconds each."),
+    ] = False,
+    history: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--history",
+            help="Steps of your own instead of the packaged ones: a force-plate recording or a "
+            "table; may be repeated.",
+            show_default=False,
+        ),
+    ] = None,
+    rcof_from: Annotated[
+        Path | None,
+        typer.Option(
+            "--rcof-from",
+            help="measurements.csv of `underfoot trials analyse`: its RCOF replace risk.rcof_*.",
+            show_default=False,
+        ),
+    ] = None,
+) -> None:
+    """Simulate slips for a population of walkers: who slips, speed, distance, pressures.
+
+    Data, figure and animated report.html go to --out, by default out/CASE_slip. A stopped run
+    continues.
+    """
+    from underfoot.questions.slips import measured_rcof, own_histories, slip_population
+
+    settings = []
+    if rcof_from is not None:
+        mean, sd, words = measured_rcof(rcof_from)
+        say(words)
+        settings = [f"risk.rcof_mean={mean:.6g}", f"risk.rcof_sd={sd:.6g}"]
+    given = shared.case(case, settings)
+    steps = [step for path in history or () for step in own_histories(path)]
+    if shared.out is None and not shared.json:
+        shared.out = Path("out") / f"{case.stem}_slip"
+    shared.answer(
+        given.name,
+        lambda progress: slip_population(
+            given,
+            subjects=subjects,
+            histories=steps,
+            full_model=full_model,
+            quick=shared.quick,
+            progress=progress,
+        ),
+    )
+
+
+@sharing(without=("processes",))
+def compare(
+    shared: Shared,
+    paths: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="A B [C ...]", help="Result folders or case files.", show_default=False
+        ),
+    ],
+) -> None:
+    """Rank two to eight results or cases by friction, with the probability of the order.
+
+    With --out: the soles side by side, one colour scale, maps of the differences. --set and
+    --quick apply to case files.
+    """
+    from underfoot.compute.result import Result
+    from underfoot.questions.comparison import check_paths
+    from underfoot.questions.comparison import compare as compared
+
+    check_paths(paths)
+    items = [Result.load(path) if path.is_dir() else shared.case(path) for path in paths]
+    known = catalogue_for(None, shared.catalogue)
+    shared.answer(
+        " and ".join(item.name for item in items),
+        lambda progress: compared(*items, quick=shared.quick, catalogue=known, progress=progress),
+    )
+
+
+@sharing(quick=True)
+def sensitivity(shared: Shared, case: CasePath) -> None:
+    """Vary the assumed inputs of a case one at a time and show the effect on its results.
+
+    Two runs an input, each kept on disk: a second call answers at once, a stopped one continues.
+    """
+    from underfoot.questions.sensitivity import sensitivity as effects
+
+    shared.ask(shared.case(case), effects)
+
+
+@sharing(quick=True)
+def risk(
+    shared: Shared,
+    case: CasePath,
+    target: Annotated[
+        str, typer.Option("--target", help="Slip probability to aim at, as 5 % or 0.05.")
+    ] = "5 %",
+) -> None:
+    """Predict the slip probability, what limits the friction and the effect of changes.
+
+    Every change (tread, compound, floor, cleaning, shorter steps) is simulated with the whole
+    model.
+    """
+    from underfoot.core import to_si
+    from underfoot.questions.risk import risk_assessment
+
+    share = to_si(target, "1", where="--target")
+    shared.ask(shared.case(case), risk_assessment, target=share)
+
+
+@sharing(quick=True)
+def wear(
+    shared: Shared,
+    case: CasePath,
+    mode: Annotated[
+        str | None,
+        typer.Option(
+            "--mode",
+            help="archard (pressure times sliding; the default), plane (the default for an outsole "
+            "from a file) or patch.",
+            show_default=False,
+        ),
+    ] = None,
+    steps: Annotated[int, typer.Option("--steps", help="Worn states to compute.", min=2)] = 6,
+    limit: Annotated[
+        str,
+        typer.Option("--limit", help='Fluid load that counts as worn out: "5 N" or "20 %".'),
+    ] = "5 N",
+    to: Annotated[
+        str | None,
+        typer.Option(
+            "--to", help='Last state: "2 mm" lost, or "1500 mm^2" of patch.', show_default=False
+        ),
+    ] = None,
+    band: Annotated[
+        bool, typer.Option("--band/--no-band", help="Vary the least known inputs (4 runs a state).")
+    ] = True,
+    seed: Annotated[int, typer.Option("--seed", help="Seed of the interval's draws.", min=0)] = 0,
+) -> None:
+    """Wear the sole of a case step by step: friction, film, and when it is worn out.
+
+    Every state is kept on disk: a stopped series continues.
+    """
+    from underfoot.questions.wear import deepest_wear, limit_load, wear_mode, wear_series
+
+    given = shared.case(case)
+    chosen = wear_mode(mode, given)
+    shared.ask(
+        given,
+        wear_series,
+        mode=chosen,
+        steps=steps,
+        deepest=deepest_wear(to, chosen),
+        limit=limit_load(limit, given.motion.normal_force),
+        band=band,
+        seed=seed,
+    )
+
+
+@sharing()
+def by_method(
+    shared: Shared,
+    case: CasePath,
+    method: Annotated[
+        str,
+        typer.Option(
+            "--method",
+            help="iso13287, astmf2913, report-slip-tester, report-whole-shoe or a set-up of the "
+            "catalogue.",
+        ),
+    ] = "iso13287",
+    keep: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--keep",
+            help="Keep a part of the case against the method: floor, contaminant, normal_force, "
+            "shoe_angle or speed; may be repeated.",
+            show_default=False,
+        ),
+    ] = None,
+) -> None:
+    """Predict the result of a standard test method: COF and probability of passing.
+
+    Angle, load, speed, floor, contaminant and averaging window are the method's, each listed with
+    its source. With --quick the uncertainty is that of the friction law alone.
+    """
+    from underfoot.questions.method import method_prediction
+
+    shared.ask(
+        shared.case(case),
+        method_prediction,
+        method=method,
+        keep=keep or (),
+        with_band=not shared.quick,
+    )

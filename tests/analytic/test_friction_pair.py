@@ -1,0 +1,208 @@
+"""Law of the pair: its limits and trends, its joint draws, and what a reading teaches."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from underfoot.calibrate.pair_law import fitted, law_named
+from underfoot.calibrate.pair_readings import PairReading
+from underfoot.case import Case
+from underfoot.core import DataError, InputError
+from underfoot.friction import (
+    Pair,
+    PairContactLaw,
+    PairDraws,
+    packaged_pair_draws,
+    read_pair_draws,
+    sampled_points,
+)
+from underfoot.friction.law import FrictionLaw
+from underfoot.friction.pair_contact import MOST, PairConstants
+from underfoot.studies.corpus import readings
+
+TILE = Pair(shore_a=65, sole_rq=(8e-6, 8e-6), floor_rq=(3e-6, 3e-6), oil=False)
+KNOWN = {"film": 0.1, "hysteresis": 0.04, "dry": 0.3, "kappa": 1e-3, "laboratory": 1.0, "pair": 1.0}
+SPEED = st.floats(1e-4, 3.0)
+
+
+def law(of=TILE, viscosity=0.2, **medians):
+    return PairContactLaw(of, viscosity, medians={**KNOWN, **medians})
+
+
+def contact_cof(one, speed):
+    parts = one(1e5, speed, 1.0)
+    return float(parts.adhesion + parts.hysteresis) / 1e5
+
+
+def test_limits_at_rest_and_when_the_dry_part_has_faded():
+    assert isinstance(law(), FrictionLaw)
+    assert contact_cof(law(), 0.0) == pytest.approx(0.44)
+    assert contact_cof(law(), 100.0) == pytest.approx(0.14, rel=1e-9)
+    assert contact_cof(law(), 1e-3 / 0.2) == pytest.approx(0.14 + 0.3 / math.e)
+    assert contact_cof(law(laboratory=2.0, pair=0.5), 0.0) == pytest.approx(0.44)
+    assert contact_cof(law(laboratory=5.0), 0.0) == pytest.approx(MOST)
+
+
+@settings(deadline=None, max_examples=40)
+@given(speed=SPEED, faster=st.floats(1.0, 10.0), thicker=st.floats(1.0, 10.0))
+def test_contact_friction_falls_with_speed_and_viscosity_alike(speed, faster, thicker):
+    assert contact_cof(law(), faster * speed) <= contact_cof(law(), speed) * (1 + 1e-12)
+    assert contact_cof(law(viscosity=0.2 * thicker), speed) == pytest.approx(
+        contact_cof(law(), speed * thicker)
+    )
+
+
+@settings(deadline=None, max_examples=20)
+@given(rougher=st.floats(1.0, 4.0), harder=st.floats(0.0, 20.0), speed=st.floats(0.05, 1.0))
+def test_rougher_pairs_grip_better_when_wet_and_softer_compounds_too(rougher, harder, speed):
+    """In the median over the draws: the signs that the field agrees on."""
+
+    def median(pair):
+        return contact_cof(PairContactLaw(pair, 1e-3), speed)
+
+    rough = replace(TILE, floor_rq=(3e-6 * rougher,) * 2)
+    assert median(rough) >= median(TILE) * (1 - 1e-9)
+    assert median(replace(TILE, shore_a=65 + harder)) <= median(TILE) * (1 + 1e-9)
+
+
+def test_two_cases_share_what_they_have_in_common():
+    first = PairContactLaw(TILE, 0.2)
+    same, other = PairContactLaw(TILE, 0.2), PairContactLaw(replace(TILE, shore_a=60), 0.2)
+    draws, again, third = (one.joint_draws(1000, 3) for one in (first, same, other))
+    for name, values in draws.items():
+        np.testing.assert_array_equal(values, again[name])
+    np.testing.assert_array_equal(draws["laboratory"], third["laboratory"])
+    assert abs(np.corrcoef(draws["pair"], third["pair"])[0, 1]) < 0.1
+
+    def total(d):
+        return np.log(d["film"] * d["laboratory"] * d["pair"])
+
+    ratio, alone = np.std(total(draws) - total(third)), np.std(total(draws))
+    assert ratio < 0.6 * alone  # the laboratory cancels between two soles
+    assert not np.array_equal(draws["laboratory"], first.joint_draws(1000, 4)["laboratory"])
+
+
+def test_interval_of_an_unmeasured_pair():
+    """Factor 2.3 in thick fluids and 3 in thin ones either way (note on the contact law)."""
+    for viscosity, low, high in ((0.2, 1.8, 2.8), (1e-3, 2.2, 4.5)):
+        found = sampled_points(
+            PairContactLaw(TILE, viscosity), contact_pressure=1e5, speed=0.3, film_thickness=1e-4
+        )
+        assert found is not None
+        factor = math.sqrt(float(found.high) / float(found.low))
+        assert low < factor < high
+        assert found.low < found.value < found.high
+
+
+def test_missing_roughness_is_drawn_and_named():
+    open_pair = replace(TILE, sole_rq=(1.25e-6, 1e-5))
+    found = PairContactLaw(open_pair, 1e-3)
+    assert any("shoe.roughness: not given" in line for line in found.assumptions)
+    assert not any("floor.roughness" in line for line in found.assumptions)
+    assert (
+        found.joint_draws(500, 0)["kappa"].std()
+        > PairContactLaw(TILE, 1e-3).joint_draws(500, 0)["kappa"].std()
+    )
+
+
+def test_a_reading_narrows_as_the_normal_theory_says():
+    """With one constant and normal errors the weights give the conjugate posterior."""
+    count, sd, reading = 200_000, 0.4, 0.2
+    generator = np.random.default_rng(0)
+    error = sd * generator.standard_normal(count)
+    cof = 0.2 * np.exp(error)
+    weight = np.exp(PairReading(None, 0.3, reading * 0.3).log_weight(cof))
+    weight /= weight.sum()
+    gain = sd**2 / (sd**2 + reading**2)
+    mean = float(weight @ error)
+    assert mean == pytest.approx(gain * math.log(1.5), rel=0.05)
+    spread = math.sqrt(float(weight @ (error - mean) ** 2))
+    assert spread == pytest.approx(math.sqrt(1 - gain) * sd, rel=0.05)
+    above = PairReading(None, 0.3, 0.001, "lower").log_weight(np.array([0.2, 0.4]))
+    assert above[0] < -1e3 < above[1]
+    below = PairReading(None, 0.3, 0.001, "upper").log_weight(np.array([0.2, 0.4]))
+    assert below[1] < -1e3 < below[0]
+
+
+def test_draws_survive_their_file(tmp_path):
+    draws = packaged_pair_draws()
+    known = replace(draws, errors={"laboratory": np.linspace(-1, 1, draws.count)}, source="mine")
+    known.write(tmp_path / "draws.csv")
+    back = read_pair_draws(tmp_path / "draws.csv")
+    assert back.source == "mine"
+    for name, values in known.columns().items():
+        np.testing.assert_allclose(back.columns()[name], values, rtol=1e-5)
+    found = PairContactLaw(TILE, 0.2, back)
+    assert found.spread_basis == "calibrated to readings"
+    np.testing.assert_allclose(
+        np.log(found.joint_draws(1000, 0)["laboratory"]), known.errors["laboratory"], rtol=1e-5
+    )
+
+
+@pytest.mark.parametrize("damage", ["", "# source: x\na,b\n1,2\n", "# source: x\nfilm_aqueous\n"])
+def test_a_file_without_draws_is_refused(tmp_path, damage):
+    path = tmp_path / "draws.csv"
+    path.write_text(damage)
+    with pytest.raises(DataError, match="holds no draws"):
+        read_pair_draws(path)
+
+
+def test_hysteresis_of_a_spectrum_is_near_the_closed_form(tmp_path):
+    """A power-law rubber of loss tangent 0.2 on 2 um: theory 0.0224, closed form 0.025."""
+    from underfoot.material import power_law_spectrum, youngs_modulus_gent
+
+    exponent = 2 / math.pi * math.atan(0.2)
+    spectrum = power_law_spectrum(youngs_modulus_gent(65), exponent)
+    terms = [
+        {"shear_modulus": float(g) / 3, "time": float(t)}
+        for g, t in zip(spectrum.term_moduli, spectrum.relaxation_times, strict=True)
+    ]
+    case = Case(
+        shoe={
+            "from": "work_shoe_full_tread",
+            "material": {
+                "shore_a": 65,
+                "relaxation": {
+                    "equilibrium_shear_modulus": float(spectrum.equilibrium_modulus) / 3 + 1.0,
+                    "terms": terms,
+                },
+            },
+        },
+        floor={"roughness": {"rq": "2 um"}},
+        contaminant="glycerol_50pct",
+        motion={"from": "slip_tester_g4", "speed": 0.3},
+    )
+    from underfoot.compute.resolve import resolved
+
+    found = case.friction.build(resolved(case))
+    assert isinstance(found, PairContactLaw)
+    assert found.pair.hysteresis == pytest.approx(0.0224, rel=0.25)
+    assert not any("loss tangent" in line for line in found.assumptions)
+
+
+def test_a_dry_pair_is_refused():
+    with pytest.raises(InputError, match="dry case needs a measured"):
+        Case(
+            shoe="work_shoe_full_tread",
+            floor="vinyl_g4",
+            contaminant="none",
+            motion="slip_tester_g4",
+        )
+
+
+@pytest.mark.slow
+def test_packaged_draws_are_those_of_the_packaged_corpus():
+    """Refitted with a fifth of the steps: medians within a tenth of the posterior's width."""
+    posterior = fitted(law_named("pair"), readings(), steps=2500, seed=5)
+    again, packaged = posterior.draws(1000, seed=1), packaged_pair_draws()
+    for name in PairConstants.__dataclass_fields__:
+        new, old = getattr(again.constants, name), getattr(packaged.constants, name)
+        assert abs(np.median(new) - np.median(old)) < 0.35 * np.std(old), name
+    assert isinstance(again, PairDraws)
+    assert np.median(again.sd_laboratory) == pytest.approx(
+        np.median(packaged.sd_laboratory), rel=0.2
+    )
