@@ -39,7 +39,13 @@ def dry_sole(cof: float) -> ReducedSole:
 
 
 def walker(history: GaitHistory, rcof: float, **changes) -> Walker:
-    values = {"mass": 70.0, "rcof": rcof, "heel_speed": 0.3, "effective_mass": 8 / 70}
+    values = {
+        "mass": 70.0,
+        "rcof": rcof,
+        "heel_speed": 0.3,
+        "effective_mass": 8 / 70,
+        "heel_brake": "none",
+    }
     return Walker(history, **(values | changes))
 
 

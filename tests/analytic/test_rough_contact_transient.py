@@ -5,7 +5,7 @@ import pytest
 
 from underfoot.core import Cancelled, Status
 from underfoot.material import RelaxationSpectrum
-from underfoot.material._kernels.prony_march import (
+from underfoot.material.prony_march import (
     advance_memory,
     known_displacement,
     prony_step,

@@ -1,6 +1,7 @@
 """Motions of the foot with a known exact answer."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -26,6 +27,78 @@ def test_without_friction_speed_is_the_integral_of_the_drive():
         assert np.abs(motion.speed - 1.0 - gained / person.moving_mass).max() < 1e-12
         assert motion.still_sliding
         assert "lower bound" in motion.notes[0]
+
+
+def test_without_friction_drive_and_brake_the_heel_keeps_its_speed():
+    person = walker(constant(0.2), 0.0)
+    for motion in (slip_motion(person, Floor()), dry_sole(0.0).motion(person)):
+        assert np.abs(motion.speed - 0.3).max() < 1e-14
+        assert motion.still_sliding
+
+
+def test_the_brake_alone_stops_the_heel_with_its_time_constant():
+    person = walker(constant(0.2), 0.0, heel_brake="constant", brake_time=0.02)
+    for motion in (slip_motion(person, Floor()), dry_sole(0.0).motion(person)):
+        assert np.abs(motion.speed - 0.3 * np.exp(-motion.time / 0.02)).max() < 1e-9  # rest
+        kept = 0.5 * person.moving_mass * (0.3 * np.exp(-motion.time / 0.02)) ** 2
+        assert np.abs(motion.work_in - (kept - kept[0])).max() < 1e-12
+        assert motion.slip_start is None
+
+
+@dataclass
+class AsDry:
+    """A floor that gives the shear of the dry step, whatever the speed."""
+
+    person: Walker
+    time: float = 0.0
+    fluid_load: float = 0.0
+    usable: bool = True
+
+    def advance(self, duration, *, normal_force, speed, shoe_angle):
+        self.time += duration
+        return AsDry(self.person, self.time)
+
+    def friction(self, speed):
+        return float(self.person.demands(np.array([self.time]))[1][0])
+
+
+@pytest.mark.parametrize("history", packaged_histories(), ids=lambda history: history.name)
+def test_friction_as_on_the_dry_floor_gives_the_dry_motion(history):
+    """By drive and brake together: the equation that the brake is defined by."""
+    person = Walker(history, rcof=0.2, walking_speed=1.2, weight_transfer=0.3)
+    motion = slip_motion(person, AsDry(person), step=5e-3)
+    rests = int(np.argmax(motion.speed == 0.0))
+    assert rests >= 2
+    # in the first step friction goes with the load, not with the dry shear
+    change = np.diff(motion.speed - person.dry_speed(motion.time))[1 : rests - 1]
+    assert np.abs(change).max(initial=0.0) < 1e-12
+
+
+def test_constant_friction_as_on_the_dry_floor_gives_the_dry_motion():
+    person = walker(constant(0.2), 0.2, heel_brake="constant", brake_time=0.011)
+    for motion in (slip_motion(person, Floor(cof=0.2)), dry_sole(0.2).motion(person)):
+        assert np.abs(motion.speed - person.dry_speed(motion.time)).max() < 1e-9
+
+
+def test_a_slipping_foot_takes_on_its_share_of_the_load():
+    time = np.linspace(0, 0.5, 201)
+    history = GaitHistory("rising", time, 0.2 + 2.0 * time, np.full(201, 0.2))
+    person = walker(history, 0.2, heel_brake="constant", brake_time=0.02, weight_transfer=0.4)
+    for motion in (
+        slip_motion(person, Floor(cof=0.1), step=5e-4),
+        dry_sole(0.1).motion(person, step=5e-4),
+    ):
+        # forces balance where the brake, m V0 / T exp(-t / T), has fallen to (0.2 - 0.1) F
+        fine = np.linspace(0, 0.1, 100001)
+        brake = person.moving_mass * 0.3 / 0.02 * np.exp(-fine / 0.02)
+        begin = fine[np.argmax(brake < 0.1 * (0.2 + 2.0 * fine) * WEIGHT)]
+        at_start = 0.2 + 2.0 * begin
+        taken = np.maximum(0.4 * (0.2 + 2.0 * motion.time), at_start)
+        later = motion.time > begin + 2e-3
+        # slip start lies within a step, in which the load grows by 2 x 5e-4
+        assert np.abs(motion.normal / WEIGHT - taken)[later].max() < 1e-3
+        assert motion.drive[later] == pytest.approx(0.2 * motion.normal[later])
+        assert motion.slip_start == pytest.approx((begin, at_start), abs=2e-3)
 
 
 @pytest.mark.parametrize("cof", [0.25, 0.6])
@@ -85,7 +158,7 @@ def test_film_of_the_reduced_model_squeezes_as_h_over_root_of_time():
     zero = np.zeros(times.size)
     table = np.array([0.0, 1.0]), np.array([0.2, 0.2])
     film = kernel.carried(
-        times, load, zero, zero, zero, 0.0, 8.0, constants, 0.219, 6e-4, *table, 0.0
+        times, load, zero, zero, zero, 1.0, zero, 8.0, constants, 0.219, 6e-4, *table, 0.0
     )[1]
     rate = 1e5 * (500.0 / 1e-3) / (12 * 0.219)
     exact = 1 / np.sqrt(1 / (50e-6) ** 2 + 2 * rate * times)
@@ -102,7 +175,7 @@ def test_wedge_holds_the_film_that_its_inlet_draws_in():
     load, zero, speed = (np.full(times.size, v) for v in (500.0, 0.0, 0.5))
     table = np.array([0.0, 1.0]), np.array([0.2, 0.2])
     out = kernel.carried(
-        times, load, zero, zero, speed, 0.5, 8.0, constants, 0.219, 6e-4, *table, 0.0
+        times, load, zero, zero, speed, 1.0, speed, 8.0, constants, 0.219, 6e-4, *table, 0.0
     )
     inlet = 30.0 * 0.219 * 0.5 / 5e5
     assert out[1][-1] == pytest.approx(1 / (1 / 6e-4 + 1 / inlet), rel=1e-6)
@@ -118,6 +191,10 @@ def test_wedge_holds_the_film_that_its_inlet_draws_in():
         ({"rcof": -0.1}, "rcof"),
         ({"heel_speed": -1.0}, "heel_speed"),
         ({"effective_mass": 0.0}, "effective_mass"),
+        ({"heel_brake": "reckorded"}, "recorded"),
+        ({"brake_time": 0.0}, "brake_time"),
+        ({"weight_transfer": 1.2}, "weight_transfer"),
+        ({"rcof_step": math.nan}, "rcof_step"),
     ],
 )
 def test_people_who_cannot_be_are_refused(changes, where):

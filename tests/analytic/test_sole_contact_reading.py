@@ -5,7 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from underfoot.core import InputError
 from underfoot.sole_contact import floor_sensor_reading
+from underfoot.sole_contact.reading import conductance_over_cube, lagged
 
 MM = 1e-3
 
@@ -134,6 +136,8 @@ def test_a_pocket_over_channels_reads_next_to_nothing():
     )
     assert wide.peak_pressure.value < 0.01 * 2e5
     assert narrow.peak_pressure.value > 0.5 * 2e5
+    assert wide.seen == 0.0
+    assert 0.0 < narrow.seen < 0.3  # only where the whole rim lies on the lug
 
 
 def test_an_empty_film_reads_zero():
@@ -142,3 +146,43 @@ def test_an_empty_film_reads_zero():
     assert reading.load.value == 0.0
     assert reading.peak_pressure.value == 0.0
     assert reading.outermost_share == 0.0
+
+
+def test_a_lagging_pocket_follows_a_step_and_a_ramp_as_it_should():
+    rate, interval = 40.0, 2e-3
+    time = interval * np.arange(80)
+    ones = np.ones_like(time)
+    assert lagged(ones, rate * ones, interval) == pytest.approx(1 - np.exp(-rate * time), abs=1e-12)
+    ramp = 5.0 * time
+    exact = ramp - 5.0 / rate * (1 - np.exp(-rate * time))
+    assert lagged(ramp, rate * ones, interval) == pytest.approx(exact, abs=1e-12)
+    assert lagged(ramp, 1e9 * ones, interval) == pytest.approx(ramp, abs=1e-6)
+    assert np.abs(lagged(ramp, 0.0 * ones, interval)).max() < 1e-10
+
+
+def test_a_compliant_instrument_loses_peak_and_keeps_load_in_an_even_film():
+    """Patch of 40 mm in one gap: the pocket rises as 1 - exp(-K t / C) while it is over it."""
+    x, y, (xx, yy) = grid(400)
+    pressure = np.where((np.abs(xx - 320 * MM) < 20 * MM) & (np.abs(yy) < 20 * MM), 2e5, 0.0)
+    gap, inlet, speed, viscosity = 50e-6, 2 * MM, 0.5, 0.219
+    conductance = gap**3 * conductance_over_cube(inlet, viscosity)
+    settings = {
+        "inlet_diameter": inlet, "sampling_step": 0.25 * MM, "viscosity": viscosity, "speed": speed,
+    }  # fmt: skip
+    film = np.full_like(pressure, gap)
+    at_once = floor_sensor_reading(x, y, pressure, film, **settings)
+    for share in (0.25, 1.0):
+        lag = share * 40 * MM / speed
+        slow = floor_sensor_reading(x, y, pressure, film, compliance=lag * conductance, **settings)
+        assert slow.peak_pressure.value == pytest.approx(2e5 * (1 - np.exp(-1 / share)), rel=0.02)
+        assert slow.load.value == pytest.approx(at_once.load.value, rel=2e-2)
+        # read after the patch has passed: the sensor meets the shoe's front first
+        assert slow.peak_position[0] < 320 * MM - 15 * MM
+
+
+@pytest.mark.parametrize("missing", ["inlet_diameter", "viscosity", "speed"])
+def test_a_compliant_instrument_needs_fluid_speed_and_inlet(missing):
+    x, y, (xx, _) = grid(20, 20, 1.0)
+    settings = {"inlet_diameter": 4 * MM, "viscosity": 0.2, "speed": 0.7} | {missing: 0.0}
+    with pytest.raises(InputError, match=missing):
+        floor_sensor_reading(x, y, np.ones_like(xx), xx, compliance=1e-16, **settings)

@@ -133,12 +133,12 @@ class _Deadly:
 def test_a_file_that_kills_its_process_is_refused_alone(tester):
     files = sorted(tester.glob("work_none*.csv"))
     jobs = [
-        (path.name, (str(path),), {}, [], Profile(), protocol("report_g4"), "base", None)
+        (path.name, (path,), {}, [], Profile(), protocol("report_g4"), "base", None)
         for path in files
     ]
     deadly = (
         "deadly.csv",
-        (str(tester / "deadly.csv"),),
+        (tester / "deadly.csv",),
         _Deadly(),
         [],
         Profile(),

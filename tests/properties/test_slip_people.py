@@ -33,6 +33,8 @@ people = st.builds(
     heel_speed=st.floats(0, 1.0),
     shoe_angle=st.floats(0.05, 0.35),
     walking_speed=st.floats(0.8, 2.0),
+    rcof_step=st.floats(-0.05, 0.05),
+    brake_time=st.floats(0.003, 0.05),
     effective_mass=st.floats(0.02, 1.0),
 )
 
@@ -57,6 +59,27 @@ def test_more_friction_never_slips_further(person, cof, more):
     less, most = dry_sole(cof).motion(person), dry_sole(cof + more).motion(person)
     assert most.distance[-1] <= less.distance[-1] + 1e-9
     assert most.speed.max() <= less.speed.max() + 1e-9
+
+
+@settings(max_examples=30, deadline=None)
+@given(people, st.floats(0.0, 0.5), st.sampled_from(["recorded", "constant"]))
+def test_a_braked_heel_is_never_faster(person, cof, brake):
+    free = dry_sole(cof).motion(replace(person, heel_brake="none")).speed
+    held = dry_sole(cof).motion(replace(person, heel_brake=brake)).speed
+    count = min(free.size, held.size)
+    assert (held[:count] <= free[:count] + 1e-9).all()
+
+
+@settings(max_examples=30, deadline=None)
+@given(people, st.floats(0.0, 0.3), st.floats(0.0, 1.0))
+def test_a_slipping_foot_bears_its_share_and_no_more_than_the_dry_one(person, cof, share):
+    motion = dry_sole(cof).motion(replace(person, weight_transfer=share))
+    dry, _, _ = person.demands(motion.time)
+    assert (motion.normal <= dry + 1e-9).all()
+    assert (motion.normal >= share * dry - 1e-9).all()
+    loaded = dry > 1.0
+    ratio = np.interp(motion.time, person.step.time, person.step.ratio)
+    assert np.abs(motion.drive - ratio * motion.normal)[loaded].max() < 1e-9
 
 
 @settings(max_examples=20, deadline=None)

@@ -53,11 +53,13 @@ def test_the_pins_strength_gives_the_pins_friction_back():
 
 
 def test_printed_risks_and_the_printed_logistic_are_not_of_one_population():
-    implied = g6.implied_differences()
-    assert implied["acof_slope"] == pytest.approx(-103.8, abs=0.1)
-    assert implied["median"] == pytest.approx(-0.0331, abs=1e-4)
+    odds = {p: np.log(p / (1 - p)) for p in (0.06, 0.41, 0.21, 0.925)}
+    # slope of the log odds with ACOF alone between the printed slip rates
+    assert (odds[0.06] - odds[0.41]) / (0.182 - 0.159) == pytest.approx(-103.8, abs=0.1)
+    median, highest = (g6.PRINTED_HALF + odds[p] / g6.PRINTED_SLOPE for p in (0.21, 0.925))
+    assert median == pytest.approx(-0.0331, abs=1e-4)
     model = ReportG6()
-    assert model(0.2 + implied["highest"], 0.2) == pytest.approx(0.925)
+    assert model(0.2 + highest, 0.2) == pytest.approx(0.925)
     at = {name: g6.population_risk(acof)["report_g6"] for name, acof in PRINTED_ACOF.items()}
     assert at["hard"] == pytest.approx(0.339, abs=1e-3)
     assert at["hard"] < PRINTED_RISK["hard"]

@@ -5,7 +5,8 @@ import pytest
 
 from underfoot.core import InputError
 from underfoot.film import regime_map, soft_ehl
-from underfoot.report.regime_figure import regime_figure, save_regime_figure
+from underfoot.report import plot
+from underfoot.report.regime_figure import regime_figure
 from underfoot.rough_contact import ExponentialLaw
 
 PIN = {"load": 20.9, "radius": 23.3e-3, "effective_modulus": 2.0e6}
@@ -36,9 +37,9 @@ def test_load_share_limits_are_drawn_when_known():
     assert len(regime_figure(drawn()).axes[1].get_legend().get_texts()) == 1
 
 
-def test_saved_picture(tmp_path):
+def test_a_map_is_drawn_by_plot(tmp_path):
     path = tmp_path / "regimes.png"
-    save_regime_figure(path, drawn(), {"oil": 74.6e-3})
+    plot(drawn(), {"oil": 74.6e-3}, title="Pin").savefig(path)
     assert path.read_bytes()[:4] == b"\x89PNG"
 
 

@@ -6,6 +6,7 @@ import pytest
 from underfoot.core import InputError
 from underfoot.sole_contact import floor_sensor_reading
 from underfoot.sole_contact.cost import refuse_too_large, solution_cost
+from underfoot.sole_contact.reading import conductance_over_cube
 from underfoot.sole_contact.sensor_array import SensorArray, array_reading
 
 STEP = 1e-3
@@ -53,6 +54,16 @@ def test_duration_and_peak_grow_in_time():
     assert 0.6e5 < read.peak.value < 0.82e5
     late = moved(array, [patch(height) for height in (0.0, 1e5, 2e5)], offsets=1, threshold=7.5e4)
     assert late.duration.value < 0.5 * read.duration.value
+
+
+def test_a_compliant_array_lags_as_a_scan_does():
+    array = SensorArray(1, 1, 30e-3, 1e-3, 100e-3)
+    viscosity, lag = 0.219, 19e-3  # s, as long as the patch is over the sensor
+    compliance = lag * 5e-5**3 * conductance_over_cube(1e-3, viscosity)
+    read = moved(array, [patch()] * 5, offsets=1, compliance=compliance, viscosity=viscosity)
+    assert read.peak.value == pytest.approx(1e5 * (1 - np.exp(-1)), rel=0.03)
+    with pytest.raises(InputError, match="viscosity"):
+        moved(array, [patch()] * 5, compliance=compliance)
 
 
 def test_lateral_places_are_averaged():

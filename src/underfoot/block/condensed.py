@@ -10,7 +10,7 @@ import numpy as np
 
 from underfoot.core import Cancelled, InputError, Progress, Status, silent
 from underfoot.core.threads import threads_limited
-from underfoot.material._kernels.prony_march import (
+from underfoot.material.prony_march import (
     PronyStep,
     advance_memory,
     known_displacement,

@@ -13,7 +13,7 @@ from typing import TypeVar
 from underfoot.core import unknown_name
 from underfoot.core.checks import choice
 from underfoot.material import report_elastomer, shear_from_young
-from underfoot.material.report_rubber import POISSON_RATIO
+from underfoot.material.few_terms import POISSON_RATIO
 from underfoot.material.spectrum import RelaxationSpectrum
 
 from .inputs import MicroBlock, MicroLoading, MicroMaterial, MicroSurface

@@ -221,4 +221,11 @@ class Sensor(Section):
     inlet_diameter: Length = default(10 * _mm, "10 mm", _TESTER)
     scan_spacing: Length = default(10 * _mm, "10 mm", _TESTER)
     scans: Count = default(7, 7, _TESTER)
+    compliance: Annotated[float, Quantity("m^3/Pa", 0.0, 1e-12)] = default(
+        0.0,
+        "0 mm^3/MPa",
+        "no instrument of the report prints its own: the readings then follow the film at once and "
+        "are upper bounds of what it shows",
+        assumed=True,
+    )
     array: FloorArray | None = None

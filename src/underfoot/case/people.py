@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from underfoot.slip import SlipModel
 
 _REPORT = "final progress report on shoe-floor friction"
+_SLIPS = (
+    f"largest load in unexpected slips 0.40 to 0.85 of body weight ({_REPORT}, G.4.1), 1.1 in dry "
+    "steps"
+)
 _STEPS = "recorded steps of dry walking that come with the package, see slip dynamics"
 Mass = Annotated[float, Quantity("kg", 5.0, 400.0)]
 MassSpread = Annotated[float, Quantity("kg", 0.0, 100.0)]
@@ -27,6 +31,9 @@ Place = Annotated[float, Quantity("m", -0.5, 0.5)]
 Width = Annotated[float, Quantity("m", 0.0, 0.5)]
 Spacing = Annotated[float, Quantity("m", 1e-3, 0.5)]
 Inlet = Annotated[float, Quantity("m", 0.0, 0.05)]
+Time = Annotated[float, Quantity("s", 1e-3, 0.2)]
+TimeSpread = Annotated[float, Quantity("s", 0.0, 0.1)]
+Transfer = Annotated[float, Quantity("1", 0.0, 1.0)]
 Step = Annotated[float, Quantity("s", 1e-4, 0.02)]
 
 
@@ -108,6 +115,23 @@ class Walkers(Section):
     walking_speed_sd: SpeedSpread = default(0.18, "0.18 m/s", _STEPS, assumed=True)
     heel_speed_mean: HeelSpeed = default(0.33, "0.33 m/s", _STEPS, assumed=True)
     heel_speed_sd: SpeedSpread = default(0.12, "0.12 m/s", _STEPS, assumed=True)
+    heel_brake: Literal["recorded", "constant", "none"] = default(
+        "recorded",
+        "recorded",
+        "the leg stops the landing heel as in a dry step; constant: all by slip.brake_time_mean; "
+        "none: friction alone stops it",
+    )
+    brake_time_mean: Time = default(
+        0.011, "11 ms", "ten recorded steps with heel and toe markers", assumed=True
+    )
+    brake_time_sd: TimeSpread = default(
+        0.007, "7 ms", "ten recorded steps with heel and toe markers", assumed=True
+    )
+    rcof_step_sd: Friction = default(
+        0.015, 0.015, "14 steps of six persons about their own mean (95 %: 0.010 to 0.030)"
+    )
+    weight_transfer_from: Transfer = default(0.35, 0.35, _SLIPS, assumed=True)
+    weight_transfer_to: Transfer = default(0.75, 0.75, _SLIPS, assumed=True)
     shoe_angle_sd: AngleSpread = default(
         math.radians(4.0), "4 deg", f"angle at heel contact in the {_STEPS}", assumed=True
     )

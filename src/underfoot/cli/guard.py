@@ -42,32 +42,28 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
         if os.environ.get("UNDERFOOT_DEBUG") == "1":
             return command(*args, **kwargs)
         try:
-            command(*args, **kwargs)
+            return command(*args, **kwargs)
+        except typer.Exit:
+            raise
         except Terminated:
-            say("terminated; no partial output was left behind")
-            raise typer.Exit(TERMINATED) from None
+            text, code = "terminated; no partial output was left behind", TERMINATED
         except (KeyboardInterrupt, Cancelled):
-            say("stopped; no partial output was left behind")
-            raise typer.Exit(INTERRUPTED) from None
+            text, code = "stopped; no partial output was left behind", INTERRUPTED
         except UnderfootError as error:
-            say(f"error: {error}")
-            raise typer.Exit(error.exit_code) from None
+            text, code = f"error: {error}", error.exit_code
         except BrokenPipeError:
             # the reader of a pipe (head, less) closed it: not an error
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             raise typer.Exit(0) from None
         except OSError as error:
-            say(f"error: {file_trouble(error)}")
-            raise typer.Exit(1) from None
+            text, code = f"error: {file_trouble(error)}", 1
         except MemoryError:
-            say("error: not enough memory. Choose a coarser numerics.grid_spacing.")
-            raise typer.Exit(1) from None
-        except typer.Exit:
-            raise
+            text, code = "error: not enough memory. Choose a coarser numerics.grid_spacing.", 1
         except Exception as error:
-            say(f"internal error: {type(error).__name__}: {error}")
-            say("Please report it with the case file; UNDERFOOT_DEBUG=1 shows the traceback.")
-            raise typer.Exit(INTERNAL) from None
+            text, code = f"internal error: {type(error).__name__}: {error}\n", INTERNAL
+            text += "Please report it with the case file; UNDERFOOT_DEBUG=1 shows the traceback."
+        say(text)
+        raise typer.Exit(code)
 
     return run
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from json import dumps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -9,11 +10,24 @@ import typer
 
 from .guard import say
 from .options import AsJson, Overwrite
+from .output import NOT_USABLE, print_table
 
 if TYPE_CHECKING:
     from underfoot.block import MicroResult
 
     from .micro_input import MicroCase
+
+
+COLUMNS = {
+    "time_s": "time",
+    "sliding_m": "distance",
+    "normal_N": "normal_force",
+    "shear_N": "shear_force",
+    "lateral_N": "lateral_force",
+    "area_m2": "real_contact_area",
+    "height_m": "height",
+}
+"""Attribute of the result behind each column of a history."""
 
 
 def micro(
@@ -104,13 +118,11 @@ def micro(
                 if snapshots:
                     shutil.copytree(pictures, staging, dirs_exist_ok=True)
     if json:
-        import json as json_text
-
-        print(json_text.dumps(content, indent=2, ensure_ascii=False))
+        print(dumps(content, indent=2, ensure_ascii=False))
     else:
         _show(content, out)
     if not all(result.status.usable for result in results):
-        raise typer.Exit(4)
+        raise typer.Exit(NOT_USABLE)
 
 
 def as_data(chosen: MicroCase, results: list[MicroResult]) -> dict[str, Any]:
@@ -120,19 +132,18 @@ def as_data(chosen: MicroCase, results: list[MicroResult]) -> dict[str, Any]:
     rows = []
     for speed, result in zip(chosen.speeds, results, strict=True):
         averages = result.averages if result.status.usable else None
-        row: dict[str, Any] = {"speed_m_per_s": speed}
-        if averages is not None:
-            row |= {
-                key: None if value != value else value for key, value in asdict(averages).items()
+        numbers = {} if averages is None else asdict(averages)
+        rows.append(
+            {
+                "speed_m_per_s": speed,
+                **{key: None if value != value else value for key, value in numbers.items()},
+                "status": str(result.status),
+                "steps": result.steps,
+                "process_seconds": result.process_seconds,
+                "notes": list(result.notes),
+                "breaches": list(map(str, result.breaches)),
             }
-        row |= {
-            "status": str(result.status),
-            "steps": result.steps,
-            "process_seconds": result.process_seconds,
-            "notes": list(result.notes),
-            "breaches": [str(breach) for breach in result.breaches],
-        }
-        rows.append(row)
+        )
     return {
         "name": chosen.name,
         "solver": chosen.solver,
@@ -145,46 +156,35 @@ def as_data(chosen: MicroCase, results: list[MicroResult]) -> dict[str, Any]:
 def _write(
     folder: Path, chosen: MicroCase, results: list[MicroResult], content: dict[str, Any]
 ) -> None:
-    import csv
-    import json as json_text
-
     import numpy as np
+    import pandas
 
     from underfoot.report.study_figures import drawn
     from underfoot.studies.g1 import history_figure
 
-    (folder / "micro.json").write_text(
-        json_text.dumps(content, indent=2, ensure_ascii=False), encoding="utf-8"
-    )
-    columns = ("time", "distance", "normal_force", "shear_force", "lateral_force")
+    text = dumps(content, indent=2, ensure_ascii=False)
+    (folder / "micro.json").write_text(text, encoding="utf-8")
+    histories = {}
     for speed, result in zip(chosen.speeds, results, strict=True):
-        with (folder / f"history_{speed:g}.csv").open("w", newline="") as stream:
-            writer = csv.writer(stream)
-            writer.writerow(
-                ["time_s", "sliding_m", "normal_N", "shear_N", "lateral_N", "area_m2", "height_m"]
-            )
-            arrays = [getattr(result, name) for name in columns]
-            writer.writerows(zip(*arrays, result.real_contact_area, result.height, strict=True))
-    histories = {
-        (chosen.name, speed): {name: np.asarray(getattr(result, name)) for name in columns}
-        | {"real_contact_area": np.asarray(result.real_contact_area)}
-        for speed, result in zip(chosen.speeds, results, strict=True)
-    }
+        history = {name: np.asarray(getattr(result, name)) for name in COLUMNS.values()}
+        table = pandas.DataFrame(dict(zip(COLUMNS, history.values(), strict=True)))
+        table.to_csv(folder / f"history_{speed:g}.csv", index=False, lineterminator="\r\n")
+        histories[chosen.name, speed] = history
     figure = drawn(history_figure(histories, chosen.floor.wavelength, chosen.name))
     figure.savefig(folder / "history.png", dpi=150)
 
 
 def _show(content: dict[str, Any], out: Path | None) -> None:
     from rich.console import Console
-    from rich.table import Table
+
+    from underfoot.core.presentation import Table
 
     console = Console(highlight=False)
     console.print(f"\n{content['name']}", style="bold", markup=False)
     for line in content["block"]:
         console.print(line, markup=False)
-    table = Table(box=None, pad_edge=False)
-    for heading in ("speed", "COF", "mean |shear|", "A_c/F_N", "no edges", "pressure", "status"):
-        table.add_column(heading, no_wrap=heading != "status")
+    heads = ("speed", "COF", "mean |shear|", "A_c/F_N", "no edges", "pressure", "status")
+    rows = []
     notes: list[str] = list(content["assumed"])
     for row in content["results"]:
         cells = ["-"] * 5
@@ -197,9 +197,9 @@ def _show(content: dict[str, Any], out: Path | None) -> None:
                 "-" if without is None else f"{without * 1e6:.4g} mm²/N",
                 f"{row['mean_pressure'] * 1e-3:.4g} kPa",
             ]
-        table.add_row(f"{row['speed_m_per_s']:g} m/s", *cells, row["status"])
+        rows.append((f"{row['speed_m_per_s']:g} m/s", *cells, row["status"]))
         notes += [n for n in (*row["notes"], *row["breaches"]) if n not in notes]
-    console.print(table)
+    print_table(Table("", heads, rows))
     console.print(
         "COF is the signed mean of shear over whole floor wavelengths; mean |shear| (over normal "
         "force) is no friction. A_c counts whole cells of touching nodes, as finite elements do; "

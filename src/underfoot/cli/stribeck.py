@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from json import dumps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .options import AsJson, CasePath, CatalogueFolders, Overwrite, Settings
+from .options import AsJson, CasePath, CatalogueFolders, Overwrite, Settings, loaded
 
 if TYPE_CHECKING:
     from underfoot.calibrate.stribeck_curve import StribeckCurve
@@ -51,8 +52,6 @@ def stribeck(
     from underfoot.core import InputError, to_si
     from underfoot.core.files import check_writable_folder, whole_folder
 
-    from .options import loaded
-
     low, high = to_si(slowest, "m/s", where="--slowest"), to_si(fastest, "m/s", where="--fastest")
     if not 0 < low < high:
         raise InputError(f"{slowest} to {fastest}", where="--slowest", allowed="above 0, rising")
@@ -68,28 +67,23 @@ def stribeck(
     ]
     if out is not None:
         with whole_folder(out, overwrite=overwrite) as staging:
-            write_stribeck(curves, staging, f"{given.name}: {curves[0].law}, {pressure}")
+            _write(curves, staging, f"{given.name}: {curves[0].law}, {pressure}")
     if json:
-        import json as json_text
-
         content = {"pressure_Pa": load, "curves": [curve.as_dict() for curve in curves]}
-        print(json_text.dumps(content, indent=2, ensure_ascii=False))
+        print(dumps(content, indent=2, ensure_ascii=False))
         return
     _show(curves, pressure, out)
 
 
-def write_stribeck(curves: list[StribeckCurve], folder: Path, title: str) -> None:
-    """Write stribeck.png and stribeck.csv into an existing folder."""
-    import csv
+def _write(curves: list[StribeckCurve], folder: Path, title: str) -> None:
+    import pandas
 
-    from underfoot.report.stribeck_figure import stribeck_figure
+    from underfoot.report.study_figures import stribeck_figure
 
     stribeck_figure(curves, title).savefig(folder / "stribeck.png", dpi=150)
-    with (folder / "stribeck.csv").open("w", newline="", encoding="utf-8-sig") as stream:
-        writer = csv.DictWriter(stream, list(curves[0].rows()[0]))
-        writer.writeheader()
-        for curve in curves:
-            writer.writerows(curve.rows())
+    rows = pandas.DataFrame([row for curve in curves for row in curve.rows()])
+    path = folder / "stribeck.csv"
+    rows.to_csv(path, index=False, encoding="utf-8-sig", lineterminator="\r\n")
 
 
 def _cases(given: Any, fluids: list[str]) -> list[tuple[Any, str]]:
@@ -97,14 +91,24 @@ def _cases(given: Any, fluids: list[str]) -> list[tuple[Any, str]]:
 
     if not fluids:
         return [(given, given.entries.get("contaminant", "the case's fluid"))]
-    names: list[str] = []
-    for name in fluids:
-        if name == "measured":
-            found = sorted(measured_fluids(given.catalogue), key=lambda one: one.viscosity)
-            names += [one.fluid for one in found]
-        else:
-            names.append(name)
+    known = sorted(measured_fluids(given.catalogue), key=lambda one: one.viscosity)
+    measured = [one.fluid for one in known]
+    names = (each for name in fluids for each in (measured if name == "measured" else [name]))
     return [(given.replace("contaminant", name), name) for name in dict.fromkeys(names)]
+
+
+COLUMNS = (
+    ("speed\nm/s", "speed_m_per_s", 1.0, ".3g"),
+    ("viscosity\nx speed\nmPa m", "viscosity_times_speed_Pa_m", 1e3, ".3g"),
+    ("COF", "cof", 1.0, ".3f"),
+    ("95 %", "cof_low_95", 1.0, ".2f"),
+    ("adhe-\nsion", "adhesion", 1.0, ".3f"),
+    ("hyste-\nresis", "hysteresis", 1.0, ".3f"),
+    ("vis-\ncous", "viscous", 1.0, ".3f"),
+    ("lambda", "lambda_ratio", 1.0, ".2g"),
+    ("load on\nfluid", "fluid_load_share", 1.0, ".0%"),
+)
+"""Heading, key of a curve's row, factor and format."""
 
 
 def _show(curves: list[StribeckCurve], pressure: str, out: Path | None) -> None:
@@ -120,17 +124,7 @@ def _show(curves: list[StribeckCurve], pressure: str, out: Path | None) -> None:
     for curve in curves:
         console.print(f"\n{curve.label}, {display(curve.viscosity, 'Pa*s')}", markup=False)
         table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0))
-        for heading in (
-            "speed\nm/s",
-            "viscosity\nx speed\nmPa m",
-            "COF",
-            "95 %",
-            "adhe-\nsion",
-            "hyste-\nresis",
-            "vis-\ncous",
-            "lambda",
-            "load on\nfluid",
-        ):
+        for heading, *_ in COLUMNS:
             table.add_column(heading, justify="right", no_wrap=True)
         if curve.points is not None:
             table.add_column("pub-\nlished", justify="right")
@@ -139,20 +133,14 @@ def _show(curves: list[StribeckCurve], pressure: str, out: Path | None) -> None:
             chosen = np.unique(np.linspace(0, curve.speed.size - 1, 9).round().astype(int))
         chosen = np.union1d(chosen, [0, curve.speed.size - 1])
         for row in (curve.rows()[i] for i in chosen):
-            low, published = row["cof_low_95"], row["published_cof"]
-            ratio, share = row.get("lambda_ratio"), row.get("fluid_load_share")
-            table.add_row(
-                f"{row['speed_m_per_s']:.3g}",
-                f"{1e3 * row['viscosity_times_speed_Pa_m']:.3g}",
-                f"{row['cof']:.3f}",
-                "-" if low is None else f"{low:.2f}-{row['cof_high_95']:.2f}",
-                f"{row['adhesion']:.3f}",
-                f"{row['hysteresis']:.3f}",
-                f"{row['viscous']:.3f}",
-                "-" if ratio is None else f"{ratio:.2g}",
-                "-" if share is None else f"{share:.0%}",
-                "" if published is None else f"{published:.3f}",
-            )
+            cells = []
+            for _, key, scale, style in COLUMNS:
+                value = row.get(key)
+                cells.append("-" if value is None else format(scale * value, style))
+                if key == "cof_low_95" and value is not None:
+                    cells[-1] += f"-{row['cof_high_95']:.2f}"
+            published = row["published_cof"]
+            table.add_row(*cells, "" if published is None else f"{published:.3f}")
         console.print(table)
         if curve.regimes is not None:
             for text in (*curve.regimes.sentences(), curve.regimes.why):

@@ -22,12 +22,10 @@ studies_app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
-_G1 = "Only of g1: "
 
 
-@studies_app.callback()
-def studies() -> None:
-    """Published studies run again: our numbers beside the printed ones."""
+def _of_g1(name: str, text: str) -> Any:
+    return typer.Option(f"--{name}", help=f"Only of g1: {text}")
 
 
 def list_studies(json: AsJson = False) -> None:
@@ -49,27 +47,20 @@ def run_study(
     out: OutFolder = None,
     quick: Quick = False,
     explicit: Annotated[
-        bool,
-        typer.Option(
-            "--explicit",
-            help=_G1 + "explicit finite elements (15 min and more) in place of seconds.",
-        ),
+        bool, _of_g1("explicit", "explicit finite elements (15 min and more) in place of seconds.")
     ] = False,
     series: Annotated[
-        str,
-        typer.Option("--series", help=_G1 + "report, broad or both; --explicit: report by default"),
+        str, _of_g1("series", "report, broad or both; --explicit: report by default")
     ] = "",
-    control: Annotated[
-        str, typer.Option("--control", help=_G1 + "while sliding keep height or load.")
-    ] = "height",
+    control: Annotated[str, _of_g1("control", "while sliding keep height or load.")] = "height",
     bulk_modulus: Annotated[
-        str, typer.Option("--bulk-modulus", help=_G1 + "corrected (nu = 0.499) or printed.")
+        str, _of_g1("bulk-modulus", "corrected (nu = 0.499) or printed.")
     ] = "corrected",
     shoe_wavelength: Annotated[
-        str, typer.Option("--shoe-wavelength", help=_G1 + "of the shoe's roughness.")
+        str, _of_g1("shoe-wavelength", "of the shoe's roughness.")
     ] = "0.5 mm",
     floor_wavelength: Annotated[
-        str, typer.Option("--floor-wavelength", help=_G1 + "of the floor's roughness.")
+        str, _of_g1("floor-wavelength", "of the floor's roughness.")
     ] = "0.4 mm",
     processes: Processes = 2,
     json: AsJson = False,
@@ -88,14 +79,8 @@ def run_study(
     from underfoot.studies import run_study as run_one
 
     everything = name.strip().lower() == "all"
-    settings = _settings(
-        name,
-        explicit=explicit,
-        series=series,
-        control=control,
-        bulk_modulus=bulk_modulus,
-        wavelengths=(shoe_wavelength, floor_wavelength),
-    )
+    wavelengths = (shoe_wavelength, floor_wavelength)
+    settings = _settings(name, explicit, series, control, bulk_modulus, wavelengths)
     if everything and out is None and not json:
         out = Path("out") / "studies"
     if out is not None:
@@ -105,9 +90,8 @@ def run_study(
     try:
         with bar(name) as progress:
             options = Options(quick, processes, 0, settings, progress)
-            results = (
-                list(run_all(options=options)) if chosen is None else [run_one(chosen, options)]
-            )
+            one = [] if chosen is None else [run_one(chosen, options)]
+            results = one or list(run_all(options=options))
     except KeyboardInterrupt:
         say("stopped: what is finished is kept; the same command goes on from there")
         raise
@@ -135,7 +119,6 @@ def summarise(
 
 def _settings(
     name: str,
-    *,
     explicit: bool,
     series: str,
     control: str,
@@ -163,23 +146,19 @@ def _settings(
     from underfoot.studies.g1 import Settings
 
     series = series or ("report" if explicit else "both")
-    if series not in ("report", "broad", "both"):
-        raise unknown_name("series", series, ("report", "broad", "both"), where="--series")
-    if control not in ("height", "load"):
-        raise unknown_name("control", control, ("height", "load"), where="--control")
-    shoe, floor = (
-        to_si(text, "m", where=where)
-        for text, where in zip(
-            wavelengths, ("--shoe-wavelength", "--floor-wavelength"), strict=True
-        )
-    )
+    for option, value, known in (
+        ("series", series, ("report", "broad", "both")),
+        ("control", control, ("height", "load")),
+    ):
+        if value not in known:
+            raise unknown_name(option, value, known, where=f"--{option}")
     return Settings(
         series=("report", "broad") if series == "both" else (series,),
         solver="explicit" if explicit else "condensed",
         control="displacement" if control == "height" else "load",
         bulk_modulus=bulk_modulus,
-        shoe_wavelength=shoe,
-        floor_wavelength=floor,
+        shoe_wavelength=to_si(wavelengths[0], "m", where="--shoe-wavelength"),
+        floor_wavelength=to_si(wavelengths[1], "m", where="--floor-wavelength"),
     )
 
 
@@ -211,7 +190,7 @@ def _deliver(
                 (staging / "studies.html").write_text(page, encoding="utf-8")
     if json:
         content: Any = [one.as_dict() for result in results for one in result.judgements]
-        _print_json(content if everything else results[0].as_dict())
+        _print_json(content if everything else results[0].to_dict())
     elif everything:
         _show_headline(results)
     else:

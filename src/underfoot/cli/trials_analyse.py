@@ -63,17 +63,12 @@ def analyse(
         for name, title in protocol_names(known).items():
             print(f"{name:<22} {title}")
         return
-    for given, option in ((folder, "FOLDER"), (protocol, "--protocol"), (out, "--out")):
-        if given is None:
-            raise InputError(
-                "is missing", where=option, remedy="See underfoot trials analyse --help"
-            )
-    assert folder is not None
-    assert protocol is not None
-    assert out is not None
-    chosen = protocol_named(protocol, known)
+    if folder is None or protocol is None or out is None:
+        option = "FOLDER" if folder is None else "--protocol" if protocol is None else "--out"
+        raise InputError("is missing", where=option, remedy="See underfoot trials analyse --help")
     slope = {"ramp": ramp, "plate_frame": plate_frame}
-    chosen = chosen.with_settings({key: value for key, value in slope.items() if value is not None})
+    settings = {key: value for key, value in slope.items() if value is not None}
+    chosen = protocol_named(protocol, known).with_settings(settings)
     if details < 0 or (processes is not None and processes < 1):
         raise InputError("must not be negative", where="--details, --processes")
     if out.resolve() == folder.resolve():

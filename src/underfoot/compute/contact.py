@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 READ_STEPS = 24
 """Instants, spread over the time steps, at which the scans are read for a history."""
+FILM_WORTH_SEEING = 0.01
+"""Share of the load on the film below which no caution about the sensor is given."""
 READ_OFFSETS = 3
 """Lateral places over which such a reading is averaged."""
 
@@ -157,7 +159,9 @@ class Recorder:
             self.sensor_load.append(math.nan)
             self.sensor_peak.append(math.nan)
         else:
-            read = scanned(self.case, self.sole, state, offsets=READ_OFFSETS)
+            read = scanned(
+                self.case, self.sole, state, viscosity=self.viscosity, offsets=READ_OFFSETS
+            )
             self.sensor_load.append(read.load.value or 0.0)
             self.sensor_peak.append(read.peak_pressure.value or 0.0)
             self._last_read = state.time
@@ -189,6 +193,8 @@ class Recorder:
             [frame[0] for frame in self.array_frames],
             [frame[1] for frame in self.array_frames],
             SensorArray(array.rows, array.columns, array.spacing, array.inlet_diameter, position),
+            compliance=self.case.sensor.compliance if self.viscosity else 0.0,
+            viscosity=self.viscosity or 0.0,
         )
         return self._array
 
@@ -201,7 +207,9 @@ class Recorder:
         return {"array_peak": read.peak, **rows, "array_duration": read.duration}
 
 
-def scanned(case: Case, sole: SoleMap, state: SoleState, *, offsets: int = 11) -> SensorReading:
+def scanned(
+    case: Case, sole: SoleMap, state: SoleState, *, viscosity: float | None, offsets: int = 11
+) -> SensorReading:
     """Return what the scans of the case read under one state."""
     from underfoot.sole_contact import floor_sensor_reading
 
@@ -214,6 +222,24 @@ def scanned(case: Case, sole: SoleMap, state: SoleState, *, offsets: int = 11) -
         scan_spacing=case.sensor.scan_spacing,
         scans=case.sensor.scans,
         offsets=offsets,
+        compliance=case.sensor.compliance if viscosity and state.speed > 0 else 0.0,
+        viscosity=viscosity or 0.0,
+        speed=state.speed,
+    )
+
+
+def blind_sensor(case: Case, reading: SensorReading, state: SoleState) -> str:
+    """Return the caution about an inlet that cannot see the film; empty where it can."""
+    from underfoot.sole_contact.reading import BLIND
+
+    if reading.seen >= BLIND or state.fluid_load < FILM_WORTH_SEEING * (
+        state.fluid_load + state.contact_load
+    ):
+        return ""
+    return (
+        f"an inlet of {1e3 * case.sensor.inlet_diameter:.3g} mm sees {100 * reading.seen:.0f} % of "
+        "the load that the film carries: elsewhere its rim meets a channel or the film's end and "
+        "reads less than half. A low reading does not show that there is no film."
     )
 
 

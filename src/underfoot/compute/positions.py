@@ -178,6 +178,7 @@ def tread_positions(
     contact: SoleContact,
     solve: Callable[[Case, Place, Progress], tuple[SoleMap, SoleContact]],
     *,
+    viscosity: float | None,
     quick: bool,
     progress: Progress = silent,
 ) -> TreadPositions | None:
@@ -189,7 +190,7 @@ def tread_positions(
     tread, count = _tread(case), position_count(case, quick=quick)
     if tread is None or count == 1:
         return None
-    own = _numbers(case, law, sole, contact)
+    own = _numbers(case, law, sole, contact, viscosity)
     eased = case.replace("numerics.tolerance", max(case.numerics.tolerance, TOLERANCE))
     kept = [(Place(), own)] if quick else []
     coarse = None
@@ -199,7 +200,7 @@ def tread_positions(
         except ConvergenceError:
             continue
         if there[1].status.usable:
-            kept.append((place, _numbers(case, law, *there)))
+            kept.append((place, _numbers(case, law, *there, viscosity)))
             coarse = there if k == 0 else coarse
     if not kept or kept[0][0] != Place():  # nowhere to compare the two grids
         kept, coarse = [(Place(), own)], None
@@ -251,7 +252,9 @@ def _stage(progress: Progress, number: int, count: int) -> Progress:
     return report
 
 
-def _numbers(case: Case, law: FrictionLaw, sole: SoleMap, contact: SoleContact) -> dict[str, float]:
+def _numbers(
+    case: Case, law: FrictionLaw, sole: SoleMap, contact: SoleContact, viscosity: float | None
+) -> dict[str, float]:
     """Return the numbers of a result that depend on where the tread lies."""
     from underfoot.friction import cof
 
@@ -263,7 +266,7 @@ def _numbers(case: Case, law: FrictionLaw, sole: SoleMap, contact: SoleContact) 
         spacing=sole.spacing,
         wet=contact.wet,
     )
-    numbers, _ = scalars(case, contact, friction, scanned(case, sole, contact))
+    numbers, _ = scalars(case, contact, friction, scanned(case, sole, contact, viscosity=viscosity))
     fixed = ("normal_force", "slip_probability")
     return {
         name: each.value

@@ -22,7 +22,14 @@ from underfoot.core import (
     unknown_name,
 )
 
-from .contact import Recorder, history_fields, refuse_too_large, scanned, solved_motion
+from .contact import (
+    Recorder,
+    blind_sensor,
+    history_fields,
+    refuse_too_large,
+    scanned,
+    solved_motion,
+)
 from .numbers import (
     FILM_ERROR,
     grid_errors,
@@ -131,7 +138,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         sampled=sampled,
         source=f"{law.name} law: {law.source}",
     )
-    sensor = scanned(case, sole, contact)
+    sensor = scanned(case, sole, contact, viscosity=viscosity)
 
     def solved_quick(case: Case, place: Place, progress: Progress) -> tuple[SoleMap, SoleContact]:
         there = sole_map(case, case.numerics.quick_grid_spacing, shift=place.shift, turn=place.turn)
@@ -145,7 +152,14 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
     if contact.status.usable:
         if "compliance" not in own:
             positions = tread_positions(
-                case, law, sole, contact, solved_quick, quick=quick, progress=progress
+                case,
+                law,
+                sole,
+                contact,
+                solved_quick,
+                viscosity=viscosity,
+                quick=quick,
+                progress=progress,
             )
         solved = time.perf_counter()
         if positions:
@@ -162,6 +176,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             labels |= positions.labels()
         if remark := peak_pressure(sole, contact.total_pressure).remark:
             labels["edge_peak"] = remark
+        if remark := blind_sensor(case, sensor, contact):
+            labels["sensor"] = remark
         coarse_spacing = case.numerics.quick_grid_spacing
         if case.numerics.grid_check and not quick and coarse_spacing > spacing:
             if "compliance" in own:
@@ -174,7 +190,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
                 case, Place(), progress
             )
             if coarse.status.usable:
-                there = readings(coarse, scanned(case, coarse_sole, coarse))
+                there = readings(coarse, scanned(case, coarse_sole, coarse, viscosity=viscosity))
                 errors = grid_errors(readings(contact, sensor), there, coarse_spacing / spacing)
                 numbers = with_grid_errors(numbers, errors)
                 labels["grid_error"] = grid_words(numbers, errors, spacing, coarse_spacing)

@@ -66,6 +66,12 @@ def slip_population(
         raise InputError(
             "lies beyond slip.landing_to", where="slip.landing_from", allowed="at most landing_to"
         )
+    if people.weight_transfer_from > people.weight_transfer_to:
+        raise InputError(
+            "lies beyond slip.weight_transfer_to",
+            where="slip.weight_transfer_from",
+            allowed="at most weight_transfer_to",
+        )
 
     def spread(name: str, sd: str, low: float, high: float, section: str = "slip") -> Spread:
         mean = case.sourced(f"{section}.{name}")
@@ -100,6 +106,10 @@ def slip_population(
         lateral=Spread(0.0, people.lateral_sd, -0.05, 0.05, "slip.lateral_sd"),
         effective_mass=people.effective_mass,
         recorded_angle=people.shoe_angle == "recorded",
+        rcof_step=Spread(0.0, people.rcof_step_sd, -0.2, 0.2, "slip.rcof_step_sd", False),
+        heel_brake=people.heel_brake,
+        brake_time=spread("brake_time_mean", "brake_time_sd", 0.004, 0.2),
+        weight_transfer=(people.weight_transfer_from, people.weight_transfer_to),
     )
 
 

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
     from underfoot.shoe import SoleMap, SoleSurface
     from underfoot.shoe.files import FileOutsole, FileSettings
-    from underfoot.shoe.shape import SoleShape, SoleWear
+    from underfoot.shoe.shape import SoleShape
     from underfoot.shoe.worn import ArchardStep
 
 BOTTOMED = 0.5
@@ -92,15 +92,11 @@ def sole_shape(case: Case, progress: Progress = silent) -> SoleShape:
         return new
     removed = wear.build()
     if removed is None:
-        return _worn(new, archard_state(case, progress=progress).worn)
+        return new.worn(archard_state(case, progress=progress).worn)
     check = getattr(removed, "check_within", None)
     if check is not None:
         check(new)
-    return _worn(new, removed)
-
-
-def _worn(new: SoleShape, wear: SoleWear) -> SoleShape:
-    return cast("SoleShape", replace(cast("Any", new), wear=wear))
+    return new.worn(removed)
 
 
 def archard_state(case: Case, *, progress: Progress = silent) -> ArchardStep:

@@ -29,19 +29,13 @@ def content_hash(*parts: Any) -> str:
 class Cache:
     """Arrays stored under a content key; a damaged or missing entry is simply computed again.
 
-    Parameters
-    ----------
-    room
-        Name of the part of the program that owns the entries; raise its version suffix
-        (``"contact_table-2"``) when the numbers behind a key change.
-    folder
-        Where entries lie; by default ``UNDERFOOT_CACHE`` or the user's cache folder.
+    ``room`` names the part of the program that owns the entries; raise its version suffix
+    (``"contact_table-2"``) when the numbers behind a key change. Entries lie in ``folder``, by
+    default that of ``default_folder()``.
     """
 
     def __init__(self, room: str, folder: Path | None = None) -> None:
-        if folder is None:
-            folder = default_folder()
-        self.folder = Path(folder) / room
+        self.folder = Path(folder or default_folder()) / room
 
     def load(self, key: str) -> dict[str, np.ndarray] | None:
         """Return the arrays stored under ``key``, or None."""
@@ -71,8 +65,7 @@ class Cache:
 
 def default_folder() -> Path:
     """Return the cache folder: ``UNDERFOOT_CACHE`` if set, else the user's cache folder."""
-    chosen = os.environ.get("UNDERFOOT_CACHE")
-    if chosen:
+    if chosen := os.environ.get("UNDERFOOT_CACHE"):
         return Path(chosen)
     from platformdirs import user_cache_path
 

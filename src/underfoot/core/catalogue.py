@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache
 from importlib import resources
@@ -17,14 +18,16 @@ from typing import Any, ClassVar
 
 from .errors import InputError, unknown_name
 from .files import read_toml
-from .leaves import INHERITED, Leaf, leaves
+from .leaves import Leaf, leaves
 from .presentation import Presentable, Table
 from .values import SourcedValue
 
 KINDS = ("fluid", "floor", "material", "protocol", "published", "setup", "shoe")
 BUILT_IN = "built in"
 _NO_SOURCE = "no source given"
-_ENTRY_KEYS = frozenset({"title", "from", "replaces", *INHERITED})
+_ENTRY_KEYS = frozenset({"title", "from", "replaces"})
+_Tables = dict[tuple[str, str], tuple[str, dict[str, Any]]]
+"""Where each entry, by kind and name, comes from, and what is written of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,14 +57,14 @@ class Entry:
 
     def numbers(self, path: str, unit: str | None = None) -> tuple[float, ...]:
         """Return a list of numbers in SI."""
-        leaf = self.leaf(path)
+        leaf, where = self.leaf(path), self._where(path)
         if not isinstance(leaf.given, list | tuple):
-            raise InputError(f"{leaf.given!r} is no list", where=self._where(path))
-        found = []
-        for index, given in enumerate(leaf.given):
-            value = replace(leaf, given=given).sourced(unit, where=f"{self._where(path)}[{index}]")
-            found.append(float(value.value or 0.0))
-        return tuple(found)
+            raise InputError(f"{leaf.given!r} is no list", where=where)
+        values = (
+            replace(leaf, given=given).sourced(unit, where=f"{where}[{index}]").value
+            for index, given in enumerate(leaf.given)
+        )
+        return tuple(float(value or 0.0) for value in values)
 
     def text(self, path: str) -> str:
         """Return a word."""
@@ -107,15 +110,10 @@ class Catalogue(Presentable):
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Travel between processes by the folders where those still hold the same."""
-        try:
-            same = Catalogue.load(self.folders) is self
-        except InputError:
-            same = False
-        return (
-            (Catalogue.load, (self.folders,))
-            if same
-            else (Catalogue, (dict(self.entries), self.folders))
-        )
+        with suppress(InputError):
+            if Catalogue.load(self.folders) is self:
+                return Catalogue.load, (self.folders,)
+        return Catalogue, (dict(self.entries), self.folders)
 
     def table(self) -> Table:
         """Return every entry with its kind and title."""
@@ -137,10 +135,10 @@ class Catalogue(Presentable):
 
     def describe(self, name: str) -> str:
         """Return every entry of this name in words: values, sources, notes."""
-        found = [entry for (_, known), entry in self.entries.items() if known == name]
-        if not found:
+        entries = [entry for (_, known), entry in self.entries.items() if known == name]
+        if not entries:
             raise unknown_name("catalogue entry", name, {known for _, known in self.entries})
-        return "\n\n".join(_described(entry) for entry in found)
+        return "\n\n".join(map(_described, entries))
 
 
 def catalogue(*folders: Path | str) -> Catalogue:
@@ -156,21 +154,18 @@ def catalogue_folders(
     ``UNDERFOOT_CATALOGUE`` (several folders, separated as in PATH), then the folder ``catalogue``
     beside the case, then ``extra``.
     """
-    found = [Path(part) for part in os.environ.get("UNDERFOOT_CATALOGUE", "").split(os.pathsep)]
-    found = [path for path in found if str(path) != "."]
+    named = map(Path, os.environ.get("UNDERFOOT_CATALOGUE", "").split(os.pathsep))
+    folders = [path for path in named if str(path) != "."]
     if beside is not None and (Path(beside) / "catalogue").is_dir():
-        found.append(Path(beside) / "catalogue")
-    found += [Path(path) for path in extra]
-    unique = {path.resolve(): path for path in found}
-    return list(unique.values())
+        folders.append(Path(beside) / "catalogue")
+    folders += map(Path, extra)
+    return list({path.resolve(): path for path in folders}.values())
 
 
 @cache
-def _built_in_tables() -> dict[tuple[str, str], tuple[str, dict[str, Any]]]:
-    raw: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {}
+def _built_in_tables() -> _Tables:
     with resources.as_file(resources.files("underfoot") / "data") as folder:
-        _add(raw, _folder_tables(folder, built_in=True))
-    return raw
+        return _folder_tables(folder, built_in=True)
 
 
 @lru_cache(maxsize=16)
@@ -178,8 +173,14 @@ def _loaded(folders: tuple[str, ...], stamps: tuple[tuple[Any, ...], ...]) -> Ca
     """Read folders once for each state (``stamps``) of their files."""
     raw = dict(_built_in_tables())
     for folder in folders:
-        _add(raw, _folder_tables(Path(folder)))
-    return Catalogue(_entries(raw), folders)
+        for (kind, name), (origin, table) in _folder_tables(Path(folder)).items():
+            if (kind, name) in raw and not table.get("replaces", False):
+                raise _clash(kind, name, origin, raw[kind, name][0])
+            raw[kind, name] = (origin, table)
+    entries: dict[tuple[str, str], Entry] = {}
+    for kind, name in raw:
+        _resolve(kind, name, raw, entries, ())
+    return Catalogue(entries, folders)
 
 
 def _stamp(folder: Path) -> tuple[Any, ...]:
@@ -188,15 +189,11 @@ def _stamp(folder: Path) -> tuple[Any, ...]:
     return tuple((str(file), state.st_mtime_ns, state.st_size) for file, state in states)
 
 
-def _folder_tables(
-    folder: Path, *, built_in: bool = False
-) -> dict[tuple[str, str], tuple[str, dict[str, Any]]]:
+def _folder_tables(folder: Path, *, built_in: bool = False) -> _Tables:
     if not folder.is_dir():
-        raise InputError(
-            f"the catalogue folder {folder} does not exist",
-            allowed="a folder with TOML files",
-        )
-    tables: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {}
+        what = f"the catalogue folder {folder} does not exist"
+        raise InputError(what, allowed="a folder with TOML files")
+    tables: _Tables = {}
     for file in sorted(folder.rglob("*.toml")):
         # The studies' statements and the corpus of measurements are read by their own rooms.
         if built_in and file.parent.name in ("statements", "measurements"):
@@ -216,16 +213,6 @@ def _folder_tables(
     return tables
 
 
-def _add(
-    raw: dict[tuple[str, str], tuple[str, dict[str, Any]]],
-    new: Mapping[tuple[str, str], tuple[str, dict[str, Any]]],
-) -> None:
-    for (kind, name), (origin, table) in new.items():
-        if (kind, name) in raw and not table.get("replaces", False):
-            raise _clash(kind, name, origin, raw[kind, name][0])
-        raw[kind, name] = (origin, table)
-
-
 def _clash(kind: str, name: str, here: str, there: str) -> InputError:
     return InputError(
         f'the {kind} "{name}" is defined twice, here and in: {there}',
@@ -234,19 +221,10 @@ def _clash(kind: str, name: str, here: str, there: str) -> InputError:
     )
 
 
-def _entries(
-    raw: Mapping[tuple[str, str], tuple[str, dict[str, Any]]],
-) -> dict[tuple[str, str], Entry]:
-    done: dict[tuple[str, str], Entry] = {}
-    for kind, name in raw:
-        _resolve(kind, name, raw, done, ())
-    return done
-
-
 def _resolve(
     kind: str,
     name: str,
-    raw: Mapping[tuple[str, str], tuple[str, dict[str, Any]]],
+    raw: _Tables,
     done: dict[tuple[str, str], Entry],
     chain: tuple[str, ...],
 ) -> Entry:
@@ -266,17 +244,12 @@ def _resolve(
         base = _resolve(kind, parent, raw, done, (*chain, name))
         values.update(base.values)
         parents = (parent, *base.parents)
-    own = leaves(table, skip=_ENTRY_KEYS - set(INHERITED))
-    values.update(_with_source(path, leaf, origin) for path, leaf in own.items())
+    for path, leaf in leaves(table, skip=_ENTRY_KEYS).items():
+        unknown = replace(leaf, source=f"{_NO_SOURCE} ({origin})", assumed=True)
+        values[path] = leaf if leaf.source else unknown
     title, note = str(table.get("title", name)), str(table.get("note", ""))
     done[kind, name] = Entry(kind, name, title, origin, values, note, parents)
     return done[kind, name]
-
-
-def _with_source(path: str, leaf: Leaf, origin: str) -> tuple[str, Leaf]:
-    if leaf.source:
-        return path, leaf
-    return path, replace(leaf, source=f"{_NO_SOURCE} ({origin})", assumed=True)
 
 
 def _described(entry: Entry) -> str:
@@ -287,10 +260,12 @@ def _described(entry: Entry) -> str:
         lines.append(f"takes over: {', '.join(entry.parents)}")
     for path, leaf in entry.values.items():
         spread = "" if leaf.uncertainty is None else f" ± {leaf.uncertainty}"
-        marks = [leaf.source]
-        marks += ["assumed"] if leaf.assumed else []
-        marks += [] if leaf.verified else ["from memory, not verified"]
-        marks += [leaf.note] if leaf.note and leaf.note != entry.note else []
-        marks += [leaf.erratum] if leaf.erratum else []
-        lines.append(f"  {path} = {leaf.given}{spread}   [{'; '.join(marks)}]")
+        marks = (
+            leaf.source,
+            "assumed" if leaf.assumed else "",
+            "" if leaf.verified else "from memory, not verified",
+            "" if leaf.note == entry.note else leaf.note,
+            leaf.erratum,
+        )
+        lines.append(f"  {path} = {leaf.given}{spread}   [{'; '.join(filter(None, marks))}]")
     return "\n".join(lines)

@@ -14,24 +14,13 @@ from .errors import InputError, unknown_name
 
 def positive(value: float, where: str, unit: str = "") -> float:
     """Return ``value`` as a float; refuse one that is not a finite number above 0."""
-    if not (math.isfinite(value) and value > 0):
-        raise InputError(
-            f"{_text(value, unit)} is not positive",
-            where=where,
-            allowed=f"a finite number above {_text(0, unit)}",
-        )
-    return float(value)
+    return _bounded(value, value > 0, "is not positive", "a finite number above {}", where, unit)
 
 
 def not_negative(value: float, where: str, unit: str = "") -> float:
     """Return ``value`` as a float; refuse one that is not a finite number of at least 0."""
-    if not (math.isfinite(value) and value >= 0):
-        raise InputError(
-            f"{_text(value, unit)} is negative or not finite",
-            where=where,
-            allowed=f"a finite number, {_text(0, unit)} or more",
-        )
-    return float(value)
+    what = "is negative or not finite"
+    return _bounded(value, value >= 0, what, "a finite number, {} or more", where, unit)
 
 
 def between(value: float, low: float, high: float, where: str, allowed: str = "") -> float:
@@ -80,5 +69,8 @@ def poisson_ratio(value: float, where: str = "poisson_ratio") -> float:
     return float(value)
 
 
-def _text(value: float, unit: str) -> str:
-    return f"{value:g} {unit}".rstrip()
+def _bounded(value: float, inside: bool, what: str, allowed: str, where: str, unit: str) -> float:
+    if not (math.isfinite(value) and inside):
+        allowed = allowed.format(f"0 {unit}".rstrip())
+        raise InputError(f"{f'{value:g} {unit}'.rstrip()} {what}", where=where, allowed=allowed)
+    return float(value)

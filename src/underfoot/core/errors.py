@@ -9,18 +9,9 @@ from collections.abc import Iterable, Sequence
 class UnderfootError(Exception):
     """Base of all errors a user can meet.
 
-    Parameters
-    ----------
-    what
-        What was found, with the offending value.
-    where
-        Dotted path, file, line or argument name.
-    allowed
-        What would have been accepted.
-    nearest
-        The closest accepted value, if there is one.
-    remedy
-        What to do next.
+    ``what`` names the offending value, ``where`` its dotted path, file, line or argument,
+    ``allowed`` what would have been accepted, ``nearest`` the closest accepted value and
+    ``remedy`` what to do next.
     """
 
     exit_code = 1
@@ -78,12 +69,9 @@ class ConvergenceError(UnderfootError):
         what: str,
         *,
         history: Sequence[float] = (),
-        where: str | None = None,
-        allowed: str | None = None,
-        nearest: str | None = None,
-        remedy: str | None = None,
+        **parts: str | None,
     ) -> None:
-        super().__init__(what, where=where, allowed=allowed, nearest=nearest, remedy=remedy)
+        super().__init__(what, **parts)
         self.history = tuple(float(value) for value in history)
 
 

@@ -34,50 +34,24 @@ class Transform(Protocol):
         ...
 
 
-class ScipyTransform:
-    """SciPy's transforms of NumPy arrays with a number of threads."""
+class ArrayTransform:
+    """The transforms of one module for arrays, with its own ``options``."""
 
-    def __init__(self, shape: tuple[int, int], threads: int = 1) -> None:
-        from scipy import fft
-
+    def __init__(self, shape: tuple[int, int], module: Any, **options: Any) -> None:
         self.shape = shape
-        self.threads = threads
-        self._fft: Any = fft
+        self._fft, self._options = module, options
 
     def forward(self, field: AnyArray) -> AnyArray:
-        """Return the half spectrum of a real field."""
-        return self._fft.rfft2(field, workers=self.threads)
+        return self._fft.rfftn(field, axes=(0, 1), **self._options)
 
     def backward(self, spectrum: AnyArray) -> AnyArray:
-        """Return the real field of a half spectrum."""
-        return self._fft.irfft2(spectrum, s=self.shape, workers=self.threads, overwrite_x=True)
-
-
-class NamespaceTransform:
-    """The transforms of an array-API namespace, for arrays that are not NumPy's."""
-
-    def __init__(self, shape: tuple[int, int], xp: Any) -> None:
-        self.shape = shape
-        self._fft = xp.fft
-
-    def forward(self, field: AnyArray) -> AnyArray:
-        """Return the half spectrum of a real field."""
-        return self._fft.rfftn(field, axes=(0, 1))
-
-    def backward(self, spectrum: AnyArray) -> AnyArray:
-        """Return the real field of a half spectrum."""
-        return self._fft.irfftn(spectrum, s=self.shape, axes=(0, 1))
+        return self._fft.irfftn(spectrum, s=self.shape, axes=(0, 1), **self._options)
 
 
 def fourier_library(name: str = "auto") -> str:
     """Return the library in use: ``name``, for "auto" ``UNDERFOOT_FFT``, else the fastest.
 
-    Raises
-    ------
-    InputError
-        An unknown name.
-    MissingExtraError
-        MKL is named, but not installed.
+    An unknown name raises ``InputError``, MKL that is not installed ``MissingExtraError``.
     """
     where = VARIABLE if name == "auto" else "fft"
     if name == "auto":
@@ -97,7 +71,9 @@ def transform(
     Arrays that are not NumPy's are transformed by their own namespace ``xp``.
     """
     if xp is not np:
-        return NamespaceTransform(shape, xp)
+        return ArrayTransform(shape, xp.fft)
     if fourier_library(library) == "mkl":
         return MklTransform(shape, dtype, threads)
-    return ScipyTransform(shape, threads)
+    from scipy import fft
+
+    return ArrayTransform(shape, fft, workers=threads)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -51,36 +51,25 @@ def leaves(
     table: Mapping[str, Any], *, source: str = "", skip: Iterable[str] = ()
 ) -> dict[str, Leaf]:
     """Return the leaves of nested tables by dotted path; sub-tables inherit source and marks."""
-    found: dict[str, Leaf] = {}
-    _collect(found, table, (), Leaf(None, source=source), frozenset(skip))
-    return found
+    top = {key: item for key, item in table.items() if key not in {*skip, "note"}}
+    return dict(_leaves(top, "", Leaf(None, source=source)))
 
 
-def _collect(
-    found: dict[str, Leaf],
-    table: Mapping[str, Any],
-    path: tuple[str, ...],
-    inherited: Leaf,
-    skip: frozenset[str],
-) -> None:
-    marks = {k: table[k] for k in INHERITED if k in table and (path or k != "note")}
-    inherited = replace(inherited, **marks)
+def _leaves(table: Mapping[str, Any], path: str, inherited: Leaf) -> Iterator[tuple[str, Leaf]]:
+    inherited = replace(inherited, **{key: table[key] for key in INHERITED if key in table})
     for key, item in table.items():
-        if key in INHERITED or (not path and key in skip):
+        if key in INHERITED:
             continue
-        here = (*path, key)
-        where = ".".join(here)
+        where = path + key
         if isinstance(item, Mapping) and "value" in item:
-            unknown = set(item) - _LEAF_KEYS
-            if unknown:
+            if unknown := set(item) - _LEAF_KEYS:
                 raise unknown_name("mark", sorted(unknown)[0], _LEAF_KEYS, where=where)
             marks = {k: item[k] for k in (*INHERITED, "erratum") if k in item}
             if "source" in marks and "assumed" not in marks:
                 marks["assumed"] = False
-            found[where] = replace(
-                inherited, given=item["value"], uncertainty=item.get("uncertainty"), **marks
-            )
+            spread = item.get("uncertainty")
+            yield where, replace(inherited, given=item["value"], uncertainty=spread, **marks)
         elif isinstance(item, Mapping):
-            _collect(found, item, here, inherited, skip)
+            yield from _leaves(item, where + ".", inherited)
         else:
-            found[where] = replace(inherited, given=item)
+            yield where, replace(inherited, given=item)

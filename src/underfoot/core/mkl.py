@@ -38,14 +38,12 @@ class MklError(RuntimeError):
 @cache
 def mkl_library() -> ctypes.CDLL | None:
     """Return MKL's run-time library, or None where it is not installed."""
-    candidates: list[str] = []
     try:
         files = metadata.files("mkl") or []
-        candidates += [str(file.locate()) for file in files if "mkl_rt" in file.name]
     except metadata.PackageNotFoundError:
-        pass
-    system = find_library("mkl_rt") if not candidates else None
-    for path in (*candidates, *([system] if system else [])):
+        files = []
+    candidates = [str(file.locate()) for file in files if "mkl_rt" in file.name]
+    for path in candidates or filter(None, [find_library("mkl_rt")]):
         try:
             loaded = ctypes.CDLL(path)
             _ = loaded.pardiso, loaded.DftiCreateDescriptor
@@ -124,25 +122,17 @@ class _System:
         columns = right.shape[1] if right.ndim == 2 else 1
         error = ctypes.c_int32(0)
 
-        def integer(value: int) -> Any:
-            return ctypes.byref(ctypes.c_int32(value))
+        def integers(*values: int) -> list[Any]:
+            return [ctypes.byref(ctypes.c_int32(value)) for value in values]
 
         self._pardiso(
             _address(self._handle),
-            integer(1),
-            integer(1),
-            integer(self._type),
-            integer(phase),
-            integer(self.size),
-            _address(self.values),
-            _address(self._rows),
-            _address(self._columns),
-            _address(self.retained),
-            integer(columns),
+            *integers(1, 1, self._type, phase, self.size),
+            *map(_address, (self.values, self._rows, self._columns, self.retained)),
+            *integers(columns),
             _address(self.options),
-            integer(0),
-            _address(right),
-            _address(answer),
+            *integers(0),
+            *map(_address, (right, answer)),
             ctypes.byref(error),
         )
         if error.value and phase != _RELEASE:
@@ -172,14 +162,12 @@ class MklTransform:
         ]
 
     def forward(self, field: Any) -> Any:
-        """Return the half spectrum of a real field."""
         field = np.ascontiguousarray(field, dtype=self.dtype)
         compute = self._library.DftiComputeForward
         self._check(compute(self._handles[0], _address(field), self._spectrum_at))
         return self._spectrum
 
     def backward(self, spectrum: Any) -> Any:
-        """Return the real field of a half spectrum."""
         spectrum = np.ascontiguousarray(spectrum, dtype=self._spectrum.dtype)
         where = self._spectrum_at if spectrum is self._spectrum else _address(spectrum)
         self._check(self._library.DftiComputeBackward(self._handles[1], where, self._field_at))
@@ -192,26 +180,19 @@ class MklTransform:
     def _plan(
         self, precision: int, into: tuple[int, ...], out: tuple[int, ...], threads: int
     ) -> ctypes.c_void_p:
-        handle = ctypes.c_void_p()
-        three = ctypes.c_long * 3
-        scale = ctypes.c_double(1.0 / (self.shape[0] * self.shape[1]))
-        self._call(
-            "DftiCreateDescriptor",
-            ctypes.byref(handle),
-            ctypes.c_int(precision),
-            ctypes.c_int(_REAL),
-            ctypes.c_long(2),
-            (ctypes.c_long * 2)(*self.shape),
-        )
-        settings = (
-            (_CONJUGATE_EVEN_STORAGE, ctypes.c_int(_COMPLEX_COMPLEX)),
-            (_PLACEMENT, ctypes.c_int(_NOT_INPLACE)),
-            (_INPUT_STRIDES, three(*into)),
-            (_OUTPUT_STRIDES, three(*out)),
-            (_THREAD_LIMIT, ctypes.c_long(threads)),
-            (_BACKWARD_SCALE, scale),
-        )
-        for name, value in settings:
+        handle, three = ctypes.c_void_p(), ctypes.c_long * 3
+        size = (ctypes.c_long * 2)(*self.shape)
+        kind = (ctypes.c_int(precision), ctypes.c_int(_REAL), ctypes.c_long(2))
+        self._call("DftiCreateDescriptor", ctypes.byref(handle), *kind, size)
+        settings = {
+            _CONJUGATE_EVEN_STORAGE: ctypes.c_int(_COMPLEX_COMPLEX),
+            _PLACEMENT: ctypes.c_int(_NOT_INPLACE),
+            _INPUT_STRIDES: three(*into),
+            _OUTPUT_STRIDES: three(*out),
+            _THREAD_LIMIT: ctypes.c_long(threads),
+            _BACKWARD_SCALE: ctypes.c_double(1.0 / (self.shape[0] * self.shape[1])),
+        }
+        for name, value in settings.items():
             self._call("DftiSetValue", handle, ctypes.c_int(name), value)
         self._call("DftiCommitDescriptor", handle)
         return handle

@@ -23,19 +23,8 @@ __all__ = ["njit", "optional_module"]
 def optional_module(name: str, extra: str, purpose: str) -> Any:
     """Return the module ``name`` of a package that only some features need.
 
-    Parameters
-    ----------
-    name
-        Dotted name of the module.
-    extra
-        Extra of this package that installs it.
-    purpose
-        What needs it, as the subject of a sentence.
-
-    Raises
-    ------
-    MissingExtraError
-        It is not installed, or does not load.
+    Raises ``MissingExtraError`` where it is not installed or does not load: ``extra`` of this
+    package installs it, ``purpose`` is what needs it, as the subject of a sentence.
     """
     try:
         return import_module(name)

@@ -46,24 +46,12 @@ def in_processes(
 ) -> Iterator[tuple[int, Answer]]:
     """Yield (index, answer) of ``function`` for each item, in the order in which they end.
 
-    Parameters
-    ----------
-    function
-        Of one item; importable by name, as is what it takes and returns.
-    items
-        What to work on.
-    processes
-        Workers at most; None for one a processor. With 1, or one item, the work is done here.
-    progress, stage
-        Told the share done after each item; an exception that it raises (``Cancelled``) ends the
-        work.
-    died
-        Answer for an item whose worker ended without one (killed, out of memory).
-
-    Raises
-    ------
-    UnderfootError
-        A worker ended without an answer and ``died`` is None. Errors of ``function`` pass through.
+    ``function`` is importable by name, as is what it takes and returns. ``processes`` are the
+    workers at most, None for one a processor; with 1, or one item, the work is done here.
+    ``progress`` is told ``stage`` and the share done after each item; an exception that it raises
+    (``Cancelled``) ends the work. Where a worker ended without an answer (killed, out of memory),
+    ``died`` gives that of its item; without it ``UnderfootError`` is raised. Errors of
+    ``function`` pass through.
     """
     count = min(processes or available_processors(), len(items))
     done: set[int] = set()

@@ -9,7 +9,7 @@ from html import escape
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from .units import display_unit
+from .units import display_unit, number_text
 from .values import SourcedValue
 
 if TYPE_CHECKING:
@@ -149,9 +149,9 @@ def quantity_text(value: float, unit: str, uncertainty: float | None = None) -> 
     factor, name = (1.0, "N") if unit == "N" else display_unit(value, unit)
     if unit == "N" and 0.0 < abs(value) < 0.005:
         return "below 0.01 N"
-    text = _digits(value / factor, 3)
+    text = number_text(value / factor, 3)
     if uncertainty is not None:
-        text += f" ± {_digits(uncertainty / factor, 2)}"
+        text += f" ± {number_text(uncertainty / factor, 2)}"
     for plain, sign in (("um", "µm"), ("^2", "²"), ("^3", "³"), ("*", "·")):
         name = name.replace(plain, sign)
     return text if name == "1" else f"{text} {name}"
@@ -186,12 +186,6 @@ def interval_text(name: str, scalar: SourcedValue) -> str:
 
 def _plain(name: str, value: float) -> str:
     return percent(value) if name in PROBABILITIES else f"{value:.3f}"
-
-
-def _digits(value: float, digits: int) -> str:
-    """Return a number with significant digits, without an exponent where people write none."""
-    text = f"{value:.{digits}g}"
-    return f"{value:.0f}" if "e" in text and 1e-3 <= abs(value) < 1e6 else text
 
 
 def _skewed(value: float, interval: tuple[float, float]) -> bool:

@@ -40,30 +40,12 @@ class Provenance:
     """slot: object given to ``run`` in place of the case's option"""
 
     @classmethod
-    def now(
-        cls,
-        case_hash: str,
-        *,
-        closures: dict[str, str],
-        citations: tuple[str, ...] = (),
-        errata: tuple[str, ...] = (),
-        timings: dict[str, float] | None = None,
-        objects: dict[str, str] | None = None,
-    ) -> Provenance:
+    def now(cls, case_hash: str, *, closures: dict[str, str], **given: Any) -> Provenance:
         """Return a provenance stamped with the present time and the versions in use."""
-        packages = ("underfoot", "numpy", "scipy")
-        versions = {name: package_version(name) for name in packages}
+        versions = {name: package_version(name) for name in ("underfoot", "numpy", "scipy")}
         versions["python"] = platform.python_version()
-        return cls(
-            case_hash=case_hash,
-            closures=dict(closures),
-            citations=citations,
-            errata=errata,
-            timings=dict(timings or {}),
-            versions=versions,
-            created=datetime.now(UTC).isoformat(timespec="seconds"),
-            objects=dict(objects or {}),
-        )
+        created = datetime.now(UTC).isoformat(timespec="seconds")
+        return cls(case_hash, closures, versions=versions, created=created, **given)
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""

@@ -45,12 +45,7 @@ def back_ends() -> tuple[str, ...]:
 def back_end(name: str | None = None) -> str:
     """Return the back end in use: ``name``, else ``UNDERFOOT_SPARSE``, else the fastest.
 
-    Raises
-    ------
-    InputError
-        An unknown name.
-    MissingExtraError
-        PARDISO is named, but MKL is not installed.
+    An unknown name raises ``InputError``, PARDISO without MKL ``MissingExtraError``.
     """
     where = "back_end" if name else VARIABLE
     name = name or os.environ.get(VARIABLE) or back_ends()[0]
@@ -64,23 +59,11 @@ def back_end(name: str | None = None) -> str:
 def factorization(
     matrix: sp.csr_matrix, name: str | None = None, *, kind: Kind = "general", where: str = "film"
 ) -> Factorization:
-    """Return the factorised ``matrix``.
+    """Return the factorised ``matrix``: square CSR with sorted indices, of symmetric sparsity.
 
-    Parameters
-    ----------
-    matrix
-        Square CSR matrix with sorted indices, of symmetric sparsity.
-    name
-        Back end: "pardiso", "superlu" or None for ``back_end()``.
-    kind
-        "general", "symmetric" or "positive definite" (and symmetric).
-    where
-        Name of the system in an error.
-
-    Raises
-    ------
-    ConvergenceError
-        The matrix is singular to working precision, or not positive definite, or holds NaN.
+    ``name`` is the back end, None for ``back_end()``; ``where`` names the system in an error. A
+    matrix that is singular to working precision, not positive definite although its ``kind`` says
+    so, or holds NaN raises ``ConvergenceError``.
     """
     return _Checked(matrix, back_end(name), kind, where)
 
@@ -105,25 +88,9 @@ def schur_complement(
     """Return the Schur complement S = K_rr - K_re K_ee^-1 K_er of the retained unknowns r.
 
     The inverse of S is the block (r, r) of the inverse of K: S is all that loads on r see.
-
-    Parameters
-    ----------
-    upper
-        Upper triangle of a symmetric matrix K with a full diagonal, indices sorted.
-    retained
-        Numbers of the m retained unknowns, ascending.
-    name, kind, where
-        As ``factorization`` takes them; ``kind`` "symmetric" or "positive definite".
-
-    Returns
-    -------
-    ndarray
-        S, (m, m), symmetric.
-
-    Raises
-    ------
-    ConvergenceError
-        The matrix is singular to working precision, or not positive definite, or holds NaN.
+    ``upper`` is the upper triangle of a symmetric K with a full diagonal, indices sorted;
+    ``retained`` are the numbers of the m retained unknowns, ascending; S is (m, m), symmetric. The
+    rest is as for ``factorization``.
     """
     if not np.isfinite(upper.data).all():
         raise _singular(where)

@@ -26,6 +26,7 @@ _EXAMPLES = {
     "kg": "70 kg",
     "kg/m^3": "1100 kg/m^3",
     "m^2": "10 mm^2",
+    "m^3/Pa": "0.3 mm^3/MPa",
     "1/m": "4 1/mm",
     "1": "0.5",
 }
@@ -40,15 +41,11 @@ _SCALES = {
 }
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
 _ALIASES = {"%": "percent", "deg C": "degC", "mPa s": "mPa*s", "mPas": "mPa*s", "Pa s": "Pa*s"}
-_KNOWN = tuple(
-    (
-        "m mm um nm cm inch N kN mN kgf lbf Pa kPa MPa GPa psi bar cP mPa*s Pa*s P m/s mm/s cm/s "
-        "s ms us min rad deg degC degF K kg g Hz kHz rad/s mm^2 cm^2 m^2 1/s 1/mm kg/m^3 g/cm^3 "
-        "percent"
-    ).split()
-)
-
-
+_KNOWN = (
+    "m mm um nm cm inch N kN mN kgf lbf Pa kPa MPa GPa psi bar cP mPa*s Pa*s P m/s mm/s cm/s "
+    "s ms us min rad deg degC degF K kg g Hz kHz rad/s mm^2 cm^2 m^2 1/s 1/mm kg/m^3 g/cm^3 "
+    "percent"
+).split()
 # Powers of ten of the units people write most: a unit library takes a second to start, and moving
 # the decimal point is exact.
 _POWERS: dict[str, dict[str, int]] = {
@@ -129,10 +126,14 @@ def display(value: float, unit: str, digits: int = 3) -> str:
     if not math.isfinite(value):
         return "not a number"
     factor, name = display_unit(value, unit)
-    number = f"{value / factor:.{digits}g}"
-    if "e" in number and 1e-3 <= abs(value / factor) < 1e6:
-        number = f"{value / factor:.0f}"
+    number = number_text(value / factor, digits)
     return number if name == "1" else f"{number} {name}"
+
+
+def number_text(value: float, digits: int) -> str:
+    """Return a number with significant digits, without an exponent where people write none."""
+    text = f"{value:.{digits}g}"
+    return f"{value:.0f}" if "e" in text and 1e-3 <= abs(value) < 1e6 else text
 
 
 def display_unit(value: float, unit: str) -> tuple[float, str]:

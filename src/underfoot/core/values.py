@@ -12,25 +12,11 @@ from .units import display
 class SourcedValue:
     """A value in SI with what a reader must know to trust it.
 
-    Parameters
-    ----------
-    value
-        In ``unit``; None when it could not be determined (then ``reason`` says why).
-    unit
-        SI unit, ``"1"`` when dimensionless.
-    source
-        Where it comes from: paper and table, measurement, or the model that computed it.
-    uncertainty
-        Standard deviation in ``unit``; None when not estimated (then ``reason`` says why).
-    reason
-        Why the value or its uncertainty is missing.
-    assumed
-        True when no measurement or publication stands behind it.
-    note
-        Erratum, convention or caution that belongs to the value.
-    interval
-        Bounds of the central interval that holds 95 % of the sampled values, in ``unit``; None when
-        it was not sampled.
+    ``value`` is None when it could not be determined, ``uncertainty`` (one standard deviation) when
+    it was not estimated: then ``reason`` says why. ``unit`` is "1" when dimensionless. ``source``
+    is a paper and table, a measurement, or the model that computed it; ``assumed`` is True when no
+    measurement or publication stands behind it; ``note`` holds an erratum, convention or caution.
+    ``interval`` bounds the central 95 % of the sampled values, None when it was not sampled.
     """
 
     value: float | None

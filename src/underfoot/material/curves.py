@@ -1,6 +1,8 @@
 """Measured curves: relaxation and dynamic sweeps, and what is wrong with them."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,10 +20,7 @@ class RelaxationCurve:
     source: str = ""
 
     def __post_init__(self) -> None:
-        time, modulus = checked_curve(self.time, self.modulus)
-        object.__setattr__(self, "time", time)
-        object.__setattr__(self, "modulus", modulus)
-        check_temperature(self.temperature)
+        _settle(self, "time", modulus="relaxation modulus")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,14 +34,22 @@ class DynamicSweep:
     source: str = ""
 
     def __post_init__(self) -> None:
-        w, storage = checked_curve(
-            self.angular_frequency, self.storage_modulus, quantity="storage modulus"
+        quantities = {"storage_modulus": "storage modulus", "loss_modulus": "loss modulus"}
+        _settle(self, "angular_frequency", **quantities)
+
+
+def _settle(curve: Any, axis: str, **quantities: str) -> None:
+    """Store the checked columns of a curve; refuse a temperature that is not one in kelvin."""
+    given = getattr(curve, axis)
+    for name, quantity in quantities.items():
+        x, values = checked_curve(given, getattr(curve, name), quantity=quantity)
+        object.__setattr__(curve, axis, x)
+        object.__setattr__(curve, name, values)
+    kelvin = curve.temperature
+    if kelvin is not None and not (np.isfinite(kelvin) and kelvin > 0.0):
+        raise DataError(
+            f"temperature {kelvin:g} K", where="temperature", allowed="kelvin, above 0 K"
         )
-        _, loss = checked_curve(self.angular_frequency, self.loss_modulus, quantity="loss modulus")
-        object.__setattr__(self, "angular_frequency", w)
-        object.__setattr__(self, "storage_modulus", storage)
-        object.__setattr__(self, "loss_modulus", loss)
-        check_temperature(self.temperature)
 
 
 def checked_curve(
@@ -94,9 +101,12 @@ def checked_curve(
     return x[order], y[order]
 
 
-def check_temperature(temperature: float | None) -> None:
-    """Refuse a temperature that is not one in kelvin."""
-    if temperature is not None and not (np.isfinite(temperature) and temperature > 0.0):
-        raise DataError(
-            f"temperature {temperature:g} K", where="temperature", allowed="kelvin, above 0 K"
-        )
+def minimum_on(grid: np.ndarray, cost: Callable[[float], float], tolerance: float) -> float:
+    """Return where ``cost`` is least: on the grid, then refined between the neighbours there."""
+    from scipy.optimize import minimize_scalar
+
+    best = int(np.argmin([cost(float(x)) for x in grid]))
+    bounds = (grid[max(best - 1, 0)], grid[min(best + 1, grid.size - 1)])
+    options = {"xatol": tolerance}
+    optimum: Any = minimize_scalar(cost, bounds=bounds, method="bounded", options=options)
+    return float(optimum.x)

@@ -1,17 +1,208 @@
-"""Time-temperature superposition: one master curve from tests at many temperatures."""
+"""Time-temperature superposition: one master curve, and the laws of its shift factors."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, InputError, RangeError
+from underfoot.core.arrays import scalar_or_array
 
-from ._kernels.shift import best_shift
-from .curves import DynamicSweep, RelaxationCurve
-from .shift_laws import ArrheniusShift, WlfShift, fit_arrhenius, fit_wlf
+from .curves import DynamicSweep, RelaxationCurve, minimum_on
 from .spectrum_fit import SpectrumFit, fit_dynamic, fit_relaxation
+
+DEGREE = 3
+LEAST_SCATTER = 4e-4
+"""0.1 % in log10: no reading is trusted further."""
+
+
+def common_polynomial_cost(
+    shift: float, x: np.ndarray, y: np.ndarray, x_other: np.ndarray, y_other: np.ndarray
+) -> tuple[float, int]:
+    """Return the sum of squares about one polynomial through both curves, and free values.
+
+    The second curve is moved by ``shift``. ``y`` and ``y_other`` are (q, n): quantities that
+    share the abscissa and the shift, each with its own polynomial. All points count whatever the
+    overlap, so the cost does not favour small overlaps.
+    """
+    both = np.concatenate([x, x_other + shift])
+    degree = min(DEGREE, both.size // 4)
+    rest = _about_polynomial(both, np.concatenate([y, y_other], axis=1), degree)
+    return float(np.sum(rest * rest)), rest.size - rest.shape[1] * (degree + 1) - 1
+
+
+def _about_polynomial(x: np.ndarray, y: np.ndarray, degree: int) -> np.ndarray:
+    """Return what polynomials in x leave of each row of y, (n, q)."""
+    unit = 2.0 * (x - x.min()) / np.ptp(x) - 1.0
+    q, _ = np.linalg.qr(np.polynomial.chebyshev.chebvander(unit, degree))
+    return y.T - q @ (q.T @ y.T)
+
+
+def best_shift(
+    x: np.ndarray, y: np.ndarray, x_other: np.ndarray, y_other: np.ndarray
+) -> tuple[float, float, float]:
+    """Return the shift of the second curve onto the first, its standard error, rms residual.
+
+    Searched over every shift at which the two still touch, then refined. Each quantity counts by
+    its own scatter: a noisy loss modulus does not decide against a precise storage modulus. The
+    rms residual is that of the quantities as given, each weighted equally.
+    """
+    scatter = np.sqrt(0.5 * (own_scatter(x, y) ** 2 + own_scatter(x_other, y_other) ** 2))
+    scatter = np.maximum(scatter, LEAST_SCATTER)
+    y, y_other = y / scatter[:, None], y_other / scatter[:, None]
+
+    def cost_of(shift: float) -> float:
+        return common_polynomial_cost(shift, x, y, x_other, y_other)[0]
+
+    low, high = x.min() - x_other.max(), x.max() - x_other.min()
+    shift = minimum_on(np.linspace(low, high, 121), cost_of, 1e-9)
+    cost, free = common_polynomial_cost(shift, x, y, x_other, y_other)
+    variance = cost / max(free, 1)
+    step = 0.02 * (high - low)
+    curvature = (cost_of(shift - step) + cost_of(shift + step) - 2.0 * cost) / step**2
+    # Flat curves fit at any shift: the error must say so, however smooth they are.
+    error = np.sqrt(2.0 * max(variance, 1.0) / curvature) if curvature > 0.0 else np.inf
+    return shift, float(error), float(np.sqrt(variance * np.mean(scatter**2)))
+
+
+def own_scatter(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return the rms of each quantity about its own cubic (or less), (q,)."""
+    degree = min(3, max(x.size - 3, 1))
+    rest = _about_polynomial(x, y, degree)
+    return np.sqrt(np.sum(rest * rest, axis=0) / max(x.size - degree - 1, 1))
+
+
+GAS_CONSTANT = 8.314462618
+"""J/(mol K), CODATA 2018."""
+
+
+class _ShiftLaw(ABC):
+    __slots__ = ()
+
+    @abstractmethod
+    def log10_shift_factor(self, temperature: ArrayLike) -> Any:
+        """Return log10 a_T for temperatures in K, any shape."""
+
+    def shift_factor(self, temperature: ArrayLike) -> Any:
+        """Return a_T: times at T are a_T times those at the reference temperature."""
+        return scalar_or_array(10.0 ** np.asarray(self.log10_shift_factor(temperature)))
+
+
+@dataclass(frozen=True, slots=True)
+class WlfShift(_ShiftLaw):
+    """log10 a_T = -C1 (T - T_ref) / (C2 + T - T_ref) (Williams, Landel, Ferry 1955).
+
+    ``c1`` (1), ``c2`` (K), ``reference_temperature`` (K); ``rms`` is the residual in decades of
+    the fit that gave it (NaN when given directly); ``tested`` the temperatures it was fitted on.
+    """
+
+    c1: float
+    c2: float
+    reference_temperature: float
+    rms: float = float("nan")
+    tested: tuple[float, float] | None = None
+
+    def log10_shift_factor(self, temperature: ArrayLike) -> Any:
+        """Return log10 a_T for temperatures in K, any shape.
+
+        Raises:
+            RangeError: At or below T_ref - C2, where the law has its pole.
+        """
+        away = np.asarray(temperature, dtype=float) - self.reference_temperature
+        if not np.all(self.c2 + away > 0.0):
+            raise RangeError(
+                f"temperature {np.min(temperature):g} K",
+                where="temperature",
+                allowed=f"above {self.reference_temperature - self.c2:g} K, the pole of this WLF",
+            )
+        return scalar_or_array(-self.c1 * away / (self.c2 + away))
+
+    def __str__(self) -> str:
+        return f"WLF C1 {self.c1:.4g}, C2 {self.c2:.4g} K, residual {self.rms:.2g} decades"
+
+
+@dataclass(frozen=True, slots=True)
+class ArrheniusShift(_ShiftLaw):
+    """ln a_T = E_a / R (1/T - 1/T_ref); ``activation_energy`` in J/mol."""
+
+    activation_energy: float
+    reference_temperature: float
+    rms: float = float("nan")
+    tested: tuple[float, float] | None = None
+
+    def log10_shift_factor(self, temperature: ArrayLike) -> Any:
+        """Return log10 a_T for temperatures in K, any shape, above 0."""
+        t = np.asarray(temperature, dtype=float)
+        if not np.all(t > 0.0):
+            raise RangeError(
+                f"temperature {np.min(t):g} K", where="temperature", allowed="above 0 K"
+            )
+        factor = self.activation_energy / (GAS_CONSTANT * np.log(10.0))
+        return scalar_or_array(factor * (1.0 / t - 1.0 / self.reference_temperature))
+
+    def __str__(self) -> str:
+        energy = f"{self.activation_energy / 1e3:.4g} kJ/mol"
+        return f"Arrhenius {energy}, residual {self.rms:.2g} decades"
+
+
+def fit_wlf(
+    temperatures: ArrayLike, log10_shift_factors: ArrayLike, reference_temperature: float
+) -> WlfShift:
+    """Return the WLF law through measured shift factors, by least squares in decades.
+
+    ``temperatures`` K and ``log10_shift_factors`` (n,), n >= 3. C2 is searched over a grid (C1 is
+    linear once C2 is fixed) and refined, so no starting value is needed.
+    """
+    t, shifts = _checked(temperatures, log10_shift_factors, 3)
+    away = t - reference_temperature
+    lowest = max(-float(away.min()), 0.0)
+
+    def solved(log_margin: float) -> tuple[float, float, float]:
+        c2 = lowest + float(np.exp(log_margin))
+        shape = -away / (c2 + away)
+        c1 = float(shape @ shifts / (shape @ shape))
+        return float(np.sum((c1 * shape - shifts) ** 2)), c1, c2
+
+    grid = np.linspace(np.log(1.0), np.log(3000.0), 200)
+    cost, c1, c2 = solved(minimum_on(grid, lambda g: solved(g)[0], 1e-10))
+    tested = (float(t.min()), float(t.max()))
+    return WlfShift(c1, c2, float(reference_temperature), float(np.sqrt(cost / t.size)), tested)
+
+
+def fit_arrhenius(
+    temperatures: ArrayLike, log10_shift_factors: ArrayLike, reference_temperature: float
+) -> ArrheniusShift:
+    """Return the Arrhenius law through measured shift factors, by least squares in decades.
+
+    ``temperatures`` K and ``log10_shift_factors`` (n,), n >= 2.
+    """
+    t, shifts = _checked(temperatures, log10_shift_factors, 2)
+    inverse = (1.0 / t - 1.0 / reference_temperature) / (GAS_CONSTANT * np.log(10.0))
+    energy = float(inverse @ shifts / (inverse @ inverse))
+    rms = float(np.sqrt(np.mean((energy * inverse - shifts) ** 2)))
+    tested = (float(t.min()), float(t.max()))
+    return ArrheniusShift(energy, float(reference_temperature), rms, tested)
+
+
+def _checked(
+    temperatures: ArrayLike, shifts: ArrayLike, least: int
+) -> tuple[np.ndarray, np.ndarray]:
+    t, s = np.asarray(temperatures, dtype=float), np.asarray(shifts, dtype=float)
+    if t.ndim != 1 or t.shape != s.shape or np.unique(t).size < least:
+        raise DataError(
+            f"{t.size} temperatures and {s.size} shift factors",
+            where="shift factors",
+            allowed=f"the same number of each, {least} different temperatures or more",
+        )
+    if not (np.all(np.isfinite(t)) and np.all(np.isfinite(s)) and np.all(t > 0.0)):
+        raise DataError(
+            "a temperature or shift factor is missing", where="shift factors", allowed="kelvin"
+        )
+    return t, s
+
 
 Test = TypeVar("Test", DynamicSweep, RelaxationCurve)
 
@@ -39,9 +230,8 @@ class ShiftTable:
     @property
     def arrhenius(self) -> ArrheniusShift:
         """The Arrhenius law through the shift factors."""
-        return fit_arrhenius(
-            self.temperatures, self.log10_shift_factors, self.reference_temperature
-        )
+        shifts = self.log10_shift_factors
+        return fit_arrhenius(self.temperatures, shifts, self.reference_temperature)
 
     @property
     def law(self) -> WlfShift | ArrheniusShift:
@@ -64,12 +254,8 @@ class DynamicMasterCurve:
     def spectrum(self, **settings: Any) -> SpectrumFit:
         """Return ``fit_dynamic`` of the master curve."""
         name = f"DMA master curve at {self.shifts.reference_temperature:.2f} K"
-        return fit_dynamic(
-            self.angular_frequency,
-            self.storage_modulus,
-            self.loss_modulus,
-            **{"source": name, **settings},
-        )
+        moduli = self.storage_modulus, self.loss_modulus
+        return fit_dynamic(self.angular_frequency, *moduli, **{"source": name, **settings})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,11 +270,7 @@ class RelaxationMasterCurve:
     def spectrum(self, **settings: Any) -> SpectrumFit:
         """Return ``fit_relaxation`` of the master curve."""
         name = f"relaxation master curve at {self.shifts.reference_temperature:.2f} K"
-        return fit_relaxation(
-            self.time,
-            self.modulus,
-            **{"source": name, **settings},
-        )
+        return fit_relaxation(self.time, self.modulus, **{"source": name, **settings})
 
 
 def dynamic_master_curve(
@@ -123,9 +305,7 @@ def dynamic_master_curve(
     used = slice(0, 1 if shift_by == "storage" else 2)
     y = [np.log10(np.array([s.storage_modulus, s.loss_modulus])[used]) for s in ordered]
     shifts = _shift_table(x, y, temperatures, reference_temperature)
-    w = np.concatenate(
-        [10.0 ** (a + s) for a, s in zip(x, shifts.log10_shift_factors, strict=True)]
-    )
+    w = _reduced(x, shifts)
     order = np.argsort(w, kind="stable")
     return DynamicMasterCurve(
         w[order],
@@ -148,19 +328,19 @@ def relaxation_master_curve(
     x = [-np.log10(c.time) for c in ordered]
     y = [np.log10(c.modulus)[None, :] for c in ordered]
     shifts = _shift_table(x, y, temperatures, reference_temperature)
-    time = np.concatenate(
-        [10.0 ** (-a - s) for a, s in zip(x, shifts.log10_shift_factors, strict=True)]
-    )
-    reduced, place = np.unique(time, return_inverse=True)
+    reduced, place = np.unique(_reduced(x, shifts, -1.0), return_inverse=True)
     count = np.bincount(place)
     modulus = np.bincount(place, np.concatenate([c.modulus for c in ordered])) / count
     kelvin = np.bincount(place, np.repeat(temperatures, [a.size for a in x])) / count
     return RelaxationMasterCurve(reduced, modulus, kelvin, shifts)
 
 
-def _by_temperature(
-    tests: Sequence[Test],
-) -> tuple[list[Test], np.ndarray]:
+def _reduced(x: Sequence[np.ndarray], shifts: ShiftTable, sign: float = 1.0) -> np.ndarray:
+    pairs = zip(x, shifts.log10_shift_factors, strict=True)
+    return np.concatenate([10.0 ** (sign * (a + shift)) for a, shift in pairs])
+
+
+def _by_temperature(tests: Sequence[Test]) -> tuple[list[Test], np.ndarray]:
     if len(tests) < 2:
         raise DataError(
             f"{len(tests)} temperature(s)", where="master curve", allowed="two temperatures or more"
@@ -199,11 +379,17 @@ def _shift_table(
         )
     steps, errors, mismatch = [], [], []
     for i in range(len(x) - 1):
-        _check_overlap(y[i], y[i + 1], temperatures[i], temperatures[i + 1])
+        # A modulus that rises with frequency overlaps in frequency only where it does in size.
+        apart = y[i + 1][0].max() < y[i][0].min()
         step, error, rms = best_shift(x[i], y[i], x[i + 1], y[i + 1])
         gap = max(x[i].min(), x[i + 1].min() + step) - min(x[i].max(), x[i + 1].max() + step)
-        if gap > 0.0:
-            raise _no_overlap(temperatures[i], temperatures[i + 1])
+        if apart or gap > 0.0:
+            raise DataError(
+                f"the moduli at {temperatures[i]:.2f} K and {temperatures[i + 1]:.2f} K do not "
+                "overlap",
+                where="master curve",
+                remedy="Test a temperature between them, or widen the frequencies",
+            )
         steps.append(step)
         errors.append(error)
         mismatch.append(rms * np.log(10.0))
@@ -217,18 +403,4 @@ def _shift_table(
         np.sqrt(np.abs(variance - variance[nearest])),
         np.array(mismatch),
         float(reference),
-    )
-
-
-def _check_overlap(colder: np.ndarray, hotter: np.ndarray, t_cold: float, t_hot: float) -> None:
-    # A modulus that rises with frequency overlaps in frequency only where it overlaps in size.
-    if hotter[0].max() < colder[0].min():
-        raise _no_overlap(t_cold, t_hot)
-
-
-def _no_overlap(t_cold: float, t_hot: float) -> DataError:
-    return DataError(
-        f"the moduli at {t_cold:.2f} K and {t_hot:.2f} K do not overlap",
-        where="master curve",
-        remedy="Test a temperature between them, or widen the frequencies",
     )

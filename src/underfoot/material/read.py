@@ -1,15 +1,16 @@
 """Readers of relaxation tests, dynamic sweeps and Prony series."""
 
+import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from underfoot.core import DataError, InputError, to_si
+from underfoot.core import DataError, InputError, nearest_match, text, to_si
 
-from ._tables import TestTable, read_table
 from .curves import DynamicSweep, RelaxationCurve
 from .elastomer import young_from_shear
 from .spectrum import RelaxationSpectrum
@@ -24,6 +25,134 @@ SET = ("Set", "sweep", "run", "segment")
 TAU = ("tau", "tau_i", "relaxation time", "relaxation_time", "time")
 TERM = ("E_i", "G_i", "E", "G", "modulus", "term modulus")
 FRACTION = ("e_i", "g_i", "alpha_i", "alpha", "fraction", "normalised modulus")
+_NUMBER = re.compile(r"^[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?$")
+_HEAD = re.compile(r"^\s*(.*?)\s*[\[(]\s*([^\])]*?)\s*[\])]\s*$")
+
+
+@dataclass(frozen=True, slots=True)
+class _Table:
+    """Columns by name as printed, their units ("" where not given) and where they came from.
+
+    ``stated`` gives units by column name or quantity where the file has none, or other ones.
+    """
+
+    columns: dict[str, np.ndarray]
+    units: dict[str, str]
+    stated: Mapping[str, str]
+    where: str
+    first_row: int
+
+    def named(self, aliases: Sequence[str]) -> str | None:
+        """Return the heading that is one of ``aliases``; case counts only for short symbols.
+
+        t is a time and T a temperature, but "Time" and "TIME" are the same.
+        """
+        for alias in aliases:
+            for name in self.columns:
+                if name == alias or (len(alias) > 2 and name.casefold() == alias.casefold()):
+                    return name
+        return None
+
+    def column(self, aliases: Sequence[str], unit: str, what: str) -> np.ndarray:
+        """Return the column that has one of the ``aliases``, in SI ``unit``."""
+        name = self.named(aliases)
+        if name is None:
+            near = (nearest_match(column, aliases) for column in self.columns)
+            raise DataError(
+                f"no column for {what} among {', '.join(self.columns)}",
+                where=self.where,
+                allowed=f"one named {', '.join(aliases[:6])}",
+                nearest=next(filter(None, near), None),
+            )
+        values, where = self.columns[name], f"{self.where}, column {name}"
+        missing = np.flatnonzero(~np.isfinite(values))
+        if missing.size:
+            raise DataError(
+                f"{missing.size} of {values.size} values are missing in the column {name}, the "
+                f"first in line {self.first_row + missing[0]}",
+                where=self.where,
+                remedy="Remove the rows, or repair them at their source",
+            )
+        written = (self.stated.get(name) or self.stated.get(what) or self.units[name]).strip()
+        if written in ("", "-"):
+            raise DataError(
+                "no unit is given",
+                where=where,
+                allowed=f"a unit of {unit} in the heading, in a row below it, or as an argument",
+            )
+        if unit == "rad/s" and written.casefold() in ("hz", "khz", "1/s"):
+            return values * (2.0 * np.pi * (1e3 if written.casefold() == "khz" else 1.0))
+        try:
+            zero, one = (to_si(f"{n} {written}", unit, where=where) for n in (0, 1))
+        except InputError as error:
+            raise DataError(
+                error.what, where=where, allowed=error.allowed, nearest=error.nearest
+            ) from error
+        return values * (one - zero) + zero
+
+
+def _read_table(path: Path | str, units: Mapping[str, str] | None) -> _Table:
+    """Return the first table of a text file with one row of headings.
+
+    Separators may be comma, semicolon, tab or blanks; decimal commas are read where commas do
+    not separate; a row of units may follow the headings, or units stand in brackets there.
+    """
+    where = str(path)
+    lines = text.with_content(text.numbered_lines(path, "Export it as text"))
+    if len(lines) < 2:
+        raise DataError("the file holds no table", where=where, allowed="headings and rows")
+    separator = next((s for s in (";", "\t", ",") if s in lines[0][1]), None)
+    rows = [(i, text.cells_of(line, separator)) for i, line in lines]
+    names, own_units, body = _headings(rows, where)
+    comma = separator != "," and any("," in cell for _, row in body for cell in row)
+    columns = np.empty((len(body), len(names)))
+    for place, (i, row) in enumerate(body):
+        if len(row) != len(names):
+            hint = None
+            if separator == "," and len(row) in (2 * len(names), 2 * len(names) - 1):
+                hint = "Commas seem to be both separator and decimal sign: export with semicolons"
+            raise DataError(
+                f"line {i} has {len(row)} values for {len(names)} headings",
+                where=where,
+                remedy=hint,
+            )
+        columns[place] = text.row_of_numbers(row, comma, i, where)
+    return _Table(
+        dict(zip(names, columns.T, strict=True)),
+        dict(zip(names, own_units, strict=True)),
+        units or {},
+        where,
+        body[0][0],
+    )
+
+
+def _headings(
+    rows: list[tuple[int, list[str]]], where: str
+) -> tuple[list[str], list[str], list[tuple[int, list[str]]]]:
+    heads = rows[0][1]
+    if all(_NUMBER.match(cell) for cell in heads if cell):
+        raise DataError(
+            "the first line holds numbers and no headings",
+            where=where,
+            remedy="Name the columns with their units, for example: f (Hz), E_stor (MPa)",
+        )
+    body = rows[1:]
+    while len(heads) > 1 and heads[-1] == "" and all(row[-1] == "" for _, row in body):
+        heads = heads[:-1]
+        body = [(i, row[:-1]) for i, row in body]
+    matched = [_HEAD.match(head) for head in heads]
+    names = [m.group(1) if m else head for m, head in zip(matched, heads, strict=True)]
+    units = [m.group(2) if m else "" for m in matched]
+    if len(set(names)) < len(names):
+        raise DataError(f"a heading occurs twice: {', '.join(names)}", where=where)
+    second = body[0][1]
+    if not any(_NUMBER.match(cell) for cell in second):
+        if len(second) == len(names):
+            units = [u or cell for u, cell in zip(units, second, strict=True)]
+        body = body[1:]
+    if not body:
+        raise DataError("there are headings but no numbers", where=where)
+    return names, units, body
 
 
 def read_dynamic(path: Path | str, *, units: Mapping[str, str] | None = None) -> list[DynamicSweep]:
@@ -37,13 +166,13 @@ def read_dynamic(path: Path | str, *, units: Mapping[str, str] | None = None) ->
     Raises:
         DataError: Columns, units or values missing; values at or below zero; the file unreadable.
     """
-    table, column_units = read_table(path), dict(units or {})
-    w = table.required(FREQUENCY, "rad/s", column_units, "frequency")
-    storage = table.required(STORAGE, "Pa", column_units, "storage modulus")
-    loss = table.required(LOSS, "Pa", column_units, "loss modulus")
+    table = _read_table(path, units)
+    w = table.column(FREQUENCY, "rad/s", "frequency")
+    storage = table.column(STORAGE, "Pa", "storage modulus")
+    loss = table.column(LOSS, "Pa", "loss modulus")
     return [
         DynamicSweep(w[rows], storage[rows], loss[rows], temperature, source=table.where)
-        for rows, temperature in _sets(table, column_units, w.size)
+        for rows, temperature in _sets(table, w.size)
     ]
 
 
@@ -58,11 +187,11 @@ def read_relaxation(
     Raises:
         DataError: Columns, units or values missing; times neither ascending nor descending.
     """
-    table, column_units = read_table(path), dict(units or {})
-    time = table.required(TIME, "s", column_units, "time")
-    modulus = table.required(RELAX, "Pa", column_units, "relaxation modulus")
+    table = _read_table(path, units)
+    time = table.column(TIME, "s", "time")
+    modulus = table.column(RELAX, "Pa", "relaxation modulus")
     curves = []
-    for rows, temperature in _sets(table, column_units, time.size):
+    for rows, temperature in _sets(table, time.size):
         t, e = time[rows], modulus[rows]
         if t.size > 1 and np.all(np.diff(t) < 0.0):
             t, e = t[::-1], e[::-1]
@@ -98,89 +227,79 @@ def read_prony(
     path = Path(path)
     if path.suffix.casefold() == ".toml":
         return _prony_toml(path, poisson_ratio)
-    table, column_units = read_table(path), dict(units or {})
-    tau = table.required(TAU, "s", column_units, "relaxation time")
-    exact = set(table.columns)
-    fraction_names = [name for name in FRACTION if name in exact]
-    term_names = [name for name in TERM if name in exact]
-    is_shear = any(name in exact for name in ("G_i", "g_i", "G"))
-    if fraction_names:
-        fractions, terms = table.columns[fraction_names[0]], None
-    elif term_names:
-        fractions, terms = None, table.required(term_names[:1], "Pa", column_units, "term modulus")
-    else:
+    table = _read_table(path, units)
+    tau = table.column(TAU, "s", "relaxation time")
+    absolute = [name for name in TERM if name in table.columns]
+    fractions = [name for name in FRACTION if name in table.columns]
+    if not fractions and not absolute:
         raise DataError(
             f"no column of terms among {', '.join(table.columns)}",
             where=str(path),
             allowed="E_i or G_i (with unit), e_i or g_i (fractions)",
         )
     spectrum = _prony(
-        tau, terms, fractions, instantaneous_modulus, equilibrium_modulus, str(path), str(path)
+        tau,
+        table.columns[fractions[0]]
+        if fractions
+        else table.column(absolute[:1], "Pa", "term modulus"),
+        bool(fractions),
+        instantaneous_modulus,
+        equilibrium_modulus,
+        str(path),
+        str(path),
     )
-    return (
-        young_from_shear(spectrum, poisson_ratio)
-        if (shear or (shear is None and is_shear))
-        else spectrum
-    )
+    if shear is None:
+        shear = any(name in table.columns for name in ("G_i", "g_i", "G"))
+    return young_from_shear(spectrum, poisson_ratio) if shear else spectrum
 
 
 def _prony(
     tau: np.ndarray,
-    terms: np.ndarray | None,
-    fractions: np.ndarray | None,
+    terms: np.ndarray,
+    fractions: bool,
     instantaneous: float | None,
     equilibrium: float | None,
     where: str,
     source: str,
 ) -> RelaxationSpectrum:
-    if (instantaneous is None) == (equilibrium is None):
+    """Return the spectrum of terms in Pa, or in ``fractions`` of the instantaneous modulus."""
+    level, from_start = (equilibrium, False) if instantaneous is None else (instantaneous, True)
+    if level is None or (from_start and equilibrium is not None):
         raise DataError(
             "a Prony series needs either the instantaneous or the equilibrium modulus",
             where=where,
             allowed="one of instantaneous_modulus and equilibrium_modulus",
         )
-    if fractions is not None:
-        total = float(np.sum(fractions))
-        if not (
-            np.all(np.isfinite(fractions)) and np.all(fractions >= 0.0) and total <= 1.0 + 1e-6
-        ):
+    total = float(np.sum(terms))
+    if fractions:
+        if not (np.all(np.isfinite(terms)) and np.all(terms >= 0.0) and total <= 1.0 + 1e-6):
             raise DataError(
                 f"fractions of the instantaneous modulus sum to {total:g}",
                 where=where,
                 allowed="fractions of 0 or more that sum to 1 at most",
                 remedy="If they are fractions of the equilibrium modulus, give absolute terms",
             )
-        if instantaneous is None:
-            if total >= 1.0 - 1e-12:
-                raise DataError(
-                    "the fractions sum to 1, so the equilibrium modulus is zero",
-                    where=where,
-                    remedy="Give the instantaneous modulus",
-                )
-            assert equilibrium is not None  # exactly one of the two is given
-            instantaneous = equilibrium / (1.0 - total)
-        terms = fractions * instantaneous
-        equilibrium = max(instantaneous * (1.0 - total), 0.0)
-    assert terms is not None  # either terms or fractions are given by the callers
-    if equilibrium is None:
-        assert instantaneous is not None  # exactly one of the two is given
-        equilibrium = instantaneous - float(np.sum(terms))
-        if equilibrium < -1e-6 * instantaneous:
+        if not from_start and total >= 1.0 - 1e-12:
             raise DataError(
-                f"the terms sum to {np.sum(terms):g} Pa, more than the instantaneous modulus "
-                f"{instantaneous:g} Pa",
+                "the fractions sum to 1, so the equilibrium modulus is zero",
+                where=where,
+                remedy="Give the instantaneous modulus",
+            )
+        start = level if from_start else level / (1.0 - total)
+        terms, level = terms * start, max(start * (1.0 - total), 0.0)
+    elif from_start:
+        if level - total < -1e-6 * level:
+            raise DataError(
+                f"the terms sum to {total:g} Pa, more than the instantaneous modulus {level:g} Pa",
                 where=where,
             )
-        equilibrium = max(equilibrium, 0.0)
-    return RelaxationSpectrum(equilibrium, terms, tau, source=source)
+        level = max(level - total, 0.0)
+    return RelaxationSpectrum(level, terms, tau, source=source)
 
 
 def _prony_toml(path: Path, poisson_ratio: float) -> RelaxationSpectrum:
     try:
-        with path.open("rb") as stream:
-            data = tomllib.load(stream)
-    except FileNotFoundError:
-        raise DataError("there is no such file", where=str(path)) from None
+        data = tomllib.loads(text.existing(path).read_text(encoding="utf-8"))
     except tomllib.TOMLDecodeError as error:
         raise DataError(f"not valid TOML: {error}", where=str(path)) from error
     kind = data.get("modulus", "young")
@@ -191,35 +310,31 @@ def _prony_toml(path: Path, poisson_ratio: float) -> RelaxationSpectrum:
     items: list[dict[str, Any]] = data.get("term", [])
     if not items:
         raise DataError("there are no [[term]] tables", where=str(path))
-    tau = np.array(
-        [
-            to_si(_key(t, "relaxation_time", path, i), "s", where=f"term {i}.relaxation_time")
-            for i, t in enumerate(items, 1)
-        ]
-    )
     with_fraction = ["fraction" in item for item in items]
     if any(with_fraction) and not all(with_fraction):
         raise DataError("some terms have a fraction and some a modulus", where=str(path))
-    terms = fractions = None
-    if all(with_fraction):
-        fractions = np.array([float(item["fraction"]) for item in items])
-    else:
-        terms = np.array(
-            [
-                to_si(_key(t, "modulus", path, i), "Pa", where=f"term {i}.modulus")
-                for i, t in enumerate(items, 1)
-            ]
+
+    def values(key: str, unit: str) -> np.ndarray:
+        for i, item in enumerate(items, 1):
+            if key not in item:
+                raise DataError(f"term {i} has no {key}", where=str(path), allowed=f"{key} = text")
+        return np.array(
+            [to_si(t[key], unit, where=f"term {i}.{key}") for i, t in enumerate(items, 1)]
         )
-    levels = {
-        name: to_si(data[name], "Pa", where=name) if name in data else None
+
+    tau = values("relaxation_time", "s")
+    instantaneous, equilibrium = (
+        to_si(data[name], "Pa", where=name) if name in data else None
         for name in ("instantaneous_modulus", "equilibrium_modulus")
-    }
+    )
     spectrum = _prony(
         tau,
-        terms,
-        fractions,
-        levels["instantaneous_modulus"],
-        levels["equilibrium_modulus"],
+        np.array([float(item["fraction"]) for item in items])
+        if all(with_fraction)
+        else values("modulus", "Pa"),
+        all(with_fraction),
+        instantaneous,
+        equilibrium,
         str(path),
         str(data.get("source", path)),
     )
@@ -228,16 +343,9 @@ def _prony_toml(path: Path, poisson_ratio: float) -> RelaxationSpectrum:
     return spectrum
 
 
-def _key(item: Mapping[str, Any], key: str, path: Path, number: int) -> Any:
-    if key not in item:
-        raise DataError(f"term {number} has no {key}", where=str(path), allowed=f"{key} = text")
-    return item[key]
-
-
-def _sets(
-    table: TestTable, units: Mapping[str, str], count: int
-) -> list[tuple[np.ndarray, float | None]]:
-    kelvin = table.column(TEMPERATURE, "K", units, "temperature")
+def _sets(table: _Table, count: int) -> list[tuple[np.ndarray, float | None]]:
+    tested = table.named(TEMPERATURE) is not None
+    kelvin = table.column(TEMPERATURE, "K", "temperature") if tested else None
     label = table.named(SET)
     if label is not None:
         numbers = table.columns[label]

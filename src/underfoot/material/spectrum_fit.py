@@ -1,23 +1,98 @@
-"""Relaxation spectra fitted to measurements: non-negative, smooth, with an error band."""
+"""Relaxation spectra fitted to measurements or to longer spectra: non-negative and smooth."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import InputError
+from underfoot.core import InputError, RangeError
 
-from ._kernels import maxwell
 from .curves import checked_curve
 from .spectrum import RelaxationSpectrum
 
+Kernel = Callable[[np.ndarray, np.ndarray], np.ndarray]
 GOOD, BAD = 0.05, 0.20
 SMOOTHINGS = np.logspace(-5.0, 1.0, 25)
 SLACK = 1.10
 TERMS_PER_DECADE = 4
 NOISE = 0.002
 SAMPLES = 100
+
+
+def relaxation_kernel(time: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """Return columns [1, exp(-t / tau_k)], (n, 1 + m)."""
+    return np.column_stack([np.ones(time.size), np.exp(-time[:, None] / times)])
+
+
+def storage_kernel(w: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """Return columns [1, (w tau)^2 / (1 + (w tau)^2)], (n, 1 + m)."""
+    x2 = (w[:, None] * times) ** 2
+    return np.column_stack([np.ones(w.size), x2 / (1.0 + x2)])
+
+
+def loss_kernel(w: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """Return columns [0, w tau / (1 + (w tau)^2)], (n, 1 + m)."""
+    x = w[:, None] * times
+    return np.column_stack([np.zeros(w.size), x / (1.0 + x * x)])
+
+
+def smooth_nonnegative(
+    kernel: np.ndarray, target: np.ndarray, scale: np.ndarray, step: float, smoothing: float
+) -> np.ndarray:
+    """Return x >= 0 minimising mean (kernel x - target)^2 + smoothing^2 mean (s'')^2.
+
+    s = x[1:] / (scale step) is the spectrum per decade relative to the local modulus ``scale``
+    (m,), ``step`` the spacing of the relaxation times in decades, '' the derivative by the
+    decade. Column 0 is the equilibrium modulus and not smoothed.
+    """
+    from scipy.optimize import nnls
+
+    n, m = kernel.shape[0], scale.size
+    columns = np.concatenate([[scale[-1]], scale])
+    rough = (np.diff(np.eye(m), 2, axis=0) if m > 2 else np.zeros((0, m))) / step**3
+    penalty = np.hstack([np.zeros((rough.shape[0], 1)), rough])
+    matrix = np.vstack([kernel * columns / np.sqrt(n), penalty * (smoothing / np.sqrt(m))])
+    goal = np.concatenate([target / np.sqrt(n), np.zeros(rough.shape[0])])
+    solution, _ = nnls(matrix, goal, maxiter=50 * (m + 1))
+    return solution * columns
+
+
+def nonnegative(matrix: np.ndarray, goal: np.ndarray) -> np.ndarray:
+    """Return x >= 0 minimising |matrix x - goal|, its columns scaled to one size."""
+    from scipy.optimize import nnls
+
+    size = np.linalg.norm(matrix, axis=0)
+    return nnls(matrix / size, goal)[0] / size
+
+
+def check_terms(per_decade: int) -> None:
+    """Refuse less than one term a decade."""
+    if per_decade < 1:
+        raise RangeError(
+            f"{per_decade} terms a decade", where="terms_per_decade", allowed="1 or more"
+        )
+
+
+def run_length(residual: np.ndarray) -> int:
+    """Return over how many neighbours residuals are correlated (first-order autoregression)."""
+    if residual.size < 8:
+        return 1
+    centred = residual - residual.mean()
+    power = float(centred @ centred)
+    if power == 0.0:
+        return 1
+    rho = min(max(float(centred[1:] @ centred[:-1]) / power, 0.0), 0.9)
+    return max(1, min(round((1.0 + rho) / (1.0 - rho)), residual.size // 8 or 1))
+
+
+def random_signs(n: int, run: int, generator: np.random.Generator) -> np.ndarray:
+    """Return n signs, equal within runs of ``run`` with a random start."""
+    count = n // run + 2
+    signs = np.repeat(generator.choice([-1.0, 1.0], count), run)
+    start = int(generator.integers(run)) if run > 1 else 0
+    return signs[start : start + n]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,8 +107,31 @@ class ModulusBand:
     extrapolated: np.ndarray
 
 
+class Judged:
+    """What the relative residuals of a fit say about it."""
+
+    __slots__ = ()
+    residual: Any
+
+    @property
+    def rms_residual(self) -> float:
+        """Root mean square of the relative residuals."""
+        return float(np.sqrt(np.mean(self.residual**2)))
+
+    @property
+    def largest_residual(self) -> float:
+        """Largest relative residual."""
+        return float(np.max(np.abs(self.residual)))
+
+    @property
+    def quality(self) -> str:
+        """Return "good" (rms residual up to 5 %), "rough" (up to 20 %) or "bad"."""
+        rms = self.rms_residual
+        return "good" if rms <= GOOD else "rough" if rms <= BAD else "bad"
+
+
 @dataclass(frozen=True, slots=True, eq=False)
-class SpectrumFit:
+class SpectrumFit(Judged):
     """A fitted spectrum with what a reader must know about it.
 
     Residuals are relative to the measured values. ``frequency_range`` (rad/s) is where the
@@ -50,19 +148,9 @@ class SpectrumFit:
     """Their relaxation times, (repetitions, terms), s."""
 
     @property
-    def rms_residual(self) -> float:
-        """Root mean square of the relative residuals of all quantities."""
-        return float(np.sqrt(np.mean(np.concatenate(list(self.residuals.values())) ** 2)))
-
-    @property
-    def largest_residual(self) -> float:
-        """Largest relative residual."""
-        return max(float(np.max(np.abs(part))) for part in self.residuals.values())
-
-    @property
-    def quality(self) -> str:
-        """Return "good" (rms residual up to 5 %), "rough" (up to 20 %) or "bad"."""
-        return quality(self.rms_residual)
+    def residual(self) -> np.ndarray:
+        """Relative residuals of all quantities, one after the other."""
+        return np.concatenate(list(self.residuals.values()))
 
     def band(self, angular_frequency: ArrayLike, level: float = 0.95) -> ModulusBand:
         """Return the band of E' and E'' that holds ``level`` of the repeated fits.
@@ -82,14 +170,14 @@ class SpectrumFit:
         if not 0.0 < level < 1.0:
             raise InputError(f"level {level:g}", where="level", allowed="between 0 and 1")
         pairs = list(zip(self.samples, self.sample_times, strict=True))
-        storage = np.array([maxwell.storage_kernel(w, times) @ x for x, times in pairs])
-        loss = np.array([maxwell.loss_kernel(w, times) @ x for x, times in pairs])
         tails = [0.5 * (1.0 - level), 0.5 * (1.0 + level)]
+        storage, loss = (
+            np.quantile([kernel(w, times) @ x for x, times in pairs], tails, axis=0)
+            for kernel in (storage_kernel, loss_kernel)
+        )
         low, high = self.frequency_range
-        storage_band = np.quantile(storage, tails, axis=0)
-        loss_band = np.quantile(loss, tails, axis=0)
         outside = (w < low * (1.0 - 1e-9)) | (w > high * (1.0 + 1e-9))
-        return ModulusBand(w, storage_band[0], storage_band[1], loss_band[0], loss_band[1], outside)
+        return ModulusBand(w, storage[0], storage[1], loss[0], loss[1], outside)
 
     def __str__(self) -> str:
         parts = ", ".join(
@@ -98,11 +186,6 @@ class SpectrumFit:
             for name, r in self.residuals.items()
         )
         return f"{len(self.spectrum)} terms, {self.quality} ({parts})"
-
-
-def quality(rms_residual: float) -> str:
-    """Return "good" (up to 5 %), "rough" (up to 20 %) or "bad" for a relative residual."""
-    return "good" if rms_residual <= GOOD else "rough" if rms_residual <= BAD else "bad"
 
 
 def fit_relaxation(
@@ -137,15 +220,11 @@ def fit_relaxation(
     t, values = checked_curve(time, modulus)
     times = _times(t[0], t[-1], terms_per_decade)
 
-    def kernels(tau: np.ndarray) -> list[np.ndarray]:
-        return [maxwell.relaxation_kernel(t, tau) / values[:, None]]
-
-    scale = np.exp(np.interp(np.log(times), np.log(t), np.log(values)))
     return _fit(
-        ("relaxation modulus",),
-        kernels,
+        t,
+        {"relaxation modulus": (relaxation_kernel, values)},
         times,
-        scale,
+        np.exp(np.interp(np.log(times), np.log(t), np.log(values))),
         (1.0 / t[-1], 1.0 / t[0]),
         noise,
         source or "generalised Maxwell fit to a relaxation curve",
@@ -183,15 +262,9 @@ def fit_dynamic(
     order = np.argsort(-np.log(w), kind="stable")
     scale = np.exp(np.interp(np.log(times), -np.log(w)[order], np.log(size)[order]))
 
-    def kernels(tau: np.ndarray) -> list[np.ndarray]:
-        return [
-            maxwell.storage_kernel(w, tau) / storage[:, None],
-            maxwell.loss_kernel(w, tau) / loss[:, None],
-        ]
-
     return _fit(
-        ("storage modulus", "loss modulus"),
-        kernels,
+        w,
+        {"storage modulus": (storage_kernel, storage), "loss modulus": (loss_kernel, loss)},
         times,
         scale,
         (float(w[0]), float(w[-1])),
@@ -202,17 +275,14 @@ def fit_dynamic(
 
 
 def _times(shortest: float, longest: float, per_decade: int) -> np.ndarray:
-    if per_decade < 1:
-        raise InputError(
-            f"{per_decade} terms a decade", where="terms_per_decade", allowed="1 or more"
-        )
+    check_terms(per_decade)
     n = max(2, round(per_decade * np.log10(longest / shortest)) + 1)
     return np.geomspace(shortest, longest, n)
 
 
 def _fit(
-    names: Sequence[str],
-    kernels: Callable[[np.ndarray], list[np.ndarray]],
+    axis: np.ndarray,
+    measured: Mapping[str, tuple[Kernel, np.ndarray]],
     times: np.ndarray,
     scale: np.ndarray,
     frequency_range: tuple[float, float],
@@ -220,76 +290,107 @@ def _fit(
     source: str,
     seed: int,
 ) -> SpectrumFit:
-    blocks = kernels(times)
-    sizes = [block.shape[0] for block in blocks]
-    edges = np.cumsum(sizes)[:-1]
+    edges = np.arange(1, len(measured)) * axis.size
     step = float(np.log10(times[-1] / times[0])) / (times.size - 1)
-    stacked = np.vstack(blocks)
+
+    def relative(tau: np.ndarray) -> np.ndarray:
+        return np.vstack([kernel(axis, tau) / y[:, None] for kernel, y in measured.values()])
+
+    def solved(matrix: np.ndarray, goal: np.ndarray, smoothing: float) -> np.ndarray:
+        return smooth_nonnegative(matrix * weight[:, None], goal, scale, step, float(smoothing))
+
+    stacked = relative(times)
     weight = np.ones(stacked.shape[0])
-    smallest = SMOOTHINGS[0]
-    for _ in range(2 if len(blocks) > 1 else 0):
-        rough = maxwell.smooth_nonnegative(
-            stacked * weight[:, None], weight, scale, step, float(smallest)
-        )
+    for _ in range(2 if len(measured) > 1 else 0):
+        rough = solved(stacked, weight, SMOOTHINGS[0])
         errors = np.split(stacked @ rough - 1.0, edges)
         spread = np.array([max(float(np.sqrt(np.mean(e**2))), 1e-4) for e in errors])
-        weight = np.repeat(spread.min() / spread, sizes)
-    matrix, goal = stacked * weight[:, None], weight
-    smoothing, solution = _smoothest(matrix, goal, scale, step, noise)
-    residual = stacked @ solution - 1.0
-    samples, sample_times = _repetitions(
-        kernels, weight, times, scale, step, smoothing, solution, seed
-    )
-    spectrum = RelaxationSpectrum(solution[0], solution[1:], times, source=source)
-    return SpectrumFit(
-        spectrum,
-        dict(zip(names, np.split(residual, edges), strict=True)),
-        frequency_range,
-        smoothing,
-        samples,
-        sample_times,
-    )
+        weight = np.repeat(spread.min() / spread, axis.size)
+    solutions = [solved(stacked, weight, s) for s in SMOOTHINGS]
+    matrix = stacked * weight[:, None]
+    rms = np.array([np.sqrt(np.mean((matrix @ x - weight) ** 2)) for x in solutions])
+    best = int(np.flatnonzero(rms <= max(SLACK * float(rms.min()), noise, 1e-6))[-1])
+    smoothing, solution = float(SMOOTHINGS[best]), solutions[best]
 
-
-def _smoothest(
-    matrix: np.ndarray, goal: np.ndarray, scale: np.ndarray, step: float, noise: float
-) -> tuple[float, np.ndarray]:
-    solutions = [
-        maxwell.smooth_nonnegative(matrix, goal, scale, step, float(s)) for s in SMOOTHINGS
-    ]
-    rms = np.array([np.sqrt(np.mean((matrix @ x - goal) ** 2)) for x in solutions])
-    limit = max(SLACK * float(rms.min()), noise, 1e-6)
-    best = int(np.flatnonzero(rms <= limit)[-1])
-    return float(SMOOTHINGS[best]), solutions[best]
-
-
-def _repetitions(
-    kernels: Callable[[np.ndarray], list[np.ndarray]],
-    weight: np.ndarray,
-    times: np.ndarray,
-    scale: np.ndarray,
-    step: float,
-    smoothing: float,
-    solution: np.ndarray,
-    seed: int,
-) -> tuple[np.ndarray, np.ndarray]:
     generator = np.random.default_rng(seed)
-    blocks = kernels(times)
-    sizes = [block.shape[0] for block in blocks]
-    fitted = weight * (np.vstack(blocks) @ solution)
-    residual = weight - fitted
+    fitted = weight * (stacked @ solution)
     active = min(int(np.count_nonzero(solution)), weight.size // 2)
-    residual = residual * np.sqrt(weight.size / (weight.size - active))
-    runs = [maxwell.run_length(part) for part in np.split(residual, np.cumsum(sizes)[:-1])]
-    rows, moved = [], []
+    residual = (weight - fitted) * np.sqrt(weight.size / (weight.size - active))
+    runs = [run_length(part) for part in np.split(residual, edges)]
+    samples, sample_times = [], []
     for _ in range(SAMPLES):
-        signs = np.concatenate(
-            [maxwell.random_signs(n, run, generator) for n, run in zip(sizes, runs, strict=True)]
-        )
+        signs = np.concatenate([random_signs(axis.size, run, generator) for run in runs])
         strength = smoothing * 10.0 ** generator.uniform(-1.5, 0.5)
         tau = times * 10.0 ** (step * generator.uniform(-0.5, 0.5))
-        matrix = np.vstack(kernels(tau)) * weight[:, None]
-        goal = fitted + signs * residual
-        rows.append(maxwell.smooth_nonnegative(matrix, goal, scale, step, strength))
-        moved.append(tau)
-    return np.array(rows), np.array(moved)
+        samples.append(solved(relative(tau), fitted + signs * residual, strength))
+        sample_times.append(tau)
+    return SpectrumFit(
+        RelaxationSpectrum(solution[0], solution[1:], times, source=source),
+        dict(zip(measured, np.split(stacked @ solution - 1.0, edges), strict=True)),
+        frequency_range,
+        smoothing,
+        np.array(samples),
+        np.array(sample_times),
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ReducedSpectrum:
+    """A spectrum with fewer terms and the largest relative errors of E' and E'' in the range."""
+
+    spectrum: RelaxationSpectrum
+    frequency_range: tuple[float, float]
+    storage_error: float
+    loss_error: float
+
+
+def reduced(
+    spectrum: RelaxationSpectrum,
+    frequency_range: tuple[float, float],
+    *,
+    terms_per_decade: int = 1,
+) -> ReducedSpectrum:
+    """Return the spectrum with evenly spread terms that follow it over ``frequency_range`` only.
+
+    For methods whose cost grows with the number of terms (time marching). Non-negative least
+    squares on the relative errors of E' and E'' at twelve frequencies a decade (rad/s), with half
+    a decade of terms beyond each end; faster terms act as part of the last one, slower ones as
+    part of the equilibrium modulus.
+
+    Raises:
+        InputError: Range not ascending, fewer than one term a decade, no loss in the range.
+    """
+    low, high = frequency_range
+    if not 0.0 < low < high < np.inf:
+        raise InputError(
+            f"{low:g} to {high:g} rad/s", where="frequency_range", allowed="0 < lowest < highest"
+        )
+    check_terms(terms_per_decade)
+    w = np.geomspace(low, high, max(round(12 * np.log10(high / low)), 6) + 1)
+    storage, loss = spectrum.storage_modulus(w), spectrum.loss_modulus(w)
+    if not np.all(loss > 0.0):
+        raise InputError(
+            "the material has no loss in this range",
+            where="frequency_range",
+            remedy="Use its elastic modulus",
+        )
+    edge = np.sqrt(10.0)
+    n = max(round((np.log10(high / low) + 1.0) * terms_per_decade), 1) + 1
+    times = np.geomspace(1.0 / (high * edge), edge / low, n)
+    kernels = ((storage_kernel, storage), (loss_kernel, loss))
+    matrix = np.vstack([kernel(w, times) / y[:, None] for kernel, y in kernels])
+    solution = nonnegative(matrix, np.ones(2 * w.size))
+    keep = solution[1:] > 0.0
+    fewer = RelaxationSpectrum(
+        solution[0],
+        solution[1:][keep],
+        times[keep],
+        source=f"{spectrum.source}; reduced to {int(keep.sum())} terms, {low:g} to {high:g} rad/s",
+        assumed=spectrum.assumed,
+    )
+    return ReducedSpectrum(
+        fewer,
+        (float(low), float(high)),
+        float(np.max(np.abs(fewer.storage_modulus(w) / storage - 1.0))),
+        float(np.max(np.abs(fewer.loss_modulus(w) / loss - 1.0))),
+    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -35,112 +35,41 @@ class Change:
 
 def possible_changes(case: Case) -> list[Change]:
     """Return the changes that make sense for a case, in no order of merit."""
-    return [change for make in _MAKERS if (change := make(case)) is not None]
+    return list(_possible_changes(case))
 
 
-def _new_tread(case: Case) -> Change | None:
-    tread = case.shoe.tread
-    if tread is None:  # the outsole comes from a file
-        return None
-    if (case.value("shoe.tread.depth") or 0.0) >= WORN_OUT:
-        return None
-    return Change(
-        "new_tread",
-        "replace the worn shoe by one with 3 mm of tread (lugs 5 mm, channels 2.5 mm)",
-        "shoe",
-        TREAD,
-    )
-
-
-def _wider_channels(case: Case) -> Change | None:
+def _possible_changes(case: Case) -> Iterator[Change]:
+    shoe, tread_depth = case.shoe, case.value("shoe.tread.depth") or 0.0
+    worn_out = tread_depth < WORN_OUT
+    if shoe.tread is not None and worn_out:  # else the outsole comes from a file
+        action = "replace the worn shoe by one with 3 mm of tread (lugs 5 mm, channels 2.5 mm)"
+        yield Change("new_tread", action, "shoe", TREAD)
     channel = case.value("shoe.tread.channel_width")
-    if not channel or case.value("shoe.tread.depth") < WORN_OUT:
-        return None
-    wider = 1.5 * channel
-    return Change(
-        "wider_channels",
-        f"channels 50 % wider ({wider * 1e3:.1f} mm)",
-        "shoe",
-        {"shoe.tread.channel_width": wider},
-    )
-
-
-def _softer(case: Case) -> Change | None:
-    hardness = case.shoe.material.shore_a
-    if hardness is None or case.shoe.material.modulus is not None or hardness - 15 < SOFTEST:
-        return None
-    return Change(
-        "softer_compound",
-        f"a softer compound (Shore A {hardness - 15:.0f} for {hardness:.0f})",
-        "shoe",
-        {"shoe.material.shore_a": hardness - 15},
-    )
-
-
-def _rougher_sole(case: Case) -> Change | None:
-    rq = case.shoe.roughness.rq_or_estimate
-    if rq is None or rq > 15e-6:
-        return None
-    return Change(
-        "abraded_sole",
-        f"abrade the sole to twice its roughness (Rq {2e6 * rq:.0f} µm)",
-        "shoe",
-        {"shoe.roughness.rq": 2 * rq, "shoe.roughness.ra": None},
-    )
-
-
-def _rougher_floor(case: Case) -> Change | None:
+    if channel and not worn_out:
+        wider = 1.5 * channel
+        action = f"channels 50 % wider ({wider * 1e3:.1f} mm)"
+        yield Change("wider_channels", action, "shoe", {"shoe.tread.channel_width": wider})
+    hardness = shoe.material.shore_a
+    if hardness is not None and shoe.material.modulus is None and hardness - 15 >= SOFTEST:
+        action = f"a softer compound (Shore A {hardness - 15:.0f} for {hardness:.0f})"
+        yield Change("softer_compound", action, "shoe", {"shoe.material.shore_a": hardness - 15})
+    rq = shoe.roughness.rq_or_estimate
+    if rq is not None and rq <= 15e-6:
+        action = f"abrade the sole to twice its roughness (Rq {2e6 * rq:.0f} µm)"
+        values = {"shoe.roughness.rq": 2 * rq, "shoe.roughness.ra": None}
+        yield Change("abraded_sole", action, "shoe", values)
     rq = case.floor.roughness.rq_or_estimate
-    if rq is None or rq > ROUGH_FLOOR_RQ / 2:
-        return None
-    return Change(
-        "rougher_floor",
-        f"a floor of Rq {ROUGH_FLOOR_RQ * 1e6:.0f} µm (as a rough ceramic tile)",
-        "floor",
-        {"floor.roughness.rq": ROUGH_FLOOR_RQ},
-    )
-
-
-def _rinsed(case: Case) -> Change | None:
-    viscosity = case.value("contaminant.viscosity")
-    if viscosity is None or viscosity < THIN:
-        return None
-    return Change(
-        "rinse", "rinse the contaminant away with water", "cleaning", {"contaminant": "water"}
-    )
-
-
-def _diluted(case: Case) -> Change | None:
-    viscosity = case.value("contaminant.viscosity")
-    if viscosity is None or viscosity < 5 * THIN:
-        return None
-    return Change(
-        "dilute",
-        "clean with a detergent solution",
-        "cleaning",
-        {"contaminant": "detergent"},
-    )
-
-
-def _shorter_steps(case: Case) -> Change | None:
+    if rq is not None and rq <= ROUGH_FLOOR_RQ / 2:
+        action = f"a floor of Rq {ROUGH_FLOOR_RQ * 1e6:.0f} µm (as a rough ceramic tile)"
+        yield Change("rougher_floor", action, "floor", {"floor.roughness.rq": ROUGH_FLOOR_RQ})
+    viscosity = case.value("contaminant.viscosity") or 0.0
+    if viscosity >= THIN:
+        action = "rinse the contaminant away with water"
+        yield Change("rinse", action, "cleaning", {"contaminant": "water"})
+    if viscosity >= 5 * THIN:
+        action = "clean with a detergent solution"
+        yield Change("dilute", action, "cleaning", {"contaminant": "detergent"})
     mean = case.risk.rcof_mean
-    if mean < 0.12:
-        return None
-    return Change(
-        "shorter_steps",
-        f"shorter, slower steps (required friction {mean - 0.03:.2f} for {mean:.2f})",
-        "walking",
-        {"risk.rcof_mean": mean - 0.03},
-    )
-
-
-_MAKERS: tuple[Callable[[Case], Change | None], ...] = (
-    _new_tread,
-    _wider_channels,
-    _softer,
-    _rougher_sole,
-    _rougher_floor,
-    _rinsed,
-    _diluted,
-    _shorter_steps,
-)
+    if mean >= 0.12:
+        action = f"shorter, slower steps (required friction {mean - 0.03:.2f} for {mean:.2f})"
+        yield Change("shorter_steps", action, "walking", {"risk.rcof_mean": mean - 0.03})

@@ -47,11 +47,9 @@ class CaseCheck(Presentable):
         return f"<CaseCheck of {self.case.name!r:.100}: {self.full.cells} cells>"
 
     def heading(self) -> str:
-        """Return name and hash."""
         return f"{self.case.name}  [{self.case.hash[:12]}]"
 
     def headline(self) -> tuple[str, ...]:
-        """Return what a run will take."""
         case = self.case
         options = (case.compliance.name, case.rough_contact.name, case.motion.name)
         return (
@@ -60,22 +58,18 @@ class CaseCheck(Presentable):
         )
 
     def cautions(self) -> tuple[str, ...]:
-        """Return why a run would be refused."""
-        reasons = [f"A run would be refused: {self.refusal}"] if self.refusal else []
-        limit = self.case.numerics.most_memory
+        reasons, limit = [self.refusal] if self.refusal else [], self.case.numerics.most_memory
         if self.full.memory > limit:
             reasons.append(
-                f"A run would be refused: numerics.most_memory is {megabytes(limit)}; use --quick "
-                "or a coarser numerics.grid_spacing."
+                f"numerics.most_memory is {megabytes(limit)}; use --quick or a coarser "
+                "numerics.grid_spacing."
             )
-        return tuple(reasons)
+        return tuple(f"A run would be refused: {reason}" for reason in reasons)
 
     def table(self) -> Table:
-        """Return every value that is set with its origin."""
         return self.case.table()
 
     def remarks(self) -> dict[str, Sequence[str]]:
-        """Return assumptions, ranges that are left, and how an older file was read."""
         return {
             "Outside the tested range, as far as it shows before solving": self.breaches,
             "Assumptions": ranked_assumptions((*assumptions(self.case), *outsole_notes(self.case))),
@@ -83,7 +77,6 @@ class CaseCheck(Presentable):
         }
 
     def to_dict(self) -> dict[str, Any]:
-        """Return values, assumptions, breaches and cost."""
         keys = ("path", "value", "origin")
         return {
             "hash": self.case.hash,

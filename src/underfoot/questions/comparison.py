@@ -71,11 +71,9 @@ class Comparison(Presentable):
 
     @property
     def usable(self) -> bool:
-        """Whether all results can be compared."""
         return all(result.status.usable for result in self.results)
 
     def heading(self) -> str:
-        """Return the title."""
         return "Comparison of friction"
 
     def label(self, letter: str) -> str:
@@ -85,7 +83,6 @@ class Comparison(Presentable):
         return name if names.count(name) == 1 else f"{letter} ({name})"
 
     def headline(self) -> tuple[str, ...]:
-        """Return which result has the highest COF and what differs."""
         for result in self.results:
             if not result.status.usable:
                 return (f"No comparison: {result.name} is {result.status}. {result.status.remedy}",)
@@ -105,11 +102,9 @@ class Comparison(Presentable):
         return (f"{order} ({sure}).", self._different())
 
     def cautions(self) -> tuple[str, ...]:
-        """Return what makes the results unequal to compare."""
         return self.reasons
 
     def table(self) -> Table:
-        """Return the quantities of all results."""
         rows = []
         for quantity in self.quantities:
             texts = ["" if v is None else value_text(quantity.name, v) for v in quantity.values]
@@ -121,7 +116,6 @@ class Comparison(Presentable):
         return Table("Results", ("Quantity", *self.letters, "Differs from A"), rows)
 
     def tables(self) -> tuple[Table, ...]:
-        """Return ranking, quantities and the inputs in which the cases differ."""
         ranking = Table(
             "Ranking by COF",
             ("", "Case", "COF", "95 % interval", "Higher than the next"),
@@ -146,7 +140,6 @@ class Comparison(Presentable):
         return LETTERS[: len(self.results)]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return ranking, quantities, differing inputs and the results in SI."""
         return {
             "ranking": [
                 {
@@ -173,7 +166,6 @@ class Comparison(Presentable):
         }
 
     def data_tables(self) -> dict[str, Table]:
-        """Return the quantities and the differing inputs for other programs."""
         quantities = [
             (q.name, next((v.unit for v in q.values if v), ""), *(v and v.value for v in q.values))
             for q in self.quantities

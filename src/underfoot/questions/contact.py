@@ -51,11 +51,9 @@ class RoughContact(Presentable):
 
     @property
     def usable(self) -> bool:
-        """Whether the numbers are a result."""
         return self.contact.status.usable
 
     def headline(self) -> tuple[str, ...]:
-        """Return contact fraction and hysteresis at this pressure and speed."""
         found = self.contact
         at = f"{display(found.nominal_pressure, 'Pa')}, {display(found.speed, 'm/s')}"
         if not self.usable:
@@ -88,14 +86,12 @@ class RoughContact(Presentable):
         return self.table(), Table("Dependence on the shortest wave", heads, rows)
 
     def remarks(self) -> dict[str, Sequence[str]]:
-        """Return notes on the solution and the tested ranges left."""
         return {
             "Notes": self._notes(),
             "Outside the tested range": tuple(map(str, self.contact.breaches)),
         }
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything in SI; numbers of a failed solution are None."""
         found, floor, flow = self.contact, self.floor, self.flow
         values = {
             "real_contact_fraction": found.real_contact_fraction_corrected,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -111,19 +111,15 @@ class MethodPrediction(Presentable):
 
     @property
     def usable(self) -> bool:
-        """Whether every condition gave a result."""
         return all(each.outcome.usable for each in self.conditions)
 
     def heading(self) -> str:
-        """Return case and method."""
         return f"{self.name} by {self.title}"
 
     def headline(self) -> tuple[str, ...]:
-        """Return the prediction of every condition."""
         return tuple(map(str, self.conditions))
 
     def cautions(self) -> tuple[str, ...]:
-        """Return what the method does not say and where models were extrapolated."""
         reasons = []
         unsure = [each.name for each in self.requirements if each.basis is not Basis.VERIFIED]
         if unsure:
@@ -137,7 +133,6 @@ class MethodPrediction(Presentable):
         return tuple(reasons)
 
     def table(self) -> Table:
-        """Return the conditions with COF, interval, limit and probability of passing."""
         rows = [
             (
                 each.title,
@@ -150,19 +145,10 @@ class MethodPrediction(Presentable):
             )
             for each in self.conditions
         ]
-        heads = (
-            "Condition",
-            "Floor",
-            "Contaminant",
-            "COF",
-            "95 %",
-            "Limit",
-            "Probability of passing",
-        )
-        return Table("Prediction", heads, rows)
+        heads = ("Condition", "Floor", "Contaminant", "COF", "95 %", "Limit")
+        return Table("Prediction", (*heads, "Probability of passing"), rows)
 
     def tables(self) -> tuple[Table, ...]:
-        """Return the conditions, and what the method requires beside what was used."""
         rows = [
             (
                 each.name,
@@ -176,26 +162,15 @@ class MethodPrediction(Presentable):
         return self.table(), settings
 
     def remarks(self) -> dict[str, Sequence[str]]:
-        """Return the note of the method and the tested ranges that were left."""
         notes = (self.note,) if self.note else ()
         return {"Notes": notes, "Outside the tested range": self._breaches()}
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything in SI."""
         return {
             "method": self.method,
             "title": self.title,
             "source": self.source,
-            "requirements": [
-                {
-                    "name": each.name,
-                    "required": each.required,
-                    "used": each.used,
-                    "basis": str(each.basis),
-                    "source": each.source,
-                }
-                for each in self.requirements
-            ],
+            "requirements": [asdict(each) for each in self.requirements],
             "conditions": [
                 {
                     "name": each.name,
@@ -215,7 +190,6 @@ class MethodPrediction(Presentable):
         }
 
     def data_tables(self) -> dict[str, Table]:
-        """Return conditions and requirements for other programs."""
         heads = (
             "condition floor contaminant cof uncertainty low high limit limit_source "
             "probability_of_passing status".split()
@@ -236,34 +210,25 @@ class MethodPrediction(Presentable):
             )
             for each in self.conditions
         ]
-        required = [(r.name, r.required, r.used, str(r.basis), r.source) for r in self.requirements]
+        required = [tuple(asdict(each).values()) for each in self.requirements]
+        names = ("requirement", "required", "used", "basis", "source")
         return {
             "conditions": Table("", tuple(heads), rows),
-            "requirements": Table(
-                "", ("requirement", "required", "used", "basis", "source"), required
-            ),
+            "requirements": Table("", names, required),
         }
 
     def _breaches(self) -> list[str]:
         return list(dict.fromkeys(b for each in self.conditions for b in each.outcome.breaches))
 
 
-def method_names(case: Case) -> list[str]:
-    """Return the set-ups of the catalogue that a case can be tested by."""
-    names = case.catalogue.names("setup")
-    entries = [case.catalogue.entry("setup", name).values for name in names]
-    return [
-        name
-        for name, values in zip(names, entries, strict=True)
-        if "motion.speed" in values and any(path.startswith("method.") for path in values)
-    ]
-
-
 def method_name(name: str, case: Case) -> str:
     """Return the set-up that a person means: ``iso13287``, ``report-slip-tester`` ..."""
     plain = name.strip().lower().replace("-", "_").replace(" ", "_")
     plain = NICKNAMES.get(plain, plain)
-    known = method_names(case)
+    entries = [case.catalogue.entry("setup", known) for known in case.catalogue.names("setup")]
+    known = [
+        each.name for each in entries if "motion.speed" in each.values and each.under("method")
+    ]
     if plain not in known:
         raise unknown_name("test method", name, known, where="--method")
     return plain
@@ -331,8 +296,12 @@ def method_prediction(
     width = len(batches[0])
     for number, (name, tested, settings) in enumerate(plan):
         window = tuple(results[number * width : (number + 1) * width])
-        rest = part(progress, (number + 1) * share, (number + 2) * share)
-        effects = _effects(tested, processes, rest) if with_band else None
+        effects = None
+        if with_band:
+            if not variants(tested):
+                raise InputError("no open input to vary", where="sensitivity")
+            rest = part(progress, (number + 1) * share, (number + 2) * share)
+            effects = sensitivity(tested, quick=True, processes=processes, progress=rest)
         conditions.append(_condition(entry, name, tested, window, effects))
         if len(plan) > 1:  # floor and fluid differ from condition to condition
             settings = [
@@ -343,7 +312,9 @@ def method_prediction(
             ]
         requirements += [each for each in settings if each not in requirements]
     if times:
-        requirements.append(_window_requirement(entry, times))
+        span = f"{display(times[0], 's')} to {display(times[-1], 's')} after first contact"
+        leaf = entry.values["method.averaging_end"]
+        requirements.append(_required("averaging window", span, "mean by Simpson's rule", leaf))
     return MethodPrediction(
         case.name,
         entry.name,
@@ -355,18 +326,10 @@ def method_prediction(
     )
 
 
-def _effects(case: Case, processes: int | None, progress: Progress) -> Sensitivity:
-    if not variants(case):
-        raise InputError("no open input to vary", where="sensitivity")
-    return sensitivity(case, quick=True, processes=processes, progress=progress)
-
-
 def _conditions(entry: Entry) -> list[tuple[str, Leaf | None, Leaf | None]]:
     """Return name, floor and fluid of each condition; one without either where none is set."""
     listed = entry.under("conditions")
-    names = list(dict.fromkeys(path.partition(".")[0] for path in listed))
-    if not names:
-        return [(AS_IN_CASE, None, None)]
+    names = dict.fromkeys(path.partition(".")[0] for path in listed) or (AS_IN_CASE,)
     return [
         (name, listed.get(f"{name}.floor"), listed.get(f"{name}.contaminant")) for name in names
     ]
@@ -376,15 +339,12 @@ def _prepared(
     case: Case, entry: Entry, floor: Leaf | None, fluid: Leaf | None, keep: Sequence[str]
 ) -> tuple[Case, list[Requirement]]:
     """Return the case under the method, and what the method asked for."""
-    own = case.motion
     changes: dict[str, object] = {"motion": entry.name}
     if any(path.startswith("sensor.") for path in entry.values):
         changes["sensor"] = entry.name
     settings = []
     for section, leaf in (("floor", floor), ("contaminant", fluid)):
-        present = case.entries.get(section, "given in the case")
-        if section == "contaminant" and case.contaminant is None:
-            present = "none: dry"
+        present = _present(case, section)
         if leaf is None:
             open_leaf = entry.values.get(f"method.{section}")
             required = "as agreed" if open_leaf is None else str(open_leaf.given)
@@ -396,14 +356,15 @@ def _prepared(
             changes[section] = str(leaf.given)
             settings.append(_required(section, str(leaf.given), "as required", leaf))
     changed = case.replace(changes)
+    units = {"shoe_angle": "rad", "normal_force": "N", "speed": "m/s"}
     kept = {
-        f"motion.{name}": f"{getattr(own, name)!r} {unit}"
-        for name, unit in (("normal_force", "N"), ("shoe_angle", "rad"), ("speed", "m/s"))
+        f"motion.{name}": f"{getattr(case.motion, name)!r} {unit}"
+        for name, unit in units.items()
         if name in keep
     }
     if kept:
         changed = changed.replace(kept)
-    for name, unit in (("shoe_angle", "rad"), ("normal_force", "N"), ("speed", "m/s")):
+    for name, unit in units.items():
         leaf = entry.values[f"motion.{name}"]
         label = name.replace("_", " ")
         required = f"{leaf.given}" + (f" ({leaf.note})" if leaf.note else "")
@@ -415,22 +376,25 @@ def _prepared(
     return changed, settings
 
 
+def _present(case: Case, section: str) -> str:
+    if getattr(case, section) is None:
+        return "none: dry"
+    return case.entries.get(section, "given in the case")
+
+
 def _window(entry: Entry) -> tuple[float, ...]:
     """Return beginning, middle and end of the averaging window after first contact, s."""
     if "method.averaging_end" not in entry.values:
         return ()
-    begin = float(entry.sourced("method.averaging_start", "s").value or 0.0)
-    end = float(entry.sourced("method.averaging_end", "s").value or 0.0)
+
+    def seconds(path: str) -> float:
+        return float(entry.sourced(path, "s").value or 0.0)
+
+    begin, end = seconds("method.averaging_start"), seconds("method.averaging_end")
     if entry.text("method.averaging_from") == "force":
-        rise = float(entry.sourced("motion.force_rise_time", "s").value or 0.0)
+        rise = seconds("motion.force_rise_time")
         begin, end = begin + rise, end + rise
     return begin, 0.5 * (begin + end), end
-
-
-def _window_requirement(entry: Entry, times: tuple[float, ...]) -> Requirement:
-    leaf = entry.values["method.averaging_end"]
-    window = f"{display(times[0], 's')} to {display(times[-1], 's')} after first contact"
-    return _required("averaging window", window, "mean by Simpson's rule", leaf)
 
 
 def _required(name: str, required: str, used: str, leaf: Leaf) -> Requirement:
@@ -444,17 +408,14 @@ def _condition(
     entry: Entry, name: str, case: Case, window: tuple[Outcome, ...], effects: Sensitivity | None
 ) -> Condition:
     middle = window[len(window) // 2]
-    limit = None
-    if f"limits.{name}" in entry.values:
-        limit = entry.sourced(f"limits.{name}", "1")
-    title = name.replace("_", " ")
-    if f"conditions.{name}.title" in entry.values:
-        title = entry.text(f"conditions.{name}.title")
+    limits, titled = f"limits.{name}", f"conditions.{name}.title"
+    limit = entry.sourced(limits, "1") if limits in entry.values else None
+    title = entry.text(titled) if titled in entry.values else name.replace("_", " ")
     band = effects.band("cof") if effects is not None and effects.nominal.usable else None
     failed = next((each for each in window if not each.usable), None)
+    low = high = probability = None
     if failed is not None:
         cof = SourcedValue(None, "1", reason=str(failed.status))
-        low = high = probability = None
     else:
         values = [each.number("cof") for each in window]
         mean = values[0] if len(values) == 1 else (values[0] + 4 * values[1] + values[2]) / 6
@@ -468,14 +429,13 @@ def _condition(
             note="friction law and open inputs" if band else "friction law alone",
         )
         low, high = max(mean - _Z95 * deviation, 0.0), mean + _Z95 * deviation
-        probability = None
         if limit is not None and limit.value is not None:
             probability = probability_at_least(mean, deviation, limit.value)
     return Condition(
         name,
         title,
-        case.entries.get("floor", "given in the case"),
-        case.entries.get("contaminant", "given in the case" if case.contaminant else "none: dry"),
+        _present(case, "floor"),
+        _present(case, "contaminant"),
         cof,
         low,
         high,

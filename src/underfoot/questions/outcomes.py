@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import asdict, dataclass
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -76,18 +76,7 @@ class Outcome:
 
     def as_text(self) -> str:
         """Return the outcome as JSON."""
-        plain = {
-            "name": self.name,
-            "case_hash": self.case_hash,
-            "scalars": {name: value.as_dict() for name, value in self.scalars.items()},
-            "labels": self.labels,
-            "status": str(self.status),
-            "remedy": self.remedy,
-            "breaches": list(self.breaches),
-            "assumptions": list(self.assumptions),
-            "seconds": self.seconds,
-        }
-        return json.dumps(plain)
+        return json.dumps(asdict(self))
 
     @classmethod
     def from_text(cls, text: str) -> Outcome:
@@ -113,8 +102,6 @@ def outcomes(
 
     Parameters
     ----------
-    cases
-        What to compute.
     quick
         Use the coarse grid of the cases.
     processes
@@ -142,28 +129,20 @@ def outcomes(
             found[key] = Outcome.from_text(str(stored["outcome"]))
         elif key not in found:
             waiting[key] = case
-    unique = len(set(keys))
-    ready = len(found)
-    progress(stage, ready / max(unique, 1))
-    items = [(case, quick) for case in waiting.values()]
-    rest = part(progress, ready / max(unique, 1), 1.0)
-    for index, outcome in in_processes(
-        _computed_alone, items, _workers(processes), progress=rest, stage=stage
-    ):
-        key = list(waiting)[index]
+    ready = len(found) / max(len(set(keys)), 1)
+    progress(stage, ready)
+    compute = partial(_computed_alone, quick=quick)
+    workers = min(available_processors(), 4) if processes is None else processes
+    names, items, rest = list(waiting), list(waiting.values()), part(progress, ready, 1.0)
+    for index, outcome in in_processes(compute, items, workers, progress=rest, stage=stage):
+        key = names[index]
         found[key] = outcome
         if cached and outcome.usable:
             store.store(key, {"outcome": np.array(outcome.as_text())})
     return [found[key] for key in keys]
 
 
-def _workers(processes: int | None) -> int:
-    """Return how many cases to compute at the same time: by default the processors, at most 4."""
-    return min(available_processors(), 4) if processes is None else processes
-
-
-def _computed_alone(item: tuple[Case, bool]) -> Outcome:
-    case, quick = item
+def _computed_alone(case: Case, *, quick: bool) -> Outcome:
     return Outcome.of(run(case, quick=quick))
 
 
@@ -180,9 +159,6 @@ def program_hash() -> str:
 
 
 def _files(folders: Sequence[str]) -> str:
-    parts: list[str] = []
-    for folder in folders:
-        for path in sorted(Path(folder).rglob("*")):
-            if path.suffix in (".py", ".toml", ".csv"):
-                parts.append(path.read_text(encoding="utf-8", errors="replace"))
-    return content_hash(*parts)
+    paths = (path for folder in folders for path in sorted(Path(folder).rglob("*")))
+    texts = (path for path in paths if path.suffix in (".py", ".toml", ".csv"))
+    return content_hash(*(path.read_text(encoding="utf-8", errors="replace") for path in texts))

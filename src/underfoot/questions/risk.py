@@ -84,7 +84,6 @@ class RiskAssessment(Presentable):
 
     @property
     def usable(self) -> bool:
-        """Whether the case itself gave a result."""
         return self.outcome.usable
 
     @property
@@ -101,7 +100,6 @@ class RiskAssessment(Presentable):
         )
 
     def headline(self) -> tuple[str, ...]:
-        """Return slip probability, what limits the friction and how much is missing."""
         if not self.usable:
             return (f"No result: {self.outcome.status}. {self.outcome.remedy}",)
         scalars = self.outcome.scalars
@@ -126,7 +124,6 @@ class RiskAssessment(Presentable):
         return tuple(sentences)
 
     def cautions(self) -> tuple[str, ...]:
-        """Return why the probability may not be trusted."""
         outcome = self.outcome
         source = outcome.scalars["slip_probability"].source
         own = next((model.name for model in self.models if model.source == source), "")
@@ -145,7 +142,6 @@ class RiskAssessment(Presentable):
         return lines or ["No tested change reduces the slip probability."]
 
     def table(self) -> Table:
-        """Return every change with what it leads to, the most effective first."""
         place = {id(each): number for number, each in enumerate(self.best, 1)}
         rows = []
         for each in sorted(self.changes, key=lambda one: place.get(id(one), len(self.changes) + 1)):
@@ -160,7 +156,6 @@ class RiskAssessment(Presentable):
         return Table("Most effective changes (each simulated)", heads, rows)
 
     def tables(self) -> tuple[Table, ...]:
-        """Return the changes, and the probability by every model."""
         rows = [
             (
                 one.name,
@@ -174,11 +169,9 @@ class RiskAssessment(Presentable):
         return (self.table(), models) if self.usable else ()
 
     def remarks(self) -> dict[str, Sequence[str]]:
-        """Return assumptions and ranges that were left."""
         return self.outcome.remarks()
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything in SI."""
         film_share = self.limit.film_share
         return {
             "cof": self.outcome.scalars["cof"].as_dict(),
@@ -217,7 +210,6 @@ class RiskAssessment(Presentable):
         }
 
     def data_tables(self) -> dict[str, Table]:
-        """Return the changes for other programs."""
         names = ("name", "lever", "action", "cof", "slip_probability", "fluid_load", "reason")
         rows = [tuple(change[name] for name in names) for change in self.to_dict()["changes"]]
         return {"changes": Table("", names, rows)}

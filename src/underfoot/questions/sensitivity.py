@@ -170,15 +170,12 @@ class Sensitivity(Presentable):
 
     @property
     def usable(self) -> bool:
-        """Whether the case itself gave a result."""
         return self.nominal.usable
 
     def heading(self) -> str:
-        """Return the name of the case."""
         return self.nominal.name
 
     def headline(self) -> tuple[str, ...]:
-        """Return the COF with the uncertainty of law and inputs, and the input that decides it."""
         if not self.usable:
             return (f"No result: {self.nominal.status}. {self.nominal.remedy}",)
         band = self.band("cof")
@@ -197,7 +194,6 @@ class Sensitivity(Presentable):
         return tuple(sentences)
 
     def cautions(self) -> tuple[str, ...]:
-        """Return what the uncertainty leaves out."""
         if not self.usable:
             return ()
         reasons = []
@@ -208,7 +204,6 @@ class Sensitivity(Presentable):
         return tuple(reasons)
 
     def table(self) -> Table:
-        """Return the quantities with their uncertainty."""
         rows = []
         for name, label in QUANTITIES.items():
             band, unit = self.band(name), self.nominal.scalars[name].unit
@@ -222,7 +217,6 @@ class Sensitivity(Presentable):
         return Table("Law and inputs together", ("Quantity", "Value ± 1 sd", "Variants"), rows)
 
     def tables(self) -> tuple[Table, ...]:
-        """Return the quantities, then for each of them the most effective inputs."""
         if not self.usable:
             return ()
         heads = ("Input", "Low", "High", "Result at low", "Result at high")
@@ -241,12 +235,10 @@ class Sensitivity(Presentable):
         return tuple(tables)
 
     def remarks(self) -> dict[str, Sequence[str]]:
-        """Return why each input was varied by how much."""
         reasons = [f"{effect.path}: {effect.reason}" for effect in self.ranked("cof")]
         return {"Reasons for the ranges": reasons}
 
     def to_dict(self) -> dict[str, Any]:
-        """Return every quantity with its uncertainty and effects in SI."""
         quantities = {}
         for name in QUANTITIES:
             band = self.band(name)
@@ -273,7 +265,6 @@ class Sensitivity(Presentable):
         return {"quantities": quantities}
 
     def data_tables(self) -> dict[str, Table]:
-        """Return one row for each quantity and input."""
         heads = tuple(
             "quantity unit nominal input low_input high_input input_unit at_low at_high deviation "
             "reason".split()

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -20,7 +20,6 @@ from .wear_limit import Crossing, LimitCrossing, WearPoint, limit_crossing
 
 if TYPE_CHECKING:
     from underfoot.case import Case
-    from underfoot.shoe.shape import SoleShape
     from underfoot.shoe.worn import WearMeasures
 
 MODES = ("archard", "plane", "patch")
@@ -58,8 +57,8 @@ NUMBERS = (
     ("peak_fluid_pressure", "Pa", 1e-3, "Peak (kPa)"),
     ("peak_fluid_pressure_sensor", "Pa", 1e-3, "by sensor (kPa)"),
 )
-SCREEN = ("removed_depth", "tread_left", "worn_patch_area")
-"""Measures in the first table; the files have all."""
+SCREEN = ("removed_depth tread_left worn_patch_area cof fluid_load fluid_load_sensor").split()
+"""Measures and numbers in the table; the files have all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,15 +103,12 @@ class WearSeries(Presentable):
 
     @property
     def usable(self) -> bool:
-        """Whether any state gave a result."""
         return any(point.outcome.usable for point in self.points)
 
     def heading(self) -> str:
-        """Return case and kind of wear."""
         return f"{self.name}: friction and film with wear ({self.mode})"
 
     def headline(self) -> tuple[str, ...]:
-        """Return when the fluid load exceeds its limit and how the COF changes."""
         cof = self.values("cof")
         known = np.flatnonzero(np.isfinite(cof))
         sentences = [self._crossing(name) for name in LOADS]
@@ -122,7 +118,6 @@ class WearSeries(Presentable):
         return tuple(sentences)
 
     def cautions(self) -> tuple[str, ...]:
-        """Return what limits the series."""
         reasons = []
         cof = self.values("cof")
         known = cof[np.isfinite(cof)]
@@ -139,22 +134,25 @@ class WearSeries(Presentable):
         return tuple(reasons)
 
     def table(self) -> Table:
-        """Return one row a state with the main measures and numbers."""
-        return self._states(lambda name: name in SCREEN or name == "cof" or "fluid_load" in name)
+        measures = [each for each in MEASURES if each[0] in SCREEN]
+        numbers = [each for each in NUMBERS if each[0] in SCREEN]
+        rows = []
+        for point in self.points:
+            values = [getattr(point.measures, name) * scale for name, _, scale, _ in measures]
+            values += [point.outcome.number(name) * scale for name, _, scale, _ in numbers]
+            rows.append(["not determined" if math.isnan(v) else _short(v) for v in values])
+        heads = tuple(label for *_, label in (*measures, *numbers))
+        return Table("States of wear, new to worn", heads, rows)
 
     def tables(self) -> tuple[Table, ...]:
-        """Return the states and the published trends beside those of the series."""
         rows = [(trend.finding, str(trend), trend.source) for trend in trends(self)]
         beside = Table("Published trends", ("Finding", "This series", "Source"), rows)
         return self.table(), beside
 
     def remarks(self) -> dict[str, Sequence[str]]:
-        """Return the assumptions of the series."""
         return {"Assumptions": self.assumptions}
 
     def to_dict(self) -> dict[str, Any]:
-        """Return states, crossings and assumptions in SI."""
-
         def finite(value: float) -> float | None:
             return value if math.isfinite(value) else None
 
@@ -185,7 +183,6 @@ class WearSeries(Presentable):
         }
 
     def data_tables(self) -> dict[str, Table]:
-        """Return one row a state: measures, numbers and their ends over the open inputs, in SI."""
         heads = [f"{name}_{unit}" for name, unit, *_ in MEASURES]
         for name, unit, *_ in NUMBERS:
             heads += [f"{name}_{unit}", f"{name}_low", f"{name}_high"]
@@ -208,32 +205,14 @@ class WearSeries(Presentable):
 
     def ends(self, name: str) -> tuple[np.ndarray, np.ndarray]:
         """Return the lowest and highest value of a number over the open inputs, per point."""
-        low, high = [], []
+        ends = []
         for point in self.points:
-            values = [point.outcome.number(name)]
-            values += [end.number(name) for _, *pair in point.variants for end in pair]
-            known = [value for value in values if not math.isnan(value)]
-            low.append(min(known, default=math.nan))
-            high.append(max(known, default=math.nan))
-        return np.array(low), np.array(high)
-
-    def all_states(self) -> Table:
-        """Return one row a state with every measure and number."""
-        return self._states(lambda name: True)
-
-    def _states(self, chosen: Callable[[str], bool]) -> Table:
-        measures = [each for each in MEASURES if chosen(each[0])]
-        numbers = [each for each in NUMBERS if chosen(each[0])]
-        rows = []
-        for point in self.points:
-            cells = [
-                _short(getattr(point.measures, name) * scale) for name, _, scale, _ in measures
-            ]
-            values = [point.outcome.number(name) * scale for name, _, scale, _ in numbers]
-            cells += ["not determined" if math.isnan(value) else _short(value) for value in values]
-            rows.append(cells)
-        heads = tuple(label for *_, label in (*measures, *numbers))
-        return Table("States of wear, new to worn", heads, rows)
+            varied = (each for _, *pair in point.variants for each in pair)
+            values = [outcome.number(name) for outcome in (point.outcome, *varied)]
+            known = [value for value in values if not math.isnan(value)] or [math.nan]
+            ends.append((min(known), max(known)))
+        low, high = np.array(ends).T
+        return low, high
 
     def _crossing(self, name: str) -> str:
         crossing = self.crossings[name]
@@ -328,13 +307,14 @@ def wear_series(
             allowed=f"above 0 N and below {force:g} N (motion.normal_force)",
         )
     cases = worn_cases(case, mode, steps, deepest)
-    inputs = band_inputs(case) if band else []
+    inputs = open_inputs(case, [each for each in OPEN_INPUTS if each.path in BAND_INPUTS])
+    inputs = inputs if band else []
     plan: list[Case] = []
     for worn in cases:
-        plan.append(worn)
-        plan += [end for *_, low, high in variants(worn, inputs) for end in (low, high)]
-    shaped = 0.1 if mode == "archard" else 0.0
+        plan += [worn, *(end for *_, low, high in variants(worn, inputs) for end in (low, high))]
+    shaped = 0.0
     if mode == "archard":
+        shaped = 0.1
         _wear_down(plan, part(progress, 0.0, shaped))
     results = outcomes(
         plan,
@@ -402,46 +382,31 @@ def worn_cases(case: Case, mode: str, steps: int, deepest: float | None) -> list
     if angle is None or case.origins["shoe.wear.angle"].kind == "default":
         angle = max(case.motion.shoe_angle, 0.0)
     new = case.replace("shoe.wear.depth", "0 mm")
-    cases = [new]
     share = np.arange(1, steps + 1) / steps
     if mode == "patch":
         length, width = heel_length * LARGEST_PATCH, heel_width * LARGEST_PATCH
         if deepest is not None:
             grow = math.sqrt(deepest / (math.pi / 4 * length * width))
             length, width = length * grow, width * grow
-        for part in map(float, np.sqrt(share)):
-            cases.append(
-                new.replace(
-                    {
-                        "shoe.wear.mode": "patch",
-                        "shoe.wear.depth": depth,
-                        "shoe.wear.patch_length": length * part,
-                        "shoe.wear.patch_width": width * part,
-                    }
-                )
+        states = [
+            {"depth": depth, "patch_length": length * part, "patch_width": width * part}
+            for part in map(float, np.sqrt(share))
+        ]
+    else:
+        thickness = case.shoe.sole.outsole_thickness
+        end = depth if deepest is None else deepest
+        if deepest is None and mode == "archard":
+            end = min(BEYOND_TREAD * depth, (depth + thickness) / 2)
+        if not 0 < end < thickness:
+            most = display(thickness, "m")
+            raise InputError(
+                f"wear of {display(end, 'm')} is deeper than the sole",
+                where="deepest",
+                allowed=f"above 0 mm and below {most} (shoe.sole.outsole_thickness)",
             )
-        return cases
-    thickness = case.shoe.sole.outsole_thickness
-    end = depth if deepest is None else deepest
-    if deepest is None and mode == "archard":
-        end = min(BEYOND_TREAD * depth, (depth + thickness) / 2)
-    if not 0 < end < thickness:
-        raise InputError(
-            f"wear of {display(end, 'm')} is deeper than the sole",
-            where="deepest",
-            allowed=f"above 0 mm and below {display(thickness, 'm')} (shoe.sole.outsole_thickness)",
-        )
-    for part in map(float, share):
-        cases.append(
-            new.replace(
-                {
-                    "shoe.wear.mode": mode,
-                    "shoe.wear.depth": end * part,
-                    "shoe.wear.angle": float(angle),
-                }
-            )
-        )
-    return cases
+        states = [{"depth": end * part, "angle": float(angle)} for part in map(float, share)]
+    changes = [{f"shoe.wear.{key}": value for key, value in state.items()} for state in states]
+    return [new, *(new.replace({"shoe.wear.mode": mode, **change}) for change in changes)]
 
 
 def measures_between(
@@ -466,13 +431,8 @@ def measures_between(
         share = place - before
         blend = (1 - share) * removed[before] + share * removed[before + 1]
         worn = WornMap(maps[0].x, maps[0].y, blend)
-        measures.append(wear_measures(cast("SoleShape", replace(cast("Any", new), wear=worn))))
+        measures.append(wear_measures(new.worn(worn)))
     return measures
-
-
-def band_inputs(case: Case) -> list[OpenInput]:
-    """Return the open inputs of the case that the band of the limit is made of."""
-    return open_inputs(case, [one for one in OPEN_INPUTS if one.path in BAND_INPUTS])
 
 
 def _wear_down(cases: list[Case], progress: Progress) -> None:

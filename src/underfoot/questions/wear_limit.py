@@ -79,50 +79,35 @@ def limit_crossing(
     ``between`` holds how worn the sole is from the first state to the last in even parts: a patch
     begins only where the tread ends, so that it can't be interpolated between far states.
     """
-    known = [point for point in points if not math.isnan(point.outcome.number(name))]
-    order = np.array(
-        [
-            number
-            for number, point in enumerate(points)
-            if not math.isnan(point.outcome.number(name))
-        ],
-        dtype=float,
-    )
+    all_loads = np.array([point.outcome.number(name) for point in points])
+    order = np.flatnonzero(~np.isnan(all_loads))
+    known = [points[number] for number in order.tolist()]
     states = list(between) or [point.measures for point in points]
     parts = np.linspace(0, len(points) - 1, len(states))
     measured = {each: np.array([getattr(state, each) for state in states]) for each in MEASURES}
     if len(known) < 2:
         nothing = dict.fromkeys(MEASURES, math.nan)
         return LimitCrossing(Crossing.UNKNOWN, math.nan, nothing, dict(nothing), dict(nothing))
-    loads = np.array([point.outcome.number(name) for point in known])
-    centre = np.log(np.maximum(loads, LEAST))
-    place = first_exceeding(centre[None, :], math.log(max(limit, LEAST)), np.full(1, 0.5))[0]
+    centre, bound = np.log(np.maximum(all_loads[order], LEAST)), math.log(max(limit, LEAST))
+    place = first_exceeding(centre[None, :], bound, np.full(1, 0.5))
     rng = np.random.default_rng(seed)
     moved = np.repeat(centre[None, :], draws, axis=0)
     for index in range(len(known[0].variants)):
         deviate = np.clip(rng.standard_normal(draws), -WIDEST, WIDEST)
-        low, high = (_departure(known, index, name, end, centre) for end in (False, True))
+        low, high = (_departure(known, index, name, end, centre) for end in (0, 1))
         moved += np.maximum(deviate, 0)[:, None] * high - np.minimum(deviate, 0)[:, None] * low
-    places = first_exceeding(moved, math.log(max(limit, LEAST)), rng.uniform(size=draws))
-    quantiles = {
-        each: np.quantile(_along(parts, values, order, places), SHARES, method="nearest")
-        for each, values in measured.items()
-    }
-    at = {
-        each: float(_along(parts, v, order, np.array([place]))[0]) for each, v in measured.items()
-    }
+    places = first_exceeding(moved, bound, rng.uniform(size=draws))
+    at, low, high = {}, {}, {}
+    for each, values in measured.items():
+        at[each] = float(_along(parts, values, order, place)[0])
+        drawn = _along(parts, values, order, places)
+        low[each], high[each] = map(float, np.quantile(drawn, SHARES, method="nearest"))
     crossing = Crossing.WITHIN
-    if math.isinf(place):
+    if math.isinf(place[0]):
         crossing = Crossing.NEVER
-    elif place == 0.0:
+    elif place[0] == 0.0:
         crossing = Crossing.FROM_NEW
-    return LimitCrossing(
-        crossing,
-        share=float(np.isfinite(places).mean()),
-        at=at,
-        low={each: float(pair[0]) for each, pair in quantiles.items()},
-        high={each: float(pair[1]) for each, pair in quantiles.items()},
-    )
+    return LimitCrossing(crossing, float(np.isfinite(places).mean()), at, low, high)
 
 
 def first_exceeding(logarithms: Array, limit: float, blend: Array) -> Array:
@@ -148,16 +133,15 @@ def first_exceeding(logarithms: Array, limit: float, blend: Array) -> Array:
 
 
 def _departure(
-    points: Sequence[WearPoint], index: int, name: str, high: bool, centre: Array
+    points: Sequence[WearPoint], index: int, name: str, end: int, centre: Array
 ) -> Array:
     """Return what one end of one input adds to the logarithm at every state; 0 where not known."""
-    pairs = [point.variants[index][1:] for point in points]
-    ends = np.array([(pair[1] if high else pair[0]).number(name) for pair in pairs])
+    ends = np.array([point.variants[index][1:][end].number(name) for point in points])
     moved = np.log(np.maximum(ends, LEAST)) - centre
     return np.where(np.isnan(moved), 0.0, moved)
 
 
-def _along(parts: Array, values: Array, index: Array, places: Array) -> Array:
+def _along(parts: Array, values: Array, index: NDArray[np.intp], places: Array) -> Array:
     """Return a measure at fractional places among the known states; beyond them +-inf."""
     beyond = math.inf if values[-1] >= values[0] else -math.inf
     inside = np.where(np.isfinite(places), places, 0.0)

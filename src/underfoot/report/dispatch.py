@@ -7,17 +7,17 @@ types of a room of the package, so that nothing is imported before it is needed.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import singledispatch
+from functools import partial, singledispatch
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from underfoot.core import InputError
+from underfoot.core import InputError, unknown_name
 from underfoot.core.presentation import Presentable
 
 from .html import embedded, png
 from .page import Picture, Section, page, remark_sections, table_sections
-from .writing import Writer, Written, data_writers, write_bytes, write_folder, write_text
+from .writing import Writer, Written, data_writers, write_folder
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,7 +26,7 @@ FigureMakers = dict[str, "Callable[[], Figure]"]
 _HOMES = {
     "compute": ("results",),
     "case": ("results",),
-    "questions": ("results", "question_figures", "slips", "contact"),
+    "questions": ("results", "question_figures", "slips"),
     "film": ("regime_figure",),
     "report": ("outsole",),
     **dict.fromkeys(("friction", "rough_contact", "slip", "material"), ("laws",)),
@@ -36,9 +36,8 @@ _HOMES = {
 
 def _registered(generic: Any, shown: object) -> Any:
     """Return the function registered for the type of ``shown`` after its module is imported."""
-    parts = type(shown).__module__.split(".")
-    room = parts[1] if parts[0] == "underfoot" and len(parts) > 1 else ""
-    for name in _HOMES.get(room, ()):
+    package, _, rest = type(shown).__module__.partition(".")
+    for name in _HOMES.get(rest.partition(".")[0], ()) if package == "underfoot" else ():
         import_module(f".{name}", __package__)
     chosen = generic.dispatch(type(shown))
     return None if chosen is generic.dispatch(object) else chosen
@@ -71,13 +70,11 @@ def plot(shown: object, *args: Any, **options: Any) -> Figure:
     chosen = _registered(plot, shown)
     if chosen is not None:
         return chosen(shown, *args, **options)
-    return named_figure(figures(shown), type(shown).__name__, *args)
+    return named_figure(figures(shown), type(shown).__name__, *args, **options)
 
 
 def named_figure(makers: FigureMakers, kind: str, name: str | None = None) -> Figure:
     """Return the figure of a name among several, the first without a name."""
-    from underfoot.core import unknown_name
-
     if not makers:
         raise InputError(f"nothing of a {kind} can be drawn", where="plot")
     if name is not None and name not in makers:
@@ -135,24 +132,31 @@ def write_report(
         return chosen(shown, folder, overwrite=overwrite, **options)
     if not isinstance(shown, Presentable):
         raise InputError(f"a {type(shown).__name__} has no report", where="write_report")
+    data = files(shown) | (further or {})
+    return written(shown, folder, data, partial(page_text, shown), overwrite=overwrite)
+
+
+def written(
+    shown: Presentable,
+    folder: Path | str,
+    data: dict[str, Writer],
+    text: Callable[[dict[str, bytes]], str],
+    *,
+    overwrite: bool,
+) -> Written:
+    """Write data, figures and the page whose ``text`` is made of the figures as PNG, by name."""
     drawn: dict[str, bytes] = {}
 
-    def draw(name: str, make: Callable[[], Figure]) -> Writer:
-        def made() -> bytes:
-            drawn[name] = png(make())
-            return drawn[name]
+    def draw(name: str, make: Callable[[], Figure], path: Path) -> None:
+        drawn[name] = png(make())
+        path.write_bytes(drawn[name])
 
-        return write_bytes(made)
+    pictures = {f"{name}.png": partial(draw, name, make) for name, make in figures(shown).items()}
 
-    pictures = {f"{name}.png": draw(name, make) for name, make in figures(shown).items()}
+    def write_page(path: Path) -> None:
+        path.write_text(text(drawn), encoding="utf-8")
 
-    return write_folder(
-        folder,
-        files(shown) | (further or {}),
-        pictures,
-        lambda path: write_text(page_text(shown, drawn))(path),
-        overwrite=overwrite,
-    )
+    return write_folder(folder, data, pictures, write_page, overwrite=overwrite)
 
 
 def page_text(shown: Presentable, pictures: dict[str, bytes]) -> str:

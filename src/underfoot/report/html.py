@@ -1,4 +1,4 @@
-"""Pictures and templates of a self-contained page."""
+"""Empty figures, pictures and templates of a self-contained page."""
 
 from __future__ import annotations
 
@@ -9,6 +9,13 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from jinja2 import Environment
     from matplotlib.figure import Figure
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """Return an empty figure (inches) with constrained layout."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), layout="constrained")
 
 
 def png(figure: Figure, dpi: int = 130) -> bytes:
@@ -27,10 +34,6 @@ def environment() -> Environment:
     """Return the template environment of this room, escaping everything by default."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
-    settings: dict[str, Any] = {"trim_blocks": True, "lstrip_blocks": True}
-    return Environment(
-        loader=PackageLoader("underfoot.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        **settings,
-    )
+    blocks: dict[str, Any] = {"trim_blocks": True, "lstrip_blocks": True}
+    loader = PackageLoader("underfoot.report")
+    return Environment(loader=loader, autoescape=True, undefined=StrictUndefined, **blocks)

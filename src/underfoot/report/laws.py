@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,158 +18,126 @@ from underfoot.rough_contact.pressure_gap_law import _PresentableLaw
 from underfoot.slip import SlipRisk, slip_model
 from underfoot.slip._checks import PresentableModel
 
-from .dispatch import FigureMakers, figures
+from .dispatch import figures
+from .html import new_figure
 
-SIZE = (6.4, 4.0)
 THICK_FILM = 1e-3  # m: the viscous part is next to nothing
+Draw = Callable[[Any, Figure], None]
 
 
-@figures.register(UncertainInputs)
-def _friction_law(law: Any) -> FigureMakers:
+def _draws(
+    kind: type, name: str, width: float = 6.4, height: float = 4.0
+) -> Callable[[Draw], Draw]:
+    """Register a function that draws an object of a type into a figure (inches) of a name."""
+
+    def register(draw: Draw) -> Draw:
+        def make(shown: Any) -> Figure:
+            figure = new_figure(width, height)
+            draw(shown, figure)
+            return figure
+
+        figures.register(kind, lambda shown: {name: partial(make, shown)})
+        return draw
+
+    return register
+
+
+@_draws(UncertainInputs, "cof")
+def _friction_law(law: Any, figure: Figure) -> None:
     """COF of the contact over sliding speed, adhesion on hysteresis."""
-
-    def draw() -> Figure:
-        speed = np.geomspace(1e-2, 2.0, 200)
-        parts = law(np.full(speed.size, PIN_PRESSURE), speed, np.full(speed.size, THICK_FILM))
-        hysteresis = parts.hysteresis / PIN_PRESSURE
-        cof = hysteresis + parts.adhesion / PIN_PRESSURE
-        figure = Figure(SIZE, layout="constrained")
-        axes = figure.subplots()
-        axes.fill_between(speed, 0.0, hysteresis, alpha=0.5, label="hysteresis")
-        axes.fill_between(speed, hysteresis, cof, alpha=0.5, label="adhesion")
-        axes.plot(speed, cof, "k")
-        axes.set(
-            xscale="log",
-            xlabel="Sliding speed, m/s",
-            ylabel="COF of the contact",
-            title=f"{law.name}, {PIN_PRESSURE * 1e-3:.0f} kPa",
-            ylim=(0.0, None),
-        )
-        axes.legend()
-        return figure
-
-    return {"cof": draw}
+    speed = np.geomspace(1e-2, 2.0, 200)
+    parts = law(np.full(speed.size, PIN_PRESSURE), speed, np.full(speed.size, THICK_FILM))
+    hysteresis = parts.hysteresis / PIN_PRESSURE
+    cof = hysteresis + parts.adhesion / PIN_PRESSURE
+    axes = figure.subplots()
+    axes.fill_between(speed, 0.0, hysteresis, alpha=0.5, label="hysteresis")
+    axes.fill_between(speed, hysteresis, cof, alpha=0.5, label="adhesion")
+    axes.plot(speed, cof, "k")
+    axes.set(xscale="log", xlabel="Sliding speed, m/s", ylabel="COF of the contact")
+    axes.set(title=f"{law.name}, {PIN_PRESSURE * 1e-3:.0f} kPa", ylim=(0.0, None))
+    axes.legend()
 
 
-@figures.register(_PresentableLaw)
-def _pressure_gap_law(law: Any) -> FigureMakers:
+@_draws(_PresentableLaw, "pressure")
+def _pressure_gap_law(law: Any, figure: Figure) -> None:
     """Contact pressure and flow factor over the mean gap."""
-
-    def draw() -> Figure:
-        gap = np.linspace(0.0, 1.2 * float(law.mean_gap(1e3)), 300)
-        figure = Figure(SIZE, layout="constrained")
-        axes = figure.subplots()
-        axes.semilogy(1e6 * gap, law.pressure(gap), "k", label="contact pressure")
-        axes.set(xlabel="Mean gap, µm", ylabel="Contact pressure, Pa", title=law.name)
-        right = axes.twinx()
-        right.plot(1e6 * gap, law.flow_factor(gap), "C0--")
-        right.set_ylabel("Flow factor (dashed)", color="C0")
-        right.set_ylim(0.0, 1.1)
-        return figure
-
-    return {"pressure": draw}
+    gap = np.linspace(0.0, 1.2 * float(law.mean_gap(1e3)), 300)
+    axes = figure.subplots()
+    axes.semilogy(1e6 * gap, law.pressure(gap), "k", label="contact pressure")
+    axes.set(xlabel="Mean gap, µm", ylabel="Contact pressure, Pa", title=law.name)
+    right = axes.twinx()
+    right.plot(1e6 * gap, law.flow_factor(gap), "C0--")
+    right.set_ylabel("Flow factor (dashed)", color="C0")
+    right.set_ylim(0.0, 1.1)
 
 
-@figures.register(ContactTable)
-def _contact_table(table: ContactTable) -> FigureMakers:
+@_draws(ContactTable, "contact", 9.6, 3.4)
+def _contact_table(table: ContactTable, figure: Figure) -> None:
     """Real contact fraction, hysteresis COF and mean gap over pressure, a line a speed."""
-
-    def draw() -> Figure:
-        figure = Figure((9.6, 3.4), layout="constrained")
-        quantities = (
-            ("real_contact_fraction", 1.0, "Real contact fraction"),
-            ("cof_hysteresis", 1.0, "Hysteresis COF"),
-            ("mean_gap", 1e6, "Mean gap, µm"),
-        )
-        pressure = 1e-3 * table.pressure
-        ticks = pressure[:: max(1, pressure.size // 4)]
-        panels = figure.subplots(1, 3)
-        for axes, (name, scale, label) in zip(panels, quantities, strict=True):
-            for column, speed in enumerate(table.speed):
-                spread = scale * np.nan_to_num(table.deviation[name][:, column])
-                values = scale * table.values[name][:, column]
-                axes.errorbar(pressure, values, spread, fmt=".-", label=f"{speed:g} m/s")
-            axes.set(xscale="log", xlabel="Pressure, kPa", ylabel=label)
-            axes.set_xticks(ticks, [f"{tick:.3g}" for tick in ticks])
-            axes.xaxis.set_minor_locator(NullLocator())
-        panels[-1].legend(fontsize=8)
-        return figure
-
-    return {"contact": draw}
+    quantities = (
+        ("real_contact_fraction", 1.0, "Real contact fraction"),
+        ("cof_hysteresis", 1.0, "Hysteresis COF"),
+        ("mean_gap", 1e6, "Mean gap, µm"),
+    )
+    pressure = 1e-3 * table.pressure
+    ticks = pressure[:: max(1, pressure.size // 4)]
+    panels = figure.subplots(1, 3)
+    for axes, (name, scale, label) in zip(panels, quantities, strict=True):
+        for column, speed in enumerate(table.speed):
+            spread = scale * np.nan_to_num(table.deviation[name][:, column])
+            values = scale * table.values[name][:, column]
+            axes.errorbar(pressure, values, spread, fmt=".-", label=f"{speed:g} m/s")
+        axes.set(xscale="log", xlabel="Pressure, kPa", ylabel=label)
+        axes.set_xticks(ticks, [f"{tick:.3g}" for tick in ticks])
+        axes.xaxis.set_minor_locator(NullLocator())
+    panels[-1].legend(fontsize=8)
 
 
-@figures.register(SteadySliding)
-def _steady_sliding(contact: SteadySliding) -> FigureMakers:
+@_draws(SteadySliding, "contact", 8.0, 3.6)
+def _steady_sliding(contact: SteadySliding, figure: Figure) -> None:
     """Maps of contact pressure and gap, sliding to the right."""
-
-    def draw() -> Figure:
-        figure = Figure((8.0, 3.6), layout="constrained")
-        maps = (1e-6 * np.asarray(contact.pressure), 1e6 * np.asarray(contact.gap))
-        labels = ("Contact pressure, MPa", "Gap, µm")
-        for axes, values, label in zip(figure.subplots(1, 2), maps, labels, strict=True):
-            image = axes.imshow(values.T, origin="lower")
-            axes.set(xlabel="node along sliding", ylabel="node across")
-            figure.colorbar(image, ax=axes, label=label)
-        return figure
-
-    return {"contact": draw}
+    maps = (1e-6 * np.asarray(contact.pressure), 1e6 * np.asarray(contact.gap))
+    labels = ("Contact pressure, MPa", "Gap, µm")
+    for axes, values, label in zip(figure.subplots(1, 2), maps, labels, strict=True):
+        image = axes.imshow(values.T, origin="lower")
+        axes.set(xlabel="node along sliding", ylabel="node across")
+        figure.colorbar(image, ax=axes, label=label)
 
 
-@figures.register(PresentableModel)
-def _slip_model(model: Any) -> FigureMakers:
+@_draws(PresentableModel, "probability")
+def _slip_model(model: Any, figure: Figure) -> None:
     """Probability of a slip over ACOF - RCOF, the tested range shaded where there is one."""
-
-    def draw() -> Figure:
-        figure = Figure(SIZE, layout="constrained")
-        _slip_curve(figure.subplots(), model, np.linspace(-0.2, 0.2, 401))
-        return figure
-
-    return {"probability": draw}
-
-
-@figures.register(SlipRisk)
-def _slip_risk(risk: SlipRisk) -> FigureMakers:
-    """The population's probability over ACOF, with the one asked for."""
-
-    def draw() -> Figure:
-        model = slip_model(risk.model)
-        acof = np.linspace(0.0, 0.6, 301)
-        figure = Figure(SIZE, layout="constrained")
-        axes = figure.subplots()
-        axes.plot(acof, 100.0 * model.population(acof, risk.rcof.mean, risk.rcof.sd), "k")
-        axes.axhline(100.0 * (risk.probability.value or 0.0), color="C1", label="this risk")
-        if risk.low is not None and risk.high is not None:
-            axes.axhspan(100.0 * risk.low, 100.0 * risk.high, color="C1", alpha=0.2)
-        axes.set(xlabel="Available COF", ylabel="Probability of a slip, %", title=risk.model)
-        axes.legend()
-        return figure
-
-    return {"probability": draw}
-
-
-@figures.register(RelaxationSpectrum)
-def _relaxation_spectrum(spectrum: RelaxationSpectrum) -> FigureMakers:
-    """Storage and loss modulus over frequency."""
-
-    def draw() -> Figure:
-        times = spectrum.relaxation_times if len(spectrum) else np.ones(1)
-        frequency = np.geomspace(0.01 / times.max(), 100.0 / times.min(), 300)
-        figure = Figure(SIZE, layout="constrained")
-        axes = figure.subplots()
-        axes.loglog(frequency, spectrum.storage_modulus(frequency), label="storage modulus E'")
-        axes.loglog(frequency, spectrum.loss_modulus(frequency), label="loss modulus E''")
-        axes.set(xlabel="Angular frequency, rad/s", ylabel="Modulus, Pa")
-        axes.legend()
-        return figure
-
-    return {"modulus": draw}
-
-
-def _slip_curve(axes: Any, model: Any, difference: np.ndarray) -> None:
-    rcof = 0.3
+    rcof, difference = 0.3, np.linspace(-0.2, 0.2, 401)
+    axes = figure.subplots()
     axes.plot(difference, 100.0 * model(rcof + difference, rcof), "k")
     tested = getattr(model, "tested", None)
     if tested is not None:
         axes.axvspan(tested.low, tested.high, color="C0", alpha=0.2, label="tested range")
         axes.legend()
     axes.set(xlabel="ACOF - RCOF", ylabel="Probability of a slip, %", title=model.name)
+
+
+@_draws(SlipRisk, "probability")
+def _slip_risk(risk: SlipRisk, figure: Figure) -> None:
+    """The population's probability over ACOF, with the one asked for."""
+    acof = np.linspace(0.0, 0.6, 301)
+    share = slip_model(risk.model).population(acof, risk.rcof.mean, risk.rcof.sd)
+    axes = figure.subplots()
+    axes.plot(acof, 100.0 * share, "k")
+    axes.axhline(100.0 * (risk.probability.value or 0.0), color="C1", label="this risk")
+    if risk.low is not None and risk.high is not None:
+        axes.axhspan(100.0 * risk.low, 100.0 * risk.high, color="C1", alpha=0.2)
+    axes.set(xlabel="Available COF", ylabel="Probability of a slip, %", title=risk.model)
+    axes.legend()
+
+
+@_draws(RelaxationSpectrum, "modulus")
+def _relaxation_spectrum(spectrum: RelaxationSpectrum, figure: Figure) -> None:
+    """Storage and loss modulus over frequency."""
+    times = spectrum.relaxation_times if len(spectrum) else np.ones(1)
+    frequency = np.geomspace(0.01 / times.max(), 100.0 / times.min(), 300)
+    axes = figure.subplots()
+    axes.loglog(frequency, spectrum.storage_modulus(frequency), label="storage modulus E'")
+    axes.loglog(frequency, spectrum.loss_modulus(frequency), label="loss modulus E''")
+    axes.set(xlabel="Angular frequency, rad/s", ylabel="Modulus, Pa")
+    axes.legend()

@@ -6,12 +6,13 @@ The heel is at the bottom, the walking direction points up, lengths are in mm.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .common_grid import common_grid, difference, on_grid, sole_on_grid
+from .html import new_figure
 from .quantities import Quantity, Scale, drawn, inside, quantities, scale
 
 if TYPE_CHECKING:
@@ -109,8 +110,7 @@ def map_figure(dataset: xarray.Dataset, quantity: Quantity) -> Figure:
     figure = _sole_figure(1, 1, dataset)
     axes = figure.add_subplot()
     draw_map(axes, dataset, quantity)
-    axes.set_xlabel("across, y (mm)")
-    axes.set_ylabel("from the back of the heel, x (mm)")
+    axes.set(xlabel="across, y (mm)", ylabel="from the back of the heel, x (mm)")
     return figure
 
 
@@ -123,8 +123,7 @@ def overview_figure(dataset: xarray.Dataset) -> Figure:
     for number, quantity in enumerate(found, start=1):
         axes = figure.add_subplot(rows, columns, number)
         draw_map(axes, dataset, quantity)
-        axes.set_xticks([])
-        axes.set_yticks([])
+        axes.set(xticks=[], yticks=[])
     return figure
 
 
@@ -134,18 +133,13 @@ def comparison_figure(datasets: Sequence[xarray.Dataset], quantity: Quantity) ->
     Where the grids differ, the differences are taken on cells of the coarser one, as means that
     keep the load. A quantity on a logarithmic scale is compared by its ratio.
     """
-    from matplotlib.figure import Figure
-
     grid = common_grid(datasets)
     limits = colour_scale(datasets, quantity)
     count = len(datasets)
     first = datasets[0]
-    there = inside(first)
-    tall = np.ptp(first["x"].values[there.any(axis=1)]) + 0.015
-    wide = np.ptp(first["y"].values[there.any(axis=0)])
     columns = 2 * count - 1
-    height = float(np.clip(2.9 * tall / max(wide, 1e-6), 2.6, 7.0)) + 0.6
-    figure = Figure(figsize=(3.4 * columns, height), layout="constrained")
+    height = float(np.clip(2.9 * _tallness(first), 2.6, 7.0)) + 0.6
+    figure = new_figure(3.4 * columns, height)
     axes = np.atleast_1d(np.asarray(figure.subplots(1, columns)))
     for number, dataset in enumerate(datasets):
         draw_map(axes[number], dataset, quantity, limits, bar=number == count - 1, sensors=False)
@@ -164,8 +158,7 @@ def comparison_figure(datasets: Sequence[xarray.Dataset], quantity: Quantity) ->
         sign = "over" if quantity.logarithmic else "less"
         ax.set_title(f"{LETTERS[number]} {sign} A", fontsize="medium")
     for ax in axes:
-        ax.set_xticks([])
-        ax.set_yticks([])
+        ax.set(xticks=[], yticks=[])
     return figure
 
 
@@ -196,22 +189,23 @@ def grid_note(datasets: Sequence[xarray.Dataset]) -> str:
 
 
 def _sole_figure(rows: int, columns: int, dataset: xarray.Dataset) -> Figure:
-    from matplotlib.figure import Figure
+    height = float(np.clip(3.4 * _tallness(dataset), 3.0, 8.0))
+    return new_figure(4.4 * columns, (height + 0.7) * rows)
 
+
+def _tallness(dataset: xarray.Dataset) -> float:
+    """Return the sole's length, with room for the scale bar, over its width."""
     there = inside(dataset)
     tall = np.ptp(dataset["x"].values[there.any(axis=1)]) + 0.015
-    wide = np.ptp(dataset["y"].values[there.any(axis=0)])
-    height = float(np.clip(3.4 * tall / max(wide, 1e-6), 3.0, 8.0))
-    return Figure(figsize=(4.4 * columns, (height + 0.7) * rows), layout="constrained")
+    return tall / max(np.ptp(dataset["y"].values[there.any(axis=0)]), 1e-6)
 
 
 def _draw_sensors(axes: Axes, dataset: xarray.Dataset) -> None:
     if "sensor_x" not in dataset or "sensor_y" not in dataset:
         return
     along, across = dataset["sensor_x"].values * 1e3, dataset["sensor_y"].values * 1e3
-    inlet = dataset["sensor_pressure"].attrs.get("inlet_diameter") if (
-        "sensor_pressure" in dataset
-    ) else None  # fmt: skip
+    sensed = dataset.get("sensor_pressure")
+    inlet = None if sensed is None else sensed.attrs.get("inlet_diameter")
     style = {"color": "#c8553d", "linewidth": 0.9}
     if along.size > _FEW_SENSORS:
         axes.vlines(across, along.min(), along.max(), linestyles=":", **style)
@@ -237,20 +231,14 @@ def frame_sole(
     axes.set_xlim(ends_y[0] - 0.06 * size, ends_y[1] + 0.06 * size)
     axes.set_ylim(ends_x[0] - 0.16 * size, ends_x[1] + 0.2 * size)
     middle = float(ends_y.mean())
-    axes.annotate(
-        "", (middle, ends_x[1] + 0.16 * size), (middle, ends_x[1] + 0.05 * size),
-        arrowprops={"arrowstyle": "-|>", "color": "0.3"},
-    )  # fmt: skip
-    axes.text(
-        middle + 0.03 * size, ends_x[1] + 0.1 * size, "walking", fontsize=7, color="0.3",
-        va="center",
-    )  # fmt: skip
+    toe = ends_x[1]
+    arrow = {"arrowstyle": "-|>", "color": "0.3"}
+    axes.annotate("", (middle, toe + 0.16 * size), (middle, toe + 0.05 * size), arrowprops=arrow)
+    style: dict[str, Any] = {"fontsize": 7, "color": "0.3", "va": "center"}
+    axes.text(middle + 0.03 * size, toe + 0.1 * size, "walking", **style)
     length = 10.0 if size < 150 else 50.0
     right, low = ends_y[1], ends_x[0] - 0.08 * size
     axes.plot([right - length, right], [low, low], color="0.2", linewidth=2.5)
-    axes.text(
-        right - 0.5 * length, low - 0.015 * size, f"{length:g} mm", fontsize=7, ha="center",
-        va="top",
-    )  # fmt: skip
-    for side in ("top", "right", "left", "bottom"):
-        axes.spines[side].set_visible(False)
+    style = {"fontsize": 7, "ha": "center", "va": "top"}
+    axes.text(right - 0.5 * length, low - 0.015 * size, f"{length:g} mm", **style)
+    axes.spines[:].set_visible(False)

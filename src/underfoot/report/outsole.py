@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -25,6 +26,7 @@ from underfoot.shoe.tread_measures import (
 )
 
 from .dispatch import FigureMakers, figures, files
+from .html import new_figure
 from .maps import frame_sole
 from .writing import Writer, data_writers
 
@@ -52,11 +54,9 @@ class OutsoleInspection(Presentable):
         return f"<OutsoleInspection of {self.file.name!r:.100}: {self.outsole.faces} faces>"
 
     def heading(self) -> str:
-        """Return file, format and number of faces."""
         return f"{self.file.name}: {self.outsole.format}, {self.outsole.faces} faces"
 
     def headline(self) -> tuple[str, ...]:
-        """Return size and land."""
         m = self.measures
         return (
             f"{m.length * 1e3:.4g} x {m.width * 1e3:.4g} mm, land {m.land_ratio:.0%} of "
@@ -64,8 +64,6 @@ class OutsoleInspection(Presentable):
         )
 
     def table(self) -> Table:
-        """Return every measure of the tread."""
-
         def spread(values: tuple[float, float, float] | None, factor: float, unit: str) -> str:
             if values is None:
                 return "none"
@@ -89,18 +87,15 @@ class OutsoleInspection(Presentable):
             ("  largest circle in it", f"{m.patch_circle * 1e3:.3g} mm"),
             ("Largest circle without channel", f"{m.free_circle * 1e3:.3g} mm"),
         ]
-        if self.outsole.thickness is not None:
-            rows.append(
-                ("Thickness over the land, median", f"{self.outsole.thickness * 1e3:.3g} mm")
-            )
+        thickness = self.outsole.thickness
+        if thickness is not None:
+            rows.append(("Thickness over the land, median", f"{thickness * 1e3:.3g} mm"))
         return Table("Tread", ("Measure", "Value"), rows)
 
     def remarks(self) -> dict[str, Sequence[str]]:
-        """Return what was determined, assumed and repaired."""
         return {"Determined, assumed and repaired": self.outsole.surface.remarks}
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything in SI; what there is none of is None."""
         outsole = self.outsole
         return {
             "file": str(self.file),
@@ -118,7 +113,6 @@ class OutsoleInspection(Presentable):
         }
 
     def data_tables(self) -> dict[str, Table]:
-        """Return one row a measure, in SI, with its unit in the name."""
         rows: list[tuple[str, Any]] = []
         for name, value in asdict(self.measures).items():
             unit = next((_UNITS[end] for end in _UNITS if name.endswith(end)), "")
@@ -164,46 +158,39 @@ def outsole_figure(surface: SoleSurface, measures: TreadMeasures) -> Figure:
 
     The heel is at the bottom and the toe at the top, like all maps of results.
     """
-    from matplotlib.figure import Figure
-
     tall = float(np.clip(4.0 * surface.length / max(surface.width, 1e-6), 4.5, 10.0))
-    figure = Figure(figsize=(12.5, tall), layout="constrained")
+    figure = new_figure(12.5, tall)
     heights, depths, parts = figure.subplots(1, 3)
     millimetres = surface.height * 1e3
     shown = millimetres[surface.inside]
     high = max(float(np.percentile(shown, _HIGHEST)), float(shown.min()) + 0.1)
-    _field(heights, surface, millimetres, "viridis", (float(shown.min()), high), "mm")
-    heights.set_title("Height above the sole plane")
     depth = channel_depth(surface) * 1e3
     deepest = max(float(np.nanmax(depth)), 0.1)
     depth = np.where(surface.land | ~surface.inside, np.nan, depth)
-    _field(depths, surface, depth, "Blues", (0.0, deepest), "mm")
-    depths.set_title("Depth of the channels")
+    for axes, values, colours, low, top, title in (
+        (heights, millimetres, "viridis", shown.min(), high, "Height above the sole plane"),
+        (depths, depth, "Blues", 0.0, deepest, "Depth of the channels"),
+    ):
+        image = _field(axes, surface, values, colours, low, top)
+        bar = figure.colorbar(image, ax=axes, fraction=0.05, pad=0.03)
+        bar.ax.set_title("mm", fontsize="small")
+        axes.set_title(title)
     _parts(parts, surface, measures)
     for axes in (heights, depths, parts):
         rim = surface.outline * 1e3
         axes.plot(rim[:, 1], rim[:, 0], color="0.25", linewidth=1.0)
         frame_sole(axes, surface.x * 1e3, surface.y * 1e3, surface.inside)
-        axes.set_xticks([])
-        axes.set_yticks([])
+        axes.set(xticks=[], yticks=[])
     figure.suptitle(f"{surface.name}, seen from below", fontsize="large")
     return figure
 
 
 def _field(
-    axes: Axes,
-    surface: SoleSurface,
-    values: np.ndarray,
-    colours: str,
-    limits: tuple[float, float],
-    unit: str,
-) -> None:
-    image = axes.pcolormesh(
-        surface.y * 1e3, surface.x * 1e3, np.ma.masked_invalid(values), cmap=colours,
-        vmin=limits[0], vmax=limits[1], shading="nearest", rasterized=True,
-    )  # fmt: skip
-    bar = axes.figure.colorbar(image, ax=axes, fraction=0.05, pad=0.03)
-    bar.ax.set_title(unit, fontsize="small")
+    axes: Axes, surface: SoleSurface, values: np.ndarray, colours: Any, low: float, high: float
+) -> Any:
+    scale: dict[str, Any] = {"cmap": colours, "vmin": low, "vmax": high, "shading": "nearest"}
+    shown = np.ma.masked_invalid(values)
+    return axes.pcolormesh(surface.y * 1e3, surface.x * 1e3, shown, rasterized=True, **scale)
 
 
 def _parts(axes: Axes, surface: SoleSurface, measures: TreadMeasures) -> None:
@@ -211,47 +198,61 @@ def _parts(axes: Axes, surface: SoleSurface, measures: TreadMeasures) -> None:
     from matplotlib.patches import Patch
 
     channel = surface.inside & ~surface.land
-    closed = channel & ~draining(surface)
+    kinds = {
+        "land": ("0.72", surface.land),
+        "channels open to the rim": ("#dfeaf3", channel),
+        "closed channels": (_CLOSED, channel & ~draining(surface)),
+        f"largest untreaded patch, {measures.patch_area * 1e6:.3g} mm²": (
+            _PATCH,
+            largest_patch(surface),
+        ),
+    }
     parts = np.full(surface.height.shape, np.nan)
-    parts[surface.land] = 0
-    parts[channel] = 1
-    parts[closed] = 2
-    parts[largest_patch(surface)] = 3
-    colours = ["0.72", "#dfeaf3", _CLOSED, _PATCH]
-    axes.pcolormesh(
-        surface.y * 1e3, surface.x * 1e3, np.ma.masked_invalid(parts),
-        cmap=ListedColormap(colours), vmin=-0.5, vmax=3.5, shading="nearest", rasterized=True,
-    )  # fmt: skip
-    names = ["land", "channels open to the rim", "closed channels"]
-    names.append(f"largest untreaded patch, {measures.patch_area * 1e6:.3g} mm²")
-    present = [(parts == number).any() for number in range(4)]
+    for number, (_, where) in enumerate(kinds.values()):
+        parts[where] = number
+    _field(axes, surface, parts, ListedColormap([c for c, _ in kinds.values()]), -0.5, 3.5)
     handles = [
         Patch(facecolor=colour, edgecolor="0.5", linewidth=0.5, label=name)
-        for colour, name, there in zip(colours, names, present, strict=True)
-        if there
+        for number, (name, (colour, _)) in enumerate(kinds.items())
+        if (parts == number).any()
     ]
-    axes.legend(
-        handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), frameon=False, fontsize=8
-    )
+    style: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0)}
+    axes.legend(handles=handles, frameon=False, fontsize=8, **style)
     axes.set_title(f"Land {measures.land_ratio:.0%} of the plan form")
+
+
+_CASE = """\
+name = {name}
+
+[shoe]
+from = "work_shoe_half_tread"  # compound and roughness; set your own
+# material.shore_a = 60
+
+[shoe.outsole]
+file = {file}
+sha256 = "{sha256}"
+{settings}
+
+[shoe.sole]
+outsole_thickness = {thickness}
+# midsole_modulus = "2 MPa"
+# midsole_thickness = "15 mm"
+
+[floor]
+from = "vinyl_g4"
+
+[contaminant]
+from = "glycerol_90pct"
+
+[motion]
+from = "slip_tester_g4"
+"""
 
 
 def case_text(inspection: OutsoleInspection, out: Path) -> str:
     """Return a case file for the folder ``out`` that uses the outsole with the same settings."""
-    file, settings = inspection.file, inspection.settings
-    plain = FileSettings()
-    path = Path(os.path.relpath(file.resolve(), out.resolve())).as_posix()
-    lines = [
-        f"name = {_quoted(file.stem)}",
-        "",
-        "[shoe]",
-        'from = "work_shoe_half_tread"  # compound and roughness; set your own',
-        "# material.shore_a = 60",
-        "",
-        "[shoe.outsole]",
-        f"file = {_quoted(path)}",
-        f'sha256 = "{checksum(file)}"',
-    ]
+    file, settings, plain = inspection.file, inspection.settings, FileSettings()
+    lines = []
     for name in ("unit", "down", "forward", "foot", "region"):
         value = getattr(settings, name)
         mark = "" if value != getattr(plain, name) else "# "
@@ -262,29 +263,14 @@ def case_text(inspection: OutsoleInspection, out: Path) -> str:
         lines.append(f'region_length = "{settings.region_length * 1e3:g} mm"')
     if settings.spacing != plain.spacing:
         lines.append(f'map_spacing = "{settings.spacing * 1e3:g} mm"')
-    lines += ["", "[shoe.sole]"]
-    if inspection.outsole.thickness is None:
-        lines.append('outsole_thickness = "15 mm"  # not in the file: set your own')
-    else:
-        lines.append(
-            f'outsole_thickness = "{inspection.outsole.thickness * 1e3:.3g} mm"  # as in the file'
-        )
-    lines += [
-        '# midsole_modulus = "2 MPa"',
-        '# midsole_thickness = "15 mm"',
-        "",
-        "[floor]",
-        'from = "vinyl_g4"',
-        "",
-        "[contaminant]",
-        'from = "glycerol_90pct"',
-        "",
-        "[motion]",
-        'from = "slip_tester_g4"',
-    ]
-    return "\n".join(lines) + "\n"
-
-
-def _quoted(text: str) -> str:
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    return f'"{escaped}"'
+    path = Path(os.path.relpath(file.resolve(), out.resolve())).as_posix()
+    thickness = inspection.outsole.thickness
+    return _CASE.format(
+        name=json.dumps(file.stem, ensure_ascii=False),
+        file=json.dumps(path, ensure_ascii=False),
+        sha256=checksum(file),
+        settings="\n".join(lines),
+        thickness='"15 mm"  # not in the file: set your own'
+        if thickness is None
+        else f'"{thickness * 1e3:.3g} mm"  # as in the file',
+    )

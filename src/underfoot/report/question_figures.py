@@ -1,20 +1,24 @@
-"""Figures of sensitivity and wear, and their pages."""
+"""Figures of sensitivity, wear and one rough contact."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core import display
 from underfoot.core.presentation import quantity_text
+from underfoot.questions.contact import RoughContact
 from underfoot.questions.sensitivity import QUANTITIES, Sensitivity
 from underfoot.questions.wear import WearSeries
 
-from .dispatch import figures
+from .dispatch import FigureMakers, figures, files
+from .html import new_figure
+from .writing import Writer, data_writers
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,22 +32,20 @@ SCALES = {"Pa": (1e-3, "kPa")}
 
 
 @figures.register(Sensitivity)
-def _sensitivity(shown: Sensitivity) -> dict[str, Callable[[], Figure]]:
+def _sensitivity(shown: Sensitivity) -> FigureMakers:
     return {"sensitivity": lambda: sensitivity_figure(shown)} if shown.usable else {}
 
 
 @figures.register(WearSeries)
-def _wear(shown: WearSeries) -> dict[str, Callable[[], Figure]]:
+def _wear(shown: WearSeries) -> FigureMakers:
     return {"wear": lambda: wear_figure(shown)} if shown.usable else {}
 
 
 def sensitivity_figure(shown: Sensitivity, quantities: Quantities = QUANTITIES) -> Figure:
     """Return one panel a quantity: bars from the nominal value to that at either end."""
-    from matplotlib.figure import Figure
-
     panels = dict(quantities)
     rows = math.ceil(len(panels) / 2)
-    figure = Figure(figsize=(11.5, 0.6 + 2.9 * rows), layout="constrained")
+    figure = new_figure(11.5, 0.6 + 2.9 * rows)
     figure.suptitle(
         f"{shown.nominal.name}\nblue: at the low value, orange: at the high one", fontsize=10
     )
@@ -72,11 +74,8 @@ def _panel(axes: Axes, shown: Sensitivity, name: str, label: str) -> None:
     axes.set_yticks(range(len(effects)), ends, fontsize=7.5)
     axes.axvline(centre, color="0.25", linewidth=0.9)
     band = shown.band(name)
-    axes.set_title(
-        f"{label}: {quantity_text(band.value, unit, band.deviation)}",
-        fontsize=9.5,
-        loc="left",
-    )
+    title = f"{label}: {quantity_text(band.value, unit, band.deviation)}"
+    axes.set_title(title, fontsize=9.5, loc="left")
     axes.set_xlabel(label_unit)
     axes.margins(y=0.03)
     axes.spines[["top", "right", "left"]].set_visible(False)
@@ -85,71 +84,107 @@ def _panel(axes: Axes, shown: Sensitivity, name: str, label: str) -> None:
 
 def wear_figure(series: WearSeries) -> Figure:
     """Return three panels over wear: fluid load with its limit, peak pressure and COF."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(12.0, 4.6), layout="constrained")
+    figure = new_figure(12.0, 4.6)
     load, peak, friction = figure.subplots(1, 3)
-    place, label = _axis(series)
+    if series.mode == "patch":
+        place, label = series.measured("worn_patch_area") * 1e6, "worn patch (mm²)"
+    else:
+        place = series.measured("removed_depth") * 1e3
+        label = "thickness lost at the most worn place (mm)"
     worn = zip(series.measured("tread_left"), series.measured("worn_patch_area"), strict=True)
     labels = [f"{left * 1e3:.2g} mm\n{patch * 1e6:.0f} mm²" for left, patch in worn]
     top = load.secondary_xaxis("top")
     top.set_xticks(place, labels, fontsize=7)
     top.set_xlabel("tread left where it is least, worn patch", fontsize=8)
-    for axes in (load, peak, friction):
-        axes.set_xlabel(label)
+    for axes, name, text, colour, scale in (
+        (load, "fluid_load", "under the sole", FILM, 1.0),
+        (load, "fluid_load_sensor", "as floor sensors read it", SENSOR, 1.0),
+        (peak, "peak_fluid_pressure", "under the sole", FILM, 1e-3),
+        (peak, "peak_fluid_pressure_sensor", "as a floor sensor reads it", SENSOR, 1e-3),
+        (friction, "cof", "", FRICTION, 1.0),
+    ):
+        low, high = series.ends(name)
+        axes.fill_between(place, low * scale, high * scale, color=colour, alpha=0.18, linewidth=0)
+        style = {"color": colour, "marker": "o", "markersize": 4}
+        axes.plot(place, series.values(name) * scale, label=text, **style)
+    load.axhline(series.limit, color="0.4", linestyle="--", linewidth=1)
+    style = {"va": "bottom", "fontsize": 8, "color": "0.3"}
+    corner = (0.02, series.limit)
+    load.annotate(f"limit {series.limit:g} N", corner, xycoords=("axes fraction", "data"), **style)
+    for axes, title in (
+        (load, "load carried by the fluid (N)"),
+        (peak, "peak fluid pressure (kPa)"),
+        (friction, "coefficient of friction"),
+    ):
+        axes.set(xlabel=label, ylabel=title)
+        axes.set_ylim(bottom=0)
         axes.spines["right"].set_visible(False)
         axes.spines["top"].set_visible(axes is load)
-    _curve(load, series, place, "fluid_load", "under the sole", FILM, 1.0)
-    _curve(load, series, place, "fluid_load_sensor", "as floor sensors read it", SENSOR, 1.0)
-    load.axhline(series.limit, color="0.4", linestyle="--", linewidth=1)
-    load.annotate(
-        f"limit {series.limit:g} N",
-        (0.02, series.limit),
-        xycoords=("axes fraction", "data"),
-        va="bottom",
-        fontsize=8,
-        color="0.3",
-    )
-    load.set_ylabel("load carried by the fluid (N)")
-    load.set_ylim(bottom=0)
-    load.legend(frameon=False, fontsize=8)
-    _curve(peak, series, place, "peak_fluid_pressure", "under the sole", FILM, 1e-3)
-    _curve(
-        peak,
-        series,
-        place,
-        "peak_fluid_pressure_sensor",
-        "as a floor sensor reads it",
-        SENSOR,
-        1e-3,
-    )
-    peak.set_ylabel("peak fluid pressure (kPa)")
-    peak.set_ylim(bottom=0)
-    peak.legend(frameon=False, fontsize=8)
-    _curve(friction, series, place, "cof", "", FRICTION, 1.0)
-    friction.set_ylabel("coefficient of friction")
-    friction.set_ylim(bottom=0)
+        if axes is not friction:
+            axes.legend(frameon=False, fontsize=8)
     return figure
 
 
-def _axis(series: WearSeries) -> tuple[NDArray[np.float64], str]:
-    """Return where the states lie on the axis of wear, and its label."""
-    if series.mode == "patch":
-        return series.measured("worn_patch_area") * 1e6, "worn patch (mm²)"
-    return series.measured("removed_depth") * 1e3, "thickness lost at the most worn place (mm)"
+@figures.register(RoughContact)
+def _contact(shown: RoughContact) -> FigureMakers:
+    if not shown.usable:
+        return {}
+    floor = shown.floor
+    title = shown.headline()[0].partition(" (")[0]
+    return {"contact": partial(contact_figure, floor.heights, floor.spacing, shown.contact, title)}
 
 
-def _curve(
-    axes: Axes,
-    series: WearSeries,
-    place: NDArray[np.float64],
-    name: str,
-    label: str,
-    colour: str,
-    scale: float,
-) -> None:
-    low, high = series.ends(name)
-    axes.fill_between(place, low * scale, high * scale, color=colour, alpha=0.18, linewidth=0)
-    axes.plot(
-        place, series.values(name) * scale, color=colour, marker="o", markersize=4, label=label
+@files.register(RoughContact)
+def _contact_files(shown: RoughContact) -> dict[str, Writer]:
+    def write_fields(path: Path) -> None:
+        floor, contact = shown.floor, shown.contact
+        fields: dict[str, Any] = {"pressure": contact.pressure, "gap": contact.gap}
+        np.savez_compressed(path, heights=floor.heights, spacing=floor.spacing, **fields)
+
+    return data_writers(shown) | ({"contact.npz": write_fields} if shown.usable else {})
+
+
+def contact_figure(heights: np.ndarray, spacing: float, contact: Any, title: str = "") -> Figure:
+    """Return four maps of a contact: surface, pressure, patches of contact, gap.
+
+    ``heights`` (m, (nx, ny), axis 0 along sliding), ``spacing`` (m) and a result with ``pressure``
+    (Pa) and ``gap`` (m) on the same grid, as ``steady_sliding`` returns it. Sliding is drawn
+    upwards. The gap's colours end at the 99 % quantile of where it is open.
+    """
+    from matplotlib.colors import ListedColormap
+    from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+    figure = Figure(figsize=(9.4, 8.0), layout=ConstrainedLayoutEngine(rect=(0.02, 0, 0.97, 1)))
+    axes = figure.subplots(2, 2)
+    nx, ny = heights.shape
+    extent = (0.0, ny * spacing * 1e6, 0.0, nx * spacing * 1e6)
+    touching = contact.pressure > 0.0
+    open_gap = np.ma.masked_array(contact.gap * 1e6, mask=touching)
+    carried = np.ma.masked_array(contact.pressure * 1e-6, mask=~touching)
+    highest = 1e6 * float(np.quantile(contact.gap[~touching], 0.99)) if not touching.all() else 0.0
+    panels = (
+        ("Surface", (heights - heights.mean()) * 1e6, "height (µm)", "cividis", (None, None)),
+        ("Contact pressure", carried, "pressure (MPa)", "viridis", (0.0, None)),
+        ("Contact patches", touching, "", ListedColormap(["#f2efe9", "#7a1f1f"]), (0.0, 1.0)),
+        ("Gap (contact in blue-grey)", open_gap, "gap (µm)", "magma_r", (0.0, max(highest, 1e-9))),
     )
+    for ax, (name, field, unit, colours, (low, high)) in zip(axes.flat, panels, strict=True):
+        style: dict[str, Any] = {"origin": "lower", "extent": extent, "interpolation": "nearest"}
+        image = ax.imshow(field, cmap=colours, vmin=low, vmax=high, **style)
+        ax.set_title(name)
+        if name.startswith("Gap") and touching.all():
+            ax.clear()
+            ax.set(xticks=[], yticks=[], box_aspect=1)
+            ax.text(0.5, 0.5, "full contact:\nno gap anywhere", ha="center", va="center")
+            continue
+        if name.startswith("Gap"):
+            ax.set_facecolor("#a9bfd1")  # contact, apart from small gaps
+        ax.set(xlabel="across, y (µm)", ylabel="sliding, x (µm)")
+        if unit:
+            figure.colorbar(image, ax=ax, fraction=0.046, pad=0.03).set_label(unit)
+        else:
+            ax.set_title(f"{name}: {100.0 * np.mean(touching):.3g} % of the grid")
+    if title:
+        figure.suptitle(title)
+    return figure

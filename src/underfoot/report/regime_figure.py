@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+
+from underfoot.core import InputError
+from underfoot.film import RegimeMap
+from underfoot.film.regimes import LAMBDA_LIMITS, SHARE_LIMITS
+
+from .dispatch import plot
+from .html import new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from underfoot.film import RegimeMap
-
 BANDS = ("#e9d8c4", "#f3efe6", "#d5e4ec")
 INK = ("#7a1f1f", "#b5651d", "#c9a227", "#4f7942", "#1f5c7a", "#3b2a6b", "#666666", "#111111")
 
 
+@plot.register(RegimeMap)
 def regime_figure(
     regimes: RegimeMap, fluids: Mapping[str, float] | None = None, title: str = ""
 ) -> Figure:
@@ -30,10 +35,6 @@ def regime_figure(
     those of ``film.regimes`` (``LAMBDA_LIMITS``, ``SHARE_LIMITS``); assumptions and breaches stand
     below.
     """
-    from matplotlib.figure import Figure
-
-    from underfoot.core import InputError
-
     if min(regimes.lambda_ratio.shape) < 2:
         raise InputError(
             "a map needs two viscosities and two speeds", where="regimes", allowed="2 x 2 or more"
@@ -48,10 +49,13 @@ def regime_figure(
                 allowed=f"{low * 1e3:.3g} to {high * 1e3:.3g} mPa s",
                 remedy="Draw the map over more viscosities.",
             )
-    figure = Figure(figsize=(10.5, 5.2), layout="constrained")
+    figure = new_figure(10.5, 5.2)
     left, right = figure.subplots(1, 2)
     _by_speed(left, regimes, fluids)
     _map(right, regimes, fluids)
+    for axes in (left, right):
+        axes.set(xscale="log", yscale="log", xlabel="sliding speed (m/s)")
+        axes.set_xlim(regimes.speed.min(), regimes.speed.max())
     if title:
         figure.suptitle(title)
     notes = [*regimes.assumptions, *(str(breach) for breach in regimes.breaches)]
@@ -59,16 +63,7 @@ def regime_figure(
     return figure
 
 
-def save_regime_figure(
-    path: Path, regimes: RegimeMap, fluids: Mapping[str, float] | None = None, title: str = ""
-) -> None:
-    """Write ``regime_figure`` as a picture; the ending of ``path`` chooses the format."""
-    regime_figure(regimes, fluids, title).savefig(path, dpi=150)
-
-
 def _by_speed(ax: Axes, regimes: RegimeMap, fluids: Mapping[str, float]) -> None:
-    from underfoot.film.regimes import LAMBDA_LIMITS
-
     curves = {name: _interpolated(regimes, fluids[name]) for name in fluids}
     shown = np.concatenate(list(curves.values())) if curves else regimes.lambda_ratio.ravel()
     floor = min(float(shown.min()) / 1.5, LAMBDA_LIMITS[0] / 2)
@@ -78,15 +73,9 @@ def _by_speed(ax: Axes, regimes: RegimeMap, fluids: Mapping[str, float]) -> None
     for start, end, colour, name in zip(edges[:-1], edges[1:], BANDS, names, strict=True):
         ax.axhspan(start, end, color=colour, zorder=0)
         ax.text(0.02, end / 1.12, name, transform=ax.get_yaxis_transform(), va="top")
-    for (name, curve), colour in zip(curves.items(), _colours(len(curves)), strict=True):
-        ax.loglog(regimes.speed, curve, color=colour, label=name)
-    ax.set_xscale("log")
-    ax.set_yscale("log")
-    ax.set_ylim(floor, ceiling)
-    ax.set_xlim(regimes.speed.min(), regimes.speed.max())
-    ax.set_xlabel("sliding speed (m/s)")
-    ax.set_ylabel("film over roughness, λ")
-    ax.set_title("λ against speed")
+    for number, (name, curve) in enumerate(curves.items()):
+        ax.loglog(regimes.speed, curve, color=INK[number % len(INK)], label=name)
+    ax.set(ylim=(floor, ceiling), ylabel="film over roughness, λ", title="λ against speed")
     if curves:
         ax.legend(fontsize=8, loc="lower right")
 
@@ -95,44 +84,26 @@ def _map(ax: Axes, regimes: RegimeMap, fluids: Mapping[str, float]) -> None:
     from matplotlib.colors import ListedColormap
     from matplotlib.lines import Line2D
 
-    from underfoot.film.regimes import LAMBDA_LIMITS, SHARE_LIMITS
-
     speed, viscosity = regimes.speed, regimes.viscosity * 1e3
-    level = np.digitize(regimes.lambda_ratio, LAMBDA_LIMITS).astype(float)
-    ax.pcolormesh(
-        speed, viscosity, level, cmap=ListedColormap(BANDS), vmin=-0.5, vmax=2.5, shading="nearest"
-    )
+    parts = np.digitize(regimes.lambda_ratio, LAMBDA_LIMITS).astype(float)
+    scale: dict[str, Any] = {"cmap": ListedColormap(BANDS), "vmin": -0.5, "vmax": 2.5}
+    ax.pcolormesh(speed, viscosity, parts, shading="nearest", **scale)
     lines = _limits(ax, speed, viscosity, regimes.lambda_ratio, LAMBDA_LIMITS, "solid")
-    keys = [
-        Line2D([], [], color="#333333", label=f"λ = {LAMBDA_LIMITS[0]:g} and {LAMBDA_LIMITS[1]:g}")
-    ]
+    text = f"λ = {LAMBDA_LIMITS[0]:g} and {LAMBDA_LIMITS[1]:g}"
+    keys = [Line2D([], [], color="#333333", label=text)]
     if regimes.fluid_share is not None:
         lines |= _limits(ax, speed, viscosity, regimes.fluid_share, SHARE_LIMITS, "dashed")
         text = f"fluid carries {SHARE_LIMITS[0]:.0%} and {SHARE_LIMITS[1]:.0%}"
         keys.append(Line2D([], [], color="#333333", linestyle="dashed", label=text))
     box = {"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 1.0}
+    style: dict[str, Any] = {"va": "center", "bbox": box, "transform": ax.get_yaxis_transform()}
     for index, (name, value) in enumerate(sorted(fluids.items(), key=lambda item: item[1])):
-        colour = _colours(len(fluids))[list(fluids).index(name)]
+        colour = INK[list(fluids).index(name) % len(INK)]
         ax.axhline(value * 1e3, color=colour, linewidth=0.8)
         place, side = ((0.02, "left"), (0.98, "right"))[index % 2]  # neighbours do not overlap
-        ax.text(
-            place,
-            value * 1e3,
-            name,
-            color=colour,
-            fontsize=7,
-            ha=side,
-            va="center",
-            bbox=box,
-            transform=ax.get_yaxis_transform(),
-        )
-    ax.set_xscale("log")
-    ax.set_yscale("log")
-    ax.set_xlim(speed.min(), speed.max())
+        ax.text(place, value * 1e3, name, color=colour, fontsize=7, ha=side, **style)
     ax.set_ylim(viscosity.min(), viscosity.max())
-    ax.set_xlabel("sliding speed (m/s)")
-    ax.set_ylabel("viscosity (mPa s)")
-    ax.set_title("boundary, mixed and full film")
+    ax.set(ylabel="viscosity (mPa s)", title="boundary, mixed and full film")
     if lines:
         ax.legend(handles=keys, fontsize=8, loc="lower right")
 
@@ -153,7 +124,3 @@ def _interpolated(regimes: RegimeMap, viscosity: float) -> np.ndarray:
     order = np.argsort(rows)
     table = np.log(regimes.lambda_ratio)[order]
     return np.exp([np.interp(np.log(viscosity), rows[order], column) for column in table.T])
-
-
-def _colours(count: int) -> list[str]:
-    return [INK[index % len(INK)] for index in range(count)]

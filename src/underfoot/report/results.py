@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,13 +15,13 @@ from underfoot.core.presentation import Table
 from underfoot.questions.comparison import Comparison
 from underfoot.questions.risk import RiskAssessment
 
-from .dispatch import FigureMakers, figures, files, named_figure, plot, sections, write_report
-from .html import embedded, png
+from .dispatch import FigureMakers, figures, files, plot, sections, write_report, written
+from .html import embedded, new_figure
 from .maps import comparison_figure, draw_map, grid_note, map_figure, overview_figure
 from .page import Picture, Section, page, remark_sections, table_sections
 from .quantities import quantities
 from .viewer import viewer_script, viewer_section
-from .writing import Writer, Written, data_writers, write_bytes, write_folder, write_text
+from .writing import Writer, Written, data_writers
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -67,11 +67,8 @@ def _result_sections(
     if maps:
         parts.append(Section("Maps", SEEN, pictures=maps))
     if "history" in pictures:
-        history = Picture(
-            "Applied load and load carried by the fluid over time",
-            embedded(pictures["history"]),
-            True,
-        )
+        caption = "Applied load and load carried by the fluid over time"
+        history = Picture(caption, embedded(pictures["history"]), True)
         parts.append(Section("Load over time", pictures=[history]))
     provenance = result.provenance
     models = Table("", ("", ""), list(provenance.closures.items()))
@@ -84,7 +81,8 @@ def _result_sections(
         Section("Corrections to printed values", items=provenance.errata, folded=True),
         Section("Complete case (TOML)", text=result.case_text, folded=True),
     ]
-    return [part for part in parts if _filled(part)], viewer_script()
+    filled = [p for p in parts if p.html or p.pictures or p.table or p.items or p.text]
+    return filled, viewer_script()
 
 
 @write_report.register(Result)
@@ -99,22 +97,13 @@ def _write_result(
 
     ``advice`` adds risk.json, changes.csv and the most effective changes to the page.
     """
-    drawn: dict[str, bytes] = {}
 
-    def draw(name: str, make: Callable[[], Figure]) -> Writer:
-        def made() -> bytes:
-            drawn[name] = png(make())
-            return drawn[name]
-
-        return write_bytes(made)
-
-    def write_page(path: Path) -> None:
+    def text(drawn: dict[str, bytes]) -> str:
         parts, script = _result_sections(result, drawn, advice)
-        write_text(page(result, parts, script=script))(path)
+        return page(result, parts, script=script)
 
     data = files(result) | ({} if advice is None else data_writers(advice))
-    pictures = {f"{name}.png": draw(name, make) for name, make in figures(result).items()}
-    return write_folder(folder, data, pictures, write_page, overwrite=overwrite)
+    return written(result, folder, data, text, overwrite=overwrite)
 
 
 @figures.register(Comparison)
@@ -122,10 +111,7 @@ def _comparison_figures(comparison: Comparison) -> FigureMakers:
     if not comparison.usable:
         return {}
     datasets = [result.fields for result in comparison.results]
-    return {
-        quantity.name: partial(comparison_figure, datasets, quantity)
-        for quantity in quantities(datasets)
-    }
+    return {q.name: partial(comparison_figure, datasets, q) for q in quantities(datasets)}
 
 
 @sections.register(Comparison)
@@ -136,8 +122,8 @@ def _comparison_sections(
     ranking = table_sections(comparison)
     parts = []
     if comparison.usable:
-        note = grid_note([result.fields for result in results])
-        titles = {q.name: q.title for q in quantities([result.fields for result in results])}
+        datasets = [result.fields for result in results]
+        note, titles = grid_note(datasets), {q.name: q.title for q in quantities(datasets)}
         scale = f"One colour scale for all; red is more than A, blue less. {note} {SEEN}"
         parts = [
             ranking[0],
@@ -162,7 +148,6 @@ def _comparison_sections(
 def _plot_case(case: Case) -> Figure:
     """Return the height of a case's sole above the floor, on the coarse grid."""
     import xarray
-    from matplotlib.figure import Figure
 
     sole = sole_map(case, case.numerics.quick_grid_spacing, silent)
     labels = {"units": "m", "long_name": "height of the undeformed sole"}
@@ -176,7 +161,7 @@ def _plot_case(case: Case) -> Figure:
         },
         coords={"x": sole.x, "y": sole.y},
     )
-    figure = Figure(figsize=(9.0, 6.0), layout="constrained")
+    figure = new_figure(9.0, 6.0)
     left, right = figure.subplots(1, 2, width_ratios=[1.0, 1.3])
     draw_map(left, fields, quantities([fields])[0])
     lines = case.summary().splitlines()
@@ -186,18 +171,10 @@ def _plot_case(case: Case) -> Figure:
     return figure
 
 
-@plot.register(Result)
-def _plot_result(result: Result, name: str | None = None) -> Figure:
-    """Return the map of a field by its name, or the maps of all."""
-    return named_figure(_result_figures(result), "Result", name)
-
-
 def history_figure(result: Result) -> Figure:
     """Return how the load is shared between fluid and contact over time."""
-    from matplotlib.figure import Figure
-
     fields = result.fields
-    figure = Figure(figsize=(7.5, 2.8), layout="constrained")
+    figure = new_figure(7.5, 2.8)
     axes = figure.add_subplot()
     time = fields["time"].values * 1e3
     for name, label, colour, line in (
@@ -206,13 +183,8 @@ def history_figure(result: Result) -> Figure:
     ):
         if name in fields:
             axes.plot(time, fields[name].values, label=label, color=colour, linestyle=line)
-    axes.set_xlabel("time after first contact with the film (ms)")
-    axes.set_ylabel("load (N)")
+    axes.set(xlabel="time after first contact with the film (ms)", ylabel="load (N)")
     axes.set_ylim(bottom=0)
     axes.legend(frameon=False)
     axes.spines[["top", "right"]].set_visible(False)
     return figure
-
-
-def _filled(section: Section) -> bool:
-    return bool(section.html or section.pictures or section.table or section.items or section.text)

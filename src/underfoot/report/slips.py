@@ -14,7 +14,7 @@ from underfoot.slip.dynamics import array_pressures
 from underfoot.slip.dynamics.sensors import MAP_X, MAP_Y
 
 from .dispatch import FigureMakers, figures, sections
-from .html import embedded, environment
+from .html import embedded, environment, new_figure
 from .page import Picture, Section, remark_sections, table_sections
 
 if TYPE_CHECKING:
@@ -41,15 +41,13 @@ def _sections(shown: SlipPopulation, pictures: dict[str, bytes]) -> tuple[Sequen
         Picture("Heel path, pressures, speed and forces of one slip", embedded(p), True)
         for p in pictures.values()
     ]
-    return (
-        [
-            Section(f"The slip of {walker.name}, ten times slower", html=player),
-            *table_sections(shown),
-            Section("Speed, forces and pressures over time", pictures=drawn),
-            *remark_sections(shown),
-        ],
-        "",
-    )
+    parts = [
+        Section(f"The slip of {walker.name}, ten times slower", html=player),
+        *table_sections(shown),
+        Section("Speed, forces and pressures over time", pictures=drawn),
+        *remark_sections(shown),
+    ]
+    return parts, ""
 
 
 def slip_figure(study: SlipStudy) -> Figure:
@@ -58,11 +56,9 @@ def slip_figure(study: SlipStudy) -> Figure:
     Top: heel path over the array (forward is up) and each sensor's pressure at its place in the
     array; bottom: heel speed over the population's band, forces. Without fluid only the bottom.
     """
-    from matplotlib.figure import Figure
-
     motion = shown_motion(study)
     wet = study.setting.viscosity is not None and study.representative is not None
-    figure = Figure(figsize=(10.5, 8.6 if wet else 4.0), layout="constrained")
+    figure = new_figure(10.5, 8.6 if wet else 4.0)
     below: Figure | SubFigure = figure
     if wet:
         halves: Any = figure.subfigures(2, 1, height_ratios=[1.35, 1.0])
@@ -107,7 +103,9 @@ def _draw_pressures(figure: SubFigure, study: SlipStudy, motion: SlipMotion) -> 
     assert run is not None
     found = array_pressures(motion, run.maps, array) / 1e3
     grid = figure.subplots(array.rows, array.columns, sharex=True, sharey=True, squeeze=False)
-    last = min(1e3 * float(motion.time[-1]), 1e3 * _over(motion, found) + 40)
+    busy = np.flatnonzero(found.max(axis=(1, 2)) > 1.0)
+    over = float(motion.time[busy[-1]]) if busy.size else 0.1
+    last = min(1e3 * float(motion.time[-1]), 1e3 * over + 40)
     for i in range(array.rows):
         for j in range(array.columns):
             axes = grid[array.rows - 1 - i][j]
@@ -122,11 +120,6 @@ def _draw_pressures(figure: SubFigure, study: SlipStudy, motion: SlipMotion) -> 
     figure.supxlabel("time after heel contact (ms)", fontsize=9)
     figure.supylabel("fluid pressure (kPa)", fontsize=9)
     figure.suptitle("Pressure at each sensor, at its place in the array", fontsize=10)
-
-
-def _over(motion: SlipMotion, pressures: np.ndarray) -> float:
-    busy = np.flatnonzero(pressures.max(axis=(1, 2)) > 1.0)
-    return float(motion.time[busy[-1]]) if busy.size else 0.1
 
 
 def _draw_speeds(axes: Axes, study: SlipStudy, motion: SlipMotion) -> None:

@@ -29,7 +29,7 @@ def write_study(result: StudyResult, folder: Path) -> list[str]:
 
     Returns the figures' names.
     """
-    content = json.dumps(result.as_dict(), indent=1, ensure_ascii=False)
+    content = json.dumps(result.to_dict(), indent=1, ensure_ascii=False)
     (folder / "study.json").write_text(content, encoding="utf-8")
     for table in result.computed.tables:
         _write_csv(folder / f"{table.name}.csv", table.columns, table.rows)
@@ -58,32 +58,26 @@ def studies_page(
         {
             "result": result,
             "study": result.study,
+            "tables": result.computed.tables,
             "kinds": [(kind.heading, some) for kind, some in tables_by_kind(result.judgements)],
-            "tables": [_table(one) for one in result.computed.tables],
-            "notes": [*result.study.notes, *result.computed.notes],
-            "assumptions": [*result.study.assumptions, *result.computed.assumptions],
+            "remarks": result.remarks(),
             "images": [
-                (
-                    name,
-                    embedded(images[result.study.name, name]),
-                    remarks.get((result.study.name, name), ""),
-                )
-                for name in names[result.study.name]
+                (name, embedded(data), remarks.get((study, name), ""))
+                for (study, name), data in images.items()
+                if study == result.study.name
             ],
         }
         for result in results
     ]
-    return (
-        environment()
-        .get_template("studies.html")
-        .render(
-            sections=sections,
-            headline=headline(results),
-            rules={str(verdict): verdict.rule for verdict in Verdict},
-            colours=COLOURS,
-            figures=figure_rows(results, names),
-            quick=quick,
-        )
+    page = environment().get_template("studies.html")
+    return page.render(
+        sections=sections,
+        headline=headline(results),
+        rules={str(verdict): verdict.rule for verdict in Verdict},
+        colours=COLOURS,
+        figures=figure_rows(results, names),
+        cell=_cell,
+        quick=quick,
     )
 
 
@@ -94,21 +88,11 @@ def _write_csv(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Any]]
         writer.writerows(rows)
 
 
-def _table(one: Any) -> dict[str, Any]:
-    return {
-        "title": one.title,
-        "columns": one.columns,
-        "rows": [[_cell(value) for value in row] for row in one.rows],
-    }
-
-
 def _cell(value: Any) -> tuple[str, bool]:
     """Return a cell's text and whether it is a number."""
     if value is None or value != value:
         return "-", True
     if isinstance(value, bool | str):
         return str(value), False
-    number = float(value)
-    if number == 0 or 1e-3 <= abs(number) < 1e5:
-        return f"{number:.4g}", True
-    return f"{number:.3g}", True
+    digits = 4 if value == 0 or 1e-3 <= abs(value) < 1e5 else 3
+    return f"{float(value):.{digits}g}", True

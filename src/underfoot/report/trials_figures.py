@@ -35,10 +35,7 @@ class TrialFigure:
 def trial_figures(analysis: FolderAnalysis, *, details: int = 4) -> list[TrialFigure]:
     """Return the figures of an analysis: the study, single trials in detail, contact sheets.
 
-    Parameters
-    ----------
-    details
-        Number of single trials drawn in detail: first those with cautions, then accepted ones.
+    ``details`` is the number of single trials drawn: first those with cautions, then accepted ones.
     """
     single = [made for one in _chosen(analysis.files, details) for made in _details(one)]
     return [*_study(analysis), *single, *_sheets(analysis)]
@@ -107,12 +104,9 @@ def _steps(steps: Sequence[Curve], _: FileResult) -> Figure:
     grid: Any = figure.subplots(2, count, squeeze=False, sharex="col", sharey="row")
     for (top, low), step in zip(grid.T, steps, strict=False):
         time, peak = 1e3 * _array(step["time"]), (1e3 * step["peak_time"], step["peak"])
-        for key, colour, label in (
-            ("normal", "0.25", "normal"),
-            ("along", "tab:blue", "along the walk"),
-            ("across", "tab:orange", "across"),
-        ):
-            top.plot(time, _array(step[key]), color=colour, label=label)
+        top.plot(time, _array(step["normal"]), color="0.25", label="normal")
+        top.plot(time, _array(step["along"]), color="tab:blue", label="along the walk")
+        top.plot(time, _array(step["across"]), color="tab:orange", label="across")
         top.axhline(0, color="0.8", linewidth=0.8)
         _finish(top, small=step["step"])
         low.plot(time, _loaded(step, 20), color="tab:green")
@@ -134,15 +128,9 @@ def _heel(curves: Sequence[Curve], _: FileResult) -> Figure:
     axes.plot(time[shown], speed[shown], color="tab:blue")
     axes.axvline(0, color="0.5", linewidth=0.8)
     axes.axhline(limit, color="0.6", linestyle="--", linewidth=0.8)
-    axes.annotate(
-        f"slip above {limit:g} m/s",
-        (1, limit),
-        xycoords=("axes fraction", "data"),
-        ha="right",
-        va="bottom",
-        fontsize=8,
-        color="0.35",
-    )
+    label = f"slip above {limit:g} m/s"
+    place = axes.annotate(label, (1, limit), xycoords=("axes fraction", "data"), fontsize=8)
+    place.set(ha="right", va="bottom", color="0.35")
     for key, label, style in (("start", "slip start", "v"), ("end", "end of search", "^")):
         if heel[key] is not None:
             at = 1e3 * heel[key]
@@ -172,15 +160,8 @@ def _track(curves: Sequence[Curve], _: FileResult) -> Figure:
     axes.plot(*places.T, "x", color="0.2", linestyle="none", label="sensor")
     names = "right of the middle (mm)", "along the walk (mm)"
     _finish(axes, *names, aspect="equal", xlim=(-70, 70))
-    axes.legend(
-        frameon=False,
-        fontsize=7,
-        loc="lower center",
-        bbox_to_anchor=(0.5, 1.0),
-        ncols=3,
-        handletextpad=0.3,
-        columnspacing=0.8,
-    )
+    above = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "ncols": 3}
+    axes.legend(frameon=False, fontsize=7, handletextpad=0.3, columnspacing=0.8, **above)
     rows, columns = (
         sorted({round(p[key], 4) for p in pulses}, reverse=True) for key in ("along", "across")
     )
@@ -237,17 +218,14 @@ def _hold(curves: Sequence[Curve], _: FileResult) -> Figure:
 
 
 _TRIAL = {
-    "steps": (
-        _steps,
-        "force components (unfiltered) and ratio of shear to normal force (filtered), "
-        "with the gate and the peak taken as required friction",
-    ),
+    "steps": (_steps, "force components (unfiltered) and ratio of shear to normal force "
+              "(filtered), with the gate and the peak taken as required friction"),
     "heel": (_heel, "heel speed after contact with both minima and the peak"),
     "track": (_track, "heel trajectory over the sensor array, and the pressures in its layout"),
     "slide": (_slide, "forces and ratio, the averaging window shaded"),
     "run": (_run, "COF against time, the averaging window shaded"),
     "hold": (_hold, "force during the hold"),
-}
+}  # fmt: skip
 
 
 def _sheets(analysis: FolderAnalysis) -> Iterator[TrialFigure]:
@@ -366,16 +344,9 @@ def _maps(maps: Sequence[Curve]) -> Figure:
     for axes, one in zip(row, maps, strict=True):
         right, along = -1e3 * np.array(one["lateral"]), 1e3 * np.array(one["along"])
         # Each scan stands for the strip around it: no smoothing between scans.
-        image = axes.pcolormesh(
-            right,
-            along,
-            1e-3 * np.array(one["pressure"]).T,
-            cmap="viridis",
-            vmin=0,
-            vmax=top,
-            shading="nearest",
-            rasterized=True,
-        )
+        pressure, scale = 1e-3 * np.array(one["pressure"]).T, {"vmin": 0, "vmax": top}
+        look: dict[str, Any] = {"cmap": "viridis", "shading": "nearest", "rasterized": True}
+        image = axes.pcolormesh(right, along, pressure, **scale, **look)
         for x in right:
             axes.axvline(x, color="white", linewidth=0.4, alpha=0.6)
         axes.plot(-1e3 * one["peak_lateral"], 1e3 * one["peak_along"], "+", color="red", ms=9)
@@ -461,37 +432,19 @@ def _alpha_beta(found: Curve) -> Figure:
 
 
 _FOLDER = {
-    "risk": (
-        "risk",
-        _risk,
-        "Slip outcomes (points, spread a little for the eye) and curves with 95 % bands: {methods}",
-    ),
-    "maps": (
-        "maps",
-        _maps,
-        "Fluid pressure under the shoe; white lines are the scans, the cross is the peak",
-    ),
-    "fits": (
-        "stribeck",
-        _fits,
-        "COF against sliding speed with the fit of Eq. 17, and its residuals",
-    ),
-    "master": (
-        "master_curve",
-        _master,
-        "All COF against viscosity × speed, and one falling curve through them",
-    ),
-    "line": (
-        "speed_pressure",
-        _line,
-        "Peak slipping speed against the largest pressure of a trial",
-    ),
-    "alpha_beta": (
-        "alpha_beta",
-        _alpha_beta,
-        "Adhesion with a fluid against dry adhesion, lines of Eq. 26",
-    ),
-}
+    "risk": ("risk", _risk, "Slip outcomes (points, spread a little for the eye) and curves with "
+             "95 % bands: {methods}"),
+    "maps": ("maps", _maps, "Fluid pressure under the shoe; white lines are the scans, the cross "
+             "is the peak"),
+    "fits": ("stribeck", _fits, "COF against sliding speed with the fit of Eq. 17, and its "
+             "residuals"),
+    "master": ("master_curve", _master, "All COF against viscosity × speed, and one falling curve "
+               "through them"),
+    "line": ("speed_pressure", _line, "Peak slipping speed against the largest pressure of a "
+             "trial"),
+    "alpha_beta": ("alpha_beta", _alpha_beta, "Adhesion with a fluid against dry adhesion, lines "
+                   "of Eq. 26"),
+}  # fmt: skip
 
 
 def _groups(finding: Finding) -> TrialFigure:
@@ -511,14 +464,11 @@ def _groups(finding: Finding) -> TrialFigure:
         axes.plot(places, points, "o", ms=2.6, color="0.2", alpha=0.5)
         for x, (who, y) in zip(places, values.items(), strict=True):
             persons.setdefault(who, []).append((float(x), y))
-        axes.annotate(
-            finding.marks.get(name, ""),
-            (i, max(points.max(), points.mean() + spread)),
-            textcoords="offset points",
-            xytext=(0, 5),
-            ha="center",
-            weight="bold",
+        top = (i, max(points.max(), points.mean() + spread))
+        mark = axes.annotate(
+            finding.marks.get(name, ""), top, textcoords="offset points", xytext=(0, 5)
         )
+        mark.set(ha="center", weight="bold")
     lines = [path for path in persons.values() if len(path) > 1]
     for path in lines:
         axes.plot(*zip(*path, strict=True), color="0.6", linewidth=0.5, zorder=0)

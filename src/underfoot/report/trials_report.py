@@ -50,14 +50,8 @@ def write_trials_report(
 ) -> list[Path]:
     """Write report.html, trials.xlsx, tables/*.csv, figures/*.png and *.svg; return the paths.
 
-    Parameters
-    ----------
-    details
-        Number of single trials drawn in detail.
-    vector
-        Write the figures of the study and of single trials as SVG too.
-    processes
-        Number of processes that draw many figures; by default the number of processors.
+    ``details`` single trials are drawn in detail. With ``vector`` the figures of the study and of
+    single trials are written as SVG too. ``processes`` (by default the number of processors) draw.
     """
     folder.mkdir(parents=True, exist_ok=True)
     written: list[Path] = []
@@ -115,9 +109,7 @@ def check_report_folder(folder: Path, *, overwrite: bool = False) -> None:
 
 
 def trials_page(
-    analysis: FolderAnalysis,
-    all_tables: Sequence[Table],
-    pictures: list[tuple[TrialFigure, bytes]],
+    analysis: FolderAnalysis, all_tables: Sequence[Table], pictures: list[tuple[TrialFigure, bytes]]
 ) -> str:
     """Return the page of an analysis as HTML text; it opens without a network."""
     counts = Counter(one.verdict for one in analysis.files)
@@ -137,23 +129,18 @@ def trials_page(
         for reason in one.reasons
         if one.verdict != "accepted"
     )
-    return (
-        environment()
-        .get_template("trials.html")
-        .render(
-            analysis=analysis,
-            counts=counts,
-            lead=lead_sentence(analysis),
-            reasons=reasons.most_common(4),
-            summary=None if summary is None else _page_table(_on_page(summary)),
-            first=chapters["study"][:1],
-            figures={**chapters, "study": chapters["study"][1:]},
-            study=[_page_table(_on_page(table)) for table in study],
-            findings=[_page_table(f.table) | {"cautions": f.cautions}
-                      for f in analysis.study.findings],
-            files=_page_table(_on_page(tables["files"], noted), limit=10_000),
-            edits=_page_table(tables["edits"]) if "edits" in tables else None,
-        )
+    return environment().get_template("trials.html").render(
+        analysis=analysis,
+        counts=counts,
+        lead=lead_sentence(analysis),
+        reasons=reasons.most_common(4),
+        summary=None if summary is None else _page_table(_on_page(summary)),
+        first=chapters["study"][:1],
+        figures={**chapters, "study": chapters["study"][1:]},
+        study=[_page_table(_on_page(table)) for table in study],
+        findings=[_page_table(f.table) | {"cautions": f.cautions} for f in analysis.study.findings],
+        files=_page_table(_on_page(tables["files"], noted), limit=10_000),
+        edits=_page_table(tables["edits"]) if "edits" in tables else None,
     )  # fmt: skip
 
 
@@ -203,9 +190,9 @@ def lead_sentence(analysis: FolderAnalysis) -> str:
     samples = tables.get("samples")
     if samples is not None:
         return f"{len(samples.rows)} samples.{tail}"
-    values = [one.main["cof"] for one in usable if "cof" in one.main]
-    if values:
-        text = f"COF {min(values):.3f} to {max(values):.3f} in {len(values)} usable runs."
+    cof = [one.main["cof"] for one in usable if "cof" in one.main]
+    if cof:
+        text = f"COF {min(cof):.3f} to {max(cof):.3f} in {len(cof)} usable runs."
         return text + carried + tail
     return f"{len(usable)} usable tests.{tail}"
 

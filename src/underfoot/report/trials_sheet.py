@@ -12,12 +12,7 @@ import numpy as np
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-COLOURS = {
-    "accepted": "#0b6fa4",
-    "caution": "#b36b00",
-    "refused": "#a32020",
-    "rejected": "#a32020",
-}
+COLOURS = {"accepted": "#0b6fa4", "caution": "#b36b00", "refused": "#a32020", "rejected": "#a32020"}
 _PER_PAGE, _ACROSS = 60, 6
 _SIZE = np.array([0.84, 0.72])  # of a tile in its cell of 1 x 1
 _CORNERS = np.array([(0, 0), (1, 0), (1, 1), (0, 1), (0, 0)])

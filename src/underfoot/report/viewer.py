@@ -6,23 +6,14 @@ import base64
 import json
 import zlib
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .html import environment
-from .quantities import (
-    HEIGHT_NAMES,
-    Quantity,
-    Scale,
-    drawn,
-    inside,
-    quantities,
-    raw,
-    scale,
-    spacing,
-)
+from .quantities import HEIGHT_NAMES, Quantity, drawn, inside, quantities, raw, scale, spacing
 
 if TYPE_CHECKING:
     import xarray
@@ -70,25 +61,13 @@ def viewer_scene(results: Sequence[Result]) -> dict[str, Any]:
     listed = []
     for q in found:
         drawn_ones = [*fields[q.name], *(past[1] for past in histories[q.name] if past)]
-        listed.append(_described(q, scale([np.ravel(field) for field in drawn_ones], q)))
+        limits = scale([np.ravel(field) for field in drawn_ones], q)
+        own = {"name": q.name, "title": q.title, "unit": q.unit, "colours": q.colours}
+        listed.append({**own, "log": q.logarithmic, **asdict(limits), "cut": limits.cut})
     return {
         "panes": panes,
         "quantities": listed,
         "colours": {q.colours: _colour_map(q.colours) for q in found},
-    }
-
-
-def _described(quantity: Quantity, limits: Scale) -> dict[str, Any]:
-    return {
-        "name": quantity.name,
-        "title": quantity.title,
-        "unit": quantity.unit,
-        "colours": quantity.colours,
-        "log": quantity.logarithmic,
-        "low": limits.low,
-        "high": limits.high,
-        "peak": limits.peak,
-        "cut": limits.cut,
     }
 
 
@@ -105,7 +84,7 @@ def _pane(
     name = next((name for name in HEIGHT_NAMES if name in dataset), None)
     height = np.zeros(mask.shape) if name is None else raw(dataset, name)
     height = np.where(mask & np.isfinite(height), height, np.nan)
-    land = _truth(dataset, "land", mask)
+    land = np.asarray(dataset["land"].transpose("x", "y"), bool) if "land" in dataset else mask
     return {
         "name": result.name,
         "nx": int(x.size),
@@ -151,12 +130,6 @@ def _plane(
     design = np.stack([np.ones(there.sum()), along[there], across[there]], axis=1)
     found = np.linalg.lstsq(design, height[there], rcond=None)[0]
     return [float(value) for value in found]
-
-
-def _truth(dataset: xarray.Dataset, name: str, otherwise: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    if name not in dataset:
-        return otherwise
-    return np.asarray(dataset[name].transpose("x", "y").values, dtype=bool)
 
 
 def _history(

@@ -59,32 +59,21 @@ def write_folder(
     of its path. Data that does not fit on the disk goes to a folder for temporary files instead.
     """
     folder = Path(folder)
-    failures: list[str] = []
+    pages = {} if page is None else {"report.html": page}
+    failed: dict[str, str] = {}
     with whole_folder(folder, overwrite=overwrite) as staging:
-        lost = {}
-        for name, write in data.items():
+        for name, write in (*data.items(), *pictures.items(), *pages.items()):
             if failure := _failure(staging / name, write):
-                failures.append(failure)
-                lost[name] = write
-        for name, write in pictures.items():
-            if failure := _failure(staging / name, write):
-                failures.append(failure)
-        if page is not None and (failure := _failure(staging / "report.html", page)):
-            failures.append(failure)
+                failed[name] = failure
         has_page = (staging / "report.html").exists()
-    if lost:
-        failures.append(_rescued(lost))
-    return Written(folder, folder / "report.html" if has_page else None, tuple(failures))
+    lost = {name: write for name, write in data.items() if name in failed}
+    failures = (*failed.values(), *([_rescued(lost)] if lost else []))
+    return Written(folder, folder / "report.html" if has_page else None, failures)
 
 
 def write_text(text: str) -> Writer:
     """Return the writer of a text file."""
     return lambda path: path.write_text(text, encoding="utf-8")
-
-
-def write_bytes(content: Callable[[], bytes]) -> Writer:
-    """Return the writer of a file whose content is made when it is written."""
-    return lambda path: path.write_bytes(content())
 
 
 def write_csv(table: Table) -> Writer:

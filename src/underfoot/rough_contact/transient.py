@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from underfoot.core import Cancelled, InputError, Progress, Status, silent
 from underfoot.core.checks import choice
 from underfoot.core.threads import threads_limited
-from underfoot.material._kernels.prony_march import (
+from underfoot.material.prony_march import (
     PronyStep,
     advance_memory,
     known_displacement,

@@ -1,11 +1,15 @@
 """The undeformed sole over the floor: what every source of geometry produces."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from underfoot.core import Breach, InputError
 from underfoot.core.arrays import Array, Mask
+from underfoot.core.checks import positive
+
+from ._kernels.regions import carried_on
 
 CELLS_REFUSED = 2.0
 """A channel or lug of fewer cells is refused: its width would be wrong by half or more."""
@@ -13,8 +17,47 @@ CELLS_WANTED = 4.0
 """A channel or lug of fewer cells is listed as a breach."""
 
 
+def centred(count: int, spacing: float) -> Array:
+    """Return ``count`` places ``spacing`` apart, symmetric about 0."""
+    return (np.arange(count, dtype=np.float64) - (count - 1) / 2) * spacing
+
+
+class _Areas:
+    """What maps of a sole on square cells have in common."""
+
+    __slots__ = ()
+    x: Array
+    y: Array
+    inside: Any
+    land: Mask
+    spacing: float
+
+    def _check_shapes(self, where: str, *names: str) -> None:
+        shape = (self.x.size, self.y.size)
+        for name in names:
+            value = getattr(self, name)
+            if value is not None and np.shape(value) != shape:
+                what = f"{name} has shape {np.shape(value)}"
+                raise InputError(what, where=f"{where}.{name}", allowed=f"{shape}")
+
+    @property
+    def plan_area(self) -> float:
+        """Area of the plan form as its cells see it, m^2."""
+        return float(np.count_nonzero(self.inside)) * self.spacing**2
+
+    @property
+    def land_area(self) -> float:
+        """Area that can touch the floor, m^2."""
+        return float(np.count_nonzero(self.land)) * self.spacing**2
+
+    @property
+    def land_ratio(self) -> float:
+        """Land area / plan area, 0 to 1."""
+        return self.land_area / self.plan_area
+
+
 @dataclass(frozen=True, slots=True)
-class SoleMap:
+class SoleMap(_Areas):
     """The undeformed sole in the floor's frame, sampled at the centres of square cells.
 
     Axes: x forward (towards the toe), y across, both in the floor; arrays have shape (nx, ny).
@@ -44,13 +87,7 @@ class SoleMap:
     breaches: tuple[Breach, ...] = field(default=())
 
     def __post_init__(self) -> None:
-        shape = (self.x.size, self.y.size)
-        for name in ("clearance", "inside", "land", "tread_depth"):
-            actual = np.shape(getattr(self, name))
-            if actual != shape:
-                raise InputError(
-                    f"{name} has shape {actual}", where=f"sole.{name}", allowed=f"{shape}"
-                )
+        self._check_shapes("sole", "clearance", "inside", "land", "tread_depth")
         if not self.inside.any():
             raise InputError(
                 "no cell centre lies within the plan form",
@@ -71,17 +108,66 @@ class SoleMap:
         if (self.land & ~self.inside).any():
             raise InputError("land lies outside the plan form", where="sole.land")
 
-    @property
-    def plan_area(self) -> float:
-        """Area of the plan form as the grid sees it, m^2 (projected on the floor)."""
-        return float(np.count_nonzero(self.inside)) * self.spacing**2
+
+@dataclass(frozen=True, slots=True)
+class SoleSurface(_Areas):
+    """The bottom of a sole as a height map in its own, untilted frame.
+
+    Axes: x from the rear end towards the toe, y across, positive to the left as seen from above
+    looking forward, z up into the shoe. Arrays have shape (nx, ny), values at cell centres.
+
+    Parameters:
+        x, y: Cell centres in m, (nx,) and (ny,), evenly spaced by ``spacing``.
+        height: Height above the sole plane in m; nan outside the plan form.
+        land: True where the sole can touch the floor: on a lug or an untreaded surface.
+        tread_depth: Height of the lug at this cell, m; 0 in channels and where untreaded.
+        spacing: Side of a cell, m.
+        outline: (n, 2) closed polygon of the plan form, m.
+        name: What it was made from, for people.
+        remarks: Decisions and repairs on the way, a sentence each.
+        base: (nx, ny) height in m that the land would have without its channels; None to carry the
+            land on across them (linear between the land on both sides).
+    """
+
+    x: Array
+    y: Array
+    height: Array
+    land: Mask
+    tread_depth: Array
+    spacing: float
+    outline: Array
+    name: str = "sole"
+    remarks: tuple[str, ...] = field(default=())
+    base: Array | None = None
+
+    def __post_init__(self) -> None:
+        positive(self.spacing, "surface.spacing")
+        self._check_shapes("surface", "height", "land", "tread_depth", "base")
+        if not self.inside.any():
+            raise InputError(
+                "the sole has no height anywhere",
+                where="surface.height",
+                allowed="heights in m, nan outside the plan form",
+            )
+        if (self.land & ~self.inside).any():
+            raise InputError("land lies outside the plan form", where="surface.land")
 
     @property
-    def land_area(self) -> float:
-        """Area that can touch the floor, m^2."""
-        return float(np.count_nonzero(self.land)) * self.spacing**2
+    def inside(self) -> Mask:
+        """True within the plan form (lugs and channels)."""
+        return np.isfinite(self.height)
 
     @property
-    def land_ratio(self) -> float:
-        """Land area / plan area, 0 to 1."""
-        return self.land_area / self.plan_area
+    def length(self) -> float:
+        """Extent of the plan form along the shoe, m."""
+        return float(np.ptp(self.outline[:, 0]))
+
+    @property
+    def width(self) -> float:
+        """Extent of the plan form across the shoe, m."""
+        return float(np.ptp(self.outline[:, 1]))
+
+    @property
+    def land_base(self) -> Array:
+        """Height (nx, ny) in m of the land carried on across the channels; nan outside."""
+        return carried_on(self.height, self.land) if self.base is None else self.base

@@ -9,8 +9,7 @@ from underfoot.core import InputError
 from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative, positive
 
-from .profile import Flat, Profile
-from .shape import SoleShape, SoleWear, check_depths
+from .shape import Flat, Profile, SoleShape, SoleWear, check_depths
 from .tread import ArcChannel, Tread
 
 

@@ -17,6 +17,10 @@ GAP_CAP = 0.3e-3
 """m, gap from which a pocket vents freely (assumed)."""
 _SMALLEST_GAP = 1e-7
 """m: keeps the weights of a fully sealed rim defined; far below any computed mean gap."""
+REACH = 15e-3
+"""m, distance from the inlet's middle at which the film does not feel the pocket (assumed)."""
+BLIND = 0.5
+"""Share of the film's own pressure that an inlet must read to see the film at a place."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +30,8 @@ class SensorReading:
     ``load`` (N) and ``peak_pressure`` (Pa) are means over the lateral offsets with their standard
     deviation as uncertainty. ``pressure`` (len(x), len(scan_y)) is the map for the central offset,
     with ``peak_position`` (x, y) in m. ``outermost_share`` is the share of the load read by the
-    first and last scan: when it is not small, the scans do not cover the film.
+    first and last scan: when it is not small, the scans do not cover the film. ``seen`` is the
+    share of the film's load at places where the inlet reads at least half of the film's pressure.
     """
 
     load: SourcedValue
@@ -36,6 +41,7 @@ class SensorReading:
     scan_y: Array
     pressure: Array
     outermost_share: float
+    seen: float
     loads: Array
     peaks: Array
 
@@ -52,6 +58,9 @@ def floor_sensor_reading(
     sampling_step: float = 0.7e-3,
     gap_cap: float = GAP_CAP,
     offsets: int = 11,
+    compliance: float = 0.0,
+    viscosity: float = 0.0,
+    speed: float = 0.0,
 ) -> SensorReading:
     """Return the fluid load and the peak pressure as a sensor in the floor would give them.
 
@@ -78,12 +87,17 @@ def floor_sensor_reading(
         Largest gap in the weights, m (assumed): in a gap this deep the pocket vents freely.
     offsets
         Number of lateral places, odd.
+    compliance
+        Volume that the instrument takes in under pressure, C, m^3/Pa; 0 follows the film at once.
+    viscosity, speed
+        Of the fluid, Pa s, and of the shoe along +x, m/s; needed with ``compliance``.
 
     Notes
     -----
-    Quasi-static: the pocket does not change the film. Source of Eq. (27): final
-    progress report on shoe-floor friction, G.4.1; the pocket model is assumed, not tested by
-    measurement.
+    The pocket does not change the film. With a compliance C dp/dt = K (p_rim - p), where
+    K = 2 pi <h^3> / (12 eta ln(15 mm / r)) is the conductance of the film around an inlet of
+    radius r. Source of Eq. (27): final progress report on shoe-floor friction, G.4.1; the pocket
+    model is assumed, not tested by measurement.
 
     Raises
     ------
@@ -95,6 +109,10 @@ def floor_sensor_reading(
     positive(scan_spacing, "sensor.scan_spacing")
     positive(sampling_step, "sensor.sampling_step")
     positive(gap_cap, "sensor.gap_cap")
+    if not_negative(compliance, "sensor.compliance"):
+        positive(inlet_diameter, "sensor.inlet_diameter")
+        positive(viscosity, "sensor.viscosity")
+        positive(speed, "sensor.speed")
     for name, count in (("scans", scans), ("offsets", offsets)):
         if int(count) != count or count < 1:
             raise InputError(
@@ -110,17 +128,13 @@ def floor_sensor_reading(
     tracks = (np.arange(scans, dtype=np.float64) - 0.5 * (scans - 1)) * scan_spacing
     shifts = (np.arange(offsets) - offsets // 2) * (scan_spacing / offsets)
     lanes = (tracks[None, :] + shifts[:, None]).ravel()
-    read = pocket_pressure(
-        along,
-        across,
-        pressure,
-        gap,
-        places,
-        lanes,
-        inlet_diameter=inlet_diameter,
-        gap_cap=gap_cap,
-        spacing=spacing,
-    ).reshape(count, offsets, scans)
+    maps = {"inlet_diameter": inlet_diameter, "gap_cap": gap_cap, "spacing": spacing}
+    read, cubes = pocket_pressure(along, across, pressure, gap, places, lanes, **maps)
+    if compliance > 0:
+        # the shoe goes forward: a sensor meets its front first
+        rate = cubes * conductance_over_cube(inlet_diameter, viscosity) / compliance
+        read = lagged(read[::-1], rate[::-1], sampling_step / speed)[::-1]
+    read = read.reshape(count, offsets, scans)
     scan_loads = read.sum(axis=0) * scan_spacing * sampling_step
     loads = scan_loads.sum(axis=1)
     peaks = read.max(axis=(0, 2))
@@ -141,6 +155,9 @@ def floor_sensor_reading(
         scan_y=tracks,
         pressure=central,
         outermost_share=float(outer) / total if total > 0 else 0.0,
+        seen=seen_share(
+            pressure, pocket_pressure(along, across, pressure, gap, along, across, **maps)[0]
+        ),
         loads=loads,
         peaks=peaks,
     )
@@ -157,8 +174,8 @@ def pocket_pressure(
     inlet_diameter: float,
     gap_cap: float,
     spacing: float,
-) -> Array:
-    """Return the reading (places x lanes) of pockets centred at ``places`` (x) and ``lanes`` (y).
+) -> tuple[Array, Array]:
+    """Return reading and mean h^3 at the rim (places x lanes) of pockets at x and y given.
 
     Mean film pressure over the rim weighted by h^3; lengths in m, maps (nx, ny) as in
     ``floor_sensor_reading``, which checks them.
@@ -171,6 +188,32 @@ def pocket_pressure(
         np.clip(np.asarray(film_thickness, dtype=float), _SMALLEST_GAP, gap_cap) ** 3,
         gap_cap**3,
     )
+
+
+def conductance_over_cube(inlet_diameter: float, viscosity: float) -> float:
+    """Return K / <h^3> of an inlet (m) in a film (Pa s): 2 pi / (12 eta ln(15 mm / r))."""
+    return 2 * math.pi / (12 * viscosity * math.log(max(2 * REACH / inlet_diameter, 1.5)))
+
+
+def lagged(pressure: Array, rate: Array, interval: float) -> Array:
+    """Return p (n, ...) of dp/dt = rate (pressure - p), from 0, ``interval`` s between samples.
+
+    Exact where the rate (1/s) is constant and the pressure linear between samples.
+    """
+    followed = np.zeros_like(pressure)
+    for i in range(1, len(pressure)):
+        change = np.maximum(0.5 * (rate[i] + rate[i - 1]) * interval, 1e-12)
+        kept = np.exp(-change)
+        slope = (pressure[i] - pressure[i - 1]) * -np.expm1(-change) / change
+        followed[i] = pressure[i] - slope + (followed[i - 1] - pressure[i - 1]) * kept
+    return followed
+
+
+def seen_share(pressure: Array, read: Array) -> float:
+    """Return the share of the film's load where an inlet reads half of its pressure or more."""
+    film = np.maximum(pressure, 0.0)
+    total = float(film.sum())
+    return float(film[read >= BLIND * film].sum()) / total if total > 0 else 1.0
 
 
 def _rim(diameter: float, spacing: float) -> Array:
@@ -190,8 +233,8 @@ def _pocket_pressure(
     pressure: Array,
     conductance: Array,
     outside: float,
-) -> Array:
-    """Return the weighted rim mean at (places x lanes); all lengths in cells."""
+) -> tuple[Array, Array]:
+    """Return the weighted rim mean and the mean weight (places x lanes); all lengths in cells."""
     from scipy.ndimage import map_coordinates
 
     flow = np.zeros((places.size, lanes.size))
@@ -203,7 +246,7 @@ def _pocket_pressure(
         at = np.meshgrid(places + along, lanes + across, indexing="ij")
         flow += map_coordinates(driven, at, order=1, mode="constant", cval=0.0)
         weight += map_coordinates(conductance, at, order=1, mode="constant", cval=outside)
-    return flow / weight
+    return flow / weight, weight / len(rim)
 
 
 def _checked_maps(

@@ -11,7 +11,7 @@ from underfoot.core import InputError, SourcedValue
 from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative, positive
 
-from .reading import GAP_CAP, pocket_pressure
+from .reading import GAP_CAP, conductance_over_cube, lagged, pocket_pressure
 
 SOURCE = "pockets at uniform pressure in the computed film, at fixed places in the floor"
 
@@ -86,6 +86,8 @@ def array_reading(
     sampling_interval: float = 1e-3,
     gap_cap: float = GAP_CAP,
     offsets: int = 11,
+    compliance: float = 0.0,
+    viscosity: float = 0.0,
 ) -> ArrayReading:
     """Return what an array in the floor reads while a shoe slides over it.
 
@@ -105,11 +107,14 @@ def array_reading(
         s; between the instants given, the maps are interpolated linearly while the shoe moves on.
     offsets
         Lateral places within one spacing, odd: the shoe is not aimed at the sensors.
+    compliance, viscosity
+        As in ``floor_sensor_reading``: m^3/Pa and, with it, Pa s.
 
     Notes
     -----
     Each sensor reads the mean film pressure over the rim of its inlet, weighted by h^3, 0 outside
-    the film (``floor_sensor_reading``). Quasi-static: pockets don't disturb the film.
+    the film (``floor_sensor_reading``), and lags behind it by its compliance. Pockets don't disturb
+    the film.
 
     Raises
     ------
@@ -130,6 +135,9 @@ def array_reading(
         raise InputError(f"{offsets} is even", where="offsets", allowed="an odd number")
     positive(threshold, "threshold")
     positive(sampling_interval, "sampling_interval")
+    if not_negative(compliance, "compliance"):
+        positive(array.inlet_diameter, "array.inlet_diameter")
+        positive(viscosity, "viscosity")
     spacing = float(x[1] - x[0])
     shifts = (np.arange(offsets, dtype=np.float64) - offsets // 2) * (array.spacing / offsets)
     lanes = (array.y[None, :] + shifts[:, None]).ravel()
@@ -138,7 +146,8 @@ def array_reading(
     where = np.interp(samples, time, place)
     after = np.clip(np.searchsorted(time, samples), 1, time.size - 1)
     share = (samples - time[after - 1]) / (time[after] - time[after - 1])
-    read = np.zeros((count, array.rows, lanes.size))
+    # reading and mean h^3 at the rim
+    read = np.zeros((2, count, array.rows, lanes.size))
     for step in range(time.size - 1):
         chosen = np.flatnonzero(after == step + 1)
         if not chosen.size:
@@ -146,14 +155,18 @@ def array_reading(
         # rows under the shoe at each sample, as places on the sole
         on_sole = (array.x[None, :] - where[chosen, None]).ravel()
         ends = [
-            pocket_pressure(
+            np.array(pocket_pressure(
                 x, y, fluid_pressure[k], film_thickness[k], on_sole, lanes,
                 inlet_diameter=array.inlet_diameter, gap_cap=gap_cap, spacing=spacing,
-            ).reshape(chosen.size, array.rows, lanes.size)
+            )).reshape(2, chosen.size, array.rows, lanes.size)
             for k in (step, step + 1)
         ]  # fmt: skip
         weight = share[chosen][:, None, None]
-        read[chosen] = (1 - weight) * ends[0] + weight * ends[1]
+        read[:, chosen] = (1 - weight) * ends[0] + weight * ends[1]
+    read, cubes = read
+    if compliance > 0:
+        rate = cubes * conductance_over_cube(array.inlet_diameter, viscosity) / compliance
+        read = lagged(read, rate, float(samples[1] - samples[0]))
     by_place = read.reshape(count, array.rows, offsets, array.columns)
     central = np.ascontiguousarray(by_place[:, :, offsets // 2, :])
     above = (by_place > threshold).any(axis=(1, 3)).sum(axis=0) * (samples[1] - samples[0])

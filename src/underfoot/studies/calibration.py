@@ -5,18 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from underfoot.calibrate.identifiability import (
-    RISE,
-    Fixed,
-    Profile,
-    chi_square,
-    model_error,
-    profile,
-)
+from underfoot.calibrate import identifiability
+from underfoot.calibrate.identifiability import Fixed, Profile, chi_square, model_error, profile
 from underfoot.case.friction import measured_fluids
 from underfoot.compute.slips import slips
 from underfoot.core import Progress, silent
@@ -25,8 +20,8 @@ from underfoot.friction import viscous_decay
 from underfoot.questions.outcomes import outcomes
 from underfoot.slip.dynamics import ReducedSole, SlipStudy, judged
 
-from .figure import OURS, PRINTED, Figure, Layer, Panel, line
-from .g4 import LOAD, PEAK, Condition
+from .figure import OURS, PRINTED, Figure, Layer, Panel, level, line
+from .g4 import LOAD, PEAK, Condition, printed
 from .g5 import slip_case
 from .g6 import precision_of_published
 from .runner import Computed, Options, Table, part
@@ -39,7 +34,7 @@ MASSES = (0.04, 0.06, 0.08, 0.114, 0.17, 0.25, 0.4, 0.7)
 CONTACTS = (0.08, 0.11, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5)
 READING = 0.15
 """Relative standard deviation of a reading of the slip tester, assumed: none is printed."""
-SHOES = ("work_shoe", "athletic_shoe")
+KINDS = ("work", "athletic")
 NOT_IDENTIFIABLE = (
     (
         "heel's facet length, radius, width; outsole thickness",
@@ -107,26 +102,26 @@ def compute(options: Options) -> Computed:
     bare = slips(slip_case("untreaded", quick=quick), progress=part(progress, 0.5, 0.75))
     tread = slips(slip_case("treaded", quick=quick), progress=part(progress, 0.75, 1.0))
     case = Condition("work", "untreaded", "glycerol").case
-    angle = float(case.value("shoe.heel.profile.angle"))
-    facet, rough = heel_profiles(facets, roughness, loads, peaks)
+    angle = math.degrees(float(case.value("shoe.heel.profile.angle")))
+    rough = float(case.value("interface.roughness_beyond_cutoff"))
     contact = bare.setting.friction(2.5e5, 1.0, 1e-3)
-    found = (
-        Calibrated(facet, "G.4.2, work shoe", math.degrees(angle)),
-        Calibrated(
-            rough, "G.4.2, work shoe", float(case.value("interface.roughness_beyond_cutoff"))
-        ),
-        Calibrated(mass_profile(bare), "G.5.2, over the sensors", bare.population.effective_mass),
-        Calibrated(
-            contact_profile(tread),
-            "G.5.2, treaded",
-            float((contact.adhesion + contact.hysteresis) / 2.5e5),
-        ),
+    own = float((contact.adhesion + contact.hysteresis) / 2.5e5)
+    # N and Pa of both untreaded shoes in glycerol
+    data = np.array(
+        [[printed("fluid_load", k, "N"), printed("peak_pressure", k, "Pa")] for k in KINDS]
     )
-    data = readings()
     misfit = chi_square(np.stack([loads[0], peaks[0]], axis=-1), data[0], READING * data[0])
+    by_angle = profile("facet angle", "deg", facets, misfit, data=2)
+    by_roughness = profile("roughness beyond the cut-off", "1", roughness, misfit.T, data=2)
+    by_mass, by_contact = mass_profile(bare), contact_profile(tread)
+    found = (
+        Calibrated(by_angle, "G.4.2, work shoe", angle),
+        Calibrated(by_roughness, "G.4.2, work shoe", rough),
+        Calibrated(by_mass, "G.5.2, over the sensors", bare.population.effective_mass),
+        Calibrated(by_contact, "G.5.2, treaded", own),
+    )
     i, j = (int(k) for k in np.unravel_index(int(misfit.argmin()), misfit.shape))
-    mass = found[2].profile.best
-    speed = math.nan if mass is None else bare.peak_speed_at(mass) or math.nan
+    mass = by_mass.best
     _, error = model_error([loads[1, i, j], peaks[1, i, j]], data[1])
     return Computed(
         {
@@ -134,9 +129,9 @@ def compute(options: Options) -> Computed:
             "athletic.peak": Quantity.of(peaks[1, i, j], "Pa"),
             "clean.speed": Quantity.none("the data fix no moving mass", "m/s")
             if mass is None
-            else Quantity.of(speed, "m/s"),
+            else Quantity.of(bare.peak_speed_at(effective_mass=mass) or math.nan, "m/s"),
         },
-        (parameter_table(found), *_tables(facets, roughness, loads, peaks, found)),
+        _tables(facets, roughness, loads, peaks, found),
         {"profiles": profile_figure(found)},
         (
             *(
@@ -166,12 +161,9 @@ def slip_tester_grid(
     """
     cases = [
         Condition(kind, "untreaded", "glycerol").case.replace(
-            {
-                "shoe.heel.facet_angle": f"{facet} deg",
-                "interface.roughness_beyond_cutoff": rough,
-            }
+            {"shoe.heel.facet_angle": f"{facet} deg", "interface.roughness_beyond_cutoff": rough}
         )
-        for kind in ("work", "athletic")
+        for kind in KINDS
         for facet in facets
         for rough in roughness
     ]
@@ -185,52 +177,26 @@ def slip_tester_grid(
     return loads, peaks
 
 
-def readings() -> Array:
-    """Return load (N) and peak (Pa) of both untreaded shoes in glycerol, (2 shoes, 2)."""
-    entry = Catalogue.load().entry("published", "slip_tester_g4")
-    return np.array(
-        [
-            [
-                entry.sourced(f"{name}_{shoe}_untreaded_glycerol", unit).value or 0.0
-                for name, unit in (("fluid_load", "N"), ("peak_pressure", "Pa"))
-            ]
-            for shoe in SHOES
-        ]
-    )
-
-
-def heel_profiles(
-    facets: Sequence[float], roughness: Sequence[float], loads: Array, peaks: Array
-) -> tuple[Profile, Profile]:
-    """Return profiles of facet angle (deg) and roughness factor from the work shoe's readings."""
-    data = readings()[0]
-    misfit = chi_square(np.stack([loads[0], peaks[0]], axis=-1), data, READING * data)
-    return (
-        profile("facet angle", "deg", facets, misfit, data=2),
-        profile("roughness beyond the cut-off", "1", roughness, misfit.T, data=2),
-    )
-
-
-def mass_profile(study: SlipStudy, masses: Sequence[float] = MASSES) -> Profile:
+def mass_profile(study: SlipStudy) -> Profile:
     """Return the profile of the share of the body that moves with the heel, from G.5's mean."""
     mean = _published("peak_slipping_speed_over_sensors_untreaded")
-    speeds = np.array([study.peak_speed_at(share) or math.nan for share in masses])
+    speeds = np.array([study.peak_speed_at(effective_mass=share) or math.nan for share in MASSES])
     misfit = chi_square(speeds[:, None], [mean[0]], [mean[1] / math.sqrt(11)])
-    return profile("share of the body moving with the heel", "1", masses, misfit, data=1)
+    return profile("share of the body moving with the heel", "1", MASSES, misfit, data=1)
 
 
-def contact_profile(study: SlipStudy, contacts: Sequence[float] = CONTACTS) -> Profile:
+def contact_profile(study: SlipStudy) -> Profile:
     """Return the profile of the contact's COF under lugs in 90 % glycerol, from the treaded slips.
 
     The film is that of the case; the contact has one COF at every speed.
     """
     assert study.sole is not None
     mean = _published("peak_slipping_speed_over_sensors_treaded")
-    speeds = np.array([treaded_speed(study, study.sole, cof) for cof in contacts])
+    speeds = np.array([treaded_speed(study, study.sole, cof) for cof in CONTACTS])
     # 0.06 m/s is what a marker moves at without any slip (required_friction)
     error = math.hypot(mean[1] / math.sqrt(6), 0.06)
     misfit = chi_square(speeds[:, None], [mean[0]], [error])
-    return profile("contact COF under lugs, 90 % glycerol", "1", contacts, misfit, data=1)
+    return profile("contact COF under lugs, 90 % glycerol", "1", CONTACTS, misfit, data=1)
 
 
 def _published(name: str) -> tuple[float, float]:
@@ -243,31 +209,6 @@ def treaded_speed(study: SlipStudy, sole: ReducedSole, cof: float) -> float:
     changed = replace(sole, cofs=np.full(sole.cofs.size, cof))
     peaks = [judged(changed.motion(one.walker)).peak_speed.value for one in study.subjects]
     return float(np.mean([0.0 if v is None else v for v in peaks]))
-
-
-def parameter_table(found: Sequence[Calibrated]) -> Table:
-    """Return each parameter's interval beside the program's default, and what can't be fixed."""
-    rows = [
-        (
-            one.profile.name,
-            one.data,
-            one.profile.text(),
-            f"{one.default:.3g}",
-            one.holds_default,
-            f"{one.profile.fixed}; least chi-square {one.profile.misfit:.2g} of {one.profile.data} "
-            f"data; grid {one.profile.grid[0]:g} to {one.profile.grid[-1]:g}",
-        )
-        for one in found
-    ]
-    rows += [
-        (what, where, "not identifiable", "-", "-", why) for what, where, why in NOT_IDENTIFIABLE
-    ]
-    return Table(
-        "parameters",
-        "Parameters fitted to the report's data, beside the program's defaults",
-        ("parameter", "data", "fitted (95 %)", "default", "default against 95 %", "why"),
-        tuple(rows),
-    )
 
 
 def _other_conclusions() -> tuple[str, ...]:
@@ -291,29 +232,55 @@ def _tables(
     peaks: Array,
     found: Sequence[Calibrated],
 ) -> tuple[Table, ...]:
-    rows = [
-        (facet, rough, *(float(v) for s in (0, 1) for v in (loads[s, i, j], peaks[s, i, j] / 1e3)))
-        for i, facet in enumerate(facets)
-        for j, rough in enumerate(roughness)
-    ]
-    profiles = [
-        (one.profile.name, float(x), float(y))
+    why = "{0.fixed}; least chi-square {0.misfit:.2g} of {0.data} data; grid {1:g} to {2:g}"
+    parameters = [
+        {
+            "parameter": one.profile.name,
+            "data": one.data,
+            "fitted (95 %)": one.profile.text(),
+            "default": f"{one.default:.3g}",
+            "default against 95 %": one.holds_default,
+            "why": why.format(one.profile, one.profile.grid[0], one.profile.grid[-1]),
+        }
         for one in found
-        for x, y in zip(one.profile.grid, one.profile.profile, strict=True)
+    ]
+    columns = tuple(parameters[0])
+    none = [
+        (what, where, "not identifiable", "-", "-", why) for what, where, why in NOT_IDENTIFIABLE
     ]
     return (
         Table(
+            "parameters",
+            "Parameters fitted to the report's data, beside the program's defaults",
+            columns,
+            [*(tuple(row.values()) for row in parameters), *none],
+        ),
+        Table.of(
             "heel_and_roughness",
             "Sensor readings by facet angle and roughness (printed: work 201 N, 234 kPa; athletic "
             "83 N, 214 kPa), coarse grid",
-            ("facet deg", "roughness", "work N", "work kPa", "athletic N", "athletic kPa"),
-            tuple(rows),
+            [
+                {
+                    "facet deg": facet,
+                    "roughness": rough,
+                    "work N": loads[0, i, j],
+                    "work kPa": peaks[0, i, j] / 1e3,
+                    "athletic N": loads[1, i, j],
+                    "athletic kPa": peaks[1, i, j] / 1e3,
+                }
+                for i, facet in enumerate(facets)
+                for j, rough in enumerate(roughness)
+            ],
         ),
         Table(
             "profiles",
             "Least chi-square against each parameter",
             ("parameter", "value", "chi-square"),
-            tuple(profiles),
+            [
+                (one.profile.name, x, y)
+                for one in found
+                for x, y in zip(one.profile.grid, one.profile.profile, strict=True)
+            ],
         ),
     )
 
@@ -323,30 +290,17 @@ def profile_figure(found: Sequence[Calibrated]) -> Figure:
     panels = []
     for one in found:
         p = one.profile
-        ends = [v for v in (p.low, p.high) if v is not None]
-        layers = (
+        layers = [
             line(p.grid, np.minimum(p.profile, 1e3), marker="o"),
-            Layer("level", (), [p.misfit + RISE], colour="0.5", style="--", label="95 %"),
-            *(
-                Layer("limit", [v], colour=PRINTED, label="end of 95 %" if v == ends[0] else "")
-                for v in ends
-            ),
-            Layer("limit", [one.default], colour=OURS, style=":", label="default"),
-        )
+            level(p.misfit + identifiability.RISE, "95 %", colour="0.5", style="--"),
+        ]
+        for k, end in enumerate(v for v in (p.low, p.high) if v is not None):
+            label = "" if k else "end of 95 %"
+            layers.append(Layer("limit", end, colour=PRINTED, label=label))
+        layers.append(Layer("limit", one.default, colour=OURS, style=":", label="default"))
         unit = "" if p.unit == "1" else f" ({p.unit})"
-        panels.append(
-            Panel(
-                layers,
-                p.name + unit,
-                "least chi-square",
-                f"{p.fixed}: {p.text()}",
-                y_scale="symlog",
-                y_limits=(0.0, None),
-            )
-        )
-    return Figure(
-        tuple(panels),
-        "What the report's data fix, beside the program's defaults",
-        columns=2,
-        size=(4.8, 3.2),
-    )
+        title = f"{p.fixed}: {p.text()}"
+        scale: dict[str, Any] = {"y_scale": "symlog", "y_limits": (0.0, None)}
+        panels.append(Panel(layers, p.name + unit, "least chi-square", title, **scale))
+    title = "What the report's data fix, beside the program's defaults"
+    return Figure(panels, title, columns=2, size=(4.8, 3.2))

@@ -22,7 +22,7 @@ from underfoot.calibrate.pair_law import (
 )
 from underfoot.core import content_hash
 
-from .figure import OURS, PRINTED, Figure, Layer, Panel
+from .figure import PRINTED, Figure, Panel, line, points
 from .runner import Computed, Options, Table, kept, part
 from .verdict import Quantity
 
@@ -76,10 +76,10 @@ def compute(options: Options) -> Computed:
     best = scores[-1]
     return Computed(
         {
-            "pair.r2": Quantity.of(best.r2),
-            "pair.inside_50": Quantity.of(best.inside_50),
-            "pair.inside_95": Quantity.of(best.inside_95),
-            "pair.rank_correlation": Quantity.of(best.rank_correlation),
+            **{
+                f"pair.{name}": Quantity.of(getattr(best, name))
+                for name in ("r2", "inside_50", "inside_95", "rank_correlation")
+            },
             "pair.gain": Quantity.of(best.log_density - scores[0].log_density),
         },
         (_scores(scores), _sources(own), _constants(posterior)),
@@ -96,58 +96,56 @@ def compute(options: Options) -> Computed:
 
 
 def _scores(scores: list[CorpusScore]) -> Table:
-    return Table(
+    return Table.of(
         "scores",
         "Each source predicted from all others, means over sources (log density: sum)",
-        (
-            "law", "log density", "R2 of ln COF", "rms error of ln COF", "bias of ln COF",
-            "inside 50 %", "inside 95 %", "rank correlation within a source",
-        ),
-        tuple(
-            (
-                s.law, s.log_density, s.r2, s.rms_error, s.bias, s.inside_50, s.inside_95,
-                None if np.isnan(s.rank_correlation) else s.rank_correlation,
-            )
+        [
+            {
+                "law": s.law,
+                "log density": s.log_density,
+                "R2 of ln COF": s.r2,
+                "rms error of ln COF": s.rms_error,
+                "bias of ln COF": s.bias,
+                "inside 50 %": s.inside_50,
+                "inside 95 %": s.inside_95,
+                "rank correlation within a source": s.rank_correlation,
+            }
             for s in scores
-        ),
-    )  # fmt: skip
+        ],
+    )
 
 
 def _sources(left_out: list[SourceScore]) -> Table:
-    return Table(
+    return Table.of(
         "sources",
         "The law of the pair, source by source: measured over predicted, readings inside",
-        ("source", "readings", "measured / predicted", "inside 50 %", "inside 95 %"),
-        tuple(
-            (
-                one.source,
-                float(len(one.conditions)),
-                float(np.exp(one.score.error.mean())),
-                float(one.score.inside_50.mean()),
-                float(one.score.inside_95.mean()),
-            )
+        [
+            {
+                "source": one.source,
+                "readings": float(len(one.conditions)),
+                "measured / predicted": np.exp(one.score.error.mean()),
+                "inside 50 %": one.score.inside_50.mean(),
+                "inside 95 %": one.score.inside_95.mean(),
+            }
             for one in left_out
-        ),
+        ],
     )
 
 
 def _constants(posterior: PairPosterior) -> Table:
+    names = ("source", "pair", "reading", "dry part of a source")
+    every = [
+        *zip(posterior.law.parameters, posterior.theta.T, strict=True),
+        *zip((f"sd of ln COF, {name}" for name in names), posterior.spreads.T, strict=True),
+    ]
     rows = []
-    for name, draws in zip(posterior.law.parameters, posterior.theta.T, strict=True):
+    for name, draws in every:
         low, median, high = np.quantile(draws, (0.025, 0.5, 0.975))
         if name.startswith("ln "):
             name, (low, median, high) = name[3:], np.exp((low, median, high))
-        rows.append((name, float(median), float(low), float(high)))
-    names = ("source", "pair", "reading", "dry part of a source")
-    for name, draws in zip(names, posterior.spreads.T, strict=True):
-        low, median, high = np.quantile(draws, (0.025, 0.5, 0.975))
-        rows.append((f"sd of ln COF, {name}", float(median), float(low), float(high)))
-    return Table(
-        "constants",
-        "Constants of the law of the pair from all sources: calibrated, measurements of no pair",
-        ("constant", "median", "low 95 %", "high 95 %"),
-        tuple(rows),
-    )
+        rows.append({"constant": name, "median": median, "low 95 %": low, "high 95 %": high})
+    title = "Constants of the law of the pair from all sources: calibrated, measurements of no pair"
+    return Table.of("constants", title, rows)
 
 
 def _figure(left_out: list[SourceScore]) -> Figure:
@@ -158,19 +156,9 @@ def _figure(left_out: list[SourceScore]) -> Figure:
         if not c.reading.is_censored
     ]
     measured, low, median, high = np.array(values).T
-    line = (0.03, 1.2)
     layers = (
-        Layer("line", x=line, y=line, colour=PRINTED, label="equal"),
-        Layer(
-            "points",
-            x=measured.tolist(),
-            y=median.tolist(),
-            low=low.tolist(),
-            high=high.tolist(),
-            colour=OURS,
-            marker="o",
-            label="median and 95 % interval",
-        ),
+        line((0.03, 1.2), (0.03, 1.2), "equal", colour=PRINTED),
+        points(measured, median, "median and 95 % interval", low=low, high=high, marker="o"),
     )
     panel = Panel(
         layers,
@@ -181,4 +169,4 @@ def _figure(left_out: list[SourceScore]) -> Figure:
         x_limits=(0.05, 1.0),
         y_limits=(0.02, 2.0),
     )
-    return Figure((panel,), "Readings predicted from all other sources", size=(5.6, 4.6))
+    return Figure([panel], "Readings predicted from all other sources", size=(5.6, 4.6))

@@ -5,38 +5,23 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, astuple, dataclass, fields, replace
 from functools import cache
+from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
+import pandas
 
-from underfoot.core import InputError, Status, content_hash, unknown_name
+import underfoot.block
+from underfoot import material as materials
+from underfoot.block import condensed, explicit
+from underfoot.core import Cache, InputError, Status, content_hash, unknown_name
 
-from .figure import (
-    OURS,
-    PRINTED,
-    SECOND,
-    Figure,
-    Layer,
-    Panel,
-    grouped_bars,
-    line,
-    names_as_ticks,
-)
-from .runner import Computed, Options, Table, kept, number_kept
+from .figure import OURS, PRINTED, SECOND, Figure, Layer, Panel, grouped_bars, level, line
+from .runner import Computed, Options, Table, kept
 from .verdict import Quantity
-
-if TYPE_CHECKING:
-    from underfoot.block.condensed import CondensedBlock
-    from underfoot.block.explicit import (
-        MicroBlock,
-        MicroLoading,
-        MicroMaterial,
-        MicroResult,
-        MicroSurface,
-    )
 
 MATERIALS = ("neolite", "rubber")
 SHOE_RZ = (12.1e-6, 35.1e-6)
@@ -64,7 +49,11 @@ explicit elements up to 9e-4 by inertia, ringing and mass scaling."""
 ROOM = "g1_explicit-2"
 FIGURE_3 = ("rubber", 35.1e-6, 35.1e-6)
 """Material, shoe and floor roughness (m) of Fig. 3."""
-QUANTITIES = {"hysteresis": "cof_hysteresis", "area": "area_per_force"}
+QUANTITIES = {
+    "hysteresis": ("cof_hysteresis", "hysteresis COF", 1.0),
+    "area": ("area_per_force", "$A_c / F_N$ (mm²/N)", 1e6),
+}
+"""Column of a row, its axis, and shown over SI."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,18 +140,13 @@ class Case:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class Row(Case):
     """One cell of the matrix with its averages over whole floor wavelengths (Eq. 8 to 12).
 
     ``area_per_force`` in m^2/N, ``mean_pressure`` in Pa, ``seconds`` of process time; NaN where
     the run gave no result (then ``status`` and ``note`` say why).
     """
 
-    series: str
-    material: str
-    shoe_rz: float
-    floor_rz: float
-    speed: float
     cof_hysteresis: float
     cof_absolute: float
     cof_resultant: float
@@ -204,77 +188,55 @@ def compute(options: Options) -> Computed:
             which = (row.material, row.shoe_rz, row.floor_rz)
             if which == FIGURE_3 and row.speed == max(settings.speeds):
                 histories[row.series, row.speed] = history
-        place = {case: i for i, case in enumerate(cases)}
-        rows.sort(key=lambda r: place[Case(r.series, r.material, r.shoe_rz, r.floor_rz, r.speed)])
+        place = {astuple(case): i for i, case in enumerate(cases)}
+        rows.sort(key=lambda row: place[astuple(row)[:5]])
         levels.append((BLOCK_LENGTH / mesh.elements[0], rows))
     rows = levels[-1][1]
     quantities: dict[str, Quantity] = {}
     for name in SERIES:
         quantities |= series_quantities(name, levels)
-    columns = tuple(field.name for field in fields(Row))
-    table = Table(
-        "cases",
-        "Averages over whole floor wavelengths, SI units",
-        columns,
-        tuple(tuple(_cell(getattr(row, c)) for c in columns) for row in rows),
-    )
     return Computed(
         quantities,
-        (table,),
+        [Table.of("cases", "Averages over whole floor wavelengths, SI units", map(asdict, rows))],
         figures(rows, histories, settings.floor_wavelength),
-        (),
-        _notes(rows, settings, before),
+        notes=_notes(rows, settings, before),
     )
 
 
 def matrix(settings: Settings) -> Iterator[Case]:
     """Yield every case; those that share a block follow one another."""
-    for shoe in SHOE_RZ:
-        for series in settings.series:
-            for material in MATERIALS:
-                for floor in FLOOR_RZ:
-                    for speed in settings.speeds:
-                        yield Case(series, material, shoe, floor, speed)
+    every = product(SHOE_RZ, settings.series, MATERIALS, FLOOR_RZ, settings.speeds)
+    for shoe, series, material, floor, speed in every:
+        yield Case(series, material, shoe, floor, speed)
 
 
-def material_of(case: Case, bulk: str = "corrected") -> MicroMaterial:
+def material_of(case: Case, bulk: str = "corrected") -> explicit.MicroMaterial:
     """Return the rubber of a case; density assumed."""
-    from underfoot.block.explicit import MicroMaterial
-    from underfoot.material import (
-        RelaxationSpectrum,
-        bulk_modulus,
-        power_law_spectrum,
-        report_elastomer,
-        shear_from_young,
-        youngs_modulus_from_shear,
-    )
-
     if case.series == "report":
-        young = report_elastomer(case.material).modulus
-        assert isinstance(young, RelaxationSpectrum)
-        shear = shear_from_young(young, POISSON_RATIO)
+        young = materials.report_elastomer(case.material).modulus
+        assert isinstance(young, materials.RelaxationSpectrum)
+        shear = materials.shear_from_young(young, POISSON_RATIO)
     else:
-        shear = power_law_spectrum(*BROAD[case.material], terms_per_decade=2)
+        shear = materials.power_law_spectrum(*BROAD[case.material], terms_per_decade=2)
+    relaxed = materials.youngs_modulus_from_shear(shear.equilibrium_modulus, POISSON_RATIO)
+    k = float(materials.bulk_modulus(relaxed, POISSON_RATIO))
     if bulk == "printed":
         k = PRINTED_BULK_MODULUS[case.material]
-    else:
-        relaxed = youngs_modulus_from_shear(shear.equilibrium_modulus, POISSON_RATIO)
-        k = float(bulk_modulus(relaxed, POISSON_RATIO))
-    return MicroMaterial(shear, k, name=case.material, source=shear.source)
+    return explicit.MicroMaterial(shear, k, name=case.material, source=shear.source)
 
 
 def parts_of(
     case: Case, settings: Settings
-) -> tuple[MicroBlock, MicroSurface, MicroMaterial, MicroLoading]:
+) -> tuple[
+    explicit.MicroBlock, explicit.MicroSurface, explicit.MicroMaterial, explicit.MicroLoading
+]:
     """Return block, floor, material and loading of a case."""
-    from underfoot.block.explicit import MicroBlock, MicroLoading, MicroSurface
-
-    rough = MicroSurface.checkerboard(case.shoe_rz, settings.shoe_wavelength)
+    rough = explicit.MicroSurface.checkerboard(case.shoe_rz, settings.shoe_wavelength)
     return (
-        MicroBlock(elements=settings.elements, roughness=rough),
-        MicroSurface.checkerboard(case.floor_rz, settings.floor_wavelength),
+        explicit.MicroBlock(elements=settings.elements, roughness=rough),
+        explicit.MicroSurface.checkerboard(case.floor_rz, settings.floor_wavelength),
         material_of(case, settings.bulk_modulus),
-        MicroLoading(
+        explicit.MicroLoading(
             speed=case.speed,
             slide_distance=settings.slide_distance,
             control=settings.control,
@@ -293,35 +255,30 @@ def outcomes(
         for _, arrays in kept(ROOM, explicit_outcome, items, keys, processes=processes):
             yield Row(**json.loads(str(arrays.pop("row")))), arrays
         return
-    block: CondensedBlock | None = None
+    block: condensed.CondensedBlock | None = None
     last: tuple[float, float] | None = None
+    steps = settings.steps_per_wavelength
     for case in cases:
-        from underfoot.block.condensed import (
-            condensed_block,
-            condensed_poisson_ratio,
-            condensed_sliding,
-        )
-
-        shape, floor, material, loading = parts_of(case, settings)
-        key = (case.shoe_rz, round(condensed_poisson_ratio(material), 9))
+        shape, floor, rubber, loading = parts_of(case, settings)
+        ratio = condensed.condensed_poisson_ratio(rubber)
+        key = (case.shoe_rz, round(ratio, 9))
         if block is None or key != last:
-            block, last = condensed_block(shape, condensed_poisson_ratio(material)), key
-        result = condensed_sliding(
-            block, floor, material, loading, steps_per_wavelength=settings.steps_per_wavelength
+            block, last = condensed.condensed_block(shape, ratio), key
+        result = condensed.condensed_sliding(
+            block, floor, rubber, loading, steps_per_wavelength=steps
         )
         yield row_of(case, result), {name: getattr(result, name) for name in HISTORY}
 
 
 def explicit_outcome(item: tuple[Case, Settings]) -> dict[str, np.ndarray]:
     """Return one case by explicit finite elements, mass scaled within its error bounds."""
-    from underfoot.block.explicit import ExplicitSettings, explicit_sliding
-
-    result = explicit_sliding(*parts_of(*item), ExplicitSettings(mass_scaling="auto"))
+    scaled = explicit.ExplicitSettings(mass_scaling="auto")
+    result = explicit.explicit_sliding(*parts_of(*item), scaled)
     row = np.array(json.dumps(asdict(row_of(item[0], result))))
     return {"row": row, **{name: getattr(result, name) for name in HISTORY}}
 
 
-def row_of(case: Case, result: MicroResult) -> Row:
+def row_of(case: Case, result: explicit.MicroResult) -> Row:
     """Return the averages of a case as one row."""
     averages = result.averages if result.status.usable else None
     names = [field.name for field in fields(Row)][5:12]
@@ -338,7 +295,8 @@ def kept_cases(settings: Settings, cases: Sequence[Case]) -> int:
     """Return how many of the explicit cases an earlier run has left."""
     if settings.solver != "explicit":
         return 0
-    return number_kept(ROOM, [_key(case, settings) for case in cases])
+    folder = Cache(ROOM).folder
+    return sum((folder / f"{_key(case, settings)}.npz").is_file() for case in cases)
 
 
 def _key(case: Case, settings: Settings) -> str:
@@ -350,74 +308,52 @@ def _key(case: Case, settings: Settings) -> str:
 @cache
 def _source() -> str:
     """Return a hash of the program text that the explicit numbers come from."""
-    import underfoot.block
-
     files = sorted(Path(str(underfoot.block.__file__)).parent.rglob("*.py"))
     return content_hash(*[path.read_text(encoding="utf-8") for path in (*files, Path(__file__))])
 
 
 def changes(
-    rows: Sequence[Row], quantity: str, along: str, *, speed: float | None = None
+    rows: Any, quantity: str, along: str, *, speed: float | None = None
 ) -> tuple[float, ...]:
     """Return the relative change of ``quantity`` from the lowest to the highest of ``along``.
 
     One value for each combination of the other conditions; ``speed`` keeps one speed only.
+    ``rows`` are a sequence of ``Row`` or a frame of them.
     """
+    frame: Any = pandas.DataFrame(rows)
     others = [name for name in ("material", "shoe_rz", "floor_rz", "speed") if name != along]
-    chosen = [row for row in rows if speed is None or row.speed == speed]
-    found = []
-    for key in sorted({tuple(getattr(row, name) for name in others) for row in chosen}):
-        same = [row for row in chosen if tuple(getattr(row, name) for name in others) == key]
-        same.sort(key=lambda row: getattr(row, along))
-        first, last = (np.float64(getattr(same[i], quantity)) for i in (0, -1))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            found.append(float(last / first - 1.0))
-    return tuple(found)
+    chosen = frame if speed is None else frame[frame.speed == speed]
+    groups = chosen.sort_values(along).groupby(others)[quantity]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return tuple(float(same.iloc[-1] / same.iloc[0] - 1.0) for _, same in groups)
 
 
 def series_changes(rows: Sequence[Row]) -> dict[str, tuple[float, ...]]:
     """Return every change of G.1.2 for the rows of one series, by name."""
-    slow = min(row.speed for row in rows)
-    own = [row for row in rows if row.shoe_rz == OWN_SHOE_RZ[row.material]]
-    odd = [
-        row
-        for row in rows
-        if (row.material, row.shoe_rz, row.floor_rz) == ("neolite", SHOE_RZ[1], FLOOR_RZ[0])
-    ]
+    frame: Any = pandas.DataFrame(rows)
+    slow = frame.speed.min()
+    own = frame[frame.shoe_rz == frame.material.map(OWN_SHOE_RZ)]
+    rough, smooth = frame.shoe_rz == SHOE_RZ[1], frame.floor_rz == FLOOR_RZ[0]
+    odd = (frame.material == "neolite") & rough & smooth
     found = {}
-    for name, attribute in QUANTITIES.items():
+    for name, (column, *_) in QUANTITIES.items():
         for along in ("shoe_rz", "floor_rz", "speed"):
             speed = None if along == "speed" else slow
-            for material in MATERIALS:
-                some = [row for row in rows if row.material == material]
-                found[f"{name}.{along}.{material}"] = changes(some, attribute, along, speed=speed)
-            found[f"experiment.{name}.{along}"] = (
-                () if along == "shoe_rz" else changes(own, attribute, along, speed=speed)
-            )
-    rest = [row for row in rows if row not in odd]
-    found["hysteresis.speed.most_pairs"] = changes(rest, "cof_hysteresis", "speed")
-    found["hysteresis.speed.rough_neolite"] = changes(odd, "cof_hysteresis", "speed")
-    found["hysteresis.material.own"] = _ratios(own, slow)
-    found["hysteresis.material.same"] = tuple(
-        1.0 / (1.0 + value) - 1.0
-        for shoe in SHOE_RZ
-        for value in _ratios([row for row in rows if row.shoe_rz == shoe], slow)
-    )
-    return {name: values for name, values in found.items() if values}
-
-
-def _ratios(rows: Sequence[Row], speed: float) -> tuple[float, ...]:
-    """Return rubber over neolite less one, for each floor, in hysteresis COF."""
-    found = []
-    for floor in FLOOR_RZ:
-        cof = {
-            row.material: np.float64(row.cof_hysteresis)
-            for row in rows
-            if row.floor_rz == floor and row.speed == speed
-        }
-        with np.errstate(divide="ignore", invalid="ignore"):
-            found.append(float(cof["rubber"] / cof["neolite"] - 1.0))
-    return tuple(found)
+            for material, some in frame.groupby("material"):
+                found[f"{name}.{along}.{material}"] = changes(some, column, along, speed=speed)
+            if along != "shoe_rz":
+                found[f"experiment.{name}.{along}"] = changes(own, column, along, speed=speed)
+    found["hysteresis.speed.most_pairs"] = changes(frame[~odd], "cof_hysteresis", "speed")
+    found["hysteresis.speed.rough_neolite"] = changes(frame[odd], "cof_hysteresis", "speed")
+    for name, some, floors in (
+        ("own", own, ["floor_rz"]),
+        ("same", frame, ["shoe_rz", "floor_rz"]),
+    ):
+        slowest = some[some.speed == slow]
+        cof = slowest.pivot(index=floors, columns="material", values="cof_hysteresis")
+        over, under = (cof.rubber, cof.neolite) if name == "own" else (cof.neolite, cof.rubber)
+        found[f"hysteresis.material.{name}"] = tuple((over / under - 1.0).tolist())
+    return found
 
 
 def series_quantities(
@@ -445,159 +381,95 @@ def series_quantities(
     return found
 
 
-def _notes(rows: Sequence[Row], settings: Settings, before: int) -> tuple[str, ...]:
+def _notes(rows: Sequence[Row], settings: Settings, before: int) -> list[str]:
     pressures = np.array([row.mean_pressure for row in rows]) * 1e-3
     notes = []
     if np.isfinite(pressures).any():
+        kept_height = " (160 kPa at the end of pressing; the height, not the load, is kept)"
         notes.append(
             f"Mean pressure while sliding {np.nanmin(pressures):.0f} to "
             f"{np.nanmax(pressures):.0f} kPa"
-            + (
-                " (160 kPa at the end of pressing; the height, not the load, is kept)."
-                if settings.control == "displacement"
-                else "."
-            )
+            f"{kept_height if settings.control == 'displacement' else ''}."
         )
     if before:
         notes.append(f"{before} of {len(rows)} cases were kept from an earlier run.")
-    lost = sum(row.cof_hysteresis != row.cof_hysteresis for row in rows)
+    lost = sum(math.isnan(row.cof_hysteresis) for row in rows)
     if lost:
         notes.append(f"{lost} of {len(rows)} cases gave no result.")
-    return tuple(notes)
-
-
-def _cell(value: str | float) -> str | float | None:
-    return None if value != value else value
+    return notes
 
 
 def figures(
     rows: Sequence[Row], histories: dict[tuple[str, float], History], wavelength: float
 ) -> dict[str, Figure]:
     """Return Fig. 3, 5 to 8, 10 and 11."""
+    frame = pandas.DataFrame(rows)
     drawn = {
-        "fig05_hysteresis_roughness": _roughness_figure(rows, "hysteresis", "5"),
-        "fig06_hysteresis_speed": _speed_figure(rows, "hysteresis", "6"),
-        "fig07_area_speed": _speed_figure(rows, "area", "7"),
-        "fig08_area_roughness": _roughness_figure(rows, "area", "8"),
-        "fig10_area_speed_own": _speed_figure(rows, "area", "10", own=True),
-        "fig11_area_roughness_own": _roughness_figure(rows, "area", "11", own=True),
+        "fig05_hysteresis_roughness": _figure(frame, "hysteresis", "5", "floor_rz"),
+        "fig06_hysteresis_speed": _figure(frame, "hysteresis", "6", "speed"),
+        "fig07_area_speed": _figure(frame, "area", "7", "speed"),
+        "fig08_area_roughness": _figure(frame, "area", "8", "floor_rz"),
+        "fig10_area_speed_own": _figure(frame, "area", "10", "speed", own=True),
+        "fig11_area_roughness_own": _figure(frame, "area", "11", "floor_rz", own=True),
     }
     if histories:
         drawn["fig03_history"] = history_figure(histories, wavelength)
     return drawn
 
 
-LABELS = {"hysteresis": "hysteresis COF", "area": "$A_c / F_N$ (mm²/N)"}
-SCALES = {"hysteresis": 1.0, "area": 1e6}
-
-
-def _some(rows: Sequence[Row], own: bool) -> Iterator[tuple[str, str, list[Row]]]:
-    for series in dict.fromkeys(row.series for row in rows):
-        for material in MATERIALS:
-            some = [row for row in rows if (row.series, row.material) == (series, material)]
-            if own:
-                some = [row for row in some if row.shoe_rz == OWN_SHOE_RZ[material]]
-            yield series, material, some
-
-
-def _panel(
-    layers: tuple[Layer, ...],
-    some: Sequence[Row],
-    quantity: str,
-    series: str,
-    material: str,
-    highest: float,
-    **axes,
-) -> Panel:
-    largest = max(abs(getattr(row, QUANTITIES[quantity])) for row in some)
-    nothing = quantity == "hysteresis" and largest < LEAST_COF
-    return Panel(
-        () if nothing else layers,
-        y_label=LABELS[quantity],
-        title=f"{SERIES[series]}: {material}",
-        y_limits=(0.0, 1.05 * highest),
-        legend="" if nothing else "best",
-        note=f"no hysteresis friction:\n|COF| at most {largest:.0e}" if nothing else "",
-        **axes,
-    )
-
-
-def _highest(rows: Sequence[Row], quantity: str, some: Sequence[Row]) -> float:
-    """Return the top of the axis: friction of the materials is compared, areas differ tenfold."""
-    over = rows if quantity == "hysteresis" else some
-    values = [getattr(row, QUANTITIES[quantity]) * SCALES[quantity] for row in over]
-    return max([value for value in values if value == value], default=0.0) or 1.0
-
-
-def _roughness_figure(
-    rows: Sequence[Row], quantity: str, number: str, *, own: bool = False
-) -> Figure:
-    slow = min(row.speed for row in rows)
-    rows = [row for row in rows if row.speed == slow]
+def _figure(frame: Any, quantity: str, number: str, along: str, *, own: bool = False) -> Figure:
+    """Return a panel a series and material: a quantity over speed, or at the lowest speed over the
+    floor's roughness; ``own`` keeps each material's own roughness."""
+    column, label, scale = QUANTITIES[quantity]
+    slow = frame.speed.min()
+    if along == "floor_rz":
+        frame = frame[frame.speed == slow]
     panels = []
-    for series, material, some in _some(rows, own):
-        shoes = sorted({row.shoe_rz for row in some})
-        bars = {
-            f"shoe Rz {1e6 * shoe:g} µm": [
-                getattr(row, QUANTITIES[quantity]) * SCALES[quantity]
-                for row in sorted(some, key=lambda row: row.floor_rz)
-                if row.shoe_rz == shoe
+    for series, material in product(frame.series.unique(), MATERIALS):
+        some = frame[(frame.series == series) & (frame.material == material)]
+        if own:
+            some = some[some.shoe_rz == OWN_SHOE_RZ[material]]
+        largest = some[column].abs().max()
+        nothing = quantity == "hysteresis" and largest < LEAST_COF
+        # friction of the materials is compared, areas differ tenfold
+        highest = scale * (frame if quantity == "hysteresis" else some)[column].max()
+        if along == "floor_rz":
+            bars = {
+                f"shoe Rz {1e6 * shoe:g} µm": scale * row[column].to_numpy()
+                for shoe, row in some.sort_values(along).groupby("shoe_rz")
+            }
+            layers = grouped_bars(bars, colours=("#2e75b6",) if own else ("#9db8cc", OURS))
+            names = [f"{1e6 * floor:g}" for floor in FLOOR_RZ]
+            axis: dict[str, Any] = {"x_label": "floor Rz (µm)", "x_ticks": names}
+        else:
+            layers = [
+                line(
+                    curve.speed,
+                    scale * curve[column],
+                    f"floor {1e6 * floor:g}" + ("" if own else f", shoe {1e6 * shoe:g}"),
+                    colour=(SECOND, "#2e75b6", OURS)[FLOOR_RZ.index(floor)],
+                    marker="o" if own else "os"[SHOE_RZ.index(shoe)],
+                    style="-" if own else ("-", "--")[SHOE_RZ.index(shoe)],
+                )
+                for (shoe, floor), curve in some.sort_values(along).groupby(["shoe_rz", "floor_rz"])
             ]
-            for shoe in shoes
-        }
-        layers = grouped_bars(bars, colours=("#9db8cc", OURS) if len(shoes) > 1 else ("#2e75b6",))
-        ticks = names_as_ticks([f"{1e6 * floor:g}" for floor in FLOOR_RZ])
+            axis = {"x_label": "sliding speed (m/s)", "x_limits": (0.0, None)}
         panels.append(
-            _panel(
-                layers,
-                some,
-                quantity,
-                series,
-                material,
-                _highest(rows, quantity, some),
-                x_label="floor Rz (µm)",
-                x_ticks=ticks,
+            Panel(
+                () if nothing else layers,
+                y_label=label,
+                title=f"{SERIES[series]}: {material}",
+                y_limits=(0.0, 1.05 * highest if highest > 0.0 else 1.05),
+                legend="" if nothing else "best",
+                note=f"no hysteresis friction:\n|COF| at most {largest:.0e}" if nothing else "",
+                **axis,
             )
         )
-    title = f"Fig. {number}: {LABELS[quantity]} at {slow:g} m/s" + (", own shoes" if own else "")
-    return Figure(tuple(panels), title, columns=2)
-
-
-def _speed_figure(rows: Sequence[Row], quantity: str, number: str, *, own: bool = False) -> Figure:
-    panels = []
-    for series, material, some in _some(rows, own):
-        layers = []
-        for j, shoe in enumerate(sorted({row.shoe_rz for row in some})):
-            for i, floor in enumerate(FLOOR_RZ):
-                curve = sorted(
-                    (row for row in some if (row.shoe_rz, row.floor_rz) == (shoe, floor)),
-                    key=lambda row: row.speed,
-                )
-                shoes = "" if own else f", shoe {1e6 * shoe:g}"
-                layers.append(
-                    line(
-                        [row.speed for row in curve],
-                        [getattr(row, QUANTITIES[quantity]) * SCALES[quantity] for row in curve],
-                        f"floor {1e6 * floor:g}{shoes}",
-                        colour=(SECOND, "#2e75b6", OURS)[i],
-                        marker="os"[j],
-                        style=("-", "--")[j],
-                    )
-                )
-        panels.append(
-            _panel(
-                tuple(layers),
-                some,
-                quantity,
-                series,
-                material,
-                _highest(rows, quantity, some),
-                x_label="sliding speed (m/s)",
-                x_limits=(0.0, None),
-            )
-        )
-    title = f"Fig. {number}: {LABELS[quantity]} against speed (Rz in µm)"
-    return Figure(tuple(panels), title, columns=2, legend_below=True, size=(4.4, 3.2))
+    if along == "floor_rz":
+        title = f"Fig. {number}: {label} at {slow:g} m/s" + (", own shoes" if own else "")
+        return Figure(panels, title, columns=2)
+    title = f"Fig. {number}: {label} against speed (Rz in µm)"
+    return Figure(panels, title, columns=2, legend_below=True, size=(4.4, 3.2))
 
 
 def history_figure(
@@ -615,30 +487,18 @@ def history_figure(
             layers = [line(time, values, colour=colour)]
             sliding = time[history["distance"] > 0.0]
             if sliding.size:
-                layers.append(Layer("limit", [float(sliding[0])], style=":", colour="0.6"))
-            mean = (
-                whole_wavelength_mean(history["distance"], values, wavelength)
-                if name == "shear_force"
-                else None
-            )
-            if mean is not None:
-                text = f"mean over whole floor waves {mean:.2f} mN".replace("-0.00", "0.00")
-                layers.append(Layer("level", (), [mean], label=text, colour=colour, style="--"))
-            heading = (
-                f"{SERIES.get(series, series)}, {speed:g} m/s"
-                if name == "real_contact_area"
-                else ""
-            )
-            bottom = None if name == "shear_force" else 0.0
-            panels.append(
-                Panel(tuple(layers), "time (ms)", label, heading, y_limits=(bottom, None))
-            )
-    return Figure(
-        tuple(panels),
-        title,
-        columns=len(histories),
-        size=(4.6, 2.2),
-    )
+                layers.append(Layer("limit", sliding[0], style=":", colour="0.6"))
+            heading, bottom = "", 0.0
+            if name == "real_contact_area":
+                heading = f"{SERIES.get(series, series)}, {speed:g} m/s"
+            elif name == "shear_force":
+                bottom = None
+                mean = whole_wavelength_mean(history["distance"], values, wavelength)
+                if mean is not None:
+                    text = f"mean over whole floor waves {mean:.2f} mN".replace("-0.00", "0.00")
+                    layers.append(level(mean, text, colour=colour, style="--"))
+            panels.append(Panel(layers, "time (ms)", label, heading, y_limits=(bottom, None)))
+    return Figure(panels, title, columns=len(histories), size=(4.6, 2.2))
 
 
 def whole_wavelength_mean(

@@ -23,19 +23,7 @@ from underfoot.core.catalogue import Catalogue
 from underfoot.friction import BoundaryFriction, Propagated, propagated, stribeck_cof, viscous_decay
 from underfoot.reference import soft_ehl_film
 
-from .figure import (
-    COLOURS,
-    GREY,
-    OURS,
-    PRINTED,
-    Figure,
-    Layer,
-    Panel,
-    line,
-    names_as_ticks,
-    numbers,
-    points,
-)
+from .figure import COLOURS, GREY, MARKERS, OURS, PRINTED, Figure, Layer, Panel, line, points
 from .runner import Computed, Options, Table
 from .verdict import Quantity
 
@@ -47,8 +35,9 @@ LABELS: dict[str, str] = {
     "glycerol_75pct": "75 % glycerol",
     "canola_oil": "canola",
 }
+INPUTS = ("boundary", "viscosity")
+"""Of a prediction: COF_BL where it is measured, or the viscosity alone."""
 SAMPLES, QUICK_SAMPLES = 200, 100
-MARKERS = ("o", "s", "^", "D", "v", "P")
 
 
 def compute(options: Options) -> Computed:
@@ -68,10 +57,11 @@ def compute(options: Options) -> Computed:
             for name, values in lambdas.items()
             for i, end in ((0, "slowest"), (-1, "fastest"))
         },
-        "error.fluids.boundary": Quantity.of(comparison.chosen.fluids[0].error),
-        "error.fluids.viscosity": Quantity.of(comparison.chosen.fluids[1].error),
-        "error.roughness.boundary": Quantity.of(comparison.chosen.roughness[0].error),
-        "error.roughness.viscosity": Quantity.of(comparison.chosen.roughness[1].error),
+        **{
+            f"error.{on}.{inputs}": Quantity.of(getattr(comparison.chosen, on)[k].error)
+            for on in ("fluids", "roughness")
+            for k, inputs in enumerate(INPUTS)
+        },
         "error.one_from_five": Quantity.of(comparison.chosen.one_from_five),
         "coverage": Quantity.of(_coverage(comparison.points, spread)),
         "master.r_squared": Quantity.of(fit["r_squared"]),
@@ -93,7 +83,7 @@ def compute(options: Options) -> Computed:
 def _means(comparison: MechanismComparison) -> dict[str, Quantity]:
     """Return mean COF over the speeds, predicted with COF_BL and from the viscosity alone."""
     found = {}
-    for k, inputs in enumerate(("boundary", "viscosity")):
+    for k, inputs in enumerate(INPUTS):
         for prediction in comparison.chosen.fluids[k].predictions:
             found[f"mean.{inputs}.{prediction.points.fluid}"] = Quantity.of(prediction.cof.mean())
         for prediction in comparison.chosen.roughness[k].predictions:
@@ -129,11 +119,8 @@ def intervals(
     base, given = comparison.points[CALIBRATION_FLUID], comparison.fluids[CALIBRATION_FLUID]
     assert given.tau_hydro is not None
     assert given.cof_asymptote is not None
-    inputs: dict[str, SourcedValue] = {
-        "cof_bl": given.cof_boundary,
-        "tau": given.tau_hydro,
-        "asymptote": given.cof_asymptote,
-    }
+    inputs: dict[str, SourcedValue] = {"cof_bl": given.cof_boundary}
+    inputs |= {"tau": given.tau_hydro, "asymptote": given.cof_asymptote}
     for name, one in comparison.points.items():
         if one.cof_boundary is not None and name != CALIBRATION_FLUID:
             inputs[name] = comparison.fluids[name].cof_boundary
@@ -142,18 +129,14 @@ def intervals(
         cof = stribeck_cof(base.speed, values["cof_bl"], values["tau"], values["asymptote"])
         drawn = replace(base, cof=np.asarray(cof), cof_boundary=None, label="")
         fit = calibrated_mechanism(test.mechanism, (drawn,), comparison.pin).values
-        return np.array(
-            [
-                predicted(
-                    test.mechanism,
-                    fit,
-                    replace(one, cof_boundary=values.get(name)),
-                    comparison.pin,
-                    own_boundary=values.get(name) is not None,
-                )
-                for name, one in comparison.points.items()
-            ]
-        )
+        found = []
+        for name, one in comparison.points.items():
+            own = values.get(name)
+            one = replace(one, cof_boundary=own)
+            found.append(
+                predicted(test.mechanism, fit, one, comparison.pin, own_boundary=own is not None)
+            )
+        return np.array(found)
 
     return propagated(
         all_fluids, inputs, model_deviation=test.deviation, samples=samples, seed=seed, shares=False
@@ -198,15 +181,12 @@ def lambda_ratios(comparison: MechanismComparison, count: int = 30) -> dict[str,
     pin = comparison.pin
     sigma = float(np.hypot(pin.sole_rq, pin.floor_rq))
     speeds = np.geomspace(0.05, 1.0, count)
+    film = {"load": pin.normal_force, "radius": pin.radius, "effective_modulus": pin.modulus}
     return {
         name: np.array(
             [
                 soft_ehl_film(
-                    viscosity=comparison.points[name].viscosity,
-                    entrainment_speed=float(v),
-                    load=pin.normal_force,
-                    radius=pin.radius,
-                    effective_modulus=pin.modulus,
+                    viscosity=comparison.points[name].viscosity, entrainment_speed=float(v), **film
                 )[1]
                 / sigma
                 for v in speeds
@@ -221,73 +201,59 @@ def _mechanism_table(comparison: MechanismComparison) -> Table:
     for name, test in comparison.tests.items():
         given = test.calibration.parameters.get("parameter")
         number = "-" if given is None or given.value is None else display(given.value, given.unit)
-        errors = (*(t.error for t in test.fluids), *(t.error for t in test.roughness))
         rows.append(
-            (
-                name,
-                test.mechanism.label,
-                number,
-                test.calibration.mean_absolute_error,
-                *errors,
-                test.one_from_five,
-            )
+            {
+                "mechanism": name,
+                "what it is": test.mechanism.label,
+                "calibrated": number,
+                "50 % glycerol": test.calibration.mean_absolute_error,
+                "5 fluids, COF_BL": test.fluids[0].error,
+                "5 fluids, viscosity": test.fluids[1].error,
+                "Table 3, COF_BL": test.roughness[0].error,
+                "Table 3, viscosity": test.roughness[1].error,
+                "1 from 5": test.one_from_five,
+            }
         )
-    return Table(
+    return Table.of(
         "mechanisms",
         "Mean absolute error of COF. On 50 % glycerol: of the fit itself; 5 fluids and Table 3: "
         "predicted with COF_BL as input or from viscosity alone; 1 from 5: each fluid by viscosity "
         f"from a fit to the other five (StribeckLaw by the same rule: {comparison.peer:.3f})",
-        (
-            "mechanism",
-            "what it is",
-            "calibrated",
-            "50 % glycerol",
-            "5 fluids, COF_BL",
-            "5 fluids, viscosity",
-            "Table 3, COF_BL",
-            "Table 3, viscosity",
-            "1 from 5",
-        ),
-        tuple(rows),
+        rows,
     )
 
 
 def _fluid_table(comparison: MechanismComparison) -> Table:
-    names = [p.points.fluid for p in comparison.chosen.fluids[0].predictions]
     rows = [
-        (name, inputs, *(p.error for p in test.fluids[k].predictions), test.fluids[k].error)
+        {
+            "mechanism": name,
+            "input": inputs,
+            **{LABELS[p.points.fluid]: p.error for p in test.fluids[k].predictions},
+            "all five": test.fluids[k].error,
+        }
         for name, test in comparison.tests.items()
         for k, inputs in enumerate(("COF_BL", "viscosity"))
     ]
-    return Table(
-        "fluids",
-        "Mean absolute error of COF over the 11 speeds, by fluid",
-        ("mechanism", "input", *(LABELS[name] for name in names), "all five"),
-        tuple(rows),
-    )
+    return Table.of("fluids", "Mean absolute error of COF over the 11 speeds, by fluid", rows)
 
 
 def _curve_table(comparison: MechanismComparison, spread: Propagated) -> Table:
     rows = [
-        (
-            LABELS[name],
-            1e3 * one.viscosity,
-            float(one.speed[k]),
-            float(one.cof[k]),
-            one.curve,
-            float(spread.value[i, k]),
-            float(spread.low[i, k]),
-            float(spread.high[i, k]),
-        )
+        {
+            "fluid": LABELS[name],
+            "viscosity mPa s": 1e3 * one.viscosity,
+            "speed m/s": one.speed[k],
+            "published": one.cof[k],
+            "as": one.curve,
+            "predicted": spread.value[i, k],
+            "low": spread.low[i, k],
+            "high": spread.high[i, k],
+        }
         for i, (name, one) in enumerate(comparison.points.items())
         for k in range(one.speed.size)
     ]
-    return Table(
-        "curves",
-        "COF of each fluid: published (fit of Eq. 17 or mean) and predicted, 95 %",
-        ("fluid", "viscosity mPa s", "speed m/s", "published", "as", "predicted", "low", "high"),
-        tuple(rows),
-    )
+    title = "COF of each fluid: published (fit of Eq. 17 or mean) and predicted, 95 %"
+    return Table.of("curves", title, rows)
 
 
 def _conclusions(comparison: MechanismComparison, fit: Mapping[str, float]) -> tuple[str, ...]:
@@ -330,8 +296,8 @@ def _master_figure(
     master: tuple[np.ndarray, np.ndarray],
     fit: Mapping[str, float],
 ) -> Figure:
-    above: list[Layer] = [line(1e3 * master[0], master[1], "one curve, all fluids", colour="0.1")]
-    below: list[Layer] = [Layer("level", (), [0.0], colour="0.1")]
+    above = [line(1e3 * master[0], master[1], "one curve, all fluids", colour="0.1")]
+    below = [Layer("level", y=0.0, colour="0.1")]
     for i, (name, one) in enumerate(points_of.items()):
         place = one.viscosity * one.speed
         style = {"colour": COLOURS[i], "marker": MARKERS[i]}
@@ -341,16 +307,11 @@ def _master_figure(
         below.append(points(1e3 * place, one.cof - fitted, **style))
     axis: dict[str, Any] = {"x_label": "viscosity × speed (mPa m)", "x_scale": "log"}
     title = f"mean residual {fit['mean_absolute']:.3f}, R² {fit['r_squared']:.2f}"
+    label = "COF (published fits and means)"
     return Figure(
         (
-            Panel(
-                tuple(above),
-                y_label="COF (published fits and means)",
-                title=title,
-                y_limits=(0.0, None),
-                **axis,
-            ),
-            Panel(tuple(below), y_label="published − curve", legend="", **axis),
+            Panel(above, y_label=label, title=title, y_limits=(0.0, None), **axis),
+            Panel(below, y_label="published − curve", legend="", **axis),
         ),
         "Fig. 16: all fluids over viscosity × speed",
         columns=2,
@@ -367,27 +328,14 @@ def _blind_figure(points_of: Mapping[str, CofPoints], spread: Propagated) -> Fig
         what = "calibrated on" if own else f"error {error:.3f}"
         mean = ", published mean" if one.curve == "mean" else ""
         layers = (
-            Layer(
-                "band",
-                numbers(one.speed),
-                low=numbers(spread.low[i]),
-                high=numbers(spread.high[i]),
-                colour=colour,
-            ),
+            Layer("band", one.speed, low=spread.low[i], high=spread.high[i], colour=colour),
             line(one.speed, spread.value[i], colour=colour),
             points(one.speed, one.cof, colour=PRINTED),
         )
-        panels.append(
-            Panel(
-                layers,
-                "sliding speed (m/s)",
-                "COF",
-                f"{LABELS[name]}: {what}{mean}",
-                y_limits=(0.0, None),
-            )
-        )
+        title = f"{LABELS[name]}: {what}{mean}"
+        panels.append(Panel(layers, "sliding speed (m/s)", "COF", title, y_limits=(0.0, None)))
     return Figure(
-        tuple(panels),
+        panels,
         "Films at asperities: line and 95 % interval; points: published fits of Eq. 17",
         columns=3,
         size=(3.4, 2.8),
@@ -397,13 +345,12 @@ def _blind_figure(points_of: Mapping[str, CofPoints], spread: Propagated) -> Fig
 
 
 def _error_figure(comparison: MechanismComparison) -> Figure:
-    names = [test.mechanism.label for test in comparison.tests.values()][::-1]
     tests = list(comparison.tests.values())[::-1]
     layers = [
         Layer(
             "across",
             [test.fluids[k].error for test in tests],
-            [i + side for i in range(len(tests))],
+            np.arange(len(tests)) + side,
             label=label,
             colour=colour,
             width=0.36,
@@ -413,63 +360,38 @@ def _error_figure(comparison: MechanismComparison) -> Figure:
             (1, -0.19, "viscosity only", "#9dc3dc"),
         )
     ]
-    panel = Panel(
-        tuple(layers),
-        "mean absolute error of COF, five fluids not calibrated on",
-        y_ticks=names_as_ticks(names),
-    )
-    return Figure((panel,), "All mechanisms", size=(8.2, 5.0))
+    label = "mean absolute error of COF, five fluids not calibrated on"
+    panel = Panel(layers, label, y_ticks=[test.mechanism.label for test in tests])
+    return Figure([panel], "All mechanisms", size=(8.2, 5.0))
 
 
 def _levels_figure(fluids: Mapping[str, BoundaryFriction]) -> Figure:
     decay = viscous_decay([one for one in fluids.values() if one.tau_hydro is not None])
-    left: list[Layer] = []
-    right: list[Layer] = []
+    left, right = [], []
     for k, (name, label) in enumerate(LABELS.items()):
         one = fluids[name]
-        level, error = one.cof_boundary.value or 0.0, one.cof_boundary.uncertainty or 0.0
-        left.append(
-            Layer(
-                "bars",
-                [k],
-                [level],
-                low=[level - error],
-                high=[level + error],
-                colour=COLOURS[k],
-                width=0.7,
-            )
-        )
+        rest, error = one.cof_boundary.value or 0.0, one.cof_boundary.uncertainty or 0.0
+        ends: dict[str, Any] = {"low": rest - error, "high": rest + error}
+        left.append(Layer("bars", k, rest, **ends, colour=COLOURS[k], width=0.7))
         if one.tau_hydro is not None:
             tau, spread = one.tau_hydro.value or 0.0, one.tau_hydro.uncertainty or 0.0
-            right.append(
-                points(
-                    [1e3 * one.viscosity],
-                    [tau],
-                    label,
-                    low=[tau - spread],
-                    high=[tau + spread],
-                    colour=COLOURS[k],
-                    marker="o",
-                )
-            )
+            ends = {"low": tau - spread, "high": tau + spread}
+            style = {"colour": COLOURS[k], "marker": "o"}
+            right.append(points(1e3 * one.viscosity, tau, label, **ends, **style))
     x = np.geomspace(0.4, 8, 50)
     product = 1e3 * (decay.value or 0.0)
     right.append(line(x, product / x, f"viscosity × tau = {product:.2f} mPa m", colour="0.3"))
-    ticks = tuple((v, f"{v:g}") for v in (0.5, 1, 2, 4, 8))
     return Figure(
         (
             Panel(
-                tuple(left),
-                y_label="COF at rest (printed ± sd)",
-                x_ticks=names_as_ticks([*LABELS.values()]),
-                legend="",
+                left, y_label="COF at rest (printed ± sd)", x_ticks=[*LABELS.values()], legend=""
             ),
             Panel(
-                tuple(right),
+                right,
                 "viscosity (mPa s)",
                 "decay speed tau (m/s)",
                 x_scale="log",
-                x_ticks=ticks,
+                x_ticks=(0.5, 1, 2, 4, 8),
                 y_limits=(0.0, None),
             ),
         ),
@@ -486,9 +408,8 @@ def _film_figure(lambdas: Mapping[str, np.ndarray]) -> Figure:
         for k, (name, values) in enumerate(lambdas.items())
     ]
     layers.append(
-        Layer("level", (), [1.0], label="boundary below, mixed above", colour="0.5", style="--")
+        Layer("level", y=1.0, label="boundary below, mixed above", colour="0.5", style="--")
     )
-    panel = Panel(tuple(layers), "speed (m/s)", "film over roughness, lambda", y_limits=(0.0, None))
-    return Figure(
-        (panel,), "Fig. 19: film of the pin by Eq. 18 (W = w / (E' R'²), R' in mm)", size=(6.6, 4.4)
-    )
+    panel = Panel(layers, "speed (m/s)", "film over roughness, lambda", y_limits=(0.0, None))
+    title = "Fig. 19: film of the pin by Eq. 18 (W = w / (E' R'²), R' in mm)"
+    return Figure([panel], title, size=(6.6, 4.4))

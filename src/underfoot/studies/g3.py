@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from underfoot.core.catalogue import Catalogue
 from underfoot.fluid import BLOCKING
@@ -10,7 +13,7 @@ from underfoot.friction import self_affine_scale
 from underfoot.friction.asperity_ehl import STYLUS_RESOLUTION
 from underfoot.material import youngs_modulus_gent
 
-from .figure import Figure, Panel, grouped_bars, names_as_ticks
+from .figure import Figure, Panel, grouped_bars
 from .runner import Computed, Options, Table
 from .verdict import Quantity
 
@@ -51,32 +54,28 @@ def compute(options: Options) -> Computed:
     quantities["alpha"] = Quantity.of(
         [alpha["water"], middle, alpha["canola oil"]], names=("water", "other fluids", "canola oil")
     )
-    quantities["beta"] = Quantity.of(
-        [
-            min(value for name, value in beta.items() if name.startswith("glycerol")),
-            max(value for name, value in beta.items() if not name.startswith("glycerol")),
-        ],
-        names=("glycerols", "other fluids"),
+    ends = (
+        min(value for name, value in beta.items() if name.startswith("glycerol")),
+        max(value for name, value in beta.items() if not name.startswith("glycerol")),
     )
+    quantities["beta"] = Quantity.of(ends, names=("glycerols", "other fluids"))
     return Computed(
         quantities,
         (
-            Table(
+            Table.of(
                 "eq26",
                 "Adhesion left under each fluid by Eq. 26, N at 20.9 N, at the dry adhesion that "
                 "fits best",
-                ("fluid", *(f"{sole} ({dry[sole]:.1f} N dry)" for sole in SOLES)),
-                tuple(
-                    (fluid, *(float(left[sole][i]) for sole in SOLES))
+                [
+                    {"fluid": fluid, **{f"{k} ({dry[k]:.1f} N dry)": left[k][i] for k in SOLES}}
                     for i, fluid in enumerate(BLOCKING)
-                ),
+                ],
             ),
-            Table(
+            Table.of(
                 "contact_area",
                 "Share of real contact at 266.1 kPa (Persson 2001), which times one shear strength "
                 "would be the dry adhesion",
-                ("sole", *FLOORS),
-                tuple((sole, *(area[sole, floor] for floor in FLOORS)) for sole in SOLES),
+                [{"sole": s, **{floor: area[s, floor] for floor in FLOORS}} for s in SOLES],
             ),
         ),
         {
@@ -87,7 +86,7 @@ def compute(options: Options) -> Computed:
                 "Fig. 22: in its place the share of real contact",
             ),
             "fig24_adhesion": _bars(
-                {sole: left[sole].tolist() for sole in SOLES},
+                left,
                 [fluid.replace("_", " ") for fluid in BLOCKING],
                 "adhesion (N)",
                 "Fig. 24: adhesion left under each fluid by Eq. 26",
@@ -127,6 +126,6 @@ def contact_areas(catalogue: Catalogue) -> dict[tuple[str, str], float]:
     return found
 
 
-def _bars(groups: dict[str, list[float]], names: list[str], label: str, title: str) -> Figure:
-    panel = Panel(grouped_bars(groups), y_label=label, x_ticks=names_as_ticks(names))
-    return Figure((panel,), title, size=(8.2, 4.2))
+def _bars(groups: Mapping[str, ArrayLike], names: list[str], label: str, title: str) -> Figure:
+    panel = Panel(grouped_bars(groups), y_label=label, x_ticks=names)
+    return Figure([panel], title, size=(8.2, 4.2))

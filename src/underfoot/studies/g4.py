@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,18 +21,7 @@ from underfoot.questions.sampled import sampled
 from underfoot.questions.sensitivity import OpenInput, Sensitivity, open_inputs, sensitivity
 from underfoot.trials.statistics import analysis_of_variance
 
-from .figure import (
-    OURS,
-    PRINTED,
-    SECOND,
-    Figure,
-    Layer,
-    Panel,
-    line,
-    names_as_ticks,
-    numbers,
-    points,
-)
+from .figure import OURS, PRINTED, SECOND, Figure, Layer, Panel, level, line, points
 from .runner import Computed, Options, Table, part
 from .verdict import Quantity
 
@@ -131,10 +121,10 @@ class Reading:
         """Return a scalar of the finest grid in SI."""
         return self.outcome.number(name)
 
-    def band(self, name: str) -> tuple[float | None, float | None]:
-        """Return the central 95 % of the draws, which holds the value itself."""
+    def band(self, name: str) -> tuple[float, float]:
+        """Return the central 95 % of the draws, which holds the value itself; nan without draws."""
         if name not in self.draws:
-            return None, None
+            return math.nan, math.nan
         low, high = np.percentile(self.draws[name], [2.5, 97.5])
         return min(float(low), self.number(name)), max(float(high), self.number(name))
 
@@ -172,17 +162,17 @@ def compute(options: Options) -> Computed:
     untreaded = [by[f"{kind}.untreaded.glycerol"] for kind in KINDS]
     drawn = {"fig29_maps": map_figure(untreaded), "fig30_loads": load_figure(readings)}
     drawn["tread_depth"] = depth_figure(depths)
-    tables = [conditions_table(readings), lower_table(readings, lower), depth_table(depths)]
+    tables = [conditions_table(readings), lower_table(lower), depth_table(depths)]
     for one in untreaded:
         found = varied[one.condition.name]
         tables.append(inputs_table(one.condition, found))
         drawn[f"open_inputs_{one.condition.kind}"] = inputs_figure(one.condition, found)
     return Computed(
         quantities(by, depths),
-        tuple(tables),
+        tables,
         drawn,
         conclusions(readings, varied, depths),
-        tuple(f"Not computed, not in a band: {each}." for each in lost),
+        [f"Not computed, not in a band: {each}." for each in lost],
     )
 
 
@@ -192,23 +182,16 @@ def reading(condition: Condition, varied: Sensitivity | None, *, quick: bool = F
     spacings = [numerics.quick_grid_spacing]
     if not quick:
         spacings += [numerics.grid_spacing, FINER * numerics.grid_spacing]
-    levels = []
-    result = None
-    for spacing in spacings:
-        result = run(condition.case.replace("numerics.grid_spacing", f"{spacing!r} m"))
-        levels.append((spacing, Outcome.of(result)))
-    assert result is not None
-    fields = result.fields
+    results = [
+        run(condition.case.replace("numerics.grid_spacing", f"{spacing!r} m"))
+        for spacing in spacings
+    ]
+    levels = tuple(zip(spacings, map(Outcome.of, results), strict=True))
+    fields = results[-1].fields
+    x, y, pressure = (fields[f"sensor_{name}"].values for name in ("x", "y", "pressure"))
+    outline = np.column_stack([fields["outline_x"].values, fields["outline_y"].values])
     draws = {} if varied is None else {name: _draws(name, levels[-1][1], varied) for name in LEAST}
-    return Reading(
-        condition,
-        tuple(levels),
-        fields["sensor_x"].values,
-        fields["sensor_y"].values,
-        fields["sensor_pressure"].values,
-        np.column_stack([fields["outline_x"].values, fields["outline_y"].values]),
-        draws,
-    )
+    return Reading(condition, levels, x, y, pressure, outline, draws)
 
 
 def _draws(name: str, outcome: Outcome, varied: Sensitivity) -> Array:
@@ -300,24 +283,19 @@ def quantities(
     for path, one in by.items():
         found[f"{path}.load"] = one.quantity(LOAD, "N")
         found[f"{path}.peak"] = one.quantity(PEAK, "Pa")
-
-    def difference(first: str, second: str) -> Quantity:
-        a, b = by[first], by[second]
-        levels = [
-            (spacing, last.number(LOAD) - before.number(LOAD))
-            for (spacing, last), (_, before) in zip(b.levels, a.levels, strict=True)
-        ]
-        return Quantity.of(levels[-1][1], "N", levels=levels)
-
     for kind in KINDS:
-        bare, half, full = (f"{kind}.{tread}.glycerol" for tread in TREADS)
-        found[f"{kind}.tread_step"] = difference(bare, half)
-        found[f"{kind}.half_to_full"] = difference(half, full)
-        thin = f"{kind}.untreaded.detergent"
-        found[f"{kind}.viscosity_step"] = difference(thin, bare)
-        found[f"{kind}.viscosity_step_half_tread"] = difference(
-            f"{kind}.half_tread.detergent", half
-        )
+        for name, first, second in (
+            ("tread_step", "untreaded.glycerol", "half_tread.glycerol"),
+            ("half_to_full", "half_tread.glycerol", "full_tread.glycerol"),
+            ("viscosity_step", "untreaded.detergent", "untreaded.glycerol"),
+            ("viscosity_step_half_tread", "half_tread.detergent", "half_tread.glycerol"),
+        ):
+            a, b = by[f"{kind}.{first}"], by[f"{kind}.{second}"]
+            levels = [
+                (spacing, last.number(LOAD) - before.number(LOAD))
+                for (spacing, last), (_, before) in zip(b.levels, a.levels, strict=True)
+            ]
+            found[f"{kind}.{name}"] = Quantity.of(levels[-1][1], "N", levels=levels)
     work, athletic = (by[f"{kind}.untreaded.glycerol"] for kind in KINDS)
     found["work.place"] = Quantity.of(work.place[0], "m")
     found["athletic.ahead_of_channel"] = Quantity.of(
@@ -326,21 +304,15 @@ def quantities(
     deep = [outcome.number(LOAD) for depth, outcome in depths if 1.5e-3 <= depth <= 3e-3]
     found["depth.change"] = Quantity.of(max(deep) - min(deep), "N")
     limit = threshold(depths)
-    found["depth.threshold"] = (
-        Quantity.none("no depth that was computed brings it below 5 N", "m")
-        if limit is None
-        else Quantity.of(limit[1], "m")
-    )
+    none = Quantity.none("no depth that was computed brings it below 5 N", "m")
+    found["depth.threshold"] = none if limit is None else Quantity.of(limit[1], "m")
     loads = [one.number(LOAD) for one in by.values()]
+    terms = {"tread": "tread", "fluid": "fluid", "fluid:tread": "interaction"}
+    p = dict.fromkeys(terms, math.nan)
     if all(math.isfinite(load) for load in loads):
         p = variance_p([one.condition for one in by.values()], loads)
-        for term, name in (("tread", "tread"), ("fluid", "fluid"), ("fluid:tread", "interaction")):
-            found[f"p.{name}"] = (
-                Quantity.of(p[term]) if term in p else Quantity.none("the loads do not scatter")
-            )
-    else:
-        found |= {f"p.{n}": Quantity.of(math.nan) for n in ("tread", "fluid", "interaction")}
-    return found
+    none = Quantity.none("the loads do not scatter")
+    return found | {f"p.{n}": Quantity.of(p[t]) if t in p else none for t, n in terms.items()}
 
 
 def channel_at(one: Reading, y: float) -> float:
@@ -370,176 +342,148 @@ def conclusions(
     """Return what the study says, in sentences."""
     treaded = [one for one in readings if not one.condition.untreaded]
     most = max(treaded, key=lambda one: one.number(TRUE_LOAD))
-    said = [
+    sentences = [
         f"The sensor does not see the film under lugs: up to {most.number(TRUE_LOAD):.0f} N "
         f"({most.condition.name}), of which it reads {most.number(LOAD):.1f} N. "
         "'Below 5 N' is a statement on the sensor."
     ]
     for one in readings:
         if one.condition.untreaded and one.condition.fluid == "glycerol":
-            found = varied[one.condition.name]
-            ranks = [
-                (label, found.ranked(name)[0]) for name, label in ((LOAD, "load"), (PEAK, "peak"))
-            ]
-            said.append(
-                f"{one.condition.name}: "
-                + ", ".join(f"the {label} depends most on {e.path}" for label, e in ranks)
-                + "."
+            load, peak = (varied[one.condition.name].ranked(name)[0] for name in (LOAD, PEAK))
+            sentences.append(
+                f"{one.condition.name}: the load depends most on {load.path}, the peak depends "
+                f"most on {peak.path}."
             )
     limit = threshold(depths)
     if limit is not None:
-        said.append(
+        sentences.append(
             f"Tread of {1e3 * limit[1]:g} mm is enough to bring the sensor below 5 N, "
             f"{1e3 * limit[0]:g} mm is not (lugs of 5 mm, channels of 2.4 mm)."
         )
-    return tuple(said)
+    return tuple(sentences)
 
 
 def conditions_table(readings: Sequence[Reading]) -> Table:
     """Return loads, peaks, places and COF of the twelve, with bands, on the finest grid."""
     rows = []
     for one in readings:
-        x, y = one.place
-        peak = one.number(PEAK) > 1e3  # no place for a peak that is none
-        bands = [one.band(name) for name in (LOAD, TRUE_LOAD, PEAK)]
+        bands = {name: one.band(name) for name in LEAST}
+        # no place for a peak that is none
+        x, y = one.place if one.number(PEAK) > 1e3 else (math.nan, math.nan)
+        grids = [(f"{1e3 * spacing:.2g} mm", outcome) for spacing, outcome in one.levels]
         rows.append(
-            (
-                one.condition.name,
-                one.number(LOAD),
-                *bands[0],
-                one.number(TRUE_LOAD),
-                *bands[1],
-                one.number(PEAK) / 1e3,
-                *(None if v is None else v / 1e3 for v in bands[2]),
-                1e3 * x if peak else None,
-                1e3 * y if peak else None,
-                one.number("cof"),
-                *(level.number(LOAD) for _, level in one.levels),
-                *(level.number(PEAK) / 1e3 for _, level in one.levels),
-                str(one.outcome.status),
-            )
+            {
+                "condition": one.condition.name,
+                "sensor N": one.number(LOAD),
+                "low": bands[LOAD][0],
+                "high": bands[LOAD][1],
+                "under the sole N": one.number(TRUE_LOAD),
+                "true low": bands[TRUE_LOAD][0],
+                "true high": bands[TRUE_LOAD][1],
+                "peak kPa": one.number(PEAK) / 1e3,
+                "peak low": bands[PEAK][0] / 1e3,
+                "peak high": bands[PEAK][1] / 1e3,
+                "peak from back mm": 1e3 * x,
+                "peak left of middle mm": 1e3 * y,
+                "COF": one.number("cof"),
+                **{f"N at {grid}": outcome.number(LOAD) for grid, outcome in grids},
+                **{f"kPa at {grid}": outcome.number(PEAK) / 1e3 for grid, outcome in grids},
+                "status": str(one.outcome.status),
+            }
         )
-    grids = [f"{1e3 * spacing:.2g} mm" for spacing, _ in readings[0].levels]
-    columns = (
-        "condition",
-        "sensor N",
-        "low",
-        "high",
-        "under the sole N",
-        "true low",
-        "true high",
-        "peak kPa",
-        "peak low",
-        "peak high",
-        "peak from back mm",
-        "peak left of middle mm",
-        "COF",
-        *(f"N at {grid}" for grid in grids),
-        *(f"kPa at {grid}" for grid in grids),
-        "status",
-    )
-    return Table(
+    return Table.of(
         "conditions",
         "Six shoes in two fluids on the finest grid: sensor's and true load, peak "
         "and its place, COF; central 95 % of what is open; load and peak on every grid",
-        columns,
-        tuple(rows),
+        rows,
     )
 
 
-def lower_table(readings: Sequence[Reading], lower: Mapping[str, Outcome]) -> Table:
+def lower_table(lower: Mapping[str, Outcome]) -> Table:
     """Return the readings at 250 N."""
-    rows = [
-        (name, *(lower[name].number(key) for key in (LOAD, TRUE_LOAD, "cof")))
-        for name in (one.condition.name for one in readings)
-        if name in lower
-    ]
     return Table(
         "lower_force",
         "The same at 250 N where COF is above 0.11, as the tester was run (G.4.1; quick grid)",
         ("condition", "sensor N", "under the sole N", "COF"),
-        tuple(rows),
+        [(n, *(one.number(key) for key in (LOAD, TRUE_LOAD, "cof"))) for n, one in lower.items()],
     )
 
 
 def inputs_table(condition: Condition, found: Sensitivity) -> Table:
     """Return what each open input does to load and peak of one condition."""
     rows = [
-        (
-            effect.path,
-            display(effect.low_value, effect.unit),
-            display(effect.high_value, effect.unit),
-            *(end.number(LOAD) for end in (effect.low, effect.high)),
-            *(end.number(PEAK) / 1e3 for end in (effect.low, effect.high)),
-            effect.reason,
-        )
+        {
+            "input": effect.path,
+            "low": display(effect.low_value, effect.unit),
+            "high": display(effect.high_value, effect.unit),
+            "N at low": effect.low.number(LOAD),
+            "N at high": effect.high.number(LOAD),
+            "kPa at low": effect.low.number(PEAK) / 1e3,
+            "kPa at high": effect.high.number(PEAK) / 1e3,
+            "why open": effect.reason,
+        }
         for effect in found.ranked(PEAK)
     ]
-    return Table(
+    return Table.of(
         f"open_inputs_{condition.kind}",
         f"What one standard deviation of each open input does ({condition.name}; quick grid, where "
         f"the sensor reads {found.nominal.number(LOAD):.0f} N and "
         f"{found.nominal.number(PEAK) / 1e3:.0f} kPa)",
-        ("input", "low", "high", "N at low", "N at high", "kPa at low", "kPa at high", "why open"),
-        tuple(rows),
+        rows,
     )
 
 
 def depth_table(depths: Sequence[tuple[float, Outcome]]) -> Table:
     """Return readings against depth of tread."""
-    return Table(
+    return Table.of(
         "tread_depth",
         "Work shoe of 71 Shore A in glycerol, lugs of 5 mm, channels of 2.4 mm; quick grid",
-        ("depth mm", "sensor N", "under the sole N", "peak by sensor kPa", "COF"),
-        tuple(
-            (
-                1e3 * depth,
-                one.number(LOAD),
-                one.number(TRUE_LOAD),
-                one.number(PEAK) / 1e3,
-                one.number("cof"),
-            )
+        [
+            {
+                "depth mm": 1e3 * depth,
+                "sensor N": one.number(LOAD),
+                "under the sole N": one.number(TRUE_LOAD),
+                "peak by sensor kPa": one.number(PEAK) / 1e3,
+                "COF": one.number("cof"),
+            }
             for depth, one in depths
-        ),
+        ],
     )
+
+
+def printed(name: str, kind: str, unit: str) -> float:
+    """Return what the report prints for an untreaded shoe in glycerol."""
+    published = Catalogue.load().entry("published", "slip_tester_g4")
+    return published.sourced(f"{name}_{kind}_shoe_untreaded_glycerol", unit).value or 0.0
 
 
 def map_figure(readings: Sequence[Reading]) -> Figure:
     """Return Fig. 29: fluid pressure as seven tracks read it, heel's back at the bottom."""
     panels = []
-    published = Catalogue.load().entry("published", "slip_tester_g4")
     for one in readings:
-        shoe = f"{one.condition.kind}_shoe_untreaded_glycerol"
-        load, peak = (
-            published.sourced(f"{name}_{shoe}", unit).value or 0.0
-            for name, unit in (("fluid_load", "N"), ("peak_pressure", "Pa"))
-        )
+        kind = one.condition.kind
+        load, peak = printed("fluid_load", kind, "N"), printed("peak_pressure", kind, "Pa")
         x, y = one.place
-        # left of the shoe on the left: the axis across is turned
         layers = (
-            Layer("map", numbers(1e3 * one.y), numbers(1e3 * one.x), numbers(one.pressure.T / 1e3)),  # type: ignore[arg-type]
-            Layer(
-                "outline",
-                numbers(1e3 * one.outline[:, 1]),
-                numbers(1e3 * one.outline[:, 0]),
-                colour="white",
-            ),
-            points([1e3 * y], [1e3 * x], colour="white", marker="o"),
+            Layer("map", 1e3 * one.y, 1e3 * one.x, one.pressure.T / 1e3),
+            Layer("outline", 1e3 * one.outline[:, 1], 1e3 * one.outline[:, 0], colour="white"),
+            points(1e3 * y, 1e3 * x, colour="white", marker="o"),
         )
         panels.append(
             Panel(
                 layers,
                 "across, left positive (mm)",
                 "from the back of the heel (mm)",
-                f"{one.condition.kind} shoe: {one.number(LOAD):.0f} N, peak "
-                f"{one.number(PEAK) / 1e3:.0f} kPa\n(report {load:.0f} N, {peak / 1e3:.0f} kPa)",
+                f"{kind} shoe: {one.number(LOAD):.0f} N, peak {one.number(PEAK) / 1e3:.0f} kPa\n"
+                f"(report {load:.0f} N, {peak / 1e3:.0f} kPa)",
+                # left of the shoe on the left: the axis across is turned
                 x_limits=(1e3 * float(one.y.max()) + 5, 1e3 * float(one.y.min()) - 5),
                 y_limits=(-8.0, min(1e3 * float(one.x.max()), 60.0)),
                 legend="",
             )
         )
     return Figure(
-        tuple(panels),
+        panels,
         "Fig. 29: untreaded shoes in glycerol, seven tracks 10 mm apart; ring: highest reading",
         columns=2,
         size=(4.4, 5.2),
@@ -550,48 +494,34 @@ def map_figure(readings: Sequence[Reading]) -> Figure:
 
 def load_figure(readings: Sequence[Reading]) -> Figure:
     """Return Fig. 30: load by the sensor with its 95 % band, report's values and 5 N beside it."""
-    published = Catalogue.load().entry("published", "slip_tester_g4")
     panels = []
     for kind in KINDS:
         layers: list[Layer] = []
         for fluid, side, colour in (("glycerol", -0.2, OURS), ("detergent", 0.2, "#9db8d2")):
             some = [r for r in readings if (r.condition.kind, r.condition.fluid) == (kind, fluid)]
             bands = [one.band(LOAD) for one in some]
-            has = all(low is not None for low, _ in bands)
-            layers.append(
-                Layer(
-                    "bars",
-                    [TREADS.index(r.condition.tread) + side for r in some],
-                    [r.number(LOAD) for r in some],
-                    label=fluid,
-                    colour=colour,
-                    width=0.36,
-                    low=[low or 0.0 for low, _ in bands] if has else (),
-                    high=[high or 0.0 for _, high in bands] if has else (),
-                )
-            )
-        printed = published.sourced(f"fluid_load_{kind}_shoe_untreaded_glycerol", "N").value or 0.0
-        layers.append(points([-0.2], [printed], "report", colour=PRINTED, marker="D"))
-        layers.append(
-            Layer(
-                "level", (), [SMALL], label="report: all others below", colour=PRINTED, style="--"
-            )
-        )
-        ticks = tuple((v, f"{v:g}") for v in (0, 1, 5, 10, 50, 100, 500))
+            low, high = np.transpose(bands) if np.isfinite(bands).all() else ((), ())
+            places = [TREADS.index(one.condition.tread) + side for one in some]
+            loads = [one.number(LOAD) for one in some]
+            style: dict[str, Any] = {"label": fluid, "colour": colour, "width": 0.36}
+            layers.append(Layer("bars", places, loads, low=low, high=high, **style))
+        load = printed("fluid_load", kind, "N")
+        layers.append(points(-0.2, load, "report", colour=PRINTED, marker="D"))
+        layers.append(level(SMALL, "report: all others below", colour=PRINTED, style="--"))
         panels.append(
             Panel(
-                tuple(layers),
+                layers,
                 "",
                 "load read by the sensor (N)",
                 f"{kind} shoe",
                 y_scale="symlog",
                 y_limits=(0.0, 700.0),
-                y_ticks=ticks,
-                x_ticks=names_as_ticks([tread.replace("_", " ") for tread in TREADS]),
+                y_ticks=(0, 1, 5, 10, 50, 100, 500),
+                x_ticks=[tread.replace("_", " ") for tread in TREADS],
             )
         )
     return Figure(
-        tuple(panels),
+        panels,
         "Fig. 30: tread, fluid and the load that the sensor reads, of 500 N",
         columns=2,
         size=(4.8, 4.2),
@@ -603,26 +533,16 @@ def load_figure(readings: Sequence[Reading]) -> Figure:
 def depth_figure(depths: Sequence[tuple[float, Outcome]]) -> Figure:
     """Return load against depth of tread: by the sensor and under the sole."""
     depth = [1e3 * each for each, _ in depths]
+    sole, sensor = ([one.number(name) for _, one in depths] for name in (TRUE_LOAD, LOAD))
     layers = (
-        Layer("span", (), low=[1.5], high=[3.0], label="report: no change", colour="0.9"),
-        line(
-            depth,
-            [one.number(TRUE_LOAD) for _, one in depths],
-            "under the sole",
-            colour=SECOND,
-            marker="s",
-        ),
-        line(depth, [one.number(LOAD) for _, one in depths], "by the 10 mm sensor", marker="o"),
-        Layer("level", (), [SMALL], label="5 N", colour=PRINTED, style="--"),
+        Layer("span", low=1.5, high=3.0, label="report: no change", colour="0.9"),
+        line(depth, sole, "under the sole", colour=SECOND, marker="s"),
+        line(depth, sensor, "by the 10 mm sensor", marker="o"),
+        level(SMALL, "5 N", colour=PRINTED, style="--"),
     )
-    panel = Panel(
-        layers,
-        "depth of tread (mm)",
-        "load carried by the fluid (N)",
-        y_limits=(-6.0, None),
-        x_limits=(-0.05, None),
-    )
-    return Figure((panel,), "Half-treaded work shoe in glycerol, 500 N, 0.7 m/s", size=(6.6, 4.2))
+    limits: dict[str, Any] = {"x_limits": (-0.05, None), "y_limits": (-6.0, None)}
+    panel = Panel(layers, "depth of tread (mm)", "load carried by the fluid (N)", **limits)
+    return Figure([panel], "Half-treaded work shoe in glycerol, 500 N, 0.7 m/s", size=(6.6, 4.2))
 
 
 def inputs_figure(condition: Condition, found: Sensitivity, count: int = 8) -> Figure:
@@ -630,14 +550,12 @@ def inputs_figure(condition: Condition, found: Sensitivity, count: int = 8) -> F
     panels = []
     for name, label, scale in ((LOAD, "load by the sensor (N)", 1.0), (PEAK, "peak (kPa)", 1e-3)):
         effects = found.ranked(name)[:count][::-1]
-        nominal = found.nominal.number(name) * scale
-        layers = [Layer("limit", [nominal], colour="0.4", label="nominal")]
+        layers = [Layer("limit", found.nominal.number(name) * scale, colour="0.4", label="nominal")]
         for end, colour in (("low", SECOND), ("high", OURS)):
             values = [getattr(effect, end).number(name) * scale for effect in effects]
-            layers.append(
-                points(values, range(len(effects)), f"{end} end", colour=colour, marker="o")
-            )
+            places = range(len(effects))
+            layers.append(points(values, places, f"{end} end", colour=colour, marker="o"))
         names = [effect.path.split(".")[-1].replace("_", " ") for effect in effects]
-        panels.append(Panel(tuple(layers), label, y_ticks=names_as_ticks(names)))
+        panels.append(Panel(layers, label, y_ticks=names))
     title = f"{condition.name}: one standard deviation of each open input (quick grid)"
-    return Figure(tuple(panels), title, columns=2, size=(5.2, 3.8))
+    return Figure(panels, title, columns=2, size=(5.2, 3.8))

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import cycle, pairwise
 from types import SimpleNamespace
 from typing import Any
 
@@ -20,24 +20,17 @@ from underfoot.questions.outcomes import program_hash
 from underfoot.slip.dynamics import ReducedSole, SlipStudy
 from underfoot.trials.statistics.linear import all_subsets
 
-from .figure import GREY, OURS, PRINTED, SECOND, Figure, Layer, Panel, line, points
+from .figure import GREY, OURS, PRINTED, SECOND, Figure, Panel, line, points
 from .runner import Computed, Options, Table, kept, named, part
 from .verdict import Quantity
 
 Array = NDArray[np.float64]
-SHOES = {
-    "untreaded": "slip_resistant_shoe_untreaded",
-    "treaded": "slip_resistant_shoe_treaded",
-}
 COUNTS = {"untreaded": 11, "treaded": 6}
 """Persons whose heel crossed the sensors (G.5.2)."""
 GRIDS, QUICK_GRID = ("1.4 mm", "1 mm"), "2 mm"
 DRAWS = 2000
 PREDICTORS = ("row", "lateral", "speed")
 UNITS = {"peak_speed": "m/s", "peak_pressure": "Pa", "duration": "s"}
-PRINTED_POINTS = {
-    shoe: (f"peak_pressure_{shoe}", f"peak_slipping_speed_over_sensors_{shoe}") for shoe in SHOES
-}
 COLOUR = {"untreaded": OURS, "treaded": "#2e7d4f"}
 
 
@@ -51,7 +44,7 @@ def slip_case(name: str, *, grid: str = GRIDS[-1], quick: bool = False) -> Case:
     mapping: dict[str, Any] = {
         "file_version": 1,
         "name": f"Human slips, {name}, 90 % glycerol",
-        "shoe": {"from": SHOES[name]},
+        "shoe": {"from": f"slip_resistant_shoe_{name}"},
         "floor": {"from": "vinyl_g4"},
         "contaminant": {"from": "glycerol_90pct"},
         "motion": {"from": "slip_tester_g4"},
@@ -71,16 +64,12 @@ def compute(options: Options) -> Computed:
     The full slips behind the reduced model are kept in the cache: a stopped run goes on.
     """
     grids = GRIDS[-1:] if options.quick else GRIDS
-    cases = {
-        (shoe, grid): slip_case(shoe, grid=grid, quick=options.quick)
-        for grid in grids
-        for shoe in SHOES
-    }
+    plan = [(shoe, grid) for grid in grids for shoe in COUNTS]
+    cases = {(s, grid): slip_case(s, grid=grid, quick=options.quick) for s, grid in plan}
     if options.processes != 1:
         keys = [content_hash(case.hash, program_hash()) for case in cases.values()]
-        for number, _ in enumerate(
-            kept("g5_filled-1", fill_cache, list(cases.values()), keys, processes=2)
-        ):
+        filled = kept("g5_filled-1", fill_cache, list(cases.values()), keys, processes=2)
+        for number, _ in enumerate(filled):
             options.progress("full slips", 0.8 * (number + 1) / len(cases))
     found: dict[tuple[str, str], SlipStudy] = {}
     for number, (key, case) in enumerate(cases.items()):
@@ -88,15 +77,16 @@ def compute(options: Options) -> Computed:
         if options.processes == 1:
             share = (number / len(cases), (number + 1) / len(cases))
         found[key] = slips(case, progress=named(part(options.progress, *share), ", ".join(key)))
-    fine = {shoe: found[shoe, grids[-1]] for shoe in SHOES}
+    fine = {shoe: found[shoe, grids[-1]] for shoe in COUNTS}
     levels = {
         shoe: [(1e-3 * float(grid.split()[0]), numbers_of(found[shoe, grid])) for grid in grids]
-        for shoe in SHOES
+        for shoe in COUNTS
     }
-    draws = {shoe: population_draws(fine[shoe], COUNTS[shoe], seed=options.seed) for shoe in SHOES}
+    draws = {shoe: population_draws(fine[shoe], COUNTS[shoe], seed=options.seed) for shoe in COUNTS}
     bare = fine["untreaded"]
     passages = bare.sensor_passages()
     population = bare.population
+    rcof, speed = population.rcof, population.heel_speed
     return Computed(
         quantities(levels, draws),
         tables(fine, levels, draws),
@@ -105,8 +95,8 @@ def compute(options: Options) -> Computed:
         assumptions=(
             f"{population.effective_mass:.3g} of the body moves with the heel (not printed, not "
             "measured).",
-            f"RCOF {population.rcof.mean:.2f} ± {population.rcof.sd:.2f}, heel speed at contact "
-            f"{population.heel_speed.mean:.2f} ± {population.heel_speed.sd:.2f} m/s: not printed.",
+            f"RCOF {rcof.mean:.2f} ± {rcof.sd:.2f}, heel speed at contact {speed.mean:.2f} ± "
+            f"{speed.sd:.2f} m/s: not printed.",
             *bare.setting.friction.assumptions,
         ),
     )
@@ -126,7 +116,10 @@ def crossing(study: SlipStudy) -> list[Any]:
 def numbers_of(study: SlipStudy) -> dict[str, float]:
     """Return every judged number of a population, nan where there is none."""
     crossed = crossing(study)
-    found = {name: _mean([getattr(one.seen, name) for one in crossed]) for name in UNITS}
+    found = {}
+    for name, values in _columns(crossed).items():
+        known = values[np.isfinite(values)]
+        found[name] = float(known.mean()) if known.size else math.nan
     found["slipped"] = study.slipped()[0]
     found["correlation"] = math.nan if (r := study.correlation()) is None else r
     rows = study.rows()
@@ -134,9 +127,9 @@ def numbers_of(study: SlipStudy) -> dict[str, float]:
     return found | regressions(_passages(study, crossed))
 
 
-def _mean(values: Sequence[float | None]) -> float:
-    known = [v for v in values if v is not None and math.isfinite(v)]
-    return float(np.mean(known)) if known else math.nan
+def _columns(persons: Sequence[Any]) -> dict[str, Array]:
+    """Return what the sensors saw of each person, nan where there is nothing."""
+    return {name: np.array([getattr(p.seen, name) for p in persons], float) for name in UNITS}
 
 
 def _passages(study: SlipStudy, persons: Sequence[Any]) -> dict[str, Array]:
@@ -170,17 +163,12 @@ def population_draws(
     if len(persons) < 2:
         return found
     drawn = generator.integers(len(persons), size=(draws, count))
-    columns = {
-        name: np.array(
-            [math.nan if (v := getattr(one.seen, name)) is None else v for one in persons], float
-        )
-        for name in UNITS
-    }
+    columns = {name: values[drawn] for name, values in _columns(persons).items()}
     for name, values in columns.items():
-        found[name] = _row_means(values[drawn])
-    found["correlation"] = correlations(
-        columns["peak_speed"][drawn], columns["peak_pressure"][drawn]
-    )
+        known = np.isfinite(values)
+        with np.errstate(invalid="ignore"):
+            found[name] = np.where(known, values, 0.0).sum(axis=1) / known.sum(axis=1)
+    found["correlation"] = correlations(columns["peak_speed"], columns["peak_pressure"])
     rows = np.array([one.seen.row_peaks for one in persons if one.seen.row_peaks])
     if len(rows) == len(persons):
         means = rows[drawn].mean(axis=1)
@@ -191,15 +179,7 @@ def population_draws(
         regressions({key: np.concatenate([each[i][key] for i in row]) for key in each[0]})
         for row in drawn[: draws // 5]
     ]
-    for name in table[0]:
-        found[name] = np.array([one[name] for one in table])
-    return found
-
-
-def _row_means(values: Array) -> Array:
-    known = np.isfinite(values)
-    with np.errstate(invalid="ignore"):
-        return np.where(known, values, 0.0).sum(axis=1) / known.sum(axis=1)
+    return found | {name: np.array([one[name] for one in table]) for name in table[0]}
 
 
 def correlations(x: Array, y: Array) -> Array:
@@ -226,19 +206,13 @@ def quantities(
                 value, units.get(name, "1"), draws=draws[shoe].get(name), levels=steps
             )
         found[f"{shoe}.r2_all"] = found.pop(f"{shoe}.r2_row_lateral_speed")
-        single = [f"r2_{name}" for name in ("lateral", "row", "speed")]
-        drawn = [draws[shoe][name] for name in single if name in draws[shoe]]
-        chance = (
-            float(np.mean((drawn[0] > drawn[1]) & (drawn[1] > drawn[2])))
-            if len(drawn) == 3
-            else None
-        )
-        found[f"{shoe}.r2_single"] = Quantity.of(
-            [grids[-1][1][name] for name in single],
-            names=("lateral", "row", "speed"),
-            chance=chance,
-        )
-    bare, tread = (levels[shoe] for shoe in SHOES)
+        names, chance = ("lateral", "row", "speed"), None
+        if all(f"r2_{name}" in draws[shoe] for name in names):
+            first, second, third = (draws[shoe][f"r2_{name}"] for name in names)
+            chance = float(np.mean((first > second) & (second > third)))
+        single = [grids[-1][1][f"r2_{name}"] for name in names]
+        found[f"{shoe}.r2_single"] = Quantity.of(single, names=names, chance=chance)
+    bare, tread = (levels[shoe] for shoe in COUNTS)
     ratios = [
         (spacing, b["peak_pressure"] / a["peak_pressure"])
         for (spacing, a), (_, b) in zip(bare, tread, strict=True)
@@ -263,65 +237,58 @@ def tables(
     rows = []
     for shoe in found:
         for name, (unit, scale) in scales.items():
-            values = levels[shoe][-1][1][name]
-            band = (
-                np.nanpercentile(draws[shoe][name], [2.5, 97.5]) / scale
-                if name in draws[shoe]
-                else (math.nan, math.nan)
+            low, high = (math.nan, math.nan)
+            if name in draws[shoe]:
+                low, high = np.nanpercentile(draws[shoe][name], [2.5, 97.5]) / scale
+            rows.append(
+                {
+                    "shoe": shoe,
+                    "quantity": f"{name.replace('_', ' ')} {unit}".strip(),
+                    "mean": levels[shoe][-1][1][name] / scale,
+                    "low": low,
+                    "high": high,
+                    **{f"{1e3 * grid:g} mm": each[name] / scale for grid, each in levels[shoe]},
+                }
             )
-            grids = (each[name] / scale for _, each in levels[shoe])
-            cells = (values / scale, *band, *grids)
-            rows.append((shoe, f"{name.replace('_', ' ')} {unit}".strip(), *map(_number, cells)))
     published = Catalogue.load().entry("published", "human_slips_g5")
     keys = {"row": "sprwd", "lateral": "ml", "speed": "irss"}
     ours = {
         tuple(n.split("_")[1:]): v for n, v in levels["untreaded"][-1][1].items() if n[:3] == "r2_"
     }
     return (
-        Table(
+        Table.of(
             "population",
             "Persons whose heel crossed the sensors: mean, 95 % of the mean of as "
             "many as the report had, and the mean on each grid",
-            (
-                "shoe",
-                "quantity",
-                "mean",
-                "low",
-                "high",
-                *(f"{1e3 * spacing:g} mm" for spacing, _ in levels["untreaded"]),
-            ),
-            tuple(rows),
+            rows,
         ),
         Table(
             "rows",
             "Mean peak of each row of sensors, kPa",
             ("shoe", "first", "second", "third"),
-            tuple((shoe, *(float(p) / 1e3 for p in s.rows())) for shoe, s in found.items()),
+            [(shoe, *(peak / 1e3 for peak in study.rows())) for shoe, study in found.items()],
         ),
-        Table(
+        Table.of(
             "table7",
             "Adjusted R2 of the peak pressure at single sensors, untreaded",
-            ("predictors", "printed", "ours"),
-            tuple(
-                (
-                    ", ".join(names),
-                    published.sourced(f"adjusted_r2.{'_'.join(keys[n] for n in names)}", "1").value,
-                    _number(value),
-                )
+            [
+                {
+                    "predictors": ", ".join(names),
+                    "printed": published.sourced(
+                        f"adjusted_r2.{'_'.join(keys[n] for n in names)}", "1"
+                    ).value,
+                    "ours": value,
+                }
                 for names, value in ours.items()
-            ),
+            ],
         ),
     )
-
-
-def _number(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
 
 
 def conclusions(found: Mapping[str, SlipStudy], passages: Mapping[str, Array]) -> tuple[str, ...]:
     """Return what the comparison says."""
     bare, tread = found["untreaded"], found["treaded"]
-    speeds = [bare.peak_speed_at(share) for share in (0.06, 0.114, 0.17)]
+    speeds = [bare.peak_speed_at(effective_mass=share) for share in (0.06, 0.114, 0.17)]
     words = " / ".join("-" if v is None else f"{v:.2f}" for v in speeds)
     pressures = [numbers_of(one)["peak_pressure"] / 1e3 for one in (bare, tread)]
     return (
@@ -337,8 +304,7 @@ def figures(found: Mapping[str, SlipStudy], passages: Mapping[str, Array]) -> di
     """Return Fig. 32 to 35."""
     bare = found["untreaded"]
     drawn = {"fig33_speed_pressure": _speed_pressure_figure(found)}
-    run = bare.representative
-    if run is not None:
+    if bare.representative is not None:
         drawn["fig32_slip"] = _slip_figure(bare)
     if passages["peak"].size:
         drawn["fig34_effects"] = _effects_figure(passages)
@@ -357,27 +323,19 @@ def _slip_figure(study: SlipStudy) -> Figure:
     time = 1e3 * motion.time
     seen = array_pressures(motion, run.maps, study.array)
     middle = study.array.columns // 2
-    rows = tuple(
-        line(
-            time,
-            seen[:, i, middle] / 1e3,
-            f"row {i + 1}",
-            colour=(OURS, "#2e86ab", SECOND, GREY)[i % 4],
-        )
-        for i in range(study.array.rows)
+    rows = [
+        line(time, seen[:, i, middle] / 1e3, f"row {i + 1}", colour=colour)
+        for i, colour in zip(range(study.array.rows), cycle((OURS, "#2e86ab", SECOND, GREY)))
+    ]
+    forces = (
+        line(time, motion.normal, "on the shoe", colour=GREY),
+        line(time, motion.fluid_load, "on the film"),
+        line(time, motion.friction, "friction", colour=PRINTED),
     )
     return Figure(
         (
-            Panel((line(time, motion.speed, "heel"),), "time (ms)", "slipping speed (m/s)"),
-            Panel(
-                (
-                    line(time, motion.normal, "on the shoe", colour=GREY),
-                    line(time, motion.fluid_load, "on the film"),
-                    line(time, motion.friction, "friction", colour=PRINTED),
-                ),
-                "time (ms)",
-                "force (N)",
-            ),
+            Panel([line(time, motion.speed, "heel")], "time (ms)", "slipping speed (m/s)"),
+            Panel(forces, "time (ms)", "force (N)"),
             Panel(rows, "time (ms)", "pressure at the sensors (kPa)"),
         ),
         "Fig. 32: a slip over the sensors, untreaded, computed",
@@ -388,48 +346,25 @@ def _slip_figure(study: SlipStudy) -> Figure:
 
 def _speed_pressure_figure(found: Mapping[str, SlipStudy]) -> Figure:
     published = Catalogue.load().entry("published", "human_slips_g5")
-    layers: list[Layer] = []
+    layers = []
     for shoe, study in found.items():
-        crossed = crossing(study)
+        seen = _columns(crossing(study))
         r = study.correlation()
         label = f"{shoe}, computed" + ("" if r is None else f" (r = {r:.2f})")
-        layers.append(
-            points(
-                [one.seen.peak_pressure / 1e3 for one in crossed],
-                [one.seen.peak_speed for one in crossed],
-                label,
-                colour=COLOUR[shoe],
-                marker="o",
-            )
-        )
-        pressure, speed = (
-            published.sourced(name, unit)
-            for name, unit in zip(PRINTED_POINTS[shoe], ("Pa", "m/s"), strict=True)
-        )
+        style = {"colour": COLOUR[shoe], "marker": "o"}
+        layers.append(points(seen["peak_pressure"] / 1e3, seen["peak_speed"], label, **style))
+        pressure = published.sourced(f"peak_pressure_{shoe}", "Pa")
+        speed = published.sourced(f"peak_slipping_speed_over_sensors_{shoe}", "m/s")
         x, y = (pressure.value or 0.0) / 1e3, speed.value or 0.0
         dx, dy = (pressure.uncertainty or 0.0) / 1e3, speed.uncertainty or 0.0
-        layers.append(
-            points(
-                [x],
-                [y],
-                f"{shoe}, report (mean ± sd)",
-                colour=PRINTED,
-                low=[y - dy],
-                high=[y + dy],
-                marker="Ds"[shoe == "treaded"],
-            )
-        )
+        style = {"colour": PRINTED, "marker": "s" if shoe == "treaded" else "D"}
+        label = f"{shoe}, report (mean ± sd)"
+        layers.append(points(x, y, label, low=y - dy, high=y + dy, **style))
         layers.append(line([x - dx, x + dx], [y, y], colour=PRINTED))
-    panel = Panel(
-        tuple(layers),
-        "peak pressure at the sensors (kPa)",
-        "peak slipping speed (m/s)",
-        x_limits=(0.0, None),
-        y_limits=(0.0, None),
-    )
-    return Figure(
-        (panel,), "Fig. 33: peak speed against peak pressure (report: r = 0.87)", size=(6.4, 4.6)
-    )
+    labels = ("peak pressure at the sensors (kPa)", "peak slipping speed (m/s)")
+    panel = Panel(layers, *labels, x_limits=(0.0, None), y_limits=(0.0, None))
+    title = "Fig. 33: peak speed against peak pressure (report: r = 0.87)"
+    return Figure([panel], title, size=(6.4, 4.6))
 
 
 def _effects_figure(passages: Mapping[str, Array]) -> Figure:
@@ -442,20 +377,17 @@ def _effects_figure(passages: Mapping[str, Array]) -> Figure:
         x = passages[name] * factor
         layers = [points(x, peak, marker=".")]
         if np.ptp(x) > 0:
-            slope, level = np.polyfit(x, peak, 1)
+            slope, start = np.polyfit(x, peak, 1)
             ends = np.array([x.min(), x.max()])
-            layers.append(line(ends, level + slope * ends, colour="0.25"))
-        panels.append(
-            Panel(tuple(layers), label, "peak pressure of a sensor (kPa)", y_limits=(0.0, None))
-        )
+            layers.append(line(ends, start + slope * ends, colour="0.25"))
+        panels.append(Panel(layers, label, "peak pressure of a sensor (kPa)", y_limits=(0.0, None)))
     rows = np.unique(passages["row"])
     values = [peak[passages["row"] == n] for n in rows]
     mean, spread = (np.array([f(v) for v in values]) for f in (np.mean, np.std))
     layer = points(rows, mean, low=mean - spread, high=mean + spread, marker="o")
-    ticks = tuple((float(n), f"{n:.0f}") for n in rows)
-    panels.append(Panel((layer,), "C: row of sensors (mean ± sd)", x_ticks=ticks))
+    panels.append(Panel([layer], "C: row of sensors (mean ± sd)", x_ticks=rows.tolist()))
     return Figure(
-        tuple(panels),
+        panels,
         "Fig. 34: what the pressure at a sensor follows, untreaded, computed",
         columns=3,
         size=(3.6, 3.4),
@@ -465,67 +397,47 @@ def _effects_figure(passages: Mapping[str, Array]) -> Figure:
 
 def _wedge_squeeze_figure(sole: ReducedSole, passages: Mapping[str, Array]) -> Figure:
     """Return film load against dwell time, viscosity, lateral distance and speed (500 N)."""
-    time, longer = np.linspace(0.0, 0.3, 601), np.linspace(0.0, 3.0, 6001)
-    fluids = ((219e-3, "-"), (20e-3, "--"), (1.89e-3, ":"))
-    share: Callable[[Array], Array] = lambda load: load / 5.0  # noqa: E731, % of 500 N
+    longer, speeds = np.linspace(0.0, 3.0, 6001), np.linspace(0.0, 3.0, 31)
 
-    def at(sole: ReducedSole, speed: float, instant: float) -> float:
-        return float(held_load(sole, time, speed)[np.searchsorted(time, instant)])
+    def share(viscosity: float, time: Array, speed: float) -> Array:
+        return held_load(replace(sole, viscosity=viscosity), time, speed) / 5.0  # % of 500 N
+
+    def at(viscosity: float, speed: float, instant: float) -> float:
+        time = np.linspace(0.0, 0.3, 601)
+        return float(share(viscosity, time, speed)[np.searchsorted(time, instant)])
 
     dwell, fast = [], []
-    speeds = np.linspace(0.0, 3.0, 31)
-    for viscosity, style in fluids:
-        thin, label = replace(sole, viscosity=viscosity), f"{1e3 * viscosity:g} mPa s"
-        load = share(held_load(thin, longer, 0.5))
-        dwell.append(line(1e3 * longer[1:], load[1:], label, style=style))
-        at_speed = share(np.array([at(thin, float(v), 0.2) for v in speeds]))
+    for viscosity, style in ((219e-3, "-"), (20e-3, "--"), (1.89e-3, ":")):
+        label, held = f"{1e3 * viscosity:g} mPa s", share(viscosity, longer, 0.5)
+        dwell.append(line(1e3 * longer[1:], held[1:], label, style=style))
+        at_speed = [at(viscosity, float(v), 0.2) for v in speeds]
         fast.append(line(speeds, at_speed, label, style=style))
     viscosities = np.geomspace(1e-3, 0.5, 25)
     thick = [
         line(
             1e3 * viscosities,
-            share(np.array([at(replace(sole, viscosity=float(v)), 0.5, t) for v in viscosities])),
+            [at(float(v), 0.5, t) for v in viscosities],
             f"0.5 m/s, after {1e3 * t:.0f} ms",
             style=style,
         )
         for t, style in ((0.05, "--"), (0.2, "-"))
     ]
-    middle, level = [], []
+    middle, peaks = [], []
     for low, high in pairwise(np.arange(0.0, 0.05, 0.005)):
         inside = (passages["lateral"] >= low) & (passages["lateral"] < high)
         if inside.any():
             middle.append(500 * (low + high))
-            level.append(passages["peak"][inside].mean() / 1e3)
-    whole = (0.0, 100.0)
+            peaks.append(passages["peak"][inside].mean() / 1e3)
+    load: dict[str, Any] = {"y_label": "load on the film (%)", "y_limits": (0.0, 100.0)}
+    dwelling: dict[str, Any] = {"x_scale": "log", "x_limits": (1.0, 3000.0)}
+    distance = "distance from the heel's middle (mm)"
+    pressure: dict[str, Any] = {"y_label": "sensor's peak (kPa)", "y_limits": (0.0, None)}
     return Figure(
         (
-            Panel(
-                tuple(dwell),
-                "dwell time at 0.5 m/s (ms)",
-                "load on the film (%)",
-                x_scale="log",
-                x_limits=(1.0, 3000.0),
-                y_limits=whole,
-            ),
-            Panel(
-                tuple(thick),
-                "viscosity (mPa s)",
-                "load on the film (%)",
-                x_scale="log",
-                y_limits=whole,
-            ),
-            Panel(
-                (line(middle, level, marker="o"),),
-                "distance from the heel's middle (mm)",
-                "sensor's peak (kPa)",
-                y_limits=(0.0, None),
-            ),
-            Panel(
-                tuple(fast),
-                "sliding speed, held for 200 ms (m/s)",
-                "load on the film (%)",
-                y_limits=whole,
-            ),
+            Panel(dwell, "dwell time at 0.5 m/s (ms)", **dwelling, **load),
+            Panel(thick, "viscosity (mPa s)", x_scale="log", **load),
+            Panel([line(middle, peaks, marker="o")], distance, **pressure),
+            Panel(fast, "sliding speed, held for 200 ms (m/s)", **load),
         ),
         "Fig. 35: wedge and squeeze, untreaded heel under 500 N, computed",
         columns=2,

@@ -16,12 +16,8 @@ from underfoot.case.friction import measured_fluids
 from underfoot.compute.slips import slip_population, slip_sensors, slip_setting
 from underfoot.core import DataError, Progress, silent
 from underfoot.core.catalogue import Catalogue
-from underfoot.friction import (
-    SpeedTableLaw,
-    self_affine_scale,
-    shear_strength_from_cof,
-    stribeck_cof,
-)
+from underfoot.friction import SpeedTableLaw, self_affine_scale, stribeck_cof
+from underfoot.friction import shear_strength_from_cof as strength_from_cof
 from underfoot.friction.asperity_ehl import STYLUS_RESOLUTION
 from underfoot.questions.outcomes import Outcome, outcomes
 from underfoot.slip import ADULTS_LEVEL_WALKING as ADULTS
@@ -30,18 +26,7 @@ from underfoot.slip.dynamics import cof_table, slip_study
 from underfoot.trials.risk_curves import risk_curve
 from underfoot.trials.statistics.logistic import logistic_regression
 
-from .figure import (
-    OURS,
-    PRINTED,
-    Figure,
-    Layer,
-    Panel,
-    grouped_bars,
-    line,
-    names_as_ticks,
-    numbers,
-    points,
-)
+from .figure import PRINTED, Figure, Layer, Panel, grouped_bars, line, points
 from .runner import Computed, Options, Table, part
 from .verdict import Quantity
 
@@ -157,6 +142,7 @@ def compute(options: Options) -> Computed:
 
 def sole_case(shore: float, law: str) -> Case:
     """Return the case of one outsole (Shore A) under one friction law."""
+    tread = {"depth": "3 mm", "lug_width": "3.6 mm", "channel_width": "2.4 mm"}
     mapping: dict[str, Any] = {
         "file_version": 1,
         "name": f"Outsole of {shore:g} Shore A, 50 % glycerol",
@@ -164,12 +150,7 @@ def sole_case(shore: float, law: str) -> Case:
             "from": "slip_tester_heel",
             "material": {"shore_a": shore},
             "roughness": {"ra": "7.24 um", "cutoff": "0.8 mm"},
-            "tread": {
-                "pattern": "grid",
-                "depth": "3 mm",
-                "lug_width": "3.6 mm",
-                "channel_width": "2.4 mm",
-            },
+            "tread": {"pattern": "grid", **tread},
         },
         "floor": {"from": "vinyl_g4"},
         "contaminant": {"from": FLUID},
@@ -201,15 +182,12 @@ def pin_strength() -> tuple[float, float]:
         float(rules.value(f"interface.{name}"))
         for name in ("roughness_beyond_cutoff", "longest_wave", "hurst")
     )
-    scale = self_affine_scale(
-        STYLUS_RESOLUTION,
-        rq=factor * float(np.hypot(pin.sole_rq, pin.floor_rq)),
-        longest_wave=longest,
-        hurst=min(hurst, 0.99),
-    )
+    rq = factor * float(np.hypot(pin.sole_rq, pin.floor_rq))
+    fractal = {"longest_wave": longest, "hurst": min(hurst, 0.99)}
+    scale = self_affine_scale(STYLUS_RESOLUTION, rq=rq, **fractal)
     share = float(scale.contact_fraction(pin.pressure / pin.modulus))
     source = "final progress report on shoe-floor friction, G.2.2"
-    return shear_strength_from_cof(cof - left, pin.pressure, share, source).strength, left
+    return strength_from_cof(cof - left, pin.pressure, share, source).strength, left
 
 
 def sole_frictions(
@@ -218,34 +196,21 @@ def sole_frictions(
     """Return the three soles by the three laws: 54 cases (27 with ``quick``)."""
     times = WINDOW[1:2] if quick else WINDOW
     plan = [(sole, law, shore) for law in LAWS for sole, shore in SOLES.items()]
-    cases, middles = [], []
+
+    def at(shore: float, law: str, time: float) -> Case:
+        return sole_case(shore, law).replace("motion.duration", f"{time!r} s")
+
+    cases = []
     for _, law, shore in plan:
-        base = sole_case(shore, law)
-        cases += [base.replace("motion.duration", f"{time!r} s") for time in times]
-        middle = f"{WINDOW[1]!r} s"
-        cases += [
-            sole_case(shore + side * HARDNESS_BAND, law).replace("motion.duration", middle)
-            for side in (1, -1)
-        ]
-        middles.append(base.replace("motion.duration", middle))
-    found = outcomes(
-        cases,
-        quick=quick,
-        processes=processes,
-        progress=part(progress, 0.0, 0.8),
-        stage="Whole-shoe friction",
-    )
-    coarse: Sequence[Outcome | None] = (
-        [None] * len(plan)
-        if quick
-        else outcomes(
-            middles,
-            quick=True,
-            processes=processes,
-            progress=part(progress, 0.8, 1.0),
-            stage="Coarse grid",
-        )
-    )
+        cases += [at(shore, law, time) for time in times]
+        cases += [at(shore + side * HARDNESS_BAND, law, WINDOW[1]) for side in (1, -1)]
+    fine = {"progress": part(progress, 0.0, 0.8), "stage": "Whole-shoe friction"}
+    found = outcomes(cases, quick=quick, processes=processes, **fine)
+    coarse: Sequence[Outcome | None] = [None] * len(plan)
+    if not quick:
+        cases = [at(shore, law, WINDOW[1]) for _, law, shore in plan]
+        stage = {"progress": part(progress, 0.8, 1.0), "stage": "Coarse grid"}
+        coarse = outcomes(cases, quick=True, processes=processes, **stage)
     width = len(times) + 2
     return [
         _friction(*one, found[i * width : (i + 1) * width], coarse[i]) for i, one in enumerate(plan)
@@ -260,18 +225,21 @@ def _friction(
     weights = np.array([1.0, 4.0, 1.0]) / 6 if values.size == 3 else np.ones(1)
     middle = window[len(window) // 2]
     mean = float(weights @ values)
-    pressure = max(one.number("peak_fluid_pressure_sensor") for one in window)
-    coarser = () if coarse is None else (coarse.number("peak_fluid_pressure_sensor"),)
+    pressures = [max(one.number("peak_fluid_pressure_sensor") for one in window)]
+    on_coarse = math.nan
+    if coarse is not None:
+        on_coarse = mean + coarse.number("cof") - middle.number("cof")
+        pressures.insert(0, coarse.number("peak_fluid_pressure_sensor"))
     return SoleFriction(
         sole,
         law,
         shore,
         mean,
-        math.nan if coarse is None else mean + coarse.number("cof") - middle.number("cof"),
+        on_coarse,
         middle.spread("cof"),
         min(ends),
         max(ends),
-        (*coarser, pressure),
+        tuple(pressures),
         middle.number("fluid_load") / middle.number("normal_force"),
     )
 
@@ -297,20 +265,6 @@ def risk_by_rcof(count: int = 29) -> tuple[float, float, float]:
     rcof = np.array([ADULTS.mean - reach, ADULTS.mean, ADULTS.mean + reach])
     found = np.mean([ReportG6()(acof, rcof) for acof in PRINTED_ACOF.values()], axis=0)
     return float(found[0]), float(found[1]), float(found[2])
-
-
-def implied_differences() -> dict[str, float]:
-    """Return ACOF - RCOF behind the printed risks 0.6, 21 and 92.5 %, and the slope of the log
-    odds with ACOF alone between the printed slip rates (per unit)."""
-
-    def logit(p: float) -> float:
-        return math.log(p / (1 - p))
-
-    found = {
-        name: PRINTED_HALF + logit(p) / PRINTED_SLOPE
-        for name, p in (("lowest", 0.006), ("median", 0.21), ("highest", 0.925))
-    }
-    return found | {"acof_slope": (logit(0.06) - logit(0.41)) / (0.182 - 0.159)}
 
 
 def precision_of_published(*, draws: int = 200, seed: int = 0) -> tuple[Array, Array]:
@@ -339,8 +293,7 @@ def fitted_logistic(difference: Array, slipped: Array) -> Logistic:
         fit = logistic_regression(outcome, {"difference": difference})
     except DataError:
         fit = logistic_regression(outcome, {"difference": difference}, method="firth")
-    slope = fit.coefficients[1]
-    curve = risk_curve(fit)
+    slope, curve = fit.coefficients[1], risk_curve(fit)
     low, high = (math.nan if v is None else float(v) for v in (slope.low, slope.high))
     return Logistic(slope.estimate, low, high, curve.half, curve.half_error)
 
@@ -401,11 +354,14 @@ def quantities(
     spacings = (numerics.quick_grid_spacing, numerics.grid_spacing)
     spacings = spacings[:1] if quick else spacings
     found: dict[str, Quantity] = {}
+
+    def on_grids(coarse: float, fine: float) -> list[tuple[float, float]]:
+        return list(zip(spacings, (fine,) if quick else (coarse, fine), strict=True))
+
     for law in LAWS:
         soles = of_law(frictions, law)
         for sole, one in soles.items():
-            values = (one.cof,) if quick else (one.coarse, one.cof)
-            levels = list(zip(spacings, values, strict=True))
+            levels = on_grids(one.coarse, one.cof)
             acof = Quantity.of(one.cof, deviation=one.spread, levels=levels)
             found[f"acof.{law}.{sole}"] = acof
             draws = np.random.default_rng(seed).normal(one.cof, one.spread, 400)
@@ -416,18 +372,13 @@ def quantities(
         hard, soft = soles["hard"], soles["soft"]
         # the pin's own error is common to both soles: the hardness alone moves their difference
         spread = 0.5 * math.hypot(hard.high - hard.low, soft.high - soft.low)
-        ends = [
-            (h, s) for h, s in zip((hard.coarse, hard.cof), (soft.coarse, soft.cof), strict=True)
-        ]
-        levels = list(zip(spacings, [s - h for h, s in (ends[1:] if quick else ends)], strict=True))
-        found[f"softer.{law}"] = Quantity.of(
-            soft.cof - hard.cof, deviation=spread or None, levels=levels
-        )
+        change = soft.cof - hard.cof
+        levels = on_grids(soft.coarse - hard.coarse, change)
+        found[f"softer.{law}"] = Quantity.of(change, deviation=spread or None, levels=levels)
         found[f"order.{law}"] = Quantity.of([soft.cof, hard.cof], names=("soft", "hard"))
     pressures = np.max([one.sensor_pressure for one in frictions], axis=0)
-    found["sensor_pressure"] = Quantity.of(
-        pressures[-1], "Pa", levels=list(zip(spacings, pressures.tolist(), strict=True))
-    )
+    levels = on_grids(pressures[0], pressures[-1])
+    found["sensor_pressure"] = Quantity.of(pressures[-1], "Pa", levels=levels)
     for sole, acof in PRINTED_ACOF.items():
         found[f"risk.printed.{sole}"] = Quantity.of(population_risk(acof)["report_g6"])
     for name, risk in zip(("lowest", "median", "highest"), risk_by_rcof(), strict=True):
@@ -446,74 +397,56 @@ def quantities(
 
 
 def _friction_table(frictions: Sequence[SoleFriction]) -> Table:
-    return Table(
+    return Table.of(
         "whole_shoe_acof",
         "ACOF under the slip tester of G.6; low and high: hardness ± 5 Shore A",
-        (
-            "law",
-            "outsole",
-            "Shore A",
-            "ACOF",
-            "±",
-            "low",
-            "high",
-            "coarse grid",
-            "sensor Pa",
-            "load on film",
-        ),
-        tuple(
-            (
-                one.law,
-                one.sole,
-                one.shore,
-                one.cof,
-                _number(one.deviation),
-                one.low,
-                one.high,
-                _number(one.coarse),
-                one.sensor_pressure[-1],
-                one.film_share,
-            )
+        [
+            {
+                "law": one.law,
+                "outsole": one.sole,
+                "Shore A": one.shore,
+                "ACOF": one.cof,
+                "±": one.deviation,
+                "low": one.low,
+                "high": one.high,
+                "coarse grid": one.coarse,
+                "sensor Pa": one.sensor_pressure[-1],
+                "load on film": one.film_share,
+            }
             for one in frictions
-        ),
+        ],
     )
 
 
-def _number(value: float) -> float | None:
-    return None if math.isnan(value) else value
-
-
 def _risk_table(frictions: Sequence[SoleFriction]) -> Table:
-    rows = [
-        ("printed", name, acof, *population_risk(acof).values())
-        for name, acof in PRINTED_ACOF.items()
-    ]
-    rows += [(one.law, one.sole, one.cof, *population_risk(one.cof).values()) for one in frictions]
-    return Table(
+    every = [("printed", name, acof) for name, acof in PRINTED_ACOF.items()]
+    every += [(one.law, one.sole, one.cof) for one in frictions]
+    return Table.of(
         "slip_risk",
         "Share of a population with RCOF 0.20 ± 0.03 that slips, by published models",
-        ("ACOF from", "outsole", "ACOF", *population_risk(0.17)),
-        tuple(rows),
+        [
+            {"ACOF from": origin, "outsole": sole, "ACOF": acof, **population_risk(acof)}
+            for origin, sole, acof in every
+        ],
     )
 
 
 def _step_table(steps: Mapping[str, Slips]) -> Table:
-    return Table(
+    return Table.of(
         "slips",
         "Steps computed one by one",
-        ("friction", *SOLES, "all", "slope", "slope low", "slope high", "half slip at"),
-        tuple(
-            (
-                STEPS[name],
-                *(one.share[sole] for sole in SOLES),
-                float(np.mean(list(one.share.values()))),
-                one.fit.slope,
-                one.fit.slope_low,
-                one.fit.slope_high,
-                one.fit.half,
-            )
+        [
+            {
+                "friction": STEPS[name],
+                **{sole: one.share[sole] for sole in SOLES},
+                "all": np.mean(list(one.share.values())),
+                "slope": one.fit.slope,
+                "slope low": one.fit.slope_low,
+                "slope high": one.fit.slope_high,
+                "half slip at": one.fit.half,
+            }
             for name, one in steps.items()
-        ),
+        ],
     )
 
 
@@ -550,29 +483,21 @@ def outsole_figure(frictions: Sequence[SoleFriction], steps: Mapping[str, Slips]
         {sole: [getattr(laws[law][sole], name) for law in LAWS] for sole in SOLES}
         for name in ("cof", "low", "high")
     )
-    band = Layer(
-        "span",
-        low=[0.159],
-        high=[0.182],
-        label="report, hard to soft",
-        colour=PRINTED,
-        style="horizontal",
-    )
-    names = [
-        "report",
-        *(label.replace("ACOF as printed, ", "computed,\n") for label in STEPS.values()),
-    ]
+    style: dict[str, Any] = {"colour": PRINTED, "style": "horizontal"}
+    band = Layer("span", low=0.159, high=0.182, label="report, hard to soft", **style)
+    bars = grouped_bars(acof, colours=SOLE_COLOURS, low=low, high=high)
+    computed = [label.replace("ACOF as printed, ", "computed,\n") for label in STEPS.values()]
     return Figure(
         (
             Panel(
                 grouped_bars(risks, colours=SOLE_COLOURS),
                 y_label="steps that slip (%)",
-                x_ticks=names_as_ticks(names),
+                x_ticks=["report", *computed],
             ),
             Panel(
-                (band, *grouped_bars(acof, colours=SOLE_COLOURS, low=low, high=high)),
+                [band, *bars],
                 y_label="available friction (ACOF)",
-                x_ticks=names_as_ticks([*LAWS.values()]),
+                x_ticks=[*LAWS.values()],
                 y_limits=(0.0, None),
             ),
         ),
@@ -591,32 +516,17 @@ def logistic_figure(steps: Mapping[str, Slips], drawn: tuple[Array, Array]) -> F
         x = np.linspace(min(difference.min(), -0.13), max(difference.max(), 0.06), 201)
         curves = _curve(x[:, None], drawn[0][None, :], drawn[1][None, :])
         low, high = np.percentile(curves, [2.5, 97.5], axis=1)
+        text = "52 trials of that curve, 95 %"
+        fitted = _curve(x, one.fit.slope, one.fit.half)
         layers = (
             points(difference, one.slipped + noise, colour="0.6", marker="."),
-            Layer(
-                "band",
-                numbers(x),
-                low=numbers(low),
-                high=numbers(high),
-                colour=PRINTED,
-                label="52 trials of that curve, 95 %",
-            ),
+            Layer("band", x, low=low, high=high, colour=PRINTED, label=text),
             line(x, _curve(x, PRINTED_SLOPE, PRINTED_HALF), "report: slope -49.2", colour=PRINTED),
-            line(
-                x,
-                _curve(x, one.fit.slope, one.fit.half),
-                f"steps: slope {one.fit.slope:.0f}",
-                colour=OURS,
-            ),
+            line(x, fitted, f"steps: slope {one.fit.slope:.0f}"),
         )
         panels.append(Panel(layers, "ACOF - RCOF", "chance of a slip", STEPS[name]))
-    return Figure(
-        tuple(panels),
-        "Fig. 37 C: computed slips and logistic curves",
-        columns=2,
-        size=(5.2, 3.8),
-        share_y=True,
-    )
+    title = "Fig. 37 C: computed slips and logistic curves"
+    return Figure(panels, title, columns=2, size=(5.2, 3.8), share_y=True)
 
 
 def _curve(x: Any, slope: Any, half: Any) -> Array:

@@ -5,35 +5,24 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from importlib import import_module
 from typing import Any, ClassVar
 
 import numpy as np
+from pydantic import TypeAdapter
 
 from underfoot.core import Cache, InputError, Progress, content_hash, silent
 from underfoot.core.errors import Cancelled
 from underfoot.core.pool import in_processes
 from underfoot.core.presentation import Presentable
 from underfoot.core.presentation import Table as ShownTable
-from underfoot.core.progress import part
+from underfoot.core.progress import part as part
 from underfoot.questions.outcomes import program_hash
 
 from .figure import Figure
 from .statements import STUDIES, Study, study
 from .verdict import Judgement, Quantity, Verdict, counts, judged, tables_by_kind
-
-__all__ = [
-    "Computed",
-    "Options",
-    "StudyResult",
-    "Table",
-    "kept",
-    "named",
-    "part",
-    "run_all",
-    "run_study",
-]
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,12 +38,28 @@ class Options:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table: ``columns`` and ``rows`` of numbers (None where there is none) or words."""
+    """A table: ``columns`` and ``rows`` of words or numbers; None and nan are kept as None."""
 
     name: str
     title: str
     columns: tuple[str, ...]
-    rows: tuple[tuple[str | float | None, ...], ...]
+    rows: Sequence[Sequence[Any]]
+
+    def __post_init__(self) -> None:
+        cells = tuple(tuple(map(_cell, row)) for row in self.rows)
+        object.__setattr__(self, "rows", cells)
+
+    @classmethod
+    def of(cls, name: str, title: str, records: Iterable[Mapping[str, Any]]) -> Table:
+        """Return the table of one or more records, each cell by the name of its column."""
+        found = list(records)
+        return cls(name, title, tuple(found[0]), [tuple(one.values()) for one in found])
+
+
+def _cell(value: Any) -> Any:
+    if isinstance(value, np.generic):
+        value = value.item()
+    return None if value != value else value
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,11 +67,11 @@ class Computed:
     """What a study computes: quantities by name, and what a reader sees beside the verdicts."""
 
     quantities: Mapping[str, Quantity]
-    tables: tuple[Table, ...] = ()
+    tables: Sequence[Table] = ()
     figures: Mapping[str, Figure] = field(default_factory=dict)
-    conclusions: tuple[str, ...] = ()
-    notes: tuple[str, ...] = ()
-    assumptions: tuple[str, ...] = ()
+    conclusions: Sequence[str] = ()
+    notes: Sequence[str] = ()
+    assumptions: Sequence[str] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,13 +95,11 @@ class StudyResult(Presentable):
         return f"StudyResult({self.study.name}: {len(self.study.statements)} statements)"
 
     def table(self) -> ShownTable:
-        """Return the independent statements with their verdicts."""
         return self.tables()[0]
 
     def tables(self) -> tuple[ShownTable, ...]:
-        """Return the statements by kind, independent ones first, then the study's own tables."""
         columns = ("statement", "printed", "ours", "verdict", "why")
-        found = [
+        verdicts = [
             ShownTable(
                 kind.heading,
                 columns,
@@ -108,15 +111,13 @@ class StudyResult(Presentable):
             )
             for kind, some in tables_by_kind(self.judgements)
         ]
-        found += [ShownTable(one.title, one.columns, one.rows) for one in self.computed.tables]
-        return tuple(found)
+        own = [ShownTable(one.title, one.columns, one.rows) for one in self.computed.tables]
+        return (*verdicts, *own)
 
     def heading(self) -> str:
-        """Return title and source."""
         return f"{self.study.title} ({self.study.source})"
 
     def headline(self) -> tuple[str, ...]:
-        """Return how many independent statements got which verdict."""
         found = counts(self.judgements)
         parts = [f"{number} {verdict}" for verdict, number in found.items() if number]
         if not parts:
@@ -124,12 +125,10 @@ class StudyResult(Presentable):
         return (f"Of {sum(found.values())} independent statements: {', '.join(parts)}.",)
 
     def cautions(self) -> tuple[str, ...]:
-        """Return what a quick run leaves open."""
         text = "One coarse grid (--quick): what depends on a grid is not judged."
         return (text,) if self.quick else ()
 
     def remarks(self) -> dict[str, Sequence[str]]:
-        """Return conclusions, method, assumptions, errata and the rules of the verdicts."""
         return {
             "Conclusions": self.computed.conclusions,
             "Method": (*self.study.notes, *self.computed.notes),
@@ -140,56 +139,31 @@ class StudyResult(Presentable):
 
     @property
     def usable(self) -> bool:
-        """Whether the study gave a result."""
         return not self.error
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain data in SI for JSON."""
-        return self.as_dict()
-
-    def as_dict(self, *, figures: bool = False) -> dict[str, Any]:
+    def to_dict(self, *, figures: bool = False) -> dict[str, Any]:
         """Return plain data for JSON (SI units), from which ``from_dict`` judges again."""
-        computed = self.computed
-        content: dict[str, Any] = {
+        computed = asdict(self.computed)
+        if not figures:
+            del computed["figures"]
+        return {
             "study": self.study.name,
             "source": self.study.source,
             "statements": [one.as_dict() for one in self.judgements],
-            "quantities": {k: q.as_dict() for k, q in computed.quantities.items()},
-            "tables": [asdict(table) for table in computed.tables],
-            "conclusions": list(computed.conclusions),
-            "notes": list(computed.notes),
-            "assumptions": list(computed.assumptions),
-            "errata": [list(one) for one in self.study.errata],
+            **computed,
+            "errata": self.study.errata,
             "quick": self.quick,
             "seconds": self.seconds,
             "process_seconds": self.process_seconds,
             "error": self.error,
         }
-        if figures:
-            content["figures"] = {name: f.as_dict() for name, f in computed.figures.items()}
-        return content
 
     @classmethod
     def from_dict(cls, content: Mapping[str, Any]) -> StudyResult:
-        """Return the result that ``as_dict`` wrote; its statements are those of today."""
-        tables = tuple(
-            Table(t["name"], t["title"], tuple(t["columns"]), tuple(tuple(r) for r in t["rows"]))
-            for t in content["tables"]
-        )
-        computed = Computed(
-            {name: Quantity.from_dict(q) for name, q in content["quantities"].items()},
-            tables,
-            {name: Figure.from_dict(f) for name, f in content.get("figures", {}).items()},
-            *(tuple(content[name]) for name in ("conclusions", "notes", "assumptions")),
-        )
-        return cls(
-            study(content["study"]),
-            computed,
-            content["quick"],
-            content["seconds"],
-            content["process_seconds"],
-            content["error"],
-        )
+        """Return the result that ``to_dict`` wrote; its statements are those of today."""
+        computed = TypeAdapter(Computed).validate_python(content)
+        names = ("quick", "seconds", "process_seconds", "error")
+        return cls(study(content["study"]), computed, *(content[name] for name in names))
 
 
 def run_study(chosen: Study, options: Options) -> StudyResult:
@@ -215,15 +189,10 @@ def run_study(chosen: Study, options: Options) -> StudyResult:
     started, used = time.perf_counter(), time.process_time()
     computed: Computed = module.compute(options)
     options.progress("done", 1.0)
-    result = StudyResult(
-        chosen,
-        computed,
-        options.quick,
-        time.perf_counter() - started,
-        time.process_time() - used,
-    )
+    seconds, process_seconds = time.perf_counter() - started, time.process_time() - used
+    result = StudyResult(chosen, computed, options.quick, seconds, process_seconds)
     if not any(q.unconverged for q in computed.quantities.values()):
-        store.store(key, {"result": np.array(json.dumps(result.as_dict(figures=True)))})
+        store.store(key, {"result": np.array(json.dumps(result.to_dict(figures=True)))})
     return result
 
 
@@ -243,9 +212,7 @@ def run_all(
         stage = named(share, name)
         stage("begins", 0.0)
         try:
-            yield run_study(
-                study(name), Options(options.quick, options.processes, options.seed, None, stage)
-            )
+            yield run_study(study(name), replace(options, settings=None, progress=stage))
         except Cancelled:
             raise
         except Exception as failure:  # stands on the page; the other studies go on
@@ -295,9 +262,3 @@ def kept(
         key = list(waiting)[index]
         store.store(key, arrays)
         yield waiting[key], {name: np.asarray(value) for name, value in arrays.items()}
-
-
-def number_kept(room: str, keys: Iterable[str]) -> int:
-    """Return how many of the keys an earlier run has left."""
-    folder = Cache(room).folder
-    return sum((folder / f"{key}.npz").is_file() for key in keys)

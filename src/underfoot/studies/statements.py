@@ -19,6 +19,24 @@ from typing import Any
 from underfoot.core import InputError, to_si, unknown_name
 
 Z95 = 1.959963984540054
+KEYS = (
+    "id text place claim printed shown unit tolerance reason count deviation effect quantity kind "
+    "of not_comparable remark remarks alternatives resolution"
+).split()
+"""Of a statement's table."""
+UNITS = {
+    "": (1.0, "1"),
+    "%": (1e-2, "1"),
+    "N": (1.0, "N"),
+    "kPa": (1e3, "Pa"),
+    "m/s": (1.0, "m/s"),
+    "ms": (1e-3, "s"),
+    "mm": (1e-3, "m"),
+    "kPa/mm": (1e6, "Pa/m"),
+    "kPa per m/s": (1e3, "Pa*s/m"),
+    "deg": (math.pi / 180.0, "rad"),
+}
+"""SI over a printed unit, and the SI unit."""
 STUDIES = ("g1", "g2", "g3", "g4", "g5", "g6", "calibration", "corpus")
 
 
@@ -135,18 +153,14 @@ class Study:
     figures: tuple[tuple[int, str, str, str], ...]
 
 
+@cache
 def study(name: str) -> Study:
     """Return a study by its name; an unknown name is answered with the nearest one."""
     chosen = name.strip().lower()
     if chosen not in STUDIES:
         raise unknown_name("study", name, STUDIES)
-    return _packaged(chosen)
-
-
-@cache
-def _packaged(name: str) -> Study:
-    file = resources.files("underfoot") / "data" / "statements" / f"{name}.toml"
-    return read_study(name, tomllib.loads(file.read_text(encoding="utf-8")))
+    file = resources.files("underfoot") / "data" / "statements" / f"{chosen}.toml"
+    return read_study(chosen, tomllib.loads(file.read_text(encoding="utf-8")))
 
 
 def read_study(name: str, content: Mapping[str, Any]) -> Study:
@@ -158,9 +172,8 @@ def read_study(name: str, content: Mapping[str, Any]) -> Study:
         A statement without tolerance or reason, an unknown kind or claim, a reference to a
         statement that is not there, two independent statements on one quantity.
     """
-    tables = content.get("statement", ())
     statements = []
-    for table in tables:
+    for table in content.get("statement", ()):
         statements.append(_statement(name, table))
         for label, path in table.get("alternatives", {}).items():
             other = {
@@ -181,10 +194,7 @@ def read_study(name: str, content: Mapping[str, Any]) -> Study:
         tuple(statements),
         tuple(content.get("assumptions", ())),
         tuple(content.get("notes", ())),
-        tuple(
-            tuple(e[k] for k in ("where", "printed", "used", "why"))
-            for e in content.get("erratum", ())
-        ),
+        tuple((e["where"], e["printed"], e["used"], e["why"]) for e in content.get("erratum", ())),
         tuple(
             (f["number"], f["shows"], f.get("file", ""), f.get("remark", ""))
             for f in content.get("figure", ())
@@ -218,31 +228,9 @@ def _check(study_name: str, statements: Sequence[Statement]) -> None:
 
 def _statement(study_name: str, table: Mapping[str, Any]) -> Statement:
     where = f"statements/{study_name}.toml, {table.get('id', '?')}"
-    known = {
-        "id",
-        "text",
-        "place",
-        "claim",
-        "printed",
-        "shown",
-        "unit",
-        "tolerance",
-        "reason",
-        "count",
-        "deviation",
-        "effect",
-        "quantity",
-        "kind",
-        "of",
-        "not_comparable",
-        "remark",
-        "remarks",
-        "alternatives",
-        "resolution",
-    }
     for key in table:
-        if key not in known:
-            raise unknown_name("key of a statement", key, known, where=where)
+        if key not in KEYS:
+            raise unknown_name("key of a statement", key, KEYS, where=where)
     try:
         claim, kind = Claim(table["claim"]), Kind(table.get("kind", "independent"))
     except ValueError as error:
@@ -253,7 +241,9 @@ def _statement(study_name: str, table: Mapping[str, Any]) -> Statement:
     printed, unit = table.get("printed", ""), table.get("unit", "")
     numbers: tuple[float, ...] = ()
     names: tuple[str, ...] = ()
-    factor, si_unit = _unit(unit, where)
+    if unit not in UNITS:
+        raise unknown_name("unit", unit, UNITS, where=f"{where}.unit")
+    factor, si_unit = UNITS[unit]
     if claim is Claim.ORDER:
         names = tuple(printed)
     elif claim in (Claim.VALUE, Claim.RANGE, Claim.BELOW, Claim.ABOVE):
@@ -263,9 +253,9 @@ def _statement(study_name: str, table: Mapping[str, Any]) -> Statement:
         numbers = tuple(float(text) * factor for text in texts)
         if claim is Claim.RANGE and numbers[0] > numbers[1]:
             raise InputError(f"{printed}", where=f"{where}.printed", allowed="lowest first")
-    tolerance = _Tolerance(0.0, 0.0, "")
+    below, above, reason = 0.0, 0.0, ""
     if not none and claim is not Claim.WORDS:
-        tolerance = _tolerance(claim, printed, numbers, factor, table, where)
+        below, above, reason = _tolerance(claim, printed, numbers, factor, table, where)
     return Statement(
         study_name,
         table["id"],
@@ -277,9 +267,9 @@ def _statement(study_name: str, table: Mapping[str, Any]) -> Statement:
         unit,
         factor,
         si_unit,
-        _accepted(claim, numbers, tolerance),
-        max(tolerance.below, tolerance.above),
-        tolerance.reason,
+        _accepted(claim, numbers, below, above),
+        max(below, above),
+        reason,
         round(math.copysign(1, sum(numbers))) if table.get("effect") else 0,
         table.get("quantity", ""),
         kind,
@@ -289,37 +279,6 @@ def _statement(study_name: str, table: Mapping[str, Any]) -> Statement:
     )
 
 
-_SI = {
-    "": "1",
-    "%": "1",
-    "N": "N",
-    "kPa": "Pa",
-    "m/s": "m/s",
-    "ms": "s",
-    "mm": "m",
-    "kPa/mm": "Pa/m",
-    "kPa per m/s": "Pa*s/m",
-    "deg": "rad",
-}
-_COMPOUND = {"kPa/mm": 1e6, "kPa per m/s": 1e3}
-
-
-def _unit(unit: str, where: str) -> tuple[float, str]:
-    """Return SI over printed, and the SI unit."""
-    if unit not in _SI:
-        raise unknown_name("unit", unit, _SI, where=f"{where}.unit")
-    if unit in _COMPOUND:
-        return _COMPOUND[unit], _SI[unit]
-    return (to_si(f"1 {unit}", _SI[unit], where=where) if unit else 1.0), _SI[unit]
-
-
-@dataclass(frozen=True, slots=True)
-class _Tolerance:
-    below: float
-    above: float
-    reason: str
-
-
 def _tolerance(
     claim: Claim,
     printed: Any,
@@ -327,8 +286,8 @@ def _tolerance(
     factor: float,
     table: Mapping[str, Any],
     where: str,
-) -> _Tolerance:
-    """Return the tolerance (SI) by what the statement names: printed digits, scatter or a number.
+) -> tuple[float, float, str]:
+    """Return tolerance below and above (SI) and reason, by what the statement names.
 
     "digits": half of the last printed digit. "mean": 95 % of a mean of ``count`` values with the
     printed ``deviation``. "share", "correlation": exact binomial and Fisher's 95 % interval of a
@@ -338,29 +297,29 @@ def _tolerance(
     count = int(table.get("count", 0))
     if claim in (Claim.RISES, Claim.FALLS, Claim.ORDER):
         limit = float(table.get("resolution", 0.0)) * factor
-        return _Tolerance(limit, limit, reason or "by sign")
+        return limit, limit, reason or "by sign"
     if given == "digits":
         texts = printed if isinstance(printed, list) else [printed]
-        half = [0.5 * 10.0 ** -len(re.sub(r"^[^.]*\.?", "", str(text))) * factor for text in texts]
-        return _Tolerance(half[0], half[-1], reason or "half of the last printed digit")
+        ends = [0.5 * 10.0 ** -len(re.sub(r"^[^.]*\.?", "", str(text))) * factor for text in texts]
+        return ends[0], ends[-1], reason or "half of the last printed digit"
     if given == "mean" and count > 1:
         half = Z95 * float(table["deviation"]) * factor / math.sqrt(count)
-        return _Tolerance(half, half, reason or f"95 % of a mean of {count} by the printed scatter")
+        return half, half, reason or f"95 % of a mean of {count} by the printed scatter"
     if given == "share" and count > 0:
         from scipy.stats import binomtest
 
-        bounds = binomtest(round(numbers[0] * count), count).proportion_ci(0.95)
+        low, high = binomtest(round(numbers[0] * count), count).proportion_ci(0.95)
         text = reason or f"95 % of a share of {count}"
-        return _Tolerance(numbers[0] - float(bounds.low), float(bounds.high) - numbers[0], text)
+        return numbers[0] - float(low), float(high) - numbers[0], text
     if given == "correlation" and count > 3:
         z, half = math.atanh(numbers[0]), Z95 / math.sqrt(count - 3)
         text = reason or f"95 % of a correlation of {count} (Fisher)"
-        return _Tolerance(numbers[0] - math.tanh(z - half), math.tanh(z + half) - numbers[0], text)
+        return numbers[0] - math.tanh(z - half), math.tanh(z + half) - numbers[0], text
     if isinstance(given, str) and given.endswith("%") and reason:
         half = abs(numbers[0]) * to_si(given, "1", where=f"{where}.tolerance")
-        return _Tolerance(half, half, f"{given}: {reason}")
+        return half, half, f"{given}: {reason}"
     if isinstance(given, int | float) and reason:
-        return _Tolerance(float(given) * factor, float(given) * factor, reason)
+        return float(given) * factor, float(given) * factor, reason
     raise InputError(
         f"tolerance {given!r}, reason {reason!r}",
         where=where,
@@ -369,18 +328,20 @@ def _tolerance(
     )
 
 
-def _accepted(claim: Claim, numbers: Sequence[float], tolerance: _Tolerance) -> tuple[float, float]:
+def _accepted(
+    claim: Claim, numbers: Sequence[float], below: float, above: float
+) -> tuple[float, float]:
     match claim:
         case Claim.VALUE | Claim.RANGE if numbers:
-            return numbers[0] - tolerance.below, numbers[-1] + tolerance.above
+            return numbers[0] - below, numbers[-1] + above
         case Claim.BELOW if numbers:
-            return -math.inf, numbers[0] + tolerance.above
+            return -math.inf, numbers[0] + above
         case Claim.ABOVE if numbers:
-            return numbers[0] - tolerance.below, math.inf
+            return numbers[0] - below, math.inf
         case Claim.RISES | Claim.ORDER:
-            return tolerance.above, math.inf
+            return above, math.inf
         case Claim.FALLS:
-            return -math.inf, -tolerance.below
+            return -math.inf, -below
         case _:
             return math.nan, math.nan
 

@@ -60,8 +60,8 @@ def summary_markdown(results: Sequence[StudyResult]) -> str:
     if missing:
         text += [f"Not in this run: {', '.join(missing)}.", ""]
     for result in results:
-        chosen = result.study
-        text += [f"## {chosen.name}: {chosen.title}", "", f"Source: {chosen.source}.", ""]
+        text += [f"## {result.study.name}: {result.study.title}", ""]
+        text += [f"Source: {result.study.source}.", ""]
         if result.quick:
             text += ["Run with --quick: what depends on a grid is not judged.", ""]
         if result.error:
@@ -73,26 +73,14 @@ def summary_markdown(results: Sequence[StudyResult]) -> str:
             text += ["|---" * 7 + "|"]
             for one in some:
                 s = one.statement
-                cells = (
-                    f"{s.text} ({s.place})",
-                    s.printed,
-                    s.tolerance_reason,
-                    one.ours,
-                    one.difference,
-                    str(one.verdict),
-                    one.reason,
-                )
+                ours = (one.ours, one.difference, str(one.verdict), one.reason)
+                cells = (f"{s.text} ({s.place})", s.printed, s.tolerance_reason, *ours)
                 text.append("| " + " | ".join(_cell(cell) for cell in cells) + " |")
             text.append("")
-        errata = [
-            f"{where}: {printed} -> {used}: {why}" for where, printed, used, why in chosen.errata
-        ]
-        for title, entries in (
-            ("Not taken as printed", errata),
-            ("Assumed", [*chosen.assumptions, *result.computed.assumptions]),
-        ):
-            if entries:
-                text += [f"{title}:", "", *(f"- {entry}" for entry in entries), ""]
+        remarks = result.remarks()
+        for key, title in (("Not taken as printed",) * 2, ("Assumptions", "Assumed")):
+            if remarks[key]:
+                text += [f"{title}:", "", *(f"- {entry}" for entry in remarks[key]), ""]
     return "\n".join(text).rstrip() + "\n"
 
 
@@ -115,18 +103,11 @@ def read_results(folder: Path) -> list[StudyResult]:
         No study.json in the folder or its sub-folders.
     """
     paths = [folder / name / "study.json" for name in STUDIES] + [folder / "study.json"]
-    found = [
-        StudyResult.from_dict(json.loads(path.read_text(encoding="utf-8")))
-        for path in paths
-        if path.is_file()
-    ]
-    if not found:
-        raise InputError(
-            f"{folder} holds no study",
-            where="FOLDER",
-            allowed="a folder that `underfoot studies run --out` wrote",
-        )
-    return found
+    texts = [path.read_text(encoding="utf-8") for path in paths if path.is_file()]
+    if not texts:
+        allowed = "a folder that `underfoot studies run --out` wrote"
+        raise InputError(f"{folder} holds no study", where="FOLDER", allowed=allowed)
+    return [StudyResult.from_dict(json.loads(text)) for text in texts]
 
 
 def _cell(text: str) -> str:

@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from enum import StrEnum
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from pydantic import TypeAdapter
 
 from underfoot.core import InputError, unknown_name
 
@@ -140,16 +142,12 @@ class Quantity:
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
-        return {name: getattr(self, name) for name in self.__slots__}
+        return asdict(self)
 
     @classmethod
     def from_dict(cls, content: Mapping[str, Any]) -> Quantity:
         """Return the quantity that ``as_dict`` wrote."""
-        plain: dict[str, Any] = {
-            k: tuple(v) if isinstance(v, list) else v for k, v in content.items()
-        }
-        plain["levels"] = tuple((h, tuple(v)) for h, v in plain["levels"])
-        return cls(**plain)
+        return TypeAdapter(cls).validate_python(content)
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,9 +229,7 @@ def judge(statement: Statement, quantities: Mapping[str, Quantity]) -> Judgement
         verdict = Verdict.NOT_CONVERGED if quantity.unconverged else Verdict.NOT_COMPARABLE
         return _judgement(statement, verdict, quantity.missing)
     if quantity.unit != statement.si_unit:
-        raise InputError(
-            f"{quantity.unit}", where=statement.name, allowed=f"{statement.si_unit or '1'}"
-        )
+        raise InputError(quantity.unit, where=statement.name, allowed=statement.si_unit)
     if statement.claim is Claim.ORDER:
         return _judged_order(statement, quantity)
     low, high = statement.accepted
@@ -242,7 +238,10 @@ def judge(statement: Statement, quantities: Mapping[str, Quantity]) -> Judgement
         on_grids = [
             grid_value(
                 [(spacing, level[i]) for spacing, level in quantity.levels],
-                _allowed_error(statement, value),
+                # half the accepted interval's width, or the distance to its one edge
+                0.5 * (high - low)
+                if math.isfinite(high - low)
+                else abs(value - (low if math.isfinite(low) else high)),
             )
             for i, value in enumerate(values)
         ]
@@ -259,30 +258,17 @@ def judge(statement: Statement, quantities: Mapping[str, Quantity]) -> Judgement
         verdict = Verdict.AGREES if likely else Verdict.OVERLAPS
     elif ours_low <= high and ours_high >= low:
         verdict = Verdict.OVERLAPS
-    elif statement.effect and all(
-        statement.effect * value > statement.tolerance for value in values
-    ):
+    elif statement.effect and min(statement.effect * v for v in values) > statement.tolerance:
         verdict = Verdict.TREND_ONLY
     else:
         verdict = Verdict.DISAGREES
     return _judgement(statement, verdict, note, quantity, values, chance)
 
 
-def _allowed_error(statement: Statement, value: float) -> float:
-    """Return what a third of must not be exceeded: half the accepted interval's width, or the
-    distance to its one edge."""
-    low, high = statement.accepted
-    if math.isfinite(low) and math.isfinite(high):
-        return 0.5 * (high - low)
-    return abs(value - (low if math.isfinite(low) else high))
-
-
 def _judged_order(statement: Statement, quantity: Quantity) -> Judgement:
     """Return the verdict on an order: the sign of each step from one name to the next."""
     by_name = dict(zip(quantity.names, quantity.values, strict=True))
-    steps = [
-        by_name[a] - by_name[b] for a, b in zip(statement.names, statement.names[1:], strict=False)
-    ]
+    steps = [by_name[a] - by_name[b] for a, b in pairwise(statement.names)]
     chance = quantity.chance
     holds = all(step > statement.tolerance for step in steps)
     if holds and (chance is None or chance >= MORE_LIKELY_THAN_NOT):
@@ -336,11 +322,11 @@ def _judgement(
             farthest = max(beyond, key=abs) / statement.factor
             unit = "points" if statement.unit == "%" else statement.unit
             difference = f"{farthest:+.2g} {unit}".strip()
-    parts = [note]
+    likely = ""
     if chance is not None:
-        parts.append(f"probability of agreement {_chance(chance)}")
-    parts.append(statement.remark)
-    reason = "; ".join(part for part in parts if part)
+        words = "above 0.99" if chance > 0.995 else "below 0.01" if chance < 0.005 else ""
+        likely = f"probability of agreement {words or f'{chance:.2f}'}"
+    reason = "; ".join(filter(None, (note, likely, statement.remark)))
     return Judgement(statement, verdict, ours or "-", difference, chance, reason)
 
 
@@ -353,20 +339,12 @@ def values_text(
 
     def number(value: float) -> str:
         scaled = value / statement.factor
-        if statement.unit == "%":
-            whole = f"{scaled:{sign}.0f}"
-            return "0" if whole in ("-0", "+0") else whole
-        digits = f"{scaled:{sign}.0f}" if abs(scaled) >= 100 else f"{scaled:{sign}.3g}"
-        return "0" if digits in ("-0", "+0") else digits
+        digits = ".0f" if statement.unit == "%" or abs(scaled) >= 100 else ".3g"
+        text = f"{scaled:{sign}{digits}}"
+        return "0" if text in ("-0", "+0") else text
 
     low, high = number(min(values)), number(max(values))
     text = low if low == high else f"{low} to {high}"
     if interval is not None:
         text += f" ({number(interval[0])} to {number(interval[1])})"
     return f"{text} {statement.unit}".strip()
-
-
-def _chance(value: float) -> str:
-    if value > 0.995:
-        return "above 0.99"
-    return "below 0.01" if value < 0.005 else f"{value:.2f}"

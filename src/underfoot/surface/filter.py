@@ -5,12 +5,11 @@ import numpy as np
 from underfoot.core import DataError, InputError
 from underfoot.core.units import metres
 
-from ._kernels.gaussian import mean_line, weights
-from .height_map import check_length
+from .heights import check_length
 from .prepare import Surface
-from .profile import Profile
 
 ENDS = ("drop", "regression", "periodic")
+ALPHA = np.sqrt(np.log(2.0) / np.pi)
 
 
 def long_waves(surface: Surface, cutoff: float, ends: str = "drop") -> Surface:
@@ -34,14 +33,12 @@ def long_waves(surface: Surface, cutoff: float, ends: str = "drop") -> Surface:
             spacings.
         DataError: Surface shorter than the cut-off needs.
     """
-    long, _ = _split(surface, cutoff, ends)
-    return long
+    return _split(surface, cutoff, ends)[0]
 
 
 def short_waves(surface: Surface, cutoff: float, ends: str = "drop") -> Surface:
     """Return the part of the surface with wavelengths below ``cutoff`` (m): see ``long_waves``."""
-    _, short = _split(surface, cutoff, ends)
-    return short
+    return _split(surface, cutoff, ends)[1]
 
 
 def _split(surface: Surface, cutoff: float, ends: str) -> tuple[Surface, Surface]:
@@ -72,10 +69,44 @@ def _split(surface: Surface, cutoff: float, ends: str) -> tuple[Surface, Surface
         long = np.moveaxis(mean_line(moved, surface.spacing, cutoff, ends), 0, axis)
     inner = tuple(slice(lost, n - lost) for n in surface.heights.shape)
     short = surface.heights[inner] - long
-    changes: dict[str, object] = {} if ends == "periodic" else {"periodic": False}
-    name = "ISO 16610-21" if isinstance(surface, Profile) else "ISO 16610-61"
-    how = f"Gaussian filter ({name}), cut-off {metres(cutoff)}, ends: {ends}"
+    periodic = ends == "periodic"
+    name = f"ISO 16610-{21 if surface.axes == 1 else 61}"
+    how = f"waves kept, Gaussian filter ({name}), cut-off {metres(cutoff)}, ends: {ends}"
     return (
-        surface.changed(long, f"long waves kept, {how}", **changes),
-        surface.changed(short, f"short waves kept, {how}", **changes),
+        surface.changed(long, f"long {how}", periodic=periodic),
+        surface.changed(short, f"short {how}", periodic=periodic),
     )
+
+
+def weights(spacing: float, cutoff: float, reach: float) -> np.ndarray:
+    """Return the Gaussian weights, sum 1, out to ``reach`` cut-offs either side, (2 m + 1,)."""
+    m = max(int(np.floor(reach * cutoff / spacing * (1.0 + 1e-9))), 1)
+    u = np.arange(-m, m + 1) * spacing / (ALPHA * cutoff)
+    w = np.exp(-np.pi * u * u)
+    return w / w.sum()
+
+
+def mean_line(heights: np.ndarray, spacing: float, cutoff: float, ends: str) -> np.ndarray:
+    """Return the long-wave part along axis 0.
+
+    ``ends``: "periodic"; "regression" (a weighted straight line is fitted at every point, which
+    is the plain filter in the middle); "drop" (only points that the weights out to half a
+    cut-off fully cover come back).
+    """
+    from scipy.signal import fftconvolve, oaconvolve
+
+    n, column = heights.shape[0], (-1,) + (1,) * (heights.ndim - 1)
+    if ends == "periodic":
+        response = np.exp(-np.pi * (ALPHA * cutoff * np.fft.rfftfreq(n, spacing)) ** 2)
+        return np.fft.irfft(np.fft.rfft(heights, axis=0) * response.reshape(column), n, axis=0)
+    w = weights(spacing, cutoff, 0.5 if ends == "drop" else 1.0).reshape(column)
+    if ends == "drop":
+        return oaconvolve(heights, w, mode="valid", axes=0)
+    m = w.size // 2
+    u = (np.arange(-m, m + 1) / m).reshape(column)
+    # Convolution turns the kernel round: odd weights change their sign.
+    kernels = (w, -w * u, w * u * u)
+    ones = np.ones(n).reshape(column)
+    m0, m1, m2 = (fftconvolve(ones, each, axes=0)[m : m + n] for each in kernels)
+    b0, b1 = (oaconvolve(heights, each, axes=0)[m : m + n] for each in kernels[:2])
+    return (m2 * b0 - m1 * b1) / (m0 * m2 - m1 * m1)

@@ -1,23 +1,56 @@
-"""Power spectra of profiles and maps, with the wavelengths that can be believed."""
+"""Spectra, moments and autocorrelation of profiles and maps; what of them can be believed."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from underfoot.core import InputError
+from underfoot.core.units import metres
 
-from .height_map import HeightMap, check_heights
+from .heights import HeightMap, Heights, check_heights
 from .prepare import levelled
-from .profile import Profile
 from .resolution import shortest_reliable_wavelength
 
 WINDOWS = ("none", "hann")
+POINTS_PER_DECADE = 12
+
+
+class _Spectrum:
+    """What the spectra of profiles and of maps have in common."""
+
+    __slots__ = ()
+    wavenumber: np.ndarray
+    density: np.ndarray
+    reliable: tuple[float, float]
+    notes: tuple[str, ...]
+    area: Any
+    moment_shares: ClassVar[tuple[float, float, float]]
+
+    def __post_init__(self) -> None:
+        q, c = np.asarray(self.wavenumber), np.asarray(self.density)
+        if q.ndim != 1 or q.shape != c.shape or q.size < 1:
+            raise InputError(
+                f"wave numbers of shape {q.shape}, densities of shape {c.shape}",
+                where="spectrum",
+                allowed="two one-dimensional arrays of the same length",
+            )
+        if not (np.all(np.isfinite(q)) and np.all(np.diff(q) > 0.0) and q[0] > 0.0):
+            raise InputError("wave numbers", where="spectrum", allowed="ascending, above 0 rad/m")
+        if not (np.all(np.isfinite(c)) and np.all(c >= 0.0)):
+            raise InputError(
+                "a density is negative or missing", where="spectrum", allowed="0 or more"
+            )
+
+    @property
+    def mean_square(self) -> float:
+        """Sum of density times area, m^2: the mean square height, window included."""
+        return float(np.sum(self.density * self.area))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class ProfileSpectrum:
+class ProfileSpectrum(_Spectrum):
     """One-dimensional power spectral density.
 
     Two-sided, C(q) = 1/(2 pi) int <h(x) h(0)> exp(-i q x) dx, given for q > 0 only: the mean
@@ -34,18 +67,17 @@ class ProfileSpectrum:
     density: np.ndarray
     reliable: tuple[float, float]
     notes: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        _check_spectrum(self.wavenumber, self.density)
+    moment_shares: ClassVar[tuple[float, float, float]] = (1.0, 1.0, 1.0)
 
     @property
-    def mean_square(self) -> float:
-        """2 sum C dq, m^2: the mean square height of the heights used, window included."""
-        return float(2.0 * np.sum(self.density * _steps(self.wavenumber)))
+    def area(self) -> np.ndarray:
+        """Part of the wave number axis that each value stands for, both signs, rad/m, (m,)."""
+        q = self.wavenumber
+        return 2.0 * (np.gradient(q) if q.size > 1 else q)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class IsotropicSpectrum:
+class IsotropicSpectrum(_Spectrum):
     """Radially averaged two-dimensional power spectral density.
 
     C(q) = 1/(2 pi)^2 int <h(x) h(0)> exp(-i q x) d^2x (Persson's convention): the mean square
@@ -65,16 +97,9 @@ class IsotropicSpectrum:
     area: np.ndarray
     reliable: tuple[float, float]
     notes: tuple[str, ...] = ()
+    moment_shares: ClassVar[tuple[float, float, float]] = (1.0, 0.5, 0.375)
 
-    def __post_init__(self) -> None:
-        _check_spectrum(self.wavenumber, self.density)
-
-    @property
-    def mean_square(self) -> float:
-        """Sum of C over the wave number plane, m^2."""
-        return float(np.sum(self.density * self.area))
-
-    def within(self, low: float, high: float) -> IsotropicSpectrum:
+    def within(self, low: float, high: float) -> Self:
         """Return the part from ``low`` to ``high`` (rad/m)."""
         inside = (self.wavenumber >= low * (1 - 1e-12)) & (self.wavenumber <= high * (1 + 1e-12))
         if not inside.any():
@@ -83,17 +108,18 @@ class IsotropicSpectrum:
                 where="within",
                 allowed=f"{self.wavenumber[0]:g} to {self.wavenumber[-1]:g} rad/m",
             )
-        return IsotropicSpectrum(
-            self.wavenumber[inside],
-            self.density[inside],
-            self.area[inside],
-            (max(low, self.reliable[0]), min(high, self.reliable[1])),
-            (*self.notes, f"cut to {low:g} to {high:g} rad/m"),
+        return replace(
+            self,
+            wavenumber=self.wavenumber[inside],
+            density=self.density[inside],
+            area=self.area[inside],
+            reliable=(max(low, self.reliable[0]), min(high, self.reliable[1])),
+            notes=(*self.notes, f"cut to {low:g} to {high:g} rad/m"),
         )
 
 
 def profile_spectrum(
-    surface: Profile | HeightMap, *, window: str | None = None, axis: int = 0
+    surface: Heights, *, window: str | None = None, axis: int = 0
 ) -> ProfileSpectrum:
     """Return the power spectral density along a profile, or averaged over a map's lines.
 
@@ -104,14 +130,11 @@ def profile_spectrum(
     Believed from two waves in the length (one for periodic surfaces) up to the wave number of
     ``shortest_reliable_wavelength``.
     """
-    lines = surface.heights[:, None] if isinstance(surface, Profile) else surface.heights
-    lines = np.moveaxis(lines, axis, 0) if isinstance(surface, HeightMap) else lines
-    lines, shape, notes = _windowed(lines, window, surface.periodic, (0,))
+    lines, shape, notes = _windowed(_lines(surface.heights, axis), window, surface.periodic, (0,))
     n = lines.shape[0]
     length = n * surface.spacing
-    transform = np.fft.rfft(lines * shape, axis=0)
-    density = np.mean(np.abs(transform) ** 2, axis=1) * length / (2.0 * np.pi * n**2)
-    density /= np.mean(shape**2)
+    power = np.mean(np.abs(np.fft.rfft(lines * shape, axis=0)) ** 2, axis=1)
+    density = power * length / (2.0 * np.pi * n**2) / np.mean(shape**2)
     q = 2.0 * np.pi * np.fft.rfftfreq(n, surface.spacing)
     if n % 2 == 0:
         density[-1] *= 0.5  # the highest wave of an even grid stands for both signs
@@ -154,6 +177,10 @@ def isotropic_spectrum(surface: HeightMap, *, window: str | None = None) -> Isot
     )
 
 
+def _lines(heights: np.ndarray, axis: int) -> np.ndarray:
+    return heights[:, None] if heights.ndim == 1 else np.moveaxis(heights, axis, 0)
+
+
 def _windowed(
     heights: np.ndarray, window: str | None, periodic: bool, axes: tuple[int, ...]
 ) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
@@ -179,27 +206,205 @@ def _windowed(
     return z, shape, tuple(notes)
 
 
-def _reliable(surface: Profile | HeightMap, length: float) -> tuple[float, float]:
-    waves = 1.0 if surface.periodic else 2.0
-    return (
-        2.0 * np.pi * waves / length,
-        2.0 * np.pi / shortest_reliable_wavelength(surface).wavelength,
+def _reliable(surface: Heights, length: float) -> tuple[float, float]:
+    longest = length / (1.0 if surface.periodic else 2.0)
+    return 2.0 * np.pi / longest, 2.0 * np.pi / shortest_reliable_wavelength(surface).wavelength
+
+
+def isotropic_from_profile(spectrum: ProfileSpectrum) -> IsotropicSpectrum:
+    """Return C(q) of the isotropic surface whose profiles have the given spectrum.
+
+    C1(q) = int C(sqrt(q^2 + k^2)) dk over all k, inverted by Abel's formula
+    C(q) = -1/pi int_q^inf C1'(k) / sqrt(k^2 - q^2) dk.
+
+    The profile spectrum is first averaged over a twelfth of a decade, cut to what is reliable,
+    and made to fall (a profile of an isotropic surface can't have a rising spectrum; the running
+    minimum is the least change). Beyond the last wave number the power law of the last half
+    decade is taken on. The notes say so.
+
+    Raises:
+        InputError: Less than half a decade of reliable wave numbers.
+    """
+    q, c = _averaged(spectrum)
+    falling = np.minimum.accumulate(c)
+    changed = float(np.max(1.0 - falling / c))
+    tail = q >= q[-1] / np.sqrt(10.0)
+    exponent = float(min(np.polyfit(np.log(q[tail]), np.log(falling[tail]), 1)[0], -1.05))
+    density = np.array([_abel(one, q, falling, exponent) for one in q])
+    edges = np.concatenate([[q[0]], np.sqrt(q[1:] * q[:-1]), [q[-1]]])
+    notes = (
+        *spectrum.notes,
+        "isotropy assumed: two-dimensional spectrum by Abel inversion",
+        f"extrapolated beyond {q[-1]:.4g} rad/m with the power {exponent:.3g} for the inversion",
+    )
+    if changed > 0.0:
+        notes += (f"rises of the profile spectrum levelled (by up to {100 * changed:.0f} %)",)
+    return IsotropicSpectrum(
+        q, density, np.pi * np.diff(edges**2), (float(q[0]), float(q[-1])), notes
     )
 
 
-def _steps(q: np.ndarray) -> np.ndarray:
-    return np.gradient(q) if q.size > 1 else q
-
-
-def _check_spectrum(wavenumber: np.ndarray, density: np.ndarray) -> None:
-    q, c = np.asarray(wavenumber), np.asarray(density)
-    if q.ndim != 1 or q.shape != c.shape or q.size < 1:
+def _averaged(spectrum: ProfileSpectrum) -> tuple[np.ndarray, np.ndarray]:
+    low, high = spectrum.reliable
+    inside = (spectrum.wavenumber >= low) & (spectrum.wavenumber <= high) & (spectrum.density > 0.0)
+    q, c = spectrum.wavenumber[inside], spectrum.density[inside]
+    if q.size < 4 or q[-1] < q[0] * np.sqrt(10.0):
         raise InputError(
-            f"wave numbers of shape {q.shape}, densities of shape {c.shape}",
+            "less than half a decade of reliable wave numbers",
             where="spectrum",
-            allowed="two one-dimensional arrays of the same length",
+            remedy="Measure a longer profile, or with a smaller spacing",
         )
-    if not (np.all(np.isfinite(q)) and np.all(np.diff(q) > 0.0) and q[0] > 0.0):
-        raise InputError("wave numbers", where="spectrum", allowed="ascending, above 0 rad/m")
-    if not (np.all(np.isfinite(c)) and np.all(c >= 0.0)):
-        raise InputError("a density is negative or missing", where="spectrum", allowed="0 or more")
+    place = np.floor(np.log10(q / q[0]) * POINTS_PER_DECADE).astype(int)
+    _, place = np.unique(place, return_inverse=True)
+    count = np.bincount(place)
+    mean_q = np.exp(np.bincount(place, np.log(q)) / count)
+    return mean_q, np.bincount(place, c) / count
+
+
+def _abel(q: float, nodes: np.ndarray, values: np.ndarray, exponent: float) -> float:
+    # With k = q cosh u the singular root goes away: C = -1/pi int C1'(q cosh u) du.
+    u = np.linspace(0.0, np.arccosh(max(1e3 * nodes[-1] / q, 2.0)), 2000)
+    k = q * np.cosh(u)
+    log_k, log_nodes, log_values = np.log(k), np.log(nodes), np.log(values)
+    slopes = np.concatenate([np.diff(log_values) / np.diff(log_nodes), [exponent]])
+    inside = np.interp(log_k, log_nodes, log_values)
+    beyond = log_k > log_nodes[-1]
+    inside[beyond] = log_values[-1] + exponent * (log_k[beyond] - log_nodes[-1])
+    # Slopes between nodes are joined linearly, so that the integrand has no steps.
+    middles = np.concatenate([0.5 * (log_nodes[1:] + log_nodes[:-1]), [log_nodes[-1]]])
+    power = np.interp(log_k, middles, slopes)
+    return float(-np.trapezoid(np.exp(inside) / k * power, u) / np.pi)
+
+
+def autocorrelation(surface: Heights, *, axis: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    """Return (lag in m, autocorrelation) with 1 at lag 0; of a map, the mean over its lines.
+
+    Line or plane are removed from surfaces that are not periodic; their value at a lag is the
+    mean over the pairs that exist, up to half the length. Periodic ones are continued.
+
+    Raises:
+        InputError: A flat surface.
+    """
+    z = (surface if surface.periodic else levelled(surface)).heights
+    lines = _lines(z - z.mean(), axis)
+    n = lines.shape[0]
+    size = n if surface.periodic else 2 * n
+    power = np.mean(np.abs(np.fft.rfft(lines, size, axis=0)) ** 2, axis=1)
+    half = n // 2 + 1
+    pairs = np.full(half, float(n)) if surface.periodic else n - np.arange(half)
+    covariance = np.fft.irfft(power, size)[:half] / pairs
+    if covariance[0] <= 0.0:
+        raise InputError("the surface is flat", where="autocorrelation")
+    return surface.spacing * np.arange(half), covariance / covariance[0]
+
+
+def correlation_length(
+    surface: Heights, level: float = float(np.exp(-1.0)), *, axis: int = 0
+) -> float:
+    """Return the lag, m, at which the autocorrelation first falls to ``level``.
+
+    1/e by default; 0.2 is the level of Sal in ISO 25178-2.
+
+    Raises:
+        InputError: Level outside 0 to 1, or not reached within half the length.
+    """
+    if not 0.0 < level < 1.0:
+        raise InputError(f"level {level:g}", where="level", allowed="between 0 and 1")
+    lag, value = autocorrelation(surface, axis=axis)
+    below = np.flatnonzero(value <= level)
+    if below.size == 0:
+        raise InputError(
+            f"the autocorrelation stays above {level:g} up to {metres(lag[-1])}",
+            where="correlation_length",
+            remedy="Measure a longer part, or filter the waviness away",
+        )
+    i = int(below[0])
+    share = (value[i - 1] - level) / (value[i - 1] - value[i])
+    return float(lag[i - 1] + share * (lag[i] - lag[i - 1]))
+
+
+@dataclass(frozen=True, slots=True)
+class SpectralMoments:
+    """Profile moments m0 (m^2), m2 (1) and m4 (1/m^2): mean squares of height, slope, curvature.
+
+    They depend on the band of wave numbers ``band`` (rad/m), m4 almost entirely on its upper end.
+    """
+
+    m0: float
+    m2: float
+    m4: float
+    band: tuple[float, float]
+
+    @property
+    def bandwidth(self) -> float:
+        """Nayak's alpha = m0 m4 / m2^2, at least 1.5 for an isotropic random surface."""
+        return self.m0 * self.m4 / self.m2**2
+
+
+@dataclass(frozen=True, slots=True)
+class Asperities:
+    """Summits of an isotropic Gaussian surface as spheres of one radius.
+
+    ``density`` (1/m^2), ``radius`` (m), ``height_sd`` (m) of the summits, ``mean_height`` (m) of
+    the summits above the mean plane.
+    """
+
+    density: float
+    radius: float
+    height_sd: float
+    mean_height: float
+    source: str = (
+        "J. I. McCool, Relating profile instrument measurements to the functional performance of "
+        "rough surfaces, J. Tribology 109 (1987) 264-270; Nayak (1971)"
+    )
+
+
+def spectral_moments(
+    spectrum: ProfileSpectrum | IsotropicSpectrum, band: tuple[float, float] | None = None
+) -> SpectralMoments:
+    """Return the moments of the profiles of a surface over ``band`` (rad/m; default: reliable).
+
+    From a profile spectrum m_n = 2 int q^n C dq; from an isotropic one
+    m_n = int cos^n(phi) q^n C d^2q, so m0, m2 / 2 and 3 m4 / 8 of the radial integrals.
+
+    Raises:
+        InputError: No wave number in the band, or no roughness there.
+    """
+    low, high = band if band is not None else spectrum.reliable
+    q = spectrum.wavenumber
+    inside = (q >= low * (1 - 1e-12)) & (q <= high * (1 + 1e-12))
+    weight, q = (spectrum.density * spectrum.area)[inside], q[inside]
+    if not (weight.size and weight.sum() > 0.0):
+        raise InputError(
+            f"no roughness between {low:g} and {high:g} rad/m",
+            where="band",
+            allowed=f"within {spectrum.wavenumber[0]:g} to {spectrum.wavenumber[-1]:g} rad/m",
+        )
+    shares = zip(spectrum.moment_shares, (0, 2, 4), strict=True)
+    m0, m2, m4 = (share * float(np.sum(weight * q**n)) for share, n in shares)
+    return SpectralMoments(m0, m2, m4, (float(low), float(high)))
+
+
+def asperities(moments: SpectralMoments) -> Asperities:
+    """Return the summits that Greenwood and Williamson's model needs, after McCool (1987).
+
+    density = m4 / (6 pi sqrt(3) m2), radius = 3 sqrt(pi) / (8 sqrt(m4)),
+    height_sd^2 = (1 - 0.8968 / alpha) m0, mean_height = 4 sqrt(m0 / (pi alpha)).
+
+    Raises:
+        InputError: alpha below 1.5: not an isotropic random surface.
+    """
+    alpha = moments.bandwidth
+    if alpha < 1.5 * (1.0 - 1e-6):
+        raise InputError(
+            f"bandwidth parameter {alpha:.3g}",
+            where="moments",
+            allowed="1.5 or more, as every isotropic random surface has",
+            remedy="A wave or a ridged surface has no summits in this sense",
+        )
+    return Asperities(
+        density=moments.m4 / (6.0 * math.pi * math.sqrt(3.0) * moments.m2),
+        radius=3.0 * math.sqrt(math.pi) / (8.0 * math.sqrt(moments.m4)),
+        height_sd=math.sqrt((1.0 - 0.8968 / alpha) * moments.m0),
+        mean_height=4.0 * math.sqrt(moments.m0 / (math.pi * alpha)),
+    )

@@ -4,8 +4,7 @@ import numpy as np
 
 from underfoot.core.arrays import Array, Mask
 
-from .._kernels.land import carried_on
-from .._kernels.pieces import grown, pieces, rim, without_holes
+from .._kernels.regions import carried_on, grown, pieces, rim, without_holes
 
 LARGEST_HOLE = 1e-4
 """A hole of more area is an opening of the sole, not a gap of the scan, m^2."""

@@ -5,12 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from underfoot.core.arrays import Array, Mask
 
-from .._kernels.pieces import shrunk, without_specks
-from ..tread_map import tread_map
+from .._kernels.regions import shrunk, without_specks
+from ..tread_measures import tread_map
 from .settings import DIRECTIONS, FileSettings
 from .view import View
 
@@ -89,6 +88,8 @@ def _snapped(vector: Array) -> Array:
 
 def _long_axis(centres: Array, thin: Array) -> Array:
     """Return the longer side of the smallest rectangle around the points seen along ``thin``."""
+    from scipy.spatial import ConvexHull
+
     start = np.eye(3)[int(np.argmin(np.abs(thin)))]
     u = start - (start @ thin) * thin
     u /= np.linalg.norm(u)
@@ -256,6 +257,8 @@ def resting_plane(height: Array, spacing: float) -> tuple[float, float, float]:
         height: (nx, ny) m, z up, nan outside.
         spacing: Of its cells, m.
     """
+    from scipy.spatial import ConvexHull, QhullError
+
     points = _low_points(height, spacing)
     inside = np.isfinite(height)
     centre = np.array([float(index.mean()) for index in np.nonzero(inside)]) * spacing

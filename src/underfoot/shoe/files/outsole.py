@@ -10,10 +10,9 @@ from underfoot.core import InputError
 from underfoot.core.arrays import Array
 
 from .._kernels.mesh_edges import overlap_lines
-from ..sole_surface import SoleSurface
-from ..tread_map import tread_map
+from ..geometry import SoleSurface, centred
+from ..tread_measures import tread_map
 from .cleaning import cleaned, plan_outline, without_ledges
-from .mesh import Mesh
 from .orientation import (
     box_axes,
     foot_of,
@@ -24,11 +23,9 @@ from .orientation import (
     resting_plane,
     toe_end,
 )
-from .read import read_mesh
-from .settings import DIRECTIONS, SHARES, FileSettings
-from .soundness import Soundness, soundness
-from .units import HEEL, length_unit
-from .view import View, extents, view
+from .read import Mesh, read_mesh
+from .settings import DIRECTIONS, HEEL, SHARES, FileSettings, length_unit
+from .view import Soundness, View, extents, soundness, view
 
 _COARSE = 400  # cells along the sole for finding sides and plane
 _NEARLY_SQUARE = 1.3
@@ -288,7 +285,7 @@ def _surface(height: Array, spacing: float, name: str) -> tuple[SoleSurface, lis
         tread = tread_map(height, spacing, channels=cut_open)
     inside = np.isfinite(height)
     x = (np.arange(height.shape[0], dtype=np.float64) + 0.5) * spacing
-    y = (np.arange(height.shape[1], dtype=np.float64) - (height.shape[1] - 1) / 2) * spacing
+    y = centred(height.shape[1], spacing)
     remarks.append(
         f"Channels are hollows of {tread.level * 1e3:.2g} mm and more, narrower than 16 mm."
     )

@@ -1,4 +1,4 @@
-"""Options for reading an outsole file; "auto" leaves an option to be determined."""
+"""Options for reading an outsole file; which unit it is in."""
 
 import math
 from dataclasses import dataclass
@@ -73,3 +73,85 @@ class FileSettings:
                 where="outsole.spacing",
                 allowed="0.02 mm or more",
             )
+
+
+SOLE = (0.150, 0.350)
+"""Length of a whole sole, m."""
+HEEL = (0.040, 0.110)
+"""Length of a heel piece, m."""
+SLENDER = 1.7
+"""A whole sole is longer than this many widths, a heel piece shorter."""
+_POSSIBLE = (0.020, 0.500)  # m: beyond it a unit chosen by hand is refused
+
+
+def length_unit(
+    length: float, width: float, *, chosen: str = "auto", in_file: float | None = None, where: str
+) -> tuple[float, str]:
+    """Return the file's unit in m and a remark on how it was determined.
+
+    Parameters:
+        length, width: Longest extent and the one across, in the file's unit.
+        chosen: Unit the user names, or "auto".
+        in_file: Unit stated in the file (STEP), m.
+
+    Raises:
+        InputError: No unit makes it as long as a sole, or the chosen unit makes it absurd.
+    """
+    if chosen != "auto":
+        unit = UNITS[chosen]
+        if not _POSSIBLE[0] <= length * unit <= _POSSIBLE[1]:
+            raise InputError(
+                f"in {chosen} the sole is {_length(length * unit)} long",
+                where=where,
+                allowed="20 mm to 500 mm",
+                remedy=_suggestion(length, width),
+            )
+        return unit, f"Unit: {chosen} (chosen); length {_length(length * unit)}."
+    if in_file is not None:
+        if not _POSSIBLE[0] <= length * in_file <= _POSSIBLE[1]:
+            raise InputError(
+                f"by the unit in the file the sole is {_length(length * in_file)} long",
+                where=where,
+                allowed="20 mm to 500 mm",
+                remedy=_suggestion(length, width),
+            )
+        return in_file, f"Unit: as stated in the file; length {_length(length * in_file)}."
+    likely = _likely(length, width)
+    if not likely:
+        lengths = ", ".join(f"{_length(length * unit)} in {name}" for name, unit in UNITS.items())
+        raise InputError(
+            f"no unit makes it a sole: its length of {length:.4g} would be {lengths}",
+            where=where,
+            allowed="150 to 350 mm for a sole, 40 to 110 mm for a heel piece",
+            remedy="State the unit if the length is right, or check that the file holds one "
+            "outsole alone",
+        )
+    name = likely[0]
+    metres = length * UNITS[name]
+    kind = "sole" if metres >= SOLE[0] else "heel piece"
+    remark = (
+        f"Assumed: unit {name} (the file states none); length {_length(metres)}, that of a {kind}."
+    )
+    if len(likely) > 1:
+        remark += f" It could also be {likely[1]} ({_length(length * UNITS[likely[1]])})."
+    return UNITS[name], remark
+
+
+def _likely(length: float, width: float) -> list[str]:
+    slender = length > SLENDER * width
+    ranges = (SOLE, HEEL) if slender else (HEEL, SOLE)
+    return [
+        name
+        for low, high in ranges
+        for name in ("mm", "m", "inch", "cm")
+        if low <= length * UNITS[name] <= high
+    ]
+
+
+def _suggestion(length: float, width: float) -> str | None:
+    likely = _likely(length, width)
+    return f"It would be {_length(length * UNITS[likely[0]])} in {likely[0]}" if likely else None
+
+
+def _length(metres: float) -> str:
+    return f"{metres * 1e3:.4g} mm" if metres < 1 else f"{metres:.4g} m"

@@ -1,4 +1,4 @@
-"""A mesh seen from both sides as height maps."""
+"""A mesh seen from both sides as height maps, and its defects."""
 
 import math
 from dataclasses import dataclass
@@ -6,11 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from underfoot.core import InputError
+from underfoot.core import DataError, InputError
 from underfoot.core.arrays import Array, Mask
 
 from .._kernels.height_buffer import extents as _extents
 from .._kernels.height_buffer import height_buffer
+from .._kernels.mesh_edges import shared_edges, soup_keys
+from .read import Mesh
 
 _MOST_CELLS = 60_000_000
 
@@ -61,3 +63,93 @@ def view(triangles: NDArray[np.float32], axes: Array, spacing: float) -> View:
         triangles, axes, (first[0], first[1]), spacing, (shape[0], shape[1])
     )
     return View(axes, (first[0], first[1]), spacing, lowest, highest, facing)
+
+
+@dataclass(frozen=True, slots=True)
+class Soundness:
+    """Counts of what a sound closed mesh has none of.
+
+    Parameters:
+        faces: In the file.
+        degenerate, not_finite: Faces without area; faces with a corner that is no number.
+        open_edges, crowded_edges, turned_edges: Edges of one face; of more than two; of two faces
+            that are turned opposite ways.
+        duplicates: Faces that are there more than once.
+        volume: Signed volume in the file's unit cubed: negative when the normals point inward.
+    """
+
+    faces: int
+    degenerate: int
+    not_finite: int
+    open_edges: int
+    crowded_edges: int
+    turned_edges: int
+    duplicates: int
+    volume: float
+
+    @property
+    def closed(self) -> bool:
+        """True when every edge has at least two faces."""
+        return self.open_edges == 0
+
+    def remarks(self) -> tuple[str, ...]:
+        """Return the tolerated defects, a sentence each."""
+        remarks = []
+        if self.open_edges:
+            remarks.append(
+                f"{self.open_edges} open edges were tolerated: the height map needs no closed body."
+            )
+        if self.closed and not self.turned_edges and self.volume < 0:
+            remarks.append("The normals point inward; tolerated, heights do not depend on them.")
+        if self.turned_edges:
+            remarks.append(
+                f"Along {self.turned_edges} edges neighbouring faces are turned opposite ways; "
+                "tolerated, since heights don't depend on normals."
+            )
+        if self.crowded_edges:
+            remarks.append(
+                f"{self.crowded_edges} edges have more than two faces; tolerated, the lowest face "
+                "counts."
+            )
+        if self.duplicates:
+            remarks.append(f"{self.duplicates} faces are there twice; the copies change nothing.")
+        if self.degenerate:
+            remarks.append(f"{self.degenerate} faces without area were ignored.")
+        if self.not_finite:
+            remarks.append(
+                f"{self.not_finite} faces with a corner that is not a number were left out."
+            )
+        return tuple(remarks)
+
+
+def soundness(mesh: Mesh, where: str) -> Soundness:
+    """Return what is wrong with a mesh; corners are the same when their coordinates are.
+
+    Raises:
+        DataError: No face with an area.
+    """
+    triangles = mesh.triangles
+    if (triangles == 0).any():
+        triangles = triangles + np.float32(0.0)  # a negative zero has other bits than zero
+    bits = triangles.view(np.uint32)
+    edges, faces, counts, volume = soup_keys(triangles, bits)
+    degenerate, not_finite = int(counts[0]), int(counts[1])
+    if degenerate + not_finite == faces.size:
+        raise DataError(f"none of its {faces.size} faces has an area", where=where)
+    edges.sort()
+    open_edges, crowded, turned = shared_edges(edges)
+    return Soundness(
+        faces=faces.size,
+        degenerate=degenerate,
+        not_finite=not_finite,
+        open_edges=int(open_edges),
+        crowded_edges=int(crowded),
+        turned_edges=int(turned),
+        duplicates=_duplicates(faces) if crowded or turned else 0,
+        volume=float(volume),
+    )
+
+
+def _duplicates(faces: NDArray[np.uint64]) -> int:
+    faces.sort()
+    return int(np.count_nonzero((faces[1:] == faces[:-1]) & (faces[1:] != 0)))

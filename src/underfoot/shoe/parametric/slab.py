@@ -8,10 +8,9 @@ import numpy as np
 
 from underfoot.core.arrays import Array
 
-from ..profile import Facet, Profile, Rocker
-from ..shape import SoleShape
+from ..shape import Facet, Profile, Rocker, SoleShape
 from .modelling import MM, kernel
-from .toe_spring import SoleProfile, ToeSpring
+from .sole import SoleProfile, ToeSpring
 
 MARGIN = 0.02  # m on both sides of the plan form
 ENDS = 0.5e-3  # m behind and before it, where profiles still have their formula

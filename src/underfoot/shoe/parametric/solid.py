@@ -13,8 +13,7 @@ from ..shape import SoleShape
 from ..tread import ArcChannel
 from .lugs import Outline, lug_outlines, slit_outlines
 from .modelling import MM, arc_edge, kernel, outline_wire, plate_with_holes, raised, rim_face
-from .rounding import rounded
-from .slab import slab
+from .slab import break_points, slab
 
 LEAST_PRINTABLE = 0.3e-3
 """m: walls and slits below this can be neither printed nor moulded (assumed: common nozzles)."""
@@ -144,6 +143,8 @@ def _half_ring(channel: ArcChannel) -> Any:
 
 def _rounded(body: Any, edges: list[int], radius: float, name: str, remarks: list[str]) -> Any:
     """Return the body with fillets; where the kernel cannot make them the edges stay sharp."""
+    from .rounding import rounded  # also run as a program of its own
+
     filleted = rounded(body, edges, radius)
     if filleted is None:
         remarks.append(f"left sharp: {name}, {radius * 1e3:g} mm cannot be rolled along all of it")
@@ -186,8 +187,6 @@ def _free_lugs(lugs: Sequence[Outline], shape: SoleShape) -> list[Outline]:
 
     The kernel cannot roll a fillet over those.
     """
-    from .slab import break_points
-
     assert shape.tread is not None
     clear = shape.edge_radius + 2 * shape.tread.edge_radius
     kinks = np.array(break_points(shape)[1:-1])

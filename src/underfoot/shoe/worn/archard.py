@@ -1,11 +1,8 @@
 """Wear by contact pressure and sliding, the contact recomputed under the worn shape."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, cast
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,13 +10,12 @@ from underfoot.core import InputError, Progress, silent
 from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative, positive
 
-from .map import WornMap
+from .._kernels.regions import nearest_true
+from ..geometry import SoleMap, centred
+from ..shape import SoleShape
+from .forms import WornMap
 
-if TYPE_CHECKING:
-    from ..geometry import SoleMap
-    from ..shape import SoleShape
-
-Contact = Callable[["SoleShape", float], tuple["SoleMap", Array]]
+Contact = Callable[[SoleShape, float], tuple[SoleMap, Array]]
 """Sole and shoe angle (rad) to its map on the floor and the contact pressure (nx, ny) in Pa."""
 BLUR = 0.6
 """Width of the blur of each step's wear in cells: keeps single cells from wearing alone."""
@@ -74,11 +70,11 @@ def archard_wear(
     if not angles:
         raise InputError("no angle", where="wear.angle", allowed="at least one shoe angle")
     x = (np.arange(math.ceil(shape.length / spacing), dtype=np.float64) + 0.5) * spacing
-    y = _centred(math.ceil(shape.width / spacing)) * spacing
+    y = centred(math.ceil(shape.width / spacing), spacing)
     state = begin or ArchardStep(WornMap(x, y, np.zeros((x.size, y.size))), 0.0)
     while state.worn.depth < depth * (1 - 1e-6):
         progress("Wearing the sole", state.worn.depth / depth)
-        worn_shape = cast("SoleShape", replace(cast("Any", shape), wear=state.worn))
+        worn_shape = shape.worn(state.worn)
         pressure = np.zeros((x.size, y.size))
         for angle in angles:
             sole, contact_pressure = contact(worn_shape, angle)
@@ -107,8 +103,6 @@ def pressure_on_sole(
     """
     from scipy.ndimage import gaussian_filter, map_coordinates
 
-    from .._kernels.land import nearest_true
-
     land = (sole.land & np.isfinite(sole.clearance)).astype(float)
     weight = gaussian_filter(land, BLUR, mode="constant")
     blurred = gaussian_filter(pressure * land, BLUR, mode="constant")
@@ -121,7 +115,3 @@ def pressure_on_sole(
     at_x = grid_x * cosine - shape.land_height(grid_x, grid_y) * sine - origin
     at = [(at_x - sole.x[0]) / sole.spacing, (grid_y - sole.y[0]) / sole.spacing]
     return np.maximum(map_coordinates(value, at, order=1, mode="nearest"), 0.0)
-
-
-def _centred(count: int) -> Array:
-    return np.arange(count, dtype=np.float64) - (count - 1) / 2

@@ -1,21 +1,16 @@
 """How worn a sole is: tread left, size of the patch without tread, volume removed."""
 
-from __future__ import annotations
-
 import math
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, cast
+from dataclasses import dataclass
 
 import numpy as np
 
 from underfoot.core.arrays import Array, Mask
 
-from ..heel_grid import cut_heel
-
-if TYPE_CHECKING:
-    from ..shape import SoleShape
-    from ..sole_surface import SoleSurface
-
+from .._kernels.regions import nearest_true
+from ..geometry import SoleSurface
+from ..grids import cut_heel
+from ..shape import SoleShape
 
 MEASURING_CELL = 0.5e-3  # m
 SHALLOW = 0.5
@@ -62,7 +57,7 @@ def wear_measures(shape: SoleShape, *, spacing: float = MEASURING_CELL) -> WearM
         (rows + 0.5) * spacing, (columns + 0.5) * spacing - shape.width / 2, indexing="ij"
     )
     inside = shape.inward_distance(x, y) > 0
-    new = cast("SoleShape", replace(cast("Any", shape), wear=None))
+    new = shape.worn(None)
     removed = np.where(inside, shape.land_height(x, y) - shape.unworn_height(x, y), 0.0)
     raised = (cut_heel(shape, x, y)[0] - cut_heel(new, x, y)[0])[inside]
     depth = np.where(inside, 0.0 if shape.tread is None else shape.tread.depth, 0.0)
@@ -76,8 +71,6 @@ def surface_wear_measures(new: SoleSurface, worn: SoleSurface) -> WearMeasures:
     that had no tread are left aside, and so is the rounded rim, where a lug measures less than half
     of the median height.
     """
-    from .._kernels.land import nearest_true
-
     inside = new.inside
     removed = np.where(inside, np.nan_to_num(worn.land_base - new.land_base), 0.0)
     raised = np.nan_to_num(worn.height - new.height)[inside]

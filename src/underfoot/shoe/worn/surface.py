@@ -1,18 +1,14 @@
 """Wear of a sole that is known by its heights."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
 
 from underfoot.core.arrays import Array
 
-from ..sole_surface import SoleSurface
-
-if TYPE_CHECKING:
-    from ..shape import SoleShape, SoleWear
+from ..geometry import SoleSurface
+from ..shape import SoleShape, SoleWear
 
 
 def worn_surface(surface: SoleSurface, wear: SoleWear) -> SoleSurface:
@@ -26,7 +22,7 @@ def worn_surface(surface: SoleSurface, wear: SoleWear) -> SoleSurface:
     """
     base = surface.land_base
     known = np.where(np.isfinite(base), base, 0.0)
-    shape = cast("SoleShape", _Extent(surface, known))
+    shape = cast(SoleShape, _Extent(surface, known))
     check: Any = getattr(wear, "check_within", None)
     if check is not None:
         check(shape)

@@ -103,7 +103,7 @@ class SoleFoot:
         return SoleInstant(self._sliding.settle(normal_force=normal_force, speed=speed), self._law)
 
 
-ROOM = "slip-3"
+ROOM = "slip-5"
 
 
 @dataclass(frozen=True, slots=True)

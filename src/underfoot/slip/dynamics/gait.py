@@ -14,8 +14,15 @@ import numpy as np
 from underfoot.core import InputError
 from underfoot.core.arrays import Array
 
-COLUMNS = ("time_s", "normal_per_body_weight", "shear_ratio", "foot_angle_deg")
+COLUMNS = (
+    "time_s",
+    "normal_per_body_weight",
+    "shear_ratio",
+    "foot_angle_deg",
+    "heel_velocity_m_per_s",
+)
 LEAST_LOAD = 0.05  # of body weight: below, the ratio of two small forces is noise
+SLOWEST = 0.05  # m/s at contact: a slower heel does not tell how it stops
 GATE = 0.15  # of body weight (100 N of 70 kg): RCOF counts above it, as in the report's G.6.1
 
 
@@ -39,7 +46,9 @@ class GaitHistory:
     walking_speed
         m/s; None when not recorded.
     heel_speed
-        Horizontal speed of the heel at contact, m/s; None when not recorded.
+        Horizontal speed of the heel marker at contact, m/s; None when not recorded.
+    heel_velocity
+        (n,), m/s, of the heel over the floor along the walk; None when not recorded.
     source
         Recording, licence and how body weight was found.
 
@@ -57,12 +66,13 @@ class GaitHistory:
     foot_angle: Array | None = None
     walking_speed: float | None = None
     heel_speed: float | None = None
+    heel_velocity: Array | None = None
     source: str = ""
     notes: tuple[str, ...] = field(default=())
 
     def __post_init__(self) -> None:
         where = f"history {self.name}"
-        for label in ("time", "normal", "ratio", "foot_angle"):
+        for label in ("time", "normal", "ratio", "foot_angle", "heel_velocity"):
             values = getattr(self, label)
             if values is None:
                 continue
@@ -100,6 +110,18 @@ class GaitHistory:
         return float(self.time[-1])
 
     @property
+    def landing(self) -> Array | None:
+        """Share (n,) of its speed at contact that the landing heel still has, 1; None if unknown.
+
+        The least so far of ``heel_velocity``, 0 once the heel stands: what a marker moves later is
+        the foot that rolls.
+        """
+        if self.heel_velocity is None or self.heel_velocity[0] < SLOWEST:
+            return None
+        least = np.minimum.accumulate(self.heel_velocity)
+        return np.maximum(least, 0.0) / self.heel_velocity[0]
+
+    @property
     def rcof(self) -> float:
         """Largest ratio in the first half above 15 % of body weight, 1."""
         early = (self.time <= 0.5 * self.duration) & (self.normal > GATE)
@@ -133,7 +155,8 @@ class GaitHistory:
 def load_history(path: Path | str) -> GaitHistory:
     """Return a history from a table of our own columns (CSV; lines with # are notes).
 
-    Columns: time_s, normal_per_body_weight, shear_ratio and, where known, foot_angle_deg.
+    Columns: time_s, normal_per_body_weight, shear_ratio and, where known, foot_angle_deg and
+    heel_velocity_m_per_s.
     """
     path = Path(path)
     try:
@@ -162,8 +185,10 @@ def history_from_lines(lines: Iterable[str], name: str) -> GaitHistory:
         )
     try:
         values = {c: np.array([float(row[c]) for row in table]) for c in COLUMNS[:3]}
-        angles = [row.get(COLUMNS[3]) or "" for row in table]
-        angle = np.radians([float(a) for a in angles]) if all(angles) else None
+        angle, heel = (
+            np.array(cells, dtype=float) if all(cells) else None
+            for cells in ([row.get(column) or "" for row in table] for column in COLUMNS[3:])
+        )
     except (TypeError, ValueError) as error:
         raise InputError(f"a cell is no number ({error})", where=name) from None
     return GaitHistory(
@@ -171,9 +196,10 @@ def history_from_lines(lines: Iterable[str], name: str) -> GaitHistory:
         values["time_s"],
         values["normal_per_body_weight"],
         values["shear_ratio"],
-        angle,
+        None if angle is None else np.radians(angle),
         walking_speed=_number(notes.get("walking speed (m/s)")),
         heel_speed=_number(notes.get("heel speed at contact (m/s)")),
+        heel_velocity=heel,
         source="; ".join(notes[k] for k in ("source", "licence", "body weight") if k in notes),
     )
 
@@ -188,10 +214,11 @@ def history_text(history: GaitHistory, notes: dict[str, str]) -> str:
         if value is not None:
             lines.append(f"# {key}: {value:.3f}")
     lines.append(",".join(COLUMNS))
-    angle = history.foot_angle
+    angle, heel = history.foot_angle, history.heel_velocity
     for i, (t, n, r) in enumerate(zip(history.time, history.normal, history.ratio, strict=True)):
-        last = "" if angle is None else f"{math.degrees(angle[i]):.2f}"
-        lines.append(f"{t:.4f},{n:.4f},{r:.4f},{last}")
+        turned = "" if angle is None else f"{math.degrees(angle[i]):.2f}"
+        moved = "" if heel is None else f"{heel[i]:.3f}"
+        lines.append(f"{t:.4f},{n:.4f},{r:.4f},{turned},{moved}")
     return "\n".join(lines) + "\n"
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from underfoot.core import InputError, Progress, Status, silent
 from underfoot.core.arrays import Array
+from underfoot.core.constants import GRAVITY
 
 from .walker import Walker
 
@@ -68,8 +69,9 @@ class SlipMotion:
     """The foot against time; arrays (n,), SI.
 
     ``drive`` is r F, ``friction`` what the floor gives (N, against sliding), ``fluid_load`` the
-    load on the film (N). ``work_in``, ``dissipated`` and ``kinetic`` are energies since contact
-    (J), ``kinetic`` the energy itself. ``still_sliding`` says that the history ended first.
+    load on the film (N). ``work_in`` (of drive and brake), ``dissipated`` and ``kinetic`` are
+    energies since contact (J), ``kinetic`` the energy itself. ``still_sliding`` says that the
+    history ended first.
     """
 
     walker: Walker
@@ -100,9 +102,20 @@ class SlipMotion:
     @property
     def peak_speed(self) -> float:
         """Largest speed after the first minimum of the speed, m/s (no filter, no marker)."""
+        return float(self.speed[self._first_minimum :].max())
+
+    @property
+    def slip_start(self) -> tuple[float, float] | None:
+        """Time (s) and load (body weights) at the first minimum of the speed; None without one."""
+        at = self._first_minimum
+        if at < 0:
+            return None
+        return float(self.time[at]), float(self.normal[at]) / (self.walker.mass * GRAVITY)
+
+    @property
+    def _first_minimum(self) -> int:
         rising = np.flatnonzero(np.diff(self.speed) > 1e-12)
-        first_minimum = int(rising[0]) if rising.size else -1
-        return float(self.speed[first_minimum:].max())
+        return int(rising[0]) if rising.size else -1
 
 
 def slip_motion(
@@ -116,11 +129,14 @@ def slip_motion(
 ) -> SlipMotion:
     """Return the motion of a foot that lands on the floor and slides, or does not.
 
-    m dV/dt = r(t) F(t) - FF(V, film, contact),  V >= 0
+    m dV/dt = r(t) F(t) + m dV_dry/dt - FF(V, film, contact),  V >= 0
 
-    by the trapezoidal rule for V with contact and film carried to the predicted speed. At rest
-    friction is what the body asks, up to its greatest value at the lowest speed. A foot is not
-    pushed backward. It ends when the foot rests and braking is over, or with the history.
+    by the trapezoidal rule for V with contact and film carried to the predicted speed. V_dry is
+    the heel's speed on a dry floor, where friction is r F: the body brakes the landing heel. From
+    slip start until it rests the foot takes on no more load than ``Walker.weight_transfer`` of that
+    of the dry step, or what it bears already. At rest friction is what the body asks, up to its
+    greatest value at the lowest speed. A foot is not pushed backward. It ends when the foot rests
+    and braking is over, or with the history.
 
     Parameters
     ----------
@@ -146,17 +162,23 @@ def slip_motion(
     count = math.ceil(end / step)
     times = np.linspace(0.0, end, count + 1)
     normals, drives, angles = walker.demands(times)
+    braked = np.diff(walker.dry_speed(times))
+    at_start: float | None = None
     speed, distance = walker.heel_speed, 0.0
     acceleration = 0.0
     friction = 0.0
     work_in = dissipated = 0.0
     rows = [(0.0, speed, 0.0, 0.0, float(drives[0]), 0.0, 0.0, float(angles[0]), 0.0, 0.0)]
     status = Status.CONVERGED
-    begin = float(drives[0])
+    begin, begin_load = float(drives[0]), float(normals[0])
     for i in range(count):
         duration = float(times[i + 1] - times[i])
         normal, drive = float(normals[i + 1]), float(drives[i + 1])
-        guess = max(speed + duration * acceleration, 0.0)
+        if at_start is not None and normal > at_start:
+            share = max(at_start / normal, walker.weight_transfer)
+            normal, drive = share * normal, share * drive
+        brake = mass * float(braked[i]) / duration
+        guess = max(speed + duration * acceleration + float(braked[i]), 0.0)
         instant = contact.advance(
             duration, normal_force=normal, speed=guess, shoe_angle=float(angles[i + 1])
         )
@@ -168,17 +190,25 @@ def slip_motion(
         if i == 0 and normal > 0:
             # the floor has not been asked yet: as much friction for each newton as a step later
             friction = instant.friction(speed) * float(normals[0]) / normal
-        new, friction_now = _new_speed(
-            instant, speed, duration / (2 * mass), begin - friction, drive
-        )
+        net = begin + brake - friction
+        new, friction_now = _new_speed(instant, speed, duration / (2 * mass), net, drive + brake)
+        most = friction_now if new > STILL else instant.friction(0.0)
         moved = 0.5 * (speed + new) * duration
-        mean_drive = 0.5 * (begin + drive)
+        mean_drive = 0.5 * (begin + drive) + brake
         work_in += mean_drive * moved
         # what friction really took, also when the foot came to rest within the step
         dissipated += (mean_drive - mass * (new - speed) / duration) * moved
         acceleration = (drive - friction_now) / mass if new > 0 else 0.0
         distance += moved
-        speed, friction, begin = new, friction_now, drive
+        excess = drive + brake - most
+        if new <= STILL:
+            at_start = None
+        elif at_start is None and excess > 0:
+            # where the forces balance: the minimum of the speed
+            before = min(net, 0.0) / (min(net, 0.0) - excess)
+            at_start = begin_load + before * (normal - begin_load)
+        # a resting foot is held by as much as is asked of the most that the floor gives
+        speed, friction, begin, begin_load = new, most, drive, normal
         rows.append(
             (
                 float(times[i + 1]),
@@ -186,7 +216,7 @@ def slip_motion(
                 distance,
                 normal,
                 drive,
-                friction,
+                friction_now,
                 instant.fluid_load,
                 float(angles[i + 1]),
                 work_in,

@@ -15,6 +15,7 @@ from underfoot.trials.events import body_mass
 from underfoot.trials.filters import low_passed
 from underfoot.trials.gait import RcofDefinition, RequiredFriction, required_frictions
 from underfoot.trials.gait_context import FLAT, heel_speed
+from underfoot.trials.heel import HeelMotion, heel_motion
 from underfoot.trials.plates import plate_named
 from underfoot.trials.readers import read_trial
 from underfoot.trials.stance import Stance
@@ -64,7 +65,8 @@ def step_history(
     """Return one accepted step as a history: forces low-passed as for RCOF, 200 samples a second.
 
     Foot angle: from the line heel marker to toe marker (or first or second metatarsal head of the
-    same side), against its angle while the foot lies flat (30 to 50 % of stance).
+    same side), against its angle while the foot lies flat (30 to 50 % of stance). Heel velocity:
+    ``heel_over_floor``.
     """
     axes, stance = axes_of(trial), step.stance
     assert stance.walking is not None  # an RCOF has one
@@ -88,15 +90,15 @@ def step_history(
         _foot_angle(trial, stance, axes, time),
         walking_speed=_walking_speed(trial, stance.contact, stance.toe_off, axes),
         heel_speed=heel_speed(trial, stance, axes),
+        heel_velocity=_heel_velocity(trial, stance, axes, time),
         source=how,
     )
 
 
 def _foot_angle(trial: Trial, stance: Stance, axes: Axes, time: Array) -> Array | None:
     """Return the foot's angle at ``time`` since contact, where heel and toe are recorded."""
-    heel = trial.marker(stance.heel) if stance.heel else None
-    toe = _toe_of(trial, stance.heel) if heel else None
-    if heel is None or toe is None or len(toe.positions) != len(heel.positions):
+    heel, toe = _heel_and_toe(trial, stance)
+    if heel is None or toe is None:
         return None
     line = toe.positions - heel.positions
     tilt = np.arctan2(line @ axes.up, line @ stance.walking)
@@ -106,6 +108,40 @@ def _foot_angle(trial: Trial, stance: Stance, axes: Axes, time: Array) -> Array 
         return None
     angle = np.interp(time + stance.contact, heel.time, tilt - np.median(tilt[flat]))
     return angle if np.isfinite(angle).all() else None
+
+
+def _heel_velocity(trial: Trial, stance: Stance, axes: Axes, time: Array) -> Array | None:
+    """Return the heel's velocity over the floor at ``time``, where heel and toe are recorded."""
+    heel, toe = _heel_and_toe(trial, stance)
+    corners = plate_named(trial, stance.plate).corners
+    if heel is None or toe is None or corners is None or stance.walking is None:
+        return None
+    motion, up = heel_motion(heel, axes.up), axes.up
+    level = corners.mean(axis=0) @ up
+    own = heel_over_floor(motion, heel_motion(toe, up), up, stance.walking, level)
+    velocity = np.interp(time + stance.contact, motion.time, own)
+    return velocity if np.isfinite(velocity).all() else None
+
+
+def heel_over_floor(
+    heel: HeelMotion, toe: HeelMotion, up: Array, walking: Array, level: float
+) -> Array:
+    """Return the velocity (n,) along ``walking`` of a heel under its marker, m/s.
+
+    v - w h: marker's velocity less its height above the floor (``level``, m) times the rate at
+    which the line from heel to toe marker falls. A heel that rolls without sliding has 0.
+    """
+    line, turning = toe.position - heel.position, toe.velocity - heel.velocity
+    along, rise = line @ walking, line @ up
+    falling = (rise * (turning @ walking) - along * (turning @ up)) / (along**2 + rise**2)
+    return heel.velocity @ walking - falling * np.maximum(heel.position @ up - level, 0.0)
+
+
+def _heel_and_toe(trial: Trial, stance: Stance) -> tuple[Marker | None, Marker | None]:
+    heel = trial.marker(stance.heel) if stance.heel else None
+    toe = _toe_of(trial, stance.heel) if heel else None
+    same = heel is not None and toe is not None and len(toe.positions) == len(heel.positions)
+    return heel, toe if same else None
 
 
 def _toe_of(trial: Trial, heel: str) -> Marker | None:

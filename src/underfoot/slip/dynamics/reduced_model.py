@@ -88,18 +88,18 @@ class ReducedSole:
             )
         times = np.linspace(0.0, history.duration, math.ceil(history.duration / step) + 1)
         normals, drives, angles = walker.demands(times)
-        free = np.full(times.size, np.nan)
         out = self._carried(
             times,
             normals,
             drives,
             angles,
-            free,
-            walker.heel_speed,
+            walker.dry_speed(times),
+            walker.weight_transfer,
+            np.full(times.size, np.nan),
             walker.moving_mass,
             history.end_of_braking,
         )
-        speed, _, friction, fluid, work, lost, end = out
+        speed, _, friction, fluid, work, lost, normals, drives, end = out
         keep = slice(0, end + 1)
         moved = 0.5 * (speed[1:] + speed[:-1]) * np.diff(times)
         distance = np.concatenate([[0.0], np.cumsum(moved)])
@@ -131,7 +131,8 @@ class ReducedSole:
             motion.drive,
             motion.shoe_angle,
             motion.speed,
-            0.0,
+            1.0,
+            motion.speed,
             motion.walker.moving_mass,
             0.0,
         )
@@ -143,18 +144,20 @@ class ReducedSole:
         normals: Array,
         drives: Array,
         angles: Array,
+        dry_speeds: Array,
+        transfer: float,
         speeds: Array,
-        first_speed: float,
         mass: float,
         over: float,
-    ) -> tuple[Array, Array, Array, Array, Array, Array, int]:
+    ) -> tuple[Array, Array, Array, Array, Array, Array, Array, Array, int]:
         return kernel.carried(
             times,
             normals,
             drives,
             angles - self.shoe_angle,
+            dry_speeds,
+            transfer,
             speeds,
-            first_speed,
             mass,
             self.constants,
             self.viscosity or 0.0,
@@ -214,24 +217,27 @@ class ReducedFit:
 
 def design(population: Population, count: int, seed: int = 7) -> tuple[Walker, ...]:
     """Return walkers that span a population to two standard deviations, by a Latin hypercube."""
-    names = ("mass", "rcof", "walking_speed", "heel_speed", "shoe_angle")
+    names = ("mass", "rcof", "walking_speed", "heel_speed", "shoe_angle", "brake_time")
     generator = np.random.default_rng(seed)
-    columns = [generator.permutation(count) for _ in range(len(names) + 1)]
+    columns = [generator.permutation(count) for _ in range(len(names) + 2)]
     places = (np.column_stack(columns) + generator.random((count, len(columns)))) / count
     walkers = []
     for row in places:
         values = {}
+        low, high = population.weight_transfer
         for name, share in zip(names, row, strict=False):
             spread: Spread = getattr(population, name)
             # normal between its 5 and 95 %, stretched to two standard deviations
             at = spread.mean + 2 * spread.sd * float(ndtri(0.05 + 0.9 * share)) / 1.645
             values[name] = float(np.clip(at, spread.low, spread.high))
-        pick = population.histories[int(row[-1] * len(population.histories))]
+        pick = population.histories[int(row[-2] * len(population.histories))]
         walkers.append(
             Walker(
                 history=pick,
                 effective_mass=population.effective_mass,
                 recorded_angle=population.recorded_angle,
+                heel_brake=population.heel_brake,
+                weight_transfer=low + (high - low) * float(row[-1]),
                 name=f"design {len(walkers) + 1}",
                 **values,
             )

@@ -66,7 +66,7 @@ def sensor_map(state: SoleState, inlet_diameter: float) -> Array:
         state.fluid_pressure,
         np.clip(state.film_thickness, SMALLEST_GAP, GAP_CAP) ** 3,
         GAP_CAP**3,
-    )
+    )[0]
 
 
 class MappedRun(Protocol):

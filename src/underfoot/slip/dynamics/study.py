@@ -105,15 +105,27 @@ class SlipStudy:
             return None
         return float(np.corrcoef(speed, pressure)[0, 1])
 
-    def peak_speed_at(self, effective_mass: float) -> float | None:
-        """Return the mean largest heel speed (m/s) if another share of the body moved with it.
+    def peak_speed_at(self, **changes: float | str) -> float | None:
+        """Return the mean largest heel speed (m/s) if fields of every ``Walker`` were others.
 
-        By the reduced model, whose contact does not know the mass; None without one.
+        By the reduced model, whose contact does not know who walks; None without one.
         """
         if self.sole is None:
             return None
-        people = [replace(s.walker, effective_mass=effective_mass) for s in self.subjects]
+        people = [replace(s.walker, **changes) for s in self.subjects]
         return float(np.mean([self.sole.motion(walker).peak_speed for walker in people]))
+
+    def slip_start(self) -> tuple[float, float] | None:
+        """Return mean time (s) and load (body weights) at slip start of those who slip, if any."""
+        starts = [s.motion.slip_start for s in self.subjects if s.seen.slipped]
+        known = [start for start in starts if start is not None]
+        return tuple(np.mean(known, axis=0).tolist()) if known else None
+
+    def highest_seen(self) -> float | None:
+        """Return the highest reading over the film's highest pressure, median of the full runs."""
+        runs = [*self.full_runs, *([self.representative] if self.representative else [])]
+        seen = [float(run.maps.max() / run.peaks.max()) for run in runs if run.peaks.max() > 0]
+        return float(np.median(seen)) if seen else None
 
     def sensor_passages(self) -> dict[str, Array]:
         """Return what the report's Table 7 regresses, one value a sensor that a heel passed.

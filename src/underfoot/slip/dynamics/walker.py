@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from underfoot.core import InputError
+from underfoot.core import InputError, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.constants import GRAVITY
 
@@ -15,6 +15,10 @@ from .gait import GaitHistory, packaged_histories
 
 REFERENCE_SPEED = 1.35
 """m/s, mean walking speed of the recorded steps that know it; taken for those that don't."""
+
+HEEL_BRAKES = ("recorded", "constant", "none")
+BRAKE_TIME = 0.011
+"""s, in which a landing heel loses its speed by e: mean of the ten recorded steps that tell."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +32,9 @@ class Walker:
     mass
         Of the body, kg.
     rcof
-        Required coefficient of friction, 0 to 1; the history's ratio is scaled to it.
+        Required coefficient of friction as measured over several steps, 0 to 1.
+    rcof_step
+        What this step asks more than ``rcof``, 1; the history's ratio is scaled to their sum.
     heel_speed
         Forward speed of the heel at contact, m/s.
     shoe_angle
@@ -43,6 +49,13 @@ class Walker:
         Place of the heel's centre line to the left of the sensors' middle column, m.
     recorded_angle
         Let the shoe angle fall as in the history (where it has one) instead of holding it.
+    heel_brake
+        How the body stops the landing heel: "recorded", as in the history (where its heel velocity
+        is known), "constant", with a time constant, or "none", not at all.
+    brake_time
+        That time constant, s.
+    weight_transfer
+        Share of the dry step's load that a slipping foot takes on, 0 to 1.
 
     Raises
     ------
@@ -60,6 +73,10 @@ class Walker:
     landing: float = 0.01
     lateral: float = 0.0
     recorded_angle: bool = False
+    rcof_step: float = 0.0
+    heel_brake: str = "recorded"
+    brake_time: float = BRAKE_TIME
+    weight_transfer: float = 1.0
     name: str = "walker"
 
     def __post_init__(self) -> None:
@@ -69,9 +86,14 @@ class Walker:
             ("heel_speed", self.heel_speed, 0.0, 6.0, "0 to 6 m/s"),
             ("effective_mass", self.effective_mass, 1e-3, 1.0, "0.001 to 1"),
             ("walking_speed", self.walking_speed or 1.0, 0.1, 6.0, "0.1 to 6 m/s"),
+            ("rcof_step", self.rcof_step, -1.0, 1.0, "-1 to 1"),
+            ("brake_time", self.brake_time, 1e-3, 1.0, "0.001 to 1 s"),
+            ("weight_transfer", self.weight_transfer, 0.0, 1.0, "0 to 1"),
         ):
-            if not (math.isfinite(value) and low <= value <= high):
+            if not low <= value <= high:
                 raise InputError(f"{value:g}", where=f"walker.{label}", allowed=allowed)
+        if self.heel_brake not in HEEL_BRAKES:
+            raise unknown_name("brake", self.heel_brake, HEEL_BRAKES, where="walker.heel_brake")
 
     @property
     def moving_mass(self) -> float:
@@ -81,7 +103,7 @@ class Walker:
     @property
     def step(self) -> GaitHistory:
         """The history as this person walks it: own RCOF, own length."""
-        scaled = self.history.asking(self.rcof)
+        scaled = self.history.asking(min(max(self.rcof + self.rcof_step, 0.0), 1.0))
         if self.walking_speed is None:
             return scaled
         recorded_speed = self.history.walking_speed or REFERENCE_SPEED
@@ -89,7 +111,7 @@ class Walker:
         return scaled.lasting(self.history.duration * recorded_speed / self.walking_speed)
 
     def demands(self, times: Array) -> tuple[Array, Array, Array]:
-        """Return load (N), drive r F (N) and shoe angle (rad) at times since contact (s)."""
+        """Return dry load (N), drive r F (N) and shoe angle (rad) at times since contact (s)."""
         step = self.step
         normal = np.interp(times, step.time, step.normal) * self.mass * GRAVITY
         drive = np.interp(times, step.time, step.ratio) * normal
@@ -98,6 +120,15 @@ class Walker:
             fall = np.interp(times, step.time, step.foot_angle) - step.foot_angle[0]
             angle = np.maximum(self.shoe_angle + fall, 0.0)
         return normal, drive, angle
+
+    def dry_speed(self, times: Array) -> Array:
+        """Return the heel's forward speed (m/s) on a dry floor at times since contact (s)."""
+        step = self.step
+        if self.heel_brake == "none":
+            return np.full(np.shape(times), self.heel_speed)
+        if self.heel_brake == "recorded" and step.landing is not None:
+            return self.heel_speed * np.interp(times, step.time, step.landing)
+        return self.heel_speed * np.exp(-times / self.brake_time)
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +161,8 @@ class Spread:
         return np.clip(values, self.low, self.high)
 
 
+WEIGHT_TRANSFER = (0.35, 0.75)
+"""Largest load in unexpected slips, 0.40 to 0.85 body weights, over that of dry steps, 1.1."""
 _STEPS = "13 steps of dry walking with heel markers that come with the package (slip_dynamics.md)"
 
 
@@ -138,8 +171,8 @@ class Population:
     """Who walks: distributions of what differs between persons, drawn independently.
 
     ``mass``, ``rcof``, ``walking_speed``, ``heel_speed`` and ``shoe_angle`` are normal and cut;
-    ``history`` is drawn from ``histories``; ``landing`` is uniform. ``effective_mass`` is one
-    number for all (assumed).
+    so are ``rcof_step`` and ``brake_time``. ``history`` is drawn from ``histories``; ``landing``
+    and ``weight_transfer`` are uniform. ``effective_mass`` is one number for all (assumed).
     """
 
     subjects: int = 40
@@ -158,6 +191,10 @@ class Population:
     lateral: Spread = Spread(0.0, 0.01, -0.03, 0.03, "assumption")
     effective_mass: float = 0.114
     recorded_angle: bool = False
+    rcof_step: Spread = Spread(0.0, 0.015, -0.2, 0.2, "14 steps of six persons", False)
+    brake_time: Spread = Spread(BRAKE_TIME, 0.007, 0.004, 0.04, "10 steps with heel and toe")
+    heel_brake: str = "recorded"
+    weight_transfer: tuple[float, float] = WEIGHT_TRANSFER
 
     def __post_init__(self) -> None:
         if self.subjects < 1 or int(self.subjects) != self.subjects:
@@ -191,5 +228,9 @@ class Population:
             lateral=drawn(self.lateral),
             effective_mass=self.effective_mass,
             recorded_angle=self.recorded_angle,
+            rcof_step=drawn(self.rcof_step),
+            brake_time=drawn(self.brake_time),
+            heel_brake=self.heel_brake,
+            weight_transfer=float(generator.uniform(*self.weight_transfer)),
             name=f"subject {index + 1}",
         )

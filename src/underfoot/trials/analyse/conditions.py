@@ -58,34 +58,19 @@ class StudyFolder:
 
 
 def study_folder(
-    folder: Path,
-    *,
-    conditions: Path | None = None,
-    names: str = "",
-    merge_spelling: bool = False,
+    folder: Path, *, conditions: Path | None = None, names: str = "", merge_spelling: bool = False
 ) -> StudyFolder:
     """Return the recordings in a folder with their conditions.
 
-    Conditions come from tables (``conditions.csv`` or ``.xlsx`` in the folder or beside the
-    files), from names by a pattern, or else from the folders: a level whose folders are called
-    like ``S01`` or ``subject 7`` names the person, another level with several folders is a
-    condition called "folder".
-
-    Parameters
-    ----------
-    conditions
-        Another table of conditions.
-    names
-        Regular expression with named groups, searched in each path below ``folder`` without its
-        ending, such as ``S(?P<subject>\\d+)_(?P<shoe>[a-z]+)_(?P<n>\\d+)``.
-    merge_spelling
-        Take spellings that differ in capitals, blanks, "-" or "_" as one; else they are refused.
-
-    Raises
-    ------
-    InputError
-        No such folder, no trial file, a wrong table or pattern, a file that two sources describe
-        differently, a condition in several spellings.
+    Conditions come from tables (``conditions.csv`` or ``.xlsx`` in the folder or beside the files,
+    or the table ``conditions``), from ``names`` (a regular expression with named groups, searched
+    in each path below ``folder`` without its ending, such as
+    ``S(?P<subject>\\d+)_(?P<shoe>[a-z]+)_(?P<n>\\d+)``), or else from the folders: a level whose
+    folders are called like ``S01`` or ``subject 7`` names the person, another level with several
+    folders is a condition called "folder". Spellings that differ in capitals, blanks, "-" or "_"
+    are one with ``merge_spelling``. An `InputError` says that there is no such folder or no trial
+    file, that a table or pattern is wrong, that two sources describe a file differently, or that a
+    condition has several spellings.
     """
     groups, notes = _groups(folder)
     labels = [_label(group[0], folder) for group in groups]
@@ -109,12 +94,9 @@ def study_folder(
 
 
 def named_file(name: str, labels: Sequence[str], below: str = ".") -> str | None:
-    """Return the one file that a table names, by its path or by its bare name; None if absent.
+    """Return the one file that a table names, by its path or its bare name; None if absent.
 
-    Raises
-    ------
-    InputError
-        The bare name stands for several files.
+    A bare name that stands for several files is an `InputError`.
     """
     plain = name.replace("\\", "/")
     inside = plain if below in (".", "") else f"{below}/{plain}"
@@ -293,17 +275,9 @@ def conditions_of(folder: Path, table: Path | None = None) -> dict[str, dict[str
     """Return the noted conditions by file name: numbers in SI where a unit is written, else text.
 
     The first line holds the headings, with units in brackets: ``file, shoe, viscosity (cP)``. A
-    column counts as numbers when all its filled cells are numbers.
-
-    Parameters
-    ----------
-    folder
-        Searched for ``conditions.csv`` or ``conditions.xlsx`` when ``table`` is None.
-
-    Raises
-    ------
-    InputError
-        The table has no column "file", names a file twice, or can't be read.
+    column counts as numbers when all its filled cells are numbers. ``conditions.csv`` or ``.xlsx``
+    in the folder is read when ``table`` is None. An `InputError` says that the table has no column
+    "file", names a file twice, or can't be read.
     """
     path = table or next((folder / name for name in NAMES if (folder / name).is_file()), None)
     if path is None:

@@ -26,12 +26,8 @@ def definition_tables(
 ) -> tuple[Table, Table]:
     """Return RCOF under all ``DEFINITIONS``: one row a definition, and one row a step.
 
-    Files that can't be read are named in the notes; edits by hand are applied.
-
-    Raises
-    ------
-    InputError
-        No such folder, no trial in it, a wrong profile or a wrong edit.
+    Files that can't be read are named in the notes; edits by hand are applied. A folder without
+    trials, a wrong profile and a wrong edit are an `InputError`.
     """
     folder = Path(folder)
     read, _ = profile_of(folder, profile)

@@ -26,20 +26,10 @@ def edits_of(folder: Path, labels: Sequence[str], *, others: bool = False) -> di
     """Return the edits by file from ``edits.csv`` (or ``.xlsx``) in a folder.
 
     Columns: file; step (its number, or a time within it as ``3.02 s``); edit (one of ``EDITS``);
-    value (``3.060 s``, ``left``, ``plate 2``, empty for exclude); why.
-
-    Parameters
-    ----------
-    labels
-        The recordings of the folder; an edit for another file is an error.
-    others
-        Leave edits for other files aside instead.
-
-    Raises
-    ------
-    EditError
-        A column missing, a value that does not fit, no reason, or a file that is not there; with
-        the line.
+    value (``3.060 s``, ``left``, ``plate 2``, empty for exclude); why. ``labels`` are the
+    recordings of the folder: an edit for another file is an error, or left aside with ``others``.
+    An `EditError` with the line says that a column is missing, a value does not fit, or there is no
+    reason.
     """
     path = next((folder / name for name in NAMES if (folder / name).is_file()), None)
     if path is None:
@@ -69,10 +59,7 @@ def edits_of(folder: Path, labels: Sequence[str], *, others: bool = False) -> di
 def edit_from(step: str, what: str, value: str, why: str, where: str, unit: str = "") -> Edit:
     """Return an edit from text; ``unit`` is that of a heading ``value (s)``.
 
-    Raises
-    ------
-    EditError
-        What can't be understood.
+    What can't be understood is an `EditError`.
     """
     what = what.strip().casefold()
     try:

@@ -81,15 +81,14 @@ class Draft:
     """Collects what one file gives while it is analysed."""
 
     def __init__(self, file: str, conditions: Mapping[str, Any], checksum: str = "") -> None:
-        self.file = file
-        self.checksum = checksum
+        self.file, self.checksum = file, checksum
         self.conditions = dict(conditions)
-        self.measurements: list[dict[str, Any]] = []
         self.main: dict[str, float] = {}
         self.facts: dict[str, float] = {}
         self.curves: dict[str, Any] = {}
         self.cautions: list[str] = []
         self.refusals: list[str] = []
+        self.measurements: list[dict[str, Any]] = []
         self.edits: list[dict[str, Any]] = []
         self.steps: list[dict[str, Any]] = []
 
@@ -121,19 +120,9 @@ class Draft:
                 f"{entry['item']}: {flag['words']}" for flag in entry["flags"] if flag["matters"]
             ]
         verdict = REFUSED if self.refusals else CAUTION if self.cautions else ACCEPTED
-        return FileResult(
-            self.file,
-            self.checksum,
-            verdict,
-            tuple(dict.fromkeys([*self.refusals, *self.cautions])),
-            tuple(self.measurements),
-            self.main,
-            self.facts,
-            self.curves,
-            self.conditions,
-            tuple(self.edits),
-            tuple(self.steps),
-        )
+        reasons = dict.fromkeys([*self.refusals, *self.cautions])
+        own = {k: v for k, v in vars(self).items() if k not in ("cautions", "refusals")}
+        return FileResult.from_dict({**own, "verdict": verdict, "reasons": list(reasons)})
 
 
 def rates(trial: Trial, draft: Draft) -> None:

@@ -114,16 +114,18 @@ def analyse_folder(
         (one.name, one.paths, one.conditions, edits.get(one.name, []), read, protocol, base, store)
         for one in study_files.recordings
     ]
-    # A process takes longer to start than a file.
-    count = (processes or available_processors()) if len(jobs) >= 4 else 1
-    answers = in_processes(
-        _job, jobs, count, progress=progress, stage="analysing files", died=_died
-    )
-    results = (one for _, part in answers for one in part)
-    files = tuple(sorted(results, key=lambda one: one.file))
+    results = _run(jobs, processes or available_processors(), progress)
+    files = tuple(sorted((one for part in results for one in part), key=lambda one: one.file))
     study = study_of(files, protocol)
     methods = tuple(methods_paragraphs(files, protocol, study, version()))
     return FolderAnalysis(protocol, files, study, methods, study_files.notes)
+
+
+def _run(jobs: list[tuple[Any, ...]], processes: int, progress: Progress) -> list[list[FileResult]]:
+    count = processes if len(jobs) >= 4 else 1  # a process takes longer to start than a file
+    stage = "analysing files"
+    answers = in_processes(_job, jobs, count, progress=progress, stage=stage, died=_died)
+    return [results for _, results in answers]
 
 
 def _died(job: tuple[Any, ...]) -> list[FileResult]:

@@ -26,11 +26,8 @@ from .steps import STEP_KINDS, analysed_steps
 def analysed_trial(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
     """Analyse one trial into ``draft`` by the kind of the protocol.
 
-    Raises
-    ------
-    UnderfootError
-        What makes the whole file useless; single numbers that can't be had are kept as
-        "not estimated".
+    An `UnderfootError` says what makes the whole file useless; single numbers that can't be
+    measured are kept as "not estimated".
     """
     if protocol.kind in STEP_KINDS:
         analysed_steps(trial, draft, protocol, profile)

@@ -40,12 +40,8 @@ def reading_results(
     Every text column is a condition; rows that agree in all of them are readings of one sample.
     A column "run" may say "zero" (the mean of these readings is taken off the sample's others)
     or "conditioning" (left out). The protocol may leave out the first readings of each sample
-    (``conditioning``) and keep the last ones (``readings``).
-
-    Raises
-    ------
-    DataError
-        No column that can be recognised as readings, or impossible values.
+    (``conditioning``) and keep the last ones (``readings``). A table in which no column can be
+    recognised as readings, and impossible values, are a `DataError`.
     """
     columns, lines = table_columns(path)
     cells = {head: column for head, _, column in columns}

@@ -37,12 +37,7 @@ def rcof_definition(protocol: Protocol) -> RcofDefinition:
 
     ``definition`` names one of ``DEFINITIONS``; ``force_cutoff`` and ``rcof_filter``,
     ``rcof_gate``, ``rcof_gate_body_weight``, ``rcof_shear``, ``rcof_peak``, ``rcof_braking``,
-    ``rcof_part`` change single choices.
-
-    Raises
-    ------
-    InputError
-        An unknown name or setting.
+    ``rcof_part`` change single choices. An unknown name or setting is an `InputError`.
     """
     where = f"protocol {protocol.name}"
     known = [f"rcof_{key}" for key in _SETTINGS]
@@ -73,22 +68,13 @@ def rcof_definition(protocol: Protocol) -> RcofDefinition:
 def protocol_ramp(protocol: Protocol) -> Ramp:
     """Return the slope of the walkway that a protocol sets (``ramp``, ``plate_frame``).
 
-    Raises
-    ------
-    InputError
-        No angle, or a slope without the axes of its plates.
+    No angle, and a slope without the axes of its plates, are an `InputError`.
     """
     return Ramp(protocol.number("ramp", "rad", 0.0), protocol.text("plate_frame"))
 
 
 def check_ramp(protocol: Protocol) -> None:
-    """Refuse a ramp that can't be one, or that a protocol without steps is given.
-
-    Raises
-    ------
-    InputError
-        As ``protocol_ramp``; a ramp in a protocol of testers.
-    """
+    """Refuse a ramp that can't be one, or that a protocol without steps is given."""
     if protocol.kind in STEP_KINDS:
         protocol_ramp(protocol)
     elif "ramp" in protocol.method or "plate_frame" in protocol.method:
@@ -102,19 +88,12 @@ def check_ramp(protocol: Protocol) -> None:
 def analysed_steps(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
     """Analyse a walk or a slip into ``draft``; edits are applied and logged.
 
-    Raises
-    ------
-    DataError
-        No contact with a plate, with the cause.
-    EditError
-        An edit by hand that can't be applied.
+    A recording without contact is a `DataError` with the cause, an edit by hand that can't be
+    applied an `EditError`.
     """
     analysis = {"gait": _gait, "human_slip": _human_slip}[protocol.kind]
     axes = axes_of(
-        trial,
-        vertical=profile.vertical,
-        walking=profile.walking,
-        ramp=protocol_ramp(protocol),
+        trial, vertical=profile.vertical, walking=profile.walking, ramp=protocol_ramp(protocol)
     )
     analysis(_Walk(trial, draft, protocol, profile, axes))
     if trial.edits:
@@ -179,16 +158,13 @@ def _human_slip(walk: _Walk) -> None:
     if one.motion is not None:
         motion = one.motion
         near = (motion.time > one.contact - 0.15) & (motion.time < one.contact + 0.9)
-        draft.curve(
-            "heel",
-            time=motion.time[near] - one.contact,
-            speed=motion.speed[near],
-            start=(one.start.value or np.nan) - one.contact,
-            end=one.end - one.contact,
-            peak_time=one.peak_time - one.contact,
-            peak=one.peak_speed.value or np.nan,
-            threshold=definition.threshold,
-        )
+        times = {
+            "time": motion.time[near], "start": one.start.value or np.nan, "end": one.end,
+            "peak_time": one.peak_time,
+        }  # fmt: skip
+        after = {key: time - one.contact for key, time in times.items()}
+        speeds = {"speed": motion.speed[near], "peak": one.peak_speed.value or np.nan}
+        draft.curve("heel", **after, **speeds, threshold=definition.threshold)
     if walk.profile.sensors and stance.walking is not None:
         _sensors(walk, one, stance.walking)
     acof = draft.conditions.get("acof")

@@ -16,7 +16,7 @@ from ..pressure_map import PressureScan, pressure_map
 from ..protocols import Protocol
 from ..statistics import precision
 from ..stribeck_fit import METHODS as FIT_METHODS
-from ..stribeck_fit import StribeckFit, stribeck_fit
+from ..stribeck_fit import stribeck_fit
 from ..viscosity_speed_curve import master_curve
 from . import tables
 from .conditions import NUMBERS, person_condition
@@ -68,21 +68,17 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
         except UnderfootError as error:
             notes.append(f"{label}: not fitted ({error.what})")
             continue
-        rows.append((*group, *_fit_cells(fit, simplex)))
+        own = (fit.boundary, fit.tau, fit.asymptote)
+        cells = (cell for p in own for cell in (p.value, p.low, p.high, p.remark))
+        beside = (p.value for p in (simplex.boundary, simplex.tau, simplex.asymptote))
+        rows.append((*group, fit.n, fit.r_squared, fit.verdict, *cells, *beside))
         first = group[0] if group else ""
+        mean = float(np.mean(cof))
         fits.append(
-            {
-                "label": label,
-                "group": first,
-                "speed": speed,
-                "cof": cof,
-                "raw": list(fit.raw),
-                "mean": float(np.mean(cof)),
-                "verdict": fit.verdict,
-                "r_squared": fit.r_squared,
-            }
-        )
-        for parameter in (fit.boundary, fit.tau, fit.asymptote):
+            {"label": label, "group": first, "speed": speed, "cof": cof, "raw": list(fit.raw),
+             "mean": mean, "verdict": fit.verdict, "r_squared": fit.r_squared}
+        )  # fmt: skip
+        for parameter in own:
             keep = parameter.value is not None and not parameter.remark.startswith("not identified")
             parameters[parameter.name].append((first, parameter.value) if keep else None)
     intervals = (
@@ -93,19 +89,13 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
         *keys, "n", "R^2", "verdict", *(name for four in intervals for name in four),
         "COF_BL by Nelder-Mead", "tau by Nelder-Mead", "asymptote by Nelder-Mead",
     )  # fmt: skip
-    made = [
-        Table(
-            "stribeck",
-            "COF = asymptote + (COF_BL - asymptote) exp(-speed / tau), Eq. 17",
-            columns,
-            tuple(rows),
-            (
-                f"Fitted by {FIT_METHODS['separable']}; beside it {FIT_METHODS['nelder_mead']}.",
-                "Intervals are profile likelihoods; a dash means that the profile does not close.",
-                "Verdict: good above R^2 0.8, moderate above 0.5, else COF_BL is the mean COF.",
-            ),
-        )
-    ]
+    title = "COF = asymptote + (COF_BL - asymptote) exp(-speed / tau), Eq. 17"
+    explained = (
+        f"Fitted by {FIT_METHODS['separable']}; beside it {FIT_METHODS['nelder_mead']}.",
+        "Intervals are profile likelihoods; a dash means that the profile does not close.",
+        "Verdict: good above R^2 0.8, moderate above 0.5, else COF_BL is the mean COF.",
+    )
+    made = [Table("stribeck", title, columns, tuple(rows), explained)]
     findings: list[Finding] = []
     for name, values in parameters.items():
         kept = [pair for pair in values if pair is not None]
@@ -124,24 +114,17 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
         speed, cof = _speed_and_cof(wanted)
         try:
             curve = master_curve(viscosity, speed, cof)
+            numbers = {"r_squared": curve.r_squared, "residual_sd": curve.residual_sd}
             curves["master"] = {
-                "product": np.multiply(viscosity, speed).tolist(),
-                "cof": cof,
+                "product": np.multiply(viscosity, speed).tolist(), "cof": cof,
                 "label": [str(f.conditions.get("fluid", "")) for f in wanted],
-                "grid": curve.product.tolist(),
-                "fitted": curve.fitted.tolist(),
-                "residual_sd": curve.residual_sd,
-                "r_squared": curve.r_squared,
-            }
-            made.append(
-                Table(
-                    "master_curve",
-                    "One curve of COF against viscosity times speed",
-                    ("R^2", "residual sd", "points"),
-                    ((curve.r_squared, curve.residual_sd, len(cof)),),
-                    ("Isotonic regression: nothing is assumed but the fall.",),
-                )
-            )
+                "grid": curve.product.tolist(), "fitted": curve.fitted.tolist(), **numbers,
+            }  # fmt: skip
+            title = "One curve of COF against viscosity times speed"
+            columns = ("R^2", "residual sd", "points")
+            notes_of = ("Isotonic regression: nothing is assumed but the fall.",)
+            row = (*numbers.values(), len(cof))
+            made.append(Table("master_curve", title, columns, (row,), notes_of))
         except UnderfootError as error:
             notes.append(f"no master curve: {error.what}")
     return Study(tuple(made), tuple(findings), curves, tuple(notes))
@@ -150,13 +133,6 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
 def _speed_and_cof(files: Sequence[FileResult]) -> tuple[list[float], list[float]]:
     both = [(f.main["speed"], f.main["cof"]) for f in files if {"speed", "cof"} <= {*f.main}]
     return [speed for speed, _ in both], [cof for _, cof in both]
-
-
-def _fit_cells(fit: StribeckFit, simplex: StribeckFit) -> list[Any]:
-    cells: list[Any] = [fit.n, fit.r_squared, fit.verdict]
-    for parameter in (fit.boundary, fit.tau, fit.asymptote):
-        cells += [parameter.value, parameter.low, parameter.high, parameter.remark]
-    return cells + [p.value for p in (simplex.boundary, simplex.tau, simplex.asymptote)]
 
 
 def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
@@ -185,40 +161,27 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
             fluids.append(fluid)
             dry_adhesions.append(split.adhesion.value or 0.0)
             wet.append(m.value or 0.0)
-    made = [
-        Table(
-            "friction_split",
-            "Adhesion and hysteresis, Eq. 22 to 25",
-            (*keys, "part", "force (N)", "standard error (N)", "n", "flags"),
-            tuple(rows),
-            (f"Hysteresis is the friction with {blocked}: all adhesion is taken as blocked.",),
-        )
-    ]
+    title = "Adhesion and hysteresis, Eq. 22 to 25"
+    columns = (*keys, "part", "force (N)", "standard error (N)", "n", "flags")
+    note = f"Hysteresis is the friction with {blocked}: all adhesion is taken as blocked."
+    made = [Table("friction_split", title, columns, tuple(rows), (note,))]
     findings: list[Finding] = []
     curves: dict[str, Any] = {}
     try:
         fit = alpha_beta(fluids, dry_adhesions, wet)
-        made.append(
-            Table(
-                "alpha_beta",
-                "Adhesion a fluid leaves, Eq. 26",
-                ("fluid", "alpha (N)", "SE", "beta", "SE", "n"),
-                tuple(
-                    (r.fluid, r.alpha, r.alpha_error, r.beta, r.beta_error, r.n) for r in fit.fluids
-                ),
-                (
-                    f"R^2 {fit.model.r_squared:.3f}, adjusted {fit.model.adjusted_r_squared:.3f}; "
-                    f"mean absolute residual {fit.mean_absolute_residual:.3g} N.",
-                ),
-            )
+        columns = ("fluid", "alpha (N)", "SE", "beta", "SE", "n")
+        lines = tuple(
+            (r.fluid, r.alpha, r.alpha_error, r.beta, r.beta_error, r.n) for r in fit.fluids
         )
+        note = (
+            f"R^2 {fit.model.r_squared:.3f}, adjusted {fit.model.adjusted_r_squared:.3f}; "
+            f"mean absolute residual {fit.mean_absolute_residual:.3g} N."
+        )
+        title = "Adhesion a fluid leaves, Eq. 26"
+        made.append(Table("alpha_beta", title, columns, lines, (note,)))
         findings += [Finding.of_anova(fit.type_two), Finding.of_anova(fit.type_three)]
-        curves["alpha_beta"] = {
-            "fluid": fluids,
-            "dry": dry_adhesions,
-            "wet": wet,
-            "lines": [(r.fluid, r.alpha, r.beta) for r in fit.fluids],
-        }
+        drawn = [(r.fluid, r.alpha, r.beta) for r in fit.fluids]
+        curves["alpha_beta"] = {"fluid": fluids, "dry": dry_adhesions, "wet": wet, "lines": drawn}
     except (UnderfootError, ValueError) as error:
         notes.append(f"Eq. 26 was not fitted: {getattr(error, 'what', error)}")
     return Study(tuple(made), tuple(findings), curves, tuple(notes))
@@ -244,50 +207,32 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
         except UnderfootError as error:
             notes.append(f"{label}: no map ({error.what})")
             continue
+        load, change = found.load, found.half_spacing_change
+        place = (1e3 * (p.value or 0.0) for p in (found.peak_along, found.peak_lateral))
         rows.append(
-            (
-                label,
-                len(scans),
-                found.load.value,
-                found.load.uncertainty,
-                tables.scaled("peak_pressure", found.peak.value),
-                1e3 * (found.peak_along.value or 0.0),
-                1e3 * (found.peak_lateral.value or 0.0),
-                100 * found.outer_share,
-                None if found.half_spacing_change is None else 100 * found.half_spacing_change,
-                "; ".join(map(str, found.load.flags)),
-                found.load.conventions.get("inlet", ""),
-            )
-        )
+            (label, len(scans), load.value, load.uncertainty,
+             tables.scaled("peak_pressure", found.peak.value), *place, 100 * found.outer_share,
+             None if change is None else 100 * change, "; ".join(map(str, load.flags)),
+             load.conventions.get("inlet", ""))
+        )  # fmt: skip
         thin = max(1, len(found.along) // 200)
+        numbers = ("load", "peak", "peak_along", "peak_lateral")
         maps.append(
-            {
-                "label": label,
-                "lateral": found.lateral.tolist(),
-                "along": found.along[::thin].tolist(),
-                "pressure": np.nan_to_num(found.pressure[:, ::thin]).tolist(),
-                "load": found.load.value,
-                "peak": found.peak.value,
-                "peak_along": found.peak_along.value,
-                "peak_lateral": found.peak_lateral.value,
-            }
-        )
+            {"label": label, "lateral": found.lateral.tolist(),
+             "along": found.along[::thin].tolist(),
+             "pressure": np.nan_to_num(found.pressure[:, ::thin]).tolist(),
+             **{name: getattr(found, name).value for name in numbers}}
+        )  # fmt: skip
     made = [condition_table(files, keys, ("cof",), person=_sample(files))]
     if rows:
-        made.append(
-            Table(
-                "maps",
-                "Load carried by the fluid, Eq. 27",
-                (
-                    "map", "scans", "fluid load (N)", "of it sensor noise (N)", "peak (kPa)",
-                    "peak from heel's back (mm)", "peak left of middle (mm)",
-                    "share of outer scans (%)", "change at double spacing (%)", "flags",
-                    "sensor inlet",
-                ),
-                tuple(rows),
-                ("The load is what the scans cover; pressure beyond them is not in it.",),
-            )
+        columns = (
+            "map", "scans", "fluid load (N)", "of it sensor noise (N)", "peak (kPa)",
+            "peak from heel's back (mm)", "peak left of middle (mm)", "share of outer scans (%)",
+            "change at double spacing (%)", "flags", "sensor inlet",
         )  # fmt: skip
+        note = "The load is what the scans cover; pressure beyond them is not in it."
+        title = "Load carried by the fluid, Eq. 27"
+        made.append(Table("maps", title, columns, tuple(rows), (note,)))
     findings: list[Finding] = []
     labelled = [f for f in files if "cof" in f.main and all(k in f.conditions for k in keys)]
     factors = varying(labelled, keys)
@@ -349,9 +294,8 @@ def _gait(files: list[FileResult], protocol: Protocol) -> Study:
 
 def _person_table(files: Sequence[FileResult], factors: tuple[str, ...], person: str) -> Table:
     groups: dict[tuple[str, ...], list[FileResult]] = {}
-    for f in files:
-        key = (str(f.conditions.get(person, f.file)), *(str(f.conditions[k]) for k in factors))
-        groups.setdefault(key, []).append(f)
+    for who, f in zip(persons_of(files, person), files, strict=True):
+        groups.setdefault((who, *(str(f.conditions[k]) for k in factors)), []).append(f)
     rows = tuple(
         (*key, float(np.mean([f.main["rcof"] for f in own])), len(own),
          sum(map(tables.counted_steps, own)))

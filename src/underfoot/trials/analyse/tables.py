@@ -41,49 +41,35 @@ class Table:
         return replace(self, columns=tuple(self.columns[i] for i in keep), rows=rows)
 
 
-# Name in words, unit shown, and what an SI value is multiplied by for it.
-_NAMES: dict[str, tuple[str, str, float]] = {
-    "rcof": ("RCOF", "", 1.0),
-    "acof": ("ACOF", "", 1.0),
-    "acof_minus_rcof": ("ACOF - RCOF", "", 1.0),
-    "cof": ("COF", "", 1.0),
-    "ptv": ("PTV", "", 1.0),
-    "angle": ("angle", "deg", 1.0),
-    "cof_bl": ("COF_BL", "", 1.0),
-    "tau_hydro": ("tau_hydro", "m/s", 1.0),
-    "cof_asymptote": ("COF_asymptote", "", 1.0),
-    "crossed_array": ("heel crossed the array", "", 1.0),
-    "peak_slipping_speed": ("peak slipping speed", "m/s", 1.0),
-    "slip_distance": ("slip distance", "mm", 1e3),
-    "slip_margin": ("slip margin", "m/s", 1.0),
-    "peak_pressure": ("peak pressure", "kPa", 1e-3),
-    "scan_peak_pressure": ("peak pressure of the scan", "kPa", 1e-3),
-    "friction_force": ("friction force", "N", 1.0),
-    "speed": ("speed", "m/s", 1.0),
-    "force_2_percent": ("force at 2 %", "N", 1.0),
-    "peak_force": ("peak force", "N", 1.0),
-    "final_force": ("final force", "N", 1.0),
-}
-
-
-def _quantity(name: str) -> tuple[str, str, float]:
-    return _NAMES.get(name, (name.replace("_", " "), "", 1.0))
+# Names that are not the key in words, units shown, and what an SI value is multiplied by for one.
+_NAMES = {
+    "rcof": "RCOF", "acof": "ACOF", "acof_minus_rcof": "ACOF - RCOF", "cof": "COF", "ptv": "PTV",
+    "cof_bl": "COF_BL", "tau_hydro": "tau_hydro", "cof_asymptote": "COF_asymptote",
+    "crossed_array": "heel crossed the array", "scan_peak_pressure": "peak pressure of the scan",
+    "force_2_percent": "force at 2 %",
+}  # fmt: skip
+_UNITS = {
+    "angle": "deg", "tau_hydro": "m/s", "peak_slipping_speed": "m/s", "slip_margin": "m/s",
+    "speed": "m/s", "slip_distance": "mm", "peak_pressure": "kPa", "scan_peak_pressure": "kPa",
+    "friction_force": "N", "force_2_percent": "N", "peak_force": "N", "final_force": "N",
+}  # fmt: skip
+_FACTORS = {"mm": 1e3, "kPa": 1e-3}
 
 
 def quantity_name(name: str) -> str:
     """Return a quantity's name as people write it."""
-    return _quantity(name)[0]
+    return _NAMES.get(name, name.replace("_", " "))
 
 
 def heading(name: str, what: str = "") -> str:
     """Return a column heading of a quantity (its mean, or ``what`` of it) with its unit."""
-    text, unit, _ = _quantity(name)
-    return text + (f" {what}" if what else "") + (f" ({unit})" if unit else "")
+    tail = f" ({_UNITS[name]})" if name in _UNITS else ""
+    return quantity_name(name) + (f" {what}" if what else "") + tail
 
 
 def scaled(name: str, value: float | None) -> float | None:
     """Return an SI value in the unit of its heading."""
-    return None if value is None else value * _quantity(name)[2]
+    return None if value is None else value * _FACTORS.get(_UNITS.get(name, ""), 1.0)
 
 
 def grouped(

@@ -5,7 +5,7 @@ Simple shapes with the forces, times and marker paths of textbooks; nobody moved
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -35,15 +35,16 @@ def activity(
 ) -> WalkRecording:
     """Return a made-up recording of an activity, a key of ``ACTIVITIES``.
 
-    Parameters
-    ----------
-    mass
-        Of the person (kg).
-    markers
-        Record heels, toes and pelvis; without them only the plates tell.
+    ``mass`` is that of the person (kg). Without ``markers`` (heels, toes, pelvis) only the plates
+    tell.
     """
     time = np.arange(round(DURATION * RATE)) / RATE
-    forces, centres, heels, body, heights = _ACTIVITIES[name](time, mass * GRAVITY)
+    if name in _STEPS:
+        motion = _steps(time, mass * GRAVITY, **_STEPS[name])
+    else:
+        load, height = (raised_cosines(time, knots) for knots in _STANDING[name])
+        motion = _standing_feet(time, mass * GRAVITY * load, height)
+    forces, centres, heels, body, heights = motion
     noisy = [force + rng.normal(0.0, 0.6, force.shape) for force in forces]
     frames = np.arange(round(DURATION * MARKER_RATE)) / MARKER_RATE
     left, right, pelvis = (
@@ -62,11 +63,6 @@ def activity_c3d(recording: WalkRecording, *, crossed: bool = False, mass: float
     """Return a recording of an activity as C3D; ``crossed`` writes corners 3 and 4 exchanged."""
     order = (0, 1, 3, 2) if crossed else (0, 1, 2, 3)
     return walk_c3d(recording, origin=0.0, order=order, mass=mass)
-
-
-def _impact(share: np.ndarray) -> np.ndarray:
-    """Short transient of the heel, so that forces have the frequencies of real ones."""
-    return 0.12 * np.exp(-(((share - 0.03) / 0.006) ** 2))
 
 
 def _heel(
@@ -89,18 +85,25 @@ def _steps(
     stance: float = 0.66,
     pace: float = 0.55,
     speed: float = 1.3,
-    load: Callable[[np.ndarray], np.ndarray] = stance_load,
+    half_sine: float = 0.0,
     ratio: float = 0.2,
     rise: float = 0.0,
     turn: float = 0.0,
 ) -> Motion:
-    """Right foot on plate 1, then left foot on plate 2, ``rise`` higher; ``turn`` (rad) between."""
+    """Right foot on plate 1, then left foot on plate 2, ``rise`` higher; ``turn`` (rad) between.
+
+    The load over body weight is a half sine of that height; at zero that of walking.
+    """
     forces, centres, heels = [], [], []
     for i, side in enumerate((-1.0, 1.0)):
         contact = 1.2 + pace * i
         share = (time - contact) / stance
         place = np.array([0.15 + 0.62 * i, 0.08 * side, rise * i])
-        normal = weight * (load(share) + _impact(share) * (load(share) > 0))
+        load = half_sine * np.sin(np.pi * np.clip(share, 0, 1)) * ((share > 0) & (share < 1))
+        load = load if half_sine else stance_load(share)
+        # A short transient of the heel, so that forces have the frequencies of real ones.
+        impact = 0.12 * np.exp(-(((share - 0.03) / 0.006) ** 2))
+        normal = weight * (load + impact * (load > 0))
         angle = turn * np.clip((share - 0.2) / 0.6, 0, 1)
         push = ratio * stance_ratio(share) * normal
         forces.append(
@@ -138,43 +141,6 @@ def _standing_feet(time: np.ndarray, vertical: np.ndarray, height: np.ndarray) -
     return forces, centres, heels, body, (0.0, 0.0)
 
 
-def _standing(time: np.ndarray, weight: float) -> Motion:
-    return _standing_feet(time, np.full(len(time), weight), np.zeros(len(time)))
-
-
-def _jump(time: np.ndarray, weight: float) -> Motion:
-    """Countermovement jump: standing, unweighting, push-off, flight, landing, standing."""
-    knots = [(0.0, 1.0), (1.0, 1.0), (1.25, 0.4), (1.55, 2.3), (1.7, 0.0), (2.1, 0.0)]
-    knots += [(2.15, 3.6), (2.4, 0.8), (2.6, 1.05), (2.8, 1.0)]
-    height = raised_cosines(time, [(1.0, 0.0), (1.4, -0.25), (1.7, 0.0), (1.9, 0.3), (2.1, 0.0)])
-    return _standing_feet(time, weight * raised_cosines(time, knots), height)
-
-
-def _drop_jump(time: np.ndarray, weight: float) -> Motion:
-    """Drop from a box behind the plates, rebound after 0.4 s, landing and standing."""
-    knots = [(0.0, 0.0), (0.99, 0.0), (1.05, 3.7), (1.2, 2.2), (1.4, 0.0), (1.85, 0.0)]
-    knots += [(1.9, 3.4), (2.2, 0.9), (2.4, 1.0), (4.0, 1.0)]
-    drop = [(0.6, 0.3), (1.0, 0.0), (1.2, -0.2), (1.4, 0.0), (1.62, 0.25), (1.85, 0.0)]
-    height = raised_cosines(time, [*drop, (2.1, -0.15), (2.4, 0.0)])
-    return _standing_feet(time, weight * raised_cosines(time, knots), height)
-
-
-def _half_sine(peak: float) -> Callable[[np.ndarray], np.ndarray]:
-    return lambda share: np.where(
-        (share > 0) & (share < 1), peak * np.sin(np.pi * np.clip(share, 0, 1)), 0.0
-    )
-
-
-def _running(time: np.ndarray, weight: float) -> Motion:
-    return _steps(time, weight, stance=0.25, pace=0.36, speed=3.2, load=_half_sine(2.5), ratio=0.25)
-
-
-def _jogging(time: np.ndarray, weight: float) -> Motion:
-    return _steps(
-        time, weight, stance=0.38, pace=0.42, speed=2.3, load=_half_sine(1.75), ratio=0.22
-    )
-
-
 ACTIVITIES: Mapping[str, str] = {
     "walk": "level walking, a step on each plate",
     "standing": "quiet standing",
@@ -186,14 +152,27 @@ ACTIVITIES: Mapping[str, str] = {
     "stairs_down": "two stairs downward",
     "turn": "a walk that turns by 90 deg in a step",
 }
-_ACTIVITIES: Mapping[str, Callable[[np.ndarray, float], Motion]] = {
-    "walk": _steps,
-    "standing": _standing,
-    "jump": _jump,
-    "drop_jump": _drop_jump,
-    "running": _running,
-    "jogging": _jogging,
-    "stairs_up": lambda time, weight: _steps(time, weight, rise=0.17, speed=0.6),
-    "stairs_down": lambda time, weight: _steps(time, weight, rise=-0.17, speed=0.6),
-    "turn": lambda time, weight: _steps(time, weight, turn=np.radians(90.0)),
+_STEPS: Mapping[str, Mapping[str, float]] = {
+    "walk": {},
+    "running": {"stance": 0.25, "pace": 0.36, "speed": 3.2, "half_sine": 2.5, "ratio": 0.25},
+    "jogging": {"stance": 0.38, "pace": 0.42, "speed": 2.3, "half_sine": 1.75, "ratio": 0.22},
+    "stairs_up": {"rise": 0.17, "speed": 0.6},
+    "stairs_down": {"rise": -0.17, "speed": 0.6},
+    "turn": {"turn": np.radians(90.0)},
 }
+# (s, load over body weight) and (s, height of the body in m) of both feet side by side: a jump is
+# standing, unweighting, push-off, flight, landing; a drop jump comes from a box behind the plates.
+_STANDING: Mapping[str, tuple[list[tuple[float, float]], list[tuple[float, float]]]] = {
+    "standing": ([(0.0, 1.0)], [(0.0, 0.0)]),
+    "jump": (
+        [(0.0, 1.0), (1.0, 1.0), (1.25, 0.4), (1.55, 2.3), (1.7, 0.0), (2.1, 0.0), (2.15, 3.6),
+         (2.4, 0.8), (2.6, 1.05), (2.8, 1.0)],
+        [(1.0, 0.0), (1.4, -0.25), (1.7, 0.0), (1.9, 0.3), (2.1, 0.0)],
+    ),
+    "drop_jump": (
+        [(0.0, 0.0), (0.99, 0.0), (1.05, 3.7), (1.2, 2.2), (1.4, 0.0), (1.85, 0.0), (1.9, 3.4),
+         (2.2, 0.9), (2.4, 1.0), (4.0, 1.0)],
+        [(0.6, 0.3), (1.0, 0.0), (1.2, -0.2), (1.4, 0.0), (1.62, 0.25), (1.85, 0.0), (2.1, -0.15),
+         (2.4, 0.0)],
+    ),
+}  # fmt: skip

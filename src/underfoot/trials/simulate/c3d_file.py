@@ -34,31 +34,14 @@ def c3d_bytes(
     first_frame: int = 1,
     frames: int | None = None,
 ) -> bytes:
-    """Return a C3D file (Intel, floating point).
+    """Return a C3D file (Intel, floating point; source: the C3D file format, c3d.org).
 
-    Parameters
-    ----------
-    markers
-        Shape (n, 3) each, m; NaN writes a missing point (zeros, residual -1).
-    analog
-        Values (n * analog_rate / marker_rate,) and the unit to be written.
-    plates
-        Corners (4, 3) in m, origin (3,) in m, and the six channel names, each.
-    events
-        Label ("Foot Strike"), context ("Left") and time (s), each.
-    mass
-        Of the person (kg); zero leaves it out.
-    first_frame
-        Number of the first frame: time 0 is that of frame 1.
-    frames
-        Number of frames, where there are no markers.
-
-    Raises
-    ------
-    InputError
-        Rates that are no whole multiple, or lengths that do not fit.
-
-    Source: the C3D file format, c3d.org.
+    ``markers`` are (n, 3) each in m; NaN writes a missing point (zeros, residual -1). ``analog``
+    holds values (n * analog_rate / marker_rate,) and the unit to be written, ``plates`` corners (4,
+    3) and origin (3,) in m and the six channel names, ``events`` label ("Foot Strike"), context
+    ("Left") and time (s). ``mass`` (kg) of the person is left out at zero. ``first_frame`` is the
+    number of the first frame (time 0 is that of frame 1), ``frames`` their number where there are
+    no markers. Rates that are no whole multiple, and lengths that do not fit, are an `InputError`.
     """
     per_frame = round(analog_rate / marker_rate)
     frames = len(next(iter(markers.values()))) if frames is None else frames

@@ -17,14 +17,6 @@ from .c3d_file import NOTICE, walk_c3d
 from .tester import SENSOR, ScanTruth, disk_run, relaxation, scan_columns
 from .walk import SENSORS, Defects, SlipTruth, walk_with_slip
 
-KINDS = {
-    "slips": "human slips over a sensor array (G.5, G.6), C3D",
-    "study": "walking of persons in three shoes, conditions in the file names, C3D",
-    "tester": "slip-tester scans over one pressure sensor (G.4), CSV",
-    "pin_on_disk": "COF against speed with six fluids (G.2), CSV",
-    "relaxation": "compression relaxation tests (G.1), CSV",
-    "activities": "walking, and jumps, runs, stairs, turns that are no level step, C3D",
-}
 # Report G.2: viscosity (cP), COF_BL, tau (m/s), asymptote; flat ones as their mean COF.
 _FLUIDS = {
     "water": (0.52, 0.69, 2.09, 0.001),
@@ -82,7 +74,7 @@ def simulated_folder(
         raise unknown_name("kind of data", kind, KINDS, where="simulate")
     if count < 1:
         raise InputError(f"{count} trials", where="count", allowed="one or more")
-    maker, each, usual, profile = _MAKERS[kind]
+    _, maker, each, usual, profile = _MAKERS[kind]
     count = usual if count == 12 else count
     if kind == "tester":
         count = max(count, 2)
@@ -96,12 +88,8 @@ def simulated_study(
     """Write a study with named files (``S01_hard_1.c3d``) and return their paths.
 
     RCOF of a trial = mean of the shoe + person + person in the shoe + trial, all normal with the
-    standard deviations of this module. Each file holds one step on one plate.
-
-    Parameters
-    ----------
-    persons, trials
-        Number of persons, and of trials of each in each shoe.
+    standard deviations of this module; ``trials`` of each person in each shoe, each one step on one
+    plate.
     """
     total = persons * len(SHOES) * trials
     return _written(out, _walks(persons, trials, seed), total, _WALKWAY, progress)
@@ -150,19 +138,13 @@ def slip_truth(number: int, seed: int) -> tuple[SlipTruth, Defects, dict[str, st
     slips = bool(own.random() < risk)
     speed = float(own.uniform(0.5, 1.7)) if slips else float(own.uniform(0.04, 0.09))
     rise = float(own.uniform(0.14, 0.2)) if slips else 0.09
-    truth = SlipTruth(
-        rcof=rcof,
-        acof=float(acof),
-        peak_speed=speed,
-        slip_start=float(own.uniform(0.03, 0.06)),
-        rise=rise,
-        fall=float(own.uniform(0.2, 0.27)) if slips else 0.1,
-        angle=float(own.normal(0, 0.06)),
-        pressure=float(60e3 * speed) if slips else 600.0,
-        width=0.015,
-        lateral=float(own.normal(0, 0.008)),
-        mass=mass,
-    )
+    start = float(own.uniform(0.03, 0.06))
+    fall = float(own.uniform(0.2, 0.27)) if slips else 0.1
+    angle = float(own.normal(0, 0.06))
+    pressure = float(60e3 * speed) if slips else 600.0
+    lateral = float(own.normal(0, 0.008))
+    motion = (speed, start, rise, fall, angle)
+    truth = SlipTruth(rcof, float(acof), *motion, pressure, lateral=lateral, mass=mass)
     defects = Defects(
         missing_frames=int(own.integers(3, 9)) if own.random() < 0.2 else 0,
         dropped_samples=int(own.integers(2, 20)) if own.random() < 0.1 else 0,
@@ -271,18 +253,20 @@ def _sensors(places: Mapping[str, tuple[float, float, float]]) -> str:
 
 _AXES = '\n[axes]\nvertical = "+z"\nwalking = "+x"\n'
 _WALKWAY = f'name = "synthetic walkway"\n{_AXES}\n[heel]\nleft = "LHEE"\nright = "RHEE"\n'
-# How files are made, how many for each one counted, the usual count, the profile.
 _Maker = Callable[[int, np.random.Generator], Iterator[_File]]
-_MAKERS: Mapping[str, tuple[_Maker, int, int, str]] = {
-    "slips": (_slips, 1, 12, _WALKWAY + _sensors(SENSORS)),
-    "study": (_study, 4 * len(SHOES), 12, _WALKWAY),
-    "tester": (
-        _tester,
-        len(_SHOES),
-        7,
-        f'name = "synthetic slip tester"\n{_AXES}' + _sensors({"pressure": SENSOR}),
-    ),
-    "pin_on_disk": (_pin_on_disk, len(_FLUIDS) * len(_SPEEDS), 5, ""),
-    "relaxation": (_relaxation, 1, 12, ""),
-    "activities": (_activities, 0, 12, ""),
-}
+_TESTER = f'name = "synthetic slip tester"\n{_AXES}' + _sensors({"pressure": SENSOR})
+# What they are, how files are made, how many for each one counted, the usual count, the profile.
+_MAKERS: Mapping[str, tuple[str, _Maker, int, int, str]] = {
+    "slips": ("human slips over a sensor array (G.5, G.6), C3D", _slips, 1, 12,
+              _WALKWAY + _sensors(SENSORS)),
+    "study": ("walking of persons in three shoes, conditions in the file names, C3D", _study,
+              4 * len(SHOES), 12, _WALKWAY),
+    "tester": ("slip-tester scans over one pressure sensor (G.4), CSV", _tester, len(_SHOES), 7,
+               _TESTER),
+    "pin_on_disk": ("COF against speed with six fluids (G.2), CSV", _pin_on_disk,
+                    len(_FLUIDS) * len(_SPEEDS), 5, ""),
+    "relaxation": ("compression relaxation tests (G.1), CSV", _relaxation, 1, 12, ""),
+    "activities": ("walking, and jumps, runs, stairs, turns that are no level step, C3D",
+                   _activities, 0, 12, ""),
+}  # fmt: skip
+KINDS = {name: words for name, (words, *_) in _MAKERS.items()}

@@ -12,17 +12,11 @@ SENSOR = (0.3, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class ScanTruth:
-    """A shoe on the tester.
+    """A shoe on the tester, with ``normal_force`` (N), ``speed`` (m/s) and ``rise`` (s) of that.
 
-    Parameters
-    ----------
-    cof
-        Shear over normal force while sliding.
-    pressure
-        Peak of the Gaussian pressure field (Pa), ``widths`` its sd along and across (m),
-        ``middle`` its place forward of the heel's back and left of the heel's middle (m).
-    normal_force, speed, rise
-        Of the tester: N, m/s, s.
+    ``cof`` is shear over normal force while sliding, ``pressure`` the peak of the Gaussian pressure
+    field (Pa), ``widths`` its sd along and across (m), ``middle`` its place forward of the heel's
+    back and left of the heel's middle (m).
     """
 
     cof: float = 0.08
@@ -63,8 +57,7 @@ def scan_columns(
     loaded = np.clip((time - down) / truth.rise, 0, 1)
     lifted = np.clip((1.2 - time) / 0.05, 0, 1)
     normal = truth.normal_force * 0.5 * (1 - np.cos(np.pi * np.minimum(loaded, lifted)))
-    ramp = np.clip((time - start) / 0.03, 0, 1)
-    stop = np.clip((0.95 - time) / 0.03, 0, 1)
+    ramp, stop = np.clip((time - start) / 0.03, 0, 1), np.clip((0.95 - time) / 0.03, 0, 1)
     speed = truth.speed * 0.5 * (1 - np.cos(np.pi * np.minimum(ramp, stop)))
     moved = np.cumsum(speed) / RATE
     # The heel's back ends behind the sensor: the sensor is scanned from the toe side to the heel.
@@ -76,14 +69,13 @@ def scan_columns(
         - (lateral - truth.middle[1]) ** 2 / (2 * truth.widths[1] ** 2)
     )
     pressure = np.where(sliding, truth.pressure * field, 0.0)
-    sign = np.where(sliding, 1.0, 0.0)
 
     def noisy(values: np.ndarray, sd: float, offset: float = 0.0) -> np.ndarray:
         return values + offset + noise * rng.normal(0, sd, len(time))
 
     return {
         "time (s)": time,
-        "Fx (N)": noisy(-truth.cof * normal * sign, 0.8, 2.0),
+        "Fx (N)": noisy(-truth.cof * normal * sliding, 0.8, 2.0),
         "Fy (N)": noisy(0.0 * normal, 0.8, -1.0),
         "Fz (N)": noisy(normal, 1.0, 5.0),
         "heel_x (mm)": noisy(1e3 * heel, 0.2),

@@ -33,28 +33,13 @@ SENSORS: Mapping[str, tuple[float, float, float]] = {
 class SlipTruth:
     """What is put into one trial.
 
-    Parameters
-    ----------
-    rcof
-        Peak of resultant shear over normal force of the dry step.
-    acof
-        Shear over normal force while sliding.
-    peak_speed
-        Largest speed of the heel during the slip (m/s).
-    slip_start
-        Local minimum of the heel's speed, after contact (s).
-    rise, fall
-        Duration of speeding up and slowing down (s).
-    angle
-        Direction of the slip to the left of the walk (rad).
-    pressure
-        Largest pressure under the heel (Pa); ``width`` its Gaussian sd (m).
-    row_decay
-        Factor from one row of sensors to the next.
-    lateral
-        Place of the heel's middle to the left of the middle sensor (m).
-    mass
-        Of the walker (kg).
+    ``rcof`` is the peak of resultant shear over normal force of the dry step, ``acof`` shear over
+    normal force while sliding. The slip starts at a local minimum of the heel's speed,
+    ``slip_start`` (s) after contact, speeds up for ``rise`` (s) to ``peak_speed`` (m/s) and slows
+    down for ``fall`` (s), ``angle`` (rad) to the left of the walk. ``pressure`` (Pa) is the largest
+    under the heel, ``width`` (m) its Gaussian sd, ``row_decay`` the factor from one row of sensors
+    to the next, ``lateral`` (m) the place of the heel's middle to the left of the middle sensor,
+    ``mass`` (kg) that of the walker.
     """
 
     rcof: float = 0.2

@@ -125,12 +125,13 @@ def _solved_speed(v, share, push, h, load, lean, c, viscosity, table_speed, tabl
 
 @njit(cache=True)
 def carried(
-    times, normals, drives, leans, given_speed, v0, mass, c, viscosity, pool, table_speed,
-    table_cof, over,
+    times, normals, drives, leans, dry_speed, transfer, given_speed, mass, c, viscosity, pool,
+    table_speed, table_cof, over,
 ):  # fmt: skip
-    """Return speed, film, friction, film load, work and loss at ``times`` and the last index.
+    """Return speed, film, friction, film load, work, loss, load, drive and the last index.
 
-    With ``given_speed`` (n,) of numbers the speed is that, not solved; nan lets the foot move.
+    ``motion.slip_motion`` in compiled form. With ``given_speed`` (n,) of numbers the speed is
+    that, not solved; nan lets the foot move.
     Film by SDIRK2 (L-stable), speed by the trapezoidal rule with the film at both ends.
     """
     n = times.size
@@ -138,7 +139,9 @@ def carried(
     friction, fluid = np.zeros(n), np.zeros(n)
     work, lost = np.zeros(n), np.zeros(n)
     wet = viscosity > 0.0
-    speed[0], film[0] = v0, c[START]
+    normals, drives = normals.copy(), drives.copy()
+    at_start = -1.0
+    speed[0], film[0] = dry_speed[0], c[START]
     held = not math.isnan(given_speed[0])
     if held:
         speed[0] = given_speed[0]
@@ -146,13 +149,18 @@ def carried(
     last, _f = _friction(
         speed[0], film[0], normals[0], leans[0], c, viscosity, table_speed, table_cof
     )
-    if not held and v0 <= 1e-9:
-        last = min(max(drives[0], 0.0), last)
     end = n - 1
     for i in range(n - 1):
         dt = times[i + 1] - times[i]
         v = speed[i]
-        guess = given_speed[i + 1] if held else max(v + dt * acceleration, 0.0)
+        braked = dry_speed[i + 1] - dry_speed[i]
+        brake = mass * braked / dt
+        if at_start >= 0.0 and normals[i + 1] > at_start:
+            share = max(at_start / normals[i + 1], transfer)
+            normals[i + 1] *= share
+            drives[i + 1] *= share
+        net = began + brake - last
+        guess = given_speed[i + 1] if held else max(v + dt * acceleration + braked, 0.0)
         new = guess
         h = film[i]
         for _ in range(4 if not held else 1):
@@ -172,34 +180,37 @@ def carried(
             if held:
                 break
             before = new
-            load, lean, drive = normals[i + 1], leans[i + 1], drives[i + 1]
+            load, lean, drive = normals[i + 1], leans[i + 1], drives[i + 1] + brake
             if v <= 1e-9:
                 most, _f = _friction(0.0, h, load, lean, c, viscosity, table_speed, table_cof)
                 if drive <= most:
                     new = 0.0
                     break
-            net = began - last
-            if v <= 1e-9:
-                net = max(net, 0.0)
+            push = drive + (max(net, 0.0) if v <= 1e-9 else net)
             new = _solved_speed(
-                v, 0.5 * dt / mass, net + drive, h, load, lean, c, viscosity, table_speed, table_cof
+                v, 0.5 * dt / mass, push, h, load, lean, c, viscosity, table_speed, table_cof
             )
             if abs(new - before) < 1e-10:
                 break
         ff, wf = _friction(
             new, h, normals[i + 1], leans[i + 1], c, viscosity, table_speed, table_cof
         )
+        excess = drives[i + 1] + brake - ff
+        last = ff
         if new <= 1e-9 and not held:
-            new = 0.0
-            ff = min(max(drives[i + 1], 0.0), ff)
+            new, at_start = 0.0, -1.0
+            ff = min(max(drives[i + 1] + brake, 0.0), ff)
+        elif at_start < 0.0 and excess > 0.0 and not held:
+            before = min(net, 0.0) / (min(net, 0.0) - excess)
+            at_start = normals[i] + before * (normals[i + 1] - normals[i])
         speed[i + 1], film[i + 1], friction[i + 1], fluid[i + 1] = new, h, ff, wf
         moved = 0.5 * (v + new) * dt
-        asked = 0.5 * (began + drives[i + 1])
+        asked = 0.5 * (began + drives[i + 1]) + brake
         work[i + 1] = work[i] + asked * moved
         lost[i + 1] = lost[i] + (asked - mass * (new - v) / dt) * moved
         acceleration = (drives[i + 1] - ff) / mass if new > 0.0 else 0.0
-        last, began = ff, drives[i + 1]
+        began = drives[i + 1]
         if not held and new <= 1e-9 and times[i + 1] > over:
             end = i + 1
             break
-    return speed, film, friction, fluid, work, lost, end
+    return speed, film, friction, fluid, work, lost, normals, drives, end

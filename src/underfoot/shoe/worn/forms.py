@@ -1,10 +1,7 @@
-"""A worn patch of given size: the tread gone within it, tapering off around it."""
-
-from __future__ import annotations
+"""What is removed from a sole: a plane cut, a patch of given size, a map."""
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,8 +9,42 @@ from underfoot.core import InputError, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.checks import between, not_negative, positive
 
-if TYPE_CHECKING:
-    from ..shape import SoleShape
+from ..shape import SoleShape
+
+
+@dataclass(frozen=True, slots=True)
+class WearPlane:
+    """Material removed by a plane, as if ground against a floor at the wear angle.
+
+    The plane first meets the point that would touch a floor at this shoe angle and then removes
+    ``depth`` there; this also makes the worn facet at the rear of a heel.
+
+    Parameters:
+        depth: Largest thickness removed, normal to the sole, m.
+        angle: Shoe angle at which the sole wears, rad, toe up positive; 0 wears the sole evenly.
+    """
+
+    depth: float
+    angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        not_negative(self.depth, "wear.depth")
+        between(self.angle, 0.0, math.radians(45), "wear.angle", "0 deg to 45 deg")
+
+    def worn_height(self, x: Array, y: Array, unworn: Array, shape: SoleShape) -> Array:
+        """Return the height (m) of the worn land at (x, y): the higher of sole and plane."""
+        return np.maximum(unworn, self.height(x, *shape.centre_line()))
+
+    def height(self, x: Array, centre_line_x: Array, centre_line_height: Array) -> Array:
+        """Return the height (m) of the plane over the sole plane at ``x`` (m).
+
+        z_p(x) = depth + min(z + x tan(angle)) - x tan(angle), the minimum over the centre line of
+        the unworn sole: the surface after wear is the higher of z and z_p.
+        """
+        slope = math.tan(self.angle)
+        first_contact = float(np.min(centre_line_height + slope * centre_line_x))
+        return self.depth + first_contact - slope * x
+
 
 PATCHES = ("ellipse", "rectangle")
 
@@ -91,3 +122,53 @@ class WornPatch:
                 where="wear.patch_position",
                 allowed=f"0 mm to {shape.length * 1e3:g} mm on the centre line",
             )
+
+
+@dataclass(frozen=True, slots=True)
+class WornMap:
+    """Removed thickness of the land on a grid in the frame of the sole, bilinear between nodes.
+
+    Parameters:
+        x, y: Evenly spaced nodes, m.
+        removed: (nx, ny), normal to the sole, m; beyond the grid its nearest value holds.
+    """
+
+    x: Array
+    y: Array
+    removed: Array
+
+    def __post_init__(self) -> None:
+        if self.removed.shape != (self.x.size, self.y.size):
+            raise InputError(
+                f"removed has shape {self.removed.shape}",
+                where="wear.removed",
+                allowed=f"{(self.x.size, self.y.size)}",
+            )
+        if not (np.isfinite(self.removed).all() and (self.removed >= 0).all()):
+            raise InputError(
+                "a removed thickness is negative or not finite",
+                where="wear.removed",
+                allowed="0 m or more everywhere",
+            )
+
+    @property
+    def depth(self) -> float:
+        """Largest thickness removed, m."""
+        return float(self.removed.max())
+
+    def thickness(self, x: Array, y: Array) -> Array:
+        """Return the removed thickness (m) at (x, y)."""
+        from scipy.ndimage import map_coordinates
+
+        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+        at = [
+            (value - nodes[0]) / (nodes[1] - nodes[0])
+            for value, nodes in ((x, self.x), (y, self.y))
+        ]
+        flat = [np.ravel(each) for each in at]
+        depth = map_coordinates(self.removed, flat, order=1, mode="nearest")
+        return depth.reshape(x.shape)
+
+    def worn_height(self, x: Array, y: Array, unworn: Array, shape: SoleShape) -> Array:
+        """Return the height (m) of the worn land at (x, y)."""
+        return unworn + self.thickness(x, y)

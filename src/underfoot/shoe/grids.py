@@ -1,19 +1,23 @@
-"""A tilted heel on a grid of square cells in the floor's frame."""
+"""Soles on square cells: in their own frame, and tilted over the floor."""
 
 import math
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from underfoot.core import Breach, InputError, Range, breaches
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import between, not_negative, positive
 
-from .geometry import CELLS_REFUSED, CELLS_WANTED, SoleMap
+from ._kernels.regions import local_width, nearest_true
+from ._kernels.tilt import tilted_rows
+from .geometry import CELLS_REFUSED, CELLS_WANTED, SoleMap, SoleSurface, centred
 from .heel import Heel
 from .shape import SoleShape
-from .sole_surface import SoleSurface
 
+HALF, NARROW = 50.0, 10.0
+"""Percentiles of the local width by area: what is refused, and what is listed."""
 _BISECTIONS = 48
 
 
@@ -36,9 +40,7 @@ def heel_map(
     Raises:
         InputError: Grid too coarse for the plan form, a channel or a lug; angle out of range.
     """
-    positive(spacing, "grid.spacing")
-    not_negative(padding, "grid.padding")
-    between(shoe_angle, math.radians(-30), math.radians(60), "shoe_angle", "-30 deg to 60 deg")
+    _check_grid(heel, shoe_angle, spacing, padding)
     breaches_of_grid = _resolution(heel, spacing)
     cosine, sine = math.cos(shoe_angle), math.sin(shoe_angle)
 
@@ -51,7 +53,7 @@ def heel_map(
     count_x = math.ceil((ends[1] - rear) / spacing - 1e-9) + 2 * margin
     count_y = math.ceil(heel.width / spacing - 1e-9) + 2 * margin
     x_floor = (np.arange(count_x) + 0.5 - margin) * spacing
-    y = (np.arange(count_y, dtype=np.float64) - (count_y - 1) / 2) * spacing
+    y = centred(count_y, spacing)
     target, y_map = np.meshgrid(x_floor + rear, y, indexing="ij")
     if sine == 0.0:
         x = target
@@ -75,6 +77,26 @@ def heel_map(
         outline=np.column_stack([along(rim[:, 0], rim[:, 1]) - rear, rim[:, 1]]),
         breaches=tuple(breaches_of_grid),
     )
+
+
+def _check_grid(
+    sole: SoleShape | SoleSurface, shoe_angle: float, spacing: float, padding: float
+) -> None:
+    positive(spacing, "grid.spacing")
+    not_negative(padding, "grid.padding")
+    between(shoe_angle, math.radians(-30), math.radians(60), "shoe_angle", "-30 deg to 60 deg")
+    smallest = min(sole.length, sole.width)
+    if smallest < CELLS_WANTED * spacing:
+        raise InputError(
+            f"the plan form is {smallest * 1e3:g} mm small, the grid spacing {spacing * 1e3:g} mm",
+            where="grid.spacing",
+            allowed=f"at most {smallest / CELLS_WANTED * 1e3:.3g} mm for this plan form",
+        )
+
+
+def _few_cells(quantity: str, cells: float) -> list[Breach]:
+    tested = Range(CELLS_WANTED, math.inf, "1", "grid refinement of the tread")
+    return breaches("grid", {quantity: tested}, {quantity: cells})
 
 
 def _solved(
@@ -134,13 +156,6 @@ def _cut(
 
 def _resolution(heel: SoleShape, spacing: float) -> list[Breach]:
     """Return what the grid resolves with too few cells; refuse what it cannot show at all."""
-    smallest = min(heel.length, heel.width)
-    if smallest < CELLS_WANTED * spacing:
-        raise InputError(
-            f"the plan form is {smallest * 1e3:g} mm small, the grid spacing {spacing * 1e3:g} mm",
-            where="grid.spacing",
-            allowed=f"at most {smallest / CELLS_WANTED * 1e3:.3g} mm for this plan form",
-        )
     features: list[tuple[str, str, float]] = []
     if heel.tread is not None and heel.tread.depth > 0:
         features.append(("tread.channel_width", "channel", heel.tread.channel_width))
@@ -148,11 +163,10 @@ def _resolution(heel: SoleShape, spacing: float) -> list[Breach]:
     if heel.arc_channel is not None and heel.arc_channel.depth > 0:
         features.append(("arc_channel.width", "arc channel", heel.arc_channel.width))
     unresolved: list[Breach] = []
-    tested = Range(CELLS_WANTED, math.inf, "1", "grid refinement of the tread")
     sipes = heel.tread.sipes if heel.tread is not None and heel.tread.depth > 0 else None
     if sipes is not None:
         quantity = "cells across a sipe (below 2 it is taken as closed)"
-        unresolved += breaches("grid", {quantity: tested}, {quantity: sipes.width / spacing})
+        unresolved += _few_cells(quantity, sipes.width / spacing)
     for where, name, width in features:
         cells = width / spacing
         if cells < CELLS_REFUSED * (1 - 1e-9):
@@ -162,9 +176,7 @@ def _resolution(heel: SoleShape, spacing: float) -> list[Breach]:
                 allowed=f"at least {CELLS_REFUSED:g} cells, {CELLS_WANTED:g} for a result to trust",
                 remedy=f"Use a grid spacing of {width / CELLS_WANTED * 1e3:.3g} mm or less",
             )
-        unresolved += breaches(
-            "grid", {f"cells across the {name}": tested}, {f"cells across the {name}": cells}
-        )
+        unresolved += _few_cells(f"cells across the {name}", cells)
     return unresolved
 
 
@@ -199,7 +211,7 @@ def heel_surface(heel: SoleShape, *, spacing: float) -> SoleSurface:
     count_x = math.ceil(heel.length / spacing - 1e-9)
     count_y = math.ceil(heel.width / spacing - 1e-9)
     x = (np.arange(count_x, dtype=np.float64) + 0.5) * spacing
-    y = (np.arange(count_y, dtype=np.float64) - (count_y - 1) / 2) * spacing
+    y = centred(count_y, spacing)
     grid_x, grid_y = np.meshgrid(x, y, indexing="ij")
     inside = heel.inward_distance(grid_x, grid_y) > 0
     height, land, tread_depth = cut_heel(heel, grid_x, grid_y, spacing)
@@ -215,3 +227,102 @@ def heel_surface(heel: SoleShape, *, spacing: float) -> SoleSurface:
         name="parametric heel",
         base=np.where(inside, heel.land_height(grid_x, grid_y), np.nan),
     )
+
+
+def surface_map(
+    surface: SoleSurface, *, shoe_angle: float, spacing: float, padding: float = 0.004
+) -> SoleMap:
+    """Return the surface, tilted by the shoe angle, on square cells in the floor's frame.
+
+    A point (x, z) of the sole goes to x' = x cos a - z sin a, z' = x sin a + z cos a. The map
+    follows the land (bilinear between cells) exactly, of several points over one cell the lowest;
+    a channel keeps its depth straight above the land it cuts, as in ``heel_map``.
+
+    Parameters:
+        surface: The sole in its own frame.
+        shoe_angle: a, rad, toe up positive, -30 to 60 deg.
+        spacing: Side of a cell, m.
+        padding: Free margin around the plan form, m.
+
+    Raises:
+        InputError: Grid too coarse for the plan form or for most of the channels; angle out of
+            range.
+    """
+    _check_grid(surface, shoe_angle, spacing, padding)
+    cosine, sine = math.cos(shoe_angle), math.sin(shoe_angle)
+    inside, base = surface.inside, surface.land_base
+    base = base[nearest_true(np.isfinite(base))]
+    outline = surface.outline.copy()
+    rim = _cells(surface, outline[:, 0], outline[:, 1])
+    outline[:, 0] = outline[:, 0] * cosine - base[rim] * sine
+    rear = float(outline[:, 0].min())
+    outline[:, 0] -= rear
+    margin = max(1, math.ceil(padding / spacing - 1e-9))
+    count_x = math.ceil(float(outline[:, 0].max()) / spacing - 1e-9) + 2 * margin
+    low, high = float(outline[:, 1].min()), float(outline[:, 1].max())
+    count_y = math.ceil((high - low) / spacing - 1e-9) + 2 * margin
+    x = (np.arange(count_x, dtype=np.float64) + 0.5 - margin) * spacing
+    y = (low + high) / 2 + centred(count_y, spacing)
+    clearance, origin = tilted_rows(
+        (surface.x, surface.y), base, inside, (x + rear, y), cosine, sine
+    )
+    covered = np.isfinite(clearance)
+    cells = _cells(
+        surface, np.where(covered, origin, surface.x[0]), np.broadcast_to(y, x.shape + y.shape)
+    )
+    above = np.where(inside, surface.height - base, 0.0)
+    clearance = np.where(covered, clearance + above[cells] * cosine, np.inf)
+    if covered.any():
+        clearance -= clearance.min()
+    land = covered & surface.land[cells]
+    return SoleMap(
+        x=x,
+        y=y,
+        clearance=clearance,
+        inside=covered,
+        land=land,
+        tread_depth=np.where(land, surface.tread_depth[cells], 0.0),
+        spacing=float(spacing),
+        outline=outline,
+        breaches=tuple(resolution_breaches(surface, spacing)),
+    )
+
+
+def _cells(surface: SoleSurface, x: Array, y: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the indices of the cells that hold the points (x, y), the nearest where none does."""
+    indices = []
+    for value, centres in ((x, surface.x), (y, surface.y)):
+        place = np.rint((value - centres[0]) / surface.spacing).astype(np.intp)
+        indices.append(np.clip(place, 0, centres.size - 1))
+    return indices[0], indices[1]
+
+
+def resolution_breaches(surface: SoleSurface, spacing: float) -> list[Breach]:
+    """Return what a grid of ``spacing`` (m) resolves with too few cells.
+
+    By local width (the largest disc that covers a place), because a sole has no single channel
+    width: listed when more than a tenth of the area of channels or of lugs is narrower than 4
+    cells.
+
+    Raises:
+        InputError: More than half of the channels' or of the lugs' area is narrower than 2 cells.
+    """
+    channel = surface.inside & ~surface.land
+    if not channel.any():
+        return []
+    unresolved: list[Breach] = []
+    for name, mask in (("channel", channel), ("lug", surface.land)):
+        widths = local_width(mask, surface.spacing)[mask]
+        narrow, half = (float(value) for value in np.percentile(widths, (NARROW, HALF)))
+        # the width itself is known within half a cell of the height map
+        if half + surface.spacing / 2 < CELLS_REFUSED * spacing * (1 - 1e-9):
+            raise InputError(
+                f"half of the {name} area of {surface.name} is narrower than {half * 1e3:.2g} mm, "
+                f"{half / spacing:.2g} cells of {spacing * 1e3:g} mm",
+                where="grid.spacing",
+                allowed=f"at least {CELLS_REFUSED:g} cells, {CELLS_WANTED:g} for a result to trust",
+                remedy=f"Use a grid spacing of {half / CELLS_WANTED * 1e3:.2g} mm or less",
+            )
+        cells = (narrow + surface.spacing / 2) / spacing
+        unresolved += _few_cells(f"cells across the narrowest tenth of the {name}s", cells)
+    return unresolved

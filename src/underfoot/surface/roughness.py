@@ -1,4 +1,4 @@
-"""Roughness numbers of a profile by ISO 21920-2 and ISO 4287."""
+"""Roughness numbers of profiles (ISO 21920-2, ISO 4287) and of maps (ISO 25178-2)."""
 
 from dataclasses import dataclass, field
 
@@ -8,14 +8,13 @@ from numpy.typing import ArrayLike
 from underfoot.core import DataError, InputError, RangeError
 from underfoot.core.units import metres
 
-from ._kernels.numbers import curvature, element_spacing, slope
 from .filter import long_waves, short_waves
-from .height_map import check_heights
+from .heights import HeightMap, Profile, check_heights
 from .prepare import levelled
-from .profile import Profile
-from .resolution import shortest_derivable_wavelength
+from .resolution import Resolution, shortest_derivable_wavelength, shortest_reliable_wavelength
 
 STANDARDS = ("ISO 21920-2:2021", "ISO 4287:1997")
+NO_CUTOFF = "no short cut-off given: it would be set by the spacing and the noise"
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,11 +83,11 @@ class ProfileRoughness:
     not_estimated: dict[str, str] = field(default_factory=dict)
 
     def __str__(self) -> str:
-        def um(value: float | None) -> str:
-            return "not estimated" if value is None else f"{value * 1e6:.4g} um"
-
         def number(value: float | None) -> str:
             return "not estimated" if value is None else f"{value:.4g}"
+
+        def um(value: float | None) -> str:
+            return number(value) if value is None else f"{value * 1e6:.4g} um"
 
         names = ("ra", "rq", "rz", "rp", "rv", "rt", "rsm")
         lengths = ", ".join(f"{n[0].upper()}{n[1:]} {um(getattr(self, n))}" for n in names)
@@ -133,7 +132,7 @@ def profile_roughness(
         DataError: Profile too short.
     """
     _check(profile, long_cutoff, short_cutoff, sections, standard)
-    flat = profile if profile.periodic else _without_line(profile)
+    flat = profile if profile.periodic else levelled(profile, 1)
     if short_cutoff is not None:
         flat = long_waves(flat, short_cutoff, ends)
     rough = short_waves(flat, long_cutoff, ends)
@@ -157,27 +156,20 @@ def profile_roughness(
     rp, rv = float(high.mean()), float(low.mean())
     reasons: dict[str, str] = {}
     rdq = bend = None
-    if short_cutoff is None:
-        why = "no short cut-off given: it would be set by the spacing and the noise"
+    by_section = standard.startswith("ISO 4287")
+    if short_cutoff is None or per_section < 9:
+        why = NO_CUTOFF if short_cutoff is None else "fewer than nine points in a section"
         reasons |= {"rdq": why, "rms_curvature": why}
-    elif per_section < 9:
-        why = "fewer than nine points in a section"
-        reasons |= {"rdq": why, "rms_curvature": why}
-    elif standard.startswith("ISO 4287"):
-        rdq = float(np.mean([_rms(slope(p, profile.spacing)) for p in pieces]))
-        bend = float(np.mean([_rms(curvature(p, profile.spacing)) for p in pieces]))
     else:
-        rdq = _rms(slope(z, profile.spacing))
-        bend = _rms(curvature(z, profile.spacing))
+        rdq, bend = (
+            float(np.mean([_rms(f(p, profile.spacing)) for p in (pieces if by_section else [z])]))
+            for f in (slope, curvature)
+        )
     rsm = element_spacing(whole, profile.spacing, 0.1 * (rp + rv))
     if rsm is None:
         reasons["rsm"] = "fewer than one whole profile element above 10 % of Rz"
-    parts = [height_numbers(p) for p in pieces]
-    if standard.startswith("ISO 4287"):
-        ra, rq, rsk, rku = (_mean(parts, name) for name in ("ra", "rq", "rsk", "rku"))
-    else:
-        total = height_numbers(z)
-        ra, rq, rsk, rku = total.ra, total.rq, total.rsk, total.rku
+    parts = [height_numbers(p) for p in (pieces if by_section else [z])]
+    ra, rq, rsk, rku = (_mean(parts, name) for name in ("ra", "rq", "rsk", "rku"))
     if rsk is None or rku is None:
         reasons |= {"rsk": "a flat section has none", "rku": "a flat section has none"}
     return ProfileRoughness(
@@ -230,16 +222,16 @@ def _check(
             where="short_cutoff",
             allowed=f"below {metres(long_cutoff)}",
         )
-    if short_cutoff < limit.wavelength * (1.0 - 1e-9):
+    _check_short_cutoff(short_cutoff, limit)
+
+
+def _check_short_cutoff(cutoff: float, limit: Resolution) -> None:
+    if cutoff < limit.wavelength * (1.0 - 1e-9):
         raise RangeError(
-            f"short cut-off {metres(short_cutoff)} is below what was measured",
+            f"short cut-off {metres(cutoff)} is below what was measured",
             where="short_cutoff",
             allowed=f"{metres(limit.wavelength)} or more ({limit.reason})",
         )
-
-
-def _without_line(profile: Profile) -> Profile:
-    return levelled(profile, 1)
 
 
 def _mean(parts: list[HeightNumbers], name: str) -> float | None:
@@ -249,3 +241,145 @@ def _mean(parts: list[HeightNumbers], name: str) -> float | None:
 
 def _rms(values: np.ndarray) -> float:
     return float(np.sqrt(np.mean(values * values)))
+
+
+@dataclass(frozen=True, slots=True)
+class ArealRoughness:
+    """Areal numbers with everything that they depend on; lengths in m.
+
+    ``sdq`` (rms slope) is None without a short cut-off or a known resolution; ``not_estimated``
+    gives the reason.
+    """
+
+    sa: float
+    sq: float
+    sz: float
+    sp: float
+    sv: float
+    ssk: float | None
+    sku: float | None
+    sdq: float | None
+    long_cutoff: float | None
+    short_cutoff: float | None
+    evaluation_size: tuple[float, float]
+    ends: str
+    processing: tuple[str, ...]
+    standard: str = "ISO 25178-2"
+    not_estimated: dict[str, str] = field(default_factory=dict)
+
+
+def areal_roughness(
+    surface: HeightMap,
+    long_cutoff: float | None = None,
+    short_cutoff: float | None = None,
+    *,
+    ends: str = "drop",
+) -> ArealRoughness:
+    """Return Sa, Sq, Sz, Sp, Sv, Ssk, Sku and Sdq of a map.
+
+    The plane is removed first (not from a periodic map, which has none); then, where cut-offs
+    (m) are given, the Gaussian filters: wavelengths below ``short_cutoff`` (S-filter) and above
+    ``long_cutoff`` (L-filter) go.
+
+    Sdq = sqrt(mean(z_x^2 + z_y^2)), see ``rms_slope``.
+
+    Raises:
+        RangeError: Short cut-off below what the measurement resolves.
+        DataError, InputError: See ``long_waves``.
+    """
+    # The slope of a periodic map is taken in Fourier space, which needs no spare points.
+    limit = (shortest_reliable_wavelength if surface.periodic else shortest_derivable_wavelength)(
+        surface
+    )
+    if short_cutoff is not None:
+        _check_short_cutoff(short_cutoff, limit)
+    rough = surface if surface.periodic else levelled(surface, 1)
+    if short_cutoff is not None:
+        rough = long_waves(rough, short_cutoff, ends)
+    if long_cutoff is not None:
+        rough = short_waves(rough, long_cutoff, ends)
+    numbers = height_numbers(rough.heights)
+    shortest = short_cutoff if short_cutoff is not None else surface.resolution
+    reasons: dict[str, str] = {}
+    sdq = None
+    if shortest is None:
+        reasons["sdq"] = NO_CUTOFF
+    elif shortest < limit.wavelength * (1.0 - 1e-9):
+        reasons["sdq"] = f"the shortest waves are not resolved: {limit.reason}"
+    elif min(rough.shape) < 9:
+        reasons["sdq"] = "fewer than nine points along a side"
+    else:
+        sdq = rms_slope(rough)
+    if numbers.rsk is None:
+        reasons |= {"ssk": "a flat surface has none", "sku": "a flat surface has none"}
+    return ArealRoughness(
+        *(numbers.ra, numbers.rq, numbers.rt, numbers.rp, numbers.rv, numbers.rsk, numbers.rku),
+        sdq=sdq,
+        long_cutoff=long_cutoff,
+        short_cutoff=short_cutoff,
+        evaluation_size=rough.size,
+        ends=ends,
+        processing=rough.processing,
+        not_estimated=reasons,
+    )
+
+
+def rms_slope(surface: HeightMap) -> float:
+    """Return sqrt(mean(z_x^2 + z_y^2)) of a map as it is.
+
+    Of a periodic map exactly, in Fourier space; of others by seven-point differences, for which
+    the three outer rows serve as neighbours only.
+    """
+    z = surface.heights
+    if surface.periodic:
+        qx = 2.0 * np.pi * np.fft.fftfreq(z.shape[0], surface.spacing)[:, None]
+        qy = 2.0 * np.pi * np.fft.fftfreq(z.shape[1], surface.spacing)[None, :]
+        power = np.abs(np.fft.fft2(z)) ** 2
+        return float(np.sqrt(np.sum(power * (qx**2 + qy**2)))) / z.size
+    along = slope(z, surface.spacing)[:, 3:-3]
+    across = slope(z.T, surface.spacing).T[3:-3]
+    return float(np.sqrt(np.mean(along**2 + across**2)))
+
+
+def slope(heights: np.ndarray, spacing: float) -> np.ndarray:
+    """Return the slope by the seven-point formula of ISO 4287 along axis 0, (n - 6, ...)."""
+    z, n = heights, heights.shape[0]
+    total = 45.0 * (z[4 : n - 2] - z[2 : n - 4])
+    total -= 9.0 * (z[5 : n - 1] - z[1 : n - 5])
+    total += z[6:] - z[: n - 6]
+    return total / (60.0 * spacing)
+
+
+def curvature(heights: np.ndarray, spacing: float) -> np.ndarray:
+    """Return the second derivative by the sixth-order formula along axis 0, (n - 6, ...)."""
+    z, n = heights, heights.shape[0]
+    total = 270.0 * (z[4 : n - 2] + z[2 : n - 4]) - 490.0 * z[3 : n - 3]
+    total -= 27.0 * (z[5 : n - 1] + z[1 : n - 5])
+    total += 2.0 * (z[6:] + z[: n - 6])
+    return total / (180.0 * spacing**2)
+
+
+def element_spacing(heights: np.ndarray, spacing: float, threshold: float) -> float | None:
+    """Return the mean length of profile elements; None when there is not one whole element.
+
+    An element runs from one upward crossing of zero to the next; a crossing counts once the
+    profile has been below -threshold and then exceeds +threshold.
+    """
+    state = np.where(heights > threshold, 1, np.where(heights < -threshold, -1, 0))
+    marked = np.flatnonzero(state)
+    if marked.size < 2:
+        return None
+    turns = np.flatnonzero((state[marked[:-1]] == -1) & (state[marked[1:]] == 1))
+    if turns.size < 2:
+        return None
+    crossings = [
+        _last_upward_zero(heights, int(marked[i]), int(marked[i + 1]))
+        for i in (turns[0], turns[-1])
+    ]
+    return float((crossings[1] - crossings[0]) * spacing / (turns.size - 1))
+
+
+def _last_upward_zero(heights: np.ndarray, low: int, high: int) -> float:
+    part = heights[low : high + 1]
+    i = int(np.flatnonzero((part[:-1] <= 0.0) & (part[1:] > 0.0))[-1])
+    return low + i + float(part[i] / (part[i] - part[i + 1]))

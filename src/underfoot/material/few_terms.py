@@ -1,16 +1,19 @@
-"""One-term relaxation: Eq. 7 of the grant report, and its fit."""
+"""Spectra from a few numbers: one term, the report's materials, a power law."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import InputError, SourcedValue
+from underfoot.core import InputError, RangeError, SourcedValue, unknown_name
 
-from .curves import checked_curve
+from .curves import checked_curve, minimum_on
+from .elastomer import Elastomer, young_from_shear
 from .spectrum import RelaxationSpectrum
-from .spectrum_fit import quality
+from .spectrum_fit import Judged, check_terms, nonnegative
 
 SOURCE = "one-term relaxation (grant report, Eq. 7), least squares fit"
 
@@ -42,7 +45,7 @@ def single_exponential_spectrum(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SingleExponentialFit:
+class SingleExponentialFit(Judged):
     """Eq. 7 fitted to a relaxation curve; ``quality`` says whether it may be used."""
 
     spectrum: RelaxationSpectrum
@@ -51,21 +54,6 @@ class SingleExponentialFit:
     decay_rate: SourcedValue
     residual: np.ndarray
     """Fitted over measured - 1, (n,)."""
-
-    @property
-    def rms_residual(self) -> float:
-        """Root mean square of the relative residuals."""
-        return float(np.sqrt(np.mean(self.residual**2)))
-
-    @property
-    def largest_residual(self) -> float:
-        """Largest relative residual."""
-        return float(np.max(np.abs(self.residual)))
-
-    @property
-    def quality(self) -> str:
-        """Return "good" (rms residual up to 5 %), "rough" (up to 20 %) or "bad"."""
-        return quality(self.rms_residual)
 
     def __str__(self) -> str:
         advice = "" if self.quality == "good" else "; one term can't follow it: use fit_relaxation"
@@ -86,20 +74,9 @@ def fit_single_exponential(time: ArrayLike, modulus: ArrayLike) -> SingleExponen
     A decay slower than the test is long, or faster than its first point, is not identified:
     then the uncertainty is left out and the reason given.
     """
-    from scipy.optimize import minimize_scalar
-
     t, y = checked_curve(time, modulus)
     grid = np.linspace(np.log(t[0] / 3.0), np.log(t[-1] * 10.0), 241)
-    cost = np.array([_moduli(t, y, tau)[1] for tau in np.exp(grid)])
-    best = int(np.argmin(cost))
-    low, high = grid[max(best - 1, 0)], grid[min(best + 1, grid.size - 1)]
-    optimum: Any = minimize_scalar(
-        lambda x: _moduli(t, y, float(np.exp(x)))[1],
-        bounds=(low, high),
-        method="bounded",
-        options={"xatol": 1e-10},
-    )
-    tau = float(np.exp(optimum.x))
+    tau = float(np.exp(minimum_on(grid, lambda x: _moduli(t, y, float(np.exp(x)))[1], 1e-10)))
     (einf, drop), rss = _moduli(t, y, tau)
     errors, reason = _errors(t, y, einf, drop, tau, rss)
     model = einf + drop * np.exp(-t / tau)
@@ -141,3 +118,92 @@ def _errors(
     covariance = variance * np.linalg.pinv(jacobian.T @ jacobian)
     e0, e1, e2 = np.sqrt(np.diag(covariance))
     return (float(e0), float(e1), float(e2)), "linearised least squares, independent errors"
+
+
+REPORT_SOURCE = "Grant report G.1.1, Eq. 7 and Table 2"
+POISSON_RATIO = 0.499
+
+SHEAR_CONSTANTS: Mapping[str, tuple[float, float, float]] = MappingProxyType(
+    {
+        "neolite": (30.24e6, 18.66e6, 0.013),
+        "rubber": (0.59e6, 0.44e6, 0.025),
+    }
+)
+"""G_0 (Pa), G_inf (Pa), beta (1/s) of Table 2."""
+
+
+def report_elastomer(name: str) -> Elastomer:
+    """Return "neolite" (Shore A 95) or "rubber" (Shore A 50) of the report as an ``Elastomer``.
+
+    One term with 1 / beta = 77 s and 40 s: at 0.1 to 1 m/s over asperities of 0.4 mm its loss
+    tangent is 1e-7 to 1e-5, so that this material has practically no hysteresis friction. The
+    bulk modulus follows from nu = 0.499; Table 2's 2180 MPa for rubber is ten times what that
+    rule gives (neolite's 9324 MPa obeys it).
+
+    Raises:
+        InputError: Another name.
+    """
+    if name not in SHEAR_CONSTANTS:
+        raise unknown_name("material of the report", name, SHEAR_CONSTANTS)
+    g0, ginf, beta = SHEAR_CONSTANTS[name]
+    shear = single_exponential_spectrum(g0, ginf, beta, source=REPORT_SOURCE)
+    young = young_from_shear(shear, POISSON_RATIO)
+    return Elastomer(young, POISSON_RATIO, name=name, source=REPORT_SOURCE)
+
+
+def power_law_spectrum(
+    modulus: float,
+    exponent: float,
+    *,
+    shortest_time: float = 1e-7,
+    longest_time: float = 1.0,
+    terms_per_decade: int = 2,
+) -> RelaxationSpectrum:
+    """Return non-negative Maxwell terms that follow E*(w) = modulus (i w s)^exponent.
+
+    The loss tangent is tan(exponent pi / 2) over the decades covered: a broad, flat loss as
+    filled rubber shows it. It is a stand-in with a chosen loss level, marked ``assumed``, and
+    not a measurement of anything.
+
+    Parameters:
+        modulus: |E*| at 1 rad/s, Pa, above 0 (or |G*|, for a shear spectrum).
+        exponent: 0 to below 1; 0.12 gives tan delta 0.19.
+        shortest_time, longest_time: First and last relaxation time, s.
+        terms_per_decade: 2 follows the loss tangent to 1 % away from the ends; 1 leaves a ripple of
+            6 %.
+
+    The fit is a non-negative least squares one to real and imaginary part, each relative to
+    |E*|, at eight frequencies a decade from 1 / longest_time to 1 / shortest_time.
+    """
+    if not (np.isfinite(modulus) and modulus > 0.0):
+        raise InputError(f"modulus {modulus:g} Pa", where="modulus", allowed="above 0 Pa")
+    if not 0.0 < exponent < 1.0:
+        raise RangeError(f"exponent {exponent:g}", where="exponent", allowed="between 0 and 1")
+    if not 0.0 < shortest_time < longest_time < np.inf:
+        raise RangeError(
+            f"times {shortest_time:g} s to {longest_time:g} s",
+            where="shortest_time, longest_time",
+            allowed="0 < shortest < longest",
+        )
+    check_terms(terms_per_decade)
+    decades = np.log10(longest_time / shortest_time)
+    n = round(decades * terms_per_decade) + 1
+    times = np.geomspace(shortest_time, longest_time, n)
+    w = np.geomspace(1.0 / longest_time, 1.0 / shortest_time, round(8 * decades) + 1)
+    target: Any = modulus * (1j * w) ** exponent
+    x = 1j * np.outer(w, times)
+    kernel: Any = np.column_stack([np.ones(w.size, dtype=complex), x / (1.0 + x)])
+    kernel /= np.abs(target)[:, None]
+    goal: Any = target / np.abs(target)
+    stacked = np.vstack([kernel.real, kernel.imag])
+    solution = nonnegative(stacked, np.concatenate([goal.real, goal.imag]))
+    return RelaxationSpectrum(
+        solution[0],
+        solution[1:],
+        times,
+        source=(
+            f"assumed power law {modulus:g} Pa (i w)^{exponent:g} over {shortest_time:g} s to "
+            f"{longest_time:g} s; stand-in, not a measurement"
+        ),
+        assumed=True,
+    )

@@ -1,0 +1,149 @@
+"""Masks of a sole: pieces, distances, widths, and the land carried on across its channels."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core.arrays import Array, Mask
+
+Labels = NDArray[np.intp]
+
+
+def pieces(mask: Mask, *, diagonal: bool = False) -> tuple[Labels, int]:
+    """Return the number of the connected piece of each cell (0 outside) and how many there are."""
+    from scipy import ndimage
+
+    structure = np.ones((3, 3)) if diagonal else None
+    labelled: Any = ndimage.label(mask, structure=structure)
+    return np.asarray(labelled[0], dtype=np.intp), int(labelled[1])
+
+
+def grown(mask: Mask, steps: int) -> Mask:
+    """Return the mask and its neighbours within ``steps`` cells along the axes."""
+    from scipy import ndimage
+
+    return np.asarray(ndimage.binary_dilation(mask, iterations=steps), dtype=np.bool_)
+
+
+def shrunk(mask: Mask, steps: int) -> Mask:
+    """Return the cells of the mask that are more than ``steps`` cells from its edge."""
+    from scipy import ndimage
+
+    return np.asarray(ndimage.binary_erosion(mask, iterations=steps), dtype=np.bool_)
+
+
+def without_holes(mask: Mask) -> Mask:
+    """Return the mask with all that it encloses."""
+    from scipy import ndimage
+
+    return np.asarray(ndimage.binary_fill_holes(mask), dtype=np.bool_)
+
+
+def rim(mask: Mask, steps: int = 1) -> Mask:
+    """Return the cells of the mask within ``steps`` cells of the outside or the array's edge."""
+    return mask & grown(~np.pad(mask, 1), steps)[1:-1, 1:-1]
+
+
+def without_specks(mask: Mask, fewest: int) -> Mask:
+    """Return the mask without connected pieces of fewer cells."""
+    numbers, count = pieces(mask)
+    if count == 0:
+        return mask
+    keep = np.bincount(numbers.ravel()) >= fewest
+    keep[0] = False
+    return keep[numbers]
+
+
+def distance_within(mask: Mask) -> Array:
+    """Return the distance (cells) to the nearest cell outside; beyond the array is outside."""
+    from scipy import ndimage
+
+    distance: Any = ndimage.distance_transform_edt(np.pad(mask, 1))
+    return np.asarray(distance, dtype=np.float64)[1:-1, 1:-1]
+
+
+def distance_to(mask: Mask) -> Array:
+    """Return the distance (cells) to the nearest cell of the mask."""
+    from scipy import ndimage
+
+    distance: Any = ndimage.distance_transform_edt(~mask)
+    return np.asarray(distance, dtype=np.float64)
+
+
+def nearest_true(mask: Mask) -> tuple[NDArray[np.intp], ...]:
+    """Return, for each cell, the indices of the nearest cell where ``mask`` is true."""
+    from scipy.ndimage import distance_transform_edt
+
+    indices = distance_transform_edt(~mask, return_distances=False, return_indices=True)
+    return tuple(np.asarray(indices, dtype=np.intp))
+
+
+def carried_on(height: Array, land: Mask) -> Array:
+    """Return heights known on ``land`` carried on across the other cells of the plan form.
+
+    Between two pieces of land, linear along x and along y, weighted by the inverse of the gap;
+    at the rim the nearest land counts.
+    """
+    inside = np.isfinite(height)
+    if not land.any():
+        return np.where(inside, height, np.nan)
+    fallback = height[nearest_true(land)]
+    total, weights = np.zeros_like(height), np.zeros_like(height)
+    for axis in (0, 1):
+        value, gap = _between_land(np.moveaxis(height, axis, 0), np.moveaxis(land, axis, 0))
+        known = np.isfinite(value)
+        weight = np.where(known, 1.0 / np.maximum(gap, 1.0), 0.0)
+        total += np.moveaxis(np.where(known, value, 0.0) * weight, 0, axis)
+        weights += np.moveaxis(weight, 0, axis)
+    filled = np.where(weights > 0, total / np.maximum(weights, 1e-30), fallback)
+    return np.where(inside, np.where(land, height, filled), np.nan)
+
+
+def _between_land(height: Array, land: Mask) -> tuple[Array, Array]:
+    """Return the linear value between the land before and after along axis 0, and their gap."""
+    count = height.shape[0]
+    index = np.arange(count)[:, None] * np.ones_like(height)
+    before = np.maximum.accumulate(np.where(land, index, -1.0), axis=0)
+    after = np.minimum.accumulate(np.where(land, index, count)[::-1], axis=0)[::-1]
+    known = (before >= 0) & (after < count)
+    low, high = np.clip(before, 0, count - 1).astype(int), np.clip(after, 0, count - 1).astype(int)
+    columns = np.arange(height.shape[1])[None, :]
+    gap = (high - low).astype(float)
+    share = (index - low) / np.maximum(gap, 1.0)
+    value = (1 - share) * height[low, columns] + share * height[high, columns]
+    return np.where(known, value, np.nan), gap
+
+
+def local_width(region: Mask, spacing: float) -> Array:
+    """Return, per cell of ``region``, the diameter (m) of the largest disc in it over the cell.
+
+    w(c) = max { 2 d(m) : |c - m| < d(m) } - spacing / 2, with d(m) the distance of a cell m to the
+    nearest cell outside; in a straight channel w is its width within half a cell. 0 outside the
+    region; what lies beyond the array counts as outside.
+
+    Source: Hildebrand and Ruegsegger 1997 (local thickness), in the plane.
+    """
+    radius = _covering_radius(np.pad(distance_within(region), 1))[1:-1, 1:-1]
+    return np.where(region, np.maximum(2 * radius - 0.5, 1.0) * spacing, 0.0)
+
+
+def _covering_radius(distance: Array) -> Array:
+    """Return the radius of the largest disc over each cell; the rim of the array is outside."""
+    inner = distance[1:-1, 1:-1]
+    ridge = inner > 1.0
+    for a, b in [(a, b) for a in (-1, 0, 1) for b in (-1, 0, 1) if a or b]:
+        # a disc that lies in a neighbour's disc paints nothing new
+        neighbour = np.roll(distance, (-a, -b), (0, 1))[1:-1, 1:-1]
+        ridge &= neighbour < inner + np.hypot(a, b) - 1e-9
+    margin = int(np.ceil(distance.max(initial=0.0)))
+    radius = np.pad(distance, margin)
+    centres = np.argwhere(ridge) + 1 + margin
+    reaches = inner[ridge]
+    for reach in np.unique(reaches):
+        side = np.arange(1 - np.ceil(reach), np.ceil(reach), dtype=int)
+        a, b = np.nonzero(side[:, None] ** 2 + side**2 < reach**2)
+        at = centres[reaches == reach]
+        cells = at[:, :1] + side[a], at[:, 1:] + side[b]
+        radius[cells] = np.maximum(radius[cells], reach)
+    return radius[margin : radius.shape[0] - margin, margin : radius.shape[1] - margin]

@@ -1,0 +1,228 @@
+"""Measured or generated heights: a profile along a line, a map on a square grid."""
+
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self, cast
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from underfoot.core import DataError, InputError
+from underfoot.core.units import metres
+
+
+class Heights:
+    """What profiles and maps have in common."""
+
+    __slots__ = ()
+    axes: ClassVar[int]
+    heights: np.ndarray
+    spacing: float
+    periodic: bool
+    resolution: float | None
+    processing: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        heights = np.array(self.heights, dtype=float)
+        if heights.ndim != self.axes or min(heights.shape) < 2:
+            raise InputError(
+                f"heights of shape {heights.shape}",
+                where="heights",
+                allowed=f"{'(n,)' if self.axes == 1 else '(nx, ny)'}, 2 or more",
+            )
+        check_heights(heights)
+        for name in ("spacing", "tip_radius", "resolution"):
+            if (value := getattr(self, name, None)) is not None:
+                check_length(name, value)
+        heights.setflags(write=False)
+        object.__setattr__(self, "heights", heights)
+        object.__setattr__(self, "spacing", float(self.spacing))
+        object.__setattr__(self, "processing", tuple(self.processing))
+
+    def changed(self, heights: np.ndarray, done: str, **changes: Any) -> Self:
+        """Return the surface with new heights and one more line in ``processing``."""
+        processing = (*self.processing, done)
+        return replace(cast("Any", self), heights=heights, processing=processing, **changes)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HeightMap(Heights):
+    """Heights of a surface on a square grid.
+
+    Parameters:
+        heights: m, (nx, ny); axis 0 along sliding (x), axis 1 across (y), positive away from the
+            solid.
+        spacing: m, the same along both axes.
+        periodic: True when the right edge continues at the left one and the far edge at the near
+            one.
+        resolution: m, shortest wavelength the instrument resolves; None when not known (then the
+            grid decides).
+        source: Instrument, file or generator.
+        processing: What was done to the heights, in order.
+
+    Raises:
+        InputError: Missing heights, not two-dimensional, fewer than 2 points a side, spacing not
+            positive.
+    """
+
+    axes: ClassVar[int] = 2
+    heights: np.ndarray
+    spacing: float
+    periodic: bool = False
+    resolution: float | None = None
+    source: str = ""
+    processing: tuple[str, ...] = ()
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of points along x and y."""
+        return self.heights.shape[0], self.heights.shape[1]
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Lengths covered along x and y, m: n times the spacing."""
+        return self.shape[0] * self.spacing, self.shape[1] * self.spacing
+
+    @property
+    def rms_height(self) -> float:
+        """Standard deviation of the heights, m, about their own mean."""
+        return float(np.std(self.heights))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Profile(Heights):
+    """Heights of a surface along a line, evenly spaced.
+
+    Parameters:
+        heights: m, (n,), n >= 2, positive away from the solid.
+        spacing: m.
+        tip_radius: m, of the stylus, where known.
+        resolution: m, shortest wavelength the instrument resolves, where known.
+        periodic: True when the last point continues at the first one.
+        source: Instrument or file.
+        processing: What was done to the heights, in order.
+
+    Raises:
+        InputError: Missing heights, not one-dimensional, spacing not positive.
+    """
+
+    axes: ClassVar[int] = 1
+    heights: np.ndarray
+    spacing: float
+    tip_radius: float | None = None
+    resolution: float | None = None
+    periodic: bool = False
+    source: str = ""
+    processing: tuple[str, ...] = ()
+
+    @property
+    def positions(self) -> np.ndarray:
+        """x from the first point, m, (n,)."""
+        return self.spacing * np.arange(self.heights.size)
+
+    @property
+    def length(self) -> float:
+        """Length covered, m: n times the spacing."""
+        return self.heights.size * self.spacing
+
+    def section(self, start: float, end: float) -> Self:
+        """Return the part with start <= x <= end (m from the first point).
+
+        Raises:
+            InputError: A part outside the profile or with fewer than two points.
+        """
+        x, slack = self.positions, 1e-9 * self.spacing
+        inside = (x >= start - slack) & (x <= end + slack)
+        if start < -slack or end > x[-1] + 0.5 * self.spacing + slack or inside.sum() < 2:
+            raise InputError(
+                f"part from {metres(start)} to {metres(end)}",
+                where="section",
+                allowed=f"within 0 m to {metres(x[-1])}, two points or more",
+            )
+        done = f"cut to {metres(start)} to {metres(end)}"
+        return self.changed(self.heights[inside], done, periodic=False)
+
+
+def check_heights(heights: np.ndarray) -> None:
+    """Refuse missing or infinite heights, saying how many and where the first one is."""
+    bad = ~np.isfinite(heights)
+    if bad.any():
+        first = tuple(int(i) for i in np.argwhere(bad)[0])
+        raise InputError(
+            f"{int(bad.sum())} of {heights.size} heights are missing or infinite, "
+            f"the first at {first}",
+            where="heights",
+            allowed="a finite height at every point",
+            remedy="Fill them (underfoot.surface.filled) or cut them away; the result then says so",
+        )
+
+
+def check_length(name: str, value: float) -> None:
+    """Refuse a length that is not a positive number."""
+    if not (np.isfinite(value) and value > 0.0):
+        raise InputError(f"{name} {metres(value)}", where=name, allowed="a length above 0 m")
+
+
+def profile_from_positions(
+    positions: ArrayLike,
+    heights: ArrayLike,
+    *,
+    resample: bool = False,
+    rounding: float = 0.0,
+    tip_radius: float | None = None,
+    source: str = "",
+) -> Profile:
+    """Return a profile from heights at given positions.
+
+    Positions count as even when none is off an even grid by more than 1 % of the spacing, or by
+    ``rounding`` (m, half the last printed digit). Uneven ones are refused, unless ``resample``:
+    then heights are interpolated linearly to an even grid with as many points, and the profile
+    says so.
+
+    Raises:
+        DataError: Positions missing, not ascending, uneven without ``resample``, heights missing.
+    """
+    where = source or "profile"
+    x, z = np.asarray(positions, dtype=float), np.asarray(heights, dtype=float)
+    if x.ndim != 1 or x.shape != z.shape or x.size < 2:
+        raise DataError(
+            f"{x.size} positions and {z.size} heights",
+            where=where,
+            allowed="the same number of each, two or more",
+        )
+    if not np.all(np.isfinite(x)):
+        raise DataError(f"{int(np.sum(~np.isfinite(x)))} positions are missing", where=where)
+    steps = np.diff(x)
+    if np.all(steps < 0.0):
+        x, z, steps = x[::-1], z[::-1], -steps[::-1]
+    if np.any(steps <= 0.0) and not (np.all(steps >= 0.0) and rounding > 0.0):
+        i = int(np.flatnonzero(steps <= 0.0)[0])
+        raise DataError(
+            f"position {i + 2} ({metres(x[i + 1])}) does not follow {metres(x[i])}",
+            where=where,
+            allowed="ascending positions",
+        )
+    index = np.arange(x.size)
+    # The ends alone would carry their rounding into every point.
+    spacing, start = np.polyfit(index, x, 1) if x.size > 2 else (x[1] - x[0], x[0])
+    off = float(np.abs(x - start - spacing * index).max())
+    done: tuple[str, ...] = ()
+    if off > max(0.01 * spacing, rounding * (1.0 + 1e-6)):
+        if not resample:
+            raise DataError(
+                f"positions are uneven: up to {metres(off)} off a grid of {metres(spacing)}",
+                where=where,
+                remedy="Ask for resampling (resample=True); the result then says so",
+            )
+        check_heights(z)
+        even = np.linspace(x[0], x[-1], x.size)
+        z, spacing = np.interp(even, x, z), even[1] - even[0]
+        done = (
+            f"resampled linearly to an even spacing of {metres(spacing)} "
+            f"(positions were up to {metres(off)} off)",
+        )
+    elif off > 0.01 * spacing:
+        done = (
+            f"positions, rounded in print to {metres(2.0 * rounding)}, taken as even: "
+            f"{metres(spacing)}",
+        )
+    return Profile(z, float(spacing), tip_radius=tip_radius, source=source, processing=done)

@@ -1,0 +1,475 @@
+"""Profiles and maps from text, Dektak files and the formats of instruments."""
+
+import re
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from underfoot.core import DataError, InputError, text, to_si
+from underfoot.core.optional import optional_module
+from underfoot.core.units import metres
+
+from .heights import HeightMap, Profile, profile_from_positions
+from .prepare import filled
+
+_QUANTITY = re.compile(r"([+-]?\d+(?:\.\d+)?)\s*([A-Za-zµμ]+)?")
+SPACING = "Give the spacing in metres"
+TEXT = {".csv", ".txt", ".xyz", ".asc", ".dat", ".prf", ".tsv"}
+_LENGTH = re.compile(
+    r"(?<![A-Za-zµμ])(nm|um|µm|μm|micrometers?|micrometres?|microns?|mm|m)(?![A-Za-z])", re.I
+)
+
+
+@dataclass(frozen=True, slots=True)
+class TextNumbers:
+    """Rows of numbers (missing ones NaN), the lines above them, and how they were read."""
+
+    rows: np.ndarray
+    header: tuple[str, ...]
+    decimals: tuple[int, ...]
+    first_line: int
+    notes: tuple[str, ...]
+    where: str
+
+    def units(self) -> list[str]:
+        """Return the length units of the headings, in order; none where headings name none.
+
+        Only the last two lines above the numbers count, and only if they hold no digits: a line
+        such as "Length 12.5 mm" says nothing about the columns.
+        """
+        for line in reversed(self.header[-2:]):
+            units = _LENGTH.findall(line)
+            if units and not re.search(r"\d", line):
+                return units
+        return []
+
+
+def read_numbers(path: Path | str) -> TextNumbers:
+    """Return the numbers of a text file below its header.
+
+    Separators comma, semicolon, tab or blanks; decimal commas where commas do not separate.
+
+    Raises:
+        DataError: No such file, a binary file, no numbers, rows of different length.
+    """
+    where = str(path)
+    lines = text.numbered_lines(path, "Read it as an instrument's format")
+    start = next((i for i, (_, line) in enumerate(lines) if _is_row(line)), None)
+    if start is None:
+        raise DataError("the file holds no rows of numbers", where=where)
+    header = tuple(line.lstrip("#").strip() for _, line in lines[:start] if line.strip())
+    body = text.with_content(lines[start:])
+    separator = _separator([line for _, line in body[:50]])
+    comma = separator != "," and any("," in line for _, line in body[:50])
+    rows = [text.cells_of(line, separator) for _, line in body]
+    while len(rows[0]) > 1 and all(len(row) > 1 and row[-1] == "" for row in rows):
+        rows = [row[:-1] for row in rows]  # instruments close their lines with separators
+    width = len(rows[0])
+    values = np.empty((len(rows), width))
+    for k, ((i, _), row) in enumerate(zip(body, rows, strict=True)):
+        if len(row) != width:
+            raise DataError(
+                f"line {i} has {len(row)} values, the first row has {width}",
+                where=where,
+                remedy="Values are missing or a decimal comma is taken for a separator",
+            )
+        values[k] = text.row_of_numbers(row, comma, i, where)
+    decimals = tuple(
+        max(len(row[c].replace(",", ".").partition(".")[2]) for row in rows[:200])
+        if not any("e" in row[c].lower() for row in rows[:200])
+        else 17
+        for c in range(width)
+    )
+    notes = ("decimal commas read as decimal points",) if comma else ()
+    return TextNumbers(values, header, decimals, start + 1, notes, where)
+
+
+def length_factor(unit: str, where: str) -> float:
+    """Return metres per ``unit``."""
+    name = unit.strip().replace("µ", "u").replace("μ", "u")
+    if re.fullmatch(r"micro(n|meter|metre)s?", name, re.I):
+        name = "um"
+    if name.casefold() in ("um", "nm", "mm"):
+        name = name.casefold()
+    try:
+        return to_si(f"1 {name}", "m", where=where)
+    except InputError as error:
+        raise DataError(
+            error.what,
+            where=where,
+            allowed="a unit of length: nm, um, mm, m",
+            nearest=error.nearest,
+        ) from error
+
+
+def _is_row(line: str) -> bool:
+    cells = text.cells_of(line, _separator([line]))
+    try:
+        return not np.isnan(text.row_of_numbers(cells, True, 0, "")).all()
+    except DataError:
+        return False
+
+
+def _separator(lines: list[str]) -> str | None:
+    joined = "\n".join(lines)
+    for candidate in (";", "\t"):
+        if candidate in joined:
+            return candidate
+    if "," not in joined:
+        return None
+    # Blanks between and commas within numbers: "0,10 1,25" is two numbers with decimal commas.
+    between = all(
+        re.fullmatch(r"[+-]?\d+(,\d+)?([eE][+-]?\d+)?", cell)
+        for line in lines
+        for cell in line.split()
+    )
+    if between and any(len(line.split()) > 1 for line in lines):
+        return None
+    return ","
+
+
+def read_profile(
+    path: Path | str,
+    *,
+    position_unit: str | None = None,
+    height_unit: str | None = None,
+    spacing: float | None = None,
+    tip_radius: float | None = None,
+    resample: bool = False,
+    fill_missing: bool = False,
+) -> Profile:
+    """Return a profile from a text file with positions and heights, or heights alone.
+
+    Units are taken from the heading ("x [mm]; z [um]") unless given. One column needs
+    ``spacing`` (m). Positions may be uneven by their rounding; more needs ``resample``. Missing
+    heights are refused unless ``fill_missing`` (then up to 5 % are interpolated). Both are said
+    in ``processing``.
+
+    Raises:
+        DataError: Unreadable, units missing, positions uneven, heights missing.
+    """
+    data = read_numbers(path)
+    columns = data.rows.shape[1]
+    if columns > 2:
+        raise DataError(
+            f"the file has {columns} columns",
+            where=data.where,
+            allowed="positions and heights, or heights alone",
+            remedy="A map is read with read_map",
+        )
+    units = data.units()
+    _refuse_one_for_all(units, columns, position_unit, height_unit, data)
+    to_height = _factor(height_unit, units[-1:], data, "height_unit")
+    heights, notes = _complete(
+        data.rows[:, -1] * to_height, fill_missing, data.where, data.first_line
+    )
+    if columns == 1:
+        if spacing is None:
+            raise DataError(
+                "one column of heights and no spacing", where=data.where, remedy=SPACING
+            )
+        profile = Profile(heights, spacing, tip_radius=tip_radius, source=data.where)
+    else:
+        to_length = _factor(position_unit, units[:1], data, "length unit")
+        profile = profile_from_positions(
+            data.rows[:, 0] * to_length,
+            heights,
+            resample=resample,
+            rounding=0.5 * 10.0 ** -data.decimals[0] * to_length,
+            tip_radius=tip_radius,
+            source=data.where,
+        )
+    for note in (*data.notes, *notes):
+        profile = profile.changed(profile.heights, note)
+    return profile
+
+
+def read_map(
+    path: Path | str,
+    *,
+    length_unit: str | None = None,
+    height_unit: str | None = None,
+    spacing: float | None = None,
+    fill_missing: bool = False,
+) -> HeightMap:
+    """Return a map from a text file: x, y, z in three columns, or a matrix of heights.
+
+    A matrix needs ``spacing`` (m); its rows run along x. Three columns have to form a full grid
+    with square cells. Units come from the heading unless given: the first for x and y, the last
+    for z.
+
+    Raises:
+        DataError: Unreadable, units missing, no full grid, cells not square, heights missing.
+    """
+    data = read_numbers(path)
+    units = data.units()
+    if data.rows.shape[1] == 3:
+        _refuse_one_for_all(units, 3, length_unit, height_unit, data)
+    to_height = _factor(height_unit, units[-1:], data, "height_unit")
+    if data.rows.shape[1] == 3 and data.rows.shape[0] > 3:
+        to_length = _factor(length_unit, units[:1], data, "length unit")
+        heights, spacing = _grid(data, to_length)
+    elif data.rows.shape[1] < 2:
+        raise DataError(
+            "one column only", where=data.where, remedy="A profile is read with read_profile"
+        )
+    elif spacing is None:
+        raise DataError("a matrix of heights and no spacing", where=data.where, remedy=SPACING)
+    else:
+        heights = data.rows
+    heights, notes = _complete(heights * to_height, fill_missing, data.where)
+    return HeightMap(heights, spacing, source=data.where, processing=(*data.notes, *notes))
+
+
+def _grid(data: TextNumbers, to_length: float) -> tuple[np.ndarray, float]:
+    x, y, z = data.rows.T
+    if not (np.all(np.isfinite(x)) and np.all(np.isfinite(y))):
+        raise DataError("positions are missing", where=data.where)
+    places, spacings = [], []
+    for name, values, decimals in (("x", x, data.decimals[0]), ("y", y, data.decimals[1])):
+        rounding = 0.5 * 10.0**-decimals
+        levels = np.unique(values)
+        jumps = np.diff(levels)
+        levels = levels[np.concatenate([[True], jumps > 1e-6 * max(np.ptp(values), 1e-300)])]
+        if levels.size < 2:
+            raise DataError(f"all points have the same {name}", where=data.where)
+        step = (levels[-1] - levels[0]) / (levels.size - 1)
+        place = np.rint((values - levels[0]) / step).astype(int)
+        off = np.abs(values - levels[0] - place * step).max()
+        if off > max(0.01 * step, rounding * (1.0 + 1e-6)):
+            raise DataError(
+                f"{name} is uneven: up to {metres(off * to_length)} off a grid of "
+                f"{metres(step * to_length)}",
+                where=data.where,
+                remedy="Export the measurement on a regular grid",
+            )
+        places.append(place)
+        spacings.append(step * to_length)
+    spacing = _square(spacings, data.where)
+    shape = (int(places[0].max()) + 1, int(places[1].max()) + 1)
+    filled_in = np.zeros(shape, dtype=int)
+    np.add.at(filled_in, (places[0], places[1]), 1)
+    if np.any(filled_in > 1):
+        raise DataError("a point is given more than once", where=data.where)
+    heights = np.full(shape, np.nan)
+    heights[places[0], places[1]] = z
+    return heights, spacing
+
+
+def _square(sides: list[float], where: str) -> float:
+    """Return the side of a cell; refuse one that is not square."""
+    along, across = sides
+    if abs(along / across - 1.0) > 0.005:
+        raise DataError(
+            f"cells of {metres(along)} by {metres(across)}",
+            where=where,
+            allowed="square cells",
+            remedy="Export with the same spacing along x and y",
+        )
+    return float(np.sqrt(along * across))
+
+
+def _complete(
+    heights: np.ndarray, fill_missing: bool, where: str, first_line: int | None = None
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Return the heights without gaps and what was done, if anything."""
+    missing = ~np.isfinite(heights)
+    if not missing.any():
+        return heights, ()
+    if not fill_missing:
+        line = ""
+        if heights.ndim == 1 and first_line is not None:
+            line = f", the first in line {first_line + int(np.flatnonzero(missing)[0])}"
+        raise DataError(
+            f"{int(missing.sum())} of {heights.size} heights are missing{line}",
+            where=where,
+            remedy="Ask for interpolation (fill_missing=True); the result then says so",
+        )
+    complete, note = filled(heights)
+    return complete, (note,)
+
+
+def _refuse_one_for_all(
+    units: list[str], columns: int, length: str | None, height: str | None, data: TextNumbers
+) -> None:
+    """Refuse to guess which column a lone unit belongs to."""
+    if columns > 1 and len(units) == 1 and (length is None or height is None):
+        raise DataError(
+            f'one unit ("{units[0]}") for {columns} columns',
+            where=data.where,
+            allowed="a unit for positions and one for heights, as in: x [mm]; z [um]",
+            remedy="Give both units",
+        )
+
+
+def _factor(unit: str | None, heading_units: list[str], data: TextNumbers, name: str) -> float:
+    if unit is not None:
+        return length_factor(unit, name)
+    if not heading_units:
+        raise DataError(
+            "no unit of length in the heading",
+            where=data.where,
+            allowed="for example: x [mm]; z [um]",
+            remedy=f"Give the {name.replace('_', ' ')}",
+        )
+    return length_factor(heading_units[0], data.where)
+
+
+@dataclass(frozen=True, slots=True)
+class InstrumentResult:
+    """A number that the instrument printed: over which part (m), in m or without unit."""
+
+    name: str
+    start: float
+    end: float
+    value: float
+    unit: str
+
+
+def is_dektak(path: Path | str) -> bool:
+    """Return whether the file looks like a Dektak CSV export."""
+    with Path(path).open("rb") as stream:
+        return stream.read(64).lstrip(b"\xef\xbb\xbf").startswith(b"Scan Parameters")
+
+
+def read_dektak(path: Path | str) -> tuple[Profile, tuple[InstrumentResult, ...]]:
+    """Return the profile of a Dektak CSV file and the results in its header.
+
+    Spacing and tip radius come from the header; printed positions are rounded and only checked
+    against it.
+
+    Raises:
+        DataError: No such file, another format, heights missing.
+    """
+    path = text.existing(path)
+    lines = path.read_bytes().decode("latin-1").splitlines()
+    start = next((i for i, line in enumerate(lines) if line.startswith("Lateral")), None)
+    if not is_dektak(path) or start is None:
+        raise DataError("this is not a Dektak CSV file", where=str(path))
+    heads = [cell.strip() for cell in lines[start].split(",")]
+    lateral = length_factor(heads[0].split()[-1], f"{path}, line {start + 1}")
+    vertical = length_factor(heads[1].split()[-1], f"{path}, line {start + 1}")
+    rows: list[tuple[float, float]] = []
+    for number, line in enumerate(lines[start + 1 :], start + 2):
+        cells = line.split(",")
+        if not line.strip(" ,"):
+            continue
+        try:
+            rows.append((float(cells[0]), float(cells[1])))
+        except (ValueError, IndexError):
+            raise DataError(
+                f'no position and height in line {number}: "{line[:40]}"', where=str(path)
+            ) from None
+    x, z = np.array(rows).T
+    radius = next((line for line in lines[:start] if line.startswith("Stylus")), "")
+    match = re.search(r"Radius:\s*(.*)", radius)
+    profile = profile_from_positions(
+        x * lateral,
+        z * vertical,
+        rounding=0.05 * lateral,
+        tip_radius=_length(match.group(1), str(path)) if match else None,
+        source=str(path),
+    )
+    return profile, _results(lines[:start], str(path))
+
+
+def _results(header: list[str], where: str) -> tuple[InstrumentResult, ...]:
+    start = next((i for i, line in enumerate(header) if line.startswith("Function,")), None)
+    if start is None:
+        return ()
+    results = []
+    for line in header[start + 1 :]:
+        cells = [cell.strip() for cell in line.split(",")]
+        if len(cells) < 6:
+            break
+        match = _QUANTITY.match(cells[5])
+        if match is None:
+            continue
+        unit = "m" if match.group(2) else "1"
+        value = _length(cells[5], where) if match.group(2) else float(match.group(1))
+        results.append(
+            InstrumentResult(
+                cells[0], _length(cells[1], where), _length(cells[3], where), value, unit
+            )
+        )
+    return tuple(results)
+
+
+def _length(text: str, where: str) -> float:
+    match = _QUANTITY.match(text)
+    if match is None or not match.group(2):
+        raise DataError(f'"{text}" is not a length', where=where)
+    return float(match.group(1)) * length_factor(match.group(2), where)
+
+
+def read_instrument(
+    path: Path | str,
+    *,
+    length_unit: str | None = None,
+    resample: bool = False,
+    fill_missing: bool = False,
+) -> Profile | HeightMap:
+    """Return the first topography of an instrument's file as a profile or a map.
+
+    Formats: those of SurfaceTopography (SDF, X3P, SUR, PLUX, OPD, OPDx, AL3D, VK4, DATX, Nanoscope,
+    Gwyddion and others). ``length_unit`` is needed where the file has none.
+
+    Raises:
+        MissingExtraError: SurfaceTopography is not installed.
+        DataError: Not a format it reads, no unit, heights missing without ``fill_missing``, cells
+            not square, uneven positions without ``resample``.
+    """
+    path = text.existing(path)
+    package = optional_module("SurfaceTopography", "instruments", "Reading this format")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            topography: Any = package.read_topography(str(path))
+            heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
+            positions = topography.positions() if topography.dim == 1 else None
+    except Exception as error:  # its readers raise many kinds
+        raise DataError(
+            f"this file can't be read as an instrument's format ({error})",
+            where=str(path),
+            remedy="Export it as x, y, z text, SDF or X3P",
+        ) from error
+    unit = length_unit or topography.unit
+    if not unit:
+        raise DataError(
+            "the file names no unit of length", where=str(path), remedy="Give the length unit"
+        )
+    where = str(path)
+    factor = length_factor(str(unit), where)
+    heights, notes = _complete(heights * factor, fill_missing, where)
+    notes = ("read through SurfaceTopography", *notes)
+    if topography.dim == 1:
+        x = np.asarray(positions, dtype=float) * factor
+        profile = profile_from_positions(x, heights, resample=resample, source=where)
+        return profile.changed(profile.heights, "; ".join(notes))
+    sizes = zip(topography.physical_sizes, heights.shape, strict=True)
+    spacings = [size * factor / n for size, n in sizes]
+    return HeightMap(
+        heights,
+        _square(spacings, where),
+        periodic=bool(topography.is_periodic),
+        source=str(path),
+        processing=notes,
+    )
+
+
+def read_surface(path: Path | str, **settings: Any) -> Profile | HeightMap:
+    """Return a profile or map from any file that can be read.
+
+    Dektak CSV, text with one or two columns (``read_profile``), three columns or a matrix
+    (``read_map``); every other file goes to ``read_instrument``. ``settings`` are passed on.
+    """
+    path = text.existing(path)
+    if is_dektak(path):
+        return read_dektak(path)[0]
+    if path.suffix.casefold() in TEXT:
+        columns = read_numbers(path).rows.shape[1]
+        return read_profile(path, **settings) if columns <= 2 else read_map(path, **settings)
+    return read_instrument(path, **settings)
