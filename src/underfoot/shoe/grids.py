@@ -10,11 +10,10 @@ from underfoot.core import Breach, InputError, Range, breaches
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import between, not_negative, positive
 
+from ._kernels.height_buffer import tilted_rows
 from ._kernels.regions import local_width, nearest_true
-from ._kernels.tilt import tilted_rows
 from .geometry import CELLS_REFUSED, CELLS_WANTED, SoleMap, SoleSurface, centred
-from .heel import Heel
-from .shape import SoleShape
+from .shape import Heel, SoleShape
 
 HALF, NARROW = 50.0, 10.0
 """Percentiles of the local width by area: what is refused, and what is listed."""

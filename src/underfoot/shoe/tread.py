@@ -13,26 +13,9 @@ from underfoot.core import InputError, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.checks import between, not_negative, positive
 
-from ._kernels.tread_pattern import (
-    bar_distance,
-    block_distance,
-    chevron_distance,
-    circle_distance,
-    hexagon_distance,
-    rotated,
-)
+from ._kernels import tread_pattern
 
-PATTERNS = (
-    "grid",
-    "transverse",
-    "longitudinal",
-    "blocks",
-    "bars",
-    "chevrons",
-    "circles",
-    "hexagons",
-)
-LATTICES = ("circles", "hexagons")
+PATTERNS = "grid transverse longitudinal blocks bars chevrons circles hexagons".split()
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +60,7 @@ class Sipes:
     def channel_distance(self, x: Array, y: Array) -> Array:
         """Return the distance (m) into a slit: positive in it, negative beside it."""
         first = self.spacing / 2 if self.offset is None else self.offset
-        across, _ = rotated(x, y, self.angle)
+        across, _ = tread_pattern.rotated(x, y, self.angle)
         place = np.mod(across - first + self.spacing / 2, self.spacing) - self.spacing / 2
         return self.width / 2 - np.abs(place)
 
@@ -196,22 +179,22 @@ class Tread:
         lug, channel = self.lug_width, self.channel_width
         x, y = x - self.offset[0], y - self.offset[1]
         if self.pattern == "chevrons" and self.arm_length is not None:
-            return chevron_distance(x, y, lug, channel, self.arm_length, self.angle)
-        x, y = rotated(x, y, self.angle)
+            return tread_pattern.chevron_distance(x, y, lug, channel, self.arm_length, self.angle)
+        x, y = tread_pattern.rotated(x, y, self.angle)
         if self.pattern == "blocks" and self.lug_length is not None:
             lugs = (self.lug_length, lug)
-            return block_distance(x, y + lug / 2, lugs, (channel, channel))
+            return tread_pattern.block_distance(x, y + lug / 2, lugs, (channel, channel))
         if self.pattern == "circles":
-            return circle_distance(x - lug / 2, y, lug, channel)
+            return tread_pattern.circle_distance(x - lug / 2, y, lug, channel)
         if self.pattern == "hexagons":
-            return hexagon_distance(x - lug / 2, y, lug, channel)
+            return tread_pattern.hexagon_distance(x - lug / 2, y, lug, channel)
         distances = []
         if self.pattern in ("grid", "transverse", "bars"):
-            distances.append(bar_distance(x, lug, channel))
+            distances.append(tread_pattern.bar_distance(x, lug, channel))
         if self.pattern in ("grid", "longitudinal"):
             if self.offset[1] == 0.0 and self.angle == 0.0:
                 y = np.abs(y)  # exactly the same on both sides
-            distances.append(bar_distance(y + lug / 2, lug, channel))
+            distances.append(tread_pattern.bar_distance(y + lug / 2, lug, channel))
         return np.maximum.reduce(distances)
 
 
