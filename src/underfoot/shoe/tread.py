@@ -155,11 +155,11 @@ class Tread:
             [(self.lug_length or self.lug_width) + self.channel_width, 0.0],
             [0.0, pitch],
         )
-        if self.pattern in LATTICES:
+        if self.pattern in ("circles", "hexagons"):
             across = [pitch / 2, pitch * math.sqrt(3.0) / 2]
         rows = {"transverse": [along], "bars": [along], "longitudinal": [across]}
         frame = np.array(rows.get(self.pattern, [along, across]))
-        return np.column_stack(rotated(frame[:, 0], frame[:, 1], -self.angle))
+        return np.column_stack(tread_pattern.rotated(frame[:, 0], frame[:, 1], -self.angle))
 
     def moved(self, shift: tuple[float, float]) -> Self:
         """Return the pattern shifted by (x, y), m."""
