@@ -44,13 +44,15 @@ from .numbers import (
     undetermined,
     with_grid_errors,
 )
-from .resolve import resolved
+from .positions import Place, tread_positions
+from .resolve import resolved, turned
 from .result import Result
 from .sole import compression_breaches, outsole_notes, sole_map
 
 if TYPE_CHECKING:
     import xarray
 
+    from underfoot.friction import FrictionLaw
     from underfoot.shoe import SoleMap
     from underfoot.sole_contact import SensorReading
     from underfoot.sole_contact.solver import SoleContact
@@ -88,6 +90,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
 
     from underfoot.friction import cof, sampled_cof
     from underfoot.sole_contact.edge_peak import peak_pressure
+    from underfoot.sole_contact.lug_edges import EdgedLaw
 
     case, own = _with_objects(case, objects)
     started = time.perf_counter()
@@ -101,8 +104,12 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
     asperities = own.get("rough_contact") or case.rough_contact.build(context)
     compliance = own.get("compliance") or case.compliance.build(context, sole)
     viscosity = case.film.build(context)
-    edged = edged_law(case, context, law, sole, asperities)
-    recorder = Recorder(case, edged or law, sole, viscosity)
+
+    def on_sole(there: SoleMap) -> FrictionLaw | EdgedLaw:
+        return edged_law(case, context, law, there, asperities) or law
+
+    local_law = on_sole(sole)
+    recorder = Recorder(case, local_law, sole, viscosity)
     prepared = time.perf_counter()
     contact = solved_motion(
         case,
@@ -120,9 +127,9 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         "speed": speed,
         "film_thickness": contact.film_thickness,
     }
-    parts = (edged or law)(**local)
-    lugs, suction = None if edged is None else edged.lugs(**local), None
-    if lugs is not None:
+    parts, lugs, suction = local_law(**local), None, None
+    if isinstance(local_law, EdgedLaw):
+        lugs = local_law.lugs(**local)
         pull = case.sourced("film.suction")
         pull = pull if pull.uncertainty else replace(pull, uncertainty=SUCTION_SPREAD)
         suction = pull, lugs.suction_share(parts)
@@ -149,15 +156,43 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         source=f"{law.name} law: {law.source}",
     )
     sensor = scanned(case, sole, contact, viscosity=viscosity)
+
+    def solved_quick(case: Case, place: Place, progress: Progress) -> tuple[SoleMap, SoleContact]:
+        there = sole_map(case, case.numerics.quick_grid_spacing, shift=place.shift, turn=place.turn)
+        body = case.compliance.build(turned(context, place.turn), there)
+        return there, solved_motion(
+            case, there, body, asperities, viscosity=viscosity, progress=progress
+        )
+
     numbers, risk, labels = undetermined(case, contact.status), None, {}
+    positions = None
     if contact.status.usable:
+        if "compliance" not in own:
+            positions = tread_positions(
+                case,
+                on_sole,
+                sole,
+                contact,
+                solved_quick,
+                viscosity=viscosity,
+                quick=quick,
+                progress=progress,
+            )
+        solved = time.perf_counter()
+        if positions:
+            friction, sampled = positions.friction(friction, sampled)
         numbers, risk = scalars(case, contact, friction, sensor, sampled, slip)
         numbers |= recorder.array_scalars()
-        labels = {**regime(contact), **spread_origin(sampled)}
+        if positions:
+            numbers = positions.averaged(numbers)
+        share = (numbers["fluid_load"].value or 0.0) / contact.normal_force
+        labels = {**regime(share), **spread_origin(sampled)}
         if lugs is not None:
             labels["lug_edges"] = lugs.words()
         if basis := getattr(law, "spread_basis", ""):
             labels["cof_spread_basis"] = basis
+        if positions:
+            labels |= positions.labels()
         if remark := peak_pressure(sole, contact.total_pressure).remark:
             labels["edge_peak"] = remark
         if remark := blind_sensor(case, sensor, contact):
@@ -170,14 +205,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
                     where="numerics.grid_check",
                     remedy="Set numerics.grid_check = false",
                 )
-            coarse_sole = sole_map(case, coarse_spacing)
-            coarse = solved_motion(
-                case,
-                coarse_sole,
-                case.compliance.build(context, coarse_sole),
-                asperities,
-                viscosity=viscosity,
-                progress=progress,
+            coarse_sole, coarse = (positions and positions.coarse) or solved_quick(
+                case, Place(), progress
             )
             if coarse.status.usable:
                 there = readings(coarse, scanned(case, coarse_sole, coarse, viscosity=viscosity))
@@ -209,7 +238,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             parts.total - np.where(contact.wet, 0.0, parts.viscous),
             history_fields(contact, recorder),
             None if sampled is None else sampled.cof,
-        ),
+        ).assign(positions.fields() if positions else {}),
         status=status,
         breaches=_texts(breaches),
         assumptions=tuple(
@@ -219,6 +248,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
                     *outsole_notes(case),
                     *law.assumptions,
                     *(risk.assumptions if risk else ()),
+                    *(positions.assumptions() if positions else ()),
                     *(
                         f"{slot}: an object given to run, {text}"
                         for slot, text in identities.items()

@@ -93,8 +93,7 @@ class FilmOperator:
     def by_fraction(self) -> Stencil:
         """Derivative of the balance by liquid fraction, m^3/s; a cell depends on its upstream."""
         forward, backward = np.maximum(self.carry.value, 0.0), np.minimum(self.carry.value, 0.0)
-        nil = np.zeros_like(self.ky.value)
-        return self._stencil(self.storage * self.gap, (-backward, forward), (nil, nil))
+        return self._stencil(self.storage * self.gap, (-backward, forward))
 
     def by_gap(self, pressure: Array, fraction: Array) -> Stencil:
         """Return the derivative of the balance by gap, m^2/s, at given pressure and fraction."""
@@ -135,21 +134,23 @@ class FilmOperator:
         return fraction
 
     def _stencil(
-        self, centre: Array, along: tuple[Array, Array], across: tuple[Array, Array]
+        self, centre: Array, along: tuple[Array, Array], across: tuple[Array, Array] | None = None
     ) -> Stencil:
         """Return the coefficients of ``centre`` plus flows through the faces.
 
         Of the two values of a face the first is minus the derivative of its flow by cell a, the
         second the derivative by cell b.
         """
-        (x_a, x_b), (y_a, y_b) = along, across
+        x_a, x_b = along
         east, west, north, south = (np.zeros(self.gap.shape) for _ in range(4))
         centre[1:] += x_a
         centre[:-1] += x_b
-        centre[:, 1:] += y_a
-        centre[:, :-1] += y_b
         east[:-1], west[1:] = -x_a, -x_b
-        north[:, :-1], south[:, 1:] = -y_a, -y_b
+        if across is not None:
+            y_a, y_b = across
+            centre[:, 1:] += y_a
+            centre[:, :-1] += y_b
+            north[:, :-1], south[:, 1:] = -y_a, -y_b
         return Stencil(centre, east, west, north, south)
 
     def _upstream(self, fraction: Array) -> Array:

@@ -135,7 +135,7 @@ def cut_heel(
         height, land = _cut(height, land, channel, unworn + tread.depth, base)
         sipes = tread.sipes
         if sipes is not None and spacing <= sipes.width / CELLS_REFUSED * (1 + 1e-9):
-            slit = ~channel & (sipes.channel_distance(x, y) > 0)
+            slit = ~channel & (tread.slit_distance(x, y) > 0)
             height, land = _cut(height, land, slit, unworn + sipes.depth, base)
     arc = heel.arc_channel
     if arc is not None and arc.depth > 0:

@@ -82,6 +82,8 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
         if tread.sipes is not None:
             sipes = tread.sipes
             first = sipes.spacing / 2 if sipes.offset is None else sipes.offset
+            along, across = tread.offset
+            first += along * math.cos(sipes.angle) + across * math.sin(sipes.angle)
             slits = slit_outlines(shape, sipes.width, sipes.spacing, sipes.angle, first)
             body = body - _prisms(slits) * _layer(lower, sipes.depth)
     if shape.arc_channel is not None and shape.arc_channel.depth > 0:
