@@ -51,7 +51,7 @@ def friction(edges=None, pressure=1e5, cof=0.3, drag=0.01, suction=1e5, rq=2e-6,
 
 
 def test_blocks_of_the_coupled_finite_elements():
-    """Within 6 % where the edge wipes; where the film sets in, the forms are off by up to e^0.52."""
+    """Within 6 % where the edge wipes; where the film sets in, off by up to a factor 1.7."""
     errors = []
     for radius, rows in COUPLED.items():
         for drag, film, pull, cof in rows:

@@ -185,8 +185,9 @@ def tread_positions(
 ) -> TreadPositions | None:
     """Return the numbers of a run at more positions of its tread; None without a tread.
 
-    ``law_on`` returns the local friction on a sole. ``solve`` returns sole and contact of a case at a place on the quick grid; what it gives becomes
-    a value on the run's own grid by ``on_own_grid``.
+    ``law_on`` returns the local friction on a sole. ``solve`` returns sole and contact of a case
+    at a place on the quick grid; what it gives becomes a value on the run's own grid by
+    ``on_own_grid``.
     """
     tread, count = _tread(case), position_count(case, quick=quick)
     if tread is None or count == 1:
