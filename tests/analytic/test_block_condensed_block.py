@@ -14,7 +14,7 @@ from underfoot.block import (
     condensed_poisson_ratio,
     condensed_sliding,
 )
-from underfoot.block._kernels.mean_dilatation import stiffness_matrices
+from underfoot.block._kernels.hexahedron import stiffness_matrices
 from underfoot.material import RelaxationSpectrum, power_law_spectrum, young_from_shear
 from underfoot.rough_contact import steady_sliding
 from underfoot.surface import checkerboard

@@ -19,8 +19,7 @@ from underfoot.block import (
     pressed_block,
     pressure_ratio_of,
 )
-from underfoot.block._kernels.finite_strain import forces_and_tangents
-from underfoot.block.mesh import MODES, mean_gradient
+from underfoot.block._kernels.hexahedron import MODES, forces_and_tangents, mean_gradient
 from underfoot.core import InputError
 from underfoot.material import RelaxationSpectrum
 

@@ -14,7 +14,7 @@ from underfoot.material.prony_march import (
 from underfoot.reference import sliding_sinusoid_cof
 from underfoot.rough_contact import TransientSettings as Settings
 from underfoot.rough_contact import steady_sliding, transient_sliding
-from underfoot.rough_contact._kernels.spectra import ShiftedMap
+from underfoot.rough_contact._kernels.periodic import ShiftedMap
 
 LENGTH = 0.4e-3
 MATERIAL = RelaxationSpectrum(1e6, [6e5, 6e5, 6e5], [1e-3, 1e-4, 1e-5])

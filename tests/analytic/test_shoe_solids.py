@@ -8,7 +8,7 @@ import pytest
 from underfoot.core import InputError
 from underfoot.shoe import Facet, Heel, Sipes, Tread, heel_surface
 from underfoot.shoe.parametric import sole_solid, write_sole
-from underfoot.shoe.parametric.lugs import lug_outlines
+from underfoot.shoe.parametric.modelling import lug_outlines
 
 KIND = {"length": 0.06, "width": 0.06, "rear_radius": 0.028, "outsole_thickness": 0.025}
 

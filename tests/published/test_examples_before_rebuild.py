@@ -33,7 +33,7 @@ def test_an_example_gives_what_it_gave(name):
     case = Case.load(ROOT / "examples" / f"{name}.toml")
     if case.contaminant is not None:  # the friction law that was the default then
         case = case.replace("friction", "stribeck")
-    scalars = dict(run(case).scalars)
+    scalars = dict(run(case.replace("numerics.tread_positions", 1)).scalars)
     risk = slip_risk(scalars["cof"].value)  # at the best estimate, as it was stored
     scalars["slip_probability"] = risk.probability
     assert set(scalars) == set(BEFORE[name])

@@ -66,7 +66,7 @@ def test_the_exponential_law_falls_by_e_over_half_of_rq():
 )
 def test_the_regime_is_named_by_one_definition(share, name):
     contact = SimpleNamespace(fluid_load=500 * share, normal_force=500.0)
-    labels = regime(contact)
+    labels = regime(contact.fluid_load / contact.normal_force)
     assert labels["regime"] == name
     assert SHARE_LIMITS == (0.1, 0.9)
     assert labels["regime_rule"] == "by load share: below 10 % boundary, above 90 % full film"

@@ -14,8 +14,8 @@ from underfoot.rough_contact import (
     steady_sliding,
     transient_sliding,
 )
-from underfoot.rough_contact._kernels.area import boundary_length, contact_fractions
 from underfoot.rough_contact._kernels.nested import low_pass, repeated
+from underfoot.rough_contact._kernels.periodic import boundary_length, contact_fractions
 
 MATERIAL = RelaxationSpectrum(1e6, [6e5, 6e5], [1e-3, 1e-4])
 

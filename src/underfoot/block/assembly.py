@@ -1,7 +1,5 @@
 """Settings and arrays of an explicit march: element constants in chunks, nodes, contact, state."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -108,20 +106,6 @@ def mass_scaling_error(speed: float, shear_wave_speed: float, factor: float) -> 
     return MASS_SCALING_FACTOR * factor * (speed / shear_wave_speed) ** 2
 
 
-def impact_friction(
-    speed: float, density: float, layer: float, square_slope: float, pressure: float, length: float
-) -> float:
-    """Return a bound on the COF that scaled inertia adds: rho h (v s)^2 / (p w).
-
-    Every wavelength w each lower node meets the floor once, with the floor's slope s times the
-    speed; what it and the lowest layer (thickness h) then have of kinetic energy goes to waves in
-    the block, which nothing brings back. ``square_slope`` is the mean of s^2 times 4 (the square of
-    the largest slope of a checkerboard), ``pressure`` the mean one. SI units, result without.
-    Measured in loss-free neolite: 0.07 to 0.6 of the bound, see the page.
-    """
-    return density * layer * square_slope * speed**2 / (pressure * length)
-
-
 def largest_mass_scaling(speed: float, shear_wave_speed: float, impact: float = 0.0) -> float:
     """Return the largest factor within both bounds, at least 1 and at most 1000.
 
@@ -141,44 +125,25 @@ SINKING = 0.003
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Assembly:
-    """Everything that ``advance`` takes; ``nodes``, ``history`` and ``state`` change.
-
-    Parameters:
-        mesh: The block's mesh.
-        nodes: Displacement, velocity, internal force: each (3 * stride,), axis by axis.
-        arrays, floor: As the kernels take them.
-        constants, history, parameters, work: Element constants and history by chunks, numbers of
-            the material, scratch.
-        state, control, terms: As ``_kernels.names`` names them; G_i and b_i of each term.
-        time_step, critical_time_step: s.
-        density: kg/m^3, scaled.
-        penalty: Pa/m.
-        hourglass_modulus: Pa.
-        mass_scaling: Factor.
-        impact_friction: Bound on the COF that lower nodes meeting the floor add.
-        kind, viscous: Which kernel.
-    """
+    """Everything that ``advance`` takes; ``nodes``, ``history`` and ``state`` change."""
 
     mesh: BlockMesh
-    nodes: tuple[np.ndarray, np.ndarray, np.ndarray]
-    arrays: tuple[np.ndarray, ...]
+    nodes: tuple[np.ndarray, ...]  # displacement, velocity, internal force: each axis by axis
+    arrays: tuple[np.ndarray, ...]  # as the kernels take them, and the floor
     floor: tuple[int, np.ndarray, np.ndarray, float]
-    constants: np.ndarray
+    constants: np.ndarray  # of the elements, by chunks, and their history
     history: np.ndarray
-    parameters: np.ndarray
-    work: np.ndarray
-    state: np.ndarray
+    parameters: np.ndarray  # numbers of the material
+    work: np.ndarray  # scratch
+    state: np.ndarray  # as ``_kernels.names`` names it, and what controls it
     control: np.ndarray
-    terms: np.ndarray
-    time_step: float
-    critical_time_step: float
-    density: float
-    penalty: float
-    hourglass_modulus: float
+    terms: np.ndarray  # G_i and b_i of each term
+    time_step: float  # s
+    density: float  # kg/m^3, scaled
+    penalty: float  # Pa/m
     mass_scaling: float
-    impact_friction: float
-    kind: str
-    viscous: bool
+    impact_friction: float  # bound on the COF that lower nodes meeting the floor add
+    kernel: str
 
     @property
     def displacement(self) -> np.ndarray:
@@ -192,8 +157,7 @@ class Assembly:
 
     def advance(self, count: int) -> None:
         """March ``count`` steps."""
-        name = generate.kernel_name(self.kind, self.viscous).replace("element_forces", "advance")
-        getattr(element_loops(), name)(
+        getattr(element_loops(), self.kernel)(
             count,
             self.nodes,
             self.arrays,
@@ -227,12 +191,12 @@ def assembled(
     g0, bulk = spectrum.instantaneous_modulus, material.bulk_modulus
     shear_speed = material.wave_speeds[1]
     scaling = settings.mass_scaling
-    unscaled = _impact(block, floor, material.density, loading)
+    unscaled = impact_friction(block, floor, material.density, loading)
     if isinstance(scaling, str):
         scaling = largest_mass_scaling(loading.speed, shear_speed, unscaled)
     density = material.density * scaling
     confined = bulk + 4.0 / 3.0 * g0
-    critical = critical_time_step(mesh.largest_gradient_square, confined, density)
+    critical = critical_time_step(mesh.largest_gradient_square(), confined, density)
     cfl = settings.cfl or (0.4 if settings.viscous else 0.6)
     dt = cfl * critical if settings.time_step is None else settings.time_step
     if dt >= critical:
@@ -309,31 +273,31 @@ def assembled(
         control=control,
         terms=terms,
         time_step=dt,
-        critical_time_step=critical,
         density=density,
         penalty=penalty,
-        hourglass_modulus=modulus,
         mass_scaling=float(scaling),
         impact_friction=float(scaling) * unscaled,
-        kind=kind,
-        viscous=viscous,
+        kernel=generate.kernel_name(kind, viscous).replace("element_forces", "advance"),
     )
 
 
-def _impact(block: MicroBlock, floor: MicroSurface, density: float, loading: MicroLoading) -> float:
-    """Return ``impact_friction`` of a block with its own density; 0 on a floor without waves."""
+def impact_friction(
+    block: MicroBlock, floor: MicroSurface, density: float, loading: MicroLoading
+) -> float:
+    """Return a bound on the COF that inertia adds: rho h (v s)^2 / (p w); 0 without waves.
+
+    Every wavelength w each lower node meets the floor once, with the floor's slope s times the
+    speed; what it and the lowest layer (thickness h) then have of kinetic energy goes to waves in
+    the block, which nothing brings back. s^2 is the mean square slope times 4 (the square of the
+    largest slope of a checkerboard), p the mean pressure.
+    Measured in loss-free neolite: 0.07 to 0.6 of the bound, see the page.
+    """
     if not floor.rough or floor.form == "paraboloid":
         return 0.0
     x, y = (size * (np.arange(128) + 0.5) / 128 for size in block.size[:2])
     slope = floor.height_and_slope(x[:, None], y[None, :])[1]
-    return impact_friction(
-        loading.speed,
-        density,
-        float(layer_heights(block)[1]),
-        4.0 * float(np.mean(slope**2)),
-        loading.mean_pressure,
-        floor.wavelength,
-    )
+    energy = density * float(layer_heights(block)[1]) * 4.0 * float(np.mean(slope**2))
+    return energy * loading.speed**2 / (loading.mean_pressure * floor.wavelength)
 
 
 def critical_time_step(gradient_square: np.ndarray, modulus: float, density: float) -> float:

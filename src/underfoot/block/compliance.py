@@ -1,7 +1,5 @@
 """Compliance of a block's lower face, all other nodes eliminated; at rest or pressed flat."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,10 +10,9 @@ from underfoot.core import ConvergenceError, InputError, Progress, silent
 from underfoot.core.sparse import factorization, schur_complement, upper_triangle
 
 from ._kernels.active_set import contact_under_load
-from ._kernels.finite_strain import forces_and_tangents
-from ._kernels.mean_dilatation import stiffness_matrices
+from ._kernels.hexahedron import MODES, forces_and_tangents, stiffness_matrices
 from .inputs import MicroBlock
-from .mesh import MODES, BlockMesh, block_mesh
+from .mesh import BlockMesh, block_mesh
 
 HOURGLASS = 2.0
 """Coefficient of the explicit elements' hourglass stiffness, in units of the shear modulus."""
@@ -186,18 +183,14 @@ def inverse_block(matrix: sp.csr_matrix, loaded: np.ndarray, progress: Progress)
     reduced = schur_complement(upper_triangle(matrix), loaded[order], where="condensed_block")
     placed = np.empty_like(order)
     placed[order] = np.arange(order.size)
-    return _inverse(reduced)[np.ix_(placed, placed)]
-
-
-def _inverse(matrix: np.ndarray) -> np.ndarray:
-    """Return the inverse of a symmetric positive definite matrix."""
     try:
-        factor = cho_factor(0.5 * (matrix + matrix.T), check_finite=False)
+        factor = cho_factor(0.5 * (reduced + reduced.T), check_finite=False)
     except LinAlgError as problem:
         raise ConvergenceError(
             "the stiffness of the block is not positive definite", where="condensed_block"
         ) from problem
-    return cho_solve(factor, np.eye(len(matrix)), check_finite=False)
+    inverse = cho_solve(factor, np.eye(len(reduced)), check_finite=False)
+    return inverse[np.ix_(placed, placed)]
 
 
 class _Pressing:

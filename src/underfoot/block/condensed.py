@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import time as clock
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -115,22 +115,17 @@ def _schedule(
     length = floor.wavelength if floor.rough else loading.slide_distance
     pixel = length / per_wavelength
     load = full if loading.control == "load" else None
+    slid = loading.slide_distance
+    places = np.minimum(pixel * np.arange(1, math.ceil(slid / pixel * (1.0 - 1e-9)) + 1), slid)
     # from rest to the speed at constant acceleration, in steps of one pixel or less
     ramp_length = 0.5 * loading.speed * loading.ramp_time
-    distance = 0.0
-    while distance < loading.slide_distance * (1.0 - 1e-9):
-        following = min(distance + pixel, loading.slide_distance)
-        step = _time_at(following, loading, ramp_length) - _time_at(distance, loading, ramp_length)
-        moments.append(Moment(step, following, load))
-        distance = following
-    return moments
-
-
-def _time_at(distance: float, loading: MicroLoading, ramp_length: float) -> float:
-    """Return the time since sliding began at which ``distance`` is reached."""
-    if distance >= ramp_length:
-        return loading.ramp_time + (distance - ramp_length) / loading.speed
-    return float(np.sqrt(2.0 * distance * loading.ramp_time / loading.speed))
+    times = np.where(
+        places >= ramp_length,
+        loading.ramp_time + (places - ramp_length) / loading.speed,
+        np.sqrt(2.0 * places * loading.ramp_time / loading.speed),
+    )
+    steps = np.diff(times, prepend=0.0).tolist()
+    return moments + [Moment(s, x, load) for s, x in zip(steps, places.tolist(), strict=True)]
 
 
 def pressure_ratio_of(material: MicroMaterial, loading: MicroLoading) -> float:
@@ -158,8 +153,7 @@ LEAST_LOSS_TANGENT = 1e-3
 """Below it hysteresis COF is less than 1e-4 on surfaces as rough as the report's."""
 
 
-@dataclass(frozen=True, slots=True)
-class Moment:
+class Moment(NamedTuple):
     """One time of the march: how long the step before it took, where the floor is, what holds."""
 
     step: float
@@ -223,14 +217,7 @@ class CondensedMarch:
             notes += self._loss_note(loading) + self._strain_note(loading)
             notes += resolution_note(averages)
         return MicroResult(
-            time=table[:, 0],
-            distance=table[:, 1],
-            normal_force=table[:, 2],
-            shear_force=table[:, 3],
-            lateral_force=table[:, 4],
-            real_contact_area=table[:, 5],
-            corrected_contact_area=table[:, 6],
-            height=table[:, 7],
+            *table[:, :8].T,
             nominal_area=self.condensed.block.nominal_area,
             averages=averages,
             energy=None,
@@ -339,16 +326,9 @@ class CondensedMarch:
         ends = table[first - 1 :]
         middle = 0.5 * (ends[1:] + ends[:-1])
         normal, shear, lateral, area, corrected = middle[:, 2:7].T
+        values = [normal, shear, np.abs(shear), np.hypot(shear, lateral), area, corrected]
         return whole_wavelength_averages(
-            table[sliding, 1],
-            normal,
-            shear,
-            np.abs(shear),
-            np.hypot(shear, lateral),
-            area,
-            corrected,
-            wavelength=self.floor.wavelength,
-            nominal_area=self.condensed.block.nominal_area,
+            table[sliding, 1], values, self.floor.wavelength, self.condensed.block.nominal_area
         )
 
 

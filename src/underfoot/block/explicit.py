@@ -1,7 +1,5 @@
 """A rough rubber block slid over a rough rigid floor by explicit finite elements (G.1)."""
 
-from __future__ import annotations
-
 import math
 import time
 from pathlib import Path
@@ -15,7 +13,6 @@ from underfoot.core.status import worst
 from .assembly import (
     IMPACT_ALLOWED,
     MASS_SCALING_ALLOWED,
-    Assembly,
     ExplicitSettings,
     assembled,
     mass_scaling_error,
@@ -104,30 +101,15 @@ def explicit_sliding(
         notes.append(f"cancelled after {march.steps} steps")
     if output is not None:
         saved_state(output / "restart.npz", march.state())
-    return _result(
-        march, block, floor, material, settings, status, notes, time.process_time() - begun
-    )
-
-
-def _result(
-    march: BlockMarch,
-    block: MicroBlock,
-    floor: MicroSurface,
-    material: MicroMaterial,
-    settings: ExplicitSettings,
-    status: Status,
-    notes: list[str],
-    seconds: float,
-) -> MicroResult:
+    seconds = time.process_time() - begun
     rows = np.array(march.rows).reshape(-1, len(COLUMNS))
     area = block.nominal_area
-    loading = march.loading
     if not march.settled:
         status = worst(status, Status.NOT_CONVERGED)
         notes.append(
             "the load had not settled to 1 % before sliding: raise hold_time or contact_damping"
         )
-    out_of_range = _breaches(march.assembly, block, floor, material, loading, rows)
+    out_of_range = _breaches(march, block, floor, material, rows)
     if march.assembly.mass_scaling > 1.0:
         bound = mass_scaling_error(
             loading.speed, material.wave_speeds[1], march.assembly.mass_scaling
@@ -160,12 +142,7 @@ def _result(
     if out_of_range:
         status = worst(status, Status.OUT_OF_RANGE)
     return MicroResult(
-        time=rows[:, 0],
-        distance=rows[:, 1],
-        normal_force=rows[:, 2],
-        shear_force=rows[:, 3],
-        lateral_force=rows[:, 4],
-        real_contact_area=rows[:, 5],
+        *rows[:, :6].T,
         corrected_contact_area=np.maximum(rows[:, 5] - rows[:, 19], 0.0),
         height=rows[:, 8],
         nominal_area=area,
@@ -181,38 +158,33 @@ def _result(
 
 
 def _breaches(
-    assembly: Assembly,
+    march: BlockMarch,
     block: MicroBlock,
     floor: MicroSurface,
     material: MicroMaterial,
-    loading: MicroLoading,
     rows: np.ndarray,
 ) -> list[Breach]:
     """Return what leaves the range in which the numbers were checked."""
-    out_of_range = []
-
-    def test(quantity: str, value: float, low: float, high: float, source: str) -> None:
-        if not low <= value <= high:
-            allowed = Range(low, high, "1", source)
-            out_of_range.append(Breach("explicit_sliding", quantity, value, value, allowed))
-
+    assembly, speed = march.assembly, march.loading.speed
+    tests: list[tuple[str, float, float, float, str]] = []
     waves = [s.wavelength for s in (block.roughness, floor) if s.rough and s.form != "paraboloid"]
     if waves:
         step = max(block.size[0] / block.elements[0], block.size[1] / block.elements[1])
-        test(
-            "elements a wavelength",
-            min(waves) / step * (1.0 + 1e-9),
-            12.0,
-            math.inf,
-            "contact area against the half-space",
-        )
+        per_wave, source = min(waves) / step * (1.0 + 1e-9), "contact area against the half-space"
+        tests.append(("elements a wavelength", per_wave, 12.0, math.inf, source))
     heights = [s.peak_to_valley for s in (block.roughness, floor) if s.peak_to_valley > 0.0]
     if heights and len(rows) and rows[-1, 5] > 0.0:
-        sunk = float(rows[-1, 2] / rows[-1, 5]) / assembly.penalty
-        test("penetration over roughness", sunk / min(heights), 0.0, 0.02, "penalty scan")
-    error = mass_scaling_error(loading.speed, material.wave_speeds[1], assembly.mass_scaling)
+        sunk = float(rows[-1, 2] / rows[-1, 5]) / assembly.penalty / min(heights)
+        tests.append(("penetration over roughness", sunk, 0.0, 0.02, "penalty scan"))
     if assembly.mass_scaling > 1.0:
-        test("mass scaling error", error, 0.0, MASS_SCALING_ALLOWED * (1 + 1e-9), "density scan")
-        impact = assembly.impact_friction
-        test("COF of scaled inertia", impact, 0.0, IMPACT_ALLOWED * (1 + 1e-9), "energy ledger")
-    return out_of_range
+        error = mass_scaling_error(speed, material.wave_speeds[1], assembly.mass_scaling)
+        allowed, impact = MASS_SCALING_ALLOWED * (1 + 1e-9), IMPACT_ALLOWED * (1 + 1e-9)
+        tests.append(("mass scaling error", error, 0.0, allowed, "density scan"))
+        tests.append(
+            ("COF of scaled inertia", assembly.impact_friction, 0.0, impact, "energy ledger")
+        )
+    return [
+        Breach("explicit_sliding", quantity, value, value, Range(low, high, "1", source))
+        for quantity, value, low, high, source in tests
+        if not low <= value <= high
+    ]

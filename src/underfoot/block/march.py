@@ -1,10 +1,6 @@
 """Press, hold, slide: the stages of an explicit march, its history, restarts and snapshots."""
 
-from __future__ import annotations
-
 import math
-import os
-import tempfile
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
@@ -14,12 +10,12 @@ import numpy as np
 
 from underfoot.core import ConvergenceError, DataError, Progress
 from underfoot.core.cache import default_folder
+from underfoot.core.files import whole_file
 from underfoot.core.optional import optional_module
 
 from ._kernels import generate, names
 from .assembly import Assembly, critical_time_step
 from .inputs import MicroLoading
-from .mesh import MODES
 from .result import EnergyLedger, MicroAverages, edge_excess_area, whole_wavelength_averages
 
 SETTLED = 0.01
@@ -89,11 +85,11 @@ class BlockMarch:
         if self.stage < 2:
             c[names.ALPHA] = 2.0 * math.pi / self.shear_period
         if self.stage == 0:
-            self._until_time("press", press, press / 100.0, press)
+            self._until_time("press", press, press / 100.0)
             self.stage = 1
         while self.stage == 1:
             end = press + hold * (self.holds + 1)
-            self._until_time("hold", end, hold / 20.0, end)
+            self._until_time("hold", end, hold / 20.0)
             self.holds += 1
             recent = float(np.mean([row[2] for row in self.rows[-10:]]))
             self.settled = abs(recent / c[names.LOAD] - 1.0) < SETTLED
@@ -109,13 +105,13 @@ class BlockMarch:
             self._slide()
         self.stage = 3
 
-    def _until_time(self, name: str, end: float, sample: float, total: float) -> None:
+    def _until_time(self, name: str, end: float, sample: float) -> None:
         s = self.assembly.state
         count = max(1, round(sample / self.assembly.time_step))
         while s[names.TIME] < end - 0.5 * self.assembly.time_step:
             left = max(1, round((end - s[names.TIME]) / self.assembly.time_step))
             self._sample(min(count, left))
-            self.progress(name, min(s[names.TIME] / total, 1.0))
+            self.progress(name, min(s[names.TIME] / end, 1.0))
 
     def _slide(self) -> None:
         s, goal = self.assembly.state, self.loading.slide_distance
@@ -175,7 +171,7 @@ class BlockMarch:
     def _watch(self) -> None:
         """Keep a copy of a state known to be sound; stop when squeezed elements ask for less."""
         assembly = self.assembly
-        square = assembly.mesh.deformed_gradient_square(assembly.displacement)
+        square = assembly.mesh.largest_gradient_square(assembly.displacement)
         critical = critical_time_step(square, self.confined_modulus, assembly.density)
         if assembly.time_step > critical:
             self._stop(
@@ -225,8 +221,7 @@ class BlockMarch:
         name = _name(len(self._shown) + 1)
         snapshot(self.output / name, self.assembly)
         self._shown.append((float(self.assembly.state[names.TIME]), name))
-        times, files = zip(*self._shown, strict=True)
-        collection(self.output / "block.pvd", list(times), list(files))
+        collection(self.output / "block.pvd", self._shown)
 
 
 def _name(number: int) -> str:
@@ -234,27 +229,9 @@ def _name(number: int) -> str:
 
 
 COLUMNS = (
-    "time",
-    "distance",
-    "normal",
-    "shear",
-    "lateral",
-    "area",
-    "absolute",
-    "resultant",
-    "top",
-    "floor_work",
-    "top_work",
-    "kinetic",
-    "strain",
-    "hourglass",
-    "contact",
-    "material_loss",
-    "hourglass_loss",
-    "contact_loss",
-    "damping_loss",
-    "edges",
-)
+    "time distance normal shear lateral area absolute resultant top floor_work top_work kinetic "
+    "strain hourglass contact material_loss hourglass_loss contact_loss damping_loss edges"
+).split()
 """Of a row; forces and area are means over the steps since the row before, ``edges`` is the area
 that the edges of contact spots count too much at the row's end."""
 
@@ -272,22 +249,15 @@ def new_row(assembly: Assembly, before: np.ndarray | None, rate: float) -> np.nd
     lost = 0.0
     if before is not None:
         lost = before[15] + 0.5 * (rate + s[names.LOSS_RATE]) * (time - before[0])
+    held = (names.KINETIC, names.STRAIN, names.HOURGLASS, names.CONTACT_ENERGY)
     row = np.array(
         [
             time,
             distance,
             *(s[names.NORMAL : names.COUNT] / count),
-            s[names.TOP],
-            s[names.SAMPLE_FLOOR_WORK],
-            s[names.SAMPLE_TOP_WORK],
-            s[names.KINETIC],
-            s[names.STRAIN],
-            s[names.HOURGLASS],
-            s[names.CONTACT_ENERGY],
+            *s[[names.TOP, names.SAMPLE_FLOOR_WORK, names.SAMPLE_TOP_WORK, *held]],
             lost,
-            s[names.HOURGLASS_LOSS],
-            s[names.CONTACT_LOSS],
-            s[names.DAMPING_LOSS],
+            *s[[names.HOURGLASS_LOSS, names.CONTACT_LOSS, names.DAMPING_LOSS]],
             _edges(assembly),
         ]
     )
@@ -318,30 +288,15 @@ def ledger(rows: np.ndarray) -> EnergyLedger:
 def averages(rows: np.ndarray, wavelength: float, area: float) -> MicroAverages | None:
     """Return the means over whole wavelengths of the sliding rows."""
     c = dict(zip(COLUMNS, rows[rows[:, 1] > 0.0].T, strict=True))
-    return whole_wavelength_averages(
-        c["distance"],
-        c["normal"],
-        c["shear"],
-        c["absolute"],
-        c["resultant"],
-        c["area"],
-        np.maximum(c["area"] - c["edges"], 0.0),
-        wavelength=wavelength,
-        nominal_area=area,
-    )
+    forces = (c[name] for name in ("normal", "shear", "absolute", "resultant", "area"))
+    corrected = np.maximum(c["area"] - c["edges"], 0.0)
+    return whole_wavelength_averages(c["distance"], [*forces, corrected], wavelength, area)
 
 
 def saved_state(path: Path, arrays: dict[str, np.ndarray]) -> Path:
     """Write arrays to ``path`` and return it; an older file stays until the new one is whole."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, suffix=".part")
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            np.savez_compressed(stream, **arrays)  # pyright: ignore[reportArgumentType]  # arrays only
-        os.replace(name, path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+    with whole_file(path) as part, part.open("wb") as stream:
+        np.savez_compressed(stream, **arrays)  # pyright: ignore[reportArgumentType]  # arrays only
     return path
 
 
@@ -369,7 +324,7 @@ def loaded_state(path: Path, key: str) -> dict[str, np.ndarray]:
     return arrays
 
 
-def snapshot(path: Path, assembly: Assembly) -> Path:
+def snapshot(path: Path, assembly: Assembly) -> None:
     """Write the block as a VTU file: displacement, velocity, pressure, J, von Mises stress.
 
     Stresses are those of the fast (unrelaxed) response, Pa.
@@ -398,34 +353,26 @@ def snapshot(path: Path, assembly: Assembly) -> Path:
             "von_mises_stress": [mises],
         },
     )
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_suffix(".part.vtu")
-    written.write(part, file_format="vtu")
-    os.replace(part, path)
-    return path
+    with whole_file(path) as part:
+        written.write(part, file_format="vtu")
 
 
-def collection(path: Path, times: list[float], files: list[str]) -> Path:
+def collection(path: Path, shown: list[tuple[float, str]]) -> None:
     """Write a ParaView collection (PVD) that gives each snapshot its time."""
     rows = "\n".join(
-        f'    <DataSet timestep="{time:.9e}" file={quoteattr(name)}/>'
-        for time, name in zip(times, files, strict=True)
+        f'    <DataSet timestep="{time:.9e}" file={quoteattr(name)}/>' for time, name in shown
     )
     text = (
         '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n'
         f"{rows}\n  </Collection>\n</VTKFile>\n"
     )
-    part = path.with_suffix(".part")
-    part.write_text(text, encoding="utf-8")
-    os.replace(part, path)
-    return path
+    with whole_file(path) as part:
+        part.write_text(text, encoding="utf-8")
 
 
 def _stresses(assembly: Assembly) -> tuple[np.ndarray, np.ndarray]:
     """Return J and the von Mises equivalent of the isochoric Cauchy stress of each element."""
-    mesh = assembly.mesh
-    corners = assembly.displacement[:, mesh.elements[:, None] + mesh.offsets]
-    f = np.eye(3) + np.einsum("iea,qa,ejq->eij", corners, MODES, mesh.gradient)
+    f = assembly.mesh.deformation_gradient(assembly.displacement)
     jac = np.linalg.det(f)
     g0 = float(assembly.parameters[generate.PARAMETERS.index("g0")])
     left = f @ f.transpose(0, 2, 1)

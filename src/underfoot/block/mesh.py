@@ -1,7 +1,5 @@
 """Structured mesh of hexahedra: graded layers, a rough lower face, one-point mean gradients."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,49 +8,24 @@ from scipy.optimize import brentq
 
 from underfoot.core import InputError
 
+from ._kernels.hexahedron import CORNERS, MODES, mean_gradient
 from .inputs import MicroBlock, MicroSurface
 
-CORNERS = np.array(
-    [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
-)
-SIGNS = 2.0 * CORNERS - 1.0
-MODES = np.stack(
-    [
-        SIGNS[:, 0],
-        SIGNS[:, 1],
-        SIGNS[:, 2],
-        SIGNS[:, 1] * SIGNS[:, 2],
-        SIGNS[:, 0] * SIGNS[:, 2],
-        SIGNS[:, 0] * SIGNS[:, 1],
-        SIGNS.prod(axis=1),
-    ]
-)
-"""Sign of each mode at each corner, (7, 8)."""
 FEWEST_ELEMENTS = {"triangular": 2}
 """Elements a wavelength below which a form can't be drawn; 4 for all others."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BlockMesh:
-    """Nodes and elements; node (i, j, k) has the number (k ny1 + j) nx1 + i.
+    """Nodes and elements; node (i, j, k) has the number (k ny1 + j) nx1 + i."""
 
-    Parameters:
-        nodes: m, (3, n), undeformed; z = 0 is the mean plane of the lower face.
-        shape: Nodes along x, y, z.
-        elements: Number of the lowest corner's node of each element, (m,).
-        volume: m^3, (m,).
-        gradient: 1/m, (m, 3, 7): mean reference gradient by modes.
-        hourglass_shape: m, (m, 4, 3): coordinates by non-linear modes, over 8.
-        lower_area: m^2, (nx1 * ny1,): share of the nominal area; 0 on the sides that repeat others.
-    """
-
-    nodes: np.ndarray
-    shape: tuple[int, int, int]
-    elements: np.ndarray
-    volume: np.ndarray
-    gradient: np.ndarray
-    hourglass_shape: np.ndarray
-    lower_area: np.ndarray
+    nodes: np.ndarray  # m, (3, n), undeformed; z = 0 is the mean plane of the lower face
+    shape: tuple[int, int, int]  # nodes along x, y, z
+    elements: np.ndarray  # number of the lowest corner's node of each element, (m,)
+    volume: np.ndarray  # m^3, (m,)
+    gradient: np.ndarray  # 1/m, (m, 3, 7): mean reference gradient by modes
+    hourglass_shape: np.ndarray  # m, (m, 4, 3): coordinates by non-linear modes, over 8
+    lower_area: np.ndarray  # m^2, (nx1 * ny1,): share of the nominal area; 0 on sides that repeat
 
     @property
     def offsets(self) -> np.ndarray:
@@ -60,16 +33,16 @@ class BlockMesh:
         nx, ny, _ = self.shape
         return CORNERS @ np.array([1, nx, nx * ny])
 
-    @property
-    def largest_gradient_square(self) -> np.ndarray:
-        """Largest eigenvalue of B B^T in each element, 1/m^2."""
-        return 8.0 * np.linalg.eigvalsh(self.gradient @ self.gradient.transpose(0, 2, 1))[:, -1]
-
-    def deformed_gradient_square(self, displacement: np.ndarray) -> np.ndarray:
-        """Return the same on the deformed shape; ``displacement`` (3, n), m."""
+    def deformation_gradient(self, displacement: np.ndarray) -> np.ndarray:
+        """Return the mean F of each element, (m, 3, 3); ``displacement`` (3, n), m."""
         corners = displacement[:, self.elements[:, None] + self.offsets]
-        h = np.einsum("iea,qa,ejq->eij", corners, MODES, self.gradient)
-        b = np.linalg.solve((np.eye(3) + h).transpose(0, 2, 1), self.gradient)
+        return np.eye(3) + np.einsum("iea,qa,ejq->eij", corners, MODES, self.gradient)
+
+    def largest_gradient_square(self, displacement: np.ndarray | None = None) -> np.ndarray:
+        """Return the largest eigenvalue of B B^T in each element, 1/m^2, at rest or deformed."""
+        b = self.gradient
+        if displacement is not None:
+            b = np.linalg.solve(self.deformation_gradient(displacement).transpose(0, 2, 1), b)
         return 8.0 * np.linalg.eigvalsh(b @ b.transpose(0, 2, 1))[:, -1]
 
 
@@ -129,14 +102,11 @@ def block_mesh(block: MicroBlock) -> BlockMesh:
     nodes = np.stack([np.broadcast_to(xx, z.shape), np.broadcast_to(yy, z.shape), z])
     numbers = np.arange(z.size).reshape(z.shape)
     shape = (nx + 1, ny + 1, nz + 1)
-    area = np.zeros((ny + 1, nx + 1))
     cell = block.size[0] / nx * block.size[1] / ny
-    if block.sides == "periodic":
-        area[:-1, :-1] = cell
-    else:
-        for a in (slice(0, -1), slice(1, None)):
-            for b in (slice(0, -1), slice(1, None)):
-                area[a, b] += 0.25 * cell
+    shares = np.ones(ny + 1), np.ones(nx + 1)
+    for share in shares:
+        share[[0, -1]] = (1.0, 0.0) if block.sides == "periodic" else 0.5
+    area = cell * np.outer(*shares)
     elements = numbers[:-1, :-1, :-1].ravel()
     flat = nodes.reshape(3, -1)
     offsets = CORNERS @ np.array([1, shape[0], shape[0] * shape[1]])
@@ -150,29 +120,6 @@ def block_mesh(block: MicroBlock) -> BlockMesh:
         )
     shapes = np.einsum("qa,eaj->eqj", MODES[3:], corners) / 8.0
     return BlockMesh(flat, shape, elements, volume, gradient, shapes, area.ravel())
-
-
-def mean_gradient(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return volumes (m,) and mean gradients by modes (m, 3, 7) of hexahedra, corners (m, 8, 3).
-
-    2 x 2 x 2 Gauss points integrate the gradient of trilinear shape functions exactly.
-    """
-    point = 1.0 / np.sqrt(3.0)
-    volume = np.zeros(len(corners))
-    total = np.zeros((len(corners), 3, 8))
-    for sign in SIGNS:
-        t = point * sign
-        factor = 1.0 + SIGNS * t
-        local = np.empty((8, 3))
-        for j in range(3):
-            others = [k for k in range(3) if k != j]
-            local[:, j] = SIGNS[:, j] * factor[:, others[0]] * factor[:, others[1]] / 8.0
-        jacobian = np.einsum("eai,aj->eij", corners, local)
-        weight = np.linalg.det(jacobian)
-        volume += weight
-        slopes = np.linalg.solve(jacobian.transpose(0, 2, 1), local.T[None])
-        total += weight[:, None, None] * slopes
-    return volume, np.einsum("eja,qa->ejq", total, MODES) / (8.0 * volume[:, None, None])
 
 
 def check_pattern(block: MicroBlock, surface: MicroSurface, where: str) -> None:

@@ -4,8 +4,6 @@ Left open by the report and assumed here: density, phase of the patterns, number
 26 instead of 25.6 elements, hourglass control.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TypeVar

@@ -1,8 +1,7 @@
 """History of a sliding block: forces, real contact area, energies, means over wavelengths."""
 
-from __future__ import annotations
-
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -152,30 +151,21 @@ def resolution_note(means: MicroAverages) -> list[str]:
 
 
 def whole_wavelength_averages(
-    distance: np.ndarray,
-    normal_force: np.ndarray,
-    shear_force: np.ndarray,
-    absolute_shear: np.ndarray,
-    resultant: np.ndarray,
-    real_contact_area: np.ndarray,
-    corrected_area: np.ndarray,
-    *,
-    wavelength: float,
-    nominal_area: float,
-    skip: int = 1,
+    distance: np.ndarray, values: Sequence[np.ndarray], wavelength: float, nominal_area: float
 ) -> MicroAverages | None:
-    """Return the means over whole wavelengths after the first ``skip``, or None.
+    """Return the means over whole wavelengths after the first, or None.
 
-    Arrays (n,) have one value for each interval that ends at ``distance`` (m, increasing from
-    above 0); integrals are interpolated to the ends of the wavelengths. When only ``skip`` whole
-    wavelengths were slid, the last of them is taken.
+    ``values`` are normal force, shear force, its magnitude, resultant, real contact area and that
+    without its edges, each (n,) with one value for each interval that ends at ``distance`` (m,
+    increasing from above 0); integrals are interpolated to the ends of the wavelengths. When only
+    one whole wavelength was slid, it is taken.
     """
     if distance.size < 4 or not math.isfinite(wavelength):
         return None
     count = int(distance[-1] / wavelength * (1.0 + 1e-6))
     if count < 1:
         return None
-    first = min(skip, count - 1)
+    first = min(1, count - 1)
     marks = np.minimum(wavelength * np.arange(first, count + 1), distance[-1])
     steps = np.diff(distance, prepend=0.0)
     ends = np.concatenate([[0.0], distance])
@@ -184,26 +174,23 @@ def whole_wavelength_averages(
         total = np.concatenate([[0.0], np.cumsum(values * steps)])
         return np.diff(np.interp(marks, ends, total)) / wavelength
 
-    normal = between(normal_force)
-    shear = between(shear_force)
-    if not float(normal.mean()) > 0.0:
-        return None
-    each = shear / normal
-    cof = float(shear.mean() / normal.mean())
+    normal, shear, absolute, resultant, real_area, corrected_area = map(between, values)
     mean_normal = float(normal.mean())
-    area = float(between(real_contact_area).mean())
-    corrected = float(between(corrected_area).mean())
+    if not mean_normal > 0.0:
+        return None
+    cof = float(shear.mean()) / mean_normal
+    area, corrected = float(real_area.mean()), float(corrected_area.mean())
     if corrected < LEAST_RESOLVED * area:
         corrected = math.nan
     return MicroAverages(
         cof_hysteresis=cof,
-        cof_absolute=float(between(absolute_shear).mean()) / mean_normal,
-        cof_resultant=float(between(resultant).mean()) / mean_normal,
+        cof_absolute=float(absolute.mean()) / mean_normal,
+        cof_resultant=float(resultant.mean()) / mean_normal,
         area_per_force=area / mean_normal,
         real_contact_fraction=area / nominal_area,
         mean_pressure=mean_normal / nominal_area,
         wavelengths=count - first,
-        scatter=float(np.abs(each - cof).max()) if each.size > 1 else math.nan,
+        scatter=float(np.abs(shear / normal - cof).max()) if normal.size > 1 else math.nan,
         area_per_force_corrected=corrected / mean_normal,
         real_contact_fraction_corrected=corrected / nominal_area,
     )

@@ -28,6 +28,9 @@ class Numerics(Section):
     grid_check: Flag = default(
         False, False, "one grid; true solves the quick one too and estimates the grid's error"
     )
+    tread_positions: Annotated[int, Field(ge=1, le=64, strict=True)] = default(
+        4, 4, "of a tread's pattern, averaged over; half of them on the quick grid; 1: as it lies"
+    )
     most_memory: Annotated[float, Quantity("B", 2e8, 1e13)] = default(
         2e9, "2 GB", "a run that would take more is refused before it starts"
     )

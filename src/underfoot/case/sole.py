@@ -22,6 +22,7 @@ _ASSUMED = "assumption"
 _mm = 1e-3
 _CELLS = 2.0  # across a channel or lug: fewer and its width is wrong by half or more
 Turn = Annotated[float, Quantity("rad", -math.pi, math.pi)]
+Shift = Annotated[float, Quantity("m", -0.5, 0.5)]
 
 
 class RearProfile(Option):
@@ -255,6 +256,8 @@ class Lugs(TreadPattern):
     )
     channel_width: Length
     angle: Turn = default(0.0, "0 deg", "turns the pattern")
+    offset_along: Shift = default(0.0, "0 mm", "the first lug begins at the rear end")
+    offset_across: Shift = default(0.0, "0 mm", "a lug is centred on the centre line")
     edge_radius: Rounding = default(0.0, "0 mm", "sharp lug edges", assumed=True)
     sipes: SipeCuts | None = None
 
@@ -268,7 +271,8 @@ class Lugs(TreadPattern):
             self.channel_width,
             self.depth,
             self.edge_radius,
-            angle=self.angle,
+            (self.offset_along, self.offset_across),
+            self.angle,
             lug_length=getattr(self, "lug_length", None),
             arm_length=getattr(self, "arm_length", None),
             sipes=cuts and Sipes(cuts.width, cuts.depth, cuts.spacing, cuts.angle),

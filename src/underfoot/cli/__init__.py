@@ -1,7 +1,5 @@
 """The command line: ``underfoot new | check | run | compare | explain | catalogue | ...``."""
 
-from __future__ import annotations
-
 
 def main() -> None:
     """Run the command line; errors are plain sentences on standard error."""

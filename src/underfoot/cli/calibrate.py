@@ -1,7 +1,5 @@
 """``underfoot calibrate``: from measurements to what a case uses."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """Commands on a case: ``check``, ``run``, ``slip``, ``compare``, ``risk``, ``test`` and so on."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """``underfoot contact``: rubber on one rough surface, dry, at rest or sliding."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """Errors as plain sentences and exit codes; a traceback only on request."""
 
-from __future__ import annotations
-
 import errno
 import functools
 import os

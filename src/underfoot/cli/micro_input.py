@@ -1,7 +1,5 @@
 """The case of ``underfoot micro``: TOML with units, to block, floor, material and loading."""
 
-from __future__ import annotations
-
 import shutil
 import tomllib
 from collections.abc import Mapping
@@ -165,11 +163,9 @@ class MicroCase:
 def micro_case(path: Path, *, solver: str | None = None) -> MicroCase:
     """Return the case of a file.
 
-    Errors
-    ------
-    InputError
-        A file that is no TOML, an unknown key, a value without its unit, and what block, surface,
-        material and loading refuse.
+    Errors:
+        InputError: A file that is no TOML, an unknown key, a value without its unit, and what
+            block, surface, material and loading refuse.
     """
     case = _completed(read_toml(path), {**_DEFAULTS, "name": path.stem}, "", str(path))
     chosen = choice(str(solver or case["solver"]), ("condensed", "explicit"), "solver")

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from underfoot.shoe.parametric import SoleFile
     from underfoot.shoe.shape import SoleShape
 
-Text = Annotated[str | None, typer.Option(show_default=False)]
 LENGTHS = {
     "lug": "tread.lug_width",
     "channel": "tread.channel_width",
@@ -25,57 +24,33 @@ LENGTHS = {
 }
 
 
+def _given(text: str) -> Any:
+    return typer.Option(help=text, show_default=False)
+
+
+PATTERNS = "none, grid, blocks, transverse, longitudinal, bars, chevrons, circles, hexagons."
+
+
 def make(
     spec: Annotated[
         Path | None,
         typer.Argument(help="Outsole file or case file (TOML).", show_default=False),
     ] = None,
-    pattern: Annotated[
-        str | None,
-        typer.Option(
-            "--pattern",
-            help="none, grid, blocks, transverse, longitudinal, bars, chevrons, circles, hexagons.",
-            show_default=False,
-        ),
-    ] = None,
-    lug: Annotated[
-        str | None, typer.Option("--lug", help='Width of a lug, as "6 mm".', show_default=False)
-    ] = None,
-    channel: Annotated[
-        str | None, typer.Option("--channel", help="Width of a channel.", show_default=False)
-    ] = None,
-    pitch: Annotated[
-        str | None, typer.Option("--pitch", help="Lug and channel together.", show_default=False)
-    ] = None,
-    depth: Annotated[
-        str | None, typer.Option("--depth", help="Height of the lugs.", show_default=False)
-    ] = None,
-    lug_length: Annotated[
-        str | None, typer.Option("--lug-length", help="Of blocks.", show_default=False)
-    ] = None,
-    arm: Annotated[
-        str | None, typer.Option("--arm", help="Of chevrons, across.", show_default=False)
-    ] = None,
-    angle: Annotated[
-        str | None, typer.Option("--angle", help="Of the pattern.", show_default=False)
-    ] = None,
-    edge: Annotated[
-        str | None, typer.Option("--edge", help="Radius of the lugs' edges.", show_default=False)
-    ] = None,
-    sipes: Annotated[
-        str | None,
-        typer.Option(
-            "--sipes", help='Width, depth and spacing: "0.5 mm, 2 mm, 4 mm".', show_default=False
-        ),
-    ] = None,
+    pattern: Annotated[str | None, _given(PATTERNS)] = None,
+    lug: Annotated[str | None, _given('Width of a lug, as "6 mm".')] = None,
+    channel: Annotated[str | None, _given("Width of a channel.")] = None,
+    pitch: Annotated[str | None, _given("Lug and channel together.")] = None,
+    depth: Annotated[str | None, _given("Height of the lugs.")] = None,
+    lug_length: Annotated[str | None, _given("Of blocks.")] = None,
+    arm: Annotated[str | None, _given("Of chevrons, across.")] = None,
+    angle: Annotated[str | None, _given("Of the pattern.")] = None,
+    edge: Annotated[str | None, _given("Radius of the lugs' edges.")] = None,
+    sipes: Annotated[str | None, _given('Width, depth and spacing: "0.5 mm, 2 mm, 4 mm".')] = None,
     whole: Annotated[
         bool, typer.Option("--whole", help="A whole sole of common widths, not a heel.")
     ] = False,
     set_: Settings = None,
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", help="File: .step, .stl, .obj or .ply (mm).", show_default=False),
-    ] = None,
+    out: Annotated[Path | None, _given("File: .step, .stl, .obj or .ply (mm).")] = None,
     json: AsJson = False,
     overwrite: Overwrite = False,
 ) -> None:
@@ -104,13 +79,13 @@ def make(
         else _from_options(pattern or "", given, pitch, sipes, whole, set_)
     )
     written = None if out is None else write_sole(shape, out)
-    found = as_dict(shape, written)
+    measures = as_dict(shape, written)
     if json:
         import json as json_text
 
-        print(json_text.dumps(found, indent=2, ensure_ascii=False))
+        print(json_text.dumps(measures, indent=2, ensure_ascii=False))
     else:
-        _show(found, written)
+        _show(measures, written)
 
 
 def as_dict(shape: SoleShape, written: SoleFile | None) -> dict[str, Any]:
@@ -118,7 +93,7 @@ def as_dict(shape: SoleShape, written: SoleFile | None) -> dict[str, Any]:
     from underfoot.shoe import heel_surface
 
     surface = heel_surface(shape, spacing=0.25e-3)
-    found: dict[str, Any] = {
+    measures: dict[str, Any] = {
         "length_m": shape.length,
         "width_m": shape.width,
         "plan_area_m2": shape.plan_area,
@@ -126,7 +101,7 @@ def as_dict(shape: SoleShape, written: SoleFile | None) -> dict[str, Any]:
         "tread_depth_m": 0.0 if shape.tread is None else shape.tread.depth,
     }
     if written is not None:
-        found |= {
+        measures |= {
             "file": str(written.path),
             "volume_m3": written.volume,
             "file_volume_m3": written.read_volume,
@@ -134,14 +109,14 @@ def as_dict(shape: SoleShape, written: SoleFile | None) -> dict[str, Any]:
             "lugs": written.lugs,
             "remarks": list(written.remarks),
         }
-    return found
+    return measures
 
 
-def _show(found: dict[str, Any], written: SoleFile | None) -> None:
+def _show(measures: dict[str, Any], written: SoleFile | None) -> None:
     print(
-        f"{found['length_m'] * 1e3:.0f} x {found['width_m'] * 1e3:.0f} mm, "
-        f"{found['plan_area_m2'] * 1e4:.1f} cm2, {found['land_ratio']:.0%} of it land, "
-        f"tread {found['tread_depth_m'] * 1e3:g} mm"
+        f"{measures['length_m'] * 1e3:.0f} x {measures['width_m'] * 1e3:.0f} mm, "
+        f"{measures['plan_area_m2'] * 1e4:.1f} cm2, {measures['land_ratio']:.0%} of it land, "
+        f"tread {measures['tread_depth_m'] * 1e3:g} mm"
     )
     if written is None:
         print("Nothing written: name a file with --out sole.step")
@@ -155,13 +130,11 @@ def _show(found: dict[str, Any], written: SoleFile | None) -> None:
 
 def _from_file(spec: Path, settings: list[str] | None) -> SoleShape:
     from underfoot.case import text as toml
-    from underfoot.compute.sole import read_outsole
+    from underfoot.compute.sole import new_sole, read_outsole
 
     from .options import loaded
 
     if spec.is_file() and "shoe" in toml.parsed(toml.read(spec), str(spec)):
-        from underfoot.compute.sole import new_sole
-
         return new_sole(loaded(spec, None, settings))
     return read_outsole(spec, _settings(settings)).shape()
 
@@ -184,10 +157,8 @@ def _from_options(
     if pitch is not None and given["lug"] is not None:
         if given["channel"] is not None:
             raise InputError("--pitch and --channel say the same thing twice", where="--pitch")
-        lug, whole_pitch = (
-            to_si(given["lug"], "m", where="--lug"),
-            to_si(pitch, "m", where="--pitch"),
-        )
+        lug = to_si(given["lug"], "m", where="--lug")
+        whole_pitch = to_si(pitch, "m", where="--pitch")
         if lug >= whole_pitch:
             raise InputError(
                 f"a lug of {lug * 1e3:g} mm leaves no channel in {whole_pitch * 1e3:g} mm",
@@ -218,12 +189,10 @@ def _from_options(
                 f'"{sipes}"', where="--sipes", allowed='width, depth, spacing: "0.5 mm, 2 mm, 4 mm"'
             )
         tread["sipes"] = dict(zip(("width", "depth", "spacing"), parts, strict=True))
-    heel: dict[str, Any] = {"profile": "flat"}
+    mapping: dict[str, Any] = {"heel": {"profile": "flat"}, "tread": tread}
     if whole:
-        heel |= {"plan": "sole", "length": "290 mm", "width": "68 mm"}
-        heel |= {"waist_width": "58 mm", "ball_width": "100 mm"}
-    mapping: dict[str, Any] = {"heel": heel, "tread": tread}
-    if whole:
+        mapping["heel"] |= {"plan": "sole", "length": "290 mm", "width": "68 mm"}
+        mapping["heel"] |= {"waist_width": "58 mm", "ball_width": "100 mm"}
         mapping["sole"] = {"outsole_thickness": "12 mm"}
     for key, value in chosen.items():
         section, _, name = key.rpartition(".")

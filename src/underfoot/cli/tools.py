@@ -1,7 +1,5 @@
 """Commands beside a computation: case files, catalogue, explanations, checks of the program."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 from json import dumps
 from pathlib import Path

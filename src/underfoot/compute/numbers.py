@@ -37,6 +37,7 @@ _INPUTS = {
     "laboratory": "difference between laboratories",
     "pair": "difference between pairs",
     "model": "the law itself",
+    "tread_position": "position of the tread",
     "film load": "load on the film",
 }
 FILM_ERROR = math.log(1.41)
@@ -123,12 +124,12 @@ def undetermined(case: Case, status: Status) -> dict[str, SourcedValue]:
     return {**found, "normal_force": case.sourced("motion.normal_force")}
 
 
-def regime(contact: SoleContact) -> dict[str, str]:
+def regime(share: float) -> dict[str, str]:
     """Return the lubrication regime by the share of the load that the fluid carries."""
     from underfoot.film import SHARE_LIMITS, lubrication_by_load_share
 
     low, high = SHARE_LIMITS
-    name = lubrication_by_load_share(min(max(contact.fluid_load / contact.normal_force, 0.0), 1.0))
+    name = lubrication_by_load_share(min(max(share, 0.0), 1.0))
     return {
         "regime": str(name) if name == "full film" else f"{name} lubrication",
         "regime_rule": f"by load share: below {100 * low:g} % boundary, "
@@ -145,7 +146,10 @@ def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
     if sampled.left_out:
         names = ", ".join(_INPUTS.get(name, name) for name in sampled.left_out)
         parts.append(f"taken as exact: {names}")
-    drawn = f"{sampled.cof.size} draws, seed {sampled.seed}; film thickness as computed"
+    held = "film thickness as computed"
+    if "tread_position" in sampled.share:
+        held = "contact and film at each position of the tread in turn"
+    drawn = f"{sampled.cof.size} draws, seed {sampled.seed}; {held}"
     return {"cof_spread_from": ", ".join(parts), "cof_spread_how": drawn}
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from underfoot.case import Case
 from underfoot.case.context import Context
 from underfoot.core import Breach, Progress, SourcedValue, silent
@@ -25,6 +27,12 @@ def resolved(case: Case, progress: Progress = silent) -> Context:
         catalogue=case.catalogue,
         progress=progress,
     )
+
+
+def turned(context: Context, turn: float) -> Context:
+    """Return the context with ``turn`` (rad) added to the shoe angle."""
+    angle = {"shoe_angle": context.motion.shoe_angle + turn}
+    return replace(context, motion=context.motion.model_copy(update=angle))
 
 
 def youngs_modulus(case: Case) -> tuple[SourcedValue, list[Breach]]:

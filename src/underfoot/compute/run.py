@@ -41,7 +41,8 @@ from .numbers import (
     undetermined,
     with_grid_errors,
 )
-from .resolve import resolved
+from .positions import Place, tread_positions
+from .resolve import resolved, turned
 from .result import Result
 from .sole import compression_breaches, outsole_notes, sole_map
 
@@ -138,13 +139,41 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         source=f"{law.name} law: {law.source}",
     )
     sensor = scanned(case, sole, contact, viscosity=viscosity)
+
+    def solved_quick(case: Case, place: Place, progress: Progress) -> tuple[SoleMap, SoleContact]:
+        there = sole_map(case, case.numerics.quick_grid_spacing, shift=place.shift, turn=place.turn)
+        body = case.compliance.build(turned(context, place.turn), there)
+        return there, solved_motion(
+            case, there, body, asperities, viscosity=viscosity, progress=progress
+        )
+
     numbers, risk, labels = undetermined(case, contact.status), None, {}
+    positions = None
     if contact.status.usable:
+        if "compliance" not in own:
+            positions = tread_positions(
+                case,
+                law,
+                sole,
+                contact,
+                solved_quick,
+                viscosity=viscosity,
+                quick=quick,
+                progress=progress,
+            )
+        solved = time.perf_counter()
+        if positions:
+            friction, sampled = positions.friction(friction, sampled)
         numbers, risk = scalars(case, contact, friction, sensor, sampled, slip)
         numbers |= recorder.array_scalars()
-        labels = {**regime(contact), **spread_origin(sampled)}
+        if positions:
+            numbers = positions.averaged(numbers)
+        share = (numbers["fluid_load"].value or 0.0) / contact.normal_force
+        labels = {**regime(share), **spread_origin(sampled)}
         if basis := getattr(law, "spread_basis", ""):
             labels["cof_spread_basis"] = basis
+        if positions:
+            labels |= positions.labels()
         if remark := peak_pressure(sole, contact.total_pressure).remark:
             labels["edge_peak"] = remark
         if remark := blind_sensor(case, sensor, contact):
@@ -157,14 +186,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
                     where="numerics.grid_check",
                     remedy="Set numerics.grid_check = false",
                 )
-            coarse_sole = sole_map(case, coarse_spacing)
-            coarse = solved_motion(
-                case,
-                coarse_sole,
-                case.compliance.build(context, coarse_sole),
-                asperities,
-                viscosity=viscosity,
-                progress=progress,
+            coarse_sole, coarse = (positions and positions.coarse) or solved_quick(
+                case, Place(), progress
             )
             if coarse.status.usable:
                 there = readings(coarse, scanned(case, coarse_sole, coarse, viscosity=viscosity))
@@ -196,7 +219,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             parts.total - np.where(contact.wet, 0.0, parts.viscous),
             history_fields(contact, recorder),
             None if sampled is None else sampled.cof,
-        ),
+        ).assign(positions.fields() if positions else {}),
         status=status,
         breaches=_texts(breaches),
         assumptions=tuple(
@@ -206,6 +229,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
                     *outsole_notes(case),
                     *law.assumptions,
                     *(risk.assumptions if risk else ()),
+                    *(positions.assumptions() if positions else ()),
                     *(
                         f"{slot}: an object given to run, {text}"
                         for slot, text in identities.items()

@@ -52,15 +52,27 @@ WEAR_STEP = 0.25e-3
 """Thickness that Archard wear removes between two contacts, m."""
 
 
-def sole_map(case: Case, spacing: float, progress: Progress = silent) -> SoleMap:
-    """Return the tilted sole of the case on a grid of ``spacing`` (m)."""
+def sole_map(
+    case: Case,
+    spacing: float,
+    progress: Progress = silent,
+    *,
+    shift: tuple[float, float] = (0.0, 0.0),
+    turn: float = 0.0,
+) -> SoleMap:
+    """Return the tilted sole of the case on a grid of ``spacing`` (m).
+
+    ``shift`` (x, y; m) moves the tread's pattern under the sole, ``turn`` (rad) adds to the shoe
+    angle; wear stays where it is. Neither holds for an outsole from a file.
+    """
     from underfoot import shoe
 
     if case.shoe.outsole is not None:
         return file_sole_map(case, spacing)
-    sole = shoe.heel_map(
-        sole_shape(case, progress), shoe_angle=case.motion.shoe_angle, spacing=spacing
-    )
+    shape = sole_shape(case, progress)
+    if shape.tread is not None and any(shift):
+        shape = cast("SoleShape", replace(cast("Any", shape), tread=shape.tread.moved(shift)))
+    sole = shoe.heel_map(shape, shoe_angle=case.motion.shoe_angle + turn, spacing=spacing)
     plan = case.shoe.heel
     return trimmed(sole, plan.reach) if isinstance(plan, WholePlan) else sole
 

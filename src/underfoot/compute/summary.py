@@ -16,6 +16,7 @@ GAIN_MATTERS = 1.1
 """Ratio of the COF without the film to the present one above which drainage is worth naming."""
 QUANTITIES: Mapping[str, tuple[str, str]] = {
     "cof": ("Coefficient of friction", ""),
+    "cof_tread_position": ("  spread over tread positions", ""),
     "cof_adhesion": ("  from adhesion", ""),
     "cof_hysteresis": ("  from hysteresis", ""),
     "cof_viscous": ("  from shearing the fluid", ""),
@@ -33,6 +34,7 @@ QUANTITIES: Mapping[str, tuple[str, str]] = {
 """Label and remark of each quantity, in the order of the summary; parts are indented."""
 LABELS = {
     "cof_spread_from": "Uncertainty of the COF",
+    "tread_position": "Tread position",
     "grid_error": "Discretisation error",
     "edge_peak": "Caution on pressures",
     "sensor": "Caution on the sensor",
@@ -98,6 +100,8 @@ def headline(
     if cof.uncertainty is not None:
         measure = "one standard deviation" if "±" in text else "95 % interval"
         text += f", {measure} {labels.get('cof_spread_basis', 'of friction law and film load')}"
+    if "cof_tread_position" in scalars:
+        text += ", mean over positions of the tread"
     sentences = [f"Available COF {text}."]
     regime = f" ({labels['regime']})" if "regime" in labels else ""
     limit = str(friction_limit(scalars))

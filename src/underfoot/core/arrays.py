@@ -1,7 +1,5 @@
 """Names of the array types that the package's signatures use."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

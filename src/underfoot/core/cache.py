@@ -1,11 +1,8 @@
 """On-disk cache of arrays, keyed by the content of what they were computed from."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os
-import tempfile
 from collections.abc import Mapping
 from dataclasses import asdict, is_dataclass
 from pathlib import Path
@@ -13,6 +10,8 @@ from typing import Any
 from zipfile import BadZipFile
 
 import numpy as np
+
+from .files import whole_file
 
 
 def content_hash(*parts: Any) -> str:
@@ -51,16 +50,9 @@ class Cache:
 
     def store(self, key: str, arrays: Mapping[str, Any]) -> None:
         """Store arrays under ``key``; readers never see a half-written entry."""
-        self.folder.mkdir(parents=True, exist_ok=True)
         plain: dict[str, Any] = {key: np.asarray(value) for key, value in arrays.items()}
-        handle, name = tempfile.mkstemp(dir=self.folder, suffix=".part")
-        try:
-            with os.fdopen(handle, "wb") as stream:
-                np.savez_compressed(stream, **plain)
-            os.replace(name, self.folder / f"{key}.npz")
-        except BaseException:
-            Path(name).unlink(missing_ok=True)
-            raise
+        with whole_file(self.folder / f"{key}.npz") as part, part.open("wb") as stream:
+            np.savez_compressed(stream, **plain)
 
 
 def default_folder() -> Path:

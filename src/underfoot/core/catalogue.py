@@ -95,11 +95,9 @@ class Catalogue(Presentable):
         A name may stand once for each kind: a second entry of the same name is refused, unless
         it comes from a user's folder and says ``replaces = true``.
 
-        Errors
-        ------
-        InputError
-            A folder or file that can't be read, an unknown kind, a name clash, a ``from`` that
-            leads nowhere or in a circle.
+        Errors:
+            InputError: A folder or file that can't be read, an unknown kind, a name clash, a
+                ``from`` that leads nowhere or in a circle.
         """
         chosen = tuple(str(Path(folder)) for folder in folders)
         return _loaded(chosen, tuple(_stamp(Path(folder)) for folder in chosen))

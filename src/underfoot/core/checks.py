@@ -1,7 +1,5 @@
 """Checks of single inputs: where they stand and what is allowed."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 

@@ -1,6 +1,4 @@
 """Physical constants, SI."""
 
-from __future__ import annotations
-
 GRAVITY = 9.80665
 """Standard gravity, m/s^2 (3rd CGPM, 1901): exact by definition."""

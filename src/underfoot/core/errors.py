@@ -1,7 +1,5 @@
 """The error family: where, what, what is allowed, the nearest match, the remedy."""
 
-from __future__ import annotations
-
 import difflib
 from collections.abc import Iterable, Sequence
 

@@ -1,7 +1,5 @@
 """Output that is either whole or absent."""
 
-from __future__ import annotations
-
 import hashlib
 import shutil
 import subprocess
@@ -12,6 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 from .errors import InputError
 
@@ -67,6 +66,18 @@ def whole_folder(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
         if guard is not None:
             guard.kill()
             guard.communicate()
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """Yield a path beside ``path`` whose file takes its place when the block ends well."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(f".{path.name}-{uuid4().hex}")
+    try:
+        yield part
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
 
 
 def _guard(staging: Path, path: Path) -> subprocess.Popen[bytes] | None:

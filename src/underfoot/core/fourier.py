@@ -3,8 +3,6 @@
 The variable ``UNDERFOOT_FFT`` of the environment ("mkl" or "scipy") chooses one for a whole run.
 """
 
-from __future__ import annotations
-
 import os
 from typing import Any, Protocol
 

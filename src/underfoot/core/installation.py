@@ -1,7 +1,5 @@
 """State of the installation: versions, libraries in use, missing packages and their remedy."""
 
-from __future__ import annotations
-
 import os
 import platform
 import re

@@ -1,7 +1,5 @@
 """One written value with what a reader must know to trust it: source, spread, marks."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any

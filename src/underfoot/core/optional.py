@@ -1,7 +1,5 @@
 """Optional packages: imported where they are needed, with the remedy where they are missing."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from importlib import import_module
 from typing import Any

@@ -4,8 +4,6 @@ Each worker watches its parent: after Ctrl-C, SIGTERM or a kill of the parent, a
 a cancel in it, no worker goes on.
 """
 
-from __future__ import annotations
-
 import ctypes
 import multiprocessing
 import os

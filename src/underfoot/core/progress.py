@@ -1,7 +1,5 @@
 """Progress that means something: a stage, a fraction done and the residual; cancel from outside."""
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Outcome of a computation as data: each status carries its remedy."""
 
-from __future__ import annotations
-
 from enum import StrEnum
 
 

@@ -1,7 +1,5 @@
 """A limit on the threads of the linear-algebra libraries, and the namespace of an array."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache

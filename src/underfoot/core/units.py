@@ -1,7 +1,5 @@
 """Units at the door: text with a unit becomes an SI float; SI floats become readable text."""
 
-from __future__ import annotations
-
 import math
 import re
 from decimal import Decimal
@@ -78,10 +76,9 @@ def to_si(given: object, unit: str, *, where: str) -> float:
     Plain numbers are accepted only where ``unit`` is ``"1"`` (dimensionless): elsewhere a number
     without a unit is refused, because guessing it would change results silently.
 
-    Errors
-    ------
-    InputError
-        Unit missing, unknown or of another dimension; text that is no number; not finite.
+    Errors:
+        InputError: Unit missing, unknown or of another dimension; text that is no number; not
+            finite.
     """
     example = _EXAMPLES.get(unit, f"1 {unit}")
     if isinstance(given, bool):
@@ -152,10 +149,8 @@ def display_unit(value: float, unit: str) -> tuple[float, str]:
 def si_unit(given: str, *, where: str) -> str:
     """Return the SI unit (as used by ``to_si``) that fits a text such as ``"219 cP"``.
 
-    Errors
-    ------
-    InputError
-        No number, or a unit that fits none of the units in use.
+    Errors:
+        InputError: No number, or a unit that fits none of the units in use.
     """
     match = _NUMBER.match(_plain(given))
     if match is None:

@@ -1,7 +1,5 @@
 """Validity ranges as data: what a closure was tested on, and what leaves that range."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """A number that knows its unit, its source, how sure it is and whether it was assumed."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

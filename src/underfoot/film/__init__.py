@@ -1,19 +1,19 @@
 """Fluid film between sole and floor: Reynolds and cavitation, wedge, squeeze, soft EHL, regimes."""
 
-from ._kernels.faces import Upwinding as Upwinding
-from ._kernels.faces import upwinding as upwinding
 from .operator import Cavity as Cavity
 from .operator import Conductance as Conductance
 from .operator import FilmOperator as FilmOperator
+from .operator import Pattern as Pattern
 from .operator import Stencil as Stencil
+from .operator import Upwinding as Upwinding
 from .operator import divergence as divergence
 from .operator import film_operator as film_operator
+from .operator import upwinding as upwinding
 from .patir_cheng_1978 import patir_cheng_breaches as patir_cheng_breaches
 from .patir_cheng_1978 import patir_cheng_mean_gap as patir_cheng_mean_gap
 from .patir_cheng_1978 import patir_cheng_pressure_factors as patir_cheng_pressure_factors
 from .patir_cheng_1979 import patir_cheng_shear_factor as patir_cheng_shear_factor
 from .patir_cheng_1979 import patir_cheng_shear_flow as patir_cheng_shear_flow
-from .pattern import Pattern as Pattern
 from .pressure import Film as Film
 from .pressure import FilmPressure as FilmPressure
 from .pressure import film_history as film_history

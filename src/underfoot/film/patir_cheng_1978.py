@@ -1,7 +1,5 @@
 """Patir and Cheng (1978): pressure flow factors of rough walls with a direction."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable
 

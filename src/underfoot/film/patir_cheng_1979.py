@@ -1,7 +1,5 @@
 """Patir and Cheng (1979): flow that sliding rough walls carry along."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -15,9 +15,7 @@ from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import positive
 from underfoot.core.sparse import Factorization, factorization
 
-from ._kernels.grids import finer, halved
-from .operator import Conductance, FilmOperator, film_operator
-from .pattern import Pattern
+from .operator import Conductance, FilmOperator, Pattern, film_operator
 
 OPEN = 100.0
 """Gap of the open surroundings over the largest gap of the film."""
@@ -142,7 +140,7 @@ def film_pressure(
                 "the liquid before the step is negative", where="before", allowed="0 m or more"
             )
         grids = replace(grids, content=content, time_step=time_step)
-    return _FilmSolver(grids.mask, backend).solve(grids).film_pressure(grids, time_step or 0.0)
+    return _FilmSolver(grids.mask, backend).solve(grids, time=time_step or 0.0)[0]
 
 
 def film_history(
@@ -180,10 +178,8 @@ def film_history(
         )
         if solver is None:
             solver = _FilmSolver(grids.mask, backend)
-        solved = solver.solve(grids, full)
-        full = solved.full
-        instant = solved.film_pressure(grids, float(now))
-        content = instant.content
+        instant, _ = solver.solve(grids, full, float(now))
+        full, content = ~instant.cavitated, instant.content
         progress("film history", count / (instants.size - 1), instant.mass_residual)
         yield instant
 
@@ -220,46 +216,16 @@ class _Grids:
     def coarser(self) -> _Grids | None:
         """Return the film on cells twice as large; None when no axis can lose half its cells."""
         axes = tuple(axis for axis in (0, 1) if self.gap.shape[axis] >= FEWEST_CELLS)
-        mask = halved(self.mask.astype(float), axes) > 0.5
+        mask = _halved(self.mask.astype(float), axes) > 0.5
         if not axes or not mask.any():
             return None
         coarse = {
-            part.name: halved(value, axes)
+            part.name: _halved(value, axes)
             for part in fields(self)
             if isinstance(value := getattr(self, part.name), np.ndarray) and part.name != "mask"
         }
         dx, dy = (size * (2 if axis in axes else 1) for axis, size in enumerate(self.spacing))
         return replace(self, mask=mask, spacing=(dx, dy), **coarse)
-
-
-@dataclass(frozen=True, slots=True)
-class _Solved:
-    """Pressure, liquid fraction and the cells that are full, (nx, ny)."""
-
-    operator: FilmOperator
-    pressure: Array
-    fraction: Array
-    full: Mask
-    excess: Array  # m^3/s, above 0 where full, below where cavitated
-    residual: float
-    iterations: int
-
-    def film_pressure(self, grids: _Grids, time: float) -> FilmPressure:
-        dx, dy = grids.spacing
-        inside = grids.mask.astype(float)
-        flow_x, flow_y = self.operator.flows(self.pressure, self.fraction)
-        through_x, through_y = flow_x * np.diff(inside, axis=0), flow_y * np.diff(inside, axis=1)
-        return FilmPressure(
-            pressure=self.pressure,
-            fraction=self.fraction,
-            gap=grids.gap,
-            cavitated=grids.mask & ~self.full,
-            load=float(self.pressure[grids.mask].sum()) * dx * dy,
-            rim_outflow=float(-through_x.sum() - through_y.sum()),
-            mass_residual=self.residual,
-            iterations=self.iterations,
-            time=time,
-        )
 
 
 class _FilmSolver:
@@ -276,8 +242,13 @@ class _FilmSolver:
         self._backend = backend
         self._factors: Factorization | None = None
 
-    def solve(self, film: _Grids, full: Mask | None = None) -> _Solved:
-        """Return the film, from a first guess of the ``full`` cells (None: from coarser grids)."""
+    def solve(
+        self, film: _Grids, full: Mask | None = None, time: float = 0.0
+    ) -> tuple[FilmPressure, Array]:
+        """Return the film, and a flow (m^3/s) above 0 where it is full, below 0 in cavities.
+
+        ``full`` is a first guess of the full cells; None takes it from coarser grids.
+        """
         if full is None:
             full = self._guess(film)
         pattern, operator = self._pattern, film.operator()
@@ -331,16 +302,30 @@ class _FilmSolver:
             np.where(is_full, 1.0, np.clip(flows / carry, 0.0, 1.0))
         )
         missing = pattern.gather(operator.imbalance(pressure, fraction, film.content))
-        scale = _largest_flow(operator, pressure, film.content)
-        return _Solved(
-            operator,
-            pressure,
-            fraction,
-            pattern.scatter(is_full.astype(float)) > 0,
-            pattern.scatter(np.where(is_full, flows, flows - carry)),
-            float(np.abs(missing).max()) / scale if scale > 0 else 0.0,
-            iterations,
+        flow_x, flow_y = operator.flows(pressure, fraction)
+        inside, (dx, dy) = film.mask.astype(float), film.spacing
+        through_x, through_y = flow_x * np.diff(inside, axis=0), flow_y * np.diff(inside, axis=1)
+        # an imbalance is measured by the largest flow through a face or into a store
+        sizes = (
+            operator.carry.value,
+            operator.kx.value * np.diff(pressure, axis=0),
+            flow_y,
+            operator.storage * operator.gap,
+            operator.storage * film.content,
         )
+        scale = max(float(np.abs(part).max(initial=0.0)) for part in sizes)
+        solved = FilmPressure(
+            pressure=pressure,
+            fraction=fraction,
+            gap=film.gap,
+            cavitated=film.mask & ~(pattern.scatter(is_full.astype(float)) > 0),
+            load=float(pressure[film.mask].sum()) * dx * dy,
+            rim_outflow=float(-through_x.sum() - through_y.sum()),
+            mass_residual=float(np.abs(missing).max()) / scale if scale > 0 else 0.0,
+            iterations=iterations,
+            time=time,
+        )
+        return solved, pattern.scatter(np.where(is_full, flows, flows - carry))
 
     def _solution(self, rows, right: Array) -> Array:
         if self._factors is None:
@@ -354,20 +339,8 @@ class _FilmSolver:
         coarse = film.coarser()
         if coarse is None:
             return np.ones_like(film.mask)
-        solved = _FilmSolver(coarse.mask, self._backend).solve(coarse)
-        return finer(solved.excess, film.mask.shape) >= 0.0
-
-
-def _largest_flow(operator: FilmOperator, pressure: Array, content: Array) -> float:
-    """Return the largest flow (m^3/s) through a face or into a store: the scale of an imbalance."""
-    sizes = (
-        operator.carry.value,
-        operator.kx.value * np.diff(pressure, axis=0),
-        operator.ky.value * np.diff(pressure, axis=1),
-        operator.storage * operator.gap,
-        operator.storage * content,
-    )
-    return max(float(np.abs(part).max(initial=0.0)) for part in sizes)
+        _, excess = _FilmSolver(coarse.mask, self._backend).solve(coarse)
+        return _finer(excess, film.mask.shape) >= 0.0
 
 
 def _grids(film: Film) -> _Grids:
@@ -454,3 +427,26 @@ def _field(value: ArrayLike, shape: tuple[int, ...], where: str) -> Array:
 def _check_fraction(values: Array, where: str) -> None:
     if not ((values >= 0) & (values <= 1)).all():
         raise InputError("a liquid fraction is not 0 to 1", where=where, allowed="0 to 1")
+
+
+def _halved(field: Array, axes: tuple[int, ...]) -> Array:
+    """Return the means of neighbouring cells along ``axes``; an odd last cell counts twice."""
+    for axis in axes:
+        if field.shape[axis] % 2:
+            field = np.concatenate([field, np.take(field, [-1], axis)], axis=axis)
+        even, odd = (np.take(field, range(part, field.shape[axis], 2), axis) for part in (0, 1))
+        field = 0.5 * (even + odd)
+    return field
+
+
+def _finer(field: Array, shape: tuple[int, ...]) -> Array:
+    """Return a coarse ``field`` on the grid of ``shape``, linear between cell centres."""
+    for axis in (0, 1):
+        if field.shape[axis] == shape[axis]:
+            continue
+        size = field.shape[axis]
+        before = np.take(field, np.maximum(np.arange(size) - 1, 0), axis)
+        after = np.take(field, np.minimum(np.arange(size) + 1, size - 1), axis)
+        pair = np.stack([0.75 * field + 0.25 * before, 0.75 * field + 0.25 * after], axis + 1)
+        field = pair.reshape(*field.shape[:axis], 2 * size, *field.shape[axis + 1 :])
+    return field[: shape[0], : shape[1]]

@@ -1,7 +1,5 @@
 """Lubrication regimes, by film over roughness and by who carries the load."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Protocol
@@ -56,10 +54,10 @@ class RegimeComparison:
 
 @dataclass(frozen=True, slots=True)
 class RegimeMap:
-    """Regimes over viscosity and speed; arrays (viscosities, speeds)."""
+    """Regimes over viscosity (Pa s) and speed (m/s); arrays (viscosities, speeds)."""
 
-    viscosity: Array  # Pa s
-    speed: Array  # m/s
+    viscosity: Array
+    speed: Array
     lambda_ratio: Array
     fluid_share: Array | None
     assumptions: tuple[str, ...]

@@ -1,7 +1,5 @@
 """Soft elastohydrodynamic film of a point contact: Hamrock and Dowson 1978 (Eq. 18 to 21)."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from enum import StrEnum
@@ -86,10 +84,8 @@ def soft_ehl(
     if speed_is not in SPEEDS:
         raise unknown_name("speed", speed_is, SPEEDS, where="speed_is")
     eta, force = positive_array(viscosity, "viscosity"), positive_array(load, "load")
-    r, modulus = (
-        positive_array(radius, "radius"),
-        positive_array(effective_modulus, "effective_modulus"),
-    )
+    r = positive_array(radius, "radius")
+    modulus = positive_array(effective_modulus, "effective_modulus")
     k = positive(ellipticity, "ellipticity")
     u = SPEEDS[speed_is] * positive_array(speed, "speed", zero=True)
     speed_number = eta * u / (modulus * r)
@@ -135,9 +131,7 @@ def lambda_ratio(film_thickness: ArrayLike, rq_first: float, rq_second: float) -
     they were measured, undeformed.
     """
     thickness = positive_array(film_thickness, "film_thickness", zero=True)
-    first, second = (
-        not_negative(rq, where) for rq, where in ((rq_first, "rq_first"), (rq_second, "rq_second"))
-    )
+    first, second = not_negative(rq_first, "rq_first"), not_negative(rq_second, "rq_second")
     if first == second == 0:
         raise InputError("both walls are smooth", where="rq_first", remedy="Give a roughness.")
     return thickness / math.hypot(first, second)

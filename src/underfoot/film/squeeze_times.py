@@ -1,7 +1,5 @@
 """How long a flat pad takes to press a film out (no sliding)."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

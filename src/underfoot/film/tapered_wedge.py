@@ -1,7 +1,5 @@
 """Tapered wedge of finite width: load, side leakage, peak pressure, film that carries a load."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache
@@ -56,10 +54,7 @@ def tapered_wedge(
     unit = 6 * positive(viscosity, "viscosity") * positive(speed, "speed")
     unit *= along / h0**2
     modes = _modes(m)
-    slenderness = along / across
-    half = 0.5 * modes.rates / slenderness
-    held = 1 - np.tanh(half) / half  # share of a mode that the sides leave
-    shares = modes.weights * modes.means
+    half, held = modes.held(along / across)
     middle = 1 - 1 / np.cosh(np.minimum(half, 700.0))
     place = np.linspace(0.0, 1.0, 2001)
     profile = (modes.weights * middle) @ modes.at(place)
@@ -67,11 +62,11 @@ def tapered_wedge(
     around = place[max(top - 2, 0) : top + 3]
     curve = np.polynomial.Polynomial.fit(around, (modes.weights * middle) @ modes.at(around), 4)
     fine = np.linspace(around[0], around[-1], 401)
-    load = float((shares * held).sum())
+    load = float((modes.shares * held).sum())
     moment = float((modes.weights * modes.moments * held).sum())
     return TaperedWedge(
         load=unit * along * across * load,
-        leakage=load / float(shares.sum()),
+        leakage=load / float(modes.shares.sum()),
         peak_pressure=unit * float(curve(fine).max()),
         pressure_centre=along * moment / load,
     )
@@ -85,9 +80,7 @@ def side_leakage(length_over_width: float, taper: float) -> float:
     """
     ratio = positive(length_over_width, "length_over_width")
     modes = _modes(positive(taper, "taper"))
-    half = 0.5 * modes.rates / ratio
-    shares = modes.weights * modes.means
-    return float((shares * (1 - np.tanh(half) / half)).sum() / shares.sum())
+    return float((modes.shares * modes.held(ratio)[1]).sum() / modes.shares.sum())
 
 
 def wedge_film(
@@ -100,14 +93,9 @@ def wedge_film(
     """
     m = positive(taper, "taper")
     along, across = positive(length, "length"), positive(width, "width")
-    carried = positive(viscosity, "viscosity") * positive(speed, "speed") * across
-    return along * math.sqrt(
-        6
-        * carried
-        * wedge_load_factor(m)
-        * side_leakage(along / across, m)
-        / positive(load, "load")
-    )
+    carried = 6 * positive(viscosity, "viscosity") * positive(speed, "speed") * across
+    carried *= wedge_load_factor(m) * side_leakage(along / across, m)
+    return along * math.sqrt(carried / positive(load, "load"))
 
 
 def wedge_load_factor(taper: float) -> float:
@@ -124,9 +112,14 @@ class _Modes:
 
     rates: Array  # mu
     weights: Array  # coefficients of the infinitely wide wedge's pressure
-    means: Array  # integral of each mode
+    shares: Array  # integral of each mode times its weight
     moments: Array  # integral of x times each mode
     coefficients: Array  # (modes, modes) by sine
+
+    def held(self, slenderness: float) -> tuple[Array, Array]:
+        """Return half the sides' distance by modes, and the share of each that the sides leave."""
+        half = 0.5 * self.rates / slenderness
+        return half, 1 - np.tanh(half) / half
 
     def at(self, place: Array) -> Array:
         """Return the modes (modes, n) at ``place``."""
@@ -147,10 +140,11 @@ def _modes(taper: float) -> _Modes:
     # weak form of (h^3 p')' = -dh/dx in units of 6 eta u l / h0^2: rises towards +x
     forced = value @ (weight * taper)
     coefficients = vectors.T
+    weights = (coefficients @ forced) / squares
     return _Modes(
         rates=np.sqrt(squares),
-        weights=(coefficients @ forced) / squares,
-        means=coefficients @ (value @ weight),
+        weights=weights,
+        shares=weights * (coefficients @ (value @ weight)),
         moments=coefficients @ (value @ (weight * place)),
         coefficients=coefficients,
     )

@@ -1,7 +1,5 @@
 """Shear stress that a film puts on both walls."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

@@ -8,16 +8,16 @@ from numpy.typing import ArrayLike
 from underfoot.core import RangeError
 
 
-def checked_hardness(shore_a: ArrayLike, *, below: float = np.inf, up_to: float = 100.0) -> Any:
+def checked_hardness(shore_a: ArrayLike) -> Any:
     """Return hardness as an array; refuse what no durometer shows."""
     hardness = np.asarray(shore_a, dtype=float)
-    good = np.isfinite(hardness) & (hardness >= 0.0) & (hardness <= up_to) & (hardness < below)
+    good = np.isfinite(hardness) & (hardness >= 0.0) & (hardness < 100.0)
     if not np.all(good):
         wrong = np.atleast_1d(hardness)[~np.atleast_1d(good)][0]
         raise RangeError(
             f"Shore A hardness {wrong:g}",
             where="shore_a",
-            allowed="0 to below 100" if np.isfinite(below) else "0 to 100",
+            allowed="0 to below 100",
             remedy="A harder material has no Shore A value: enter its modulus",
         )
     return hardness

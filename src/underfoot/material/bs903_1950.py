@@ -27,7 +27,7 @@ def youngs_modulus_bs903(shore_a: ArrayLike) -> Any:
     Raises:
         RangeError: Hardness outside 0 to below 100.
     """
-    hardness = checked_hardness(shore_a, below=100.0)
+    hardness = checked_hardness(shore_a)
     return scalar_or_array((erfinv(hardness / 100.0) / 3.186e-4) ** 2)
 
 

@@ -135,9 +135,9 @@ SHEAR_CONSTANTS: Mapping[str, tuple[float, float, float]] = MappingProxyType(
 def report_elastomer(name: str) -> Elastomer:
     """Return "neolite" (Shore A 95) or "rubber" (Shore A 50) of the report as an ``Elastomer``.
 
-    One term with 1 / beta = 77 s and 40 s: at 0.1 to 1 m/s over asperities of 0.4 mm its loss
-    tangent is 1e-7 to 1e-5, so that this material has practically no hysteresis friction. The
-    bulk modulus follows from nu = 0.499; Table 2's 2180 MPa for rubber is ten times what that
+    One term (Eq. 7) with 1 / beta = 77 s and 40 s: at 0.1 to 1 m/s over asperities of 0.4 mm its
+    loss tangent is 1e-7 to 1e-5, so that this material has practically no hysteresis friction.
+    The bulk modulus follows from nu = 0.499; Table 2's 2180 MPa for rubber is ten times what that
     rule gives (neolite's 9324 MPa obeys it).
 
     Raises:

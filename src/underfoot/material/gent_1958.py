@@ -38,7 +38,7 @@ def youngs_modulus_gent(shore_a: ArrayLike) -> Any:
     Raises:
         RangeError: Hardness outside 0 to below 100.
     """
-    hardness = checked_hardness(shore_a, below=100.0)
+    hardness = checked_hardness(shore_a)
     modulus = 0.0981e6 * (56.0 + 7.62336 * hardness) / (0.137505 * (254.0 - 2.54 * hardness))
     return scalar_or_array(modulus)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from underfoot.case import assumptions
 from underfoot.case.describe import tested_range_breaches
-from underfoot.compute.contact import cost
+from underfoot.compute.positions import run_cost
 from underfoot.compute.resolve import resolved
 from underfoot.compute.sole import outsole_notes
 from underfoot.compute.summary import ranked_assumptions
@@ -94,7 +94,6 @@ class CaseCheck(Presentable):
 
 def case_check(case: Case) -> CaseCheck:
     """Return what is known of a case before it is computed."""
-    numerics = case.numerics
     breaches, refusal = [*tested_range_breaches(case)], ""
     try:
         law = case.friction.build(resolved(case))
@@ -110,6 +109,6 @@ def case_check(case: Case) -> CaseCheck:
         case,
         refusal,
         tuple(dict.fromkeys(breaches)),
-        cost(case, numerics.grid_spacing),
-        cost(case, numerics.quick_grid_spacing),
+        run_cost(case, quick=False),
+        run_cost(case, quick=True),
     )

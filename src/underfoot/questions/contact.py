@@ -1,7 +1,5 @@
 """Rubber on one rough surface, dry, at rest or sliding: real contact, hysteresis, gap, leakage."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Explanation of a formula, an equation of the report, a catalogue entry, a key or a term."""
 
-from __future__ import annotations
-
 import inspect
 import re
 import sys
@@ -52,10 +50,8 @@ def explanation(name: str, catalogue: Catalogue, *, full: bool = False) -> str:
     The short form of a formula has its equation, tested range and source; ``full`` also its
     parameters, notes and errors.
 
-    Raises
-    ------
-    InputError
-        An unknown name, with the nearest one.
+    Raises:
+        InputError: An unknown name, with the nearest one.
     """
     parts = []
     if name.casefold() in TERMS:

@@ -100,24 +100,19 @@ def outcomes(
 ) -> list[Outcome]:
     """Return the outcome of every case, in order; equal cases are computed once.
 
-    Parameters
-    ----------
-    quick
-        Use the coarse grid of the cases.
-    processes
-        Cases computed at the same time, each on one thread; None takes the cores, at most 4.
-        With more than one, a script needs ``if __name__ == "__main__":`` around its work.
-    cached
-        Keep outcomes on disk and take them from there. An entry belongs to this code and
-        this catalogue: any change of either computes again.
-    progress
-        Receives the share of cases that are done; an exception it raises stops the work, and
-        what is done stays in the cache.
+    Parameters:
+        quick: Use the coarse grid of the cases.
+        processes: Cases computed at the same time, each on one thread; None takes the cores, at
+            most 4. With more than one, a script needs ``if __name__ == "__main__":`` around its
+            work.
+        cached: Keep outcomes on disk and take them from there. An entry belongs to this code and
+            this catalogue: any change of either computes again.
+        progress: Receives the share of cases that are done; an exception it raises stops the work,
+            and what is done stays in the cache.
 
-    Raises
-    ------
-    UnderfootError
-        As ``compute.run`` raises it for the first case that can't be computed at all.
+    Raises:
+        UnderfootError: As ``compute.run`` raises it for the first case that can't be computed at
+            all.
     """
     store = Cache("outcomes-1")
     keys = [_key(case, quick) for case in cases]

@@ -226,21 +226,15 @@ def risk_assessment(
 ) -> RiskAssessment:
     """Return the slip probability by every model, what limits the friction, and effects of changes.
 
-    Parameters
-    ----------
-    case
-        Shoe, floor, fluid, motion and people.
-    target
-        Slip probability to aim at, for the friction that is missing.
-    changes
-        What to try; None takes ``possible_changes(case)``. Each is computed with the whole model.
-    quick
-        The coarse grid for all, so that differences are between like and like.
+    Parameters:
+        case: Shoe, floor, fluid, motion and people.
+        target: Slip probability to aim at, for the friction that is missing.
+        changes: What to try; None takes ``possible_changes(case)``. Each is computed with the whole
+            model.
+        quick: The coarse grid for all, so that differences are between like and like.
 
-    Raises
-    ------
-    InputError
-        ``target`` outside (0, 1); a case that can't be computed.
+    Raises:
+        InputError: ``target`` outside (0, 1); a case that can't be computed.
     """
     if not 0 < target < 1:
         raise InputError(f"{target:g}", where="target", allowed="above 0 and below 1")

@@ -1,7 +1,5 @@
 """Readings drawn from what the open inputs of a case do to them, taken together."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 
@@ -35,27 +33,18 @@ def sampled(
     Effects are factors that multiply, so a reading near zero stays positive and one that a single
     degree multiplies by ten has a long upper tail. Interactions beyond that are not looked for.
 
-    Parameters
-    ----------
-    sensitivity
-        Nominal outcome and the effects of the inputs.
-    name
-        Scalar of the outcomes.
-    value
-        N_0; None takes the nominal outcome's (another grid's value may be given).
-    factors
-        Further causes, each as the factor of one standard deviation (grid, place of the tracks).
-    least
-        Smaller numbers count as this one: no reading tells them apart.
-    most
-        M, which the number can't pass (a load: the normal force); none by default.
-    draws, seed
-        Number of draws and where they start; the same seed gives the same draws.
+    Parameters:
+        sensitivity: Nominal outcome and the effects of the inputs.
+        name: Scalar of the outcomes.
+        value: N_0; None takes the nominal outcome's (another grid's value may be given).
+        factors: Further causes, each as the factor of one standard deviation (grid, place of the
+            tracks).
+        least: Smaller numbers count as this one: no reading tells them apart.
+        most: M, which the number can't pass (a load: the normal force); none by default.
+        draws, seed: Number of draws and where they start; the same seed gives the same draws.
 
-    Raises
-    ------
-    InputError
-        ``least`` or a factor that is not positive, ``most`` not above ``least``.
+    Raises:
+        InputError: ``least`` or a factor that is not positive, ``most`` not above ``least``.
     """
     if not most > least:
         raise InputError(f"{most:g}", where="most", allowed="above least")

@@ -294,10 +294,8 @@ def measured_rcof(path: Path) -> tuple[float, float, str]:
     Read from measurements.csv of ``underfoot trials analyse``. The steps of a person count as one
     value, their mean; where no person is named, those of a file do.
 
-    Raises
-    ------
-    InputError
-        No such file, no RCOF in it, or one person only.
+    Raises:
+        InputError: No such file, no RCOF in it, or one person only.
     """
 
     import numpy as np

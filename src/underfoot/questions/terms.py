@@ -1,7 +1,5 @@
 """Words of the field, each in a sentence."""
 
-from __future__ import annotations
-
 TERMS = {
     "cof": "coefficient of friction: friction force over normal force.",
     "acof": "available coefficient of friction: what shoe, floor and contaminant offer.",

@@ -3,8 +3,6 @@
 The closed forms stand in ``underfoot.reference``; here the solvers are held against them.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -254,33 +254,23 @@ def wear_series(
 ) -> WearSeries:
     """Return a case from new to worn, and the wear at which its fluid load exceeds a limit.
 
-    Parameters
-    ----------
-    case
-        A shoe with tread; its own wear is replaced.
-    mode
-        "archard": contact pressure times sliding at three angles about ``shoe.wear.angle`` (the
-        shoe angle of the case where none is given); "plane": ground at that angle; "patch": a worn
-        patch at the heel that grows, worn down to the channel floor.
-    steps
-        Number of worn states.
-    deepest
-        Thickness lost at the end, m (archard, plane); area of the patch at the end, m^2 (patch).
-        By default the depth of the tread (plane), 1.6 times that (archard: a single place is worn
-        through first), and a patch of 0.8 of the heel's length and width.
-    limit
-        Fluid load, N; by default 5 N, the report's limit of detection (G.4).
-    band
-        Vary the least known inputs at every state: four more runs a state.
-    draws, seed
-        Of the sampling of the band.
-    quick, processes, progress
-        As for ``outcomes``; every finished state is kept on disk, so that a stopped series goes on.
+    Parameters:
+        case: A shoe with tread; its own wear is replaced.
+        mode: "archard": contact pressure times sliding at three angles about ``shoe.wear.angle``
+            (the shoe angle of the case where none is given); "plane": ground at that angle;
+            "patch": a worn patch at the heel that grows, worn down to the channel floor.
+        steps: Number of worn states.
+        deepest: Thickness lost at the end, m (archard, plane); area of the patch at the end, m^2
+            (patch). By default the depth of the tread (plane), 1.6 times that (archard: a single
+            place is worn through first), and a patch of 0.8 of the heel's length and width.
+        limit: Fluid load, N; by default 5 N, the report's limit of detection (G.4).
+        band: Vary the least known inputs at every state: four more runs a state.
+        draws, seed: Of the sampling of the band.
+        quick, processes, progress: As for ``outcomes``; every finished state is kept on disk, so
+            that a stopped series goes on.
 
-    Raises
-    ------
-    InputError
-        A sole without tread; a patch larger than the shoe; wear deeper than the sole.
+    Raises:
+        InputError: A sole without tread; a patch larger than the shoe; wear deeper than the sole.
     """
     if mode not in MODES:
         raise unknown_name("mode", mode, MODES, where="mode")

@@ -1,7 +1,5 @@
 """Wear at which a load exceeds its limit, with its 90 % interval."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -50,6 +50,8 @@ def _result_sections(
     result: Result, pictures: dict[str, bytes], advice: RiskAssessment | None = None
 ) -> tuple[Sequence[Section], str]:
     warning = "" if result.usable else "The computation did not converge: for diagnosis only."
+    if "cof_tread_position" in result.scalars:
+        warning = "The tread lies as the case describes it; the numbers are means over positions."
     parts = [
         Section("Under the sole", warning, html=viewer_section([result])),
         *table_sections(result),

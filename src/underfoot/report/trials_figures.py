@@ -296,16 +296,11 @@ def _tile(key: str, one: FileResult, curve: Curve) -> tuple[Tile, float]:
 
 
 _NAMES = {
-    "acof": "available friction, ACOF",
-    "rcof": "required friction, RCOF",
-    "acof_minus_rcof": "ACOF − RCOF",
-    "cof": "COF",
-    "peak_slipping_speed": "peak slipping speed (m/s)",
-    "peak_force": "peak force (N)",
-    "cof_bl": "COF_BL",
-    "tau_hydro": "tau_hydro (m/s)",
+    "acof": "available friction, ACOF", "rcof": "required friction, RCOF", "cof": "COF",
+    "acof_minus_rcof": "ACOF − RCOF", "peak_slipping_speed": "peak slipping speed (m/s)",
+    "peak_force": "peak force (N)", "cof_bl": "COF_BL", "tau_hydro": "tau_hydro (m/s)",
     "cof_asymptote": "COF_asymptote",
-}
+}  # fmt: skip
 
 
 def _study(analysis: FolderAnalysis) -> Iterator[TrialFigure]:

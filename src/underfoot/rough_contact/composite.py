@@ -1,7 +1,5 @@
 """Two rough surfaces as one: the composite surface and what it can't say."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from underfoot.core import InputError

@@ -13,22 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
-from underfoot.core import (
-    Breach,
-    Cache,
-    ConvergenceError,
-    DataError,
-    InputError,
-    Progress,
-    Range,
-    RangeError,
-    SourcedValue,
-    breaches,
-    content_hash,
-    display,
-    silent,
-    unknown_name,
-)
+from underfoot import core
 from underfoot.core.arrays import Array
 from underfoot.core.pool import in_processes
 from underfoot.core.presentation import Presentable, Table
@@ -98,9 +83,9 @@ class ContactTable(Presentable):
         poisson_ratio: float = 0.5,
         layer_thickness: float | None = None,
         processes: int = 1,
-        cache: Cache | None = None,
+        cache: core.Cache | None = None,
         description: str = "",
-        progress: Progress = silent,
+        progress: core.Progress = core.silent,
     ) -> ContactTable:
         """Return the contact table of an ensemble of surfaces of one texture.
 
@@ -128,7 +113,7 @@ class ContactTable(Presentable):
         """
         p, v = _nodes("pressure", pressure, 4), _nodes("speed", speed, 1)
         _check_surfaces(surfaces)
-        store = Cache(ROOM) if cache is None else cache
+        store = core.Cache(ROOM) if cache is None else cache
         parts = []
         for floor, shoe in _pairs(surfaces, shoe_surfaces):
             alone = np.asarray(floor.heights)
@@ -171,24 +156,24 @@ class ContactTable(Presentable):
 
     def __repr__(self) -> str:
         p, v = (
-            f"{display(nodes[0], unit)} to {display(nodes[-1], unit)}"
+            f"{core.display(nodes[0], unit)} to {core.display(nodes[-1], unit)}"
             for nodes, unit in ((self.pressure, "Pa"), (self.speed, "m/s"))
         )
         count = int(self.realizations.max())
         return f"ContactTable({self.description[:60]!r}, {p}, {v}, {count} surfaces)"
 
     @property
-    def ranges(self) -> dict[str, Range]:
+    def ranges(self) -> dict[str, core.Range]:
         """Return the validity box: the pressures and speeds of the grid."""
         return {
-            "pressure": Range(float(self.pressure[0]), float(self.pressure[-1]), "Pa", "grid"),
-            "speed": Range(float(self.speed[0]), float(self.speed[-1]), "m/s", "grid"),
+            "pressure": core.Range(float(self.pressure[0]), float(self.pressure[-1]), "Pa", "grid"),
+            "speed": core.Range(float(self.speed[0]), float(self.speed[-1]), "m/s", "grid"),
         }
 
-    def breaches(self, *, pressure: ArrayLike, speed: ArrayLike) -> list[Breach]:
+    def breaches(self, *, pressure: ArrayLike, speed: ArrayLike) -> list[core.Breach]:
         """Return what leaves the grid (speed by its magnitude)."""
         values = {"pressure": pressure, "speed": np.abs(np.asarray(speed, dtype=float))}
-        return breaches(self.name, self.ranges, values)
+        return core.breaches(self.name, self.ranges, values)
 
     def real_contact_fraction(
         self, pressure: ArrayLike, speed: ArrayLike, outside: Outside = "error"
@@ -232,10 +217,10 @@ class ContactTable(Presentable):
         nodes = np.mean([self.values[f"flow_factor_{name}"] for name in chosen], axis=0)
         return self._through(nodes, at)[0]
 
-    def sourced(self, quantity: str, pressure: float, speed: float) -> SourcedValue:
+    def sourced(self, quantity: str, pressure: float, speed: float) -> core.SourcedValue:
         """Return one interpolated quantity with the spread between surfaces as uncertainty."""
         if quantity not in QUANTITIES:
-            raise unknown_name("quantity", quantity, QUANTITIES, where=self.name)
+            raise core.unknown_name("quantity", quantity, QUANTITIES, where=self.name)
         _, *at = self._at(pressure, speed, "error")
         value, _ = self._through(self.values[quantity], at)
         if quantity == "real_contact_fraction":
@@ -244,7 +229,7 @@ class ContactTable(Presentable):
         if np.all(np.isfinite(self.deviation[quantity])):
             deviation, _ = self._through(self.deviation[quantity], at)
             spread, reason = max(float(deviation), 0.0), ""
-        return SourcedValue(
+        return core.SourcedValue(
             value=float(value),
             unit=QUANTITIES[quantity],
             source=f"{self.name}: {self.description}",
@@ -269,10 +254,9 @@ class ContactTable(Presentable):
         flow = self.flow_factor(pressure, v, direction, "extend")
         keep = [0]
         for n in range(1, gap.size):
-            if gap[n] < gap[keep[-1]] - 1e-6 * gap[0]:
-                keep.append(n)
+            keep += [n] if gap[n] < gap[keep[-1]] - 1e-6 * gap[0] else []
         if len(keep) < 3:
-            raise RangeError(
+            raise core.RangeError(
                 f"only {len(keep)} pressures leave an open gap at {speed} m/s",
                 where=self.name,
                 remedy="Compute the table from a lower pressure on",
@@ -318,7 +302,7 @@ class ContactTable(Presentable):
                     out_of_range=tuple(text["out_of_range"]),
                 )
         except (OSError, ValueError, KeyError, EOFError) as error:
-            raise DataError(
+            raise core.DataError(
                 f"{path} is not a contact table ({error})",
                 where=str(path),
                 allowed="a file written by ContactTable.save",
@@ -336,7 +320,7 @@ class ContactTable(Presentable):
             np.asarray(pressure, dtype=float), np.abs(np.asarray(speed, dtype=float))
         )
         if np.any(~(p >= 0.0)) or np.any(~np.isfinite(v)) or np.any(~np.isfinite(p)):
-            raise InputError(
+            raise core.InputError(
                 "pressure or speed is negative, missing or infinite",
                 where=self.name,
                 allowed="pressure >= 0 Pa and a finite speed",
@@ -344,7 +328,7 @@ class ContactTable(Presentable):
         if outside == "error":
             outside_grid = self.breaches(pressure=p, speed=v)
             if outside_grid:
-                raise RangeError(
+                raise core.RangeError(
                     str(outside_grid[0]),
                     where=self.name,
                     remedy='Compute a wider table, or extend it knowingly with outside="extend"',
@@ -373,7 +357,7 @@ class _Part(NamedTuple):
         """Return the content key: program version, heights, loads, modulus at every frequency."""
         q = 2.0 * np.pi * np.fft.rfftfreq(self.heights.shape[0], self.spacing)
         young = modulus_function(self.modulus, q * self.speed)(q * self.speed)
-        return content_hash(version(), *self._replace(modulus=young))
+        return core.content_hash(version(), *self._replace(modulus=young))
 
 
 def _column(part: _Part) -> dict[str, np.ndarray]:
@@ -384,15 +368,8 @@ def _column(part: _Part) -> dict[str, np.ndarray]:
     out_of_range: list[str] = []
 
     def contact_of(heights: np.ndarray, pressure: float) -> SteadySliding:
-        return steady_sliding(
-            heights,
-            part.spacing,
-            part.modulus,
-            part.speed,
-            pressure,
-            part.poisson_ratio,
-            layer_thickness=part.layer_thickness,
-        )
+        given = (part.spacing, part.modulus, part.speed, pressure, part.poisson_ratio)
+        return steady_sliding(heights, *given, layer_thickness=part.layer_thickness)
 
     for p in part.pressure.tolist():
         contact = friction = contact_of(part.heights, p)
@@ -425,7 +402,7 @@ def _check_sendable(modulus: Modulus) -> None:
     try:
         pickle.dumps(modulus)
     except Exception as error:
-        raise InputError(
+        raise core.InputError(
             f"the modulus can't be sent to another process ({error})",
             where="modulus",
             remedy="Use a material or a named function instead of a lambda, or processes=1",
@@ -477,7 +454,7 @@ def _table(
         deviation=deviation,
         realizations=count.T,
         description=description,
-        key=content_hash(keys),
+        key=core.content_hash(keys),
         notes=tuple(notes),
         out_of_range=tuple(out_of_range),
     )
@@ -495,7 +472,7 @@ def _holes(
     lost = holes & ~bridged
     if lost.any():
         at = np.argwhere(lost)[0]
-        raise ConvergenceError(
+        raise core.ConvergenceError(
             f"no surface converged at {p[at[1]]:.4g} Pa and {v[at[0]]:.4g} m/s "
             f"({int(lost.sum())} such nodes)",
             history=[float(np.max(column["error"])) for column in columns],
@@ -510,9 +487,9 @@ def _about(surfaces: Sequence[Any]) -> str:
     shortest = [s.resolution if s.resolution is not None else 2.0 * s.spacing for s in surfaces]
     nx, ny = first.heights.shape
     return (
-        f"{len(surfaces)} surface(s) of {nx} x {ny} points, spacing {display(first.spacing, 'm')}, "
-        f"shortest wave {display(max(shortest), 'm')}: contact fraction and "
-        "hysteresis belong to this shortest wave"
+        f"{len(surfaces)} surface(s) of {nx} x {ny} points, spacing "
+        f"{core.display(first.spacing, 'm')}, shortest wave {core.display(max(shortest), 'm')}: "
+        "contact fraction and hysteresis belong to this shortest wave"
     )
 
 
@@ -520,7 +497,7 @@ def _nodes(name: str, nodes: ArrayLike, least: int) -> np.ndarray:
     values = np.atleast_1d(np.asarray(nodes, dtype=float))
     good = values.ndim == 1 and values.size >= least and np.all(np.isfinite(values))
     if not (good and values[0] > 0.0 and np.all(np.diff(values) > 0.0)):
-        raise InputError(
+        raise core.InputError(
             f"{name} nodes {nodes}",
             where=name,
             allowed=f"{least} or more rising values above zero",
@@ -534,7 +511,7 @@ def _pairs(floors: Sequence[Any], shoes: Sequence[Any] | None) -> list[tuple[Any
         return [(floor, None) for floor in floors]
     _check_surfaces(shoes)
     if len(shoes) != len(floors):
-        raise InputError(
+        raise core.InputError(
             f"{len(shoes)} shoe surfaces for {len(floors)} floors",
             where="shoe_surfaces",
             allowed="one for each floor",
@@ -544,10 +521,10 @@ def _pairs(floors: Sequence[Any], shoes: Sequence[Any] | None) -> list[tuple[Any
 
 def _check_surfaces(surfaces: Sequence[Any]) -> None:
     if len(surfaces) == 0:
-        raise InputError("no surface", where="surfaces", allowed="one height map or more")
+        raise core.InputError("no surface", where="surfaces", allowed="one height map or more")
     for n, surface in enumerate(surfaces):
         if not surface.periodic:
-            raise InputError(
+            raise core.InputError(
                 f"surface {n + 1} is not periodic",
                 where="surfaces",
                 remedy="Make it periodic first (taper or mirror its edges), or generate surfaces "
@@ -567,7 +544,7 @@ def leave_out_errors(table: ContactTable, axis: str = "pressure") -> dict[str, f
     """
     nodes = {"pressure": table.pressure, "speed": table.speed}[axis]
     if nodes.size < 5:
-        raise InputError(
+        raise core.InputError(
             f"{nodes.size} {axis} nodes", where="leave_out_errors", allowed="5 or more"
         )
     removed = np.arange(1, nodes.size - 1, 2)
@@ -582,13 +559,9 @@ def leave_out_errors(table: ContactTable, axis: str = "pressure") -> dict[str, f
         realizations=table.realizations[index],
     )
     p, v = np.meshgrid(table.pressure, table.speed, indexing="ij")
-    at_nodes = {
-        "real_contact_fraction": coarse.real_contact_fraction(p, v),
-        "cof_hysteresis": coarse.cof_hysteresis(p, v),
-        "mean_gap": coarse.mean_gap(p, v),
-        "flow_factor_along": coarse.flow_factor(p, v, "along"),
-        "flow_factor_across": coarse.flow_factor(p, v, "across"),
-    }
+    at_nodes = {name: getattr(coarse, name)(p, v) for name in list(QUANTITIES)[:3]}
+    for direction in ("along", "across"):
+        at_nodes[f"flow_factor_{direction}"] = coarse.flow_factor(p, v, direction)
     errors = {name: np.abs(at_nodes[name] - table.values[name]) for name in QUANTITIES}
     errors["real_contact_fraction"] /= table.values["real_contact_fraction"]
     errors["mean_gap"] /= table.values["mean_gap"].max()

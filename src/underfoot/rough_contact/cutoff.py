@@ -1,7 +1,5 @@
 """How a contact depends on the shortest wave that a surface keeps."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,15 +84,13 @@ def cutoff_dependence(
             np.fft.ifft2(filtered).real, surface.spacing, modulus, speed, pressure, poisson_ratio
         )
         power = np.abs(filtered / filtered.size) ** 2
-        usable = contact.status.usable
-        rows.append(
-            [
-                float(np.sqrt((power * q**2).sum())),
-                contact.real_contact_fraction_corrected if usable else np.nan,
-                contact.cof_hysteresis if usable else np.nan,
-                contact.mean_gap if usable else np.nan,
-            ]
+        averages = (
+            contact.real_contact_fraction_corrected,
+            contact.cof_hysteresis,
+            contact.mean_gap,
         )
+        known = averages if contact.status.usable else (np.nan,) * 3
+        rows.append([float(np.sqrt((power * q**2).sum())), *known])
         states.append(contact.status)
         progress("shortest wave", (n + 1) / waves.size)
     values = np.array(rows).T

@@ -1,7 +1,5 @@
 """Pressure flow factors: the thin-film flow through a contact's own gap."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,10 +72,10 @@ def flow_factors(
         return FlowFactors(0.0, 0.0, 0.0, 0.0, 0.0)
     dx, dy = (spacing, spacing) if isinstance(spacing, int | float) else spacing
     scaled = g / mean
-    faces = (_linear_gap_face(scaled, 0), _linear_gap_face(scaled, 1))
+    faces = [_linear_gap_face(scaled, axis) for axis in (0, 1)]
     least = _NEGLIGIBLE * 0.5 * float(faces[0].mean() + faces[1].mean())
-    faces = (np.where(faces[0] > least, faces[0], 0.0), np.where(faces[1] > least, faces[1], 0.0))
-    if faces[0].max() == 0.0 and faces[1].max() == 0.0:
+    faces = [np.where(face > least, face, 0.0) for face in faces]
+    if not any(face.any() for face in faces):
         return FlowFactors(0.0, 0.0, 0.0, mean, 0.0)
     shape, ratio = g.shape, dy / dx
     weights = (faces[0] * ratio, faces[1] / ratio)  # face area over distance

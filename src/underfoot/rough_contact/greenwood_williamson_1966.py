@@ -1,7 +1,5 @@
 """Greenwood and Williamson (1966): a rough surface as independent spherical summits."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

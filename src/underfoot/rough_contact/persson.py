@@ -1,7 +1,5 @@
 """Persson's theory of rough contact: area, mean gap and hysteresis friction over pressure."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Pressure-gap laws of a rough interface: exponential, through computed points, from theory."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Protocol, runtime_checkable

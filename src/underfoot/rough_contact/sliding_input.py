@@ -1,7 +1,5 @@
 """Inputs of a sliding contact: checks, complex modulus, resolution."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any, Protocol

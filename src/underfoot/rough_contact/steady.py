@@ -1,7 +1,5 @@
 """Steady sliding of a smooth viscoelastic half-space or layer over a rough rigid surface."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from functools import partial
@@ -16,9 +14,9 @@ from underfoot.core.presentation import Presentable, Table
 from underfoot.core.status import worst
 from underfoot.core.threads import converter, namespace, threads_limited
 
-from ._kernels import spectra
-from ._kernels.area import contact_fractions
-from ._kernels.nested import NestedSolution, solve_nested
+from ._kernels import periodic
+from ._kernels.complementarity import ContactState
+from ._kernels.nested import solve_nested
 from ._kernels.operators import Body
 from .sliding_input import (
     Modulus,
@@ -166,16 +164,16 @@ def steady_sliding(
     )
     shape: tuple[int, int] = h.shape
     xp = namespace(h)
-    qx, qy = spectra.wavenumbers(shape, steps)
+    qx, qy = periodic.wavenumbers(shape, steps)
     length = shape[0] * steps[0]
     frequencies = 2.0 * math.pi / length * abs(speed) * np.arange(shape[0] // 2 + 1)
     young = modulus_function(modulus, frequencies)
     table = young(frequencies)
     asarray = converter(h)
-    odd = asarray(spectra.odd_wavenumbers(shape, steps))
+    odd = asarray(periodic.odd_wavenumbers(shape, steps))
     body = Body(
-        partial(spectra.sliding_moduli, table, length, speed > 0.0),
-        lambda q: spectra.unit_compliance(q, layer_thickness, poisson_ratio),
+        partial(periodic.sliding_moduli, table, length, speed > 0.0),
+        lambda q: periodic.unit_compliance(q, layer_thickness, poisson_ratio),
         steps,
         xp=xp,
         asarray=asarray,
@@ -185,7 +183,7 @@ def steady_sliding(
     with threads_limited(threads):
         exact = transform(shape, xp.float64, xp=xp, threads=threads, library=fft)
         surface = 1.0 * exact.forward(h)
-        slope, short = spectra.slope_numbers(
+        slope, short = periodic.slope_numbers(
             surface, asarray(qx**2 + qy**2), shape, 0.5 * math.pi / max(steps)
         )
         if slope == 0.0:
@@ -194,7 +192,7 @@ def steady_sliding(
         unit = 0.5 * slope * abs(complex(young(np.asarray([slope / rms * abs(speed)]))[0]))
         unit /= 1.0 - poisson_ratio**2
         surface /= rms
-        solved = solve_nested(
+        state, operators, applications = solve_nested(
             (h - xp.mean(h)) / rms,
             surface,
             replace(body, scale=unit / rms),
@@ -204,20 +202,18 @@ def steady_sliding(
             max_steps=settings.max_iterations,
             report=lambda error: progress("rough contact", _done(error, tolerance), error),
         )
-        p, gap = _physical(solved, unit, rms, float(pressure), xp)
+        p, gap = _physical(state, unit, rms, float(pressure), xp)
         transformed = exact.forward(p)
-        on_slope = spectra.work_against_slope(transformed, surface, odd, shape) * rms
+        on_slope = periodic.work_against_slope(transformed, surface, odd, shape) * rms
         lost = 0.0
         if np.any(table.imag):
-            operators = solved.operators
             lost = (
                 rms
                 / unit
-                * spectra.dissipation(transformed, operators.unit, operators.rows, odd, shape)
+                * periodic.dissipation(transformed, operators.unit, operators.rows, odd, shape)
             )
-    state = solved.state
     status = Status.CONVERGED if state.converged else Status.NOT_CONVERGED
-    plain, corrected = contact_fractions(p > 0.0, steps, xp)
+    plain, corrected = periodic.contact_fractions(p > 0.0, steps, xp)
     negligible = loss_reason(table, frequencies)
     notes = []
     if state.full:
@@ -248,7 +244,7 @@ def steady_sliding(
         rms_slope=slope,
         full_contact=state.full,
         iterations=state.steps,
-        operator_applications=solved.applications,
+        operator_applications=applications,
         complementarity_error=state.error,
         history=tuple(state.history),
         status=worst(status, Status.OUT_OF_RANGE) if out_of_range else status,
@@ -259,13 +255,13 @@ def steady_sliding(
 
 
 def _physical(
-    solved: NestedSolution, unit: float, rms: float, mean: float, xp: Any
+    state: ContactState, unit: float, rms: float, mean: float, xp: Any
 ) -> tuple[Any, Any]:
     """Return pressure and gap in SI: both >= 0, one of them 0 everywhere, the mean exact."""
-    p = xp.astype(solved.state.pressure, xp.float64)
+    p = xp.astype(state.pressure, xp.float64)
     p = xp.where(p > 0.0, p, xp.zeros_like(p))
     p *= mean / float(xp.mean(p))
-    gap = xp.astype(solved.state.gap, xp.float64)
+    gap = xp.astype(state.gap, xp.float64)
     gap = xp.where((gap > 0.0) & (p == 0.0), gap * rms, xp.zeros_like(gap))
     return p, gap
 

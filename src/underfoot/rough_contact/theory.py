@@ -1,7 +1,5 @@
 """What every theory of rough contact takes and returns."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Sliding of rough rubber over a rough rigid floor, marched in time."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -22,7 +20,7 @@ from underfoot.material.prony_march import (
 from ._kernels.complementarity import ContactState, Search, solved_contact
 from ._kernels.krylov import Workspace
 from ._kernels.operators import Body, Operators
-from ._kernels.spectra import ShiftedMap, unit_compliance
+from ._kernels.periodic import ShiftedMap, unit_compliance
 from .sliding_input import checked_contact_input
 
 

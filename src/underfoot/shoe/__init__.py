@@ -5,9 +5,9 @@ from .geometry import SoleSurface as SoleSurface
 from .grids import heel_map as heel_map
 from .grids import heel_surface as heel_surface
 from .grids import surface_map as surface_map
-from .heel import Heel as Heel
 from .shape import Facet as Facet
 from .shape import Flat as Flat
+from .shape import Heel as Heel
 from .shape import Profile as Profile
 from .shape import Rocker as Rocker
 from .tread import ArcChannel as ArcChannel

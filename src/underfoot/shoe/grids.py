@@ -10,11 +10,10 @@ from underfoot.core import Breach, InputError, Range, breaches
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import between, not_negative, positive
 
+from ._kernels.height_buffer import tilted_rows
 from ._kernels.regions import local_width, nearest_true
-from ._kernels.tilt import tilted_rows
 from .geometry import CELLS_REFUSED, CELLS_WANTED, SoleMap, SoleSurface, centred
-from .heel import Heel
-from .shape import SoleShape
+from .shape import Heel, SoleShape
 
 HALF, NARROW = 50.0, 10.0
 """Percentiles of the local width by area: what is refused, and what is listed."""
@@ -136,7 +135,7 @@ def cut_heel(
         height, land = _cut(height, land, channel, unworn + tread.depth, base)
         sipes = tread.sipes
         if sipes is not None and spacing <= sipes.width / CELLS_REFUSED * (1 + 1e-9):
-            slit = ~channel & (sipes.channel_distance(x, y) > 0)
+            slit = ~channel & (tread.slit_distance(x, y) > 0)
             height, land = _cut(height, land, slit, unworn + sipes.depth, base)
     arc = heel.arc_channel
     if arc is not None and arc.depth > 0:

@@ -4,7 +4,8 @@ Sipes are slits in the lugs, too narrow to drain much; they let a lug bend and o
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -12,26 +13,9 @@ from underfoot.core import InputError, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.checks import between, not_negative, positive
 
-from ._kernels.tread_pattern import (
-    bar_distance,
-    block_distance,
-    chevron_distance,
-    circle_distance,
-    hexagon_distance,
-    rotated,
-)
+from ._kernels import tread_pattern
 
-PATTERNS = (
-    "grid",
-    "transverse",
-    "longitudinal",
-    "blocks",
-    "bars",
-    "chevrons",
-    "circles",
-    "hexagons",
-)
-LATTICES = ("circles", "hexagons")
+PATTERNS = "grid transverse longitudinal blocks bars chevrons circles hexagons".split()
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +26,8 @@ class Sipes:
         width, depth: Of a slit, m; the depth at most that of the tread.
         spacing: Between the middles of two slits, m.
         angle: Of the slits against the transverse direction, rad, anticlockwise seen from above.
-        offset: Distance of the first slit's middle from the rear end at angle 0, m; by default half
-            the spacing.
+        offset: Distance of the first slit's middle from the rear end at angle 0, m, before the
+            pattern is shifted; by default half the spacing.
     """
 
     width: float
@@ -76,7 +60,7 @@ class Sipes:
     def channel_distance(self, x: Array, y: Array) -> Array:
         """Return the distance (m) into a slit: positive in it, negative beside it."""
         first = self.spacing / 2 if self.offset is None else self.offset
-        across, _ = rotated(x, y, self.angle)
+        across, _ = tread_pattern.rotated(x, y, self.angle)
         place = np.mod(across - first + self.spacing / 2, self.spacing) - self.spacing / 2
         return self.width / 2 - np.abs(place)
 
@@ -94,8 +78,8 @@ class Tread:
             circles, the width across flats of hexagons; the channel where it is narrowest.
         depth: Height of the lugs, m; 0 is an untreaded sole.
         edge_radius: Rounding of the lower edges of the lugs, m.
-        offset: Shift (x, y) of the pattern, m. At (0, 0) the first lug begins at the rear end of
-            the sole and a lug is centred on the centre line.
+        offset: Shift (x, y) of the pattern with its sipes, m. At (0, 0) the first lug begins at the
+            rear end of the sole and a lug is centred on the centre line.
         angle: Turns the pattern as a whole, rad, anticlockwise seen from above; for chevrons it is
             the angle of the arms against the transverse direction instead.
         lug_length: Of "blocks" along the shoe, m.
@@ -161,6 +145,32 @@ class Tread:
             return math.pi / (2 * math.sqrt(3.0)) * share**2
         return share**2 if self.pattern in ("grid", "hexagons") else share
 
+    @property
+    def periods(self) -> Array:
+        """Shifts (x, y), one row each, m, that map the endless pattern onto itself."""
+        pitch = self.lug_width + self.channel_width
+        if self.pattern == "chevrons" and self.arm_length is not None:
+            return np.array([[pitch / math.cos(self.angle), 0.0], [0.0, 2 * self.arm_length]])
+        along, across = (
+            [(self.lug_length or self.lug_width) + self.channel_width, 0.0],
+            [0.0, pitch],
+        )
+        if self.pattern in ("circles", "hexagons"):
+            across = [pitch / 2, pitch * math.sqrt(3.0) / 2]
+        rows = {"transverse": [along], "bars": [along], "longitudinal": [across]}
+        frame = np.array(rows.get(self.pattern, [along, across]))
+        return np.column_stack(tread_pattern.rotated(frame[:, 0], frame[:, 1], -self.angle))
+
+    def moved(self, shift: tuple[float, float]) -> Self:
+        """Return the pattern shifted by (x, y), m."""
+        x, y = self.offset
+        return replace(self, offset=(x + shift[0], y + shift[1]))
+
+    def slit_distance(self, x: Array, y: Array) -> Array:
+        """Return the distance (m) into the sipes, positive in one."""
+        assert self.sipes is not None
+        return self.sipes.channel_distance(x - self.offset[0], y - self.offset[1])
+
     def channel_distance(self, x: Array, y: Array) -> Array:
         """Return the distance (m) into the channels: positive in a channel, negative on a lug.
 
@@ -169,22 +179,22 @@ class Tread:
         lug, channel = self.lug_width, self.channel_width
         x, y = x - self.offset[0], y - self.offset[1]
         if self.pattern == "chevrons" and self.arm_length is not None:
-            return chevron_distance(x, y, lug, channel, self.arm_length, self.angle)
-        x, y = rotated(x, y, self.angle)
+            return tread_pattern.chevron_distance(x, y, lug, channel, self.arm_length, self.angle)
+        x, y = tread_pattern.rotated(x, y, self.angle)
         if self.pattern == "blocks" and self.lug_length is not None:
             lugs = (self.lug_length, lug)
-            return block_distance(x, y + lug / 2, lugs, (channel, channel))
+            return tread_pattern.block_distance(x, y + lug / 2, lugs, (channel, channel))
         if self.pattern == "circles":
-            return circle_distance(x - lug / 2, y, lug, channel)
+            return tread_pattern.circle_distance(x - lug / 2, y, lug, channel)
         if self.pattern == "hexagons":
-            return hexagon_distance(x - lug / 2, y, lug, channel)
+            return tread_pattern.hexagon_distance(x - lug / 2, y, lug, channel)
         distances = []
         if self.pattern in ("grid", "transverse", "bars"):
-            distances.append(bar_distance(x, lug, channel))
+            distances.append(tread_pattern.bar_distance(x, lug, channel))
         if self.pattern in ("grid", "longitudinal"):
             if self.offset[1] == 0.0 and self.angle == 0.0:
                 y = np.abs(y)  # exactly the same on both sides
-            distances.append(bar_distance(y + lug / 2, lug, channel))
+            distances.append(tread_pattern.bar_distance(y + lug / 2, lug, channel))
         return np.maximum.reduce(distances)
 
 

@@ -8,7 +8,9 @@ from .generate import sinusoidal as sinusoidal
 from .generate import surface_from_spectrum as surface_from_spectrum
 from .heights import HeightMap as HeightMap
 from .heights import Profile as Profile
+from .heights import Resolution as Resolution
 from .heights import profile_from_positions as profile_from_positions
+from .heights import shortest_reliable_wavelength as shortest_reliable_wavelength
 from .prepare import filled as filled
 from .prepare import levelled as levelled
 from .prepare import periodised as periodised
@@ -18,8 +20,6 @@ from .read import read_instrument as read_instrument
 from .read import read_map as read_map
 from .read import read_profile as read_profile
 from .read import read_surface as read_surface
-from .resolution import Resolution as Resolution
-from .resolution import shortest_reliable_wavelength as shortest_reliable_wavelength
 from .roughness import ArealRoughness as ArealRoughness
 from .roughness import HeightNumbers as HeightNumbers
 from .roughness import ProfileRoughness as ProfileRoughness

@@ -9,9 +9,15 @@ from underfoot.core import DataError, InputError, RangeError
 from underfoot.core.units import metres
 
 from .filter import long_waves, short_waves
-from .heights import HeightMap, Profile, check_heights
+from .heights import (
+    HeightMap,
+    Profile,
+    Resolution,
+    check_heights,
+    shortest_derivable_wavelength,
+    shortest_reliable_wavelength,
+)
 from .prepare import levelled
-from .resolution import Resolution, shortest_derivable_wavelength, shortest_reliable_wavelength
 
 STANDARDS = ("ISO 21920-2:2021", "ISO 4287:1997")
 NO_CUTOFF = "no short cut-off given: it would be set by the spacing and the noise"

@@ -9,9 +9,8 @@ import numpy as np
 from underfoot.core import InputError
 from underfoot.core.units import metres
 
-from .heights import HeightMap, Heights, check_heights
+from .heights import HeightMap, Heights, check_heights, shortest_reliable_wavelength
 from .prepare import levelled
-from .resolution import shortest_reliable_wavelength
 
 WINDOWS = ("none", "hann")
 POINTS_PER_DECADE = 12

@@ -74,10 +74,8 @@ def _changed(stance: Stance, edit: Edit, trial: Trial, up: np.ndarray) -> Stance
         return replace(stance, reason=f"excluded by hand: {edit.why}", by_hand=by_hand)
     if edit.what == "side":
         if stance.side == edit.value:
-            raise EditError(
-                f"step {stance.number} is the {edit.value} foot already: the edit changes nothing",
-                where=edit.where,
-            )
+            words = f"step {stance.number} is the {edit.value} foot already"
+            raise EditError(f"{words}: the edit changes nothing", where=edit.where)
         return replace(stance, side=str(edit.value), heel="", by_hand=by_hand)
     plate = plate_named(trial, stance.plate)
     time = float(edit.value or 0.0)
@@ -90,11 +88,8 @@ def _changed(stance: Stance, edit: Edit, trial: Trial, up: np.ndarray) -> Stance
         )
     sample = round((time - plate.start) * plate.rate)
     if sample == (stance.start if edit.what == "contact" else stance.stop):
-        raise EditError(
-            f"{edit.what} of step {stance.number} is at {time:g} s already: the edit changes "
-            "nothing",
-            where=edit.where,
-        )
+        words = f"{edit.what} of step {stance.number} is at {time:g} s already"
+        raise EditError(f"{words}: the edit changes nothing", where=edit.where)
     if edit.what == "contact":
         stance = replace(stance, start=sample, contact=time)
     else:
@@ -115,24 +110,15 @@ def _on_plate(contacts: list[Stance], at: int, edit: Edit) -> list[Stance]:
     together = [i for i, s in enumerate(contacts) if abs(s.contact - named.contact) < TOGETHER]
     plates = [contacts[i].plate for i in together]
     if edit.value not in plates:
-        raise unknown_edit_plate(str(edit.value), plates, edit)
+        known = unknown_name("plate with a contact at that time", str(edit.value), plates)
+        more = {"allowed": known.allowed, "nearest": known.nearest}
+        raise EditError(known.what, where=edit.where, **more)
     if len(together) == 1:
-        raise EditError(
-            f"step {named.number} is on {edit.value} alone: the edit changes nothing",
-            where=edit.where,
-        )
+        words = f"step {named.number} is on {edit.value} alone: the edit changes nothing"
+        raise EditError(words, where=edit.where)
     out = list(contacts)
+    other = f"by hand: the step is on {edit.value} ({edit.why})"
     for i in together:
-        by_hand = (*out[i].by_hand, "plate")
-        if out[i].plate == edit.value:
-            out[i] = replace(out[i], by_hand=by_hand)
-        else:
-            reason = f"by hand: the step is on {edit.value} ({edit.why})"
-            out[i] = replace(out[i], reason=reason, by_hand=by_hand)
+        reason = out[i].reason if out[i].plate == edit.value else other
+        out[i] = replace(out[i], reason=reason, by_hand=(*out[i].by_hand, "plate"))
     return out
-
-
-def unknown_edit_plate(name: str, plates: Sequence[str], edit: Edit) -> EditError:
-    """Return the error for a plate on which the step of an edit has no contact."""
-    known = unknown_name("plate with a contact at that time", name, plates)
-    return EditError(known.what, where=edit.where, allowed=known.allowed, nearest=known.nearest)

@@ -187,15 +187,12 @@ def body_weight(trial: Trial, axes: Axes | None = None) -> BodyWeight | None:
         return None
     normal = force @ up
     across = force - np.outer(normal, up)
-
-    def rolling(values: np.ndarray) -> np.ndarray:
-        total = np.concatenate(([0.0], np.cumsum(values)))
-        return (total[count:] - total[:-count]) / count
-
-    mean = rolling(normal)
-    spread = np.sqrt(np.maximum(rolling(normal**2) - mean**2, 0.0))
-    push = np.sqrt(sum(rolling(across[:, i]) ** 2 for i in range(3)))
-    push = np.abs(push - mean * math.tan(tilt))
+    values = np.column_stack((normal, normal**2, across))
+    total = np.concatenate((np.zeros((1, 5)), np.cumsum(values, axis=0)))
+    rolling = (total[count:] - total[:-count]) / count
+    mean, squares = rolling[:, 0], rolling[:, 1]
+    spread = np.sqrt(np.maximum(squares - mean**2, 0.0))
+    push = np.abs(np.linalg.norm(rolling[:, 2:], axis=1) - mean * math.tan(tilt))
     still = (mean > 200.0) & (spread < _STILL_SD * mean) & (push < _STILL_SHEAR * mean)
     if not still.any():
         return None

@@ -63,9 +63,5 @@ def exponential_sum(
     order = np.argsort(found.x)
     rates = np.exp(found.x[order])
     solution, residual = solved(found.x[order])
-    return ExponentialSum(
-        float(solution[0]),
-        solution[1:] * np.exp(rates * origin),
-        rates,
-        float(np.sum(residual**2)),
-    )
+    amplitudes = solution[1:] * np.exp(rates * origin)
+    return ExponentialSum(float(solution[0]), amplitudes, rates, float(np.sum(residual**2)))

@@ -13,6 +13,8 @@ import numpy as np
 
 from underfoot.core import DataError, InputError, unknown_name
 
+from .baseline import runs
+
 FILTERS = {
     "butterworth-4-zero-phase": "Butterworth, 2nd order forward and backward (4th, zero phase)",
     "butterworth-4-zero-phase-corrected": (
@@ -99,8 +101,6 @@ def bridged(positions: np.ndarray, longest: int) -> tuple[np.ndarray, np.ndarray
     The second array (n,) is True where a value was filled in. Longer gaps stay NaN, and so do
     gaps at either end: there is nothing to lean on.
     """
-    from .baseline import runs
-
     positions = np.array(positions, dtype=float)
     lost = np.asarray(~np.isfinite(positions).all(axis=1))
     filled = np.zeros(len(positions), dtype=bool)

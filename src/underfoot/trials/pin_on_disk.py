@@ -10,7 +10,7 @@ import numpy as np
 from underfoot.core import DataError
 
 from .measurement import Measurement, caution
-from .steady import steady_window
+from .steady import correlated_error, steady_window
 from .trial import Channel, Trial
 
 NORMAL = ("normal force", "normal", "load", "fz", "fn", "force z")
@@ -58,8 +58,7 @@ def friction_point(
     time = channel.time
     finite = np.isfinite(ratio)
     if window is None:
-        first = np.flatnonzero(finite)
-        if not len(first):
+        if not finite.any():
             raise DataError("the run holds no COF", where=trial.name)
         found = steady_window(ratio[finite])
         kept = np.flatnonzero(finite)[found.start : found.stop]
@@ -71,23 +70,15 @@ def friction_point(
         said["window"] = f"{window[0]:g} to {window[1]:g} s, given"
     if len(kept) < 2:
         raise DataError("no samples in the window", where=trial.name)
-    from .steady import correlated_error
-
     values = ratio[kept]
     error = correlated_error(values)
     if values.mean() > 2.0:
         flags.append("a COF above 2: are the force columns or units right?")
     said["average"] = "mean of the ratios of the samples"
     said["uncertainty"] = "standard error of the mean from batch means"
-    measurement = Measurement(
-        "cof",
-        float(values.mean()),
-        uncertainty=error,
-        reason="" if error is not None else "too few samples for a scatter",
-        n=len(values),
-        flags=tuple(map(caution, flags)),
-        conventions=said,
-    )
+    reason = "" if error is not None else "too few samples for a scatter"
+    mean, seen = float(values.mean()), tuple(map(caution, flags))
+    measurement = Measurement("cof", mean, "1", error, reason, len(values), seen, said)
     return FrictionPoint(
         trial.name,
         measurement,
@@ -151,12 +142,10 @@ def _ratio(
     try:
         normal, shear = trial.channel(*NORMAL), trial.channel(*SHEAR)
     except DataError as problem:
-        try:
-            channel = trial.channel(*COF)
-        except DataError:
+        channel = _channel(trial, COF)
+        if channel is None:
             raise problem from None
-        said = {"cof": "column of the file"}
-        return np.abs(channel.values), None, None, channel, said, []
+        return np.abs(channel.values), None, None, channel, {"cof": "column of the file"}, []
     if len(normal.values) != len(shear.values):
         raise DataError("normal and shear force differ in length", where=trial.name)
     load = np.abs(normal.values)
@@ -174,10 +163,16 @@ def _ratio(
     return ratio, normal.values, shear.values, normal, {"cof": "|shear| / |normal|"}, flags
 
 
-def _speed(trial: Trial, kept: np.ndarray) -> float | None:
+def _channel(trial: Trial, names: tuple[str, ...]) -> Channel | None:
     try:
-        channel = trial.channel(*SPEED)
+        return trial.channel(*names)
     except DataError:
         return None
+
+
+def _speed(trial: Trial, kept: np.ndarray) -> float | None:
+    channel = _channel(trial, SPEED)
+    if channel is None or channel.unit != "m/s":
+        return None
     values = channel.values[kept[kept < len(channel.values)]]
-    return float(np.nanmean(np.abs(values))) if channel.unit == "m/s" and len(values) else None
+    return float(np.nanmean(np.abs(values))) if len(values) else None

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from underfoot.core import InputError, content_hash, display, to_si, unknown_name
 from underfoot.core.catalogue import Catalogue, Entry, Leaf
@@ -21,17 +20,10 @@ KINDS = {
 }
 # What rules can be about, with the SI unit.
 QUANTITIES = {
-    "normal_force": "N",
-    "sliding_speed": "m/s",
-    "static_contact_time": "s",
-    "force_rate": "Hz",
-    "marker_rate": "Hz",
-    "duration": "s",
-    "baseline_samples": "1",
-    "hold_time": "s",
-    "compression": "1",
-    "repeats": "1",
-}
+    "normal_force": "N", "sliding_speed": "m/s", "static_contact_time": "s", "force_rate": "Hz",
+    "marker_rate": "Hz", "duration": "s", "baseline_samples": "1", "hold_time": "s",
+    "compression": "1", "repeats": "1",
+}  # fmt: skip
 SEVERITIES = ("refuse", "caution")
 
 
@@ -51,13 +43,11 @@ class Rule:
     def words(self) -> str:
         """Return the rule in words, with its standing."""
         unit = QUANTITIES[self.quantity]
-        name = self.quantity.replace("_", " ")
-        if self.low is None:
-            text = f"{name} at most {display(self.high or 0.0, unit)}"
-        elif self.high is None:
-            text = f"{name} at least {display(self.low, unit)}"
-        else:
-            text = f"{name} from {display(self.low, unit)} to {display(self.high, unit)}"
+        low, high = (None if v is None else display(v, unit) for v in (self.low, self.high))
+        bounds = f"from {low} to {high}"
+        if low is None or high is None:
+            bounds = f"at most {high}" if low is None else f"at least {low}"
+        text = f"{self.quantity.replace('_', ' ')} {bounds}"
         marks = [] if self.verified else ["from memory, not verified"]
         marks += ["tolerance assumed"] if self.assumed else []
         return text + (f" ({'; '.join(marks)})" if marks else "")
@@ -167,23 +157,14 @@ def _rule(name: str, quantity: str, parts: Mapping[str, Leaf]) -> Rule:
         if key not in ("low", "high", "severity"):
             raise unknown_name("key", key, ("low", "high", "severity"), where=where)
     unit = QUANTITIES[quantity]
-    limits: dict[str, Any] = {
-        key: to_si(parts[key].given, unit, where=f"{where}.{key}") if key in parts else None
-        for key in ("low", "high")
-    }
-    if limits["low"] is None and limits["high"] is None:
+    some = {key: parts[key] for key in ("low", "high") if key in parts}
+    limits = {key: to_si(leaf.given, unit, where=f"{where}.{key}") for key, leaf in some.items()}
+    if not limits:
         raise InputError("the rule has no limit", where=where, allowed="low, high or both")
     severity = str(parts["severity"].given) if "severity" in parts else "caution"
     if severity not in SEVERITIES:
         raise unknown_name("severity", severity, SEVERITIES, where=where)
-    some = [parts[key] for key in ("low", "high") if key in parts]
-    return Rule(
-        quantity,
-        limits["low"],
-        limits["high"],
-        severity,
-        some[0].source,
-        all(leaf.verified for leaf in some),
-        any(leaf.assumed for leaf in some),
-        some[0].note,
-    )
+    leaf, verified = next(iter(some.values())), all(leaf.verified for leaf in some.values())
+    assumed = any(leaf.assumed for leaf in some.values())
+    ends = limits.get("low"), limits.get("high")
+    return Rule(quantity, *ends, severity, leaf.source, verified, assumed, leaf.note)

@@ -43,17 +43,12 @@ class RelaxationReading:
     @property
     def hold(self) -> tuple[np.ndarray, np.ndarray]:
         """Time since the peak (s) and force (N) during the hold."""
-        return self.time[self.hold_start :] - self.time[self.hold_start], self.force[
-            self.hold_start :
-        ]
+        held = slice(self.hold_start, None)
+        return self.time[held] - self.time[self.hold_start], self.force[held]
 
 
 def relaxation_reading(
-    trial: Trial,
-    thickness: float,
-    *,
-    force: str | None = None,
-    displacement: str | None = None,
+    trial: Trial, thickness: float, *, force: str | None = None, displacement: str | None = None
 ) -> RelaxationReading:
     """Return the loading and the hold of a compression relaxation test.
 
@@ -74,11 +69,8 @@ def relaxation_reading(
     load = trial.channel(*((force,) if force else FORCE))
     travel = trial.channel(*((displacement,) if displacement else DISPLACEMENT))
     if load.unit not in ("N", "") or travel.unit not in ("m", ""):
-        raise DataError(
-            f'force is in "{load.unit}", displacement in "{travel.unit}"',
-            where=where,
-            allowed="N and m",
-        )
+        words = f'force is in "{load.unit}", displacement in "{travel.unit}"'
+        raise DataError(words, where=where, allowed="N and m")
     f, d, t = load.values.astype(float), travel.values.astype(float), load.time
     if len(f) != len(d) or len(f) < 20:
         raise DataError("force and displacement must have the same 20 samples or more", where=where)
@@ -87,11 +79,12 @@ def relaxation_reading(
     f, d, t = f[kept], d[kept], t[kept]
     if len(f) < 20:
         raise DataError("fewer than 20 samples with numbers", where=where)
-    f, turned = _turned(f)
-    if turned:
+    first = max(3, len(f) // 200)
+    rest = float(np.median(f[:first]))
+    if rest - f.min() > f.max() - rest:
+        f = -f
         notes.append("force turned: compression positive")
     peak_guess = int(np.argmax(f))
-    first = max(3, len(f) // 200)
     zero = float(np.median(f[:first]))
     if f[peak_guess] - zero < 10 * float(np.std(f[:first])) or f[peak_guess] <= zero:
         raise DataError("the force does not rise above its start", where=where)
@@ -124,11 +117,8 @@ def relaxation_reading(
     ramp_d, ramp_f = np.maximum.accumulate(d[begin : peak + 1]), f[begin : peak + 1]
     at = 0.02 * thickness
     if ramp_d[-1] <= at:
-        raise DataError(
-            f"compressed by {1e3 * ramp_d[-1]:.3g} mm only, 2 % of the thickness is "
-            f"{1e3 * at:.3g} mm",
-            where=where,
-        )
+        words = f"compressed by {1e3 * ramp_d[-1]:.3g} mm only, 2 % of the thickness is"
+        raise DataError(f"{words} {1e3 * at:.3g} mm", where=where)
     keep = np.concatenate(([True], np.diff(ramp_d) > 0))
     low_force = float(np.interp(at, ramp_d[keep], ramp_f[keep]))
     tail = f[end - max(3, (end - peak) // 10) : end]
@@ -138,25 +128,15 @@ def relaxation_reading(
     fall = float(f[peak] - final)
     flags: tuple[Flag, ...] = ()
     if fall > 0 and abs(still) > max(0.02 * fall, 3 * noise / np.sqrt(len(tail))):
-        share = 100 * abs(still) / fall
-        flags = (
-            caution(
-                f"still falling by {share:.0f} % of the relaxation in the last tenth of the hold"
-            ),
-        )
+        share = f"{100 * abs(still) / fall:.0f} % of the relaxation"
+        flags = (caution(f"still falling by {share} in the last tenth of the hold"),)
     said = {"sign": "compression positive", "zero": "force before contact subtracted"}
+    meant = {**said, "final force": "mean over the last tenth of the hold"}
+    settled = noise / float(np.sqrt(len(tail)))
     return RelaxationReading(
         Measurement("force at 2 %", low_force, "N", noise, conventions=said),
         Measurement("peak force", float(f[peak]), "N", noise, conventions=said),
-        Measurement(
-            "final force",
-            final,
-            "N",
-            noise / float(np.sqrt(len(tail))),
-            n=len(tail),
-            flags=flags,
-            conventions={**said, "final force": "mean over the last tenth of the hold"},
-        ),
+        Measurement("final force", final, "N", settled, "", len(tail), flags, meant),
         t[begin:end] - t[begin],
         d[begin:end],
         f[begin:end],
@@ -167,13 +147,6 @@ def relaxation_reading(
         thickness,
         tuple(notes),
     )
-
-
-def _turned(force: np.ndarray) -> tuple[np.ndarray, bool]:
-    rest = float(np.median(force[: max(3, len(force) // 200)]))
-    if rest - force.min() > force.max() - rest:
-        return -force, True
-    return force, False
 
 
 def _noise(force: np.ndarray) -> float:

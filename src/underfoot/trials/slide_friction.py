@@ -85,15 +85,9 @@ def slide_friction(trial: Trial, protocol: Protocol, axes: Axes | None = None) -
                 normal[part], shear[part], plate.rate, target=0.5 * level, window=length, name="cof"
             )
         words = f"{1e3 * begin_after:g} to {1e3 * (begin_after + length):g} ms after sliding starts"
-        said = {
-            **cof.conventions,
-            "window": words,
-            "sliding start": how,
-            "shear": SHEARS["resultant"],
-            "filter": "no filter",
-            "baseline": baseline_words(plate),
-        }
-        cof = replace(cof, conventions=said)
+        said = {"window": words, "sliding start": how, "shear": SHEARS["resultant"]}
+        said |= {"filter": "no filter", "baseline": baseline_words(plate)}
+        cof = replace(cof, conventions={**cof.conventions, **said})
     else:
         raise unknown_name("window", kind, ("force", "sliding"), where="method.window_from")
     end = begin + length

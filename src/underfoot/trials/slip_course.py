@@ -94,19 +94,20 @@ def _body(trial: Trial, one: Slip, axes: Axes) -> tuple[str, str]:
 
 
 def _toe_way(trial: Trial, stance: Stance, axes: Axes) -> float | None:
-    toes = toe_candidates(trial)[stance.side] if stance.side != "unknown" else []
-    if not toes:
-        return None
+    marker = _toe(trial, stance.side)
     begin, end = (stance.contact + share * stance.duration for share in (0.4, 0.8))
-    return _way(trial.marker(toes[0]), begin, end, axes)
+    return None if marker is None else _way(marker, begin, end, axes)
+
+
+def _toe(trial: Trial, side: str) -> Marker | None:
+    toes = toe_candidates(trial)[side] if side != "unknown" else []
+    return trial.marker(toes[0]) if toes else None
 
 
 def _trailing_way(trial: Trial, stance: Stance, one: Slip, axes: Axes) -> float | None:
-    other = {"left": "right", "right": "left"}.get(stance.side)
-    toes = toe_candidates(trial)[other] if other else []
-    if not toes or not np.isfinite(one.end):
+    marker = _toe(trial, {"left": "right", "right": "left"}.get(stance.side, "unknown"))
+    if marker is None or not np.isfinite(one.end):
         return None
-    marker = trial.marker(toes[0])
     # The trailing foot stands on its toe until it lifts.
     height = marker.positions @ axes.up
     inside = (marker.time >= stance.contact) & (marker.time <= one.end)

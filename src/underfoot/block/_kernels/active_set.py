@@ -1,7 +1,5 @@
 """Contact as a linear complementarity problem of a symmetric positive definite compliance."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,22 +32,7 @@ def contact_at_height(
     positive definite C. ``active`` (n,) bool is the first guess. Source: Judice and Pires (1994)
     Computers Oper. Res. 21:587.
     """
-    start = clearance + height
-
-    def solved(contact: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-        force = np.zeros(start.size)
-        if contact.any():
-            inside = np.flatnonzero(contact)
-            factor = cho_factor(
-                compliance[np.ix_(inside, inside)], overwrite_a=True, check_finite=False
-            )
-            force[inside] = cho_solve(factor, -start[inside], check_finite=False)
-            gap = start + compliance[:, inside] @ force[inside]
-            gap[inside] = 0.0
-            return force, gap, height
-        return force, start.copy(), height
-
-    return _pivoted(solved, active)
+    return _pivoted(compliance, clearance, active, height=height)
 
 
 def contact_under_load(
@@ -64,31 +47,49 @@ def contact_under_load(
         active = np.zeros(clearance.size, dtype=bool)
         active[np.argmin(clearance)] = True
 
-    def solved(contact: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-        inside = np.flatnonzero(contact)
-        factor = cho_factor(
-            compliance[np.ix_(inside, inside)], overwrite_a=True, check_finite=False
-        )
-        both = np.column_stack([clearance[inside], np.ones(inside.size)])
-        first, second = cho_solve(factor, both, check_finite=False).T
-        height = -(load + first.sum()) / second.sum()
-        force = np.zeros(clearance.size)
-        force[inside] = -first - height * second
-        gap = clearance + height + compliance[:, inside] @ force[inside]
-        gap[inside] = 0.0
-        return force, gap, float(height)
-
-    solution = _pivoted(solved, active, keep_one=True, limit=60)
+    solution = _pivoted(compliance, clearance, active, load=load)
     return solution if solution.wrong == 0 else _by_secant(compliance, clearance, load, solution)
 
 
-def _pivoted(solved, active: np.ndarray, *, keep_one: bool = False, limit: int = 0) -> NodalContact:
+def _solved(
+    compliance: np.ndarray,
+    clearance: np.ndarray,
+    contact: np.ndarray,
+    height: float,
+    load: float | None,
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """Return force, gap and height where the nodes in ``contact`` have no gap."""
+    inside = np.flatnonzero(contact)
+    force = np.zeros(clearance.size)
+    if inside.size:
+        factor = cho_factor(
+            compliance[np.ix_(inside, inside)], overwrite_a=True, check_finite=False
+        )
+        if load is None:
+            force[inside] = cho_solve(factor, -(clearance[inside] + height), check_finite=False)
+        else:
+            both = np.column_stack([clearance[inside], np.ones(inside.size)])
+            first, second = cho_solve(factor, both, check_finite=False).T
+            height = -float((load + first.sum()) / second.sum())
+            force[inside] = -first - height * second
+    gap = clearance + height + compliance[:, inside] @ force[inside]
+    gap[inside] = 0.0
+    return force, gap, height
+
+
+def _pivoted(
+    compliance: np.ndarray,
+    clearance: np.ndarray,
+    active: np.ndarray,
+    height: float = 0.0,
+    load: float | None = None,
+) -> NodalContact:
     contact = active.copy()
     fewest, patience = contact.size + 1, PATIENCE
-    limit = limit or 20 * contact.size + 100
+    limit = 20 * contact.size + 100 if load is None else 60
     steps = 0
     while True:
-        force, gap, height = solved(contact)
+        force, gap, height = _solved(compliance, clearance, contact, height, load)
         steps += 1
         small_force = 1e-13 * float(np.abs(force).max(initial=0.0))
         small_gap = 1e-13 * float(np.abs(gap).max(initial=0.0))
@@ -105,7 +106,7 @@ def _pivoted(solved, active: np.ndarray, *, keep_one: bool = False, limit: int =
         else:
             last = int(np.flatnonzero(wrong)[-1])
             contact[last] = ~contact[last]
-        if keep_one and not contact.any():
+        if load is not None and not contact.any():
             contact[np.argmin(gap)] = True
 
 

@@ -1,23 +1,13 @@
 """Energies of all elements at one moment: a plain loop, for samples and checks."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 from numba import njit
 
 from . import names as at
-from .generate import LANES, VISCOUS_ROWS
-
-SIGNS = (
-    (-1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0),
-    (-1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0),
-    (-1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0),
-)
-
-
-SYMMETRIC = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+from .generate import LANES, SYMMETRIC, VISCOUS_ROWS
+from .hexahedron import SIGNS
 
 
 @njit(cache=True, inline="always")
@@ -54,7 +44,7 @@ def element_energies(u, mesh, E, Q, control, terms, viscous, state):
                 m[i, q] = 0.0
             for a in range(8):
                 w = u[i * stride + e + offsets[a]]
-                x, y, z = SIGNS[0][a], SIGNS[1][a], SIGNS[2][a]
+                x, y, z = SIGNS[a, 0], SIGNS[a, 1], SIGNS[a, 2]
                 m[i, 0] += w * x
                 m[i, 1] += w * y
                 m[i, 2] += w * z

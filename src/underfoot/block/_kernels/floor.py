@@ -1,9 +1,5 @@
 """Height and slope of a rough face at one point; both from the same polynomials, so they agree."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 from numba import njit
 
@@ -111,15 +107,9 @@ def floor_height(x, y, form, numbers, coefficients):
 
 
 @njit(cache=True)
-def _at_points(x, y, form, numbers, coefficients, out):
-    for n in range(x.size):
-        out[0, n], out[1, n], out[2, n] = floor_height(x[n], y[n], form, numbers, coefficients)
-
-
-def floor_at_points(
-    x: np.ndarray, y: np.ndarray, form: int, numbers: np.ndarray, coefficients: np.ndarray
-) -> Any:
+def floor_at_points(x, y, form, numbers, coefficients):
     """Return height and slopes, (3, n), at points (n,)."""
     out = np.empty((3, x.size))
-    _at_points(x, y, form, numbers, coefficients, out)
+    for n in range(x.size):
+        out[0, n], out[1, n], out[2, n] = floor_height(x[n], y[n], form, numbers, coefficients)
     return out

@@ -6,8 +6,6 @@ checks and fills whole vector registers. The statements are plain arithmetic,
 valid in C++ too: ``benchmarks`` compares both compilers.
 """
 
-from __future__ import annotations
-
 import re
 from itertools import product
 
@@ -26,7 +24,7 @@ Statement = tuple[str, str]
 BITS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
 MODES = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 1, 1), (1, 0, 1), (1, 1, 0), (1, 1, 1)]
 """xi, eta, zeta, eta zeta, xi zeta, xi eta, xi eta zeta."""
-SYMMETRIC = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
+SYMMETRIC = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
 def kernel_name(terms: str, viscous: bool) -> str:
@@ -38,14 +36,12 @@ def phases(terms: str, viscous: bool) -> list[list[Statement]]:
     """Return the statements of each pass over the lanes; targets like ``W[3]`` are stored rows."""
     strain = [*_modes(), *_gradient(), *_stress(viscous), *_hourglass(terms, viscous)]
     if terms == "many":
-        keep = [(f"W[{39 + n}]", name) for n, name in enumerate(_square("h"))]
-        keep += [(f"W[{30 + n}]", name) for n, name in enumerate(_square("t"))]
-        keep += [(f"W[{48 + 4 * i + a}]", f"w{i}{a + 3}") for i in range(3) for a in range(4)]
-        keep += [(f"W[{24 + n}]", f"s{i}{j}") for n, (i, j) in enumerate(SYMMETRIC)]
+        kept = [(f"W[{39 + n}]", name) for n, name in enumerate(_square("h"))]
+        kept += [(f"W[{30 + n}]", name) for n, name in enumerate(_square("t"))]
+        kept += [(f"W[{48 + 4 * i + a}]", f"w{i}{a + 3}") for i in range(3) for a in range(4)]
+        keep = kept + [(f"W[{24 + n}]", f"s{i}{j}") for n, (i, j) in enumerate(SYMMETRIC)]
         keep += [(f"W[{60 + n}]", "s00 - s00") for n in range(6)]
-        again = [(name, f"W[{39 + n}]") for n, name in enumerate(_square("h"))]
-        again += [(name, f"W[{30 + n}]") for n, name in enumerate(_square("t"))]
-        again += [(f"w{i}{a + 3}", f"W[{48 + 4 * i + a}]") for i in range(3) for a in range(4)]
+        again = [*_constants(), *((name, row) for row, name in kept)]
         again += [(f"q{i}{j}", f"W[{60 + n}]") for n, (i, j) in enumerate(SYMMETRIC)]
         again += [("v", "E[33]"), *_deformation(), *_relaxed()]
         return [[*strain, *keep], [*again, *_nodal()]]
@@ -88,13 +84,15 @@ def _modes() -> list[Statement]:
     return rows
 
 
+def _constants() -> list[Statement]:
+    return [(f"g{j}{q}", f"E[{7 * j + q}]") for j in range(3) for q in range(7)]
+
+
 def _gradient() -> list[Statement]:
-    rows: list[Statement] = []
-    for j in range(3):
-        rows += [(f"g{j}{q}", f"E[{7 * j + q}]") for q in range(7)]
-    for i, j in product(range(3), range(3)):
-        rows.append((f"h{i}{j}", " + ".join(f"m{i}{q} * g{j}{q}" for q in range(7))))
-    return rows
+    return _constants() + [
+        (f"h{i}{j}", " + ".join(f"m{i}{q} * g{j}{q}" for q in range(7)))
+        for i, j in product(range(3), range(3))
+    ]
 
 
 def _deformation() -> list[Statement]:
@@ -217,10 +215,7 @@ def _nodal() -> list[Statement]:
 def variant(terms: str, viscous: bool) -> list[list[Statement]]:
     """Return the passes of one variant, ready to print."""
     name = "t" if terms == "none" else "z"
-    done = [[(a, b.replace("STRESS", name)) for a, b in rows] for rows in phases(terms, viscous)]
-    if terms == "many":
-        done[1] = [*((f"g{j}{q}", f"E[{7 * j + q}]") for j in range(3) for q in range(7)), *done[1]]
-    return done
+    return [[(a, b.replace("STRESS", name)) for a, b in rows] for rows in phases(terms, viscous)]
 
 
 def lane(text: str, shift: str = "") -> str:
@@ -279,39 +274,29 @@ from numba import njit
 
 from underfoot.block._kernels.energy import element_energies
 from underfoot.block._kernels.motion import contact, move
-from underfoot.block._kernels.wide import prefer_wide_registers
+from underfoot.block._kernels.loops import prefer_wide_registers
 
 
 @njit(cache=True, error_model="numpy")
-def gather(u, W, first, offsets):
+def gather(field, W, first, offsets):
     prefer_wide_registers()
-    stride = u.size // 3
+    stride = field.size // 3
     for axis in range(3):
         for corner in range(8):
             a = axis * stride + first + offsets[corner]
             r = (8 * axis + corner) * LANES
-            source, target = u[a : a + LANES], W[r : r + LANES]
+            nodes, lanes = field[a : a + LANES], W[r : r + LANES]
             for l in range(LANES):
-                target[l] = source[l]
-
-
-@njit(cache=True, error_model="numpy")
-def scatter(f, W, first, offsets):
-    prefer_wide_registers()
-    stride = f.size // 3
-    for axis in range(3):
-        for corner in range(8):
-            a = axis * stride + first + offsets[corner]
-            r = (8 * axis + corner) * LANES
-            source, target = W[r : r + LANES], f[a : a + LANES]
-            for l in range(LANES):
-                target[l] += source[l]
+                lanes[l] = nodes[l]
 '''
+"""``scatter`` follows from ``gather``: it adds the other way."""
 
 
 def source() -> str:
     """Return the text of the module of all element loops."""
-    blocks = [HEAD.replace("LANES", str(LANES))]
+    head, gather = HEAD.replace("LANES", str(LANES)).split("\n\n\n")
+    scatter = gather.replace("lanes[l] = nodes[l]", "nodes[l] += lanes[l]")
+    blocks = [head, gather, scatter.replace("gather", "scatter")]
     for terms, viscous in VARIANTS:
         blocks.append(_element_function(terms, viscous))
         name = kernel_name(terms, viscous)

@@ -1,23 +1,27 @@
 """The element loops as a module: written by ``generate`` once a version, then imported."""
 
-from __future__ import annotations
-
-import os
 import sys
-import tempfile
 import warnings
 from functools import cache
 from importlib.machinery import SourceFileLoader
 from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
 from types import ModuleType
+from typing import Any
+
+from numba import types
+from numba.extending import intrinsic
 
 from underfoot.core import content_hash
 from underfoot.core.cache import default_folder
+from underfoot.core.files import whole_file
 
 from . import generate
 
 HERE = Path(__file__).parent
+WIDE = '"prefer-vector-width"="512"'
+"""Request to LLVM: for most Intel processors its default is 256 bits, and the loops run a third
+faster with 512 (measured); where there are no such registers it has no effect."""
 
 
 @cache
@@ -61,11 +65,22 @@ def _written(path: Path, text: str) -> bool:
     try:
         if path.is_file() and path.read_text("utf-8") == text:
             return True
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, part = tempfile.mkstemp(dir=path.parent, suffix=".part")
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(text)
-        os.replace(part, path)
+        with whole_file(path) as part:
+            part.write_text(text, encoding="utf-8")
     except OSError:
         return False
     return True
+
+
+@intrinsic
+def prefer_wide_registers(typing_context: Any) -> Any:
+    """Mark the function it stands in; costs nothing when run."""
+
+    def marked(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        attributes = builder.function.attributes
+        # llvmlite checks names against a list that has no text attributes; the set itself takes it.
+        if isinstance(attributes, set):
+            set.add(attributes, WIDE)
+        return context.get_dummy_value()
+
+    return types.void(), marked

@@ -1,7 +1,5 @@
 """Contact of the lower face with the floor, and the central-difference move of all nodes."""
 
-from __future__ import annotations
-
 import math
 
 from numba import njit
@@ -54,15 +52,7 @@ def _gaps(x, y, z, ux, uy, uz, floor, slid, out):
 def contact(nodes, mesh, floor, state, control):
     """Take the floor's push off the internal forces; minus the gradient of k A gap^2 / 2."""
     u, v, f = nodes
-    x, y, z, area, stiffness, root, out = (
-        mesh[1],
-        mesh[2],
-        mesh[3],
-        mesh[4],
-        mesh[5],
-        mesh[6],
-        mesh[11],
-    )
+    _, x, y, z, area, stiffness, root, _, _, _, _, out = mesh
     stride = u.size // 3
     size = x.size
     ux, uy, uz = u[:size], u[stride : stride + size], u[2 * stride : 2 * stride + size]

@@ -1,7 +1,5 @@
 """Primal-dual active set for p >= 0, gap >= 0, p gap = 0, mean p = p0 on one grid."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -133,9 +131,7 @@ def _on_grid(
             p = closed + mean_pressure
             contact, gap = p > 0.0, None
             if bool(xp.all(contact)):
-                state = ContactState(p, xp.zeros_like(p), step, 0.0, True, [*history, 0.0])
-                state.full = True
-                return state
+                return ContactState(p, xp.zeros_like(p), step, 0.0, True, [*history, 0.0], True)
             p = xp.astype(p, xp.float64 if double else xp.float32)
         if not bool(xp.any(contact)):
             contact = single == xp.max(single)

@@ -1,7 +1,5 @@
 """Minimum-residual correction of the pressure on a given contact, a part of the grid."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -3,8 +3,6 @@
 Fritsch and Butland (1984) SIAM J. Sci. Stat. Comput. 5:300.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline, NdPPoly, PchipInterpolator
 

@@ -1,9 +1,6 @@
 """Contact from coarse to fine grids: each grid starts from the contact of the one before."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 from underfoot.core.arrays import AnyArray
@@ -22,15 +19,6 @@ _REDUCTION, _COARSE_REDUCTION = 0.15, 0.3
 """Share of the residual that an inner solve leaves; insensitive between 0.1 and 0.3."""
 
 
-@dataclass(slots=True)
-class NestedSolution:
-    """Contact on the fine grid and its cost in products with the fine grid's operators."""
-
-    state: ContactState
-    operators: Operators
-    applications: float
-
-
 def solve_nested(
     height: AnyArray,
     spectrum: AnyArray,
@@ -41,8 +29,10 @@ def solve_nested(
     tolerance: float,
     max_steps: int,
     report: Callable[[float], None],
-) -> NestedSolution:
+) -> tuple[ContactState, Operators, float]:
     """Return the contact of a scaled ``height`` (zero mean, unit rms) under ``mean_pressure``.
+
+    With it, the operators of the fine grid and the cost in products with them.
 
     ``spectrum`` is the half spectrum of ``height``, ``exact`` the double-precision transform.
     """
@@ -75,7 +65,7 @@ def solve_nested(
         cost += operators.count * heights.shape[0] * heights.shape[1]
     assert state is not None
     points = height.shape[0] * height.shape[1]
-    return NestedSolution(state, operators, cost / points)
+    return state, operators, cost / points
 
 
 def low_pass(

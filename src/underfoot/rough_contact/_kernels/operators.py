@@ -1,7 +1,5 @@
 """The compliance of a sliding body and its inverse on one periodic grid."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -12,7 +10,7 @@ import numpy as np
 from underfoot.core.arrays import AnyArray
 from underfoot.core.fourier import Transform, transform
 
-from .spectra import wavenumbers
+from .periodic import wavenumbers
 
 
 @dataclass(frozen=True, slots=True)

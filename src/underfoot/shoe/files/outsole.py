@@ -12,17 +12,8 @@ from underfoot.core.arrays import Array
 from .._kernels.mesh_edges import overlap_lines
 from ..geometry import SoleSurface, centred
 from ..tread_measures import tread_map
+from . import orientation
 from .cleaning import cleaned, plan_outline, without_ledges
-from .orientation import (
-    box_axes,
-    foot_of,
-    ground_side,
-    levelled,
-    named_direction,
-    off_centre,
-    resting_plane,
-    toe_end,
-)
 from .read import Mesh, read_mesh
 from .settings import DIRECTIONS, HEEL, SHARES, FileSettings, length_unit
 from .view import Soundness, View, extents, soundness, view
@@ -90,7 +81,7 @@ def outsole_from_mesh(
     mesh = replace(mesh, triangles=np.ascontiguousarray(mesh.triangles, dtype=np.float32))
     remarks = list(mesh.remarks)
     sound = soundness(mesh, where)
-    axes = box_axes(mesh.triangles, chosen)
+    axes = orientation.box_axes(mesh.triangles, chosen)
     low, high = extents(mesh.triangles, axes)
     size = high - low
     unit, unit_remark = length_unit(
@@ -115,7 +106,7 @@ def outsole_from_mesh(
     whole_length = rows.size * seen.spacing
     foot, foot_remark = "", ""
     if whole_length > HEEL[1] or chosen.foot != "auto":
-        foot, foot_remark = foot_of(np.isfinite(height), seen.spacing, chosen)
+        foot, foot_remark = orientation.foot_of(np.isfinite(height), seen.spacing, chosen)
     remarks += [foot_remark] if foot_remark else []
     if chosen.mirror:
         height, thickness = height[:, ::-1], thickness[:, ::-1]
@@ -131,8 +122,8 @@ def outsole_from_mesh(
         surface=replace(surface, remarks=tuple(remarks)),
         format=mesh.format,
         unit=unit,
-        down=named_direction(-axes[2] / np.linalg.norm(axes[2])),
-        forward=named_direction(axes[0] / np.linalg.norm(axes[0])),
+        down=orientation.named_direction(-axes[2] / np.linalg.norm(axes[2])),
+        forward=orientation.named_direction(axes[0] / np.linalg.norm(axes[0])),
         foot=foot,
         faces=mesh.triangles.shape[0],
         soundness=sound,
@@ -146,7 +137,7 @@ def _sides(mesh: Mesh, axes: Array, unit: float, chosen: FileSettings) -> tuple[
     low, high = extents(mesh.triangles, axes * unit)
     coarse = max(float(max(high[:2] - low[:2])) / _COARSE, chosen.spacing)
     seen = view(mesh.triangles, axes * unit, coarse)
-    ground = ground_side(seen, chosen)
+    ground = orientation.ground_side(seen, chosen)
     plan = seen.covered
     along, across, thin = axes
     if ground.sign < 0:
@@ -154,18 +145,15 @@ def _sides(mesh: Mesh, axes: Array, unit: float, chosen: FileSettings) -> tuple[
     size = [float(high[n] - low[n]) for n in range(2)]
     square = max(size) < _NEARLY_SQUARE * min(size)
     free = chosen.forward not in DIRECTIONS and square
-    if free and abs(off_centre(plan, 1)) > abs(off_centre(plan, 0)):
+    if free and abs(orientation.off_centre(plan, 1)) > abs(orientation.off_centre(plan, 0)):
         along, across, plan = across, -along, plan.T[:, ::-1]
-    toe = toe_end(plan, chosen)
+    toe = orientation.toe_end(plan, chosen)
     if toe.sign < 0:
         along, across = -along, -across
     turned = np.stack([along, across, thin])
-    down, forward = named_direction(-thin), named_direction(along)
     remarks = [
-        f"{choice.remark[:-1]} (down is {down} of the file)."
-        if k == 0
-        else f"{choice.remark[:-1]} (forward is {forward} of the file)."
-        for k, choice in enumerate((ground, toe))
+        f"{choice.remark[:-1]} ({name} is {orientation.named_direction(axis)} of the file)."
+        for choice, name, axis in ((ground, "down", -thin), (toe, "forward", along))
         if choice.remark
     ]
     return turned * unit, remarks
@@ -178,8 +166,8 @@ def _level_view(mesh: Mesh, axes: Array, spacing: float) -> tuple[View, Array, l
     remarks: list[str] = []
     for _ in range(3):
         height, _ = cleaned(seen.lowest, spacing)
-        plane = resting_plane(height, spacing)
-        turned, angle = levelled(axes, plane)
+        plane = orientation.resting_plane(height, spacing)
+        turned, angle = orientation.levelled(axes, plane)
         if angle < _LEVEL:
             break
         if angle > _MOST_TURN:
@@ -197,7 +185,7 @@ def _level_view(mesh: Mesh, axes: Array, spacing: float) -> tuple[View, Array, l
             "is kept."
         )
     height, _ = cleaned(seen.lowest, spacing)
-    a, b, c = resting_plane(height, spacing)
+    a, b, c = orientation.resting_plane(height, spacing)
     centre = [(n - 1) / 2 * spacing for n in height.shape]
     level = a * centre[0] + b * centre[1] + c
     lifted = View(

@@ -51,11 +51,7 @@ class FileSettings:
         for name, known in allowed.items():
             if getattr(self, name) not in known:
                 raise unknown_name(name, str(getattr(self, name)), known, where=f"outsole.{name}")
-        if (
-            self.down in DIRECTIONS
-            and self.forward in DIRECTIONS
-            and self.down[1] == self.forward[1]
-        ):
+        if {self.down, self.forward} <= {*DIRECTIONS} and self.down[1] == self.forward[1]:
             raise InputError(
                 f"down {self.down} and forward {self.forward} lie on one axis",
                 where="outsole.forward",
@@ -97,25 +93,18 @@ def length_unit(
     Raises:
         InputError: No unit makes it as long as a sole, or the chosen unit makes it absurd.
     """
+    unit, by, origin = in_file, "by the unit in the file", "as stated in the file"
     if chosen != "auto":
-        unit = UNITS[chosen]
+        unit, by, origin = UNITS[chosen], f"in {chosen}", f"{chosen} (chosen)"
+    if unit is not None:
         if not _POSSIBLE[0] <= length * unit <= _POSSIBLE[1]:
             raise InputError(
-                f"in {chosen} the sole is {_length(length * unit)} long",
+                f"{by} the sole is {_length(length * unit)} long",
                 where=where,
                 allowed="20 mm to 500 mm",
                 remedy=_suggestion(length, width),
             )
-        return unit, f"Unit: {chosen} (chosen); length {_length(length * unit)}."
-    if in_file is not None:
-        if not _POSSIBLE[0] <= length * in_file <= _POSSIBLE[1]:
-            raise InputError(
-                f"by the unit in the file the sole is {_length(length * in_file)} long",
-                where=where,
-                allowed="20 mm to 500 mm",
-                remedy=_suggestion(length, width),
-            )
-        return in_file, f"Unit: as stated in the file; length {_length(length * in_file)}."
+        return unit, f"Unit: {origin}; length {_length(length * unit)}."
     likely = _likely(length, width)
     if not likely:
         lengths = ", ".join(f"{_length(length * unit)} in {name}" for name, unit in UNITS.items())
@@ -138,8 +127,7 @@ def length_unit(
 
 
 def _likely(length: float, width: float) -> list[str]:
-    slender = length > SLENDER * width
-    ranges = (SOLE, HEEL) if slender else (HEEL, SOLE)
+    ranges = (SOLE, HEEL) if length > SLENDER * width else (HEEL, SOLE)
     return [
         name
         for low, high in ranges

@@ -94,32 +94,27 @@ class Soundness:
 
     def remarks(self) -> tuple[str, ...]:
         """Return the tolerated defects, a sentence each."""
-        remarks = []
-        if self.open_edges:
-            remarks.append(
-                f"{self.open_edges} open edges were tolerated: the height map needs no closed body."
-            )
-        if self.closed and not self.turned_edges and self.volume < 0:
-            remarks.append("The normals point inward; tolerated, heights do not depend on them.")
-        if self.turned_edges:
-            remarks.append(
-                f"Along {self.turned_edges} edges neighbouring faces are turned opposite ways; "
-                "tolerated, since heights don't depend on normals."
-            )
-        if self.crowded_edges:
-            remarks.append(
-                f"{self.crowded_edges} edges have more than two faces; tolerated, the lowest face "
-                "counts."
-            )
-        if self.duplicates:
-            remarks.append(f"{self.duplicates} faces are there twice; the copies change nothing.")
-        if self.degenerate:
-            remarks.append(f"{self.degenerate} faces without area were ignored.")
-        if self.not_finite:
-            remarks.append(
-                f"{self.not_finite} faces with a corner that is not a number were left out."
-            )
-        return tuple(remarks)
+        inward = int(self.closed and not self.turned_edges and self.volume < 0)
+        counted = (
+            (
+                self.open_edges,
+                "{} open edges were tolerated: the height map needs no closed body.",
+            ),
+            (inward, "The normals point inward; tolerated, heights do not depend on them."),
+            (
+                self.turned_edges,
+                "Along {} edges neighbouring faces are turned opposite ways; "
+                "tolerated, since heights don't depend on normals.",
+            ),
+            (
+                self.crowded_edges,
+                "{} edges have more than two faces; tolerated, the lowest face counts.",
+            ),
+            (self.duplicates, "{} faces are there twice; the copies change nothing."),
+            (self.degenerate, "{} faces without area were ignored."),
+            (self.not_finite, "{} faces with a corner that is not a number were left out."),
+        )
+        return tuple(text.format(count) for count, text in counted if count)
 
 
 def soundness(mesh: Mesh, where: str) -> Soundness:

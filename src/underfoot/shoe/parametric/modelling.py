@@ -1,6 +1,8 @@
-"""Wires, faces and prisms of the modelling kernel from arrays in m; the kernel counts in mm."""
+"""Outlines, wires, faces and prisms of the modelling kernel from arrays in m; it counts in mm."""
 
 import math
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -8,7 +10,110 @@ import numpy as np
 from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
 
-from .lugs import Outline
+from ..shape import SoleShape
+from ..tread import Tread
+
+
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """One lug from below: a polygon (n, 2) anticlockwise, or a circle about its only point; m."""
+
+    points: Array
+    radius: float = 0.0
+
+
+def lug_outlines(shape: SoleShape, tread: Tread) -> list[Outline]:
+    """Return the outlines of all lugs that reach into the plan form, anticlockwise, whole."""
+    reach = math.hypot(shape.length, shape.width) / 2 + tread.lug_width
+    centre = np.array([shape.length / 2, 0.0]) - np.array(tread.offset)
+    turn = 0.0 if tread.pattern == "chevrons" else tread.angle
+    cosine, sine = math.cos(turn), math.sin(turn)
+    back = np.array([[cosine, -sine], [sine, cosine]])
+    outlines = []
+    for outline, size in _in_pattern(tread, centre @ back, reach):
+        points = outline.points @ back.T + np.array(tread.offset)
+        if size > 0:
+            middle = points.mean(axis=0)
+            if float(shape.inward_distance(middle[:1], middle[1:])[0]) <= -size:
+                continue
+        outlines.append(Outline(points, outline.radius))
+    return outlines
+
+
+def slit_outlines(
+    shape: SoleShape, width: float, spacing: float, angle: float, first: float
+) -> list[Outline]:
+    """Return rectangles of ``width`` (m) every ``spacing`` across the whole sole."""
+    reach = math.hypot(shape.length, shape.width)
+    cosine, sine = math.cos(angle), math.sin(angle)
+    back = np.array([[cosine, -sine], [sine, cosine]])
+    centre = np.array([shape.length / 2, 0.0]) @ back
+    begin = math.floor((centre[0] - reach / 2 - first) / spacing)
+    end = math.ceil((centre[0] + reach / 2 - first) / spacing)
+    outlines = []
+    for k in range(begin, end + 1):
+        middle = first + k * spacing
+        low, high = middle - width / 2, middle + width / 2
+        side = reach / 2 + abs(centre[1])
+        outlines.append(Outline(_rectangle(low, -side, high, side) @ back.T))
+    return outlines
+
+
+def _in_pattern(tread: Tread, centre: Array, reach: float) -> Iterator[tuple[Outline, float]]:
+    """Yield outlines in the frame of the pattern and their half size (0: endless bars)."""
+    lug, pitch = tread.lug_width, tread.lug_width + tread.channel_width
+    low, high = centre - reach, centre + reach
+    if tread.pattern in ("circles", "hexagons"):
+        for row in range(*_range(low[1], high[1], pitch * math.sqrt(3) / 2)):
+            shift = lug / 2 + (pitch / 2 if row % 2 else 0.0)
+            for column in range(*_range(low[0] - shift, high[0] - shift, pitch)):
+                at = np.array([column * pitch + shift, row * pitch * math.sqrt(3) / 2])
+                if tread.pattern == "circles":
+                    yield Outline(at[None, :], lug / 2), lug / 2
+                else:
+                    angle = math.pi / 6 + np.arange(6) * math.pi / 3
+                    corner = lug / math.sqrt(3) * np.column_stack([np.cos(angle), np.sin(angle)])
+                    yield Outline(at + corner), lug / math.sqrt(3)
+    elif tread.pattern in ("grid", "blocks"):
+        length = tread.lug_length or lug
+        long_pitch = length + tread.channel_width
+        for row in range(*_range(low[0], high[0], long_pitch)):
+            for column in range(*_range(low[1], high[1], pitch)):
+                x, y = row * long_pitch, column * pitch - lug / 2
+                yield Outline(_rectangle(x, y, x + length, y + lug)), math.hypot(length, lug) / 2
+    elif tread.pattern == "chevrons" and tread.arm_length is not None:
+        yield from ((Outline(points), 0.0) for points in _zigzags(tread, low, high))
+    elif tread.pattern == "longitudinal":
+        for column in range(*_range(low[1], high[1], pitch)):
+            y = column * pitch - lug / 2
+            yield Outline(_rectangle(low[0], y, high[0], y + lug)), 0.0
+    else:
+        for row in range(*_range(low[0], high[0], pitch)):
+            yield Outline(_rectangle(row * pitch, low[1], row * pitch + lug, high[1])), 0.0
+
+
+def _zigzags(tread: Tread, low: Array, high: Array) -> Iterator[Array]:
+    arm = tread.arm_length
+    assert arm is not None  # of chevrons; the tread checks it
+    slope, stretch = math.tan(tread.angle), 1 / math.cos(tread.angle)
+    lug, pitch = tread.lug_width * stretch, (tread.lug_width + tread.channel_width) * stretch
+    first, last = math.floor(low[1] / arm), math.ceil(high[1] / arm)
+    y = np.arange(first, last + 1) * arm
+    back = -slope * arm * (np.arange(first, last + 1) % 2)
+    spread = abs(slope) * arm
+    for row in range(*_range(low[0] - spread, high[0] + spread, pitch)):
+        rear = np.column_stack([row * pitch + back, y])
+        front = np.column_stack([row * pitch + lug + back, y])
+        yield np.concatenate([front, rear[::-1]])
+
+
+def _range(low: float, high: float, pitch: float) -> tuple[int, int]:
+    return math.floor(low / pitch) - 1, math.ceil(high / pitch) + 2
+
+
+def _rectangle(x0: float, y0: float, x1: float, y1: float) -> Array:
+    return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+
 
 MM = 1e3
 

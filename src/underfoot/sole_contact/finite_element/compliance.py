@@ -1,6 +1,6 @@
 """Compliance of the real sole: finite elements where it is coarse, layers where it is fine."""
 
-from __future__ import annotations
+from typing import Any, NotRequired, TypedDict, Unpack
 
 import numpy as np
 import scipy.sparse as sp
@@ -11,7 +11,7 @@ from underfoot.core.cache import content_hash
 from underfoot.shoe.geometry import SoleMap
 
 from ..compliance import ConvolutionCompliance, layered_compliance
-from .elasticity import LandCompliance, Rubber, hat_integrals, land_compliance
+from .elasticity import LandCompliance, Rubber, land_compliance
 from .mesh import Layers, sole_mesh
 from .plan import plan_of
 
@@ -89,18 +89,24 @@ class FiniteElementCompliance:
         return rise
 
 
+class OutsoleAndMidsole(TypedDict):
+    """What ``finite_element_compliance`` takes about the layers."""
+
+    modulus: float
+    poisson_ratio: float
+    thickness: float
+    shoe_angle: float
+    midsole_modulus: NotRequired[float | None]
+    midsole_thickness: NotRequired[float | None]
+    midsole_poisson_ratio: NotRequired[float]
+
+
 def finite_element_compliance(
     sole: SoleMap,
     *,
-    modulus: float,
-    poisson_ratio: float,
-    thickness: float,
-    shoe_angle: float,
-    midsole_modulus: float | None = None,
-    midsole_thickness: float | None = None,
-    midsole_poisson_ratio: float = 0.3,
     cache: Cache | None = None,
     progress: Progress = silent,
+    **body: Unpack[OutsoleAndMidsole],
 ) -> FiniteElementCompliance:
     """Return the compliance of a sole from finite elements of its real shape.
 
@@ -110,35 +116,15 @@ def finite_element_compliance(
             the sole to the midsole, lugs included).
         shoe_angle: Tilt of the sole's plane against the floor, rad.
         midsole_modulus, midsole_thickness, midsole_poisson_ratio: Of the layer between outsole and
-            rigid foot; None for none.
+            rigid foot; None (the default) for none, and a ratio of 0.3.
         cache: Where the condensed land is kept; a sole of the same shape and the same ratio of
             moduli is not computed again. None computes afresh.
 
     Raises:
         InputError: The profile or a channel goes through the outsole; Poisson's ratio above 0.495.
     """
-    land = sole_land(
-        sole,
-        modulus=modulus,
-        poisson_ratio=poisson_ratio,
-        thickness=thickness,
-        shoe_angle=shoe_angle,
-        midsole_modulus=midsole_modulus,
-        midsole_thickness=midsole_thickness,
-        midsole_poisson_ratio=midsole_poisson_ratio,
-        cache=cache,
-        progress=progress,
-    )
-    layers = layered_compliance(
-        sole,
-        modulus=modulus,
-        poisson_ratio=poisson_ratio,
-        thickness=thickness,
-        shoe_angle=shoe_angle,
-        midsole_modulus=midsole_modulus,
-        midsole_thickness=midsole_thickness,
-        midsole_poisson_ratio=midsole_poisson_ratio,
-    )
+    land = sole_land(sole, cache=cache, progress=progress, **body)
+    layers = layered_compliance(sole, **body)
     hats = hats_on_cells(land, sole)
     gram = (hats.T @ hats).toarray()
     size = np.sqrt(np.maximum(np.diagonal(gram), 1e-12))  # each hat counts alike, however small
@@ -187,24 +173,10 @@ def sole_land(
     )
     stored = None if cache is None else cache.load(key)
     if stored is not None:
-        area, overlap = hat_integrals(stored["nodes"], stored["triangles"])
-        return LandCompliance(
-            nodes=stored["nodes"],
-            height=stored["height"],
-            triangles=stored["triangles"],
-            work=stored["work"] / modulus,
-            area=area,
-            overlap=overlap,
-            unknowns=int(stored["unknowns"]),
-        )
-    mesh = sole_mesh(
-        plan_of(sole),
-        Layers(thickness, midsole_thickness or 0.0, shoe_angle),
-        element=element,
-        far_element=max(far_element, element),
-        reach=reach,
-        lug_layers=lug_layers,
-    )
+        exact: dict[str, Any] = {**stored, "work": stored["work"] / modulus}
+        return LandCompliance(**{**exact, "unknowns": int(stored["unknowns"])})
+    layers = Layers(thickness, midsole_thickness or 0.0, shoe_angle)
+    mesh = sole_mesh(plan_of(sole), layers, element, max(far_element, element), reach, lug_layers)
     near = (mesh.nodes[mesh.land, 2] - sole.clearance.min()).min(axis=1) < reach
     land = land_compliance(
         mesh,
@@ -214,16 +186,8 @@ def sole_land(
         progress=progress,
     )
     if cache is not None:
-        cache.store(
-            key,
-            {
-                "nodes": land.nodes,
-                "height": land.height,
-                "triangles": land.triangles,
-                "work": land.work * modulus,
-                "unknowns": land.unknowns,
-            },
-        )
+        kept = {name: getattr(land, name) for name in ("nodes", "height", "triangles", "unknowns")}
+        cache.store(key, {**kept, "work": land.work * modulus})
     return land
 
 
@@ -234,7 +198,6 @@ def hats_on_cells(land: LandCompliance, sole: SoleMap, reach: float = REACH) -> 
     cell = sole.spacing
     corners = land.nodes[land.triangles]
     ny = sole.y.size
-    rows, columns, values = [], [], []
     taken = np.full(sole.clearance.shape, -np.inf)
     best: dict[int, tuple[NDArray[np.int64], Array]] = {}
     for nodes, points in zip(land.triangles, corners, strict=True):
@@ -262,8 +225,6 @@ def hats_on_cells(land: LandCompliance, sole: SoleMap, reach: float = REACH) -> 
         _, nearest = KDTree(land.nodes).query(places)
         for (at, to), node in zip(left, np.atleast_1d(nearest), strict=True):
             best[int(at * ny + to)] = (np.full(3, node), np.full(3, 1 / 3))
-    for place, (nodes, share) in best.items():
-        rows += [place] * 3
-        columns += nodes.tolist()
-        values += share.tolist()
+    rows = np.repeat(np.array(list(best), dtype=int), 3)
+    columns, values = (np.concatenate(part) for part in zip(*best.values(), strict=True))
     return sp.csr_matrix((values, (rows, columns)), shape=(sole.clearance.size, land.area.size))

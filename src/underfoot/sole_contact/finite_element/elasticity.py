@@ -1,9 +1,6 @@
 """Surface compliance of a meshed sole: elasticity of second order, condensed to the land."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any, cast
 
@@ -45,9 +42,22 @@ class LandCompliance:
     height: Array
     triangles: NDArray[np.int64]
     work: Array
-    area: Array
-    overlap: sp.csr_matrix
     unknowns: int
+    area: Array = field(init=False)
+    overlap: sp.csr_matrix = field(init=False)
+
+    def __post_init__(self) -> None:
+        a, b, c = (self.nodes[self.triangles[:, n]] for n in range(3))
+        size = 0.5 * np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+        count = len(self.nodes)
+        each = np.repeat(size / 3, 3)
+        area = np.bincount(self.triangles.ravel(), each, minlength=count).astype(float)
+        rows = np.repeat(self.triangles, 3, axis=1).ravel()
+        columns = np.tile(self.triangles, (1, 3)).ravel()
+        values = (size[:, None] * (np.ones((3, 3)) + np.eye(3)).ravel() / 12).ravel()
+        overlap = sp.csr_matrix((values, (rows, columns)), shape=(count, count))
+        object.__setattr__(self, "area", area)
+        object.__setattr__(self, "overlap", overlap)
 
     @property
     def mean_rise(self) -> Array:
@@ -80,14 +90,14 @@ def land_compliance(
     from scipy.linalg import cho_factor, cho_solve
 
     progress("Condensing the sole to its land", 0.0)
-    stiffness, load, coordinates = _assembled(mesh, outsole, midsole)
+    stiffness, load = _assembled(mesh, outsole, midsole)
     if loaded is None:
         loaded = np.ones(len(mesh.land), bool)
     chosen = mesh.land[loaded]
     vertices, triangles = np.unique(chosen, return_inverse=True)
     triangles = triangles.reshape(chosen.shape)
-    area, overlap = hat_integrals(coordinates[vertices, :2], triangles)
-    right = load(chosen, triangles, vertices.size)
+    # mm^3/MPa to m^3/Pa, shared evenly between the two factors of the work
+    right = sp.csr_matrix(load[:, vertices]) * np.sqrt(1e-15)
     right.eliminate_zeros()  # the assembly also stores the sideways parts, all 0
     retained = np.flatnonzero(np.diff(right.indptr))
     progress("Condensing the sole to its land", 0.3)
@@ -102,34 +112,18 @@ def land_compliance(
     carried = sp.csr_matrix(right[retained]).toarray()
     work = carried.T @ cho_solve(factor, carried)
     return LandCompliance(
-        coordinates[vertices, :2],
-        coordinates[vertices, 2],
+        mesh.nodes[vertices, :2],
+        mesh.nodes[vertices, 2],
         triangles,
         0.5 * (work + work.T),
-        area,
-        overlap,
         unknowns,
     )
 
 
-def hat_integrals(points: Array, triangles: NDArray[np.int64]) -> tuple[Array, sp.csr_matrix]:
-    """Return the integrals of the hats of a triangulation (m^2) and of their products."""
-    a, b, c = (points[triangles[:, n]] for n in range(3))
-    size = 0.5 * np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
-    count = len(points)
-    area = np.bincount(triangles.ravel(), np.repeat(size / 3, 3), minlength=count).astype(float)
-    rows = np.repeat(triangles, 3, axis=1).ravel()
-    columns = np.tile(triangles, (1, 3)).ravel()
-    share = (np.ones((3, 3)) + np.eye(3)).ravel() / 12
-    values = (size[:, None] * share).ravel()
-    overlap = sp.csr_matrix((values, (rows, columns)), shape=(count, count))
-    return area, overlap
-
-
 def _assembled(
     mesh: SoleMesh, outsole: Rubber, midsole: Rubber | None
-) -> tuple[sp.csr_matrix, Callable[..., sp.csr_matrix], Array]:
-    """Return the stiffness of the free unknowns, a builder of load cases, the nodes.
+) -> tuple[sp.csr_matrix, sp.csr_matrix]:
+    """Return the stiffness of the free unknowns and their loads by the hats of all nodes.
 
     Lengths in mm and stresses in MPa inside, so that the matrix is of order one.
     """
@@ -177,13 +171,7 @@ def _assembled(
         shape=(len(free), scalar.ndof),
     )
 
-    def loads(triangles: NDArray[np.int64], local: NDArray[np.int64], count: int) -> sp.csr_matrix:
-        vertices = np.empty(count, dtype=np.int64)
-        vertices[local.ravel()] = triangles.ravel()
-        # mm^3/MPa to m^3/Pa, shared evenly between the two factors of the work
-        return sp.csr_matrix(full[free][:, vertices]) * np.sqrt(1e-15)
-
-    return stiffness, loads, mesh.nodes
+    return stiffness, sp.csr_matrix(full[free])
 
 
 def _ngsolve_mesh(mesh: SoleMesh) -> Any:

@@ -1,7 +1,5 @@
 """Prisms under the plan form: a triangulation that follows rim and lugs, carried up to the foot."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from importlib import import_module
@@ -49,7 +47,7 @@ class SoleMesh:
 
 
 def sole_mesh(
-    plan: Plan, layers: Layers, *, element: float, far_element: float, reach: float, lug_layers: int
+    plan: Plan, layers: Layers, element: float, far_element: float, reach: float, lug_layers: int
 ) -> SoleMesh:
     """Return the mesh: elements of ``element`` (m) on land below ``reach`` (m), coarser beyond."""
     points, triangles, on_land = _triangulation(plan, element, far_element, reach)

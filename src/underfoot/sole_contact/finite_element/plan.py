@@ -1,7 +1,5 @@
 """Plan form of a sole as polygons: the rim, the lugs in it and how far the channels go in."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -104,11 +104,8 @@ def named_file(name: str, labels: Sequence[str], below: str = ".") -> str | None
         return inside
     same = [label for label in labels if label.rsplit("/", 1)[-1] == plain]
     if len(same) > 1:
-        raise InputError(
-            f'"{name}" names {len(same)} files: {", ".join(same[:4])}',
-            where="file",
-            remedy="Write the folder too",
-        )
+        text = f'"{name}" names {len(same)} files: {", ".join(same[:4])}'
+        raise InputError(text, where="file", remedy="Write the folder too")
     return same[0] if same else None
 
 
@@ -186,11 +183,9 @@ def _from_names(labels: Sequence[str], names: str) -> list[dict[str, Any]]:
     except re.error as error:
         raise InputError(f"the pattern of names is wrong: {error}", where="names") from error
     if not pattern.groupindex:
-        raise InputError(
-            "the pattern of names has no named group",
-            where="names",
-            allowed=r"for example S(?P<subject>\d+)_(?P<shoe>[a-z]+)_(?P<n>\d+)",
-        )
+        allowed = r"for example S(?P<subject>\d+)_(?P<shoe>[a-z]+)_(?P<n>\d+)"
+        text = "the pattern of names has no named group"
+        raise InputError(text, where="names", allowed=allowed)
     matches = [pattern.search(label.rsplit(".", 1)[0]) for label in labels]
     without = [label for label, match in zip(labels, matches, strict=True) if match is None]
     if without:

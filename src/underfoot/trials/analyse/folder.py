@@ -221,14 +221,10 @@ def _check_whole_edits(edits: list[Edit], trials: int, protocol: Protocol) -> No
     """Where a file holds runs and no steps, an edit can only exclude a run by its number."""
     for i, edit in enumerate(edits):
         if edit.what != "exclude":
-            raise EditError(
-                f"the protocol {protocol.name} has no steps: {edit.what} changes nothing",
-                where=edit.where,
-                allowed="exclude",
-            )
+            text = f"the protocol {protocol.name} has no steps: {edit.what} changes nothing"
+            raise EditError(text, where=edit.where, allowed="exclude")
         if edit.step not in range(1, trials + 1):
-            raise EditError(
-                f"there is no {edit.step_words}", where=edit.where, allowed=f"1 to {trials}"
-            )
+            text = f"there is no {edit.step_words}"
+            raise EditError(text, where=edit.where, allowed=f"1 to {trials}")
         if any(edit.step == other.step for other in edits[:i]):
             raise EditError(f"{edit.step_words} is excluded twice", where=edit.where)

@@ -13,24 +13,11 @@ from .tables import Cell, Table
 
 # Numbers of a step with their SI unit, in the order of the tables.
 STEP_NUMBERS = {
-    "rcof": "1",
-    "rcof_uncertainty": "1",
-    "peak_slipping_speed": "m/s",
-    "slip_start": "s",
-    "slip_distance": "m",
-    "toe_slip": "m",
-    "trailing_slip": "m",
-    "contact": "s",
-    "toe_off": "s",
-    "stance_time": "s",
-    "peak_force": "N",
-    "walking_speed": "m/s",
-    "step_length": "m",
-    "step_time": "s",
-    "cadence": "1/s",
-    "foot_angle": "rad",
-    "heel_speed": "m/s",
-}
+    "rcof": "1", "rcof_uncertainty": "1", "peak_slipping_speed": "m/s", "slip_start": "s",
+    "slip_distance": "m", "toe_slip": "m", "trailing_slip": "m", "contact": "s", "toe_off": "s",
+    "stance_time": "s", "peak_force": "N", "walking_speed": "m/s", "step_length": "m",
+    "step_time": "s", "cadence": "1/s", "foot_angle": "rad", "heel_speed": "m/s",
+}  # fmt: skip
 _TEXTS = ("plate", "side", "verdict", "reason", "outcome", "slip_direction", "recovery_or_fall")
 _CURVES = ("vertical", "braking", "to the left", "ratio")
 

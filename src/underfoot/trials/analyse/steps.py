@@ -199,9 +199,7 @@ def _slip_numbers(walk: _Walk, stance: Stance, one: Slip, limits: OutcomeLimits)
             "slip_direction": one.way,
             "recovery_or_fall": course.body,
             "recovery_or_fall_reason": course.body_reason,
-            "toe_slip": course.toe_slip,
-            "trailing_slip": course.trailing_slip,
-            "misstep": course.misstep,
+            **{key: getattr(course, key) for key in ("toe_slip", "trailing_slip", "misstep")},
         }
     )
 
@@ -315,12 +313,8 @@ def _step_entry(
 ) -> dict[str, Any]:
     own = None if step is None else step.measurement
     return {
-        "number": stance.number,
+        **{key: getattr(stance, key) for key in ("number", "plate", "side", "contact", "toe_off")},
         "item": stance.label,
-        "plate": stance.plate,
-        "side": stance.side,
-        "contact": stance.contact,
-        "toe_off": stance.toe_off,
         "stance_time": stance.duration,
         "peak_force": stance.peak,
         "rcof": None if own is None else own.value,

@@ -7,6 +7,7 @@ Every size is checked against the file before anything is allocated.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -123,11 +124,10 @@ def _check_size(length: int, start: int, frames: int, width: int, where: str) ->
 def _frame_range(words: np.ndarray, shell: C3DFile) -> tuple[int, int]:
     """Header words hold 16 bits; longer recordings put the range in parameters."""
     first, last = int(words[3]), int(words[4])
-    begin = shell.whole_numbers("TRIAL", "ACTUAL_START_FIELD").ravel(order="F")
-    end = shell.whole_numbers("TRIAL", "ACTUAL_END_FIELD").ravel(order="F")
-    if begin.size == 2 and end.size == 2:
-        low = int(begin[0]) % 65536 + 65536 * (int(begin[1]) % 65536)
-        high = int(end[0]) % 65536 + 65536 * (int(end[1]) % 65536)
+    names = ("ACTUAL_START_FIELD", "ACTUAL_END_FIELD")
+    ends = [shell.whole_numbers("TRIAL", name).ravel(order="F") % 65536 for name in names]
+    if ends[0].size == 2 and ends[1].size == 2:
+        low, high = (int(end[0]) + 65536 * int(end[1]) for end in ends)
         if high >= low and (high % 65536 == last or last == 65535):
             return low, high
     frames = int(shell.number("POINT", "LONG_FRAMES") or 0)
@@ -150,10 +150,8 @@ def _points(raw: np.ndarray, scale: float, real: bool) -> np.ndarray:
     positions = raw[:, :, :3].astype(np.float64)
     if not real:
         positions *= scale
-    lost = raw[:, :, 3] < 0
-    lost |= (positions == 0.0).all(axis=2)
-    lost |= ~(np.abs(positions) < _POSSIBLE).all(axis=2)
-    positions[lost] = np.nan
+    lost = (raw[:, :, 3] < 0) | (positions == 0.0).all(axis=2)
+    positions[lost | ~(np.abs(positions) < _POSSIBLE).all(axis=2)] = np.nan
     return positions
 
 
@@ -212,9 +210,7 @@ def _value(data: bytes, processor: int, name: str, where: str) -> Any:
         raise DataError(f"damaged: parameter {name} has no value", where=where)
     kind = int.from_bytes(data[:1], "little", signed=True)
     shape = tuple(data[2 : 2 + data[1]])
-    count = 1
-    for length in shape:
-        count *= length
+    count = math.prod(shape)
     if data[1] > 7:  # the format's limit
         raise DataError(f"damaged: parameter {name} has {data[1]} dimensions", where=where)
     if kind not in (-1, 1, 2, 4):

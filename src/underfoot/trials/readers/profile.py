@@ -201,9 +201,8 @@ def _plate(value: object, where: str) -> PlateColumns:
     force = _force_columns(value, where)
     force_is = value.get("force_is", "on the foot")
     if force_is not in ("on the foot", "on the plate"):
-        raise InputError(
-            f"{force_is!r}", where=f"{where}.force_is", allowed='"on the foot" or "on the plate"'
-        )
+        allowed = '"on the foot" or "on the plate"'
+        raise InputError(f"{force_is!r}", where=f"{where}.force_is", allowed=allowed)
     corners = value.get("corners")
     if corners is not None and (not isinstance(corners, list) or len(corners) != 4):
         raise InputError("a plate has four corners", where=f"{where}.corners")
@@ -227,11 +226,8 @@ def _force_columns(value: Mapping[str, Any], where: str) -> tuple[str, str, str]
     """Return the columns of x, y, z; ``friction`` and ``normal`` are a machine's x and z."""
     two = {"friction", "normal"} & set(value)
     if ("force" in value) == bool(two):
-        raise InputError(
-            "a plate needs its force columns",
-            where=where,
-            allowed='force = ["Fx", "Fy", "Fz"], or friction = "..." and normal = "..."',
-        )
+        allowed = 'force = ["Fx", "Fy", "Fz"], or friction = "..." and normal = "..."'
+        raise InputError("a plate needs its force columns", where=where, allowed=allowed)
     if two:
         names = [value.get("friction"), "", value.get("normal")]
         if not all(isinstance(name, str) for name in names) or not (names[0] and names[2]):
@@ -255,11 +251,8 @@ def with_channels(profile: Profile, friction: str, normal: str, *, where: str) -
     if not friction and not normal:
         return profile
     if profile.plates:
-        raise InputError(
-            "the protocol and the profile both name force columns",
-            where=where,
-            remedy="Name them in one place",
-        )
+        words = "the protocol and the profile both name force columns"
+        raise InputError(words, where=where, remedy="Name them in one place")
     columns = _plate({"friction": friction, "normal": normal}, where)
     return replace(profile, plates={"tester": columns})
 

@@ -221,18 +221,10 @@ def logistic_regression(
         *ends, p = _profile(work, y, at, j, firth, best, confidence, errors[j] * scale[j])
         low, high = (None if end is None else float(end / scale[j]) for end in ends)
         coefficients.append(Coefficient(name, float(beta[j]), float(errors[j]), low, high, p))
-    return LogisticFit(
-        method,
-        tuple(coefficients),
-        covariance,
-        log_likelihood(eta, y),
-        float(np.sum(y * np.log(mean) + (1 - y) * np.log(1 - mean))),
-        objective(matrix, eta, y, True) if firth else None,
-        len(y),
-        int(y.sum()),
-        found,
-        tuple(warnings),
-    )
+    null = float(np.sum(y * np.log(mean) + (1 - y) * np.log(1 - mean)))
+    likelihoods = log_likelihood(eta, y), null, objective(matrix, eta, y, True) if firth else None
+    counted = len(y), int(y.sum()), found, tuple(warnings)
+    return LogisticFit(method, tuple(coefficients), covariance, *likelihoods, *counted)
 
 
 def _scaled(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -251,19 +251,13 @@ def repeated_measures(
         where, remedy = "repeated measures", "Use the mixed model"
         raise DataError("not every person has every condition", where=where, remedy=remedy)
     table: Any = AnovaRM(frame, "y", "person", within=list(named)).fit().anova_table
-    rows = tuple(
-        AnovaRow(
-            ":".join(named[part] for part in str(term).split(":")),
-            np.nan,
-            int(row["Num DF"]),
-            float(row["F Value"]),
-            float(row["Pr > F"]),
-            float(row["Den DF"]),
-        )
-        for term, row in table.iterrows()
-    )
+    rows = []
+    for term, row in table.iterrows():
+        name = ":".join(named[part] for part in str(term).split(":"))
+        f, p, error_df = (float(row[key]) for key in ("F Value", "Pr > F", "Den DF"))
+        rows.append(AnovaRow(name, np.nan, int(row["Num DF"]), f, p, error_df))
     if len(named) > 1:
-        return RepeatedMeasures(rows, None, None, persons)
+        return RepeatedMeasures(tuple(rows), None, None, persons)
     wide = frame.pivot(index="person", columns="factor0", values="y").to_numpy()
     k = wide.shape[1]
     centring = np.eye(k) - 1.0 / k
@@ -271,4 +265,4 @@ def repeated_measures(
     epsilon = min(float(np.trace(inner) ** 2 / ((k - 1) * np.sum(inner**2))), 1.0)
     own: Any = rows[0]  # with F and the degrees of freedom of its error
     p = float(stats.f.sf(own.f, epsilon * own.df, epsilon * own.error_df))
-    return RepeatedMeasures(rows, epsilon, p, persons)
+    return RepeatedMeasures(tuple(rows), epsilon, p, persons)

@@ -1,0 +1,275 @@
+"""A tread, not one position of it: the answer averaged over where its lugs happen to lie."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from underfoot.case import Case
+from underfoot.core import ConvergenceError, Progress, SourcedValue, display, silent
+from underfoot.core.arrays import Array
+
+from .contact import cost, scanned
+from .numbers import scalars
+
+if TYPE_CHECKING:
+    from underfoot.friction import FrictionCoefficients, FrictionLaw, SampledCof
+    from underfoot.shoe import SoleMap, Tread
+    from underfoot.sole_contact.cost import Cost
+    from underfoot.sole_contact.solver import SoleContact
+
+ANGLE_BAND = math.radians(1)
+"""Change of the shoe angle at some of the positions, rad; assumed."""
+PARTS = ("adhesion", "hysteresis", "viscous")
+TOLERANCE = 1e-3
+"""Tolerance at the positions, a fifth faster than 1e-4: it moves loads by 0.1 %."""
+HELD = "spread of the friction law, its inputs and the position of the tread"
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a tread lies: its pattern shifted by (x, y), m, the shoe turned by ``turn``, rad."""
+
+    shift: tuple[float, float] = (0.0, 0.0)
+    turn: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class TreadPositions:
+    """Numbers of a run at some positions of the tread, the case's own first.
+
+    Attributes
+    ----------
+    places
+        Of the pattern and the shoe.
+    values
+        Name of a result's scalar: its value at each place, SI, on the grid of the run.
+    left_out
+        Number of positions that did not converge.
+    coarse
+        Sole and contact at the case's own place on the quick grid, where they were solved.
+    """
+
+    places: tuple[Place, ...]
+    values: Mapping[str, Array]
+    left_out: int
+    coarse: tuple[SoleMap, SoleContact] | None
+
+    def factors(self, name: str) -> Array:
+        """Return the scalar at each place over that at the case's own; 1 where that is 0."""
+        values = self.values[name]
+        return values / values[0] if values[0] else np.ones_like(values)
+
+    def friction(
+        self, friction: FrictionCoefficients, sampled: SampledCof | None
+    ) -> tuple[FrictionCoefficients, SampledCof | None]:
+        """Return COF and its draws over the positions, which the draws take in turn."""
+        values = {name: values for name, values in self.values.items() if name.startswith("cof")}
+        new = {
+            name: replace(getattr(friction, name), value=float(each.mean()))
+            for name, each in values.items()
+        }
+        if sampled is not None:
+            law, own = float(np.var(sampled.cof)), float(np.var(values["cof"]))
+            at = np.arange(sampled.cof.size) % len(self.places)
+            draws = {
+                name.removeprefix("cof_"): getattr(sampled, name.removeprefix("cof_"))
+                * self.factors(name)[at]
+                for name in values
+            }
+            draws["cof"] = draws["adhesion"] + draws["hysteresis"] + draws["viscous"]
+            share = {name: each * law / (law + own) for name, each in sampled.share.items()}
+            share["tread_position"] = own / (law + own)
+            sampled = replace(sampled, share=share, **draws)
+            for name, value in new.items():
+                if value.uncertainty is not None:  # what the law leaves open stays open
+                    new[name] = sampled.sourced(name.removeprefix("cof_"), value)
+            new["cof"] = replace(new["cof"], note=HELD)
+        load = float(self.values["fluid_load"].mean())
+        force = float(values["cof"].mean()) * friction.normal_force
+        return replace(friction, **new, fluid_load=load, friction_force=force), sampled
+
+    def averaged(self, numbers: Mapping[str, SourcedValue]) -> dict[str, SourcedValue]:
+        """Return the numbers with means over the positions, and the spread of COF over them."""
+        found = dict(numbers)
+        if len(self.places) == 1:
+            return found
+        for name, values in self.values.items():
+            if not name.startswith("cof"):
+                found[name] = replace(numbers[name], value=float(values.mean()))
+        over = f"over {len(self.places)} positions of the tread"
+        found["fluid_load"] = replace(
+            found["fluid_load"], note=f"{self._range('fluid_load', 'N')} {over}"
+        )
+        found["cof_tread_position"] = SourcedValue(
+            float(np.std(self.values["cof"])),
+            source="contact and film at other positions of the tread",
+            reason="itself a standard deviation",
+            note=f"{self._range('cof')} {over}",
+        )
+        return found
+
+    def labels(self) -> dict[str, str]:
+        """Return what was averaged in words."""
+        failed = f"{self.left_out} did not converge and are left out" if self.left_out else ""
+        if len(self.places) == 1:
+            return {"tread_position": f"as the case describes it; {failed} of the average"}
+        return {
+            "tread_position": f"COF {self._range('cof')}, load on the film "
+            f"{self._range('fluid_load', 'N')} over {len(self.places)} positions of the pattern. "
+            "Numbers are means over them; maps and histories show the position that the case "
+            "describes" + (f"; {failed}" if failed else ""),
+        }
+
+    def assumptions(self) -> tuple[str, ...]:
+        """Return the band of the shoe angle, where it was used."""
+        used = any(place.turn for place in self.places)
+        return ("motion.shoe_angle: ±1 deg at some positions of the tread",) * used
+
+    def fields(self) -> dict[str, Any]:
+        """Return the variables of a data set: where the positions are, COF and load there."""
+
+        def at(values: Any, unit: str, name: str) -> tuple[str, Any, dict[str, str]]:
+            return ("tread_position", values, {"units": unit, "long_name": name})
+
+        shift = np.array([place.shift for place in self.places])
+        turn = [place.turn for place in self.places]
+        return {
+            "position_shift_x": at(shift[:, 0], "m", "shift of the tread's pattern, forward"),
+            "position_shift_y": at(shift[:, 1], "m", "shift of the tread's pattern, across"),
+            "position_turn": at(turn, "rad", "change of the shoe angle"),
+            "position_cof": at(self.values["cof"], "1", "coefficient of friction"),
+            "position_fluid_load": at(self.values["fluid_load"], "N", "load carried by the fluid"),
+        }
+
+    def _range(self, name: str, unit: str = "1") -> str:
+        values = self.values[name]
+        return f"{display(values.min(), unit)} to {display(values.max(), unit)}"
+
+
+def places(periods: Array, count: int) -> tuple[Place, ...]:
+    """Return ``count`` places of a pattern with the periods (n, 2), m; the first at rest.
+
+    Even along the first period and, with a second, a Hammersley set in both. The shoe angle goes
+    through 0, +1 and -1 deg as long as that comes out even.
+    """
+    found = []
+    for k in range(count):
+        shares = np.array([k / count, _mirrored(k)])[: len(periods)]
+        x, y = shares @ periods
+        turn = (0.0, ANGLE_BAND, -ANGLE_BAND)[k % 3] if k < count // 3 * 3 else 0.0
+        found.append(Place((float(x), float(y)), turn))
+    return tuple(found)
+
+
+def _mirrored(number: int) -> float:
+    """Return the binary digits of ``number`` mirrored at the point (van der Corput)."""
+    return int(f"{number:b}"[::-1], 2) / 2 ** number.bit_length()
+
+
+def tread_positions(
+    case: Case,
+    law: FrictionLaw,
+    sole: SoleMap,
+    contact: SoleContact,
+    solve: Callable[[Case, Place, Progress], tuple[SoleMap, SoleContact]],
+    *,
+    viscosity: float | None,
+    quick: bool,
+    progress: Progress = silent,
+) -> TreadPositions | None:
+    """Return the numbers of a run at more positions of its tread; None without a tread.
+
+    ``solve`` returns sole and contact of a case at a place on the quick grid; what it gives becomes
+    a value on the run's own grid by ``on_own_grid``.
+    """
+    tread, count = _tread(case), position_count(case, quick=quick)
+    if tread is None or count == 1:
+        return None
+    own = _numbers(case, law, sole, contact, viscosity)
+    eased = case.replace("numerics.tolerance", max(case.numerics.tolerance, TOLERANCE))
+    kept = [(Place(), own)] if quick else []
+    coarse = None
+    for k, place in list(enumerate(places(tread.periods, count)))[len(kept) :]:
+        try:
+            there = solve(eased, place, _stage(progress, k, count))
+        except ConvergenceError:
+            continue
+        if there[1].status.usable:
+            kept.append((place, _numbers(case, law, *there, viscosity)))
+            coarse = there if k == 0 else coarse
+    if not kept or kept[0][0] != Place():  # nowhere to compare the two grids
+        kept, coarse = [(Place(), own)], None
+    values = {
+        name: on_own_grid(value, np.array([numbers[name] for _, numbers in kept]))
+        for name, value in own.items()
+    }
+    values["cof"] = values["cof_adhesion"] + values["cof_hysteresis"] + values["cof_viscous"]
+    return TreadPositions(tuple(place for place, _ in kept), values, count - len(kept), coarse)
+
+
+def on_own_grid(own: float, quick: Array) -> Array:
+    """Return the values ``quick`` (n,) of another grid as they would be on the run's own.
+
+        v_k = q_k + (v_0 - q_0) min(1, q_k / q_0)
+
+    What the grids differ by at the first place, where ``own`` is v_0; in proportion where a value
+    is smaller there, so that nothing becomes negative.
+    """
+    share = np.divide(quick, quick[0], out=np.ones_like(quick), where=quick < quick[0])
+    return quick + (own - quick[0]) * share
+
+
+def position_count(case: Case, *, quick: bool) -> int:
+    """Return over how many positions of its tread a run averages; 1 for a sole without."""
+    count = case.numerics.tread_positions if _tread(case) else 1
+    return math.ceil(count / 2) if quick else count
+
+
+def run_cost(case: Case, *, quick: bool) -> Cost:
+    """Return what a run will take, all positions of the tread together."""
+    coarse = cost(case, case.numerics.quick_grid_spacing)
+    own = coarse if quick else cost(case, case.numerics.grid_spacing)
+    count = position_count(case, quick=quick)
+    more = count - 1 if quick or count == 1 else count
+    low, high = (a + more * b for a, b in zip(own.seconds, coarse.seconds, strict=True))
+    return replace(own, seconds=(low, high))
+
+
+def _tread(case: Case) -> Tread | None:
+    tread = None if case.shoe.tread is None else case.shoe.tread.build()
+    return tread if tread and tread.depth > 0 else None
+
+
+def _stage(progress: Progress, number: int, count: int) -> Progress:
+    def report(stage: str, fraction: float, residual: float | None = None) -> None:
+        progress(f"Tread position {number + 1} of {count}", (number + fraction) / count, residual)
+
+    return report
+
+
+def _numbers(
+    case: Case, law: FrictionLaw, sole: SoleMap, contact: SoleContact, viscosity: float | None
+) -> dict[str, float]:
+    """Return the numbers of a result that depend on where the tread lies."""
+    from underfoot.friction import cof
+
+    speed, film = case.motion.speed, contact.film_thickness
+    friction = cof(
+        law(contact.contact_pressure, speed, film),
+        contact.contact_pressure,
+        contact.fluid_pressure,
+        spacing=sole.spacing,
+        wet=contact.wet,
+    )
+    numbers, _ = scalars(case, contact, friction, scanned(case, sole, contact, viscosity=viscosity))
+    fixed = ("normal_force", "slip_probability")
+    return {
+        name: each.value
+        for name, each in numbers.items()
+        if each.value is not None and name not in fixed
+    }

@@ -1,0 +1,219 @@
+"""The answer of a treaded sole: averaged over where its pattern lies."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from underfoot.case import Case, CaseError
+from underfoot.compute.positions import (
+    ANGLE_BAND,
+    TreadPositions,
+    on_own_grid,
+    places,
+    position_count,
+    run_cost,
+)
+from underfoot.compute.run import run
+from underfoot.compute.sole import sole_map
+from underfoot.core import SourcedValue
+from underfoot.friction.coefficient import FrictionCoefficients
+from underfoot.friction.sampled_cof import SampledCof
+from underfoot.shoe import Sipes, Tread
+from underfoot.shoe.tread import PATTERNS
+
+MM = 1e-3
+PITCH = 10.0
+POINTS = np.meshgrid(np.linspace(-0.04, 0.08, 41), np.linspace(-0.04, 0.04, 37))
+
+
+@pytest.fixture(scope="module")
+def bars():
+    """Bars of 6 mm with channels of 4 mm under the bevel of a heel, on coarse cells."""
+    case = Case.load("examples/work_shoe_full_tread_glycerol.toml")
+    bars = {"pattern": "bars", "depth": "3 mm", "lug_width": "6 mm", "channel_width": "4 mm"}
+    return case.replace({"shoe.tread": bars, "shoe.heel.width": "66 mm"})
+
+
+@given(
+    st.sampled_from(PATTERNS),
+    st.floats(-1.2, 1.2),
+    st.tuples(st.floats(-0.02, 0.02), st.floats(-0.02, 0.02)),
+)
+def test_a_pattern_repeats_after_each_period(pattern, angle, offset):
+    tread = Tread(
+        pattern,
+        6 * MM,
+        4 * MM,
+        3 * MM,
+        offset=offset,
+        angle=angle,
+        lug_length=9 * MM if pattern == "blocks" else None,
+        arm_length=11 * MM if pattern == "chevrons" else None,
+    )
+    at = tread.channel_distance(*POINTS)
+    for period in tread.periods:
+        moved = tread.moved((float(period[0]), float(period[1])))
+        assert moved.channel_distance(*POINTS) == pytest.approx(at, abs=1e-9)
+
+
+@given(st.integers(2, 16), st.integers(1, 15))
+def test_even_positions_are_the_same_from_any_of_them(count, step):
+    """Moved by whole parts of a pitch, bars are averaged over the same positions."""
+    period = np.array([[PITCH, 0.0]])
+    x = np.array([place.shift[0] for place in places(period, count)])
+    moved = np.mod(x + PITCH * (step % count) / count + 1e-9, PITCH) - 1e-9
+    assert np.sort(moved) == pytest.approx(np.sort(x), abs=1e-6)
+
+
+@given(st.integers(1, 64))
+def test_positions_cover_both_directions_and_the_shoe_angle_evenly(count):
+    found = places(np.eye(2), count)
+    assert found[0].shift == (0.0, 0.0)
+    assert len({place.shift for place in found}) == count
+    turns = [place.turn for place in found]
+    assert turns[0] == sum(turns) == 0.0
+    assert max(turns) == (ANGLE_BAND if count > 2 else 0.0)
+    # any half of the second direction holds half of the positions, give or take a little
+    across = sum(place.shift[1] < 0.5 for place in found)
+    assert abs(across - count / 2) <= 1
+
+
+@given(
+    st.floats(0, 1e3),
+    st.lists(st.floats(0, 1e3), min_size=1, max_size=9).map(np.array),
+)
+def test_another_grid_is_exact_at_home_and_makes_nothing_negative(own, quick):
+    values = on_own_grid(own, quick)
+    assert values[0] == pytest.approx(own, abs=1e-9)
+    assert (values >= -1e-9).all()
+    assert np.array_equal(on_own_grid(float(quick[0]), quick), quick)
+
+
+def test_draws_take_every_position_and_its_spread_is_named():
+    cof = np.array([0.10, 0.14, 0.12, 0.12])
+    values = {
+        "cof": cof,
+        "cof_adhesion": 0.25 * cof,
+        "cof_hysteresis": 0.5 * cof,
+        "cof_viscous": 0.25 * cof,
+        "fluid_load": np.array([90.0, 10.0, 50.0, 50.0]),
+    }
+    draws = np.random.default_rng(0).normal(0.1, 0.02, 4000)
+    sampled = SampledCof(
+        draws, 0.25 * draws, 0.5 * draws, 0.25 * draws, {"model": 1.0}, (), 0.95, 0
+    )
+    known, open_part = SourcedValue(0.1, "1", "", 0.02), SourcedValue(0.025, "1", "")
+    friction = FrictionCoefficients(known, known, known, open_part, 50.0, 500.0, 90.0)
+    positions = TreadPositions(places(np.eye(2), 4), values, 0, None)
+    averaged, sampled = positions.friction(friction, sampled)
+    assert averaged.cof.value == pytest.approx(0.12)
+    assert averaged.friction_force == pytest.approx(60.0)
+    assert averaged.fluid_load == pytest.approx(50.0)
+    assert averaged.cof_viscous.uncertainty is None
+    assert sampled is not None
+    assert sampled.cof.mean() == pytest.approx(0.12, rel=0.01)
+    parts = sampled.adhesion + sampled.hysteresis + sampled.viscous
+    assert sampled.cof == pytest.approx(parts)
+    # law and position are independent: their relative variances add, and their product
+    law, place = (0.2, float(np.std(cof)) / 0.12)
+    spread = 0.12 * math.hypot(law, place, law * place)
+    assert averaged.cof.uncertainty == pytest.approx(spread, rel=0.03)
+    assert sum(sampled.share.values()) == pytest.approx(1.0)
+    assert sampled.share["tread_position"] == pytest.approx(0.0002 / (0.0002 + 0.0004), rel=0.1)
+
+
+def test_the_offset_of_a_case_moves_the_pattern_with_its_sipes(bars):
+    sipes = {"width": "2 mm", "depth": "2 mm", "spacing": "5 mm"}
+    cut = bars.replace({"shoe.tread.sipes": sipes})
+    for case in (bars, cut):
+        there = case.replace("shoe.tread.offset_along", "4 mm")
+        assert there.hash != case.hash
+        assert Case.from_text(there.to_toml()).hash == there.hash
+        land, moved = sole_map(case, 1 * MM).land, sole_map(there, 1 * MM).land
+        assert not np.array_equal(land, moved)
+        assert np.array_equal(sole_map(case, 1 * MM, shift=(4 * MM, 0.0)).land, moved)
+        whole = case.replace("shoe.tread.offset_along", "10 mm")
+        assert np.array_equal(sole_map(whole, 1 * MM).land, land)
+    slits = Sipes(1 * MM, 2 * MM, 5 * MM, 0.3)
+    tread = Tread("grid", 6 * MM, 4 * MM, 3 * MM, sipes=slits)
+    x, y = POINTS
+    back = tread.moved((2 * MM, 3 * MM)).slit_distance(x + 2 * MM, y + 3 * MM)
+    assert back == pytest.approx(tread.slit_distance(x, y), abs=1e-12)
+
+
+def test_the_number_of_positions_is_a_field_with_a_range(bars):
+    assert position_count(bars, quick=False) == 4
+    assert position_count(bars, quick=True) == 2
+    assert position_count(bars.replace("shoe.tread", {"pattern": "none"}), quick=False) == 1
+    for wrong in (0, 65, 2.5):
+        with pytest.raises(CaseError, match="tread_positions"):
+            bars.replace("numerics.tread_positions", wrong)
+
+
+def test_an_averaged_run_is_estimated_below_two_and_a_half_of_one(bars):
+    alone = bars.replace("numerics.tread_positions", 1)
+    for quick in (False, True):
+        one, more = run_cost(alone, quick=quick), run_cost(bars, quick=quick)
+        assert 1.5 < more.seconds[1] / one.seconds[1] < 2.5
+        assert more.memory == one.memory
+
+
+def test_a_sole_without_tread_does_not_change(worn_shoe_case, worn_shoe_result):
+    alone = run(worn_shoe_case.replace("numerics.tread_positions", 1))
+    assert worn_shoe_case.numerics.tread_positions > 1
+    for name, one in worn_shoe_result.scalars.items():
+        assert alone.scalars[name] == one, name
+    assert alone.labels == worn_shoe_result.labels
+    assert alone.assumptions == worn_shoe_result.assumptions
+    assert set(alone.fields) == set(worn_shoe_result.fields)
+    assert "position_cof" not in alone.fields
+
+
+@pytest.mark.slow
+def test_one_position_is_the_case_s_own(bars):
+    coarse = bars.replace(
+        {"numerics.grid_spacing": "1.2 mm", "numerics.quick_grid_spacing": "2 mm"}
+    )
+    one = run(coarse.replace("numerics.tread_positions", 1))
+    more = run(coarse)
+    cof, load = more.fields["position_cof"], more.fields["position_fluid_load"]
+    assert cof.size == 4
+    assert float(cof[0]) == pytest.approx(one.value("cof"), rel=1e-12)
+    assert float(load[0]) == pytest.approx(one.value("fluid_load"), rel=1e-12)
+    assert more.value("cof") == pytest.approx(float(cof.mean()), rel=1e-12)
+    assert more.value("fluid_load") == pytest.approx(float(load.mean()), rel=1e-12)
+    parts = sum(more.value(f"cof_{part}") for part in ("adhesion", "hysteresis", "viscous"))
+    assert more.value("cof") == pytest.approx(parts, rel=1e-12)
+    assert np.array_equal(more.fields["contact_pressure"], one.fields["contact_pressure"])
+    assert np.var(more.fields["cof_draws"]) > np.var(one.fields["cof_draws"])
+    assert "mean over positions of the tread" in more.headline()[0]
+    assert "tread_position" not in one.labels
+    assert "4 positions" in more.labels["tread_position"]
+    assert "position of the tread" in more.labels["cof_spread_from"]
+    assert "spread over tread positions" in more.summary()
+    assert any("shoe_angle: ±1 deg" in line for line in more.assumptions)
+
+
+@pytest.mark.slow
+def test_the_mean_hardly_depends_on_where_the_pattern_begins(bars):
+    single, mean = [], []
+    for offset in ("0 mm", "1.25 mm", "4 mm", "6.5 mm"):
+        moved = bars.replace("shoe.tread.offset_along", offset)
+        alone = run(moved.replace("numerics.tread_positions", 1), quick=True)
+        over = run(moved.replace("numerics.tread_positions", 8), quick=True)
+        single.append((alone.value("cof"), alone.value("fluid_load")))
+        mean.append((over.value("cof"), over.value("fluid_load")))
+    before, after = np.ptp(single, axis=0), np.ptp(mean, axis=0)
+    assert (after < 0.35 * before).all()
+    assert after[0] < 0.05 * np.mean(mean, axis=0)[0]
+
+
+def test_a_place_that_does_not_converge_is_said():
+    positions = TreadPositions(
+        places(np.eye(2), 1), {"cof": np.array([0.1]), "fluid_load": np.array([5.0])}, 3, None
+    )
+    assert "3 did not converge" in positions.labels()["tread_position"]
+    assert positions.factors("cof").tolist() == [1.0]
