@@ -43,16 +43,11 @@ class Place:
 class TreadPositions:
     """Numbers of a run at some positions of the tread, the case's own first.
 
-    Attributes
-    ----------
-    places
-        Of the pattern and the shoe.
-    values
-        Name of a result's scalar: its value at each place, SI, on the grid of the run.
-    left_out
-        Number of positions that did not converge.
-    coarse
-        Sole and contact at the case's own place on the quick grid, where they were solved.
+    Attributes:
+        places: Of the pattern and the shoe.
+        values: Name of a result's scalar: its value at each place, SI, on the grid of the run.
+        left_out: Number of positions that did not converge.
+        coarse: Sole and contact at the case's own place on the quick grid, where they were solved.
     """
 
     places: tuple[Place, ...]

@@ -64,27 +64,19 @@ OBJECTS = ("friction", "rough_contact", "compliance", "risk")
 def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objects: Any) -> Result:
     """Return the friction of a case with everything that explains it.
 
-    Parameters
-    ----------
-    case
-        What to compute.
-    quick
-        Use the coarse grid of the case: a first look.
-    progress
-        Receives stage, fraction and residual; an exception it raises stops the work.
-    objects
-        Slot: what to take in place of the case's option. An option, its name or a mapping changes
-        the case; an object of physics is used as it is: ``friction`` a ``FrictionLaw``,
-        ``rough_contact`` a ``PressureGapLaw``, ``compliance`` a ``Compliance`` on the grid of the
-        run, ``risk`` a ``SlipModel``. ``viscosity`` takes Pa s or text. The result names such
-        objects, and its hash holds them.
+    Parameters:
+        case: What to compute.
+        quick: Use the coarse grid of the case: a first look.
+        progress: Receives stage, fraction and residual; an exception it raises stops the work.
+        objects: Slot: what to take in place of the case's option. An option, its name or a mapping
+            changes the case; an object of physics is used as it is: ``friction`` a ``FrictionLaw``,
+            ``rough_contact`` a ``PressureGapLaw``, ``compliance`` a ``Compliance`` on the grid of
+            the run, ``risk`` a ``SlipModel``. ``viscosity`` takes Pa s or text. The result names
+            such objects, and its hash holds them.
 
-    Raises
-    ------
-    InputError
-        A case whose parts don't fit together on this grid, a slot that is none.
-    ConvergenceError
-        Not even the first contact could be solved.
+    Raises:
+        InputError: A case whose parts don't fit together on this grid, a slot that is none.
+        ConvergenceError: Not even the first contact could be solved.
     """
     import_module("xarray")  # if it is missing, the run stops before the work, not after it
 

@@ -52,10 +52,8 @@ def slip_population(
 ) -> Population:
     """Return the people of a case; ``histories`` of your own replace the packaged steps.
 
-    Raises
-    ------
-    InputError
-        A required friction outside 0 to 1, landing places in the wrong order.
+    Raises:
+        InputError: A required friction outside 0 to 1, landing places in the wrong order.
     """
     from underfoot.slip.dynamics import Population, Spread, packaged_histories
 
@@ -134,28 +132,18 @@ def slips(
 ) -> SlipStudy:
     """Return the slips of a case's population: who slips, how fast, how far.
 
-    Parameters
-    ----------
-    case
-        Shoe, floor, fluid and people.
-    subjects
-        How many; the case's by default.
-    histories
-        Steps of your own in place of the packaged ones.
-    full
-        Everybody through the full model instead of the reduced one fitted to it.
-    fine
-        The case's fine grid instead of the coarse one.
-    progress
-        Receives stage, fraction and residual; an exception it raises stops the work, and the
-        slips done so far are found again by the next call.
+    Parameters:
+        case: Shoe, floor, fluid and people.
+        subjects: How many; the case's by default.
+        histories: Steps of your own in place of the packaged ones.
+        full: Everybody through the full model instead of the reduced one fitted to it.
+        fine: The case's fine grid instead of the coarse one.
+        progress: Receives stage, fraction and residual; an exception it raises stops the work, and
+            the slips done so far are found again by the next call.
 
-    Raises
-    ------
-    InputError
-        People who can't be; a sole that does not fit the grid.
-    ConvergenceError
-        Too few slips could be solved.
+    Raises:
+        InputError: People who can't be; a sole that does not fit the grid.
+        ConvergenceError: Too few slips could be solved.
     """
     from underfoot.slip.dynamics import slip_study
 

@@ -221,11 +221,9 @@ def file_surface(case: Case) -> SoleSurface:
 def file_sole_map(case: Case, spacing: float) -> SoleMap:
     """Return the tilted outsole of the case's file on the solver's grid, trimmed to its reach.
 
-    Raises
-    ------
-    InputError
-        Channels below the grid, a region or unit that doesn't fit, tread deeper than the outsole,
-        nothing under the load.
+    Raises:
+        InputError: Channels below the grid, a region or unit that doesn't fit, tread deeper than
+            the outsole, nothing under the load.
     """
     from underfoot.shoe import surface_map
 
@@ -337,10 +335,8 @@ class Outsole(Section):
 def read_outsole(path: Path | str, settings: Mapping[str, Any] | None = None) -> Outsole:
     """Return the sole of an outsole file; every value with its unit.
 
-    Raises
-    ------
-    CaseError
-        Everything that is wrong with the file, each with its line.
+    Raises:
+        CaseError: Everything that is wrong with the file, each with its line.
     """
     path, text = Path(path), read(Path(path))
     places = Places(str(path), text, changed=settings or ())
