@@ -91,7 +91,7 @@ def test_the_sampled_studies_scatter_around_the_printed_logistic():
 
 
 def test_computed_slips_follow_the_difference_of_frictions():
-    found = g6.slips({"a": 0.10, "b": 0.17, "c": 0.30}, own_speed=False, subjects=20)
+    found = g6.slips({"a": 0.05, "b": 0.17, "c": 0.30}, own_speed=False, subjects=20)
     assert found.share["a"] == 1.0
     assert found.share["c"] == 0.0
     assert found.share["a"] > found.share["b"] > found.share["c"]

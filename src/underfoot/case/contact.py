@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 
 from underfoot.core import Breach, Cache, SourcedValue
 
 from .context import Context
+from .quantity import Flag, Quantity, default
 from .section import Option
 
 if TYPE_CHECKING:
@@ -227,6 +228,14 @@ class ReynoldsFilm(FilmOption):
 
     name: ClassVar[str] = "reynolds"
     source: ClassVar[str] = "Reynolds equation with cavitation, wedge and squeeze (Eq. 4, 5)"
+
+    lug_edges: Flag = default(True, True, "edges of lugs wipe the floor and suck (closed forms)")
+    suction: Annotated[float, Quantity("Pa", 0.0, 1e5)] = default(
+        70e3,
+        "70 kPa",
+        "highest pull of an emptied contact: 0 where air reaches it, 100 kPa where none does",
+        assumed=True,
+    )
 
     def build(self, context: Context) -> float | None:
         return context.viscosity_value

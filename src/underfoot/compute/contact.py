@@ -15,12 +15,14 @@ from underfoot.core import Progress, SourcedValue, silent
 from .sole import file_sole_map
 
 if TYPE_CHECKING:
+    from underfoot.case.context import Context
     from underfoot.friction import FrictionLaw
     from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
     from underfoot.shoe import SoleMap
     from underfoot.sole_contact import SensorReading
     from underfoot.sole_contact.compliance import Compliance
     from underfoot.sole_contact.cost import Cost
+    from underfoot.sole_contact.lug_edges import EdgedLaw
     from underfoot.sole_contact.sensor_array import ArrayReading
     from underfoot.sole_contact.sole_state import SoleState, SolverSettings
     from underfoot.sole_contact.solver import SoleContact
@@ -111,12 +113,28 @@ def solved_motion(
     )
 
 
+def edged_law(
+    case: Case, context: Context, law: FrictionLaw, sole: SoleMap, asperities: PressureGapLaw
+) -> EdgedLaw | None:
+    """Return the law with what the edges of lugs do; None without lugs or without a film."""
+    from underfoot.sole_contact.lug_edges import EdgedLaw, lug_edges
+
+    viscosity, film = context.viscosity_value, case.film
+    if viscosity is None or not getattr(film, "lug_edges", False):
+        return None
+    edges = lug_edges(sole, getattr(case.shoe.tread, "edge_radius", 0.0))
+    if edges is None:
+        return None
+    suction = case.value("film.suction")
+    return EdgedLaw(law, edges, asperities, context.youngs_modulus, viscosity, suction)
+
+
 @dataclass
 class Recorder:
     """Takes down, at every step, the parts of COF and (at some) what the sensors read."""
 
     case: Case
-    law: FrictionLaw
+    law: FrictionLaw | EdgedLaw
     sole: SoleMap
     viscosity: float | None
     cof: dict[str, list[float]] = field(default_factory=dict)

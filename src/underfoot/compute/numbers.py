@@ -39,10 +39,13 @@ _INPUTS = {
     "model": "the law itself",
     "tread_position": "position of the tread",
     "film load": "load on the film",
+    "suction": "suction behind the edges of lugs",
 }
 FILM_ERROR = math.log(1.41)
 """Standard deviation of ln F / (W - F), F the load on the film: the model's error on the untreaded
 heels of the report's slip tester (docs/studies/calibration.md), assumed of every sole."""
+SUCTION_SPREAD = 29e3
+"""Pa: standard deviation of a suction anywhere between 0 and 100 kPa."""
 GRID_ORDER = 1.0
 """Order of convergence: steps and rims of the film are first order on square cells."""
 GRID_NAMES = ("fluid_load", "fluid_load_sensor", "peak_fluid_pressure_sensor")

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from underfoot.friction import FrictionCoefficients, FrictionLaw, SampledCof
     from underfoot.shoe import SoleMap, Tread
     from underfoot.sole_contact.cost import Cost
+    from underfoot.sole_contact.lug_edges import EdgedLaw
     from underfoot.sole_contact.solver import SoleContact
 
 ANGLE_BAND = math.radians(1)
@@ -173,7 +174,7 @@ def _mirrored(number: int) -> float:
 
 def tread_positions(
     case: Case,
-    law: FrictionLaw,
+    law_on: Callable[[SoleMap], FrictionLaw | EdgedLaw],
     sole: SoleMap,
     contact: SoleContact,
     solve: Callable[[Case, Place, Progress], tuple[SoleMap, SoleContact]],
@@ -184,13 +185,14 @@ def tread_positions(
 ) -> TreadPositions | None:
     """Return the numbers of a run at more positions of its tread; None without a tread.
 
-    ``solve`` returns sole and contact of a case at a place on the quick grid; what it gives becomes
-    a value on the run's own grid by ``on_own_grid``.
+    ``law_on`` returns the local friction on a sole. ``solve`` returns sole and contact of a case
+    at a place on the quick grid; what it gives becomes a value on the run's own grid by
+    ``on_own_grid``.
     """
     tread, count = _tread(case), position_count(case, quick=quick)
     if tread is None or count == 1:
         return None
-    own = _numbers(case, law, sole, contact, viscosity)
+    own = _numbers(case, law_on(sole), sole, contact, viscosity)
     eased = case.replace("numerics.tolerance", max(case.numerics.tolerance, TOLERANCE))
     kept = [(Place(), own)] if quick else []
     coarse = None
@@ -200,7 +202,7 @@ def tread_positions(
         except ConvergenceError:
             continue
         if there[1].status.usable:
-            kept.append((place, _numbers(case, law, *there, viscosity)))
+            kept.append((place, _numbers(case, law_on(there[0]), *there, viscosity)))
             coarse = there if k == 0 else coarse
     if not kept or kept[0][0] != Place():  # nowhere to compare the two grids
         kept, coarse = [(Place(), own)], None
@@ -253,7 +255,11 @@ def _stage(progress: Progress, number: int, count: int) -> Progress:
 
 
 def _numbers(
-    case: Case, law: FrictionLaw, sole: SoleMap, contact: SoleContact, viscosity: float | None
+    case: Case,
+    law: FrictionLaw | EdgedLaw,
+    sole: SoleMap,
+    contact: SoleContact,
+    viscosity: float | None,
 ) -> dict[str, float]:
     """Return the numbers of a result that depend on where the tread lies."""
     from underfoot.friction import cof

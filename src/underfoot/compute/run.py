@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +26,7 @@ from underfoot.core import (
 from .contact import (
     Recorder,
     blind_sensor,
+    edged_law,
     history_fields,
     refuse_too_large,
     scanned,
@@ -32,6 +34,7 @@ from .contact import (
 )
 from .numbers import (
     FILM_ERROR,
+    SUCTION_SPREAD,
     grid_errors,
     grid_words,
     readings,
@@ -49,6 +52,7 @@ from .sole import compression_breaches, outsole_notes, sole_map
 if TYPE_CHECKING:
     import xarray
 
+    from underfoot.friction import FrictionLaw
     from underfoot.shoe import SoleMap
     from underfoot.sole_contact import SensorReading
     from underfoot.sole_contact.solver import SoleContact
@@ -86,6 +90,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
 
     from underfoot.friction import cof, sampled_cof
     from underfoot.sole_contact.edge_peak import peak_pressure
+    from underfoot.sole_contact.lug_edges import EdgedLaw
 
     case, own = _with_objects(case, objects)
     started = time.perf_counter()
@@ -99,7 +104,12 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
     asperities = own.get("rough_contact") or case.rough_contact.build(context)
     compliance = own.get("compliance") or case.compliance.build(context, sole)
     viscosity = case.film.build(context)
-    recorder = Recorder(case, law, sole, viscosity)
+
+    def on_sole(there: SoleMap) -> FrictionLaw | EdgedLaw:
+        return edged_law(case, context, law, there, asperities) or law
+
+    local_law = on_sole(sole)
+    recorder = Recorder(case, local_law, sole, viscosity)
     prepared = time.perf_counter()
     contact = solved_motion(
         case,
@@ -117,7 +127,12 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         "speed": speed,
         "film_thickness": contact.film_thickness,
     }
-    parts = law(**local)
+    parts, lugs, suction = local_law(**local), None, None
+    if isinstance(local_law, EdgedLaw):
+        lugs = local_law.lugs(**local)
+        pull = case.sourced("film.suction")
+        pull = pull if pull.uncertainty else replace(pull, uncertainty=SUCTION_SPREAD)
+        suction = pull, lugs.suction_share(parts)
     sampled = sampled_cof(
         law,
         contact.contact_pressure,
@@ -127,6 +142,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         wet=contact.wet,
         fluid_inputs={} if context.viscosity is None else {"viscosity": context.viscosity},
         film_error=FILM_ERROR,
+        contact_factor=1.0 if lugs is None else lugs.factor_map(),
+        suction=suction,
         seed=case.numerics.seed,
     )
     friction = cof(
@@ -153,7 +170,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         if "compliance" not in own:
             positions = tread_positions(
                 case,
-                law,
+                on_sole,
                 sole,
                 contact,
                 solved_quick,
@@ -170,6 +187,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             numbers = positions.averaged(numbers)
         share = (numbers["fluid_load"].value or 0.0) / contact.normal_force
         labels = {**regime(share), **spread_origin(sampled)}
+        if lugs is not None:
+            labels["lug_edges"] = lugs.words()
         if basis := getattr(law, "spread_basis", ""):
             labels["cof_spread_basis"] = basis
         if positions:

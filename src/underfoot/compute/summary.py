@@ -37,6 +37,7 @@ LABELS = {
     "tread_position": "Tread position",
     "grid_error": "Discretisation error",
     "edge_peak": "Caution on pressures",
+    "lug_edges": "Edges of the lugs",
     "sensor": "Caution on the sensor",
     "objects": "Computed with an object in place of the case's option",
 }

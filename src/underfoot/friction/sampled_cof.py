@@ -1,7 +1,5 @@
 """Coefficient of friction of a sole with its uncertainty, by sampling the law's inputs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -20,7 +18,8 @@ CLASSES = 64
 """Classes of contact pressure that stand for the cells under the sole in the draws."""
 SAMPLES = 500
 MODEL = "model"
-FILM = "film load"
+FILM, SUCTION = "film load", "suction"
+VACUUM = 1e5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,6 +66,8 @@ def sampled_cof(
     wet: ArrayLike | None = None,
     fluid_inputs: Mapping[str, SourcedValue] | None = None,
     film_error: float = 0.0,
+    contact_factor: ArrayLike = 1.0,
+    suction: tuple[SourcedValue, float] | None = None,
     confidence: float = 0.95,
     samples: int = SAMPLES,
     seed: int = 0,
@@ -80,16 +81,16 @@ def sampled_cof(
     are put into classes of equal pressure (with their film); what the classes miss of each part is
     made up for by a factor.
 
-    Parameters
-    ----------
-    contact_pressure, fluid_pressure, film_thickness, wet
-        (nx, ny) Pa, Pa, m and where the film is, as ``cof`` takes them.
-    speed
-        m/s.
-    fluid_inputs
-        "viscosity" (Pa s) with its standard deviation; where it has none it counts as exact.
-    film_error
-        Standard deviation of ln F / (W - F), 1; 0 takes the film load as exact.
+    Parameters:
+        contact_pressure, fluid_pressure, film_thickness, wet: (nx, ny) Pa, Pa, m and where the film
+            is, as ``cof`` takes them.
+        speed: m/s.
+        fluid_inputs: "viscosity" (Pa s) with its standard deviation; where it has none it counts as
+            exact.
+        film_error: Standard deviation of ln F / (W - F), 1; 0 takes the film load as exact.
+        contact_factor: On the contact friction of the law, (nx, ny), 1.
+        suction: Highest suction behind edges (Pa, drawn between 0 and that of a vacuum), and the
+            share of the contact friction that its value makes.
 
     Returns None when one of the law's own inputs has no standard deviation, or when nothing has
     one: an interval of the rest alone would be too narrow.
@@ -99,6 +100,9 @@ def sampled_cof(
         return None
     if film_error and np.any(fluid_pressure):
         inputs[FILM] = SourcedValue(0.0, "1", "", film_error)
+    pull, pull_share = suction or (None, 0.0)
+    if pull is not None and pull.value and pull_share:
+        inputs[SUCTION] = pull
     contact = np.asarray(contact_pressure, dtype=float)
     film = np.broadcast_to(np.asarray(film_thickness, dtype=float), contact.shape)
     mask = np.ones(contact.shape, bool) if wet is None else np.asarray(wet, dtype=bool)
@@ -110,16 +114,22 @@ def sampled_cof(
         weighted = ((shear.adhesion, solid), (shear.hysteresis, solid), (shear.viscous, fluid))
         return np.array([float(np.sum(part * weight)) for part, weight in weighted]) / load
 
-    exact = sums(law(contact, speed, film), 1.0, mask)
+    exact = sums(law(contact, speed, film), contact_factor, mask)
     coarse = sums(law(pressure, speed, gap), counts, wet_counts)
     factor = np.where(coarse > 0, exact / np.where(coarse > 0, coarse, 1.0), 1.0)
 
     def parts(values: Mapping[str, float]) -> Array:
-        drawn = law.at({k: v for k, v in values.items() if k not in (MODEL, FILM)})
+        drawn = law.at({k: v for k, v in values.items() if k not in (MODEL, FILM, SUCTION)})
         adhesion, hysteresis, viscous = factor * sums(
             drawn(pressure, speed, gap), counts, wet_counts
         )
         solid = max(adhesion + hysteresis + values.get(MODEL, 0.0) * carried, 0.0)
+        if SUCTION in inputs:
+            ratio = min(max(values[SUCTION], 0.0), VACUUM) / (
+                pull.value if pull and pull.value else 1.0
+            )
+            share = 1.0 + pull_share * (ratio - 1.0)
+            solid, hysteresis = solid * share, hysteresis * share
         share = 1.0 / (carried + (1.0 - carried) * np.exp(values.get(FILM, 0.0)))
         solid, hysteresis = solid * share, hysteresis * share
         hysteresis = min(hysteresis, solid)

@@ -1,0 +1,125 @@
+"""Edges of lugs: the closed forms against finite elements with film, their limits, the geometry."""
+
+import math
+
+import numpy as np
+import pytest
+
+from underfoot.case import Case
+from underfoot.compute.run import run
+from underfoot.compute.sole import sole_map
+from underfoot.rough_contact import ExponentialLaw
+from underfoot.sole_contact.lug_edges import LugEdges, lug_edges, lug_friction
+
+# A block 10 mm long and 5 mm high of 3 MPa at 100 kPa, pair of Rq 2 um, contact COF 0.3, full
+# suction: plane-strain elements coupled with Reynolds and rough contact, in time.
+# (viscosity x speed, film share, suction share, COF) by edge radius in mm
+COUPLED = {
+    0.11: [
+        (0.003, 0.003, 0.927, 0.585),
+        (0.01, 0.011, 0.955, 0.612),
+        (0.03, 0.03, 0.952, 0.69),
+        (0.1, 0.338, 0.102, 0.559),
+        (0.3, 0.964, 0.052, 0.6),
+    ],
+    0.83: [
+        (0.003, 0.031, 0.791, 0.541),
+        (0.01, 0.334, 0.002, 0.23),
+        (0.03, 0.967, 0.003, 0.055),
+        (0.1, 1.005, 0.006, 0.074),
+        (0.3, 1.01, 0.01, 0.119),
+    ],
+}
+
+
+def one_lug(length=0.01, width=1.0, height=0.005, edge=1e-4, fed=1.0):
+    arrays = (np.array([value]) for value in (length, width, height, edge, fed))
+    return LugEdges(np.array([[1]]), *arrays)
+
+
+def friction(edges=None, pressure=1e5, cof=0.3, drag=0.01, suction=1e5, rq=2e-6, modulus=3e6):
+    return lug_friction(
+        edges or one_lug(),
+        np.array([[pressure]]),
+        np.array([cof]),
+        ExponentialLaw(modulus, 0.5, rq),
+        modulus=modulus,
+        viscosity=drag,
+        speed=1.0,
+        suction=suction,
+    )
+
+
+def test_blocks_of_the_coupled_finite_elements():
+    """Within 6 % where the edge wipes; where the film sets in, off by up to a factor 1.7."""
+    errors = []
+    for radius, rows in COUPLED.items():
+        for drag, film, pull, cof in rows:
+            found = friction(one_lug(edge=radius * 1e-3), drag=drag)
+            assert found.film.item() == pytest.approx(min(film, 1.0), abs=0.25)
+            contact = 0.3 * (1 - film + pull)
+            if film < 0.5:
+                errors.append(math.log(0.3 * found.factor.item() / contact))
+            assert cof > 0
+            if film < 0.05:
+                assert abs(errors[-1]) < 0.06
+    assert np.sqrt(np.mean(np.square(errors))) < 0.3
+
+
+def test_sharp_edges_grip_more_than_round_ones_under_thick_fluid():
+    """Ishizako et al. 2022: 0.11 mm above 0.83 mm."""
+    for drag in (0.01, 0.03, 0.1):
+        sharp, rounded = (friction(one_lug(edge=r), drag=drag) for r in (0.11e-3, 0.83e-3))
+        assert sharp.factor.item() > 1.3 * rounded.factor.item()
+
+
+def test_limits():
+    slow = friction(drag=1e-9)
+    assert slow.film.item() == pytest.approx(0.0, abs=1e-6)
+    assert slow.suction.item() == pytest.approx(0.0, abs=1e-6)  # fluid is drawn back in
+    assert friction(suction=0.0).factor.item() <= 1.0
+    assert friction(one_lug(fed=0.0)).factor.item() == 1.0  # no groove ahead of it
+    assert friction(pressure=1e3).factor.item() == 1.0  # hardly bears
+    assert friction(suction=1e5).factor.item() > friction(suction=5e4).factor.item()
+    most = friction(drag=0.01, pressure=1e5, suction=1e5)
+    assert most.suction.item() <= 1.0  # at most a vacuum over the whole face
+
+
+def tread(pattern, **more):
+    return Case(
+        shoe={"from": "work_shoe_full_tread", "tread": {"pattern": pattern, **more}},
+        floor="vinyl_g4",
+        contaminant="glycerol_90pct",
+        motion={"from": "slip_tester_g4", "speed": 0.3},
+        numerics={"grid_spacing": "0.5 mm", "quick_grid_spacing": "1 mm"},
+    )
+
+
+SIZES = {"depth": "3 mm", "lug_width": "5 mm", "channel_width": "2.5 mm"}
+
+
+@pytest.mark.parametrize("forward", [True, False])
+def test_lugs_of_a_sole(forward):
+    edges = lug_edges(sole_map(tread("grid", **SIZES), 5e-4), 0.0, forward=forward)
+    whole = edges.length * edges.width > 22e-6
+    assert np.count_nonzero(whole) > 40
+    np.testing.assert_allclose(edges.length[whole], 5e-3, rtol=0.12)
+    np.testing.assert_allclose(edges.width[whole], 5e-3, rtol=0.12)
+    np.testing.assert_allclose(edges.height[whole], 3e-3, rtol=1e-6)
+    assert np.mean(edges.fed[whole]) > 0.8
+    along = lug_edges(sole_map(tread("longitudinal", **SIZES), 5e-4), 0.0, forward=forward)
+    assert np.max(along.fed) < 0.2  # ribs along the sliding have no leading face
+    assert lug_edges(sole_map(tread("none"), 5e-4), 0.0) is None
+
+
+def test_a_run_says_what_the_edges_do():
+    case = tread("transverse", **SIZES)
+    with_edges, without = (
+        run(one, quick=True) for one in (case, case.replace("film.lug_edges", False))
+    )
+    assert "lug_edges" in with_edges.labels
+    assert "lug_edges" not in without.labels
+    assert with_edges.value("cof") > without.value("cof")
+    assert with_edges.value("fluid_load") == pytest.approx(without.value("fluid_load"), rel=1e-6)
+    low, high = with_edges.scalars["cof"].interval
+    assert low < with_edges.value("cof") < high
