@@ -1,7 +1,5 @@
 """A slip over an array of pressure sensors in the floor: each sensor's pulse and passage."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

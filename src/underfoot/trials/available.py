@@ -1,7 +1,5 @@
 """Available friction (ACOF) of a loaded slide over a force plate."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Which way is up, which way is forward, which marker is a heel: found, shown, overridable."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """What is in a measurement file and what was made of it, for people to check before they trust."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Edits by hand: a step's contact, end, side or plate set, or the step excluded."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Sums of decaying exponentials: separable least squares with nothing to start from."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations

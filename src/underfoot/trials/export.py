@@ -1,7 +1,5 @@
 """A trial as C3D with the contacts found, for other software."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Required friction (RCOF) of a step, every convention named."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace

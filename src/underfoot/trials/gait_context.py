@@ -1,7 +1,5 @@
 """The walk around a step: speed, length, cadence, foot angle, heel speed; curves over stance."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The heel marker's smoothed path and speed, and contacts found from it alone."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """Classes of a slip by the way that the heel slides."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import StrEnum
 

@@ -1,7 +1,5 @@
 """Pin on disk: mean COF of the steady window, COF against speed, radius of the pin."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

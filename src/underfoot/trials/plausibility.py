@@ -4,8 +4,6 @@ The limits are wide against the real steps that come with this package; where no
 named, they are assumed. A flag that matters makes a step "caution".
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

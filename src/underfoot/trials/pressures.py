@@ -1,7 +1,5 @@
 """Fluid pressures under the foot: pulses of sensors in the floor and the heel's passage."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

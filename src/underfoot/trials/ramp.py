@@ -1,7 +1,5 @@
 """The walking surface: level, or a ramp with its angle and the axes that its plates measure in."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

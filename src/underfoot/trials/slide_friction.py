@@ -1,7 +1,5 @@
 """COF of a slip tester in the window of its protocol, and what its rules are checked against."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 

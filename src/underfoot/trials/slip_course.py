@@ -1,7 +1,5 @@
 """What happens around a slip: recovery or fall, the toe, the trailing foot, missteps."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 

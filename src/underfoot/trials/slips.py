@@ -1,7 +1,5 @@
 """A human slip from the heel marker: start, peak speed, distance, slip or no slip."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

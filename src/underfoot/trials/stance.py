@@ -1,7 +1,5 @@
 """One contact with one force plate, and where contacts begin and end."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

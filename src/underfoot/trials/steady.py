@@ -1,7 +1,5 @@
 """The steady part of a noisy record, and the mean of a correlated signal with its error."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """RCOF of a folder under every definition: what the choice does to the numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import reduce
 from pathlib import Path

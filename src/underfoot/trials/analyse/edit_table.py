@@ -1,7 +1,5 @@
 """``edits.csv``: the edits by hand of a folder, read, written and logged."""
 
-from __future__ import annotations
-
 import csv
 import io
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """A folder of trials: every file analysed, in parallel, resumable; one bad file stops nothing."""
 
-from __future__ import annotations
-
 import json
 import os
 import tempfile
@@ -79,25 +77,21 @@ def analyse_folder(
     same files, protocol, profile and conditions give the same result, whatever the number of
     processes.
 
-    Parameters
-    ----------
-    profile
-        What columns, axes and markers are called; by default ``profile.toml`` in the folder.
-    conditions
-        What was noted about the files; by default ``conditions.csv`` or ``.xlsx`` in the folder.
-    names, merge_spelling
-        Pattern of file names and what spellings count as one; see ``study_folder``.
-    store
-        Folder that keeps the result of each file: an interrupted run goes on where it stopped.
-    processes
-        Number of processes; by default the number of processors.
+    Parameters:
+        profile: What columns, axes and markers are called; by default ``profile.toml`` in the
+            folder.
+        conditions: What was noted about the files; by default ``conditions.csv`` or ``.xlsx`` in
+            the folder.
+        names, merge_spelling: Pattern of file names and what spellings count as one; see
+            ``study_folder``.
+        store: Folder that keeps the result of each file: an interrupted run goes on where it
+            stopped.
+        processes: Number of processes; by default the number of processors.
 
-    Errors
-    ------
-    InputError
-        No such folder, no trial file in it, a wrong profile, ramp or table of conditions.
-    EditError
-        An edit by hand that names no step, changes nothing or contradicts another.
+    Errors:
+        InputError: No such folder, no trial file in it, a wrong profile, ramp or table of
+            conditions.
+        EditError: An edit by hand that names no step, changes nothing or contradicts another.
     """
     folder = Path(folder)
     check_ramp(protocol)

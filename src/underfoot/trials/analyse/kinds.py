@@ -1,7 +1,5 @@
 """Analysis of one file by the kind of its protocol."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import fields
 

@@ -1,7 +1,5 @@
 """Tidy tables for other software: one row a step, one row a number, mean curves over stance."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np

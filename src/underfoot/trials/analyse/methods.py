@@ -1,7 +1,5 @@
 """The methods paragraphs, written from what was done to each file and plate."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence

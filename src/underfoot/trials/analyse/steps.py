@@ -1,7 +1,5 @@
 """Analysis of recordings with steps: walking, and human slips."""
 
-from __future__ import annotations
-
 from dataclasses import asdict, replace
 from typing import Any
 

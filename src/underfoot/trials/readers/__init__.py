@@ -1,7 +1,5 @@
 """Readers of measurement files: the format is found, the answer is a Trial or a DataError."""
 
-from __future__ import annotations
-
 import hashlib
 from dataclasses import replace
 from importlib import import_module

@@ -1,7 +1,5 @@
 """BioWare text exports (Kistler): force plates as text, force on the plate in plate axes."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..trial import Trial

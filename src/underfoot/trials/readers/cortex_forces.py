@@ -1,7 +1,5 @@
 """Cortex .forces files: force and centre of pressure of several plates as text."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,7 +1,5 @@
 """OpenSim motion and storage files (.mot, .sto): tables with a header; ground reactions in them."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

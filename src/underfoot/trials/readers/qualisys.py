@@ -1,7 +1,5 @@
 """Qualisys TSV exports: marker paths, and one force plate a file."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..trial import Trial

@@ -1,7 +1,5 @@
 """TRC files: marker paths as text (Cortex, OpenSim)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from underfoot.core import DataError

@@ -1,7 +1,5 @@
 """Vicon Nexus CSV exports: a block of devices and a block of trajectories in one file."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np
