@@ -19,7 +19,7 @@ SMALL = 5.0
 def main(quick: bool = False) -> None:
     """Print one line for each condition."""
     entry = Catalogue.load().entry("published", "slip_tester_g4")
-    print("| shoe | fluid | report N | sensor N | under the sole N | peak by sensor kPa | COF |")
+    print("| shoe | fluid | report N | sensor N | under the sole N | peak by sensor kPa | COF, 95 % |")
     print("|---|---|---|---|---|---|---|")
     for shoe in SHOES:
         for fluid in ("glycerol", "detergent"):
@@ -30,10 +30,11 @@ def main(quick: bool = False) -> None:
             sensor, load = result.value("fluid_load_sensor"), result.value("fluid_load")
             peak = result.value("peak_fluid_pressure_sensor") / 1e3
             cof = result.scalars["cof"]
+            low, high = cof.interval
             print(
                 f"| {shoe.replace('_', ' ')} | {fluid} "
                 f"| {'< 5' if printed is None else f'{printed:.0f}'} | {sensor:.1f} | {load:.0f} "
-                f"| {peak:.0f} | {cof.value:.3f} ± {cof.uncertainty:.3f} |",
+                f"| {peak:.0f} | {cof.value:.2f} ({low:.2f} to {high:.2f}) |",
                 flush=True,
             )
             if printed is None:
