@@ -42,17 +42,7 @@ from .readers import (
 from .slip_course import SlipCourse, slip_course
 from .slips import Slip, slip, slip_of
 from .stance import Stance, contacts
-from .trial import (
-    Channel,
-    Edit,
-    Event,
-    Marker,
-    Plate,
-    PlateAccuracy,
-    Trial,
-    file_checksum,
-    joined,
-)
+from .trial import Channel, Edit, Event, Marker, Plate, PlateAccuracy, Trial, file_checksum, joined
 
 __all__ = [
     "ACOF_WINDOWS", "DEFINITIONS", "FILTERS", "FORCE_FILTER", "MARKER_FILTER", "Axes", "Channel",
