@@ -1,7 +1,5 @@
 """A simulated slip seen as a recording: heel marker and pressure channels, judged by ``trials``."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
