@@ -1,56 +1,32 @@
 """Closures fitted to measurements, with intervals; where theory and measurement meet."""
 
-from .law_file import LawTable, TrialReadings, law_file_text, law_table, trial_readings
-from .least_squares import Calibration, Parameter, calibrated
-from .mechanisms import (
-    CALIBRATION_FLUID,
-    BlindTest,
-    Mechanism,
-    MechanismComparison,
-    MechanismTests,
-    Prediction,
-    blind_test,
-    calibrated_mechanism,
-    compare_mechanisms,
-    leave_one_out,
-    mechanism,
-    mechanisms,
-    predicted,
-    stribeck_left_out,
-)
-from .stribeck_curve import StribeckCurve, stribeck_curve
-from .stribeck_points import CofPoints, Pin, fluid_points, pin_on_disk, roughness_series
-from .trial_laws import stribeck_law_from_fit
-
-__all__ = [
-    "CALIBRATION_FLUID",
-    "BlindTest",
-    "Calibration",
-    "CofPoints",
-    "LawTable",
-    "Mechanism",
-    "MechanismComparison",
-    "MechanismTests",
-    "Parameter",
-    "Pin",
-    "Prediction",
-    "StribeckCurve",
-    "TrialReadings",
-    "blind_test",
-    "calibrated",
-    "calibrated_mechanism",
-    "compare_mechanisms",
-    "fluid_points",
-    "law_file_text",
-    "law_table",
-    "leave_one_out",
-    "mechanism",
-    "mechanisms",
-    "pin_on_disk",
-    "predicted",
-    "roughness_series",
-    "stribeck_curve",
-    "stribeck_law_from_fit",
-    "stribeck_left_out",
-    "trial_readings",
-]
+from .law_file import LawTable as LawTable
+from .law_file import TrialReadings as TrialReadings
+from .law_file import law_file_text as law_file_text
+from .law_file import law_table as law_table
+from .law_file import trial_readings as trial_readings
+from .least_squares import Calibration as Calibration
+from .least_squares import Parameter as Parameter
+from .least_squares import calibrated as calibrated
+from .mechanisms import CALIBRATION_FLUID as CALIBRATION_FLUID
+from .mechanisms import BlindTest as BlindTest
+from .mechanisms import Mechanism as Mechanism
+from .mechanisms import MechanismComparison as MechanismComparison
+from .mechanisms import MechanismTests as MechanismTests
+from .mechanisms import Prediction as Prediction
+from .mechanisms import blind_test as blind_test
+from .mechanisms import calibrated_mechanism as calibrated_mechanism
+from .mechanisms import compare_mechanisms as compare_mechanisms
+from .mechanisms import leave_one_out as leave_one_out
+from .mechanisms import mechanism as mechanism
+from .mechanisms import mechanisms as mechanisms
+from .mechanisms import predicted as predicted
+from .mechanisms import stribeck_left_out as stribeck_left_out
+from .stribeck_curve import StribeckCurve as StribeckCurve
+from .stribeck_curve import stribeck_curve as stribeck_curve
+from .stribeck_points import CofPoints as CofPoints
+from .stribeck_points import Pin as Pin
+from .stribeck_points import fluid_points as fluid_points
+from .stribeck_points import pin_on_disk as pin_on_disk
+from .stribeck_points import roughness_series as roughness_series
+from .trial_laws import stribeck_law_from_fit as stribeck_law_from_fit

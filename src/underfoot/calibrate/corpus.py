@@ -154,11 +154,9 @@ def corpus() -> tuple[Source, ...]:
 def read_corpus(folder: Path) -> tuple[Source, ...]:
     """Return the sources in a folder of TOML files.
 
-    Raises
-    ------
-    DataError
-        A file that cannot be read, a missing unit, a value without a source, an unknown key, or a
-        condition that cannot be computed: file and place are named.
+    Raises:
+        DataError: A file that cannot be read, a missing unit, a value without a source, an unknown
+            key, or a condition that cannot be computed: file and place are named.
     """
     return tuple(read_source(path) for path in sorted(folder.glob("*.toml")))
 

@@ -1,7 +1,5 @@
 """Which parameters data can fix: profiles of the misfit, intervals, and what stays open."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from enum import StrEnum
@@ -96,25 +94,17 @@ def chi_square(model: ArrayLike, data: ArrayLike, deviation: ArrayLike) -> Array
 def profile(name: str, unit: str, grid: ArrayLike, misfit: ArrayLike, *, data: int) -> Profile:
     """Return a parameter's interval from chi-square on a grid.
 
-    Parameters
-    ----------
-    grid
-        (n,) values, rising, three or more.
-    misfit
-        (n, ...) chi-square; the least over all further axes (other parameters) is taken.
-    data
-        How many values stand behind the chi-square.
+    Parameters:
+        grid: (n,) values, rising, three or more.
+        misfit: (n, ...) chi-square; the least over all further axes (other parameters) is taken.
+        data: How many values stand behind the chi-square.
 
-    Notes
-    -----
     The bounds lie where the profile has risen by 3.84 over its least (linear in between); a side
     where it does not rise so far within the grid is open. Where even the least is above the 95 %
     point of chi-square, no value is given: the model is wrong there, not the parameter.
 
-    Errors
-    ------
-    InputError
-        A grid that does not rise or does not match.
+    Errors:
+        InputError: A grid that does not rise or does not match.
     """
     places = np.asarray(grid, dtype=float)
     values = np.asarray(misfit, dtype=float)
@@ -150,10 +140,8 @@ def model_error(predicted: ArrayLike, observed: ArrayLike) -> tuple[float, float
 
     The second is what a prediction of the same kind carries as its relative standard deviation.
 
-    Errors
-    ------
-    InputError
-        Values that are not positive.
+    Errors:
+        InputError: Values that are not positive.
     """
     ours, theirs = np.asarray(predicted, float), np.asarray(observed, float)
     if not ((ours > 0).all() and (theirs > 0).all()):

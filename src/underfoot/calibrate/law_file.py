@@ -1,7 +1,5 @@
 """From analysed trials to a friction table that a case refers to: where evidence becomes a law."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -50,19 +48,13 @@ class LawTable:
 def trial_readings(folder: Path, chosen: Mapping[str, str] | None = None) -> TrialReadings:
     """Return the readings in a folder that ``underfoot trials analyse`` wrote.
 
-    Parameters
-    ----------
-    folder
-        With ``tables/files.csv``: COF and speed of each file and its conditions.
-    chosen
-        Conditions and the value that counts, as {"fluid": "water"}.
+    Parameters:
+        folder: With ``tables/files.csv``: COF and speed of each file and its conditions.
+        chosen: Conditions and the value that counts, as {"fluid": "water"}.
 
-    Errors
-    ------
-    InputError
-        No such folder, an unknown condition or value, several fluids or soles left.
-    DataError
-        No COF or speed, fewer than two speeds.
+    Errors:
+        InputError: No such folder, an unknown condition or value, several fluids or soles left.
+        DataError: No COF or speed, fewer than two speeds.
     """
     from underfoot.trials.readers.sheet import read_sheet
 
@@ -145,11 +137,9 @@ def law_table(readings: TrialReadings, *, form: str = "fit") -> LawTable:
     reading falls within. "readings": means at each speed read, with the scatter of its repeats
     (below ``ENOUGH`` of them, that of all speeds pooled).
 
-    Errors
-    ------
-    DataError
-        "fit" where COF does not fall with speed by the report's rule (R^2 below 0.5) or there are
-        too few speeds; "readings" without any repeat.
+    Errors:
+        DataError: "fit" where COF does not fall with speed by the report's rule (R^2 below 0.5) or
+            there are too few speeds; "readings" without any repeat.
     """
     from underfoot.core import unknown_name
     from underfoot.trials.stribeck_fit import stribeck_fit

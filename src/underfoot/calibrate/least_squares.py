@@ -1,7 +1,5 @@
 """Parameters of a model from data by least squares, with intervals and what is not identified."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -76,23 +74,15 @@ def calibrated(
     standard deviations) from it, else from the residuals. A parameter at its limit has none. A
     parameter that the data do not determine is "not estimated", never a number alone.
 
-    Parameters
-    ----------
-    model
-        Of a mapping name -> number; returns an array of the shape of ``data``.
-    data
-        Any shape, finite, at least as many as parameters.
-    deviation
-        Standard deviations of the data, > 0, broadcast; they weight the residuals.
-    source
-        For the values that come out.
+    Parameters:
+        model: Of a mapping name -> number; returns an array of the shape of ``data``.
+        data: Any shape, finite, at least as many as parameters.
+        deviation: Standard deviations of the data, > 0, broadcast; they weight the residuals.
+        source: For the values that come out.
 
-    Errors
-    ------
-    DataError
-        Too few data or data that are not finite.
-    ConvergenceError
-        The search did not end.
+    Errors:
+        DataError: Too few data or data that are not finite.
+        ConvergenceError: The search did not end.
     """
     from scipy.optimize import least_squares
 

@@ -7,8 +7,6 @@ of the friction), v the pair's, e that of the reading and of what the source lea
 ranges enter as latent values. Sampling by emcee (Foreman-Mackey et al. 2013).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -241,16 +239,11 @@ def fitted(
 ) -> PairPosterior:
     """Return the posterior of a law over conditions.
 
-    Parameters
-    ----------
-    law
-        One of ``LAWS`` or of your own.
-    conditions
-        With readings; those of one source share its errors.
-    steps
-        Of each of the walkers; the first third is dropped.
-    seed
-        Of the sampler.
+    Parameters:
+        law: One of ``LAWS`` or of your own.
+        conditions: With readings; those of one source share its errors.
+        steps: Of each of the walkers; the first third is dropped.
+        seed: Of the sampler.
     """
     rows = Rows(conditions)
     prior = np.array(law.prior)

@@ -6,8 +6,6 @@ error of the laboratory and that of each pair become known as far as the reading
 of the same laboratory profit too.
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -115,10 +113,8 @@ def read_pair_readings(path: Path) -> tuple[PairReading, ...]:
     Each has ``case`` (file, from the folder of this one) and ``cof``; ``sd`` and ``kind``
     ("value", "lower", "upper") where known.
 
-    Raises
-    ------
-    InputError
-        No such file, no reading, an unknown key, a value that is missing or no COF.
+    Raises:
+        InputError: No such file, no reading, an unknown key, a value that is missing or no COF.
     """
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8-sig"))
@@ -173,22 +169,16 @@ def calibrated_pair(
 ) -> PairCalibration:
     """Return the law of the pair calibrated to readings of one laboratory.
 
-    Parameters
-    ----------
-    readings
-        Each with the case that describes it; cases of one sole, floor and fluid share its error.
-    draws
-        Those to begin with; the packaged ones by default.
-    quick
-        Solve the cases on the coarse grid.
-    seed
-        Of the draws.
+    Parameters:
+        readings: Each with the case that describes it; cases of one sole, floor and fluid share its
+            error.
+        draws: Those to begin with; the packaged ones by default.
+        quick: Solve the cases on the coarse grid.
+        seed: Of the draws.
 
-    Raises
-    ------
-    InputError
-        A case that is dry or has another law of friction; readings so far from the law that fewer
-        than 50 effective draws are left.
+    Raises:
+        InputError: A case that is dry or has another law of friction; readings so far from the law
+            that fewer than 50 effective draws are left.
     """
     start = packaged_pair_draws() if draws is None else draws
     wide = start.rows(np.tile(np.arange(start.count), REPEATS))

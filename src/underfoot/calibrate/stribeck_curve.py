@@ -100,10 +100,8 @@ def stribeck_curve(
     The viscous part takes the mean gap that the case's rough interface has at that pressure. The
     published speeds (0.05 to 1 m/s) within the range are among those computed.
 
-    Errors
-    ------
-    InputError
-        A dry case, a pressure that is not positive, or what the law itself misses.
+    Errors:
+        InputError: A dry case, a pressure that is not positive, or what the law itself misses.
     """
     from underfoot.case.friction import measured_fluids
     from underfoot.compute.resolve import resolved

@@ -20,19 +20,14 @@ def stribeck_law_from_fit(
     Standard errors become the law's uncertainties, the residuals of the fit its own error; what the
     fit did not identify in its range of speeds is kept with a note.
 
-    Parameters
-    ----------
-    fit
-        Of COF against speed.
-    source
-        Who measured it, and on what pair.
-    viscosity
-        Pa s; None leaves out the viscous part.
+    Parameters:
+        fit: Of COF against speed.
+        source: Who measured it, and on what pair.
+        viscosity: Pa s; None leaves out the viscous part.
 
-    Errors
-    ------
-    InputError
-        A fit that the report's rule dropped (R^2 below 0.5): friction did not fall with speed.
+    Errors:
+        InputError: A fit that the report's rule dropped (R^2 below 0.5): friction did not fall with
+            speed.
     """
     from underfoot.friction import StribeckLaw
 

@@ -1,64 +1,45 @@
 """Friction of sole, floor and fluid together: local laws and Eq. (1) over the whole sole."""
 
-from .adhesion_blocking import AdhesionBlockingLaw
-from .asperity_ehl import ONE_CURVE, OWN_BOUNDARY, AsperityEHL, CalibratedLevels, asperity_ehl_law
-from .asperity_scale import AsperityScale, self_affine_scale, spectrum_scale
-from .boundary import BoundaryLaw
-from .bowden_tabor import BowdenTaborLaw, ShearStrength, shear_strength_from_cof
-from .coefficient import FrictionCoefficients, cof
-from .constant import ConstantLaw
-from .law import FrictionLaw, FrictionParts, UncertainInputs
-from .measured import BoundaryFriction, boundary_friction_at, friction_left, viscous_decay
-from .moore_2012 import StribeckLaw, stribeck_cof, stribeck_law_at
-from .pair_contact import Pair, PairContactLaw, PairDraws, packaged_pair_draws, read_pair_draws
-from .propagation import Propagated, propagated
-from .rival_speed_effects import MeanFilmSharing, ViscoelasticArea, modulus_exponent
-from .sampled_cof import SampledCof, sampled_cof, sampled_points
-from .speed_effect import SpeedEffect, SpeedEffectLaw, cof_with_speed
-from .speed_table import SpeedTableLaw
-
-__all__ = [
-    "ONE_CURVE",
-    "OWN_BOUNDARY",
-    "AdhesionBlockingLaw",
-    "AsperityEHL",
-    "AsperityScale",
-    "BoundaryFriction",
-    "BoundaryLaw",
-    "BowdenTaborLaw",
-    "CalibratedLevels",
-    "ConstantLaw",
-    "FrictionCoefficients",
-    "FrictionLaw",
-    "FrictionParts",
-    "MeanFilmSharing",
-    "Pair",
-    "PairContactLaw",
-    "PairDraws",
-    "Propagated",
-    "SampledCof",
-    "ShearStrength",
-    "SpeedEffect",
-    "SpeedEffectLaw",
-    "SpeedTableLaw",
-    "StribeckLaw",
-    "UncertainInputs",
-    "ViscoelasticArea",
-    "asperity_ehl_law",
-    "boundary_friction_at",
-    "cof",
-    "cof_with_speed",
-    "friction_left",
-    "modulus_exponent",
-    "packaged_pair_draws",
-    "propagated",
-    "read_pair_draws",
-    "sampled_cof",
-    "sampled_points",
-    "self_affine_scale",
-    "shear_strength_from_cof",
-    "spectrum_scale",
-    "stribeck_cof",
-    "stribeck_law_at",
-    "viscous_decay",
-]
+from .adhesion_blocking import AdhesionBlockingLaw as AdhesionBlockingLaw
+from .asperity_ehl import ONE_CURVE as ONE_CURVE
+from .asperity_ehl import OWN_BOUNDARY as OWN_BOUNDARY
+from .asperity_ehl import AsperityEHL as AsperityEHL
+from .asperity_ehl import CalibratedLevels as CalibratedLevels
+from .asperity_ehl import asperity_ehl_law as asperity_ehl_law
+from .asperity_scale import AsperityScale as AsperityScale
+from .asperity_scale import self_affine_scale as self_affine_scale
+from .asperity_scale import spectrum_scale as spectrum_scale
+from .boundary import BoundaryLaw as BoundaryLaw
+from .bowden_tabor import BowdenTaborLaw as BowdenTaborLaw
+from .bowden_tabor import ShearStrength as ShearStrength
+from .bowden_tabor import shear_strength_from_cof as shear_strength_from_cof
+from .coefficient import FrictionCoefficients as FrictionCoefficients
+from .coefficient import cof as cof
+from .constant import ConstantLaw as ConstantLaw
+from .law import FrictionLaw as FrictionLaw
+from .law import FrictionParts as FrictionParts
+from .law import UncertainInputs as UncertainInputs
+from .measured import BoundaryFriction as BoundaryFriction
+from .measured import boundary_friction_at as boundary_friction_at
+from .measured import friction_left as friction_left
+from .measured import viscous_decay as viscous_decay
+from .moore_2012 import StribeckLaw as StribeckLaw
+from .moore_2012 import stribeck_cof as stribeck_cof
+from .moore_2012 import stribeck_law_at as stribeck_law_at
+from .pair_contact import Pair as Pair
+from .pair_contact import PairContactLaw as PairContactLaw
+from .pair_contact import PairDraws as PairDraws
+from .pair_contact import packaged_pair_draws as packaged_pair_draws
+from .pair_contact import read_pair_draws as read_pair_draws
+from .propagation import Propagated as Propagated
+from .propagation import propagated as propagated
+from .rival_speed_effects import MeanFilmSharing as MeanFilmSharing
+from .rival_speed_effects import ViscoelasticArea as ViscoelasticArea
+from .rival_speed_effects import modulus_exponent as modulus_exponent
+from .sampled_cof import SampledCof as SampledCof
+from .sampled_cof import sampled_cof as sampled_cof
+from .sampled_cof import sampled_points as sampled_points
+from .speed_effect import SpeedEffect as SpeedEffect
+from .speed_effect import SpeedEffectLaw as SpeedEffectLaw
+from .speed_effect import cof_with_speed as cof_with_speed
+from .speed_table import SpeedTableLaw as SpeedTableLaw

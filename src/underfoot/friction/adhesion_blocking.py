@@ -1,7 +1,5 @@
 """Friction from the dry adhesion of the pair and the share that a fluid leaves (Eq. 26)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from numpy.typing import ArrayLike
@@ -35,15 +33,11 @@ class AdhesionBlockingLaw(UncertainInputs):
     mu_adhesion = alpha / 20.9 N + beta mu_dry, at most mu_dry: a fluid adds no adhesion. The
     report shows dry adhesion and hysteresis of its pairs only in figures: both must be given.
 
-    Parameters
-    ----------
-    blocking
-        alpha and beta of the fluid.
-    dry_adhesion, cof_hysteresis
-        Coefficients of the pair: dry adhesion = dry minus oiled friction (Eq. 24), hysteresis =
-        oiled friction (Eq. 23), 1.
-    viscosity
-        Pa s; None leaves out the viscous part.
+    Parameters:
+        blocking: alpha and beta of the fluid.
+        dry_adhesion, cof_hysteresis: Coefficients of the pair: dry adhesion = dry minus oiled
+            friction (Eq. 24), hysteresis = oiled friction (Eq. 23), 1.
+        viscosity: Pa s; None leaves out the viscous part.
     """
 
     blocking: AdhesionBlocking

@@ -46,19 +46,12 @@ class AsperityEHL:
     - "sharing": the fine roughness carries the share exp(-(h - h_dry) / (s/2)) of the spot's load
       (Persson 2007), the fluid the rest, with the film of Johnson, Greenwood and Poon (1972).
 
-    Parameters
-    ----------
-    scale
-        Radius and slope of the asperities.
-    modulus, poisson_ratio
-        Of the sole, Pa and 1.
-    fine_roughness
-        s, root mean square, m; None takes that of ``scale``.
-    blocking
-        "bearing" or "sharing".
+    Parameters:
+        scale: Radius and slope of the asperities.
+        modulus, poisson_ratio: Of the sole, Pa and 1.
+        fine_roughness: s, root mean square, m; None takes that of ``scale``.
+        blocking: "bearing" or "sharing".
 
-    Notes
-    -----
     Tested against 6 fluids at one load and one pair (docs/physics/friction_law.md). Eq. 18 was
     fitted at U near 1e-8 and W near 1e-3; asperities have U near 1e-5 and W near 0.1.
     """
@@ -203,21 +196,16 @@ def asperity_ehl_law(
     (``OWN_BOUNDARY``); otherwise the viscosity alone decides (``ONE_CURVE``). A COF_BL that is a
     mean over speeds counts as none: it is no limit at low speed.
 
-    Parameters
-    ----------
-    scale
-        Asperities of sole and floor together.
-    modulus, poisson_ratio, viscosity
-        Of the sole, Pa and 1; of the fluid, Pa s, None for a dry floor.
-    friction
-        What was measured with this fluid.
-    cof_hysteresis
-        Measured hysteresis of the pair, in place of the calibrated one.
-    fine_roughness
-        m, in place of the calibrated one.
-    modulus_deviation, roughness_deviation
-        Standard deviations of the modulus (Pa) and of the roughness behind ``scale`` relative to
-        itself (1); None when not known: then they count as exact.
+    Parameters:
+        scale: Asperities of sole and floor together.
+        modulus, poisson_ratio, viscosity: Of the sole, Pa and 1; of the fluid, Pa s, None for a dry
+            floor.
+        friction: What was measured with this fluid.
+        cof_hysteresis: Measured hysteresis of the pair, in place of the calibrated one.
+        fine_roughness: m, in place of the calibrated one.
+        modulus_deviation, roughness_deviation: Standard deviations of the modulus (Pa) and of the
+            roughness behind ``scale`` relative to itself (1); None when not known: then they count
+            as exact.
     """
     limit = friction is not None and friction.tau_hydro is not None
     levels = OWN_BOUNDARY if limit else ONE_CURVE

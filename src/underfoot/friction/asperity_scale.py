@@ -19,16 +19,12 @@ from underfoot.surface import IsotropicSpectrum
 class AsperityScale:
     """What a spectrum gives when waves longer than ``wavelength`` count as asperities.
 
-    Parameters
-    ----------
-    wavelength
-        Dividing wavelength, m.
-    radius
-        Of the asperities, m: R = 3 sqrt(pi) / (8 sqrt(m4)) (McCool 1987), m4 of the longer waves.
-    slope
-        Root-mean-square slope of the longer waves (of the surface, not of a profile), 1.
-    fine_roughness
-        Root-mean-square height of the shorter waves, m.
+    Parameters:
+        wavelength: Dividing wavelength, m.
+        radius: Of the asperities, m: R = 3 sqrt(pi) / (8 sqrt(m4)) (McCool 1987), m4 of the longer
+            waves.
+        slope: Root-mean-square slope of the longer waves (of the surface, not of a profile), 1.
+        fine_roughness: Root-mean-square height of the shorter waves, m.
     """
 
     wavelength: float
@@ -75,21 +71,15 @@ def self_affine_scale(
     Mean square height of the waves beyond q is Rq^2 (q / q0)^(-2H), q0 = 2 pi / longest_wave: the
     spectrum goes on below the resolution of the stylus with the same Hurst exponent (assumed).
 
-    Parameters
-    ----------
-    wavelength
-        m, below ``longest_wave``.
-    rq
-        Root-mean-square height of all waves up to ``longest_wave``, m.
-    longest_wave
-        m: the cut-off of the profile that ``rq`` was measured with.
-    hurst
-        0 to 1, below 1.
+    Parameters:
+        wavelength: m, below ``longest_wave``.
+        rq: Root-mean-square height of all waves up to ``longest_wave``, m.
+        longest_wave: m: the cut-off of the profile that ``rq`` was measured with.
+        hurst: 0 to 1, below 1.
 
-    Raises
-    ------
-    RangeError
-        A dividing wavelength that is not below the longest wave, a Hurst exponent outside 0 to 1.
+    Raises:
+        RangeError: A dividing wavelength that is not below the longest wave, a Hurst exponent
+            outside 0 to 1.
     """
     if not 0 < hurst < 1:
         raise RangeError(f"{hurst:g}", where="hurst", allowed="above 0, below 1")
@@ -116,10 +106,8 @@ def spectrum_scale(wavelength: float, spectrum: IsotropicSpectrum) -> AsperitySc
 
     Waves beyond the reliable band count as no roughness: divide well within it.
 
-    Raises
-    ------
-    RangeError
-        Fewer than two wave numbers of the reliable band on one side.
+    Raises:
+        RangeError: Fewer than two wave numbers of the reliable band on one side.
     """
     low, high = spectrum.reliable
     q = spectrum.wavenumber

@@ -32,16 +32,11 @@ class BoundaryLaw(UncertainInputs):
     Hysteresis is the friction that is left when adhesion is blocked, at most COF_BL; adhesion is
     the rest. Only their sum was measured with the fluid itself.
 
-    Parameters
-    ----------
-    cof_boundary
-        COF_BL of the pair and fluid.
-    cof_hysteresis
-        Friction left when adhesion is blocked, see ``friction_left``.
-    viscosity
-        Pa s; None leaves out the viscous part.
-    assumed
-        Further assumptions behind the numbers, in words.
+    Parameters:
+        cof_boundary: COF_BL of the pair and fluid.
+        cof_hysteresis: Friction left when adhesion is blocked, see ``friction_left``.
+        viscosity: Pa s; None leaves out the viscous part.
+        assumed: Further assumptions behind the numbers, in words.
     """
 
     cof_boundary: SourcedValue
@@ -65,19 +60,15 @@ class BoundaryLaw(UncertainInputs):
     ) -> BoundaryLaw:
         """Return the law of a measured fluid.
 
-        Parameters
-        ----------
-        friction
-            Of the pair and fluid; None when nothing was measured.
-        cof_hysteresis
-            Measured hysteresis of the pair; None takes ``friction_left`` of ``others``.
-        others
-            Fluids measured on the same pair.
+        Parameters:
+            friction: Of the pair and fluid; None when nothing was measured.
+            cof_hysteresis: Measured hysteresis of the pair; None takes ``friction_left`` of
+                ``others``.
+            others: Fluids measured on the same pair.
 
-        Raises
-        ------
-        InputError
-            No boundary friction (as for a dry floor: the report prints none) or no hysteresis.
+        Raises:
+            InputError: No boundary friction (as for a dry floor: the report prints none) or no
+                hysteresis.
         """
         if friction is None or friction.cof_boundary.value is None:
             fluid = "a dry floor" if friction is None else friction.fluid

@@ -32,20 +32,15 @@ ContactFraction = Callable[[Array, Array], ArrayLike]
 class ShearStrength:
     """Shear strength of the real contact, s(V) = s0 exp(-c log10(V / V0)^2), Pa.
 
-    Parameters
-    ----------
-    strength
-        s0, Pa: the largest.
-    source
-        Where it comes from.
-    width
-        c, 1; 0 (default) is one strength at every speed. For tread rubber on dry roads Persson
-        and co-workers find a bell of the logarithm of the speed, many decades wide (Lorenz et al.,
-        J. Chem. Phys. 142 (2015) 194701); no value for shoe compounds under a fluid is known.
-    peak_speed
-        V0, m/s.
-    deviation
-        Standard deviation of s0, Pa; None when not known.
+    Parameters:
+        strength: s0, Pa: the largest.
+        source: Where it comes from.
+        width: c, 1; 0 (default) is one strength at every speed. For tread rubber on dry roads
+            Persson and co-workers find a bell of the logarithm of the speed, many decades wide
+            (Lorenz et al., J. Chem. Phys. 142 (2015) 194701); no value for shoe compounds under a
+            fluid is known.
+        peak_speed: V0, m/s.
+        deviation: Standard deviation of s0, Pa; None when not known.
     """
 
     strength: float
@@ -92,19 +87,15 @@ def shear_strength_from_cof(
 class BowdenTaborLaw(UncertainInputs):
     """tau = s(V) A_real/A(p, V) + mu_hysteresis(p, V) p + eta V / h.
 
-    Parameters
-    ----------
-    shear_strength
-        Of the real contact with whatever film lies in it.
-    real_contact_fraction
-        Callable of (pressure Pa, speed m/s): ``ContactTable.real_contact_fraction`` with
-        ``outside="extend"``, or ``AsperityScale.contact_fraction`` of p / E*.
-    cof_hysteresis
-        Callable of the same arguments (``ContactTable.cof_hysteresis``), or a number.
-    viscosity
-        Pa s; None for a dry floor.
-    contact_source
-        Where area and hysteresis come from, for reports.
+    Parameters:
+        shear_strength: Of the real contact with whatever film lies in it.
+        real_contact_fraction: Callable of (pressure Pa, speed m/s):
+            ``ContactTable.real_contact_fraction`` with ``outside="extend"``, or
+            ``AsperityScale.contact_fraction`` of p / E*.
+        cof_hysteresis: Callable of the same arguments (``ContactTable.cof_hysteresis``), or a
+            number.
+        viscosity: Pa s; None for a dry floor.
+        contact_source: Where area and hysteresis come from, for reports.
     """
 
     shear_strength: ShearStrength

@@ -1,7 +1,5 @@
 """Eq. (1): from shear stresses under the sole to the coefficient of friction and its parts."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -48,32 +46,21 @@ def cof(
     writes Eq. (1) as (COF_asp F_asp + F_fluid) / F_tot; here COF_asp may differ from place to
     place.
 
-    Parameters
-    ----------
-    parts
-        Shear stresses from a law, Pa.
-    contact_pressure, fluid_pressure
-        Pa, of the same shape; 0 outside contact and film.
-    spacing
-        Side of a cell, m.
-    wet
-        Where a film is: the viscous part counts only there. None counts it everywhere.
-    sampled
-        Draws of the same law (``sampled_cof``): they give standard deviations and intervals; None
-        leaves these out, with the reason.
-    source
-        Name and origin of the law, for the result.
+    Parameters:
+        parts: Shear stresses from a law, Pa.
+        contact_pressure, fluid_pressure: Pa, of the same shape; 0 outside contact and film.
+        spacing: Side of a cell, m.
+        wet: Where a film is: the viscous part counts only there. None counts it everywhere.
+        sampled: Draws of the same law (``sampled_cof``): they give standard deviations and
+            intervals; None leaves these out, with the reason.
+        source: Name and origin of the law, for the result.
 
-    Notes
-    -----
     The part of the floor's shear that comes from the pressure gradient, (h/2) dp/dx, is left out;
     by partial integration it is sum(p_f dh/dx / 2) dA, the fluid load times half the slope of the
     film under it.
 
-    Raises
-    ------
-    InputError
-        Shapes that differ, values that are not finite, no normal force.
+    Raises:
+        InputError: Shapes that differ, values that are not finite, no normal force.
     """
     if not spacing > 0:
         raise InputError(f"{spacing:g} m is not positive", where="spacing", allowed="above 0")

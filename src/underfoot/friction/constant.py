@@ -1,7 +1,5 @@
 """Friction given by the user as two constant coefficients."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from numpy.typing import ArrayLike
@@ -16,16 +14,12 @@ from .law import FrictionParts, UncertainInputs, checked_viscosity, law_breaches
 class ConstantLaw(UncertainInputs):
     """Adhesion and hysteresis in proportion to the contact pressure: tau = mu p_c; plus eta V / h.
 
-    Parameters
-    ----------
-    cof_adhesion, cof_hysteresis
-        Coefficients of the contact, 1.
-    source
-        Where they come from.
-    viscosity
-        Pa s; None for a dry floor.
-    adhesion_deviation, hysteresis_deviation
-        Standard deviations, 1, taken as independent; None when not known.
+    Parameters:
+        cof_adhesion, cof_hysteresis: Coefficients of the contact, 1.
+        source: Where they come from.
+        viscosity: Pa s; None for a dry floor.
+        adhesion_deviation, hysteresis_deviation: Standard deviations, 1, taken as independent; None
+            when not known.
     """
 
     cof_adhesion: float

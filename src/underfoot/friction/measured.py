@@ -1,7 +1,5 @@
 """Measured boundary friction of fluids on one pair, and what can be told of fluids between them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,20 +18,13 @@ detergent, "not as reliable": G.2.2) and says nothing about the friction that is
 class BoundaryFriction:
     """Friction of one fluid on one pair of sole and floor, as measured on a pin.
 
-    Parameters
-    ----------
-    fluid, pair
-        Names.
-    viscosity
-        Pa s.
-    cof_boundary
-        COF_BL of Eq. 17, 1.
-    tau_hydro, cof_asymptote
-        Of Eq. 17, m/s and 1; None without a fit.
-    alpha, beta
-        Of Eq. 26, N and 1; None when not known.
-    load
-        At which alpha was measured, N.
+    Parameters:
+        fluid, pair: Names.
+        viscosity: Pa s.
+        cof_boundary: COF_BL of Eq. 17, 1.
+        tau_hydro, cof_asymptote: Of Eq. 17, m/s and 1; None without a fit.
+        alpha, beta: Of Eq. 26, N and 1; None when not known.
+        load: At which alpha was measured, N.
     """
 
     fluid: str
@@ -56,10 +47,8 @@ def friction_left(measured: Sequence[BoundaryFriction]) -> SourcedValue:
     Only fluids whose asymptote was reached count (see ``AT_BOUND``). The uncertainty is the
     largest of theirs, not reduced by averaging: they share sole, floor and device.
 
-    Raises
-    ------
-    InputError
-        No fluid with a fitted asymptote.
+    Raises:
+        InputError: No fluid with a fitted asymptote.
     """
     asymptotes = [
         m.cof_asymptote
@@ -91,10 +80,8 @@ def viscous_decay(measured: Sequence[BoundaryFriction]) -> SourcedValue:
     One constant makes COF a function of viscosity times speed (Fig. 16 of the report). The
     uncertainty is the scatter between the fluids.
 
-    Raises
-    ------
-    InputError
-        Fewer than two fluids with a fit.
+    Raises:
+        InputError: Fewer than two fluids with a fit.
     """
     products = [
         m.viscosity * m.tau_hydro.value
@@ -127,19 +114,14 @@ def boundary_friction_at(
     fluids used and half of the step between the two nearest fluids, since viscosity is not what
     makes a boundary lubricant: fluids of equal viscosity differ by such steps.
 
-    Parameters
-    ----------
-    viscosity
-        Pa s.
-    measured
-        At least two fluids on the same pair.
-    fluid
-        Name of the fluid, for reports.
+    Parameters:
+        viscosity: Pa s.
+        measured: At least two fluids on the same pair.
+        fluid: Name of the fluid, for reports.
 
-    Raises
-    ------
-    InputError
-        Fewer than two fluids, different pairs, a fluid without COF_BL, viscosity not positive.
+    Raises:
+        InputError: Fewer than two fluids, different pairs, a fluid without COF_BL, viscosity not
+            positive.
     """
     positive(viscosity, "viscosity", "Pa s")
     if len(measured) < 2 or len({m.pair for m in measured}) != 1:

@@ -58,20 +58,14 @@ class StribeckLaw(UncertainInputs):
     twice. The report leaves the question open. For 50 % glycerol at 0.3 m/s the law gives 0.19;
     treaded boots without fluid pressure had 0.159 to 0.182 (G.6.2), where COF_BL alone is 0.47.
 
-    Parameters
-    ----------
-    cof_boundary, tau_hydro, cof_asymptote
-        Of Eq. 17: 1, m/s, 1.
-    viscosity
-        Pa s; None leaves out the viscous part.
-    cof_hysteresis
-        Friction left when adhesion is blocked; None takes cof_asymptote. Needed for fluids whose
-        asymptote lies at the bound of the fit (0.001 for water and detergent).
-    assumed
-        Further assumptions behind the numbers, in words.
-    model_deviation
-        Standard deviation of COF beyond that of the fitted numbers, 1; None when not known (the
-        report does not print the residuals of its fits).
+    Parameters:
+        cof_boundary, tau_hydro, cof_asymptote: Of Eq. 17: 1, m/s, 1.
+        viscosity: Pa s; None leaves out the viscous part.
+        cof_hysteresis: Friction left when adhesion is blocked; None takes cof_asymptote. Needed for
+            fluids whose asymptote lies at the bound of the fit (0.001 for water and detergent).
+        assumed: Further assumptions behind the numbers, in words.
+        model_deviation: Standard deviation of COF beyond that of the fitted numbers, 1; None when
+            not known (the report does not print the residuals of its fits).
     """
 
     cof_boundary: SourcedValue
@@ -107,10 +101,8 @@ class StribeckLaw(UncertainInputs):
         fluid's own asymptote lies at the bound of its fit, that of ``others`` on the same pair is
         taken (``friction_left``): it moves friction between the parts, not their sum.
 
-        Raises
-        ------
-        InputError
-            No fit of Eq. 17 for this fluid (75 % glycerol and canola oil have none).
+        Raises:
+            InputError: No fit of Eq. 17 for this fluid (75 % glycerol and canola oil have none).
         """
         if friction.tau_hydro is None or friction.cof_asymptote is None:
             raise InputError(

@@ -74,20 +74,14 @@ def contact_terms(
 ) -> tuple[Array, Array, Array, Array]:
     """Return film, hysteresis and dry-like part (at rest) of the contact friction, and kappa.
 
-    Parameters
-    ----------
-    constants
-        Numbers or draws that broadcast with ``numbers``.
-    numbers
-        ``sole_rq`` and ``floor_rq`` (m), ``shore_a`` of the compound; where known its
-        ``loss_tangent``, or its ``hysteresis`` (COF) in place of the closed form.
-    oil
-        Whether the fluid is an oil; else water, detergent or an aqueous mixture.
+    Parameters:
+        constants: Numbers or draws that broadcast with ``numbers``.
+        numbers: ``sole_rq`` and ``floor_rq`` (m), ``shore_a`` of the compound; where known its
+            ``loss_tangent``, or its ``hysteresis`` (COF) in place of the closed form.
+        oil: Whether the fluid is an oil; else water, detergent or an aqueous mixture.
 
-    Returns
-    -------
-    tuple
-        Three parts of COF (1) and kappa (Pa m).
+    Returns:
+        tuple: Three parts of COF (1) and kappa (Pa m).
     """
     floor = np.asarray(numbers["floor_rq"])
     roughness = np.hypot(numbers["sole_rq"], floor)
@@ -174,10 +168,9 @@ def _from_columns(columns: Mapping[str, Array], source: str) -> PairDraws:
 def read_pair_draws(path: Path) -> PairDraws:
     """Return the draws in a file that ``PairDraws.write`` made.
 
-    Raises
-    ------
-    DataError
-        No such file, or one without the columns of the law or with a value that is no number.
+    Raises:
+        DataError: No such file, or one without the columns of the law or with a value that is no
+            number.
     """
     try:
         head, *lines = path.read_text(encoding="utf-8").splitlines()
@@ -254,14 +247,10 @@ class PairContactLaw(UncertainInputs):
 
     l is the factor of laboratory and pair, 1 at the median.
 
-    Parameters
-    ----------
-    pair
-        What is known of sole, floor and fluid.
-    viscosity
-        Pa s.
-    draws
-        Of the constants; the packaged ones by default.
+    Parameters:
+        pair: What is known of sole, floor and fluid.
+        viscosity: Pa s.
+        draws: Of the constants; the packaged ones by default.
     """
 
     pair: Pair

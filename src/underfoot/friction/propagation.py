@@ -1,7 +1,5 @@
 """Uncertainty of a computed number from those of its inputs and of the model, by sampling."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -21,22 +19,15 @@ put more than 0.1 % of its draws below zero."""
 class Propagated:
     """Outcome of sampling; arrays have the shape of what the function returns.
 
-    Parameters
-    ----------
-    value
-        The function at the values given.
-    deviation
-        Standard deviation of the draws.
-    low, high
-        Bounds of the central interval that holds ``confidence``.
-    share
-        Variance due to each input alone over the sum of these variances, averaged over the
-        result, 1; "model" is the model's own. First order: interactions count with none. Empty
-        when not asked for.
-    left_out
-        Inputs without a known spread, taken as exact.
-    draws, drawn
-        (samples, ...) the results, and (samples,) what was drawn of each input.
+    Parameters:
+        value: The function at the values given.
+        deviation: Standard deviation of the draws.
+        low, high: Bounds of the central interval that holds ``confidence``.
+        share: Variance due to each input alone over the sum of these variances, averaged over the
+            result, 1; "model" is the model's own. First order: interactions count with none. Empty
+            when not asked for.
+        left_out: Inputs without a known spread, taken as exact.
+        draws, drawn: (samples, ...) the results, and (samples,) what was drawn of each input.
     """
 
     value: Array
@@ -71,23 +62,16 @@ def propagated(
     one normal draw for the whole result (a model is off in one direction), ``model_deviation`` in
     the unit of the result. The same ``seed`` gives the same numbers.
 
-    Parameters
-    ----------
-    function
-        Of a mapping name -> number; returns a number or an array, always of one shape.
-    inputs
-        Values with their standard deviations; one without is taken as exact and listed.
-    model_deviation
-        From residuals of a calibration or of blind predictions; None counts none.
-    shares
-        False leaves out which input causes how much: it takes draws of each input alone.
-    joint
-        (samples,) draws of inputs that depend on each other, by name; they are not drawn anew.
+    Parameters:
+        function: Of a mapping name -> number; returns a number or an array, always of one shape.
+        inputs: Values with their standard deviations; one without is taken as exact and listed.
+        model_deviation: From residuals of a calibration or of blind predictions; None counts none.
+        shares: False leaves out which input causes how much: it takes draws of each input alone.
+        joint: (samples,) draws of inputs that depend on each other, by name; they are not drawn
+            anew.
 
-    Raises
-    ------
-    InputError
-        An input without a value, fewer than 100 samples, a result that is not finite.
+    Raises:
+        InputError: An input without a value, fewer than 100 samples, a result that is not finite.
     """
     if samples < 100:
         raise InputError(f"{samples}", where="samples", allowed="100 or more")

@@ -4,8 +4,6 @@ The film of the whole contact beside all of its roughness, and the real contact 
 that stiffens with speed.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -48,14 +46,12 @@ class ViscoelasticArea:
     At light load A = p / (E* slope) up to a constant (Persson 2001); a broad relaxation spectrum
     has |E*| ~ frequency^n, and frequency is proportional to the sliding speed.
 
-    Parameters
-    ----------
-    exponent
-        n of the modulus, 1; ``modulus_exponent`` takes it from a relaxation spectrum. A power law
-        has tan delta = tan(n pi / 2): a loss tangent of 0.1 to 0.5 is n of 0.06 to 0.3. The
-        report's own model loses 12 to 29 % of area from 0.1 to 1 m/s (G.1.2), n = 0.06 to 0.15.
-    rest_speed
-        V0, m/s.
+    Parameters:
+        exponent: n of the modulus, 1; ``modulus_exponent`` takes it from a relaxation spectrum. A
+            power law has tan delta = tan(n pi / 2): a loss tangent of 0.1 to 0.5 is n of 0.06 to
+            0.3. The report's own model loses 12 to 29 % of area from 0.1 to 1 m/s (G.1.2), n = 0.06
+            to 0.15.
+        rest_speed: V0, m/s.
     """
 
     exponent: float
@@ -88,22 +84,15 @@ class MeanFilmSharing:
     contact (radius, load), h_dry = (Rq/2) ln(0.375 E* / p) and f the fluid's share of the load
     (Johnson, Greenwood and Poon 1972; Persson 2007).
 
-    Parameters
-    ----------
-    radius, normal_force, effective_modulus
-        R' (m), w (N) and E' (Pa) of Eq. 18 for the contact as a whole: the pin's, not the shoe's.
-    rq
-        Roughness that keeps the surfaces apart, m: composite of both surfaces, or the floor's
-        alone where the sole's own roughness is taken as flattened, or calibrated.
-    nominal_pressure
-        Of the whole contact, Pa; the share is the same all over it.
-    entrainment
-        Mean speed of the surfaces over the sliding speed: 0.5; the report takes 1.
-    stiffness
-        E* of the rough interface, Pa; None takes E' / 2, as E' = 2 E* says.
+    Parameters:
+        radius, normal_force, effective_modulus: R' (m), w (N) and E' (Pa) of Eq. 18 for the contact
+            as a whole: the pin's, not the shoe's.
+        rq: Roughness that keeps the surfaces apart, m: composite of both surfaces, or the floor's
+            alone where the sole's own roughness is taken as flattened, or calibrated.
+        nominal_pressure: Of the whole contact, Pa; the share is the same all over it.
+        entrainment: Mean speed of the surfaces over the sliding speed: 0.5; the report takes 1.
+        stiffness: E* of the rough interface, Pa; None takes E' / 2, as E' = 2 E* says.
 
-    Notes
-    -----
     Not for a local law under a shoe whose film is solved on its own: that counts it twice.
     """
 

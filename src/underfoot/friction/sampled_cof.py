@@ -1,7 +1,5 @@
 """Coefficient of friction of a sole with its uncertainty, by sampling the law's inputs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -83,21 +81,16 @@ def sampled_cof(
     are put into classes of equal pressure (with their film); what the classes miss of each part is
     made up for by a factor.
 
-    Parameters
-    ----------
-    contact_pressure, fluid_pressure, film_thickness, wet
-        (nx, ny) Pa, Pa, m and where the film is, as ``cof`` takes them.
-    speed
-        m/s.
-    fluid_inputs
-        "viscosity" (Pa s) with its standard deviation; where it has none it counts as exact.
-    film_error
-        Standard deviation of ln F / (W - F), 1; 0 takes the film load as exact.
-    contact_factor
-        On the contact friction of the law, (nx, ny), 1.
-    suction
-        Highest suction behind edges (Pa, drawn between 0 and that of a vacuum), and the share of
-        the contact friction that its value makes.
+    Parameters:
+        contact_pressure, fluid_pressure, film_thickness, wet: (nx, ny) Pa, Pa, m and where the film
+            is, as ``cof`` takes them.
+        speed: m/s.
+        fluid_inputs: "viscosity" (Pa s) with its standard deviation; where it has none it counts as
+            exact.
+        film_error: Standard deviation of ln F / (W - F), 1; 0 takes the film load as exact.
+        contact_factor: On the contact friction of the law, (nx, ny), 1.
+        suction: Highest suction behind edges (Pa, drawn between 0 and that of a vacuum), and the
+            share of the contact friction that its value makes.
 
     Returns None when one of the law's own inputs has no standard deviation, or when nothing has
     one: an interval of the rest alone would be too narrow.

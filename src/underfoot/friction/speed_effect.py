@@ -82,27 +82,21 @@ class SpeedEffectLaw(UncertainInputs):
     pressure: 1 at rest, where the friction is COF_BL, and 0 at high speed, where hysteresis and
     the viscous part are left.
 
-    Parameters
-    ----------
-    effect
-        ``AsperityEHL``, ``MeanFilmSharing`` or ``ViscoelasticArea``.
-    cof_boundary, cof_hysteresis
-        Friction of the pair with this fluid at rest, and what is left when all adhesion is gone.
-    viscosity
-        Pa s; None for a dry floor: only what does not need a fluid acts.
-    model_deviation
-        Standard deviation of the mechanism's blind predictions of COF, 1; None when not estimated.
-    assumed
-        Further assumptions behind the numbers, in words.
-    effect_inputs
-        Numbers of ``effect`` by field name, with their standard deviations.
-    calibrated_product
-        Viscosity x speed of the data behind the levels, Pa m; None when not known.
+    Parameters:
+        effect: ``AsperityEHL``, ``MeanFilmSharing`` or ``ViscoelasticArea``.
+        cof_boundary, cof_hysteresis: Friction of the pair with this fluid at rest, and what is left
+            when all adhesion is gone.
+        viscosity: Pa s; None for a dry floor: only what does not need a fluid acts.
+        model_deviation: Standard deviation of the mechanism's blind predictions of COF, 1; None
+            when not estimated.
+        assumed: Further assumptions behind the numbers, in words.
+        effect_inputs: Numbers of ``effect`` by field name, with their standard deviations.
+        calibrated_product: Viscosity x speed of the data behind the levels, Pa m; None when not
+            known.
 
-    Raises
-    ------
-    InputError
-        A coefficient that was not measured or is negative, a viscosity that is not positive.
+    Raises:
+        InputError: A coefficient that was not measured or is negative, a viscosity that is not
+            positive.
     """
 
     effect: SpeedEffect

@@ -30,29 +30,20 @@ class SpeedTableLaw(UncertainInputs):
 
     Beyond its lowest and highest speed the table keeps its end values, and says so.
 
-    Parameters
-    ----------
-    speed
-        (n,), m/s, rising, above 0.
-    cof
-        (n,), COF of the contact at these speeds, 1.
-    source
-        Where the readings come from.
-    cof_hysteresis
-        Friction left when adhesion is blocked, 1, at most COF; 0 counts all as adhesion.
-    viscosity
-        Pa s; None leaves out the viscous part (or when the readings hold it already).
-    cof_deviation
-        (n,) standard deviations; None when not known.
-    pressure
-        Lowest and highest contact pressure of the readings, Pa.
-    assumed
-        Further assumptions behind the readings, in words.
+    Parameters:
+        speed: (n,), m/s, rising, above 0.
+        cof: (n,), COF of the contact at these speeds, 1.
+        source: Where the readings come from.
+        cof_hysteresis: Friction left when adhesion is blocked, 1, at most COF; 0 counts all as
+            adhesion.
+        viscosity: Pa s; None leaves out the viscous part (or when the readings hold it already).
+        cof_deviation: (n,) standard deviations; None when not known.
+        pressure: Lowest and highest contact pressure of the readings, Pa.
+        assumed: Further assumptions behind the readings, in words.
 
-    Raises
-    ------
-    InputError
-        Arrays that differ in length, speeds that do not rise, values that are negative or missing.
+    Raises:
+        InputError: Arrays that differ in length, speeds that do not rise, values that are negative
+            or missing.
     """
 
     speed: Array

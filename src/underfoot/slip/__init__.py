@@ -1,22 +1,13 @@
 """How likely a person slips: available against required friction."""
 
-from .beschorner_2016 import Beschorner2016
-from .chang_2004 import Chang2004
-from .model import MODELS, SlipModel, slip_model
-from .report_g6 import ReportG6
-from .required import ADULTS_LEVEL_WALKING, RcofPopulation
-from .risk import SlipRisk, needed_acof, slip_risk
-
-__all__ = [
-    "ADULTS_LEVEL_WALKING",
-    "MODELS",
-    "Beschorner2016",
-    "Chang2004",
-    "RcofPopulation",
-    "ReportG6",
-    "SlipModel",
-    "SlipRisk",
-    "needed_acof",
-    "slip_model",
-    "slip_risk",
-]
+from .beschorner_2016 import Beschorner2016 as Beschorner2016
+from .chang_2004 import Chang2004 as Chang2004
+from .model import MODELS as MODELS
+from .model import SlipModel as SlipModel
+from .model import slip_model as slip_model
+from .report_g6 import ReportG6 as ReportG6
+from .required import ADULTS_LEVEL_WALKING as ADULTS_LEVEL_WALKING
+from .required import RcofPopulation as RcofPopulation
+from .risk import SlipRisk as SlipRisk
+from .risk import needed_acof as needed_acof
+from .risk import slip_risk as slip_risk

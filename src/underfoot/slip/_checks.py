@@ -1,7 +1,5 @@
 """Checks of coefficients of friction; the logistic curve and its mean over persons."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Slip risk from required friction: Beschorner et al. (2016)."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 
@@ -28,12 +26,9 @@ class Beschorner2016(LogisticModel):
     of even odds in its abstract. Here the curve is hung at the even-odds point of ``ReportG6``
     (ACOF - RCOF = -0.06), an assumption.
 
-    Parameters
-    ----------
-    odds_ratio
-        Growth of the odds per 0.01 of RCOF, above 1.
-    fifty_percent_at
-        ACOF - RCOF at which half of the steps slip (assumed).
+    Parameters:
+        odds_ratio: Growth of the odds per 0.01 of RCOF, above 1.
+        fifty_percent_at: ACOF - RCOF at which half of the steps slip (assumed).
     """
 
     odds_ratio: float = ODDS_RATIO

@@ -1,7 +1,5 @@
 """A step slips when it needs more friction than there is: Chang (2004)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What a slip model answers, and the models there are."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, Protocol, runtime_checkable
 

@@ -1,7 +1,5 @@
 """Logistic slip model of the report: ACOF minus RCOF (G.6)."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 
@@ -26,12 +24,9 @@ class ReportG6(LogisticModel):
     0.2 m/s. The report prints no standard errors. Two slips of each person were taken as
     independent.
 
-    Parameters
-    ----------
-    slope
-        Change of the log odds per unit of ACOF - RCOF; negative.
-    fifty_percent_at
-        ACOF - RCOF at which half of the steps slip.
+    Parameters:
+        slope: Change of the log odds per unit of ACOF - RCOF; negative.
+        fifty_percent_at: ACOF - RCOF at which half of the steps slip.
     """
 
     slope: float = SLOPE

@@ -1,7 +1,5 @@
 """Required coefficient of friction (RCOF) of a population."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from underfoot.core import RangeError
@@ -20,14 +18,10 @@ class RcofPopulation:
 
     Normal fits the RCOF of single feet in 85.5 % of cases (Chang et al. 2012, 50 walkers).
 
-    Parameters
-    ----------
-    mean, sd
-        1; the standard deviation between persons.
-    source
-        Where they come from.
-    assumed
-        True when they were not measured on these persons.
+    Parameters:
+        mean, sd: 1; the standard deviation between persons.
+        source: Where they come from.
+        assumed: True when they were not measured on these persons.
     """
 
     mean: float

@@ -1,7 +1,5 @@
 """Probability of slipping over a population, with its band; the friction that a risk needs."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -69,32 +67,22 @@ def slip_risk(
 ) -> Any:
     """Return how likely a step slips: the mean of P(ACOF, RCOF) over the population's RCOF.
 
-    Parameters
-    ----------
-    acof
-        Available coefficient of friction: a ``SourcedValue`` with its standard deviation if
-        known, a number, or an array of numbers.
-    rcof
-        Normally distributed required friction of the population.
-    model
-        A published model; None takes ``ReportG6``.
-    samples
-        (n,) draws of ACOF, as ``friction.sampled_cof`` gives them; None takes it as normal.
+    Parameters:
+        acof: Available coefficient of friction: a ``SourcedValue`` with its standard deviation if
+            known, a number, or an array of numbers.
+        rcof: Normally distributed required friction of the population.
+        model: A published model; None takes ``ReportG6``.
+        samples: (n,) draws of ACOF, as ``friction.sampled_cof`` gives them; None takes it as
+            normal.
 
-    Returns
-    -------
-    SlipRisk
-        For one ACOF; for an array a list of them, nested as the array is.
+    Returns:
+        SlipRisk: For one ACOF; for an array a list of them, nested as the array is.
 
-    Notes
-    -----
     The band holds the uncertainty of ACOF (cut at 0) alone: not that of the model, whose
     standard errors the report does not print, nor that of the population.
 
-    Raises
-    ------
-    InputError
-        ACOF not determined, negative or not finite.
+    Raises:
+        InputError: ACOF not determined, negative or not finite.
     """
     if not isinstance(acof, SourcedValue):
         if np.ndim(acof):
@@ -164,19 +152,13 @@ def needed_acof(
 
     Solves P(ACOF) = risk, where P falls with ACOF; to 1e-12.
 
-    Parameters
-    ----------
-    risk
-        Wanted probability, above 0 and below 1.
-    rcof
-        Required friction of the population.
-    model
-        A published model; None takes ``ReportG6``.
+    Parameters:
+        risk: Wanted probability, above 0 and below 1.
+        rcof: Required friction of the population.
+        model: A published model; None takes ``ReportG6``.
 
-    Raises
-    ------
-    InputError
-        A risk outside (0, 1), or one that not even no friction (or a COF of 5) reaches.
+    Raises:
+        InputError: A risk outside (0, 1), or one that not even no friction (or a COF of 5) reaches.
     """
     from scipy.optimize import root_scalar  # heavy, and only this function needs it
 

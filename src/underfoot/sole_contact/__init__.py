@@ -1,27 +1,14 @@
 """The sole on the floor: compliance, contact and film solved together, and floor sensors."""
 
-from .compliance import (
-    Compliance,
-    ConvolutionCompliance,
-    half_space_compliance,
-    layered_compliance,
-)
-from .reading import SensorReading, floor_sensor_reading
-from .sole_state import SoleState, SolverSettings
-from .solver import SoleContact, solve_sliding
-from .stepping import SlidingSole, rolled_clearance
-
-__all__ = [
-    "Compliance",
-    "ConvolutionCompliance",
-    "SensorReading",
-    "SlidingSole",
-    "SoleContact",
-    "SoleState",
-    "SolverSettings",
-    "floor_sensor_reading",
-    "half_space_compliance",
-    "layered_compliance",
-    "rolled_clearance",
-    "solve_sliding",
-]
+from .compliance import Compliance as Compliance
+from .compliance import ConvolutionCompliance as ConvolutionCompliance
+from .compliance import half_space_compliance as half_space_compliance
+from .compliance import layered_compliance as layered_compliance
+from .reading import SensorReading as SensorReading
+from .reading import floor_sensor_reading as floor_sensor_reading
+from .sole_state import SoleState as SoleState
+from .sole_state import SolverSettings as SolverSettings
+from .solver import SoleContact as SoleContact
+from .solver import solve_sliding as solve_sliding
+from .stepping import SlidingSole as SlidingSole
+from .stepping import rolled_clearance as rolled_clearance

@@ -1,7 +1,5 @@
 """What the coupled solver refuses, with the place and what is allowed."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

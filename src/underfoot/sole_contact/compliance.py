@@ -5,8 +5,6 @@ than this map, its diagonal and a radial symbol to precondition with, so a finit
 can take the place of the layers below.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Protocol
@@ -99,12 +97,9 @@ def half_space_compliance(
 ) -> ConvolutionCompliance:
     """Return the compliance of an elastic half-space, exact for cell-wise constant pressure.
 
-    Parameters
-    ----------
-    shape, spacing
-        Grid (nx, ny) and cell size in m.
-    modulus, poisson_ratio
-        Of the body, Pa and 1 (0 to 0.5). For two bodies pass E* and 0.
+    Parameters:
+        shape, spacing: Grid (nx, ny) and cell size in m.
+        modulus, poisson_ratio: Of the body, Pa and 1 (0 to 0.5). For two bodies pass E* and 0.
 
     Source: Love 1929; symbol 2 / (E* k).
     """
@@ -131,25 +126,17 @@ def layered_compliance(
 ) -> ConvolutionCompliance:
     """Return the compliance of an outsole layer, its tread and the midsole under it.
 
-    Parameters
-    ----------
-    sole
-        Plan form and tread.
-    modulus, poisson_ratio, thickness
-        Of the outsole: Pa, 1 (0 to 0.5), m.
-    shoe_angle
-        Tilt of the sole's plane against the floor, rad; then the thickness is that from this plane
-        to the midsole and profile and lugs are taken off. None: the thickness above the lugs, the
-        same everywhere.
-    midsole_modulus, midsole_thickness, midsole_poisson_ratio
-        Of the layer between outsole and rigid foot; both None for none. A Poisson's ratio of 0.3
-        stands for a foam (assumed).
-    free_edges
-        Let the plan form and the lugs bulge at their edges. Without it the layer is endless and
-        pressure peaks at edges are too high.
+    Parameters:
+        sole: Plan form and tread.
+        modulus, poisson_ratio, thickness: Of the outsole: Pa, 1 (0 to 0.5), m.
+        shoe_angle: Tilt of the sole's plane against the floor, rad; then the thickness is that from
+            this plane to the midsole and profile and lugs are taken off. None: the thickness above
+            the lugs, the same everywhere.
+        midsole_modulus, midsole_thickness, midsole_poisson_ratio: Of the layer between outsole and
+            rigid foot; both None for none. A Poisson's ratio of 0.3 stands for a foam (assumed).
+        free_edges: Let the plan form and the lugs bulge at their edges. Without it the layer is
+            endless and pressure peaks at edges are too high.
 
-    Notes
-    -----
     Bonded layer by its Fourier symbol; a midsole adds its own symbol, attenuated by
     (1 + k T) exp(-k T) through the outsole. Free edges: the part of the response that a block of
     the plan form or a lug has with free sides is split off, 1 / (1 / f + E* k / 2), and balanced on

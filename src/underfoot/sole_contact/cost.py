@@ -1,7 +1,5 @@
 """What solving a contact will cost, before it is solved."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Highest pressure under a sole, and whether it is one that a finer grid would change."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Right-preconditioned GMRES that keeps the preconditioned vectors."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -20,8 +20,6 @@ contact friction by 0.29 (root mean square), nearly all of it where the film set
 the sliding has no such edge.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -108,14 +106,11 @@ class LugFriction:
 def lug_edges(sole: SoleMap, edge_radius: float, *, forward: bool = True) -> LugEdges | None:
     """Return the lugs of a sole; None where it has no tread.
 
-    Parameters
-    ----------
-    sole
-        Map; lugs are connected land beside grooves.
-    edge_radius
-        Of the lugs, m; sharper than 0.1 mm counts as that.
-    forward
-        Whether the sole slides towards the toe (fluid meets the front of a lug), else to the rear.
+    Parameters:
+        sole: Map; lugs are connected land beside grooves.
+        edge_radius: Of the lugs, m; sharper than 0.1 mm counts as that.
+        forward: Whether the sole slides towards the toe (fluid meets the front of a lug), else to
+            the rear.
     """
     from scipy.ndimage import label
 
@@ -154,22 +149,14 @@ def lug_friction(
 ) -> LugFriction:
     """Return what their edges do to lugs that slide.
 
-    Parameters
-    ----------
-    edges
-        Of ``lug_edges``.
-    contact_pressure
-        (nx, ny) as solved, Pa.
-    cof_contact
-        Friction of the contact of each lug, (lugs,), 1.
-    asperities
-        Pressure against gap of the pair.
-    modulus
-        Young's modulus of the lugs, Pa.
-    viscosity, speed
-        Pa s and m/s.
-    suction
-        Highest pull p_a that an emptied contact holds, Pa, 0 or more.
+    Parameters:
+        edges: Of ``lug_edges``.
+        contact_pressure: (nx, ny) as solved, Pa.
+        cof_contact: Friction of the contact of each lug, (lugs,), 1.
+        asperities: Pressure against gap of the pair.
+        modulus: Young's modulus of the lugs, Pa.
+        viscosity, speed: Pa s and m/s.
+        suction: Highest pull p_a that an emptied contact holds, Pa, 0 or more.
     """
     cells = np.maximum(sum_by_lug(edges, contact_pressure > 0), 1)
     load = sum_by_lug(edges, contact_pressure)

@@ -1,7 +1,5 @@
 """A sole that follows a history of load, sliding speed and shoe angle."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
@@ -76,21 +74,14 @@ def solve_history(
 ) -> SoleContact:
     """Return the contact and film at the end of a history, with what it went through.
 
-    Parameters
-    ----------
-    sole, compliance, law, viscosity, settings, progress, watch
-        As in ``SlidingSole``.
-    history
-        Load, speed and shoe angle against time.
-    map_angle
-        Shoe angle (rad) at which ``sole`` was made; the sole rolls from there.
+    Parameters:
+        sole, compliance, law, viscosity, settings, progress, watch: As in ``SlidingSole``.
+        history: Load, speed and shoe angle against time.
+        map_angle: Shoe angle (rad) at which ``sole`` was made; the sole rolls from there.
 
-    Raises
-    ------
-    InputError
-        A history that can't be; an angle too far from the map's.
-    ConvergenceError
-        Not even the first instant could be solved.
+    Raises:
+        InputError: A history that can't be; an angle too far from the map's.
+        ConvergenceError: Not even the first instant could be solved.
     """
     sliding = SlidingSole(
         sole,

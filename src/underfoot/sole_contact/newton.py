@@ -18,8 +18,6 @@ pressure of the air and holds the pool's depth, which fills any gap that the poo
 enters the film at the film's own gap (theta = 1), and a cell that comes into the pool starts full.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 

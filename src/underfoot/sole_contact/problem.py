@@ -1,7 +1,5 @@
 """What is solved at one instant under the sole, and a solution of it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from underfoot.core.arrays import Array, Mask

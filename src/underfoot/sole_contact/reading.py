@@ -1,7 +1,5 @@
 """What a fluid-pressure sensor in the floor reads under a sliding sole."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -69,40 +67,30 @@ def floor_sensor_reading(
     is that of Eq. (27): sum of p * scan_spacing * sampling_step over all scans. Scans are centred
     on y = 0; the whole set is shifted sideways to ``offsets`` places within one scan spacing.
 
-    Parameters
-    ----------
-    x, y
-        Cell centres of a square grid, m.
-    fluid_pressure
-        (nx, ny), Pa, 0 outside the film.
-    film_thickness
-        (nx, ny), mean gap, m.
-    inlet_diameter
-        m; 0 is a point. The report: 10 mm (G.4.1) and 4 mm (G.5.1).
-    scan_spacing, scans
-        Distance of the tracks, m, and their number (G.4.1: 10 mm, 7).
-    sampling_step
-        Way between two samples, m: sliding speed times sampling interval (G.4.1: 0.7 m/s x 1 ms).
-    gap_cap
-        Largest gap in the weights, m (assumed): in a gap this deep the pocket vents freely.
-    offsets
-        Number of lateral places, odd.
-    compliance
-        Volume that the instrument takes in under pressure, C, m^3/Pa; 0 follows the film at once.
-    viscosity, speed
-        Of the fluid, Pa s, and of the shoe along +x, m/s; needed with ``compliance``.
+    Parameters:
+        x, y: Cell centres of a square grid, m.
+        fluid_pressure: (nx, ny), Pa, 0 outside the film.
+        film_thickness: (nx, ny), mean gap, m.
+        inlet_diameter: m; 0 is a point. The report: 10 mm (G.4.1) and 4 mm (G.5.1).
+        scan_spacing, scans: Distance of the tracks, m, and their number (G.4.1: 10 mm, 7).
+        sampling_step: Way between two samples, m: sliding speed times sampling interval (G.4.1: 0.7
+            m/s x 1 ms).
+        gap_cap: Largest gap in the weights, m (assumed): in a gap this deep the pocket vents
+            freely.
+        offsets: Number of lateral places, odd.
+        compliance: Volume that the instrument takes in under pressure, C, m^3/Pa; 0 follows the
+            film at once.
+        viscosity, speed: Of the fluid, Pa s, and of the shoe along +x, m/s; needed with
+            ``compliance``.
 
-    Notes
-    -----
     The pocket does not change the film. With a compliance C dp/dt = K (p_rim - p), where
     K = 2 pi <h^3> / (12 eta ln(15 mm / r)) is the conductance of the film around an inlet of
     radius r. Source of Eq. (27): final progress report on shoe-floor friction, G.4.1; the pocket
     model is assumed, not tested by measurement.
 
-    Raises
-    ------
-    InputError
-        Shapes that don't match, a pressure or gap that is not finite, an instrument that can't be.
+    Raises:
+        InputError: Shapes that don't match, a pressure or gap that is not finite, an instrument
+            that can't be.
     """
     along, across, pressure, gap = _checked_maps(x, y, fluid_pressure, film_thickness)
     not_negative(inlet_diameter, "sensor.inlet_diameter")

@@ -1,7 +1,5 @@
 """An array of pressure sensors that stays in the floor while the shoe slides over it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -91,35 +89,24 @@ def array_reading(
 ) -> ArrayReading:
     """Return what an array in the floor reads while a shoe slides over it.
 
-    Parameters
-    ----------
-    x, y
-        Cell centres of the sole's grid, m.
-    time, place
-        (n,) instants in s, rising, and how far the shoe has gone along +x since time 0, m.
-    fluid_pressure, film_thickness
-        n maps (nx, ny) each, Pa (0 outside the film) and m.
-    array
-        Where the sensors are.
-    threshold
-        Pa, for the duration.
-    sampling_interval
-        s; between the instants given, the maps are interpolated linearly while the shoe moves on.
-    offsets
-        Lateral places within one spacing, odd: the shoe is not aimed at the sensors.
-    compliance, viscosity
-        As in ``floor_sensor_reading``: m^3/Pa and, with it, Pa s.
+    Parameters:
+        x, y: Cell centres of the sole's grid, m.
+        time, place: (n,) instants in s, rising, and how far the shoe has gone along +x since time
+            0, m.
+        fluid_pressure, film_thickness: n maps (nx, ny) each, Pa (0 outside the film) and m.
+        array: Where the sensors are.
+        threshold: Pa, for the duration.
+        sampling_interval: s; between the instants given, the maps are interpolated linearly while
+            the shoe moves on.
+        offsets: Lateral places within one spacing, odd: the shoe is not aimed at the sensors.
+        compliance, viscosity: As in ``floor_sensor_reading``: m^3/Pa and, with it, Pa s.
 
-    Notes
-    -----
     Each sensor reads the mean film pressure over the rim of its inlet, weighted by h^3, 0 outside
     the film (``floor_sensor_reading``), and lags behind it by its compliance. Pockets don't disturb
     the film.
 
-    Raises
-    ------
-    InputError
-        Numbers that don't match, time that doesn't rise.
+    Raises:
+        InputError: Numbers that don't match, time that doesn't rise.
     """
     time, place = np.asarray(time, dtype=float), np.asarray(place, dtype=float)
     if not (time.ndim == 1 and time.size >= 2 and (np.diff(time) > 0).all()):

@@ -1,7 +1,5 @@
 """What is solved at one instant of a sole on a flooded floor, and how it is solved."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from underfoot.core import Status
@@ -12,26 +10,19 @@ from underfoot.core.arrays import Array, Mask
 class SolverSettings:
     """How the sole meets the floor and how exactly it is solved.
 
-    Parameters
-    ----------
-    pool_depth
-        Depth of the fluid on the floor, m; deeper gaps hold no film. 0.6 mm is 150 ml on
-        0.4 m x 0.6 m (report, G.6.1).
-    start_film
-        Height of the lowest point above the floor when the load starts to rise, m (assumed).
-    rise_time
-        Time over which the load rises linearly to its full value, s (report, G.4.1: 30 ms).
-    end_time
-        Time at which the result is taken, s (assumed: 90 ms of sliding under full load).
-    steady
-        Go on until nothing moves instead of stopping at ``end_time``.
-    tolerance
-        Largest relative imbalance of volume, of load and of the cavitation condition.
-    backend
-        Sparse factorization: "pardiso", "superlu" or None for the fastest installed.
-    cavity_pressure
-        Pressure of ruptured film, Pa above that of the air, 0 or less: 0 where air finds its way
-        in, down to -1e5 where nothing does (the default is the former).
+    Parameters:
+        pool_depth: Depth of the fluid on the floor, m; deeper gaps hold no film. 0.6 mm is 150 ml
+            on 0.4 m x 0.6 m (report, G.6.1).
+        start_film: Height of the lowest point above the floor when the load starts to rise, m
+            (assumed).
+        rise_time: Time over which the load rises linearly to its full value, s (report, G.4.1: 30
+            ms).
+        end_time: Time at which the result is taken, s (assumed: 90 ms of sliding under full load).
+        steady: Go on until nothing moves instead of stopping at ``end_time``.
+        tolerance: Largest relative imbalance of volume, of load and of the cavitation condition.
+        backend: Sparse factorization: "pardiso", "superlu" or None for the fastest installed.
+        cavity_pressure: Pressure of ruptured film, Pa above that of the air, 0 or less: 0 where air
+            finds its way in, down to -1e5 where nothing does (the default is the former).
     """
 
     pool_depth: float = 0.6e-3

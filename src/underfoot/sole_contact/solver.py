@@ -1,7 +1,5 @@
 """Whole-shoe contact with fluid: a sole pressed and slid over a flooded floor."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 
@@ -43,33 +41,21 @@ def solve_sliding(
     The load rises linearly over ``settings.rise_time`` and stays; the result is the state at
     ``settings.end_time``, or the steady one. Equations: ``SlidingSole``.
 
-    Parameters
-    ----------
-    sole
-        Undeformed sole over the floor.
-    compliance
-        Surface deflection under pressure on the same grid.
-    law
-        Asperity pressure and flow factor against the mean gap.
-    viscosity
-        Pa s; None for a dry floor, which is solved as the load rises, without time.
-    speed
-        Sliding speed of the shoe along +x, m/s; negative slides backward, 0 only squeezes.
-    normal_force
-        Full load, N.
-    settings
-        Start, times and accuracy.
-    progress
-        Receives stage, fraction of the time and residual; an exception it raises stops the work.
-    watch
-        Receives the state after every inner step.
+    Parameters:
+        sole: Undeformed sole over the floor.
+        compliance: Surface deflection under pressure on the same grid.
+        law: Asperity pressure and flow factor against the mean gap.
+        viscosity: Pa s; None for a dry floor, which is solved as the load rises, without time.
+        speed: Sliding speed of the shoe along +x, m/s; negative slides backward, 0 only squeezes.
+        normal_force: Full load, N.
+        settings: Start, times and accuracy.
+        progress: Receives stage, fraction of the time and residual; an exception it raises stops
+            the work.
+        watch: Receives the state after every inner step.
 
-    Raises
-    ------
-    InputError
-        A value that is not finite or not physical.
-    ConvergenceError
-        Not even the first instant could be solved.
+    Raises:
+        InputError: A value that is not finite or not physical.
+        ConvergenceError: Not even the first instant could be solved.
     """
     settings = settings or SolverSettings()
     check_demand(settings.rise_time, normal_force, speed, None, rising=True)

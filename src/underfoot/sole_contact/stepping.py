@@ -1,7 +1,5 @@
 """A sole carried in time: load, sliding speed and shoe angle change, contact and film follow."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -34,16 +32,12 @@ MOST_STRETCH = 0.15  # of the grid along x, by which a sole may roll away from i
 class Reporting:
     """Who hears of the steps of a ``SlidingSole``.
 
-    Parameters
-    ----------
-    progress
-        Receives stage, fraction of the time and residual; an exception it raises stops the work.
-    stage
-        What the work is called.
-    end_time
-        s, to report progress against.
-    watch
-        Receives the state after every inner step.
+    Parameters:
+        progress: Receives stage, fraction of the time and residual; an exception it raises stops
+            the work.
+        stage: What the work is called.
+        end_time: s, to report progress against.
+        watch: Receives the state after every inner step.
     """
 
     progress: Progress = silent
@@ -71,28 +65,17 @@ class SlidingSole:
     -div(phi h^3 / (12 eta) grad p_f) - (V / 2) dh/dx + dh/dt = lambda,  p_f >= 0, lambda >= 0,
     p_f lambda = 0
 
-    Parameters
-    ----------
-    sole
-        Undeformed sole over the floor, at ``shoe_angle``.
-    compliance
-        Surface deflection under pressure on the same grid.
-    law
-        Asperity pressure and flow factor against the mean gap.
-    viscosity
-        Pa s; None for a dry floor, where time does nothing.
-    settings
-        Pool, start film, first step (``rise_time`` / 150) and accuracy.
-    shoe_angle
-        Angle (rad, toe up positive) at which ``sole`` was made; at others it is
-        ``rolled_clearance``.
-    typical_force
-        N, a load of the order to come: sets the scale of the asperity law.
-    reporting
-        Who hears of the steps.
+    Parameters:
+        sole: Undeformed sole over the floor, at ``shoe_angle``.
+        compliance: Surface deflection under pressure on the same grid.
+        law: Asperity pressure and flow factor against the mean gap.
+        viscosity: Pa s; None for a dry floor, where time does nothing.
+        settings: Pool, start film, first step (``rise_time`` / 150) and accuracy.
+        shoe_angle: Angle (rad, toe up positive) at which ``sole`` was made; at others it is
+            ``rolled_clearance``.
+        typical_force: N, a load of the order to come: sets the scale of the asperity law.
+        reporting: Who hears of the steps.
 
-    Notes
-    -----
     The sole starts ``settings.start_film`` above the floor, unloaded. Cells are fixed to the sole:
     rolling by ``a`` from its map's angle a0 leaves them cos(a) / cos(a0) too long, refused beyond
     15 %.
@@ -175,27 +158,18 @@ class SlidingSole:
         0, speed from the value given at the first call), in as many inner steps as convergence
         asks for.
 
-        Parameters
-        ----------
-        duration
-            s.
-        normal_force
-            Load at the end, N; below 1e-3 of the largest so far it counts as that much: a foot
-            that lifts off is not followed.
-        speed
-            Sliding speed of the shoe along +x at the end, m/s; negative slides backward.
-        shoe_angle
-            At the end, rad; None keeps it.
-        longest_step
-            Longest inner step, s; None: the whole duration if it converges.
-        most_steps
-            Inner steps, rejected ones included; None for ``settings.most_time_steps``.
+        Parameters:
+            duration: s.
+            normal_force: Load at the end, N; below 1e-3 of the largest so far it counts as that
+                much: a foot that lifts off is not followed.
+            speed: Sliding speed of the shoe along +x at the end, m/s; negative slides backward.
+            shoe_angle: At the end, rad; None keeps it.
+            longest_step: Longest inner step, s; None: the whole duration if it converges.
+            most_steps: Inner steps, rejected ones included; None for ``settings.most_time_steps``.
 
-        Returns
-        -------
-        SoleState
-            Status NOT_CONVERGED and the last good instant (``time`` says which) when a step could
-            not be made small enough; the sole then stays there.
+        Returns:
+            SoleState: Status NOT_CONVERGED and the last good instant (``time`` says which) when a
+                step could not be made small enough; the sole then stays there.
         """
         check_demand(duration, normal_force, speed, shoe_angle)
         ramp = self._ramp(duration, normal_force, speed, shoe_angle)

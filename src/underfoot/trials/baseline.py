@@ -1,7 +1,5 @@
 """Baseline of an unloaded force plate and saturated samples: found, subtracted, said."""
 
-from __future__ import annotations
-
 import numpy as np
 
 SHEAR_WARNING = 2.0  # N; above it the required friction moves by more than about 0.01

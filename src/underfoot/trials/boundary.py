@@ -1,7 +1,5 @@
 """Boundary lubrication: adhesion and hysteresis apart (Eq. 22-25), what a fluid leaves (Eq. 26)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

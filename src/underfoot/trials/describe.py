@@ -1,7 +1,5 @@
 """What is in a measurement file and what was made of it, for people to check before they trust."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,10 +10,9 @@ import numpy as np
 
 from underfoot.core import InputError, unknown_name
 
-from .axes import Axes, DirectionSource, axes_of, axis_name, heel_candidates
+from .axes import LEVEL, Axes, DirectionSource, Ramp, axes_of, axis_name, heel_candidates
 from .gait import DEFINITIONS, RcofDefinition, RequiredFriction, required_frictions
 from .measurement import mean_of
-from .ramp import LEVEL, Ramp
 from .readers import Profile, read_profile, read_trials
 from .trial import Edit, Plate, Trial, joined
 

@@ -4,8 +4,6 @@
 friction by up to 0.02, so a filter is always named in full.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 

@@ -1,7 +1,5 @@
 """Classes of floors by what a machine reads: pendulum, ramps, tribometers."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from underfoot.core import unknown_name

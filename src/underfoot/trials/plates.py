@@ -1,7 +1,5 @@
 """Force plates: from analog channels (C3D types 1-4) to the force on the foot in lab axes."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from underfoot.core import DataError

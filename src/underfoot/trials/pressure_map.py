@@ -1,7 +1,5 @@
 """Slip tester with a pressure sensor in the floor: scans joined to a map, the load on the fluid."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Compression relaxation test: loading, hold and unloading found, forces of Eq. 13-16 read."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Slip risk against friction: logistic curves with confidence bands."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

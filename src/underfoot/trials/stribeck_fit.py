@@ -1,7 +1,5 @@
 """COF against sliding speed: Eq. 17 fitted, its uncertainty, and when it is not identified."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """COF of all fluids against viscosity times speed (the report's Figure 16)."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

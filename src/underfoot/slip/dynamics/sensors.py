@@ -1,7 +1,5 @@
 """Fluid-pressure sensors in the floor while a sole slides over them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol

@@ -1,7 +1,5 @@
 """A population on one floor: who slips, how fast, how far, and what sensors see."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -201,10 +199,8 @@ def slip_study(
     population, tested on ``held_out`` others, and run for everybody; with ``full`` everybody goes
     through the full model. Full slips are kept in the cache: a stopped study goes on.
 
-    Raises
-    ------
-    ConvergenceError
-        Too few full slips could be solved to fit to.
+    Raises:
+        ConvergenceError: Too few full slips could be solved to fit to.
     """
     array = array or FloorSensors()
     cache = cache or Cache(ROOM)

@@ -1,7 +1,5 @@
 """A person who takes a step, and a population of them."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 
@@ -25,42 +23,27 @@ BRAKE_TIME = 0.011
 class Walker:
     """One person's step onto the floor; SI.
 
-    Parameters
-    ----------
-    history
-        Load and shear ratio against time of a dry step.
-    mass
-        Of the body, kg.
-    rcof
-        Required coefficient of friction as measured over several steps, 0 to 1.
-    rcof_step
-        What this step asks more than ``rcof``, 1; the history's ratio is scaled to their sum.
-    heel_speed
-        Forward speed of the heel at contact, m/s.
-    shoe_angle
-        rad, toe up positive.
-    walking_speed
-        m/s; the history is stretched in time to it. None keeps its length.
-    effective_mass
-        Share of the body's mass that moves with the slipping heel, 1.
-    landing
-        Distance of the heel's rear end behind the first row of sensors at contact, m.
-    lateral
-        Place of the heel's centre line to the left of the sensors' middle column, m.
-    recorded_angle
-        Let the shoe angle fall as in the history (where it has one) instead of holding it.
-    heel_brake
-        How the body stops the landing heel: "recorded", as in the history (where its heel velocity
-        is known), "constant", with a time constant, or "none", not at all.
-    brake_time
-        That time constant, s.
-    weight_transfer
-        Share of the dry step's load that a slipping foot takes on, 0 to 1.
+    Parameters:
+        history: Load and shear ratio against time of a dry step.
+        mass: Of the body, kg.
+        rcof: Required coefficient of friction as measured over several steps, 0 to 1.
+        rcof_step: What this step asks more than ``rcof``, 1; the history's ratio is scaled to their
+            sum.
+        heel_speed: Forward speed of the heel at contact, m/s.
+        shoe_angle: rad, toe up positive.
+        walking_speed: m/s; the history is stretched in time to it. None keeps its length.
+        effective_mass: Share of the body's mass that moves with the slipping heel, 1.
+        landing: Distance of the heel's rear end behind the first row of sensors at contact, m.
+        lateral: Place of the heel's centre line to the left of the sensors' middle column, m.
+        recorded_angle: Let the shoe angle fall as in the history (where it has one) instead of
+            holding it.
+        heel_brake: How the body stops the landing heel: "recorded", as in the history (where its
+            heel velocity is known), "constant", with a time constant, or "none", not at all.
+        brake_time: That time constant, s.
+        weight_transfer: Share of the dry step's load that a slipping foot takes on, 0 to 1.
 
-    Raises
-    ------
-    InputError
-        A mass that is not positive, an RCOF outside 0 to 1, a negative heel speed.
+    Raises:
+        InputError: A mass that is not positive, an RCOF outside 0 to 1, a negative heel speed.
     """
 
     history: GaitHistory

@@ -1,7 +1,5 @@
 """Surface deflection under pressure: symbols of layers, coefficients of the half-space."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Exponential decays that are linear once their decay constant is fixed (variable projection)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

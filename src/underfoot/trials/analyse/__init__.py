@@ -1,20 +1,12 @@
 """Analysis of whole folders by a protocol."""
 
-from .file_result import ACCEPTED, CAUTION, REFUSED, FileResult
-from .folder import FolderAnalysis, analyse_folder
-from .study import Study, study_of
-from .study_tests import Finding
-from .tables import Table
-
-__all__ = [
-    "ACCEPTED",
-    "CAUTION",
-    "REFUSED",
-    "FileResult",
-    "Finding",
-    "FolderAnalysis",
-    "Study",
-    "Table",
-    "analyse_folder",
-    "study_of",
-]
+from .file_result import ACCEPTED as ACCEPTED
+from .file_result import CAUTION as CAUTION
+from .file_result import REFUSED as REFUSED
+from .file_result import FileResult as FileResult
+from .folder import FolderAnalysis as FolderAnalysis
+from .folder import analyse_folder as analyse_folder
+from .study import Study as Study
+from .study import study_of as study_of
+from .study_tests import Finding as Finding
+from .tables import Table as Table

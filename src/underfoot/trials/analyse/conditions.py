@@ -1,7 +1,5 @@
 """Which files of a folder are trials, and what the laboratory noted about each."""
 
-from __future__ import annotations
-
 import csv
 import io
 import os

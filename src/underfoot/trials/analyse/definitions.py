@@ -1,7 +1,5 @@
 """RCOF of a folder under every definition: what the choice does to the numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import reduce
 from pathlib import Path
@@ -11,8 +9,7 @@ import numpy as np
 from underfoot.core import Progress, UnderfootError, silent
 
 from ..axes import axes_of
-from ..edits import EditError
-from ..events import stances
+from ..events import EditError, stances
 from ..gait import DEFINITIONS, required_friction, stance_frictions
 from ..readers import Profile, read_trials
 from ..trial import Trial, joined

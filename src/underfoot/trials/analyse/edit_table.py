@@ -1,7 +1,5 @@
 """``edits.csv``: the edits by hand of a folder, read, written and logged."""
 
-from __future__ import annotations
-
 import csv
 import io
 from collections.abc import Sequence
@@ -10,7 +8,7 @@ from typing import Any
 
 from underfoot.core import InputError, nearest_match, to_si
 
-from ..edits import EditError
+from ..events import EditError
 from ..readers.text import is_number
 from ..trial import Edit
 from .conditions import named_file, table_columns

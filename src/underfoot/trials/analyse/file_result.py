@@ -22,29 +22,19 @@ MEAN_OF_STEPS = "mean of the steps"  # the item that stands for all steps of a f
 class FileResult:
     """Outcome of one file.
 
-    Parameters
-    ----------
-    file, checksum
-        Name and SHA-256.
-    verdict
-        "accepted", "caution" (read the reasons before using the numbers) or "refused".
-    reasons
-        Why, in words.
-    measurements
-        One entry per number: item (trial, step, sensor), then as ``Measurement.as_dict``.
-    main
-        The numbers that stand for the file in tables: name to SI value.
-    facts
-        What the rules were checked against.
-    curves
-        Series for figures, thinned.
-    conditions
-        What the laboratory noted about the file.
-    edits
-        The edit log: step, what, before, after, rcof before and after, why.
-    steps
-        One entry per contact with a plate: number, plate, side, contact, toe off, RCOF or the
-        reason of its rejection, verdict, flags, and the gait around it.
+    Parameters:
+        file, checksum: Name and SHA-256.
+        verdict: "accepted", "caution" (read the reasons before using the numbers) or "refused".
+        reasons: Why, in words.
+        measurements: One entry per number: item (trial, step, sensor), then as
+            ``Measurement.as_dict``.
+        main: The numbers that stand for the file in tables: name to SI value.
+        facts: What the rules were checked against.
+        curves: Series for figures, thinned.
+        conditions: What the laboratory noted about the file.
+        edits: The edit log: step, what, before, after, rcof before and after, why.
+        steps: One entry per contact with a plate: number, plate, side, contact, toe off, RCOF or
+            the reason of its rejection, verdict, flags, and the gait around it.
     """
 
     file: str

@@ -1,13 +1,11 @@
 """The methods paragraphs, written from what was done to each file and plate."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
+from ..events import CONTACT_FORCE
 from ..protocols import KINDS, Protocol
-from ..stance import CONTACT_FORCE
 from .file_result import CAUTION, MEAN_OF_STEPS, REFUSED, FileResult
 from .steps import protocol_ramp
 from .study import Study

@@ -1,7 +1,5 @@
 """Readings that a machine already made: pendulum, ramp, BOT-3000E, SlipAlert, English XL, GMG."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What a whole folder says: fits, maps, means and tests over its usable files."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any

@@ -1,7 +1,5 @@
 """C3D files: markers, analog channels, force plates and events as a trial."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from underfoot.core import DataError

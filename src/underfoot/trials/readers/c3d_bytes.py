@@ -5,8 +5,6 @@ whole process on some corrupt parameter sections and reads truncated files as if
 Every size is checked against the file before anything is allocated.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

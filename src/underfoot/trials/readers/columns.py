@@ -1,7 +1,5 @@
 """Plain tables (CSV, XLSX) as trials: columns by profile, or recognised by name."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 

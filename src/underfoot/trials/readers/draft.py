@@ -1,7 +1,5 @@
 """A trial in the making: what every reader fills, and the checks that readers share."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any

@@ -1,7 +1,5 @@
 """Pressure insoles as text: Pedar (novel) and F-Scan (Tekscan)."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

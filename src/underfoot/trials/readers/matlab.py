@@ -1,7 +1,5 @@
 """MATLAB files (.mat, version 5 and 7.3): exports of Qualisys, or named arrays."""
 
-from __future__ import annotations
-
 import pickle
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """Pose systems' JSON: body points in space over time (OpenPose, Theia, OpenCap and alike)."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from typing import Any

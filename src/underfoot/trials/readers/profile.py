@@ -1,7 +1,5 @@
 """Profile files: a small TOML that says what a laboratory's columns, axes and markers mean."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """CSV and XLSX as named columns: where the header is, which units, numbers or text."""
 
-from __future__ import annotations
-
 import io
 import warnings
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,7 +1,5 @@
 """Text measurement files: encoding, delimiter, decimal sign, tables with holes, unique names."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections import Counter

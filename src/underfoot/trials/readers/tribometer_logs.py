@@ -1,7 +1,5 @@
 """Logs of tribometers with several steps a file: CETR UMT and PCS Instruments (MTM, EHD)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..trial import Trial

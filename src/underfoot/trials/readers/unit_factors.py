@@ -4,8 +4,6 @@ A table instead of a unit library: files are read by the hundred, and the units 
 instruments write are few. Masses used as forces follow standard gravity, 9.80665 m/s^2.
 """
 
-from __future__ import annotations
-
 import math
 
 _GRAVITY = 9.80665

@@ -1,20 +1,13 @@
 """Made-up measurements with known truth, clearly synthetic, for trying out and testing."""
 
-from .c3d_file import NOTICE, walk_c3d
-from .folder import KINDS, simulated_folder, slip_truth
-from .tester import ScanTruth, scan_columns
-from .walk import Defects, SlipTruth, WalkRecording, walk_with_slip
-
-__all__ = [
-    "KINDS",
-    "NOTICE",
-    "Defects",
-    "ScanTruth",
-    "SlipTruth",
-    "WalkRecording",
-    "scan_columns",
-    "simulated_folder",
-    "slip_truth",
-    "walk_c3d",
-    "walk_with_slip",
-]
+from .c3d_file import NOTICE as NOTICE
+from .c3d_file import walk_c3d as walk_c3d
+from .folder import KINDS as KINDS
+from .folder import simulated_folder as simulated_folder
+from .folder import slip_truth as slip_truth
+from .tester import ScanTruth as ScanTruth
+from .tester import scan_columns as scan_columns
+from .walk import Defects as Defects
+from .walk import SlipTruth as SlipTruth
+from .walk import WalkRecording as WalkRecording
+from .walk import walk_with_slip as walk_with_slip

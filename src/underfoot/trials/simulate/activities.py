@@ -3,8 +3,6 @@
 Simple shapes with the forces, times and marker paths of textbooks; nobody moved here.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

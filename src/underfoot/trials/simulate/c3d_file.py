@@ -1,7 +1,5 @@
 """A small C3D writer for made-up recordings: markers, analog channels, type-2 force plates."""
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Mapping, Sequence
 

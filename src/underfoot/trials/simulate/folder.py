@@ -1,7 +1,5 @@
 """Folders of made-up measurements: files as a laboratory's, conditions, profile and the truth."""
 
-from __future__ import annotations
-
 import csv
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -57,18 +55,13 @@ def simulated_folder(
     Beside the trials: conditions.csv (what a laboratory notes), profile.toml, truth.csv and
     SYNTHETIC.txt. The same kind, count and seed give the same bytes.
 
-    Parameters
-    ----------
-    kind
-        A key of ``KINDS``.
-    count
-        Trials for "slips" and "relaxation"; persons for "study"; repeats of the whole series for
-        "pin_on_disk"; scans per shoe for "tester".
+    Parameters:
+        kind: A key of ``KINDS``.
+        count: Trials for "slips" and "relaxation"; persons for "study"; repeats of the whole series
+            for "pin_on_disk"; scans per shoe for "tester".
 
-    Errors
-    ------
-    InputError
-        Unknown kind; count below one.
+    Errors:
+        InputError: Unknown kind; count below one.
     """
     if kind not in _MAKERS:
         raise unknown_name("kind of data", kind, KINDS, where="simulate")

@@ -1,7 +1,5 @@
 """Made-up slip-tester slips over a pressure sensor, pin-on-disk runs and relaxation tests."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -4,8 +4,6 @@ The shapes are simple on purpose (raised cosines, Gaussians): they put events, s
 and pressures where the truth says, and nothing else in them is meant to be human.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise

@@ -1,79 +1,40 @@
 """Statistics of the field's studies, each test named with its convention."""
 
-from .design import Predictor, crossed, predictor
-from .fisher import ExactTest, fisher_exact
-from .linear import (
-    AdjustedMean,
-    AnovaRow,
-    AnovaTable,
-    Comparison,
-    LinearModel,
-    Subset,
-    all_subsets,
-    analysis_of_variance,
-    least_squares_means,
-    letters,
-    linear_model,
-    tukey_hsd,
-)
-from .logistic import (
-    ClusteredFit,
-    Coefficient,
-    LogisticFit,
-    Separation,
-    clustered_logistic,
-    logistic_regression,
-    separation,
-)
-from .mixed import (
-    MixedModel,
-    PersonMeans,
-    RepeatedMeasures,
-    independence_warning,
-    mixed_model,
-    person_means,
-    repeated_measures,
-)
-from .precision import OutlierTest, Precision, precision
-from .two_samples import Line, TTest, regression_line, t_test
-
-__all__ = [
-    "AdjustedMean",
-    "AnovaRow",
-    "AnovaTable",
-    "ClusteredFit",
-    "Coefficient",
-    "Comparison",
-    "ExactTest",
-    "Line",
-    "LinearModel",
-    "LogisticFit",
-    "MixedModel",
-    "OutlierTest",
-    "PersonMeans",
-    "Precision",
-    "Predictor",
-    "RepeatedMeasures",
-    "Separation",
-    "Subset",
-    "TTest",
-    "all_subsets",
-    "analysis_of_variance",
-    "clustered_logistic",
-    "crossed",
-    "fisher_exact",
-    "independence_warning",
-    "least_squares_means",
-    "letters",
-    "linear_model",
-    "logistic_regression",
-    "mixed_model",
-    "person_means",
-    "precision",
-    "predictor",
-    "regression_line",
-    "repeated_measures",
-    "separation",
-    "t_test",
-    "tukey_hsd",
-]
+from .design import Predictor as Predictor
+from .design import crossed as crossed
+from .design import predictor as predictor
+from .fisher import ExactTest as ExactTest
+from .fisher import fisher_exact as fisher_exact
+from .linear import AdjustedMean as AdjustedMean
+from .linear import AnovaRow as AnovaRow
+from .linear import AnovaTable as AnovaTable
+from .linear import Comparison as Comparison
+from .linear import LinearModel as LinearModel
+from .linear import Subset as Subset
+from .linear import all_subsets as all_subsets
+from .linear import analysis_of_variance as analysis_of_variance
+from .linear import least_squares_means as least_squares_means
+from .linear import letters as letters
+from .linear import linear_model as linear_model
+from .linear import tukey_hsd as tukey_hsd
+from .logistic import ClusteredFit as ClusteredFit
+from .logistic import Coefficient as Coefficient
+from .logistic import LogisticFit as LogisticFit
+from .logistic import Separation as Separation
+from .logistic import clustered_logistic as clustered_logistic
+from .logistic import logistic_regression as logistic_regression
+from .logistic import separation as separation
+from .mixed import MixedModel as MixedModel
+from .mixed import PersonMeans as PersonMeans
+from .mixed import RepeatedMeasures as RepeatedMeasures
+from .mixed import independence_warning as independence_warning
+from .mixed import mixed_model as mixed_model
+from .mixed import person_means as person_means
+from .mixed import repeated_measures as repeated_measures
+from .precision import OutlierTest as OutlierTest
+from .precision import Precision as Precision
+from .precision import precision as precision
+from .two_samples import Line as Line
+from .two_samples import TTest as TTest
+from .two_samples import regression_line as regression_line
+from .two_samples import t_test as t_test

@@ -1,7 +1,5 @@
 """Design matrices of linear models: factors in sum-to-zero coding, covariates, products."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -15,12 +13,9 @@ from underfoot.core import DataError, InputError, unknown_name
 class Predictor:
     """One explanatory variable: a factor (with levels) or a covariate (without).
 
-    Parameters
-    ----------
-    values
-        Shape (n,): level numbers of a factor, numbers of a covariate.
-    levels
-        Names of the levels; empty for a covariate.
+    Parameters:
+        values: Shape (n,): level numbers of a factor, numbers of a covariate.
+        levels: Names of the levels; empty for a covariate.
     """
 
     name: str
@@ -46,14 +41,10 @@ class Predictor:
 class Design:
     """Model matrix with its terms.
 
-    Parameters
-    ----------
-    matrix
-        Shape (n, p), the intercept first.
-    terms
-        Names such as ``"shoe"`` or ``"shoe:fluid"``, in order.
-    slices
-        Columns of each term.
+    Parameters:
+        matrix: Shape (n, p), the intercept first.
+        terms: Names such as ``"shoe"`` or ``"shoe:fluid"``, in order.
+        slices: Columns of each term.
     """
 
     matrix: np.ndarray
@@ -101,15 +92,11 @@ def predictor(
 
     Levels stand in the order of their first appearance, so that tables read as the data do.
 
-    Parameters
-    ----------
-    rows
-        Which values count, shape (n,) of bool; all by default.
+    Parameters:
+        rows: Which values count, shape (n,) of bool; all by default.
 
-    Raises
-    ------
-    InputError
-        A factor with one level, a covariate that is not finite or constant.
+    Raises:
+        InputError: A factor with one level, a covariate that is not finite or constant.
     """
     if isinstance(values, Predictor):
         if rows is None or rows.all():
@@ -142,10 +129,8 @@ def predictor(
 def design(predictors: Mapping[str, Predictor], terms: Sequence[str]) -> Design:
     """Return the model matrix of ``terms``, factors coded to sum to zero.
 
-    Raises
-    ------
-    InputError
-        A term names no predictor, or appears twice.
+    Raises:
+        InputError: A term names no predictor, or appears twice.
     """
     coded = {name: p.columns() for name, p in predictors.items()}
     matrices = [np.ones((len(next(iter(coded.values()))), 1))]

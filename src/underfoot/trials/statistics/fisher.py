@@ -50,10 +50,8 @@ def fisher_exact(table: Sequence[Sequence[int]] | np.ndarray) -> ExactTest:
     five seconds, p is the share of 100 000 random tables with the same margins (Patefield's
     algorithm, fixed seed), and ``p_error`` its standard error.
 
-    Raises
-    ------
-    InputError
-        Negative or broken counts, fewer than two filled rows or columns.
+    Raises:
+        InputError: Negative or broken counts, fewer than two filled rows or columns.
     """
     counts = np.asarray(table)
     if counts.ndim != 2 or (counts < 0).any() or not np.equal(np.mod(counts, 1), 0).all():

@@ -4,8 +4,6 @@ Least squares is that of statsmodels; designs are built here (``design``), becau
 packages reorder the terms of a type I analysis and drop empty cells in silence.
 """
 
-from __future__ import annotations
-
 import warnings as python_warnings
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
@@ -32,10 +30,8 @@ EXACT = 1e-18  # share of the variation left over below which a fit is exact, ro
 class FittedModel(ABC):
     """What comparisons need of a model.
 
-    Parameters
-    ----------
-    coefficients, covariance
-        Of the fixed effects, shapes (p,) and (p, p), sum-to-zero coding.
+    Parameters:
+        coefficients, covariance: Of the fixed effects, shapes (p,) and (p, p), sum-to-zero coding.
     """
 
     response_name: str
@@ -106,19 +102,16 @@ def linear_model(
 ) -> LinearModel:
     """Return the least-squares fit of a linear model.
 
-    Parameters
-    ----------
-    response
-        Shape (n,). Rows whose response is missing are left out and counted in ``warnings``.
-    predictors
-        Columns of length n: text makes a factor, numbers a covariate (see ``predictor``).
-    terms
-        For example ``("shoe", "fluid", "shoe:fluid")``; all crossed by default.
+    Parameters:
+        response: Shape (n,). Rows whose response is missing are left out and counted in
+            ``warnings``.
+        predictors: Columns of length n: text makes a factor, numbers a covariate (see
+            ``predictor``).
+        terms: For example ``("shoe", "fluid", "shoe:fluid")``; all crossed by default.
 
-    Raises
-    ------
-    DataError
-        Lengths differ, a constant response, or no degrees of freedom left for the residual.
+    Raises:
+        DataError: Lengths differ, a constant response, or no degrees of freedom left for the
+            residual.
     """
     y, built, warnings = model_data(response, predictors, terms, name)
     rank = int(np.linalg.matrix_rank(built.matrix))
@@ -238,17 +231,12 @@ def analysis_of_variance(
     as here. JMP, SPSS and SAS report type III. A covariate in an interaction is not centred: the
     factor's type III test is then about the covariate at zero, and a warning says so.
 
-    Parameters
-    ----------
-    response, predictors, terms
-        As for ``linear_model``.
-    ss_type
-        1, 2 or 3.
+    Parameters:
+        response, predictors, terms: As for ``linear_model``.
+        ss_type: 1, 2 or 3.
 
-    Raises
-    ------
-    InputError
-        Another type, or as for ``linear_model``.
+    Raises:
+        InputError: Another type, or as for ``linear_model``.
 
     Source: J. Fox, Applied Regression Analysis and Generalized Linear Models, ch. 8.
     """
@@ -317,10 +305,8 @@ def least_squares_means(model: FittedModel, factor: str) -> list[AdjustedMean]:
     Predictions on the grid of all levels, averaged with equal weights over the other factors,
     covariates at their mean. In unbalanced data they differ from the plain means of the groups.
 
-    Raises
-    ------
-    InputError
-        No such factor in the model.
+    Raises:
+        InputError: No such factor in the model.
     """
     rows, counts, levels = _mean_rows(model.design, factor)
     means = rows @ model.coefficients
@@ -338,12 +324,9 @@ def tukey_hsd(model: FittedModel, factor: str, *, confidence: float = 0.95) -> l
     the model (JMP and R's emmeans do the same; a one-way Tukey test on a factorial experiment
     uses another mean square). Exact when balanced, conservative otherwise.
 
-    Raises
-    ------
-    InputError
-        No such factor; a confidence outside 0 to 1.
-    DataError
-        The model leaves no scatter.
+    Raises:
+        InputError: No such factor; a confidence outside 0 to 1.
+        DataError: The model leaves no scatter.
     """
     from scipy.stats import studentized_range
 
@@ -433,10 +416,8 @@ def all_subsets(
     An ordinal variable enters as a factor (text; k - 1 parameters) or as a trend (numbers; one).
     The largest of many adjusted R^2 is optimistic: it was picked.
 
-    Raises
-    ------
-    InputError
-        More than ten predictors; otherwise as ``linear_model``.
+    Raises:
+        InputError: More than ten predictors; otherwise as ``linear_model``.
     """
     if len(predictors) > 10:
         raise InputError(f"{len(predictors)} predictors", where="predictors", allowed="ten at most")

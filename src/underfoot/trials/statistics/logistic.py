@@ -4,8 +4,6 @@ Maximum likelihood and estimating equations are those of statsmodels. Firth's pe
 intervals are ours: no maintained package has them, or converges on predictors as small as a COF.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
@@ -43,12 +41,9 @@ class Separation:
 def separation(matrix: np.ndarray, outcome: np.ndarray) -> Separation:
     """Return whether a direction b exists with X b >= 0 where y = 1 and <= 0 where y = 0.
 
-    Parameters
-    ----------
-    matrix
-        Shape (n, p) of full rank, intercept first.
-    outcome
-        Shape (n,), 0 or 1.
+    Parameters:
+        matrix: Shape (n, p) of full rank, intercept first.
+        outcome: Shape (n,), 0 or 1.
 
     Source: K. Konis, Linear programming algorithms for detecting separated data in binary
     logistic regression models, thesis, Oxford 2007.
@@ -167,22 +162,15 @@ def logistic_regression(
     answer and is refused; ``"firth"`` gives one. Predictors are scaled (and centred for the
     slopes) before iterating, so that predictors of the size of a COF converge.
 
-    Parameters
-    ----------
-    outcome
-        Shape (n,), 0 or 1 (1 = slip).
-    predictors
-        Numbers, each shape (n,).
-    method
-        ``"maximum_likelihood"`` or ``"firth"``.
+    Parameters:
+        outcome: Shape (n,), 0 or 1 (1 = slip).
+        predictors: Numbers, each shape (n,).
+        method: ``"maximum_likelihood"`` or ``"firth"``.
 
-    Raises
-    ------
-    DataError
-        Outcome not binary or all equal; missing values; separated data with maximum likelihood;
-        predictors that depend on each other.
-    ConvergenceError
-        The iteration did not settle.
+    Raises:
+        DataError: Outcome not binary or all equal; missing values; separated data with maximum
+            likelihood; predictors that depend on each other.
+        ConvergenceError: The iteration did not settle.
 
     Source: D. Firth, Biometrika 80 (1993) 27; G. Heinze, M. Schemper, Stat. Med. 21 (2002) 2409.
     """
@@ -341,19 +329,13 @@ def clustered_logistic(
     its bias-corrected form of Mancl and DeRouen; p uses the corrected error and t with
     (clusters - parameters) degrees of freedom.
 
-    Parameters
-    ----------
-    outcome, predictors
-        As for ``logistic_regression``.
-    cluster
-        Whom each row belongs to, shape (n,).
+    Parameters:
+        outcome, predictors: As for ``logistic_regression``.
+        cluster: Whom each row belongs to, shape (n,).
 
-    Raises
-    ------
-    DataError
-        Separated data, fewer clusters than needed, lengths differ.
-    ConvergenceError
-        The estimating equations did not settle.
+    Raises:
+        DataError: Separated data, fewer clusters than needed, lengths differ.
+        ConvergenceError: The estimating equations did not settle.
 
     Source: K.-Y. Liang, S. L. Zeger, Biometrika 73 (1986) 13; L. A. Mancl, T. A. DeRouen,
     Biometrics 57 (2001) 126.

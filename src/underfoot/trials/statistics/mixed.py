@@ -4,8 +4,6 @@ Trials of one person are alike. A test that takes them as independent finds diff
 not there; here every person counts once in each condition.
 """
 
-from __future__ import annotations
-
 import warnings as python_warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -47,10 +45,8 @@ def person_means(
 ) -> PersonMeans:
     """Return the mean of each person in each combination of levels; missing values are left out.
 
-    Raises
-    ------
-    DataError
-        Lengths differ, or nothing is left.
+    Raises:
+        DataError: Lengths differ, or nothing is left.
     """
     y = np.asarray(response, dtype=float)
     if any(len(column) != len(y) for column in (person, *factors.values())):
@@ -74,14 +70,12 @@ def person_means(
 class MixedModel(FittedModel):
     """Linear model of person means with a random intercept for each person (REML).
 
-    Parameters
-    ----------
-    person_sd, residual_sd
-        Standard deviations between persons, and of a person's mean in one condition about it.
-    within_df, between_df
-        Degrees of freedom of what varies within persons and of what only differs between them.
-    within
-        Factors of which at least one person has several levels.
+    Parameters:
+        person_sd, residual_sd: Standard deviations between persons, and of a person's mean in one
+            condition about it.
+        within_df, between_df: Degrees of freedom of what varies within persons and of what only
+            differs between them.
+        within: Factors of which at least one person has several levels.
     """
 
     person_sd: float
@@ -128,20 +122,14 @@ def mixed_model(
     of repeated measures (with two levels, the paired t test). Degrees of freedom: persons -
     parameters for what differs between persons, rows - persons - parameters within.
 
-    Parameters
-    ----------
-    response, person
-        Shape (n,), one row a trial.
-    factors
-        Columns of length n, as names.
-    terms
-        All crossed by default.
+    Parameters:
+        response, person: Shape (n,), one row a trial.
+        factors: Columns of length n, as names.
+        terms: All crossed by default.
 
-    Raises
-    ------
-    DataError
-        Fewer persons than the model needs; no person with two conditions and none repeated;
-        combinations of levels without a person.
+    Raises:
+        DataError: Fewer persons than the model needs; no person with two conditions and none
+            repeated; combinations of levels without a person.
 
     Source: J. C. Pinheiro, D. M. Bates, Mixed-Effects Models in S and S-PLUS, Springer 2000
     (degrees of freedom: section 2.4.2).
@@ -229,10 +217,8 @@ def repeated_measures(
 ) -> RepeatedMeasures:
     """Return the repeated-measures analysis of variance (statsmodels' AnovaRM) of person means.
 
-    Raises
-    ------
-    DataError
-        A person lacks a combination of levels: use ``mixed_model``.
+    Raises:
+        DataError: A person lacks a combination of levels: use ``mixed_model``.
 
     Source: S. W. Greenhouse, S. Geisser, Psychometrika 24 (1959) 95.
     """

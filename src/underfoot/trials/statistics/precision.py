@@ -1,7 +1,5 @@
 """Repeatability and reproducibility of a test method (ISO 5725-2), with its outlier tests."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -35,14 +33,12 @@ class OutlierTest:
 class Precision:
     """Precision of a method at one level.
 
-    Parameters
-    ----------
-    repeatability, reproducibility
-        Standard deviations s_r (same laboratory, operator, machine) and s_R (any of them).
-    between
-        Standard deviation s_L between laboratories.
-    outliers
-        Cochran's test of the largest variance, Grubbs' of the largest and the smallest mean.
+    Parameters:
+        repeatability, reproducibility: Standard deviations s_r (same laboratory, operator, machine)
+            and s_R (any of them).
+        between: Standard deviation s_L between laboratories.
+        outliers: Cochran's test of the largest variance, Grubbs' of the largest and the smallest
+            mean.
     """
 
     mean: float
@@ -72,15 +68,11 @@ def precision(readings: Mapping[str, Sequence[float] | np.ndarray]) -> Precision
     outliers are named, and whoever removes one says so. Operators or machines may stand in place
     of laboratories; s_R then means reproducibility over these.
 
-    Parameters
-    ----------
-    readings
-        Readings by laboratory, at least two laboratories, one of them with two readings.
+    Parameters:
+        readings: Readings by laboratory, at least two laboratories, one of them with two readings.
 
-    Raises
-    ------
-    DataError
-        Too few laboratories or readings, or missing values.
+    Raises:
+        DataError: Too few laboratories or readings, or missing values.
 
     Source: ISO 5725-2:1994, 7.3 and 7.4 (from memory, not verified against the text; the formulas
     reproduce the example of ASTM E691). Critical values are computed: Cochran's from F, Grubbs'

@@ -1,7 +1,5 @@
 """Two samples: t tests, each named in its result, and the straight line of y on x."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -46,10 +44,9 @@ def t_test(
 
     ``kind``: ``"welch"`` (default), ``"pooled"`` (JMP's default) or ``"paired"``.
 
-    Raises
-    ------
-    DataError
-        Fewer than two values, missing values, unequal lengths when paired, no scatter at all.
+    Raises:
+        DataError: Fewer than two values, missing values, unequal lengths when paired, no scatter at
+            all.
     """
     from scipy import stats
 
@@ -95,10 +92,8 @@ class Line:
 def regression_line(x: Sequence[float] | np.ndarray, y: Sequence[float] | np.ndarray) -> Line:
     """Return the least-squares line of y on x (the report's Figure 33).
 
-    Raises
-    ------
-    DataError
-        Fewer than three pairs, missing values, constant x or y.
+    Raises:
+        DataError: Fewer than three pairs, missing values, constant x or y.
     """
     from scipy import stats
 

@@ -1,7 +1,5 @@
 """Time stepping of the reduced slip: film height and foot speed, compiled."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

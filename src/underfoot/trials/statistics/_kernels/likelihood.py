@@ -1,7 +1,5 @@
 """Newton ascent of the logistic likelihood, plain or with Firth's penalty."""
 
-from __future__ import annotations
-
 import numpy as np
 
 
