@@ -306,10 +306,10 @@ def test_the_version_is_that_of_the_package(underfoot):
 
 
 def test_a_fault_of_the_program_is_told_without_a_traceback(underfoot, monkeypatch):
-    def broken(case, spacing):
+    def broken(case, *, quick):
         raise RuntimeError("a bug")
 
-    monkeypatch.setattr("underfoot.questions.check.cost", broken)
+    monkeypatch.setattr("underfoot.questions.check.run_cost", broken)
     found = underfoot("check", EXAMPLE)
     assert found.exit_code == 70
     assert "internal error: RuntimeError: a bug" in found.stderr
