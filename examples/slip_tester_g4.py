@@ -19,7 +19,9 @@ SMALL = 5.0
 def main(quick: bool = False) -> None:
     """Print one line for each condition."""
     entry = Catalogue.load().entry("published", "slip_tester_g4")
-    print("| shoe | fluid | report N | sensor N | under the sole N | peak by sensor kPa | COF, 95 % |")
+    print(
+        "| shoe | fluid | report N | sensor N | under the sole N | peak by sensor kPa | COF, 95 % |"
+    )
     print("|---|---|---|---|---|---|---|")
     for shoe in SHOES:
         for fluid in ("glycerol", "detergent"):

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.stats import norm
 
 from underfoot.case import Case
-from underfoot.compute.numbers import FILM_ERROR
+from underfoot.compute.numbers import FILM_ERROR, sole_name
 from underfoot.compute.resolve import resolved
 from underfoot.compute.run import run
 from underfoot.core import (
@@ -253,6 +253,7 @@ def _whole_cof(
         wet=fields["wet"].values,
         speed=case.motion.speed,
         film_error=FILM_ERROR,
+        sole=sole_name(case),
         samples=draws.count,
         seed=seed,
     )

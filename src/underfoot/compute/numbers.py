@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from underfoot.case import Case
-from underfoot.core import SourcedValue, Status, display
+from underfoot.core import SourcedValue, Status, content_hash, display
 from underfoot.film import SHARE_LIMITS, lubrication_by_load_share
 from underfoot.friction import FrictionCoefficients, SampledCof
 from underfoot.slip import RcofPopulation, SlipModel, SlipRisk, slip_risk
@@ -151,6 +151,12 @@ def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
 def _mean_pressure(contact: SoleContact) -> float:
     loaded = np.count_nonzero(contact.total_pressure > 0)
     return contact.normal_force / max(loaded * contact.spacing**2, contact.spacing**2)
+
+
+def sole_name(case: Case) -> str:
+    """Return a name of the geometry of the case's sole: cases of one sole share its film error."""
+    parts = tuple(f"shoe.{part}." for part in ("heel", "tread", "outsole", "sole", "wear"))
+    return content_hash([row[:2] for row in case.rows() if row[0].startswith(parts)])
 
 
 def readings(contact: SoleContact, sensor: SensorReading) -> dict[str, float]:

@@ -17,7 +17,6 @@ between the sources; they are the largest part of the interval.
 from __future__ import annotations
 
 import csv
-import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -32,6 +31,7 @@ from underfoot.core.arrays import Array
 from underfoot.core.checks import positive
 
 from .law import FrictionParts, UncertainInputs, checked, law_breaches, viscous_shear
+from .propagation import named_generator
 
 ROUGHNESS = 8.3e-6
 """Rq (m) of the pair at which ``kappa_0`` holds: the report's polyurethane pin on vinyl."""
@@ -132,7 +132,7 @@ class PairDraws:
         """
         if name in self.errors:
             return self.errors[name]
-        return deviation * _generator(seed, name).standard_normal(self.count)
+        return deviation * named_generator(seed, name).standard_normal(self.count)
 
     def columns(self) -> dict[str, Array]:
         """Return every array by name, as a file of draws has them."""
@@ -152,10 +152,6 @@ class PairDraws:
             table = csv.writer(stream, lineterminator="\n")
             table.writerow(columns)
             table.writerows([f"{x:.6g}" for x in row] for row in np.transpose([*columns.values()]))
-
-
-def _generator(seed: int, name: str) -> np.random.Generator:
-    return np.random.default_rng([seed, zlib.crc32(name.encode())])
 
 
 def _from_columns(columns: Mapping[str, Array], source: str) -> PairDraws:
@@ -226,7 +222,7 @@ class Pair:
         """Return draws (draws,) of the inputs of ``PairContactLaw``, by name."""
         numbers: dict[str, ArrayLike] = {"shore_a": self.shore_a}
         for name, (low, high) in zip(("sole_rq", "floor_rq"), self._rq, strict=True):
-            share = _generator(seed, f"{name} {low:.3g} {high:.3g}").random(draws.count)
+            share = named_generator(seed, f"{name} {low:.3g} {high:.3g}").random(draws.count)
             numbers[name] = low * (high / low) ** share
         if self.hysteresis is not None:
             numbers["hysteresis"] = self.hysteresis

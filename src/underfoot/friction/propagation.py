@@ -1,6 +1,7 @@
 """Uncertainty of a computed number from those of its inputs and of the model, by sampling."""
 
 import math
+import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -117,6 +118,11 @@ def propagated(
         draws=results,
         drawn=drawn,
     )
+
+
+def named_generator(seed: int, name: str) -> np.random.Generator:
+    """Return the generator of a cause: the same seed and name give the same numbers."""
+    return np.random.default_rng([seed, zlib.crc32(name.encode())])
 
 
 def _draws(

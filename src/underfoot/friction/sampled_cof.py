@@ -11,7 +11,7 @@ from underfoot.core import SourcedValue
 from underfoot.core.arrays import Array, Mask
 
 from .law import SMALLEST_FILM, FrictionLaw, FrictionParts
-from .propagation import Propagated, propagated
+from .propagation import Propagated, named_generator, propagated
 
 PARTS = ("adhesion", "hysteresis", "viscous")
 CLASSES = 64
@@ -66,6 +66,7 @@ def sampled_cof(
     wet: ArrayLike | None = None,
     fluid_inputs: Mapping[str, SourcedValue] | None = None,
     film_error: float = 0.0,
+    sole: str = "",
     contact_factor: ArrayLike = 1.0,
     suction: tuple[SourcedValue, float] | None = None,
     confidence: float = 0.95,
@@ -88,6 +89,7 @@ def sampled_cof(
         fluid_inputs: "viscosity" (Pa s) with its standard deviation; where it has none it counts as
             exact.
         film_error: Standard deviation of ln F / (W - F), 1; 0 takes the film load as exact.
+        sole: Name of the sole: its error of the film load is the same wherever the name is.
         contact_factor: On the contact friction of the law, (nx, ny), 1.
         suction: Highest suction behind edges (Pa, drawn between 0 and that of a vacuum), and the
             share of the contact friction that its value makes.
@@ -98,8 +100,11 @@ def sampled_cof(
     inputs = _inputs(law, fluid_inputs)
     if inputs is None:
         return None
+    joint = dict(_joint(law, samples, seed))
     if film_error and np.any(fluid_pressure):
         inputs[FILM] = SourcedValue(0.0, "1", "", film_error)
+        normal = named_generator(seed, f"{FILM} {sole}").standard_normal(samples)
+        joint[FILM] = film_error * normal
     pull, pull_share = suction or (None, 0.0)
     if pull is not None and pull.value and pull_share:
         inputs[SUCTION] = pull
@@ -142,7 +147,7 @@ def sampled_cof(
         samples=samples,
         seed=seed,
         shares=False,
-        joint=_joint(law, samples, seed),
+        joint=joint,
     )
     return SampledCof(
         *spread.draws.T,
