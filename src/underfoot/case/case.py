@@ -1,11 +1,9 @@
 """The case: shoe, floor, contaminant, motion and one option in each slot; frozen, with a hash."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Never
+from typing import Any, Never, Self
 
 from pydantic import ValidationError
 
@@ -51,22 +49,17 @@ class Case(Presentable):
     ``load`` (a TOML file) or from its parts; change one with ``replace``. Two cases are equal when
     their content is: ``name``, ``description`` and comments don't count.
 
-    Parameters
-    ----------
-    shoe, floor, contaminant, motion
-        Name of a catalogue entry, mapping (``{"from": "...", "speed": 0.5}``), or section.
-        Numbers are SI floats or text with a unit; ``contaminant="none"`` is a dry floor.
-    interface, hardness, rough_contact, film, compliance, friction, risk
-        Name of an option, mapping (``{"model": "constant", "cof": 0.5}``), or option.
-    numerics, sensor, slip, name, description
-        Further sections and text.
-    catalogue
-        To use instead of the package's own.
+    Parameters:
+        shoe, floor, contaminant, motion: Name of a catalogue entry, mapping (``{"from": "...",
+            "speed": 0.5}``), or section. Numbers are SI floats or text with a unit;
+            ``contaminant="none"`` is a dry floor.
+        interface, hardness, rough_contact, film, compliance, friction, risk: Name of an option,
+            mapping (``{"model": "constant", "cof": 0.5}``), or option.
+        numerics, sensor, slip, name, description: Further sections and text.
+        catalogue: To use instead of the package's own.
 
-    Raises
-    ------
-    CaseError
-        Everything that is wrong, each with its path.
+    Raises:
+        CaseError: Everything that is wrong, each with its path.
     """
 
     name: str
@@ -109,22 +102,17 @@ class Case(Presentable):
         *,
         catalogue: Catalogue | None = None,
         settings: Mapping[str, Any] | None = None,
-    ) -> Case:
+    ) -> Self:
         """Return the case in a TOML file.
 
-        Parameters
-        ----------
-        path
-            The file. A folder ``catalogue`` beside it and ``UNDERFOOT_CATALOGUE`` are read too.
-        catalogue
-            To use instead of those.
-        settings
-            Dotted paths and values that replace what the file says.
+        Parameters:
+            path: The file. A folder ``catalogue`` beside it and ``UNDERFOOT_CATALOGUE`` are read
+                too.
+            catalogue: To use instead of those.
+            settings: Dotted paths and values that replace what the file says.
 
-        Raises
-        ------
-        CaseError
-            Everything that is wrong with the file, each with its line.
+        Raises:
+            CaseError: Everything that is wrong with the file, each with its line.
         """
         path = Path(path)
         text = toml.read(path)
@@ -134,14 +122,14 @@ class Case(Presentable):
         return cls._from_text(text, catalogue, places, path.parent, settings or {})
 
     @classmethod
-    def from_text(cls, text: str, *, catalogue: Catalogue | None = None) -> Case:
+    def from_text(cls, text: str, *, catalogue: Catalogue | None = None) -> Self:
         """Return the case in a TOML text."""
         return cls._from_text(text, catalogue or Catalogue.load(), toml.Places(), Path.cwd(), {})
 
     @classmethod
     def from_mapping(
         cls, mapping: Mapping[str, Any], *, catalogue: Catalogue | None = None
-    ) -> Case:
+    ) -> Self:
         """Return the case in nested mappings, numbers as text with units as in a file."""
         return cls.from_text(toml.written(mapping), catalogue=catalogue)
 
@@ -153,7 +141,7 @@ class Case(Presentable):
         places: toml.Places,
         folder: Path,
         settings: Mapping[str, Any],
-    ) -> Case:
+    ) -> Self:
         mapping = toml.parsed(text, places.file)
         version = _version(mapping, places)
         mapping.pop("file_version", None)
@@ -243,7 +231,7 @@ class Case(Presentable):
     def __delattr__(self, name: str) -> Never:
         self.__setattr__(name, None)
 
-    def replace(self, path: str | Mapping[str, Any], value: Any = None, /) -> Case:
+    def replace(self, path: str | Mapping[str, Any], value: Any = None, /) -> Self:
         """Return a new case with one value changed, or several as a mapping.
 
         ``case.replace("contaminant.viscosity", "41 cP")`` or ``0.041`` (SI); None takes a key out,
@@ -297,12 +285,12 @@ class Case(Presentable):
                 changed[here] = value
         return changed
 
-    def model_copy(self, *, update: Mapping[str, Any] | None = None) -> Case:
+    def model_copy(self, *, update: Mapping[str, Any] | None = None) -> Self:
         """Return the case with other sections, as ``Case(**{**parts, **update})``."""
         parts = {name: getattr(self, name) for name in _SECTIONS}
         return type(self)(catalogue=self.catalogue, **{**parts, **(update or {})})
 
-    def __replace__(self, **changes: Any) -> Case:
+    def __replace__(self, **changes: Any) -> Self:
         return self.model_copy(update=changes)
 
     def save(self, path: Path | str, *, overwrite: bool = False) -> None:

@@ -1,7 +1,5 @@
 """From what a case gives and the catalogue to one complete tree of values with their origins."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Slot for the fluid on the floor: its viscosity as measured, or glycerol in water."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from typing import Annotated, ClassVar, Literal
 

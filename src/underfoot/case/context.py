@@ -23,16 +23,11 @@ if TYPE_CHECKING:
 class Context:
     """Materials and roughness of a case, each resolved once.
 
-    Attributes
-    ----------
-    modulus
-        Young's modulus of the outsole, Pa; ``modulus_breaches`` says what it leaves.
-    viscosity
-        Of the contaminant, Pa s; None on a dry floor.
-    rq
-        Rq of the interface, m; ``rq_deviation`` is its standard deviation over itself.
-    fluid
-        Name of the contaminant.
+    Attributes:
+        modulus: Young's modulus of the outsole, Pa; ``modulus_breaches`` says what it leaves.
+        viscosity: Of the contaminant, Pa s; None on a dry floor.
+        rq: Rq of the interface, m; ``rq_deviation`` is its standard deviation over itself.
+        fluid: Name of the contaminant.
     """
 
     shoe: Shoe

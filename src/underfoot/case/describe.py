@@ -1,7 +1,5 @@
 """A case in words: what was assumed, what leaves a tested range, what differs from another."""
 
-from __future__ import annotations
-
 from underfoot.core import display
 
 from .case import Case, value_text

@@ -1,7 +1,5 @@
 """All that is wrong with a case at once, each with its place in the file."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 

@@ -505,10 +505,8 @@ def read_friction_table(path: Path, where: str) -> tuple[list[dict[str, str | fl
     Columns ``speed`` and ``cof``; optional ``sd``, ``pressure``, ``viscosity``; units stand in the
     heading, as ``speed (m/s)``, else SI. A line ``# source: ...`` above says where they come from.
 
-    Raises
-    ------
-    InputError
-        No file, no table, a column missing, a value missing or negative.
+    Raises:
+        InputError: No file, no table, a column missing, a value missing or negative.
     """
     read = table_columns(path, COLUMNS, where, needed=("speed", "cof"), lowest=0.0)
     return as_written(read, COLUMNS), table_source(path)

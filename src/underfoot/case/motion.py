@@ -188,10 +188,8 @@ def read_motion_table(path: Path, where: str) -> list[dict[str, str | float]]:
     Columns ``time``, ``normal_force``, ``speed`` and, where the shoe turns, ``shoe_angle``; units
     stand in the heading, as ``time (ms)``, else SI.
 
-    Raises
-    ------
-    InputError
-        No file, no table, a column or value missing, fewer than two rows.
+    Raises:
+        InputError: No file, no table, a column or value missing, fewer than two rows.
     """
     read = table_columns(path, COLUMNS, where, needed=("time", "normal_force", "speed"))
     if read["time"].size < 2:

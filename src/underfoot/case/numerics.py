@@ -1,7 +1,5 @@
 """Section for grid, tolerance and limits of the computation."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from pydantic import Field

@@ -1,7 +1,5 @@
 """The sections of a case together, and their dotted paths."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any

@@ -1,7 +1,5 @@
 """Numbers with units as fields: text at the door, SI floats inside, ranges checked."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """The JSON Schema of case files: units, ranges in SI, defaults as text, catalogue entries."""
 
-from __future__ import annotations
-
 import json
 import typing
 from typing import Any

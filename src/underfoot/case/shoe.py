@@ -1,7 +1,5 @@
 """Sections for the shoe: compound, surface, shape or outsole file, tread, wear, layers."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal

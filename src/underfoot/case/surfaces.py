@@ -1,7 +1,5 @@
 """Sections for the roughness of sole and floor, and for the interface that both make."""
 
-from __future__ import annotations
-
 import math
 from abc import abstractmethod
 from collections.abc import Iterator

@@ -43,10 +43,8 @@ def plain(given: Any) -> Any:
 def with_checksum(table: dict[str, Any], key: str, folder: Path, where: str) -> dict[str, Any]:
     """Return the table with the full path under ``key`` and the checksum of that file.
 
-    Raises
-    ------
-    InputError
-        No such file, or another one than ``sha256`` of the table means.
+    Raises:
+        InputError: No such file, or another one than ``sha256`` of the table means.
     """
     from underfoot.core.files import checksum
 
@@ -81,10 +79,9 @@ def table_columns(
 ) -> dict[str, Array]:
     """Return the columns of a table in SI; units stand in a heading, as ``speed (mm/s)``.
 
-    Raises
-    ------
-    InputError
-        No file, no table, a column of ``needed`` missing, a value missing or below ``lowest``.
+    Raises:
+        InputError: No file, no table, a column of ``needed`` missing, a value missing or below
+            ``lowest``.
     """
     from underfoot.trials.readers.sheet import read_sheet
 

@@ -1,7 +1,5 @@
 """A new case file, commented for someone who has never seen one."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from pydantic.fields import FieldInfo
@@ -38,10 +36,8 @@ def template(
 ) -> str:
     """Return the text of a new case made of catalogue entries.
 
-    Errors
-    ------
-    InputError
-        A name that is not in the catalogue.
+    Errors:
+        InputError: A name that is not in the catalogue.
     """
     chosen = {"shoe": shoe, "floor": floor, "contaminant": contaminant, "motion": motion}
     titles = {}

@@ -1,7 +1,5 @@
 """Case files as text: read, change a value with its comments kept, write, and where keys stand."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 import tomllib

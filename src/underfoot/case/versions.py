@@ -1,7 +1,5 @@
 """Case files of version 1: their paths in version 2."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any
 

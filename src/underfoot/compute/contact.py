@@ -1,61 +1,52 @@
 """From the motion of a case to contact and film in time, and to histories of what they do."""
 
-from __future__ import annotations
-
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from underfoot.case import Case
+from underfoot.case.context import Context
 from underfoot.case.motion import SLOWEST
 from underfoot.core import Progress, SourcedValue, silent
+from underfoot.friction import FrictionLaw, cof
+from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
+from underfoot.shoe import SoleMap
+from underfoot.sole_contact import SensorReading, floor_sensor_reading
+from underfoot.sole_contact.compliance import Compliance
+from underfoot.sole_contact.cost import Cost, solution_cost
+from underfoot.sole_contact.lug_edges import EdgedLaw, lug_edges
+from underfoot.sole_contact.motion_history import solve_history
+from underfoot.sole_contact.reading import BLIND
+from underfoot.sole_contact.sensor_array import ArrayReading, SensorArray, array_reading
+from underfoot.sole_contact.sole_state import SoleState, SolverSettings
+from underfoot.sole_contact.solver import SoleContact, solve_sliding
 
 from .sole import file_sole_map
-
-if TYPE_CHECKING:
-    from underfoot.case.context import Context
-    from underfoot.friction import FrictionLaw
-    from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
-    from underfoot.shoe import SoleMap
-    from underfoot.sole_contact import SensorReading
-    from underfoot.sole_contact.compliance import Compliance
-    from underfoot.sole_contact.cost import Cost
-    from underfoot.sole_contact.lug_edges import EdgedLaw
-    from underfoot.sole_contact.sensor_array import ArrayReading
-    from underfoot.sole_contact.sole_state import SoleState, SolverSettings
-    from underfoot.sole_contact.solver import SoleContact
 
 READ_STEPS = 24
 """Instants, spread over the time steps, at which the scans are read for a history."""
 FILM_WORTH_SEEING = 0.01
 """Share of the load on the film below which no caution about the sensor is given."""
+COF_WORDS = {
+    "cof": "coefficient of friction",
+    "cof_adhesion": "adhesion part of COF",
+    "cof_hysteresis": "hysteresis part of COF",
+    "cof_viscous": "viscous part of COF",
+}
 READ_OFFSETS = 3
 """Lateral places over which such a reading is averaged."""
 
 
 def cost(case: Case, spacing: float) -> Cost:
     """Return what solving the case on cells of ``spacing`` (m) will take."""
-    from underfoot.sole_contact.cost import solution_cost
-
     if case.shoe.heel is None:
         area = file_sole_map(case, case.numerics.quick_grid_spacing).plan_area
     else:
         area = case.shoe.heel.length * case.shoe.heel.width
     return solution_cost(area, spacing)
-
-
-def refuse_too_large(case: Case, spacing: float, where: str) -> None:
-    """Refuse a grid that would take more memory than the case allows."""
-    from underfoot.sole_contact.cost import refuse_too_large
-
-    refuse_too_large(
-        cost(case, spacing),
-        most_memory=case.numerics.most_memory,
-        where=where,
-        spacing=spacing,
-    )
 
 
 def pool_depth(case: Case) -> float:
@@ -65,8 +56,6 @@ def pool_depth(case: Case) -> float:
 
 def solver_settings(case: Case) -> SolverSettings:
     """Return how the contact of the case is solved."""
-    from underfoot.sole_contact.sole_state import SolverSettings
-
     motion = case.motion
     return SolverSettings(
         pool_depth=pool_depth(case),
@@ -85,40 +74,26 @@ def solved_motion(
     asperities: PressureGapLaw,
     *,
     viscosity: float | None,
-    watch: Recorder | None = None,
+    watch: Callable[[SoleState], None] | None = None,
     progress: Progress = silent,
 ) -> SoleContact:
     """Return contact and film at the end of the case's motion."""
-    from underfoot.sole_contact.motion_history import solve_history
-    from underfoot.sole_contact.solver import solve_sliding
-
-    motion, history = case.motion, case.motion.build()
+    motion, history, parts = case.motion, case.motion.build(), (sole, compliance, asperities)
     common: dict[str, Any] = {
         "viscosity": viscosity,
         "settings": solver_settings(case),
         "progress": progress,
         "watch": watch,
     }
-    if history is None:
-        return solve_sliding(
-            sole,
-            compliance,
-            asperities,
-            speed=motion.speed,
-            normal_force=motion.normal_force,
-            **common,
-        )
-    return solve_history(
-        sole, compliance, asperities, history, map_angle=motion.shoe_angle, **common
-    )
+    if history is not None:
+        return solve_history(*parts, history, map_angle=motion.shoe_angle, **common)
+    return solve_sliding(*parts, speed=motion.speed, normal_force=motion.normal_force, **common)
 
 
 def edged_law(
     case: Case, context: Context, law: FrictionLaw, sole: SoleMap, asperities: PressureGapLaw
 ) -> EdgedLaw | None:
     """Return the law with what the edges of lugs do; None without lugs or without a film."""
-    from underfoot.sole_contact.lug_edges import EdgedLaw, lug_edges
-
     viscosity, film = context.viscosity_value, case.film
     if viscosity is None or not getattr(film, "lug_edges", False):
         return None
@@ -142,28 +117,18 @@ class Recorder:
     sensor_peak: list[float] = field(default_factory=list)
     times: list[float] = field(default_factory=list)
     places: list[float] = field(default_factory=list)
-    array_frames: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
+    array_frames: list[tuple[np.ndarray, ...]] = field(default_factory=list)
     _last_read: float = -math.inf
     _array: ArrayReading | None = None
 
     def __call__(self, state: SoleState) -> None:
         """Take down one state."""
-        from underfoot.friction import cof
-
         speed = max(abs(state.speed), SLOWEST)
-        found = cof(
-            self.law(
-                contact_pressure=state.contact_pressure,
-                speed=speed,
-                film_thickness=state.film_thickness,
-            ),
-            state.contact_pressure,
-            state.fluid_pressure,
-            spacing=state.spacing,
-            wet=state.wet,
-        )
-        for name in ("cof", "cof_adhesion", "cof_hysteresis", "cof_viscous"):
-            value = getattr(found, name).value
+        shear = self.law(state.contact_pressure, speed, state.film_thickness)
+        pressures = state.contact_pressure, state.fluid_pressure
+        friction = cof(shear, *pressures, spacing=state.spacing, wet=state.wet)
+        for name in COF_WORDS:
+            value = getattr(friction, name).value
             self.cof.setdefault(name, []).append(math.nan if value is None else value)
         before = self.times[-1] if self.times else 0.0
         place = self.places[-1] if self.places else 0.0
@@ -185,17 +150,11 @@ class Recorder:
             self._last_read = state.time
         if self.case.sensor.array is not None:
             # single precision: the frames of a whole history are kept
-            self.array_frames.append(
-                (
-                    state.fluid_pressure.astype(np.float32),
-                    state.film_thickness.astype(np.float32),
-                )
-            )
+            maps = state.fluid_pressure, state.film_thickness
+            self.array_frames.append(tuple(each.astype(np.float32) for each in maps))
 
     def array(self) -> ArrayReading | None:
         """Return what the array in the floor saw; None where the case has none."""
-        from underfoot.sole_contact.sensor_array import SensorArray, array_reading
-
         array = self.case.sensor.array
         if self._array is not None or array is None or len(self.times) < 2:
             return self._array
@@ -203,13 +162,14 @@ class Recorder:
         if position is None:
             middle = float(self.sole.x[self.sole.inside.any(axis=1)].mean())
             position = self.places[-1] + middle - (array.rows - 1) * array.spacing / 2
+        pressures, films = (list(maps) for maps in zip(*self.array_frames, strict=True))
         self._array = array_reading(
             self.sole.x,
             self.sole.y,
             np.array(self.times),
             np.array(self.places),
-            [frame[0] for frame in self.array_frames],
-            [frame[1] for frame in self.array_frames],
+            pressures,
+            films,
             SensorArray(array.rows, array.columns, array.spacing, array.inlet_diameter, position),
             compliance=self.case.sensor.compliance if self.viscosity else 0.0,
             viscosity=self.viscosity or 0.0,
@@ -229,8 +189,6 @@ def scanned(
     case: Case, sole: SoleMap, state: SoleState, *, viscosity: float | None, offsets: int = 11
 ) -> SensorReading:
     """Return what the scans of the case read under one state."""
-    from underfoot.sole_contact import floor_sensor_reading
-
     return floor_sensor_reading(
         sole.x,
         sole.y,
@@ -248,8 +206,6 @@ def scanned(
 
 def blind_sensor(case: Case, reading: SensorReading, state: SoleState) -> str:
     """Return the caution about an inlet that cannot see the film; empty where it can."""
-    from underfoot.sole_contact.reading import BLIND
-
     if reading.seen >= BLIND or state.fluid_load < FILM_WORTH_SEEING * (
         state.fluid_load + state.contact_load
     ):
@@ -283,14 +239,8 @@ def history_fields(
             recorder.sensor_peak, "Pa", "highest reading of the scans, nan where not read"
         ),
     }
-    words = {
-        "cof": "coefficient of friction",
-        "cof_adhesion": "adhesion part of COF",
-        "cof_hysteresis": "hysteresis part of COF",
-        "cof_viscous": "viscous part of COF",
-    }
     for name, values in recorder.cof.items():
-        variables[f"{name}_history"] = in_time(values, "1", words[name])
+        variables[f"{name}_history"] = in_time(values, "1", COF_WORDS[name])
     coordinates = {"time": in_time(history.time, "s", "time")}
     read = recorder.array()
     if read is not None:

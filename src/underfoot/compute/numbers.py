@@ -1,22 +1,18 @@
 """The named numbers of a result, each with its spread or the reason why there is none."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from underfoot.case import Case
 from underfoot.core import SourcedValue, Status, display
-
-if TYPE_CHECKING:
-    from underfoot.friction import FrictionCoefficients, SampledCof
-    from underfoot.slip import SlipModel, SlipRisk
-    from underfoot.sole_contact import SensorReading
-    from underfoot.sole_contact.solver import SoleContact
+from underfoot.film import SHARE_LIMITS, lubrication_by_load_share
+from underfoot.friction import FrictionCoefficients, SampledCof
+from underfoot.slip import RcofPopulation, SlipModel, SlipRisk, slip_risk
+from underfoot.sole_contact import SensorReading
+from underfoot.sole_contact.solver import SoleContact
 
 _NOT_ESTIMATED = "heel shape and interface roughness dominate; their spread is not propagated yet"
 CONTACT_SHARE = 1e-3
@@ -61,8 +57,6 @@ def scalars(
     model: SlipModel | None = None,
 ) -> tuple[dict[str, SourcedValue], SlipRisk]:
     """Return the numbers of a result by name, and the slip risk behind one of them."""
-    from underfoot.slip import RcofPopulation, slip_risk
-
     mean, spread = case.sourced("risk.rcof_mean"), case.sourced("risk.rcof_sd")
     # the case itself lists an assumed required friction, so the risk need not do so again
     risk = slip_risk(
@@ -129,8 +123,6 @@ def undetermined(case: Case, status: Status) -> dict[str, SourcedValue]:
 
 def regime(share: float) -> dict[str, str]:
     """Return the lubrication regime by the share of the load that the fluid carries."""
-    from underfoot.film import SHARE_LIMITS, lubrication_by_load_share
-
     low, high = SHARE_LIMITS
     name = lubrication_by_load_share(min(max(share, 0.0), 1.0))
     return {

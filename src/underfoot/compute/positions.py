@@ -1,31 +1,26 @@
 """A tread, not one position of it: the answer averaged over where its lugs happen to lie."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from underfoot.case import Case
 from underfoot.core import ConvergenceError, Progress, SourcedValue, display, silent
 from underfoot.core.arrays import Array
+from underfoot.friction import FrictionCoefficients, FrictionLaw, SampledCof, cof
+from underfoot.shoe import SoleMap, Tread
+from underfoot.sole_contact.cost import Cost
+from underfoot.sole_contact.lug_edges import EdgedLaw
+from underfoot.sole_contact.solver import SoleContact
 
 from .contact import cost, scanned
 from .numbers import scalars
 
-if TYPE_CHECKING:
-    from underfoot.friction import FrictionCoefficients, FrictionLaw, SampledCof
-    from underfoot.shoe import SoleMap, Tread
-    from underfoot.sole_contact.cost import Cost
-    from underfoot.sole_contact.lug_edges import EdgedLaw
-    from underfoot.sole_contact.solver import SoleContact
-
 ANGLE_BAND = math.radians(1)
 """Change of the shoe angle at some of the positions, rad; assumed."""
-PARTS = ("adhesion", "hysteresis", "viscous")
 TOLERANCE = 1e-3
 """Tolerance at the positions, a fifth faster than 1e-4: it moves loads by 0.1 %."""
 HELD = "spread of the friction law, its inputs and the position of the tread"
@@ -43,16 +38,11 @@ class Place:
 class TreadPositions:
     """Numbers of a run at some positions of the tread, the case's own first.
 
-    Attributes
-    ----------
-    places
-        Of the pattern and the shoe.
-    values
-        Name of a result's scalar: its value at each place, SI, on the grid of the run.
-    left_out
-        Number of positions that did not converge.
-    coarse
-        Sole and contact at the case's own place on the quick grid, where they were solved.
+    Attributes:
+        places: Of the pattern and the shoe.
+        values: Name of a result's scalar: its value at each place, SI, on the grid of the run.
+        left_out: Number of positions that did not converge.
+        coarse: Sole and contact at the case's own place on the quick grid, where they were solved.
     """
 
     places: tuple[Place, ...]
@@ -262,16 +252,9 @@ def _numbers(
     viscosity: float | None,
 ) -> dict[str, float]:
     """Return the numbers of a result that depend on where the tread lies."""
-    from underfoot.friction import cof
-
-    speed, film = case.motion.speed, contact.film_thickness
-    friction = cof(
-        law(contact.contact_pressure, speed, film),
-        contact.contact_pressure,
-        contact.fluid_pressure,
-        spacing=sole.spacing,
-        wet=contact.wet,
-    )
+    shear = law(contact.contact_pressure, case.motion.speed, contact.film_thickness)
+    pressures = contact.contact_pressure, contact.fluid_pressure
+    friction = cof(shear, *pressures, spacing=sole.spacing, wet=contact.wet)
     numbers, _ = scalars(case, contact, friction, scanned(case, sole, contact, viscosity=viscosity))
     fixed = ("normal_force", "slip_probability")
     return {

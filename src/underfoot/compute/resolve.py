@@ -1,7 +1,5 @@
 """Materials and roughness of a case, resolved once: the context that options build from."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from underfoot.case import Case

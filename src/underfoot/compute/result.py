@@ -31,26 +31,17 @@ class IncompleteOutput(UserWarning):
 class Result(Presentable):
     """A finished computation of one case.
 
-    Attributes
-    ----------
-    name
-        Name of the case.
-    scalars
-        Named values in SI with uncertainty (or the reason for its absence) and "assumed" marks.
-    labels
-        Named words, such as the lubrication regime.
-    fields
-        Maps and histories as a labelled data set, CF-style names and units.
-    status
-        How the computation ended; anything not ``usable`` is not a result.
-    breaches
-        Inputs outside the range on which a closure was tested, in words.
-    assumptions
-        What no measurement or publication stands behind, in words.
-    provenance
-        Case hash, versions, closures, citations, errata and timings.
-    case_text
-        The complete case as TOML.
+    Attributes:
+        name: Name of the case.
+        scalars: Named values in SI with uncertainty (or the reason for its absence) and "assumed"
+            marks.
+        labels: Named words, such as the lubrication regime.
+        fields: Maps and histories as a labelled data set, CF-style names and units.
+        status: How the computation ended; anything not ``usable`` is not a result.
+        breaches: Inputs outside the range on which a closure was tested, in words.
+        assumptions: What no measurement or publication stands behind, in words.
+        provenance: Case hash, versions, closures, citations, errata and timings.
+        case_text: The complete case as TOML.
     """
 
     kind: ClassVar[str] = "result"
@@ -219,10 +210,8 @@ class Result(Presentable):
     def load(cls, folder: Path | str) -> Result:
         """Read a result folder back.
 
-        Raises
-        ------
-        DataError
-            The folder is no result, is damaged or was written by a newer version.
+        Raises:
+            DataError: The folder is no result, is damaged or was written by a newer version.
         """
         import xarray
 

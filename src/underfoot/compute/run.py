@@ -1,19 +1,17 @@
 """From a case to its result."""
 
-from __future__ import annotations
-
 import re
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from itertools import chain
+from typing import Any
 
 import numpy as np
+import xarray
 
 from underfoot.case import Case, Option, assumptions
 from underfoot.core import (
-    Breach,
     InputError,
     Progress,
     Provenance,
@@ -22,13 +20,21 @@ from underfoot.core import (
     silent,
     unknown_name,
 )
+from underfoot.friction import FrictionLaw, cof, sampled_cof
+from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
+from underfoot.shoe import SoleMap
+from underfoot.sole_contact import SensorReading
+from underfoot.sole_contact.cost import refuse_too_large
+from underfoot.sole_contact.edge_peak import peak_pressure
+from underfoot.sole_contact.lug_edges import EdgedLaw
+from underfoot.sole_contact.solver import SoleContact
 
 from .contact import (
     Recorder,
     blind_sensor,
+    cost,
     edged_law,
     history_fields,
-    refuse_too_large,
     scanned,
     solved_motion,
 )
@@ -49,14 +55,6 @@ from .resolve import resolved, turned
 from .result import Result
 from .sole import compression_breaches, outsole_notes, sole_map
 
-if TYPE_CHECKING:
-    import xarray
-
-    from underfoot.friction import FrictionLaw
-    from underfoot.shoe import SoleMap
-    from underfoot.sole_contact import SensorReading
-    from underfoot.sole_contact.solver import SoleContact
-
 OBJECTS = ("friction", "rough_contact", "compliance", "risk")
 """Slots that take an object of physics in place of an option."""
 
@@ -64,39 +62,29 @@ OBJECTS = ("friction", "rough_contact", "compliance", "risk")
 def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objects: Any) -> Result:
     """Return the friction of a case with everything that explains it.
 
-    Parameters
-    ----------
-    case
-        What to compute.
-    quick
-        Use the coarse grid of the case: a first look.
-    progress
-        Receives stage, fraction and residual; an exception it raises stops the work.
-    objects
-        Slot: what to take in place of the case's option. An option, its name or a mapping changes
-        the case; an object of physics is used as it is: ``friction`` a ``FrictionLaw``,
-        ``rough_contact`` a ``PressureGapLaw``, ``compliance`` a ``Compliance`` on the grid of the
-        run, ``risk`` a ``SlipModel``. ``viscosity`` takes Pa s or text. The result names such
-        objects, and its hash holds them.
+    Parameters:
+        case: What to compute.
+        quick: Use the coarse grid of the case: a first look.
+        progress: Receives stage, fraction and residual; an exception it raises stops the work.
+        objects: Slot: what to take in place of the case's option. An option, its name or a mapping
+            changes the case; an object of physics is used as it is: ``friction`` a ``FrictionLaw``,
+            ``rough_contact`` a ``PressureGapLaw``, ``compliance`` a ``Compliance`` on the grid of
+            the run, ``risk`` a ``SlipModel``. ``viscosity`` takes Pa s or text. The result names
+            such objects, and its hash holds them.
 
-    Raises
-    ------
-    InputError
-        A case whose parts don't fit together on this grid, a slot that is none.
-    ConvergenceError
-        Not even the first contact could be solved.
+    Raises:
+        InputError: A case whose parts don't fit together on this grid, a slot that is none.
+        ConvergenceError: Not even the first contact could be solved.
     """
-    import_module("xarray")  # if it is missing, the run stops before the work, not after it
-
-    from underfoot.friction import cof, sampled_cof
-    from underfoot.sole_contact.edge_peak import peak_pressure
-    from underfoot.sole_contact.lug_edges import EdgedLaw
-
     case, own = _with_objects(case, objects)
     started = time.perf_counter()
     spacing = case.numerics.quick_grid_spacing if quick else case.numerics.grid_spacing
-    named = "numerics.quick_grid_spacing" if quick else "numerics.grid_spacing"
-    refuse_too_large(case, spacing, named)
+    refuse_too_large(
+        cost(case, spacing),
+        most_memory=case.numerics.most_memory,
+        where="numerics.quick_grid_spacing" if quick else "numerics.grid_spacing",
+        spacing=spacing,
+    )
     context = resolved(case, progress)
     law = own.get("friction") or case.friction.build(context)
     slip = own.get("risk") or case.risk.build()
@@ -111,17 +99,11 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
     local_law = on_sole(sole)
     recorder = Recorder(case, local_law, sole, viscosity)
     prepared = time.perf_counter()
-    contact = solved_motion(
-        case,
-        sole,
-        compliance,
-        asperities,
-        viscosity=viscosity,
-        watch=recorder,
-        progress=progress,
-    )
+    common: dict[str, Any] = {"viscosity": viscosity, "progress": progress}
+    contact = solved_motion(case, sole, compliance, asperities, watch=recorder, **common)
     solved = time.perf_counter()
     speed = case.motion.speed
+    pressures = contact.contact_pressure, contact.fluid_pressure
     local = {
         "contact_pressure": contact.contact_pressure,
         "speed": speed,
@@ -135,8 +117,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         suction = pull, lugs.suction_share(parts)
     sampled = sampled_cof(
         law,
-        contact.contact_pressure,
-        contact.fluid_pressure,
+        *pressures,
         contact.film_thickness,
         speed=speed,
         wet=contact.wet,
@@ -148,8 +129,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
     )
     friction = cof(
         parts,
-        contact.contact_pressure,
-        contact.fluid_pressure,
+        *pressures,
         spacing=sole.spacing,
         wet=contact.wet,
         sampled=sampled,
@@ -168,16 +148,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
     positions = None
     if contact.status.usable:
         if "compliance" not in own:
-            positions = tread_positions(
-                case,
-                on_sole,
-                sole,
-                contact,
-                solved_quick,
-                viscosity=viscosity,
-                quick=quick,
-                progress=progress,
-            )
+            at = (case, on_sole, sole, contact, solved_quick)
+            positions = tread_positions(*at, quick=quick, **common)
         solved = time.perf_counter()
         if positions:
             friction, sampled = positions.friction(friction, sampled)
@@ -186,17 +158,15 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         if positions:
             numbers = positions.averaged(numbers)
         share = (numbers["fluid_load"].value or 0.0) / contact.normal_force
-        labels = {**regime(share), **spread_origin(sampled)}
-        if lugs is not None:
-            labels["lug_edges"] = lugs.words()
-        if basis := getattr(law, "spread_basis", ""):
-            labels["cof_spread_basis"] = basis
-        if positions:
-            labels |= positions.labels()
-        if remark := peak_pressure(sole, contact.total_pressure).remark:
-            labels["edge_peak"] = remark
-        if remark := blind_sensor(case, sensor, contact):
-            labels["sensor"] = remark
+        remarks = {
+            "lug_edges": "" if lugs is None else lugs.words(),
+            "cof_spread_basis": getattr(law, "spread_basis", ""),
+            **(positions.labels() if positions else {}),
+            "edge_peak": peak_pressure(sole, contact.total_pressure).remark,
+            "sensor": blind_sensor(case, sensor, contact),
+        }
+        labels = regime(share) | spread_origin(sampled)
+        labels |= {name: remark for name, remark in remarks.items() if remark}
         coarse_spacing = case.numerics.quick_grid_spacing
         if case.numerics.grid_check and not quick and coarse_spacing > spacing:
             if "compliance" in own:
@@ -240,21 +210,14 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             None if sampled is None else sampled.cof,
         ).assign(positions.fields() if positions else {}),
         status=status,
-        breaches=_texts(breaches),
-        assumptions=tuple(
-            dict.fromkeys(
-                (
-                    *assumptions(case),
-                    *outsole_notes(case),
-                    *law.assumptions,
-                    *(risk.assumptions if risk else ()),
-                    *(positions.assumptions() if positions else ()),
-                    *(
-                        f"{slot}: an object given to run, {text}"
-                        for slot, text in identities.items()
-                    ),
-                )
-            )
+        breaches=_unique(map(str, breaches)),
+        assumptions=_unique(
+            assumptions(case),
+            outsole_notes(case),
+            law.assumptions,
+            risk.assumptions if risk else (),
+            positions.assumptions() if positions else (),
+            (f"{slot}: an object given to run, {text}" for slot, text in identities.items()),
         ),
         provenance=Provenance.now(
             content_hash(case.hash, identities)[:32] if identities else case.hash,
@@ -267,17 +230,15 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
                 "slip": slip.name if "risk" in own else case.risk.name,
                 "grid": f"{spacing * 1e3:g} mm",
             },
-            citations=tuple(
-                dict.fromkeys(
-                    (
-                        law.source,
-                        asperities.source,
-                        context.modulus.source,
-                        numbers["slip_probability"].source,
-                    )
-                )
+            citations=_unique(
+                each.source
+                for each in (law, asperities, context.modulus, numbers["slip_probability"])
             ),
-            errata=_errata(case),
+            errata=tuple(
+                f"{path}: {origin.leaf.erratum}"
+                for path, origin in case.origins.items()
+                if origin.leaf.erratum
+            ),
             timings={
                 "preparation_s": prepared - started,
                 "solution_s": solved - prepared,
@@ -291,9 +252,6 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
 
 def _with_objects(case: Case, objects: Mapping[str, Any]) -> tuple[Case, dict[str, Any]]:
     """Return the case with the options among the objects, and the objects of physics."""
-    from underfoot.friction import FrictionLaw
-    from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
-
     own: dict[str, Any] = {}
     for slot, item in objects.items():
         if slot == "viscosity":
@@ -326,17 +284,8 @@ def _identity(item: Any) -> str:
     return f"{cls}: {text}"
 
 
-def _texts(breaches: list[Breach]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(str(breach) for breach in breaches))
-
-
-def _errata(case: Case) -> tuple[str, ...]:
-    """Return the notes on printed values that the case uses in corrected form."""
-    return tuple(
-        f"{path}: {origin.leaf.erratum}"
-        for path, origin in case.origins.items()
-        if origin.leaf.erratum
-    )
+def _unique(*texts: Iterable[str]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(chain(*texts)))
 
 
 def _fields(
@@ -347,12 +296,10 @@ def _fields(
     in_time: tuple[dict[str, Any], dict[str, Any]],
     draws: np.ndarray | None,
 ) -> xarray.Dataset:
-    import xarray
-
     def on_sole(values: object, unit: str, name: str) -> tuple[tuple[str, str], object, dict]:
         return (("x", "y"), values, {"units": unit, "long_name": name})
 
-    histories, times = in_time
+    (histories, times), drawn = in_time, {"units": "1", "long_name": "draws of COF"}
     return xarray.Dataset(
         {
             "contact_pressure": on_sole(
@@ -373,11 +320,7 @@ def _fields(
             "outline_x": ("outline", sole.outline[:, 0], {"units": "m"}),
             "outline_y": ("outline", sole.outline[:, 1], {"units": "m"}),
             **histories,
-            **(
-                {}
-                if draws is None
-                else {"cof_draws": ("draw", draws, {"units": "1", "long_name": "draws of COF"})}
-            ),
+            **({} if draws is None else {"cof_draws": ("draw", draws, drawn)}),
         },
         coords={
             "x": ("x", sole.x, {"units": "m", "long_name": "along the walking direction"}),

@@ -1,20 +1,25 @@
 """From a case to the people who walk on its floor, and their slips."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from underfoot.case import Case
 from underfoot.core import InputError, Progress, silent
+from underfoot.slip.dynamics import (
+    FloorSensors,
+    GaitHistory,
+    Population,
+    Setting,
+    SlipStudy,
+    Spread,
+    packaged_histories,
+    slip_study,
+)
+from underfoot.sole_contact.sole_state import SolverSettings
 
 from .contact import pool_depth
 from .resolve import resolved
 from .sole import sole_map
-
-if TYPE_CHECKING:
-    from underfoot.slip.dynamics import FloorSensors, GaitHistory, Population, Setting, SlipStudy
 
 
 def slip_setting(case: Case, *, quick: bool = True) -> Setting:
@@ -22,9 +27,6 @@ def slip_setting(case: Case, *, quick: bool = True) -> Setting:
 
     ``quick`` takes the coarse grid: a slip is some hundred contacts.
     """
-    from underfoot.slip.dynamics import Setting
-    from underfoot.sole_contact.sole_state import SolverSettings
-
     spacing = case.numerics.quick_grid_spacing if quick else case.numerics.grid_spacing
     context, sole = resolved(case), sole_map(case, spacing)
     return Setting(
@@ -52,49 +54,35 @@ def slip_population(
 ) -> Population:
     """Return the people of a case; ``histories`` of your own replace the packaged steps.
 
-    Raises
-    ------
-    InputError
-        A required friction outside 0 to 1, landing places in the wrong order.
+    Raises:
+        InputError: A required friction outside 0 to 1, landing places in the wrong order.
     """
-    from underfoot.slip.dynamics import Population, Spread, packaged_histories
-
     people, risk = case.slip, case.risk
     if not 0 <= risk.rcof_mean <= 1:
         raise InputError(f"{risk.rcof_mean:g}", where="risk.rcof_mean", allowed="0 to 1")
-    if people.landing_from > people.landing_to:
-        raise InputError(
-            "lies beyond slip.landing_to", where="slip.landing_from", allowed="at most landing_to"
-        )
-    if people.weight_transfer_from > people.weight_transfer_to:
-        raise InputError(
-            "lies beyond slip.weight_transfer_to",
-            where="slip.weight_transfer_from",
-            allowed="at most weight_transfer_to",
-        )
+    for name in ("landing", "weight_transfer"):
+        if getattr(people, f"{name}_from") > getattr(people, f"{name}_to"):
+            raise InputError(
+                f"lies beyond slip.{name}_to",
+                where=f"slip.{name}_from",
+                allowed=f"at most {name}_to",
+            )
 
-    def spread(name: str, sd: str, low: float, high: float, section: str = "slip") -> Spread:
-        mean = case.sourced(f"{section}.{name}")
+    def spread(path: str, low: float, high: float) -> Spread:
+        mean, sd = case.sourced(f"{path}_mean"), case.value(f"{path}_sd")
         assert mean.value is not None
-        return Spread(
-            mean.value,
-            case.value(f"{section}.{sd}"),
-            min(low, mean.value),
-            max(high, mean.value),
-            mean.source,
-            mean.assumed,
-        )
+        ends = min(low, mean.value), max(high, mean.value)
+        return Spread(mean.value, sd, *ends, mean.source, mean.assumed)
 
     angle = case.motion.shoe_angle
-    mass = spread("mass_mean", "mass_sd", 20.0, 200.0)
     return Population(
         subjects=people.subjects if subjects is None else subjects,
         seed=people.seed,
         histories=tuple(histories) if histories else packaged_histories(),
-        mass=mass,
-        rcof=spread("rcof_mean", "rcof_sd", 0.0, 1.0, "risk"),
-        walking_speed=spread("walking_speed_mean", "walking_speed_sd", 0.5, 2.5),
-        heel_speed=spread("heel_speed_mean", "heel_speed_sd", 0.02, 2.0),
+        mass=spread("slip.mass", 20.0, 200.0),
+        rcof=spread("risk.rcof", 0.0, 1.0),
+        walking_speed=spread("slip.walking_speed", 0.5, 2.5),
+        heel_speed=spread("slip.heel_speed", 0.02, 2.0),
         shoe_angle=Spread(
             angle,
             people.shoe_angle_sd,
@@ -108,15 +96,13 @@ def slip_population(
         recorded_angle=people.shoe_angle == "recorded",
         rcof_step=Spread(0.0, people.rcof_step_sd, -0.2, 0.2, "slip.rcof_step_sd", False),
         heel_brake=people.heel_brake,
-        brake_time=spread("brake_time_mean", "brake_time_sd", 0.004, 0.2),
+        brake_time=spread("slip.brake_time", 0.004, 0.2),
         weight_transfer=(people.weight_transfer_from, people.weight_transfer_to),
     )
 
 
 def slip_sensors(case: Case) -> FloorSensors:
     """Return the sensors in the floor of a case."""
-    from underfoot.slip.dynamics import FloorSensors
-
     people = case.slip
     return FloorSensors(
         people.sensor_rows, people.sensor_columns, people.sensor_spacing, people.sensor_inlet
@@ -134,31 +120,19 @@ def slips(
 ) -> SlipStudy:
     """Return the slips of a case's population: who slips, how fast, how far.
 
-    Parameters
-    ----------
-    case
-        Shoe, floor, fluid and people.
-    subjects
-        How many; the case's by default.
-    histories
-        Steps of your own in place of the packaged ones.
-    full
-        Everybody through the full model instead of the reduced one fitted to it.
-    fine
-        The case's fine grid instead of the coarse one.
-    progress
-        Receives stage, fraction and residual; an exception it raises stops the work, and the
-        slips done so far are found again by the next call.
+    Parameters:
+        case: Shoe, floor, fluid and people.
+        subjects: How many; the case's by default.
+        histories: Steps of your own in place of the packaged ones.
+        full: Everybody through the full model instead of the reduced one fitted to it.
+        fine: The case's fine grid instead of the coarse one.
+        progress: Receives stage, fraction and residual; an exception it raises stops the work, and
+            the slips done so far are found again by the next call.
 
-    Raises
-    ------
-    InputError
-        People who can't be; a sole that does not fit the grid.
-    ConvergenceError
-        Too few slips could be solved.
+    Raises:
+        InputError: People who can't be; a sole that does not fit the grid.
+        ConvergenceError: Too few slips could be solved.
     """
-    from underfoot.slip.dynamics import slip_study
-
     people = case.slip
     return slip_study(
         slip_setting(case, quick=not fine),

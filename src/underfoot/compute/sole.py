@@ -1,17 +1,17 @@
 """The sole of a case: parametric or from a file, worn, tilted, trimmed and checked."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, ValidationError
 
+from underfoot import shoe
 from underfoot.case import Case, CaseError, Section
 from underfoot.case.case import with_settings
 from underfoot.case.compose import expanded
@@ -34,16 +34,13 @@ from underfoot.core import (
     display,
     silent,
 )
+from underfoot.shoe import SoleMap, SoleSurface, heel_map, surface_map
+from underfoot.shoe.files import FileOutsole, FileSettings, outsole_from_file
+from underfoot.shoe.shape import SoleShape
+from underfoot.shoe.worn import ArchardStep, WornMap, archard_wear, worn_surface
+from underfoot.sole_contact.solver import SolverSettings, solve_sliding
 
 from .resolve import resolved, youngs_modulus
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from underfoot.shoe import SoleMap, SoleSurface
-    from underfoot.shoe.files import FileOutsole, FileSettings
-    from underfoot.shoe.shape import SoleShape
-    from underfoot.shoe.worn import ArchardStep
 
 BOTTOMED = 0.5
 """Share of the outsole's thickness beyond which the load bottoms it out: refused."""
@@ -65,8 +62,6 @@ def sole_map(
     ``shift`` (x, y; m) moves the tread's pattern under the sole, ``turn`` (rad) adds to the shoe
     angle; wear stays where it is. Neither holds for an outsole from a file.
     """
-    from underfoot import shoe
-
     if case.shoe.outsole is not None:
         return file_sole_map(case, spacing)
     shape = sole_shape(case, progress)
@@ -105,8 +100,6 @@ def archard_state(case: Case, *, progress: Progress = silent) -> ArchardStep:
     The contact is dry, on the quick grid, at three shoe angles. Every ``WEAR_STEP`` is kept on
     disk, so that a sole worn further goes on from there.
     """
-    from underfoot.shoe.worn import ArchardStep, WornMap, archard_wear
-
     context, new, wear = resolved(case), new_sole(case), case.shoe.wear
     if not isinstance(wear, ArchardWear):
         raise InputError(f'mode = "{wear.mode}"', where="shoe.wear.mode", allowed="archard")
@@ -158,9 +151,6 @@ def archard_state(case: Case, *, progress: Progress = silent) -> ArchardStep:
 def _dry_contact(
     case: Case, context: Context, shape: SoleShape, angle: float, force: float
 ) -> tuple[SoleMap, NDArray[np.float64]]:
-    from underfoot.shoe import heel_map
-    from underfoot.sole_contact.solver import SolverSettings, solve_sliding
-
     sole = heel_map(shape, shoe_angle=angle, spacing=case.numerics.quick_grid_spacing)
     contact = solve_sliding(
         sole,
@@ -183,8 +173,6 @@ def _dry_contact(
 
 def file_outsole(case: Case) -> FileOutsole:
     """Return the outsole in the file of the case, as the case says it is to be read."""
-    from underfoot.shoe.files import FileSettings
-
     outsole = case.shoe.outsole
     if outsole is None:
         raise InputError("the case has no outsole file", where="shoe.outsole.file")
@@ -204,15 +192,11 @@ def file_outsole(case: Case) -> FileOutsole:
 @lru_cache(maxsize=4)
 def _read(path: str, checksum: str, settings: FileSettings) -> FileOutsole:
     """Read a file once in a process: the checksum is part of the key."""
-    from underfoot.shoe.files import outsole_from_file
-
     return outsole_from_file(path, settings)
 
 
 def file_surface(case: Case) -> SoleSurface:
     """Return the bottom of the case's outsole file, worn as the case says."""
-    from underfoot.shoe.worn import worn_surface
-
     surface, wear = file_outsole(case).surface, case.shoe.wear
     removed = wear.build() if wear.depth > 0 else None
     return surface if removed is None else worn_surface(surface, removed)
@@ -221,14 +205,10 @@ def file_surface(case: Case) -> SoleSurface:
 def file_sole_map(case: Case, spacing: float) -> SoleMap:
     """Return the tilted outsole of the case's file on the solver's grid, trimmed to its reach.
 
-    Raises
-    ------
-    InputError
-        Channels below the grid, a region or unit that doesn't fit, tread deeper than the outsole,
-        nothing under the load.
+    Raises:
+        InputError: Channels below the grid, a region or unit that doesn't fit, tread deeper than
+            the outsole, nothing under the load.
     """
-    from underfoot.shoe import surface_map
-
     surface = file_surface(case)
     thickness = case.shoe.sole.outsole_thickness
     deepest = float(np.max(surface.tread_depth))
@@ -337,10 +317,8 @@ class Outsole(Section):
 def read_outsole(path: Path | str, settings: Mapping[str, Any] | None = None) -> Outsole:
     """Return the sole of an outsole file; every value with its unit.
 
-    Raises
-    ------
-    CaseError
-        Everything that is wrong with the file, each with its line.
+    Raises:
+        CaseError: Everything that is wrong with the file, each with its line.
     """
     path, text = Path(path), read(Path(path))
     places = Places(str(path), text, changed=settings or ())

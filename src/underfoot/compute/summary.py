@@ -1,7 +1,5 @@
 """A result in sentences and table rows: number, unit, uncertainty, then the caution."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -39,6 +39,7 @@ LAWS: dict[str, str] = {
     "stribeck": "Eq. 17 of the pin as it is",
     "asperity_ehl": "films at asperities",
     "bowden_tabor": "real contact area",
+    "pair": "law of the pair",
 }
 SETUP, FLUID = "whole_shoe_g6", "glycerol_50pct"
 WINDOW = (0.2, 0.3, 0.4)
@@ -193,7 +194,7 @@ def pin_strength() -> tuple[float, float]:
 def sole_frictions(
     *, quick: bool, processes: int | None = 1, progress: Progress = silent
 ) -> list[SoleFriction]:
-    """Return the three soles by the three laws: 54 cases (27 with ``quick``)."""
+    """Return the three soles by the four laws: 72 cases (36 with ``quick``)."""
     times = WINDOW[1:2] if quick else WINDOW
     plan = [(sole, law, shore) for law in LAWS for sole, shore in SOLES.items()]
 

@@ -10,10 +10,9 @@ import numpy as np
 
 from underfoot.core import InputError, unknown_name
 
-from .axes import Axes, DirectionSource, axes_of, axis_name, heel_candidates
+from .axes import LEVEL, Axes, DirectionSource, Ramp, axes_of, axis_name, heel_candidates
 from .gait import DEFINITIONS, RcofDefinition, RequiredFriction, required_frictions
 from .measurement import mean_of
-from .ramp import LEVEL, Ramp
 from .readers import Profile, read_profile, read_trials
 from .trial import Edit, Plate, Trial, joined
 

@@ -32,10 +32,10 @@ SUFFIXES = (
 )  # fmt: skip
 _LARGEST = 2_000_000_000  # bytes; a recording of hours stays far below
 _READERS = {
-    "C3D": "c3d.read_c3d", "TRC": "trc.read_trc", "Cortex": "cortex_forces.read_cortex_forces",
+    "C3D": "c3d.read_c3d", "TRC": "text_exports.read_trc", "motion": "text_exports.read_motion",
+    "Cortex": "text_exports.read_cortex_forces", "BioWare": "text_exports.read_bioware",
+    "Qualisys": "text_exports.read_qualisys", "Vicon": "text_exports.read_vicon_csv",
     "CETR": "tribometer_logs.read_cetr", "PCS": "tribometer_logs.read_pcs",
-    "motion": "motion.read_motion", "BioWare": "bioware.read_bioware",
-    "Qualisys": "qualisys.read_qualisys", "Vicon": "vicon_csv.read_vicon_csv",
     "JSON": "pose_json.read_pose_json", "MATLAB": "matlab.read_matlab",
     "Pedar": "insoles.read_pedar", "F-Scan": "insoles.read_fscan", "table": "columns.read_columns",
 }  # fmt: skip
