@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
 
@@ -87,9 +88,7 @@ class AlphaBeta:
 
 
 def alpha_beta(
-    fluid: Sequence[str],
-    dry_adhesion: Sequence[float] | np.ndarray,
-    lubricated_adhesion: Sequence[float] | np.ndarray,
+    fluid: Sequence[str], dry_adhesion: ArrayLike, lubricated_adhesion: ArrayLike
 ) -> AlphaBeta:
     """Return Eq. 26, F_adhesion(lubricated) = alpha + beta F_adhesion(dry), for every fluid.
 

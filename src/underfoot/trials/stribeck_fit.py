@@ -1,10 +1,11 @@
 """COF against sliding speed: Eq. 17 fitted, its uncertainty, and when it is not identified."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, unknown_name
 
@@ -66,8 +67,8 @@ class StribeckFit:
 
 
 def stribeck_fit(
-    speed: Sequence[float] | np.ndarray,
-    cof: Sequence[float] | np.ndarray,
+    speed: ArrayLike,
+    cof: ArrayLike,
     *,
     method: str = "separable",
     boundary: float | None = None,

@@ -1,12 +1,10 @@
 """One recording as read: channels, plates, markers, events, where it came from, its edits."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TypeVar
+from typing import Self, TypeVar
 
 import numpy as np
 
@@ -210,11 +208,11 @@ class Trial(Presentable):
         """Return the first marker that has one of ``names``, as ``channel`` does."""
         return _named("marker", names, self.markers, self.name)
 
-    def with_edits(self, *edits: Edit) -> Trial:
+    def with_edits(self, *edits: Edit) -> Self:
         """Return the trial with further edits; ``stances`` applies them or raises."""
         return replace(self, edits=(*self.edits, *edits))
 
-    def with_notes(self, *notes: str) -> Trial:
+    def with_notes(self, *notes: str) -> Self:
         """Return the trial with further notes."""
         return replace(self, notes=(*self.notes, *notes))
 

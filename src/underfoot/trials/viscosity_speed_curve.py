@@ -1,9 +1,9 @@
 """COF of all fluids against viscosity times speed (the report's Figure 16)."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, unknown_name
 
@@ -36,11 +36,7 @@ class MasterCurve:
 
 
 def master_curve(
-    viscosity: Sequence[float] | np.ndarray,
-    speed: Sequence[float] | np.ndarray,
-    cof: Sequence[float] | np.ndarray,
-    *,
-    method: str = "isotonic",
+    viscosity: ArrayLike, speed: ArrayLike, cof: ArrayLike, *, method: str = "isotonic"
 ) -> MasterCurve:
     """Return the curve of COF against log10(viscosity x speed).
 

@@ -1,9 +1,8 @@
 """Plain tables: what ends in CSV, spreadsheet and page."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 
@@ -36,7 +35,7 @@ class Table:
             if name in always or any(row[i] not in (None, "") for row in self.rows)
         ]
 
-    def only(self, keep: Collection[int]) -> Table:
+    def only(self, keep: Collection[int]) -> Self:
         """Return the table with the columns of these numbers alone."""
         rows = tuple(tuple(row[i] for i in keep) for row in self.rows)
         return replace(self, columns=tuple(self.columns[i] for i in keep), rows=rows)

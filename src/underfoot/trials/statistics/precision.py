@@ -1,9 +1,10 @@
 """Repeatability and reproducibility of a test method (ISO 5725-2), with its outlier tests."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
 
@@ -33,12 +34,10 @@ class OutlierTest:
 class Precision:
     """Precision of a method at one level.
 
-    Parameters:
-        repeatability, reproducibility: Standard deviations s_r (same laboratory, operator, machine)
-            and s_R (any of them).
-        between: Standard deviation s_L between laboratories.
-        outliers: Cochran's test of the largest variance, Grubbs' of the largest and the smallest
-            mean.
+    ``repeatability`` and ``reproducibility``: standard deviations s_r (same laboratory, operator,
+    machine) and s_R (any of them). ``between``: standard deviation s_L between laboratories.
+    ``outliers``: Cochran's test of the largest variance, Grubbs' of the largest and the smallest
+    mean.
     """
 
     mean: float
@@ -60,7 +59,7 @@ class Precision:
         return 2.8 * self.reproducibility
 
 
-def precision(readings: Mapping[str, Sequence[float] | np.ndarray]) -> Precision:
+def precision(readings: Mapping[str, ArrayLike]) -> Precision:
     """Return repeatability and reproducibility from repeated readings of several laboratories.
 
     s_r^2 is the pooled variance within laboratories, s_L^2 = (MS_between - s_r^2) / n0 (zero when
@@ -68,11 +67,9 @@ def precision(readings: Mapping[str, Sequence[float] | np.ndarray]) -> Precision
     outliers are named, and whoever removes one says so. Operators or machines may stand in place
     of laboratories; s_R then means reproducibility over these.
 
-    Parameters:
-        readings: Readings by laboratory, at least two laboratories, one of them with two readings.
+    ``readings``: readings by laboratory, at least two laboratories, one of them with two readings.
 
-    Raises:
-        DataError: Too few laboratories or readings, or missing values.
+    DataError: too few laboratories or readings, or missing values.
 
     Source: ISO 5725-2:1994, 7.3 and 7.4 (from memory, not verified against the text; the formulas
     reproduce the example of ASTM E691). Critical values are computed: Cochran's from F, Grubbs'

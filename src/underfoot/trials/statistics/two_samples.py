@@ -1,10 +1,10 @@
 """Two samples: t tests, each named in its result, and the straight line of y on x."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, unknown_name
 
@@ -34,19 +34,14 @@ class TTest:
 
 
 def t_test(
-    first: Sequence[float] | np.ndarray,
-    second: Sequence[float] | np.ndarray,
-    *,
-    kind: str = "welch",
-    confidence: float = 0.95,
+    first: ArrayLike, second: ArrayLike, *, kind: str = "welch", confidence: float = 0.95
 ) -> TTest:
     """Return the two-sided t test of two samples.
 
     ``kind``: ``"welch"`` (default), ``"pooled"`` (JMP's default) or ``"paired"``.
 
-    Raises:
-        DataError: Fewer than two values, missing values, unequal lengths when paired, no scatter at
-            all.
+    DataError: fewer than two values, missing values, unequal lengths when paired, no scatter at
+    all.
     """
     from scipy import stats
 
@@ -89,11 +84,10 @@ class Line:
         return self.r**2
 
 
-def regression_line(x: Sequence[float] | np.ndarray, y: Sequence[float] | np.ndarray) -> Line:
+def regression_line(x: ArrayLike, y: ArrayLike) -> Line:
     """Return the least-squares line of y on x (the report's Figure 33).
 
-    Raises:
-        DataError: Fewer than three pairs, missing values, constant x or y.
+    DataError: fewer than three pairs, missing values, constant x or y.
     """
     from scipy import stats
 
