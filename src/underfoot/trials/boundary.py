@@ -110,7 +110,8 @@ def alpha_beta(
     for name in dict.fromkeys(names):
         if np.ptp(x[[n == name for n in names]]) == 0:
             raise DataError("one dry adhesion only: no slope", where=name)
-    model = statistics.linear_model(y, predictors, terms, name="lubricated adhesion")
+    response = "lubricated adhesion"
+    model = statistics.linear_model(y, predictors, terms, name=response)
     rows = []
     for i, name in enumerate(predictors["fluid"].levels):
         at = model.design.rows({"fluid": np.array([i, i]), "dry adhesion": np.array([0.0, 1.0])})
@@ -122,11 +123,9 @@ def alpha_beta(
     return AlphaBeta(
         tuple(rows),
         model,
-        statistics.analysis_of_variance(
-            y, predictors, terms, ss_type=2, name="lubricated adhesion"
-        ),
-        statistics.analysis_of_variance(
-            y, predictors, terms, ss_type=3, name="lubricated adhesion"
+        *(
+            statistics.analysis_of_variance(y, predictors, terms, ss_type=kind, name=response)
+            for kind in (2, 3)
         ),
         tuple(statistics.tukey_hsd(model, "fluid")),
         float(np.abs(y - model.fitted).mean()),

@@ -245,17 +245,16 @@ def joined(first: Trial, second: Trial) -> Trial:
     def both(one: Mapping[str, _T], other: Mapping[str, _T]) -> dict[str, _T]:
         return {**one, **{f"{n} (2)" if n in one else n: value for n, value in other.items()}}
 
-    return Trial(
-        f"{first.name} + {second.name}",
-        both(first.channels, second.channels),
-        (*first.plates, *second.plates),
-        both(first.markers, second.markers),
-        f"{first.source} + {second.source}",
-        hashlib.sha256(f"{first.checksum}{second.checksum}".encode()).hexdigest(),
-        (*first.notes, *second.notes),
-        (*first.events, *second.events),
-        (*first.edits, *second.edits),
-        {**first.settings, **second.settings},
+    return replace(
+        first.with_notes(*second.notes).with_edits(*second.edits),
+        name=f"{first.name} + {second.name}",
+        channels=both(first.channels, second.channels),
+        plates=(*first.plates, *second.plates),
+        markers=both(first.markers, second.markers),
+        source=f"{first.source} + {second.source}",
+        checksum=hashlib.sha256(f"{first.checksum}{second.checksum}".encode()).hexdigest(),
+        events=(*first.events, *second.events),
+        settings={**first.settings, **second.settings},
     )
 
 

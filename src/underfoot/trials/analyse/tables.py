@@ -110,7 +110,7 @@ def measurement_table(files: Sequence[FileResult]) -> Table:
         (
             one.file,
             str(one.conditions.get(person, "")),
-            *(m[key] for _, key in _NUMBER_COLUMNS),
+            *(m[key] for key in _NUMBER_COLUMNS.values()),
             "yes" if any(flag["matters"] for flag in m["flags"]) else "",
             "; ".join(flag["words"] for flag in m["flags"]),
             "; ".join(f"{key}: {value}" for key, value in m["conventions"].items()),
@@ -118,20 +118,14 @@ def measurement_table(files: Sequence[FileResult]) -> Table:
         for one in files
         for m in one.measurements
     )
-    names = (name for name, _ in _NUMBER_COLUMNS)
-    columns = ("file", "person", *names, "caution", "flags", "conventions")
+    columns = ("file", "person", *_NUMBER_COLUMNS, "caution", "flags", "conventions")
     return Table("measurements", "Every number with its conventions", columns, rows)
 
 
-_NUMBER_COLUMNS = (
-    ("item", "item"),
-    ("quantity", "name"),
-    ("value", "value"),
-    ("unit", "unit"),
-    ("standard uncertainty", "uncertainty"),
-    ("not estimated because", "reason"),
-    ("n", "n"),
-)
+_NUMBER_COLUMNS = {
+    "item": "item", "quantity": "name", "value": "value", "unit": "unit",
+    "standard uncertainty": "uncertainty", "not estimated because": "reason", "n": "n",
+}  # fmt: skip
 
 
 def edit_table(files: Iterable[FileResult]) -> Table | None:
@@ -145,18 +139,12 @@ def edit_table(files: Iterable[FileResult]) -> Table | None:
 
 # Column, entry of the step and decimals that a reader sees.
 _STEP_COLUMNS = (
-    ("step", "item", None),
-    ("side", "side", None),
-    ("contact (s)", "contact", 3),
-    ("RCOF", "rcof", 3),
-    ("RCOF standard uncertainty", "rcof_uncertainty", 3),
-    ("walking speed (m/s)", "walking_speed", 2),
-    ("slip", "outcome", None),
-    ("verdict", "verdict", None),
-    ("reason", "reason", None),
-    ("cautions", "cautions", None),
+    ("step", "item", None), ("side", "side", None), ("contact (s)", "contact", 3),
+    ("RCOF", "rcof", 3), ("RCOF standard uncertainty", "rcof_uncertainty", 3),
+    ("walking speed (m/s)", "walking_speed", 2), ("slip", "outcome", None),
+    ("verdict", "verdict", None), ("reason", "reason", None), ("cautions", "cautions", None),
     ("by hand", "by_hand", None),
-)
+)  # fmt: skip
 
 
 def steps_table(files: Iterable[FileResult]) -> Table:
