@@ -120,16 +120,12 @@ def alpha_beta(
         errors = np.sqrt(np.einsum("ij,jk,ik->i", contrasts, model.covariance, contrasts))
         numbers = map(float, (*values, *errors))
         rows.append(FluidCoefficients(name, *numbers, n=names.count(name)))
-    return AlphaBeta(
-        tuple(rows),
-        model,
-        *(
-            statistics.analysis_of_variance(y, predictors, terms, ss_type=kind, name=response)
-            for kind in (2, 3)
-        ),
-        tuple(statistics.tukey_hsd(model, "fluid")),
-        float(np.abs(y - model.fitted).mean()),
+    two, three = (
+        statistics.analysis_of_variance(y, predictors, terms, ss_type=kind, name=response)
+        for kind in (2, 3)
     )
+    tukey, residual = tuple(statistics.tukey_hsd(model, "fluid")), np.abs(y - model.fitted).mean()
+    return AlphaBeta(tuple(rows), model, two, three, tukey, float(residual))
 
 
 def _mean(name: str, values: Sequence[float]) -> Measurement:
