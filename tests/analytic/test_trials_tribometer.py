@@ -12,7 +12,7 @@ from underfoot.trials.pin_on_disk import (
     steady_window,
 )
 from underfoot.trials.relaxation_test import relaxation_reading
-from underfoot.trials.viscosity_speed_curve import master_curve
+from underfoot.trials.stribeck_fit import master_curve
 
 
 def _run(cof, load=-20.9, rate=100.0, speed=0.3):

@@ -1,7 +1,5 @@
 """Contacts with a force plate: begin and end, edits by hand, which of them are steps."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -269,7 +267,7 @@ def _reason(
     others: list[Stance],
     peaks: list[float],
     axes: Axes,
-    feet: _Feet,
+    feet: "_Feet",
     weight: BodyWeight | None,
 ) -> str:
     part = plate.force[stance.start : stance.stop]
@@ -380,7 +378,7 @@ def body_weight(trial: Trial, axes: Axes | None = None) -> BodyWeight | None:
     return BodyWeight(newtons, "standing in this record", standing=True)
 
 
-def _two_feet(plate: Plate, stance: Stance, axes: Axes, feet: _Feet) -> str:
+def _two_feet(plate: Plate, stance: Stance, axes: Axes, feet: "_Feet") -> str:
     if {"left", "right"} <= set(feet.on_plate(stance)):
         return "both heels are on the plate"
     place, way = plate.centre_of_pressure, stance.direction

@@ -1,9 +1,9 @@
 """Pin on disk: mean COF of the steady window, COF against speed, radius of the pin."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
 
@@ -163,9 +163,7 @@ class ProfileRadius:
     residual_rms: float
 
 
-def reduced_radius(
-    position: Sequence[float] | np.ndarray, height: Sequence[float] | np.ndarray
-) -> ProfileRadius:
+def reduced_radius(position: ArrayLike, height: ArrayLike) -> ProfileRadius:
     """Return R' = 1 / (2 B) of h(r) = B r^2 (Eq. 19, 20).
 
     The vertex and a tilt are fitted too (h = h0 + s x + B x^2): a profile is never recorded

@@ -75,21 +75,15 @@ def analyse_folder(
     same files, protocol, profile and conditions give the same result, whatever the number of
     processes.
 
-    Parameters:
-        profile: What columns, axes and markers are called; by default ``profile.toml`` in the
-            folder.
-        conditions: What was noted about the files; by default ``conditions.csv`` or ``.xlsx`` in
-            the folder.
-        names, merge_spelling: Pattern of file names and what spellings count as one; see
-            ``study_folder``.
-        store: Folder that keeps the result of each file: an interrupted run goes on where it
-            stopped.
-        processes: Number of processes; by default the number of processors.
+    ``profile``: what columns, axes and markers are called; by default ``profile.toml`` in the
+    folder. ``conditions``: what was noted about the files; by default ``conditions.csv`` or
+    ``.xlsx`` in the folder. ``names`` and ``merge_spelling``: pattern of file names and what
+    spellings count as one; see ``study_folder``. ``store``: folder that keeps the result of each
+    file: an interrupted run goes on where it stopped. ``processes``: number of processes; by
+    default the number of processors.
 
-    Errors:
-        InputError: No such folder, no trial file in it, a wrong profile, ramp or table of
-            conditions.
-        EditError: An edit by hand that names no step, changes nothing or contradicts another.
+    InputError: no such folder, no trial file in it, a wrong profile, ramp or table of conditions.
+    EditError: an edit by hand that names no step, changes nothing or contradicts another.
     """
     folder = Path(folder)
     check_ramp(protocol)

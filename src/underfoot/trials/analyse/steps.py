@@ -311,28 +311,19 @@ def _sensors(walk: _Walk, one: Slip, walking: np.ndarray) -> None:
         near = (channel.time > one.contact - 0.1) & (channel.time < one.contact + 0.6)
         step = max(1, int(near.sum()) // 150)
         kilopascal = 1e-3 * (channel.values[near] - pulse.baseline)
-        pulses.append(
-            {
-                "sensor": name,
-                "along": places[name][0] - float(middle[0]),
-                "across": places[name][1] - float(middle[1]),
-                "time": [round(float(t), 4) for t in (channel.time[near] - one.contact)[::step]],
-                "kPa": [None if np.isnan(v) else round(float(v), 3) for v in kilopascal[::step]],
-            }
-        )
+        along, beside = (float(p - m) for p, m in zip(places[name], middle, strict=True))
+        times = [round(float(t), 4) for t in (channel.time[near] - one.contact)[::step]]
+        shown = [None if np.isnan(v) else round(float(v), 3) for v in kilopascal[::step]]
+        pulse_of = {"sensor": name, "along": along, "across": beside, "time": times, "kPa": shown}
+        pulses.append(pulse_of)
         passage = reading.passages.get(name)
         if passage is not None:
             draft.add(f"sensor {name}", passage.speed)
             draft.add(f"sensor {name}", passage.lateral)
             if passage.speed.value is not None and pulse.peak.value is not None:
-                draft.curve(
-                    "sensor_rows",
-                    sensor=name,
-                    row=passage.row,
-                    pressure=float(pulse.peak.value),
-                    irss=float(passage.speed.value),
-                    ml=float(passage.lateral.value or 0.0),
-                )
+                speeds = {"irss": passage.speed.value, "ml": passage.lateral.value or 0.0}
+                facts = {"row": passage.row, "pressure": pulse.peak.value, **speeds}
+                draft.curve("sensor_rows", sensor=name, **facts)
     if pulses:
         quiet = trial.channel(next(iter(reading.pulses)))
         draft.facts["baseline_samples"] = float(np.sum(quiet.time < one.contact - 0.05))
@@ -356,19 +347,14 @@ def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
         values.append(own)
         assert stance.walking is not None  # an RCOF has one
         force = plate_named(trial, stance.plate).force[stance.start : stance.stop]
-        draft.curve(
-            "steps",
-            step=stance.label,
-            time=step.time - stance.contact,
-            ratio=step.ratio,
-            normal=step.normal,
-            along=force @ axes.ramp.surface(axes.up, stance.walking)[1],
-            across=force @ np.cross(axes.up, stance.walking),
-            gate=step.gate_time - stance.contact,
-            peak_time=step.peak_time - stance.contact,
-            peak=own.value,
-            verdict=step.verdict,
-        )
+        series: dict[str, Any] = {
+            "time": step.time - stance.contact, "ratio": step.ratio, "normal": step.normal,
+            "along": force @ axes.ramp.surface(axes.up, stance.walking)[1],
+            "across": force @ np.cross(axes.up, stance.walking),
+            "gate": step.gate_time - stance.contact,
+            "peak_time": step.peak_time - stance.contact, "peak": own.value,
+        }  # fmt: skip
+        draft.curve("steps", step=stance.label, **series, verdict=step.verdict)
         curves = stance_curves(trial, stance, step.ratio, definition.filter, axes)
         draft.curve("normalised", step=stance.label, **curves)
     draft.facts["steps"] = float(len(values))
@@ -385,14 +371,9 @@ def _rejected_curve(walk: _Walk, stance: Stance) -> None:
     up = axes.up if stance.walking is None else axes.ramp.surface(axes.up, stance.walking)[0]
     normal = force @ up
     shear = np.linalg.norm(force - np.outer(normal, up), axis=1)
-    walk.draft.curve(
-        "rejected",
-        step=stance.label,
-        time=np.arange(len(force)) / plate.rate,
-        normal=normal,
-        ratio=shear / np.maximum(normal, 1.0),
-        reason=stance.reason,
-    )
+    time, ratio = np.arange(len(force)) / plate.rate, shear / np.maximum(normal, 1.0)
+    words = {"step": stance.label, "reason": stance.reason}
+    walk.draft.curve("rejected", time=time, normal=normal, ratio=ratio, **words)
 
 
 def _step_entry(

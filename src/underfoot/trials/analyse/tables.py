@@ -1,9 +1,8 @@
 """Plain tables: what ends in CSV, spreadsheet and page."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 
@@ -36,7 +35,7 @@ class Table:
             if name in always or any(row[i] not in (None, "") for row in self.rows)
         ]
 
-    def only(self, keep: Collection[int]) -> Table:
+    def only(self, keep: Collection[int]) -> Self:
         """Return the table with the columns of these numbers alone."""
         rows = tuple(tuple(row[i] for i in keep) for row in self.rows)
         return replace(self, columns=tuple(self.columns[i] for i in keep), rows=rows)
@@ -111,7 +110,7 @@ def measurement_table(files: Sequence[FileResult]) -> Table:
         (
             one.file,
             str(one.conditions.get(person, "")),
-            *(m[key] for _, key in _NUMBER_COLUMNS),
+            *(m[key] for key in _NUMBER_COLUMNS.values()),
             "yes" if any(flag["matters"] for flag in m["flags"]) else "",
             "; ".join(flag["words"] for flag in m["flags"]),
             "; ".join(f"{key}: {value}" for key, value in m["conventions"].items()),
@@ -119,20 +118,14 @@ def measurement_table(files: Sequence[FileResult]) -> Table:
         for one in files
         for m in one.measurements
     )
-    names = (name for name, _ in _NUMBER_COLUMNS)
-    columns = ("file", "person", *names, "caution", "flags", "conventions")
+    columns = ("file", "person", *_NUMBER_COLUMNS, "caution", "flags", "conventions")
     return Table("measurements", "Every number with its conventions", columns, rows)
 
 
-_NUMBER_COLUMNS = (
-    ("item", "item"),
-    ("quantity", "name"),
-    ("value", "value"),
-    ("unit", "unit"),
-    ("standard uncertainty", "uncertainty"),
-    ("not estimated because", "reason"),
-    ("n", "n"),
-)
+_NUMBER_COLUMNS = {
+    "item": "item", "quantity": "name", "value": "value", "unit": "unit",
+    "standard uncertainty": "uncertainty", "not estimated because": "reason", "n": "n",
+}  # fmt: skip
 
 
 def edit_table(files: Iterable[FileResult]) -> Table | None:
@@ -146,18 +139,12 @@ def edit_table(files: Iterable[FileResult]) -> Table | None:
 
 # Column, entry of the step and decimals that a reader sees.
 _STEP_COLUMNS = (
-    ("step", "item", None),
-    ("side", "side", None),
-    ("contact (s)", "contact", 3),
-    ("RCOF", "rcof", 3),
-    ("RCOF standard uncertainty", "rcof_uncertainty", 3),
-    ("walking speed (m/s)", "walking_speed", 2),
-    ("slip", "outcome", None),
-    ("verdict", "verdict", None),
-    ("reason", "reason", None),
-    ("cautions", "cautions", None),
+    ("step", "item", None), ("side", "side", None), ("contact (s)", "contact", 3),
+    ("RCOF", "rcof", 3), ("RCOF standard uncertainty", "rcof_uncertainty", 3),
+    ("walking speed (m/s)", "walking_speed", 2), ("slip", "outcome", None),
+    ("verdict", "verdict", None), ("reason", "reason", None), ("cautions", "cautions", None),
     ("by hand", "by_hand", None),
-)
+)  # fmt: skip
 
 
 def steps_table(files: Iterable[FileResult]) -> Table:

@@ -35,9 +35,10 @@ _READERS = {
     "C3D": "c3d.read_c3d", "TRC": "text_exports.read_trc", "motion": "text_exports.read_motion",
     "Cortex": "text_exports.read_cortex_forces", "BioWare": "text_exports.read_bioware",
     "Qualisys": "text_exports.read_qualisys", "Vicon": "text_exports.read_vicon_csv",
-    "CETR": "tribometer_logs.read_cetr", "PCS": "tribometer_logs.read_pcs",
+    "CETR": "instrument_logs.read_cetr", "PCS": "instrument_logs.read_pcs",
     "JSON": "pose_json.read_pose_json", "MATLAB": "matlab.read_matlab",
-    "Pedar": "insoles.read_pedar", "F-Scan": "insoles.read_fscan", "table": "columns.read_columns",
+    "Pedar": "instrument_logs.read_pedar", "F-Scan": "instrument_logs.read_fscan",
+    "table": "columns.read_columns",
 }  # fmt: skip
 
 

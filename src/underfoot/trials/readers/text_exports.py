@@ -8,8 +8,7 @@ from underfoot.core import DataError
 
 from ..trial import Trial
 from .draft import Draft
-from .text import is_number, number_after, split
-from .unit_factors import si_unit
+from .text import is_number, number_after, si_unit, split
 
 
 def read_trc(draft: Draft) -> Trial:
