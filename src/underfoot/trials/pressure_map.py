@@ -9,9 +9,8 @@ from numpy.typing import ArrayLike
 from underfoot.core import DataError, InputError
 
 from .axes import Axes, axes_of
-from .baseline import saturated
-from .filters import MARKER_FILTER, LowPass, bridged, low_passed
 from .measurement import Measurement, remark
+from .signals import MARKER_FILTER, LowPass, bridged, low_passed, saturated
 from .trial import Channel, Marker, Trial
 
 NARROW = 1.5  # spacings; pressure bumps narrower than this can hide between scans
