@@ -150,17 +150,8 @@ def pressure_scan(
         flags.append(f"scanned from {ends} only")
     line_load = float(np.sum(pressure * speed) / sensor.rate)
     lateral = float(np.interp(at[under], time, sideways).mean())
-    return PressureScan(
-        where,
-        along[under],
-        pressure,
-        lateral,
-        mean_speed,
-        change,
-        deviation,
-        line_load,
-        tuple(flags),
-    )
+    numbers = lateral, mean_speed, change, deviation, line_load
+    return PressureScan(where, along[under], pressure, *numbers, tuple(flags))
 
 
 def pressure_map(

@@ -312,12 +312,9 @@ def _tester(count: int, rng: np.random.Generator) -> Iterator[_File]:
     for (shoe, fluid), truth in _SHOES.items():
         for number, lateral in enumerate(places.tolist(), start=1):
             columns = scan_columns(truth, lateral, rng)
-            facts = {
-                "cof": truth.cof,
-                "fluid_load": truth.covered_load(places, 0.01),
-                "peak_pressure": truth.pressure,
-                "lateral": lateral,
-            }
+            load = truth.covered_load(places, 0.01)
+            facts = {"cof": truth.cof, "fluid_load": load, "peak_pressure": truth.pressure}
+            facts["lateral"] = lateral
             noted = {"shoe": shoe, "fluid": fluid, "map": f"{shoe}, {fluid}"}
             known = {key: f"{value:.6g}" for key, value in facts.items()}
             yield f"{shoe}_scan_{number}.csv", _csv(columns), noted, known
@@ -330,12 +327,8 @@ def _pin_on_disk(count: int, rng: np.random.Generator) -> Iterator[_File]:
             for speed in _SPEEDS:
                 cof = level * (asymptote + (boundary - asymptote) * math.exp(-speed / tau))
                 cof = max(cof + 0.012 * rng.standard_normal(), 0.02)
-                noted = {
-                    "fluid": fluid,
-                    "repeat": f"run {repeat}",
-                    "viscosity (cP)": f"{viscosity:g}",
-                    "speed (m/s)": f"{speed:g}",
-                }
+                noted = {"fluid": fluid, "repeat": f"run {repeat}"}
+                noted |= {"viscosity (cP)": f"{viscosity:g}", "speed (m/s)": f"{speed:g}"}
                 name = f"{fluid}_{repeat}_{1e3 * speed:04.0f}.csv"
                 yield name, _csv(disk_run(cof, speed, rng)), noted, {"cof": f"{cof:.6g}"}
 
