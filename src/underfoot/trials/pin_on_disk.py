@@ -142,9 +142,10 @@ def friction_point(
     mean, seen = float(values.mean()), tuple(map(caution, flags))
     measurement = Measurement("cof", mean, "1", error, reason, len(values), seen, said)
     speed = _speed(trial, kept) if speed is None else speed
-    forces = (None if f is None else float(np.abs(f[kept]).mean()) for f in (normal, shear))
+    forces = normal, shear
+    load, push = (None if f is None else float(np.abs(f[kept]).mean()) for f in forces)
     ends = float(time[kept[0]]), float(time[kept[-1]])
-    return FrictionPoint(trial.name, measurement, speed, *forces, time, ratio, ends)
+    return FrictionPoint(trial.name, measurement, speed, load, push, time, ratio, ends)
 
 
 @dataclass(frozen=True, slots=True)
