@@ -258,7 +258,9 @@ def test_tested_ranges_are_known_before_a_run(case):
 
 
 DEFAULTS = [
-    pytest.param(field, path, id=path) for path, field in fields() if default_of(field) is not None
+    pytest.param(field, path, id=path)
+    for path, field in fields().items()
+    if default_of(field) is not None
 ]
 
 

@@ -37,40 +37,40 @@ class HardnessOption(Option):
     def build(self, shore_a: float) -> tuple[SourcedValue, list[Breach]]:
         """Return Young's modulus, Pa, and what leaves the range of the relation."""
 
-    def _sourced(self, modulus: float, shore_a: float) -> SourcedValue:
-        return SourcedValue(
+
+class _Published(HardnessOption):
+    """Relation of ``material`` by the option's name."""
+
+    def build(self, shore_a: float) -> tuple[SourcedValue, list[Breach]]:
+        from underfoot import material
+
+        relation, breaches = {
+            "gent": (material.youngs_modulus_gent, material.gent_breaches),
+            "ruess": (material.youngs_modulus_ruess, material.ruess_breaches),
+        }[self.name]
+        modulus = float(relation(shore_a))
+        sourced = SourcedValue(
             modulus,
             "Pa",
             source=f"{self.source} from Shore A {shore_a:g}",
             uncertainty=HARDNESS_SPREAD * modulus,
             note="static modulus from hardness, good to tens of percent",
         )
+        return sourced, breaches(shore_a)
 
 
-class GentHardness(HardnessOption):
+class GentHardness(_Published):
     """Gent 1958."""
 
     name: ClassVar[str] = "gent"
     source: ClassVar[str] = "Gent 1958"
 
-    def build(self, shore_a: float) -> tuple[SourcedValue, list[Breach]]:
-        from underfoot import material
 
-        modulus = float(material.youngs_modulus_gent(shore_a))
-        return self._sourced(modulus, shore_a), material.gent_breaches(shore_a)
-
-
-class RuessHardness(HardnessOption):
+class RuessHardness(_Published):
     """Ruess."""
 
     name: ClassVar[str] = "ruess"
     source: ClassVar[str] = "Ruess"
-
-    def build(self, shore_a: float) -> tuple[SourcedValue, list[Breach]]:
-        from underfoot import material
-
-        modulus = float(material.youngs_modulus_ruess(shore_a))
-        return self._sourced(modulus, shore_a), material.ruess_breaches(shore_a)
 
 
 class RoughContactOption(Option):

@@ -9,13 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import Field
 
 from underfoot.core import InputError, RangeError, SourcedValue
 from underfoot.core.catalogue import Catalogue
 
 from .context import Context
-from .quantity import Force, Friction, Pressure, Quantity, Speed, Viscosity, required
+from .quantity import Force, Friction, Pressure, Quantity, Speed, Viscosity, optional, required
 from .section import CaseView, Option, Section
 from .surfaces import SurfaceRoughness
 from .tables import as_written, plain, table_columns, table_source, with_checksum
@@ -84,12 +83,11 @@ class PairOption(FrictionOption):
     reads: ClassVar[tuple[str, ...]] = ("contaminant.family",)
     uncounted: ClassVar[tuple[str, ...]] = ("draws_file",)
 
-    draws_file: str | None = Field(
-        default=None,
-        description="draws calibrated to readings of your own by underfoot calibrate pair; the "
+    draws_file: str | None = optional(
+        "draws calibrated to readings of your own by underfoot calibrate pair; the "
         "path counts from the case file's folder",
     )
-    sha256: str | None = Field(default=None, description="checksum of the file that is meant")
+    sha256: str | None = optional("checksum of the file that is meant")
 
     @classmethod
     def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
@@ -113,13 +111,9 @@ class PairOption(FrictionOption):
 class _Measured(FrictionOption):
     """What was measured with the fluid: COF_BL, its pair, and the hysteresis part."""
 
-    hysteresis_cof: Friction | None = Field(
-        default=None, description="hysteresis part, if measured"
-    )
-    cof_bl: Friction | None = Field(
-        default=None, description="COF in boundary lubrication (Eq. 17)"
-    )
-    pair: str | None = Field(default=None, description="sole and floor it was measured on")
+    hysteresis_cof: Friction | None = optional("hysteresis part, if measured")
+    cof_bl: Friction | None = optional("COF in boundary lubrication (Eq. 17)")
+    pair: str | None = optional("sole and floor it was measured on")
 
     def _optional(self, name: str) -> SourcedValue | None:
         return None if getattr(self, name, None) is None else self.sourced(name)
@@ -168,8 +162,8 @@ class StribeckOption(_Measured):
     source: ClassVar[str] = "friction of the pair and fluid as measured at the speed"
     chosen_by: ClassVar[tuple[str, ...]] = ("cof_bl", "tau_hydro", "cof_asymptote")
 
-    tau_hydro: Speed | None = Field(default=None, description="decay speed (Eq. 17)")
-    cof_asymptote: Friction | None = Field(default=None, description="COF at high speed (Eq. 17)")
+    tau_hydro: Speed | None = optional("decay speed (Eq. 17)")
+    cof_asymptote: Friction | None = optional("COF at high speed (Eq. 17)")
 
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import BoundaryLaw, StribeckLaw, stribeck_law_at
@@ -201,8 +195,8 @@ class AdhesionBlockingOption(FrictionOption):
     beta: Annotated[float, Quantity("1", 0.0, 1.0)] = required(
         "share of dry adhesion left (Eq. 26)", remedy=_remedy
     )
-    load: Force | None = Field(default=None, description="load at which alpha was measured")
-    pair: str | None = Field(default=None, description="sole and floor it was measured on")
+    load: Force | None = optional("load at which alpha was measured")
+    pair: str | None = optional("sole and floor it was measured on")
 
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.fluid import AdhesionBlocking
@@ -224,7 +218,7 @@ class ConstantOption(FrictionOption):
     dry: ClassVar[bool] = True
 
     cof: Friction = required("measured coefficient of friction, all parts")
-    hysteresis_cof: Friction | None = Field(default=None, description="its hysteresis part")
+    hysteresis_cof: Friction | None = optional("its hysteresis part")
 
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import ConstantLaw
@@ -251,8 +245,8 @@ class _Mechanism(_Measured):
     """Law of a mechanism that makes friction fall with speed."""
 
     reads: ClassVar[tuple[str, ...]] = ("interface.hurst", "interface.longest_wave")
-    tau_hydro: Speed | None = Field(
-        default=None, description="decay speed (Eq. 17): with it, cof_bl is a limit at low speed"
+    tau_hydro: Speed | None = optional(
+        "decay speed (Eq. 17): with it, cof_bl is a limit at low speed"
     )
 
     def _asperity_law(self, context: Context) -> SpeedEffectLaw:
@@ -291,10 +285,8 @@ class AsperityEhlOption(_Mechanism):
     name: ClassVar[str] = "asperity_ehl"
     source: ClassVar[str] = "films at single asperities, calibrated on the report's fluids"
 
-    fine_roughness: Annotated[float, Quantity("m", 1e-10, 1e-4)] | None = Field(
-        default=None,
-        description="roughness finer than a stylus sees; default: the one calibrated on the "
-        "report's fluids",
+    fine_roughness: Annotated[float, Quantity("m", 1e-10, 1e-4)] | None = optional(
+        "roughness finer than a stylus sees; default: the one calibrated on the report's fluids",
     )
 
     def build(self, context: Context) -> FrictionLaw:
@@ -380,9 +372,7 @@ class BowdenTaborOption(FrictionOption):
         remedy="Take it from a measured adhesion: COF times pressure over the share of real "
         'contact, as shear_strength = "0.3 MPa"',
     )
-    hysteresis_cof: Friction | None = Field(
-        default=None, description="hysteresis part, if measured"
-    )
+    hysteresis_cof: Friction | None = optional("hysteresis part, if measured")
 
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import BowdenTaborLaw, ShearStrength
@@ -422,9 +412,8 @@ class TableOption(FrictionOption):
     dry: ClassVar[bool] = True
     replaced: ClassVar[tuple[str, ...]] = ("table_file",)
 
-    table_file: str | None = Field(
-        default=None,
-        description="file (CSV, XLSX) with columns speed, cof and, where known, sd, pressure, "
+    table_file: str | None = optional(
+        "file (CSV, XLSX) with columns speed, cof and, where known, sd, pressure, "
         "viscosity; the path counts from the case file's folder",
     )
     readings: tuple[FrictionReading, ...] = required(
@@ -433,10 +422,8 @@ class TableOption(FrictionOption):
         remedy='Write friction.table_file = "law.csv" (columns speed, cof, and sd where known), or '
         'choose "constant"',
     )
-    readings_source: str | None = Field(default=None, description="who read them, and on what")
-    hysteresis_cof: Friction | None = Field(
-        default=None, description="hysteresis part, if measured"
-    )
+    readings_source: str | None = optional("who read them, and on what")
+    hysteresis_cof: Friction | None = optional("hysteresis part, if measured")
 
     @classmethod
     def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:

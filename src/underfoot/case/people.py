@@ -50,50 +50,37 @@ class Risk(Option):
         0.03, 0.03, "adults on level floor; derived from G.6, see slip probability", assumed=True
     )
 
-    @property
-    def model(self) -> str:
-        """Name of the slip model."""
-        return self.name
-
     @abstractmethod
     def build(self) -> SlipModel:
         """Return the slip model."""
 
 
-class ReportRisk(Risk):
+class _Published(Risk):
+    def build(self) -> SlipModel:
+        from underfoot.slip import slip_model
+
+        return slip_model(self.name)
+
+
+class ReportRisk(_Published):
     """Logistic of the report's human slips."""
 
     name: ClassVar[str] = "report_g6"
     source: ClassVar[str] = f"{_REPORT}, G.6.3"
 
-    def build(self) -> SlipModel:
-        from underfoot.slip import ReportG6
 
-        return ReportG6()
-
-
-class BeschornerRisk(Risk):
+class BeschornerRisk(_Published):
     """Logistic of Beschorner et al. 2016."""
 
     name: ClassVar[str] = "beschorner_2016"
     source: ClassVar[str] = "Beschorner et al. 2016"
 
-    def build(self) -> SlipModel:
-        from underfoot.slip import Beschorner2016
 
-        return Beschorner2016()
-
-
-class ChangRisk(Risk):
+class ChangRisk(_Published):
     """Available against required friction, Chang 2004."""
 
     name: ClassVar[str] = "chang_2004"
     source: ClassVar[str] = "Chang 2004"
-
-    def build(self) -> SlipModel:
-        from underfoot.slip import Chang2004
-
-        return Chang2004()
 
 
 class Walkers(Section):

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from underfoot.core import InputError, RangeError, SourcedValue, display
 
-from .quantity import Length, Quantity, default
+from .quantity import Length, Quantity, default, optional
 from .section import CaseView, Option, Section
 
 Roughness = Annotated[float, Quantity("m", 1e-9, 1e-3)]
@@ -24,12 +24,12 @@ STEEPEST = 0.5
 class SurfaceRoughness(Section):
     """Roughness numbers of a profile after the cut-off."""
 
-    ra: Roughness | None = Field(default=None, description="mean deviation")
-    rq: Roughness | None = Field(default=None, description="root-mean-square deviation")
-    rz: Roughness | None = Field(default=None, description="mean peak-to-valley height")
-    rp: Roughness | None = Field(default=None, description="highest peak")
-    rt: Roughness | None = Field(default=None, description="total height")
-    cutoff: Cutoff | None = Field(default=None, description="cut-off wavelength of the filter")
+    ra: Roughness | None = optional("mean deviation")
+    rq: Roughness | None = optional("root-mean-square deviation")
+    rz: Roughness | None = optional("mean peak-to-valley height")
+    rp: Roughness | None = optional("highest peak")
+    rt: Roughness | None = optional("total height")
+    cutoff: Cutoff | None = optional("cut-off wavelength of the filter")
 
     @property
     def rq_or_estimate(self) -> float | None:

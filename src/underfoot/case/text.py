@@ -1,7 +1,5 @@
 """Case files as text: read, change a value with its comments kept, write, and where keys stand."""
 
-import os
-import tempfile
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
@@ -9,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from underfoot.core import InputError, nearest_match
+from underfoot.core.files import whole_file
 
 
 def read(path: Path) -> str:
@@ -162,16 +161,8 @@ def save(text: str, path: Path, *, overwrite: bool = False) -> None:
         raise InputError(
             f"the file {path} exists", remedy="Choose another name, or add --overwrite"
         )
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}-")
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(text)
-        os.chmod(name, 0o644)
-        os.replace(name, path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+    with whole_file(path) as part:
+        part.write_text(text, encoding="utf-8")
 
 
 class Places:

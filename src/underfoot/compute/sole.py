@@ -102,7 +102,7 @@ def archard_state(case: Case, *, progress: Progress = silent) -> ArchardStep:
     """
     context, new, wear = resolved(case), new_sole(case), case.shoe.wear
     if not isinstance(wear, ArchardWear):
-        raise InputError(f'mode = "{wear.mode}"', where="shoe.wear.mode", allowed="archard")
+        raise InputError(f'mode = "{wear.name}"', where="shoe.wear.mode", allowed="archard")
     spacing = case.numerics.quick_grid_spacing
     force = wear.normal_force or case.motion.normal_force
     half, middle = wear.angle_range / 2, wear.angle

@@ -316,5 +316,5 @@ def _missing(case: Case, outcome: Outcome, target: float) -> float | None:
     if not outcome.usable:
         return None
     rcof = RcofPopulation(case.risk.rcof_mean, case.risk.rcof_sd)
-    needed = _needed(target, rcof, slip_model(case.risk.model))
+    needed = _needed(target, rcof, slip_model(case.risk.name))
     return None if needed is None else max(needed - outcome.number("cof"), 0.0)
