@@ -1,6 +1,6 @@
 """From what a case gives and the catalogue to one complete tree of values with their origins."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -139,9 +139,7 @@ def _lay(
 def _part(entry: Entry, part: str, section: str) -> dict[str, Leaf]:
     if part:
         return entry.under(part)
-    other = {"shoe.material": "roughness.", "contaminant": "boundary."}.get(section)
-    if other is None:
-        return dict(entry.values)
+    other = {"shoe.material": "roughness.", "contaminant": "boundary."}.get(section, "-")
     return {path: leaf for path, leaf in entry.values.items() if not path.startswith(other)}
 
 
@@ -170,11 +168,7 @@ def _of_another_fluid(origin: Origin, entries: Mapping[str, str]) -> bool:
 
 def _nested(origins: Mapping[str, Origin], tables: Mapping[str, Any]) -> dict[str, Any]:
     """Return the values as nested tables; the empty tables that were given are kept."""
-    tree: dict[str, Any] = {}
-    for section in _sections(tables):
-        table = tree
-        for part in section.split("."):
-            table = table.setdefault(part, {})
+    tree = _sections(tables)
     for path, origin in origins.items():
         *parents, key = path.split(".")
         table = tree
@@ -186,11 +180,12 @@ def _nested(origins: Mapping[str, Origin], tables: Mapping[str, Any]) -> dict[st
     return tree
 
 
-def _sections(table: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
-    for key, item in table.items():
-        if isinstance(item, Mapping) and "value" not in item:
-            yield f"{prefix}{key}"
-            yield from _sections(item, f"{prefix}{key}.")
+def _sections(table: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        key: _sections(item)
+        for key, item in table.items()
+        if isinstance(item, Mapping) and "value" not in item
+    }
 
 
 def _settled(
@@ -268,13 +263,9 @@ def _settle_reads(found: Composition, lenient: Callable[[str], bool], places: Pl
             continue
         if not from_catalogue(table[key]):
             if not lenient(path):
-                found.errors.append(
-                    InputError(
-                        "is not read by any chosen option",
-                        where=places(path),
-                        remedy=f"Remove it, or choose {' or '.join(readers)}",
-                    )
-                )
+                remedy = f"Remove it, or choose {' or '.join(readers)}"
+                what = "is not read by any chosen option"
+                found.errors.append(InputError(what, where=places(path), remedy=remedy))
                 continue
             found.dropped[path] = "not read by any chosen option"
         del table[key]

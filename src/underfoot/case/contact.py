@@ -13,6 +13,7 @@ from underfoot.core import Breach, Cache, SourcedValue
 from .context import Context
 from .quantity import Flag, Quantity, default
 from .section import Option
+from .surfaces import WAVES
 
 if TYPE_CHECKING:
     from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
@@ -103,11 +104,7 @@ class ContactTableOption(RoughContactOption):
 
     name: ClassVar[str] = "contact_table"
     source: ClassVar[str] = "sliding rough contact by boundary elements"
-    reads: ClassVar[tuple[str, ...]] = (
-        "interface.hurst",
-        "interface.longest_wave",
-        "interface.shortest_wave",
-    )
+    reads: ClassVar[tuple[str, ...]] = WAVES
 
     def build(self, context: Context) -> PressureGapLaw:
         from underfoot.rough_contact import ContactTable
@@ -117,12 +114,9 @@ class ContactTableOption(RoughContactOption):
         side = TABLE_WAVES * waves.longest_wave
         spacing = min(side / TABLE_CELLS, waves.shortest_wave / 2)
         cells = 2 * math.ceil(side / spacing / 2)
-        surfaces = [
-            self_affine(
-                cells, side / cells, rq, waves.hurst, waves.longest_wave, waves.shortest_wave, seed
-            )
-            for seed in range(TABLE_SURFACES)
-        ]
+        shape = (rq, waves.hurst, waves.longest_wave, waves.shortest_wave)
+        seeds = range(TABLE_SURFACES)
+        surfaces = [self_affine(cells, side / cells, *shape, seed) for seed in seeds]
         speed = context.motion.speed
         table = ContactTable.from_surfaces(
             surfaces,
@@ -182,11 +176,9 @@ class FiniteElementCompliance(ComplianceOption):
     def build(self, context: Context, sole: SoleMap) -> Compliance:
         from underfoot.sole_contact.finite_element import finite_element_compliance
 
+        store = Cache("sole_compliance-1")
         return finite_element_compliance(
-            sole,
-            **_layers(context),
-            cache=Cache("sole_compliance-1"),
-            progress=context.progress,
+            sole, **_layers(context), cache=store, progress=context.progress
         )
 
 

@@ -16,7 +16,7 @@ from underfoot.core.catalogue import Catalogue
 from .context import Context
 from .quantity import Force, Friction, Pressure, Quantity, Speed, Viscosity, optional, required
 from .section import CaseView, Option, Section
-from .surfaces import SurfaceRoughness
+from .surfaces import WAVES, SurfaceRoughness
 from .tables import as_written, plain, table_columns, table_source, with_checksum
 
 if TYPE_CHECKING:
@@ -147,9 +147,8 @@ class BoundaryOption(_Measured):
         others, own = measured_fluids(context.catalogue), self.measured(context)
         if own is None:
             own = boundary_friction_at(_viscosity(context), others, fluid=context.fluid)
-        return BoundaryLaw.measured(
-            own, cof_hysteresis=self._optional("hysteresis_cof"), others=others
-        )
+        hysteresis = self._optional("hysteresis_cof")
+        return BoundaryLaw.measured(own, cof_hysteresis=hysteresis, others=others)
 
 
 class StribeckOption(_Measured):
@@ -223,14 +222,9 @@ class ConstantOption(FrictionOption):
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import ConstantLaw
 
-        hysteresis, sourced = self.hysteresis_cof or 0.0, self.sourced("cof")
-        return ConstantLaw(
-            self.cof - hysteresis,
-            hysteresis,
-            sourced.source,
-            context.viscosity_value,
-            sourced.uncertainty,
-        )
+        part, whole = self.hysteresis_cof or 0.0, self.sourced("cof")
+        measured = (whole.source, context.viscosity_value, whole.uncertainty)
+        return ConstantLaw(self.cof - part, part, *measured)
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         if (self.hysteresis_cof or 0.0) > self.cof:
@@ -244,7 +238,7 @@ class ConstantOption(FrictionOption):
 class _Mechanism(_Measured):
     """Law of a mechanism that makes friction fall with speed."""
 
-    reads: ClassVar[tuple[str, ...]] = ("interface.hurst", "interface.longest_wave")
+    reads: ClassVar[tuple[str, ...]] = WAVES[:2]
     tau_hydro: Speed | None = optional(
         "decay speed (Eq. 17): with it, cof_bl is a limit at low speed"
     )
@@ -269,14 +263,8 @@ class _Mechanism(_Measured):
         from underfoot.friction import SpeedEffectLaw
 
         law = self._asperity_law(context)
-        return SpeedEffectLaw(
-            effect,
-            law.cof_boundary,
-            law.cof_hysteresis,
-            _viscosity(context),
-            RIVAL_DEVIATION[self.name],
-            law.assumed,
-        )
+        levels = (law.cof_boundary, law.cof_hysteresis, _viscosity(context))
+        return SpeedEffectLaw(effect, *levels, RIVAL_DEVIATION[self.name], law.assumed)
 
 
 class AsperityEhlOption(_Mechanism):
@@ -327,17 +315,15 @@ class ViscoelasticAreaOption(_Mechanism):
 
     name: ClassVar[str] = "viscoelastic_area"
     source: ClassVar[str] = "contact area from the compound's relaxation spectrum"
-    reads: ClassVar[tuple[str, ...]] = (*_Mechanism.reads, "interface.shortest_wave")
+    reads: ClassVar[tuple[str, ...]] = WAVES
 
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import ViscoelasticArea, modulus_exponent
 
-        rubber, wave = context.rubber(), context.interface.shortest_wave
-        rest = ViscoelasticArea(0.0).rest_speed
+        rest, wave = ViscoelasticArea(0.0).rest_speed, context.interface.shortest_wave
         fast = max(context.motion.speed, 2 * rest)
-        exponent = modulus_exponent(
-            rubber.complex_modulus, 2 * math.pi * rest / wave, 2 * math.pi * fast / wave
-        )
+        frequencies = (2 * math.pi * speed / wave for speed in (rest, fast))
+        exponent = modulus_exponent(context.rubber().complex_modulus, *frequencies)
         return self._rival(ViscoelasticArea(exponent), context)
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
@@ -361,11 +347,7 @@ class BowdenTaborOption(FrictionOption):
     name: ClassVar[str] = "bowden_tabor"
     source: ClassVar[str] = "Bowden and Tabor; Persson 2001, elastic contact area"
     dry: ClassVar[bool] = True
-    reads: ClassVar[tuple[str, ...]] = (
-        "interface.hurst",
-        "interface.longest_wave",
-        "interface.shortest_wave",
-    )
+    reads: ClassVar[tuple[str, ...]] = WAVES
 
     shear_strength: Annotated[float, Quantity("Pa", 0.0, 1e9)] = required(
         "of the real contact",
@@ -555,10 +537,7 @@ def _hysteresis(context: Context) -> float | None:
 
     if context.shoe.material.relaxation is None:
         return None
-    rubber, rq = (
-        context.rubber(),
-        context.floor.roughness.rq_or_estimate or math.sqrt(FLOOR_RQ[0] * FLOOR_RQ[1]),
-    )
+    rq = context.floor.roughness.rq_or_estimate or math.sqrt(FLOOR_RQ[0] * FLOOR_RQ[1])
     shortest, roll_off, longest = HYSTERESIS_WAVES
     wavenumber = np.geomspace(2 * math.pi / longest, 2 * math.pi / shortest, 60)
     shape = wavenumber * roll_off / (2 * math.pi)
@@ -568,7 +547,7 @@ def _hysteresis(context: Context) -> float | None:
         HYSTERESIS_PRESSURE,
         wavenumber,
         spectrum,
-        rubber.complex_modulus,
+        context.rubber().complex_modulus,
         context.motion.speed,
         context.poisson_ratio,
     )

@@ -21,6 +21,10 @@ STEEPEST = 0.5
 """Largest rms slope of the interface's longest waves (small-slope theory, assumed)."""
 
 
+WAVES = ("interface.hurst", "interface.longest_wave", "interface.shortest_wave")
+"""What options that need the self-affine interface read of it."""
+
+
 class SurfaceRoughness(Section):
     """Roughness numbers of a profile after the cut-off."""
 

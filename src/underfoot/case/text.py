@@ -142,17 +142,15 @@ def _table(tree: Mapping[str, Any]) -> Any:
 def _inline(value: Any) -> Any:
     import tomlkit
 
+    if not isinstance(value, dict | list | tuple):
+        return value
     if isinstance(value, dict):
         inline = tomlkit.inline_table()
-        for key, item in value.items():
-            inline[key] = _inline(item)
+        inline.update({key: _inline(item) for key, item in value.items()})
         return inline
-    if isinstance(value, list | tuple):
-        array = tomlkit.array()
-        for item in value:
-            array.append(_inline(item))
-        return array
-    return value
+    array = tomlkit.array()
+    array.extend(map(_inline, value))
+    return array
 
 
 def save(text: str, path: Path, *, overwrite: bool = False) -> None:
