@@ -48,7 +48,7 @@ class SurfaceRoughness(Section):
         if self.rq is not None:
             return self.sourced("rq").uncertainty
         spread = self.sourced("ra").uncertainty
-        return None if spread is None else RQ_PER_RA * spread
+        return spread and RQ_PER_RA * spread
 
 
 class Floor(Section):
