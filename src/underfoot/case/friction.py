@@ -85,7 +85,7 @@ class PairOption(FrictionOption):
 
     draws_file: str | None = optional(
         "draws calibrated to readings of your own by underfoot calibrate pair; the "
-        "path counts from the case file's folder",
+        "path counts from the case file's folder"
     )
     sha256: str | None = optional("checksum of the file that is meant")
 
@@ -274,7 +274,7 @@ class AsperityEhlOption(_Mechanism):
     source: ClassVar[str] = "films at single asperities, calibrated on the report's fluids"
 
     fine_roughness: Annotated[float, Quantity("m", 1e-10, 1e-4)] | None = optional(
-        "roughness finer than a stylus sees; default: the one calibrated on the report's fluids",
+        "roughness finer than a stylus sees; default: the one calibrated on the report's fluids"
     )
 
     def build(self, context: Context) -> FrictionLaw:
@@ -396,7 +396,7 @@ class TableOption(FrictionOption):
 
     table_file: str | None = optional(
         "file (CSV, XLSX) with columns speed, cof and, where known, sd, pressure, "
-        "viscosity; the path counts from the case file's folder",
+        "viscosity; the path counts from the case file's folder"
     )
     readings: tuple[FrictionReading, ...] = required(
         "the same readings written in the case",

@@ -105,7 +105,7 @@ class MotionFromHistory(Motion):
 
     history: str | None = optional(
         "file (CSV, XLSX) with columns time, normal_force, speed and, where it turns, "
-        "shoe_angle; the path counts from the case file's folder",
+        "shoe_angle; the path counts from the case file's folder"
     )
     history_points: tuple[MotionPoint, ...] = Field(
         description="the same points written in the case"
@@ -206,7 +206,7 @@ class FloorArray(Section):
     inlet_diameter: Length = Field(description="of each sensor (G.5.1: 4 mm)")
     position: Annotated[float, Quantity("m", -5.0, 5.0)] | None = optional(
         "of the first row, ahead of the shoe's rear end at time 0; default: the shoe "
-        "has the array under its middle at the end",
+        "has the array under its middle at the end"
     )
 
 

@@ -187,8 +187,7 @@ class WholePlan(SolePlan):
         if (self.toe_spring is None) != (self.toe_start is None):
             missing = "toe_spring" if self.toe_spring is None else "toe_start"
             yield InputError(
-                "a toe spring needs both its height and where it starts",
-                where=f"{where}.{missing}",
+                "a toe spring needs both its height and where it starts", where=f"{where}.{missing}"
             )
 
 

@@ -29,15 +29,7 @@ from underfoot.sole_contact.edge_peak import peak_pressure
 from underfoot.sole_contact.lug_edges import EdgedLaw
 from underfoot.sole_contact.solver import SoleContact
 
-from .contact import (
-    Recorder,
-    blind_sensor,
-    cost,
-    edged_law,
-    history_fields,
-    scanned,
-    solved_motion,
-)
+from .contact import Recorder, blind_sensor, cost, edged_law, history_fields, scanned, solved_motion
 from .numbers import (
     FILM_ERROR,
     SUCTION_SPREAD,
