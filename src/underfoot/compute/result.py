@@ -64,21 +64,17 @@ class Result(Presentable):
 
     @property
     def usable(self) -> bool:
-        """Whether the numbers are a result."""
         return self.status.usable
 
     def headline(self) -> tuple[str, ...]:
-        """Return COF, load on the film and slip probability in sentences."""
         return summary.headline(self.status, self.scalars, self.labels)
 
     def cautions(self) -> tuple[str, ...]:
-        """Return why the headline may not be trusted."""
         slip_model = self.provenance.closures.get("slip", "")
         inputs = (self.breaches, self.assumptions, slip_model)
         return summary.cautions(self.status, self.scalars, *inputs)
 
     def table(self) -> Table:
-        """Return every quantity with its uncertainty."""
         return summary.table(self.scalars, self.labels)
 
     def tables(self) -> tuple[Table, ...]:
