@@ -13,13 +13,11 @@ import pytest
 from underfoot.core import InputError
 from underfoot.trials import read_trial
 from underfoot.trials.analyse import analyse_folder
-from underfoot.trials.axes import Direction, DirectionSource, axes_of
-from underfoot.trials.events import body_weight
+from underfoot.trials.axes import LEVEL, Direction, DirectionSource, Ramp, axes_of, ramp_from
+from underfoot.trials.events import Stance, body_weight
 from underfoot.trials.gait import RcofDefinition, required_friction, required_frictions
 from underfoot.trials.protocols import protocol
-from underfoot.trials.ramp import LEVEL, Ramp, ramp_from
 from underfoot.trials.simulate import Defects, SlipTruth, walk_c3d, walk_with_slip
-from underfoot.trials.stance import Stance
 from underfoot.trials.trial import Plate, Trial
 
 WEIGHT = 700.0

@@ -8,7 +8,7 @@ import pytest
 
 from underfoot.trials import Edit, read_trial, required_frictions, stances
 from underfoot.trials.analyse import analyse_folder
-from underfoot.trials.edits import EditError
+from underfoot.trials.events import EditError
 from underfoot.trials.protocols import protocol
 from underfoot.trials.simulate import simulated_folder
 

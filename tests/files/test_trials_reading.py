@@ -102,7 +102,7 @@ def test_c3d_agrees_with_ezc3d(path):
     ezc3d = pytest.importorskip("ezc3d")
     theirs = ezc3d.c3d(str(path), extract_forceplat_data=True)
     ours = read_trial(path, subtract_baseline=False)
-    from underfoot.trials.readers.c3d_bytes import parse
+    from underfoot.trials.readers.c3d import parse
 
     raw = parse(path.read_bytes(), path.name)
     points = np.moveaxis(theirs["data"]["points"][:3], 0, 2).swapaxes(0, 1)
@@ -208,7 +208,7 @@ def test_every_storage_form_gives_the_same(tmp_path, processor, real):
 @pytest.mark.parametrize("processor", [84, 85, 86])
 def test_every_processor_agrees_with_py_c3d(tmp_path, processor):
     c3d = pytest.importorskip("c3d")
-    from underfoot.trials.readers.c3d_bytes import parse
+    from underfoot.trials.readers.c3d import parse
 
     path = _type_2(tmp_path, processor=processor)
     raw = parse(path.read_bytes(), path.name)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from underfoot.core import DataError
-from underfoot.trials.exponential_sums import exponential_sum
 from underfoot.trials.stribeck_fit import NOT_IDENTIFIED, stribeck_fit
 
 _SPEEDS = np.array([0.05, *np.arange(0.1, 1.01, 0.1)])
@@ -63,18 +62,6 @@ def test_nist_box_bod():
     assert fit.raw[2] == pytest.approx(2.1380940889e2, rel=1e-7)
     assert 1 / fit.raw[1] == pytest.approx(5.4723748542e-1, rel=1e-7)
     assert fit.residual_sum == pytest.approx(1.1680088766e3, rel=1e-10)
-
-
-def test_nist_mgh17():
-    # NIST StRD MGH17 (Osborne 1): y = b1 + b2 exp(-b4 x) + b3 exp(-b5 x).
-    y = "0.844 0.908 0.932 0.936 0.925 0.908 0.881 0.850 0.818 0.784 0.751 0.718 0.685 0.658 0.628"
-    y += " 0.603 0.580 0.558 0.538 0.522 0.506 0.490 0.478 0.467 0.457 0.448 0.438 0.431 0.424"
-    y += " 0.420 0.414 0.411 0.406"
-    fit = exponential_sum(10.0 * np.arange(33), [float(v) for v in y.split()], 2)
-    assert fit.level == pytest.approx(0.37541005211, rel=1e-7)
-    assert fit.amplitudes == pytest.approx([1.9358469127, -1.4646871366], rel=1e-6)
-    assert fit.rates == pytest.approx([0.012867534640, 0.022122699662], rel=1e-6)
-    assert fit.residual_sum == pytest.approx(5.4648946975e-5, rel=1e-8)
 
 
 def test_water_is_not_identified():

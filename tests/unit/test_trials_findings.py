@@ -29,7 +29,6 @@ from underfoot.trials.analyse.steps import rcof_definition
 from underfoot.trials.baseline import saturated, unloaded
 from underfoot.trials.events import no_contact_reason
 from underfoot.trials.gait_context import gait_context
-from underfoot.trials.outcome import Outcome
 from underfoot.trials.plates import channel_forces, ordered_corners, plate_axes
 from underfoot.trials.protocols import protocol
 from underfoot.trials.simulate import (
@@ -40,6 +39,7 @@ from underfoot.trials.simulate import (
     walk_c3d,
     walk_with_slip,
 )
+from underfoot.trials.slips import Outcome
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
 UP = np.array([0.0, 0.0, 1.0])

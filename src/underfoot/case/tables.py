@@ -144,7 +144,7 @@ def table_source(path: Path) -> str:
 
 
 def _column(sheet: Sheet, unit: str, headings: tuple[str, ...], where: str) -> Array | None:
-    from underfoot.trials.readers.unit_factors import si_unit
+    from underfoot.trials.readers.text import si_unit
 
     plain = {_plain(key): key for key in reversed(list(sheet.numbers))}
     key = next((plain[heading] for heading in headings if heading in plain), None)

@@ -49,8 +49,8 @@ def describe(
     as_json: AsJson = False,
 ) -> None:
     """Show plates, rates, axes, signs, baselines, heels and every step, taken or left and why."""
+    from underfoot.trials.axes import ramp_from
     from underfoot.trials.describe import described_file
-    from underfoot.trials.ramp import ramp_from
 
     found = described_file(
         file,

@@ -1,28 +1,20 @@
 """Friction from the dry adhesion of the pair and the share that a fluid leaves (Eq. 26)."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from numpy.typing import ArrayLike
-
-from underfoot.core import Breach, Range, SourcedValue
+from underfoot.core import Range, SourcedValue
+from underfoot.core.arrays import Array
 from underfoot.fluid import AdhesionBlocking
 
-from .law import (
-    PIN_PRESSURE,
-    REPORT,
-    FrictionParts,
-    UncertainInputs,
-    checked_viscosity,
-    coefficient,
-    law_breaches,
-    proportional_parts,
-)
+from .law import FILM_RANGE, PIN_PRESSURE, REPORT, UncertainInputs, coefficient
 
 NORMAL_FORCE = 20.9
 """N, the load of the tests behind Eq. 26 (G.3.1)."""
 RANGES = {
     "contact pressure": Range(0.0, PIN_PRESSURE, "Pa", f"{REPORT}, G.3.1: one load; lower assumed"),
     "sliding speed": Range(0.0, 0.01, "m/s", f"{REPORT}, G.3.1: one speed"),
+    **FILM_RANGE,
 }
 
 
@@ -53,11 +45,6 @@ class AdhesionBlockingLaw(UncertainInputs):
         init=False,
     )
 
-    def __post_init__(self) -> None:
-        coefficient(self.dry_adhesion, "dry_adhesion")
-        coefficient(self.cof_hysteresis, "cof_hysteresis")
-        checked_viscosity(self.viscosity)
-
     @property
     def source(self) -> str:
         """Where alpha and beta come from."""
@@ -77,18 +64,9 @@ class AdhesionBlockingLaw(UncertainInputs):
         force = self.blocking.estimate(dry * NORMAL_FORCE).uncertainty
         return None if force is None else force / NORMAL_FORCE
 
-    def __call__(
-        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> FrictionParts:
-        """Return the shear stresses in Pa."""
-        return proportional_parts(
-            *self.cof_parts, self.viscosity, contact_pressure, speed, film_thickness
-        )
+    def contact_shear(self, pressure: Array, velocity: Array) -> tuple[Array, ...]:
+        return tuple(part * pressure for part in self.cof_parts)
 
-    def breaches(
-        self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> list[Breach]:
-        """Return what leaves the tests: 0.01 m/s and 266.1 kPa."""
-        return law_breaches(
-            self.name, RANGES, self.viscosity, contact_pressure, speed, film_thickness
-        )
+    @property
+    def ranges(self) -> Mapping[str, Range]:
+        return RANGES

@@ -2,21 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from numpy.typing import ArrayLike
+from underfoot.core import InputError, Range, SourcedValue
+from underfoot.core.arrays import Array
 
-from underfoot.core import Breach, InputError, SourcedValue
-
-from .law import (
-    PIN_RANGES,
-    FrictionParts,
-    UncertainInputs,
-    checked_viscosity,
-    coefficient,
-    law_breaches,
-    proportional_parts,
-)
+from .law import PIN_RANGES, UncertainInputs, coefficient
 from .measured import BoundaryFriction, friction_left
 
 
@@ -44,11 +36,6 @@ class BoundaryLaw(UncertainInputs):
     viscosity: float | None = None
     assumed: tuple[str, ...] = ()
     name: str = field(default="boundary", init=False)
-
-    def __post_init__(self) -> None:
-        coefficient(self.cof_boundary, "cof_boundary")
-        coefficient(self.cof_hysteresis, "cof_hysteresis")
-        checked_viscosity(self.viscosity)
 
     @classmethod
     def measured(
@@ -111,18 +98,9 @@ class BoundaryLaw(UncertainInputs):
         hysteresis = min(coefficient(self.cof_hysteresis, "cof_hysteresis"), boundary)
         return boundary - hysteresis, hysteresis
 
-    def __call__(
-        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> FrictionParts:
-        """Return the shear stresses in Pa."""
-        return proportional_parts(
-            *self.cof_parts, self.viscosity, contact_pressure, speed, film_thickness
-        )
+    def contact_shear(self, pressure: Array, velocity: Array) -> tuple[Array, ...]:
+        return tuple(part * pressure for part in self.cof_parts)
 
-    def breaches(
-        self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> list[Breach]:
-        """Return what leaves the pin-on-disk tests: pressure (mean seen by the load) and speed."""
-        return law_breaches(
-            self.name, PIN_RANGES, self.viscosity, contact_pressure, speed, film_thickness
-        )
+    @property
+    def ranges(self) -> Mapping[str, Range]:
+        return PIN_RANGES

@@ -4,25 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError, SourcedValue
+from underfoot.core import InputError, SourcedValue
 from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative, positive
 
-from .law import (
-    FrictionParts,
-    UncertainInputs,
-    checked,
-    checked_viscosity,
-    drawn_value,
-    law_breaches,
-    viscous_shear,
-    with_values,
-)
+from .law import UncertainInputs, drawn_value, with_values
 
 ContactFraction = Callable[[Array, Array], ArrayLike]
 """Real over nominal area at (contact pressure Pa, speed m/s)."""
@@ -106,7 +96,7 @@ class BowdenTaborLaw(UncertainInputs):
     name: str = field(default="bowden_tabor", init=False)
 
     def __post_init__(self) -> None:
-        checked_viscosity(self.viscosity)
+        UncertainInputs.__post_init__(self)
         if not callable(self.cof_hysteresis):
             not_negative(self.cof_hysteresis, "cof_hysteresis")
 
@@ -125,24 +115,11 @@ class BowdenTaborLaw(UncertainInputs):
         """What no measurement stands behind."""
         return ("Adhesion is one shear strength times the real contact area.",)
 
-    def __call__(
-        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> FrictionParts:
-        """Return the shear stresses in Pa, with the real contact fraction."""
-        pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
+    def contact_shear(self, pressure: Array, velocity: Array) -> tuple[Array, ...]:
         area = np.clip(np.asarray(self.real_contact_fraction(pressure, velocity)), 0.0, 1.0)
-        hysteresis: Any = self.cof_hysteresis
-        loss = (
-            hysteresis(pressure, velocity)
-            if callable(hysteresis)
-            else np.full(pressure.shape, hysteresis)
-        )
-        return FrictionParts(
-            self.shear_strength(velocity) * area,
-            np.asarray(loss) * pressure,
-            viscous_shear(self.viscosity, velocity, film),
-            real_contact_fraction=area,
-        )
+        loss = self.cof_hysteresis
+        loss = np.asarray(loss(pressure, velocity)) if callable(loss) else loss
+        return self.shear_strength(velocity) * area, loss * pressure, area
 
     @property
     def inputs(self) -> dict[str, SourcedValue]:
@@ -157,9 +134,3 @@ class BowdenTaborLaw(UncertainInputs):
             return law
         strength = drawn_value(values["shear_strength"], self.shear_strength.strength)
         return replace(law, shear_strength=replace(self.shear_strength, strength=strength))
-
-    def breaches(
-        self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> list[Breach]:
-        """Return films below the bound of the viscous part; area and loss carry their own."""
-        return law_breaches(self.name, {}, self.viscosity, contact_pressure, speed, film_thickness)

@@ -2,12 +2,11 @@
 
 from dataclasses import dataclass, field
 
-from numpy.typing import ArrayLike
-
-from underfoot.core import Breach, InputError, SourcedValue
+from underfoot.core import InputError, SourcedValue
+from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative
 
-from .law import FrictionParts, UncertainInputs, checked_viscosity, law_breaches, proportional_parts
+from .law import UncertainInputs
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -39,24 +38,14 @@ class ConstantLaw(UncertainInputs):
         for label in ("adhesion_deviation", "hysteresis_deviation"):
             if getattr(self, label) is not None:
                 not_negative(getattr(self, label), label)
-        checked_viscosity(self.viscosity)
+        UncertainInputs.__post_init__(self)
         if not self.source.strip():
             raise InputError(
                 "no source", where="source", remedy="Say where the coefficients come from"
             )
 
-    def __call__(
-        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> FrictionParts:
-        """Return the shear stresses in Pa."""
-        return proportional_parts(
-            self.cof_adhesion,
-            self.cof_hysteresis,
-            self.viscosity,
-            contact_pressure,
-            speed,
-            film_thickness,
-        )
+    def contact_shear(self, pressure: Array, velocity: Array) -> tuple[Array, ...]:
+        return self.cof_adhesion * pressure, self.cof_hysteresis * pressure
 
     @property
     def inputs(self) -> dict[str, SourcedValue]:
@@ -70,9 +59,3 @@ class ConstantLaw(UncertainInputs):
             for name, value, deviation in pairs
             if value > 0 or deviation is not None
         }
-
-    def breaches(
-        self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> list[Breach]:
-        """Return films below the bound of the viscous part."""
-        return law_breaches(self.name, {}, self.viscosity, contact_pressure, speed, film_thickness)

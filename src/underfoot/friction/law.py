@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any, Protocol, Self, runtime_checkable
@@ -20,11 +21,13 @@ SMALLEST_FILM = 2e-7
 REPORT = "final progress report on shoe-floor friction"
 PIN_PRESSURE = 266.1e3
 """Pa: 20.9 N on a pin of 10 mm, the one load of the report's pin-on-disk studies (G.2.1, G.3.1)."""
+FILM_RANGE = {"film thickness": Range(SMALLEST_FILM, 1.0, "m", "bound of the viscous part")}
 PIN_RANGES = {
     "contact pressure": Range(0.0, PIN_PRESSURE, "Pa", f"{REPORT}, G.2.1: one load; lower assumed"),
     "sliding speed": Range(0.05, 1.0, "m/s", f"{REPORT}, G.2.1"),
+    **FILM_RANGE,
 }
-"""What the pin-on-disk tests of G.2.1 cover."""
+"""What the pin-on-disk tests of G.2.1 cover, and what bounds the viscous part."""
 SMALLEST = 1e-3
 """Drawn values of a positive input are cut at this share of it: no law knows negative ones."""
 
@@ -95,13 +98,61 @@ class FrictionLaw(Protocol):
 
 
 class UncertainInputs(Presentable):
-    """Base of laws whose inputs are fields that hold a ``SourcedValue``.
+    """Base of laws: a contact with inputs that hold a ``SourcedValue``, and eta V / h.
 
     ``inputs`` are what sampling draws; ``at`` is the law at one draw. "viscosity" (Pa s) counts
     too where the law has one: its spread comes with the fluid.
     """
 
     __slots__ = ()
+
+    def __post_init__(self) -> None:
+        law: Any = self
+        for name, value in sourced_fields(law, missing=True).items():
+            coefficient(value, name)
+        if law.viscosity is not None:
+            positive(law.viscosity, "viscosity", "Pa s")
+
+    @abstractmethod
+    def contact_shear(self, pressure: Array, velocity: Array) -> tuple[Array, ...]:
+        """Return the stresses of adhesion and hysteresis (Pa), and the contact fraction if known.
+
+        At contact pressure (Pa) and speed (m/s, 0 or more), of one shape.
+        """
+
+    def __call__(
+        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+    ) -> FrictionParts:
+        """Return the shear stresses in Pa."""
+        law: Any = self
+        pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
+        adhesion, hysteresis, *fraction = self.contact_shear(pressure, velocity)
+        viscous = viscous_shear(law.viscosity, velocity, film)
+        return FrictionParts(adhesion, hysteresis, viscous, *fraction)
+
+    @property
+    def ranges(self) -> Mapping[str, Range]:
+        """What the law was measured on, and what bounds its viscous part."""
+        return FILM_RANGE
+
+    def breaches(
+        self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+    ) -> list[Breach]:
+        """Return what leaves ``ranges``.
+
+        The contact pressure is the mean that the load sees (sum p^2 / sum p): single cells may go
+        above it.
+        """
+        law: Any = self
+        pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
+        total = float(pressure.sum())
+        values: dict[str, ArrayLike] = {"sliding speed": velocity}
+        if total > 0:
+            values["contact pressure"] = float((pressure**2).sum()) / total
+        if law.viscosity is not None:
+            values |= {"film thickness": film, "viscosity": law.viscosity}
+            values["viscosity x speed"] = law.viscosity * velocity
+        return breaches(law.name, self.ranges, values)
 
     @property
     def inputs(self) -> dict[str, SourcedValue]:
@@ -111,7 +162,7 @@ class UncertainInputs(Presentable):
     @property
     def error_of_model(self) -> float | None:
         """Standard deviation of COF that stays with exact inputs; None when not known."""
-        return None
+        return getattr(self, "model_deviation", None)
 
     def at(self, values: Mapping[str, float]) -> Self:
         """Return the law with ``values`` (SI) in place of some of its inputs."""
@@ -121,9 +172,8 @@ class UncertainInputs(Presentable):
         """Return the inputs of the law with their spread and source."""
         law: Any = self
         inputs = dict(law.inputs)
-        viscosity = getattr(law, "viscosity", None)
-        if viscosity is not None and "viscosity" not in inputs:
-            inputs["viscosity"] = SourcedValue(viscosity, "Pa*s")
+        if law.viscosity is not None:
+            inputs.setdefault("viscosity", SourcedValue(law.viscosity, "Pa*s"))
         rows = [
             (name, value.value, value.uncertainty, value.unit, value.assumed, value.source)
             for name, value in inputs.items()
@@ -141,13 +191,13 @@ class UncertainInputs(Presentable):
         return f"{type(self).__name__}({values or law.name})"[:199]
 
 
-def sourced_fields(law: Any) -> dict[str, SourcedValue]:
-    """Return the fields of a dataclass that hold a number with its spread."""
-    values = {field.name: getattr(law, field.name) for field in fields(law)}
+def sourced_fields(law: Any, *, missing: bool = False) -> dict[str, SourcedValue]:
+    """Return the fields of a dataclass that hold a number with its spread, ``missing`` ones too."""
     return {
-        name: value
-        for name, value in values.items()
-        if isinstance(value, SourcedValue) and value.value is not None
+        field.name: value
+        for field in fields(law)
+        if isinstance(value := getattr(law, field.name), SourcedValue)
+        and (missing or value.value is not None)
     }
 
 
@@ -197,46 +247,6 @@ def viscous_shear(viscosity: float | None, speed: Array, film_thickness: Array) 
     return viscosity * speed / np.maximum(film_thickness, SMALLEST_FILM)
 
 
-def proportional_parts(
-    adhesion: float,
-    hysteresis: float,
-    viscosity: float | None,
-    contact_pressure: ArrayLike,
-    speed: ArrayLike,
-    film_thickness: ArrayLike,
-) -> FrictionParts:
-    """Return the shear stresses (Pa) of two constant coefficients of the contact and eta V / h."""
-    pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
-    return FrictionParts(
-        adhesion * pressure, hysteresis * pressure, viscous_shear(viscosity, velocity, film)
-    )
-
-
-def law_breaches(
-    closure: str,
-    ranges: Mapping[str, Range],
-    viscosity: float | None,
-    contact_pressure: ArrayLike,
-    speed: ArrayLike,
-    film_thickness: ArrayLike,
-) -> list[Breach]:
-    """Return the breaches of a law.
-
-    A range of "contact pressure" is held against the mean contact pressure that the load sees
-    (sum p^2 / sum p): single cells may go above it.
-    """
-    pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
-    total = float(pressure.sum())
-    values: dict[str, ArrayLike] = {"sliding speed": velocity}
-    if total > 0:
-        values["contact pressure"] = float((pressure**2).sum()) / total
-    ranges = dict(ranges)
-    if viscosity is not None:
-        ranges["film thickness"] = Range(SMALLEST_FILM, 1.0, "m", "bound of the viscous part")
-        values["film thickness"] = film
-    return breaches(closure, ranges, values)
-
-
 def coefficient(value: SourcedValue, where: str) -> float:
     """Return the number of a friction coefficient, refused when missing, negative or not finite."""
     if value.value is None:
@@ -248,9 +258,3 @@ def coefficient(value: SourcedValue, where: str) -> float:
     if not (np.isfinite(value.value) and value.value >= 0):
         raise InputError(f"{value.value:g}", where=where, allowed="a finite number, 0 or more")
     return value.value
-
-
-def checked_viscosity(viscosity: float | None) -> None:
-    """Refuse a viscosity that is not positive; None is no fluid."""
-    if viscosity is not None:
-        positive(viscosity, "viscosity", "Pa s")

@@ -3,27 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError, SourcedValue
-from underfoot.core.arrays import scalar_or_array
+from underfoot.core import InputError, Range, SourcedValue
+from underfoot.core.arrays import Array, scalar_or_array
 
-from .law import (
-    PIN_RANGES,
-    REPORT,
-    FrictionParts,
-    UncertainInputs,
-    checked,
-    checked_viscosity,
-    coefficient,
-    law_breaches,
-    viscous_shear,
-)
+from .law import PIN_RANGES, REPORT, UncertainInputs, coefficient
 from .measured import AT_BOUND, BoundaryFriction, boundary_friction_at, friction_left, viscous_decay
 
 SOURCE = (
@@ -79,13 +69,9 @@ class StribeckLaw(UncertainInputs):
     source: str = field(default=SOURCE, init=False)
 
     def __post_init__(self) -> None:
-        coefficient(self.cof_boundary, "cof_boundary")
-        coefficient(self.cof_asymptote, "cof_asymptote")
-        if coefficient(self.tau_hydro, "tau_hydro") == 0:
+        UncertainInputs.__post_init__(self)
+        if self.tau_hydro.value == 0:
             raise InputError("0 m/s", where="tau_hydro", allowed="above 0")
-        if self.cof_hysteresis is not None:
-            coefficient(self.cof_hysteresis, "cof_hysteresis")
-        checked_viscosity(self.viscosity)
 
     @classmethod
     def measured(
@@ -129,11 +115,6 @@ class StribeckLaw(UncertainInputs):
         )
 
     @property
-    def error_of_model(self) -> float | None:
-        """As given."""
-        return self.model_deviation
-
-    @property
     def assumptions(self) -> tuple[str, ...]:
         """What no measurement stands behind."""
         return (
@@ -142,32 +123,16 @@ class StribeckLaw(UncertainInputs):
             *self.assumed,
         )
 
-    def __call__(
-        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> FrictionParts:
-        """Return the shear stresses in Pa; hysteresis is what is left of COF at high speed."""
-        pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
-        cof = stribeck_cof(
-            velocity,
-            coefficient(self.cof_boundary, "cof_boundary"),
-            coefficient(self.tau_hydro, "tau_hydro"),
-            coefficient(self.cof_asymptote, "cof_asymptote"),
-        )
+    def contact_shear(self, pressure: Array, velocity: Array) -> tuple[Array, ...]:
+        constants = (self.cof_boundary, self.tau_hydro, self.cof_asymptote)
+        cof = stribeck_cof(velocity, *(coefficient(each, "Eq. 17") for each in constants))
         left = coefficient(self.cof_hysteresis or self.cof_asymptote, "cof_hysteresis")
         hysteresis = np.minimum(left, cof)
-        return FrictionParts(
-            (cof - hysteresis) * pressure,
-            hysteresis * pressure,
-            viscous_shear(self.viscosity, velocity, film),
-        )
+        return (cof - hysteresis) * pressure, hysteresis * pressure
 
-    def breaches(
-        self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> list[Breach]:
-        """Return what leaves the pin-on-disk tests: pressure (mean seen by the load) and speed."""
-        return law_breaches(
-            self.name, PIN_RANGES, self.viscosity, contact_pressure, speed, film_thickness
-        )
+    @property
+    def ranges(self) -> Mapping[str, Range]:
+        return PIN_RANGES
 
 
 def stribeck_law_at(

@@ -27,11 +27,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, DataError, InputError, Range, SourcedValue
+from underfoot.core import DataError, InputError, Range, SourcedValue
 from underfoot.core.arrays import Array
 from underfoot.core.checks import positive
 
-from .law import FrictionParts, UncertainInputs, checked, law_breaches, viscous_shear
+from .law import FILM_RANGE, UncertainInputs
 
 ROUGHNESS = 8.3e-6
 """Rq (m) of the pair at which ``kappa_0`` holds: the report's polyurethane pin on vinyl."""
@@ -48,6 +48,7 @@ MOST = 1.0
 SOURCE = "law of the pair, calibrated on published measurements (underfoot studies run corpus)"
 RANGES = {
     "sliding speed": Range(0.01, 1.0, "m/s", "speeds of the measurements behind the law"),
+    **FILM_RANGE,
     "viscosity": Range(0.5e-3, 0.3, "Pa*s", "fluids of the measurements behind the law"),
 }
 LABORATORY, DRY_PART = "laboratory", "dry part of the laboratory"
@@ -322,37 +323,15 @@ class PairContactLaw(UncertainInputs):
             self.pair, values.get("viscosity", self.viscosity), self.draws, present
         )
 
-    def __call__(
-        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> FrictionParts:
-        """Return the shear stresses in Pa."""
-        pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
+    def contact_shear(self, pressure: Array, velocity: Array) -> tuple[Array, ...]:
         m = self.medians
         factor = m["laboratory"] * m["pair"]
         left = np.exp(-self.viscosity * velocity / m["kappa"])
         adhesion = factor * (m["film"] + m["dry"] * left)
         hysteresis = factor * m["hysteresis"]
         most = np.minimum(1.0, MOST / (adhesion + hysteresis))
-        return FrictionParts(
-            adhesion * most * pressure,
-            hysteresis * most * pressure,
-            viscous_shear(self.viscosity, velocity, film),
-        )
+        return adhesion * most * pressure, hysteresis * most * pressure
 
-    def breaches(
-        self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> list[Breach]:
-        """Return speed and viscosity beyond those of the measurements behind the law."""
-        from underfoot.core import breaches
-
-        return [
-            *law_breaches(
-                self.name,
-                {"sliding speed": RANGES["sliding speed"]},
-                self.viscosity,
-                contact_pressure,
-                speed,
-                film_thickness,
-            ),
-            *breaches(self.name, {"viscosity": RANGES["viscosity"]}, {"viscosity": self.viscosity}),
-        ]
+    @property
+    def ranges(self) -> Mapping[str, Range]:
+        return RANGES

@@ -9,22 +9,10 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError, Range, SourcedValue, breaches
+from underfoot.core import InputError, Range, SourcedValue
 from underfoot.core.arrays import Array, scalar_or_array
 
-from .law import (
-    PIN_PRESSURE,
-    PIN_RANGES,
-    FrictionParts,
-    UncertainInputs,
-    checked,
-    checked_viscosity,
-    coefficient,
-    law_breaches,
-    sourced_fields,
-    viscous_shear,
-    with_values,
-)
+from .law import PIN_PRESSURE, PIN_RANGES, UncertainInputs, coefficient, sourced_fields, with_values
 
 
 @runtime_checkable
@@ -109,9 +97,7 @@ class SpeedEffectLaw(UncertainInputs):
     calibrated_product: Range | None = None
 
     def __post_init__(self) -> None:
-        coefficient(self.cof_boundary, "cof_boundary")
-        coefficient(self.cof_hysteresis, "cof_hysteresis")
-        checked_viscosity(self.viscosity)
+        UncertainInputs.__post_init__(self)
         if self.model_deviation is not None and not self.model_deviation >= 0:
             raise InputError(
                 f"{self.model_deviation:g}", where="model_deviation", allowed="0 or more"
@@ -143,11 +129,6 @@ class SpeedEffectLaw(UncertainInputs):
         )
 
     @property
-    def error_of_model(self) -> float | None:
-        """Of the mechanism's blind predictions."""
-        return self.model_deviation
-
-    @property
     def inputs(self) -> dict[str, SourcedValue]:
         """Levels of friction and the numbers of the mechanism."""
         return {**sourced_fields(self), **self.effect_inputs}
@@ -163,35 +144,18 @@ class SpeedEffectLaw(UncertainInputs):
             law, effect=effect.at(own) if hasattr(effect, "at") else with_values(effect, own)
         )
 
-    def __call__(
-        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> FrictionParts:
-        """Return the shear stresses in Pa."""
-        pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
+    def contact_shear(self, pressure: Array, velocity: Array) -> tuple[Array, ...]:
         boundary = coefficient(self.cof_boundary, "cof_boundary")
         hysteresis = min(coefficient(self.cof_hysteresis, "cof_hysteresis"), boundary)
         left = self.effect.adhesion_left(
             viscosity=self.viscosity, speed=velocity, contact_pressure=pressure
         )
-        return FrictionParts(
-            (boundary - hysteresis) * np.asarray(left) * pressure,
-            hysteresis * pressure,
-            viscous_shear(self.viscosity, velocity, film),
-        )
+        return (boundary - hysteresis) * np.asarray(left) * pressure, hysteresis * pressure
 
-    def breaches(
-        self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> list[Breach]:
-        """Return what leaves the tests behind the calibration: 0.05 to 1 m/s, up to 266.1 kPa."""
-        outside = law_breaches(
-            self.name, PIN_RANGES, self.viscosity, contact_pressure, speed, film_thickness
-        )
-        if self.viscosity is None or self.calibrated_product is None:
-            return outside
-        product = {"viscosity x speed": self.viscosity * np.abs(np.asarray(speed, dtype=float))}
-        return outside + breaches(
-            self.name, {"viscosity x speed": self.calibrated_product}, product
-        )
+    @property
+    def ranges(self) -> Mapping[str, Range]:
+        product = self.calibrated_product
+        return PIN_RANGES if product is None else {**PIN_RANGES, "viscosity x speed": product}
 
 
 FILM_EXPONENT = 0.65

@@ -6,22 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError, Range, SourcedValue
+from underfoot.core import InputError, Range, SourcedValue
 from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative
 from underfoot.core.presentation import Table
 
-from .law import (
-    FrictionParts,
-    UncertainInputs,
-    checked,
-    checked_viscosity,
-    law_breaches,
-    viscous_shear,
-    with_values,
-)
+from .law import FILM_RANGE, UncertainInputs, with_values
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -81,26 +72,18 @@ class SpeedTableLaw(UncertainInputs):
         not_negative(self.cof_hysteresis, "cof_hysteresis")
         if not self.source.strip():
             raise InputError("no source", where="source", remedy="Say who measured it, and on what")
-        checked_viscosity(self.viscosity)
+        UncertainInputs.__post_init__(self)
 
     @property
     def assumptions(self) -> tuple[str, ...]:
         """What no measurement stands behind."""
         return ("Contact friction is proportional to the contact pressure.", *self.assumed)
 
-    def __call__(
-        self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> FrictionParts:
-        """Return the shear stresses in Pa."""
-        pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
+    def contact_shear(self, pressure: Array, velocity: Array) -> tuple[Array, ...]:
         place = np.log(np.maximum(velocity, self.speed[0]))
         cof = np.interp(place, np.log(self.speed), self.cof)
         hysteresis = np.minimum(self.cof_hysteresis, cof)
-        return FrictionParts(
-            (cof - hysteresis) * pressure,
-            hysteresis * pressure,
-            viscous_shear(self.viscosity, velocity, film),
-        )
+        return (cof - hysteresis) * pressure, hysteresis * pressure
 
     def table(self) -> Table:
         """Return the readings."""
@@ -132,15 +115,10 @@ class SpeedTableLaw(UncertainInputs):
         moved = np.maximum(self.cof + values["readings"] * self.cof_deviation, 0.0)
         return replace(law, cof=moved)
 
-    def breaches(
-        self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
-    ) -> list[Breach]:
-        """Return what leaves the speeds and, where given, the pressures of the readings."""
-        ranges = {
-            "sliding speed": Range(float(self.speed[0]), float(self.speed[-1]), "m/s", self.source)
-        }
+    @property
+    def ranges(self) -> Mapping[str, Range]:
+        speed = Range(float(self.speed[0]), float(self.speed[-1]), "m/s", self.source)
+        ranges = {"sliding speed": speed}
         if self.pressure is not None:
             ranges["contact pressure"] = Range(*self.pressure, "Pa", self.source)
-        return law_breaches(
-            self.name, ranges, self.viscosity, contact_pressure, speed, film_thickness
-        )
+        return ranges | FILM_RANGE

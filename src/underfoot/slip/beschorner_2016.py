@@ -56,7 +56,6 @@ class Beschorner2016(LogisticModel):
 
     @property
     def log_odds_slope(self) -> float:
-        """Change of the log odds per unit of ACOF - RCOF."""
         return -self.slope
 
     @property

@@ -34,19 +34,15 @@ class Chang2004(PresentableModel):
     )
 
     def __call__(self, acof: ArrayLike, rcof: ArrayLike) -> Any:
-        """Return 0, 1/2 or 1 for persons of known RCOF (arrays broadcast)."""
         return scalar_or_array(np.heaviside(required(rcof) - available(acof), 0.5))
 
     def population(self, acof: ArrayLike, rcof_mean: ArrayLike, rcof_sd: ArrayLike) -> Any:
-        """Return Phi((mean - ACOF) / sd) (arrays broadcast)."""
         a, mean, sd = np.broadcast_arrays(
             available(acof), required(rcof_mean, "rcof_mean"), deviation(rcof_sd, "rcof_sd")
         )
-        spread = np.where(sd > 0, sd, 1.0)
-        return scalar_or_array(
-            np.where(sd > 0, ndtr((mean - a) / spread), np.heaviside(mean - a, 0.5))
-        )
+        with np.errstate(over="ignore"):  # of a spread next to nothing: 0 or 1
+            certain = ndtr((mean - a) / np.where(sd > 0, sd, 1.0))
+        return scalar_or_array(np.where(sd > 0, certain, np.heaviside(mean - a, 0.5)))
 
     def breaches(self, acof: ArrayLike, rcof: ArrayLike) -> list[Breach]:
-        """Return nothing: the model was held against no study."""
         return []

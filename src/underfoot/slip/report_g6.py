@@ -49,10 +49,8 @@ class ReportG6(LogisticModel):
 
     @property
     def log_odds_slope(self) -> float:
-        """Change of the log odds per unit of ACOF - RCOF."""
         return self.slope
 
     @property
     def tested(self) -> Range:
-        """ACOF - RCOF of the pairs of subject and outsole in the study."""
         return TESTED

@@ -7,6 +7,7 @@ can take the place of the layers below.
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -55,23 +56,16 @@ class ConvolutionCompliance:
     """Sum of convolutions, each w * K(w * p) with an optional weight field w."""
 
     def __init__(
-        self,
-        shape: tuple[int, int],
-        parts: list[tuple[Array, Array | None]],
-        symbol: Symbol,
+        self, shape: tuple[int, int], parts: list[tuple[Array, Array | None]], symbol: Symbol
     ) -> None:
         self._symbol = symbol
         centre = (shape[0] - 1, shape[1] - 1)
-        self._plain: Convolution | None = None
-        self._weighted: list[tuple[Convolution, Array]] = []
+        self._parts: list[tuple[Convolution, Array | float]] = []
         self._self = np.zeros(shape)
-        for influence, weight in parts:
-            if weight is None:
-                self._plain = Convolution(influence, shape)
-                self._self += influence[centre]
-            else:
-                self._weighted.append((Convolution(influence, shape), weight))
-                self._self += influence[centre] * weight**2
+        for influence, given in parts:
+            weight = 1.0 if given is None else given
+            self._parts.append((Convolution(influence, shape), weight))
+            self._self += influence[centre] * weight**2
         # A cell of weight zero (a channel) carries no pressure; keep its diagonal positive.
         self._self = np.maximum(self._self, self._self.max() * 1e-3)
 
@@ -86,8 +80,8 @@ class ConvolutionCompliance:
 
     def apply(self, pressure: Array) -> Array:
         """Return the deflection (nx, ny) in m of a pressure field (nx, ny) in Pa."""
-        deflection = np.zeros_like(self._self) if self._plain is None else self._plain(pressure)
-        for convolution, weight in self._weighted:
+        deflection = np.zeros_like(self._self)
+        for convolution, weight in self._parts:
             deflection += weight * convolution(weight * pressure)
         return deflection
 
@@ -167,17 +161,14 @@ def layered_compliance(
     def midsole(q: Array) -> Array:
         if midsole_modulus is None or midsole_thickness is None:
             return np.zeros_like(q)
-        return bonded_layer_symbol(
-            q, midsole_modulus, midsole_poisson_ratio, midsole_thickness
-        ) * attenuation(q, thickness)
+        give = bonded_layer_symbol(q, midsole_modulus, midsole_poisson_ratio, midsole_thickness)
+        return give * attenuation(q, thickness)
 
     if midsole_modulus is not None and midsole_thickness is not None:
         _check_elastic(midsole_modulus, midsole_poisson_ratio)
         _check_positive(midsole_thickness, "midsole_thickness")
-
-    def layer(q: Array) -> Array:
-        return bonded_layer_symbol(q, modulus, poisson_ratio, thickness)
-
+    elastic = {"modulus": modulus, "poisson_ratio": poisson_ratio}
+    layer = partial(bonded_layer_symbol, **elastic, thickness=thickness)
     if not free_edges:
         plain = influence(lambda q: layer(q) + midsole(q))
         return ConvolutionCompliance(shape, [(plain, None)], lambda q: layer(q) + midsole(q))
@@ -186,10 +177,7 @@ def layered_compliance(
     land = sole.inside & sole.land
     plan = land if depth == 0.0 else sole.inside
     give = block_compression(plan, sole.spacing, body, modulus, poisson_ratio)
-    mean_give = float(give[plan].mean())
-
-    def footprint(q: Array) -> Array:
-        return free_sided_symbol(q, modulus, poisson_ratio, mean_give)
+    footprint = partial(free_sided_symbol, **elastic, uniform=float(give[plan].mean()))
 
     def rest(q: Array) -> Array:
         return np.maximum(layer(q) - footprint(q), 0.0) + midsole(q)
@@ -207,14 +195,8 @@ def layered_compliance(
     # untreaded land beside the lugs is as stiff as a lug of the least height the grid can tell
     height = np.maximum(height, min(0.5 * sole.spacing, depth))
     lug_give = block_compression(land, sole.spacing, height, modulus, poisson_ratio)
-    mean_lug_give = float(lug_give[land].mean())
-
-    def lug(q: Array) -> Array:
-        return free_sided_symbol(q, modulus, poisson_ratio, mean_lug_give)
-
-    def smooth(q: Array) -> Array:
-        return attenuation(q, depth)
-
+    lug = partial(free_sided_symbol, **elastic, uniform=float(lug_give[land].mean()))
+    smooth = partial(attenuation, depth=depth)
     lugs = influence(lug)
     return ConvolutionCompliance(
         shape,

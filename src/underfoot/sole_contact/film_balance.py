@@ -9,14 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core.arrays import Array, Mask
-from underfoot.film import (
-    Cavity,
-    FilmOperator,
-    Pattern,
-    divergence,
-    film_operator,
-    upwinding,
-)
+from underfoot.film import Cavity, FilmOperator, Pattern, divergence, film_operator, upwinding
 
 from .problem import Problem
 

@@ -48,11 +48,6 @@ class Attempt:
     krylov: int
     residuals: list[float] = field(default_factory=list)
 
-    @property
-    def converged(self) -> bool:
-        """True when the tolerance was met."""
-        return self.state is not None
-
 
 class Cells:
     """The wet region: its cells, sparsity and preconditioner layout."""

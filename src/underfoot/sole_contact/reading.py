@@ -132,12 +132,8 @@ def floor_sensor_reading(
     total = float(loads.sum())
     spread = "spread over where the tracks lie"
     return SensorReading(
-        load=SourcedValue(
-            float(loads.mean()), "N", source=_SOURCE, uncertainty=float(loads.std()), note=spread
-        ),
-        peak_pressure=SourcedValue(
-            float(peaks.mean()), "Pa", source=_SOURCE, uncertainty=float(peaks.std()), note=spread
-        ),
+        load=over_places(loads, "N", _SOURCE, spread),
+        peak_pressure=over_places(peaks, "Pa", _SOURCE, spread),
         peak_position=(float(places[top[0]]), float(tracks[top[1]])),
         x=places,
         scan_y=tracks,
@@ -168,14 +164,27 @@ def pocket_pressure(
     Mean film pressure over the rim weighted by h^3; lengths in m, maps (nx, ny) as in
     ``floor_sensor_reading``, which checks them.
     """
-    return _pocket_pressure(
-        (places - x[0]) / spacing,
-        (lanes - y[0]) / spacing,
-        _rim(inlet_diameter, spacing) / spacing,
-        np.asarray(fluid_pressure, dtype=float),
-        np.clip(np.asarray(film_thickness, dtype=float), _SMALLEST_GAP, gap_cap) ** 3,
-        gap_cap**3,
-    )
+    from scipy.ndimage import map_coordinates
+
+    along, across = (places - x[0]) / spacing, (lanes - y[0]) / spacing
+    cubes = np.clip(np.asarray(film_thickness, dtype=float), _SMALLEST_GAP, gap_cap) ** 3
+    # The product is interpolated, not its factors: next to a lug's edge the factors would put the
+    # lug's pressure on the channel's conductance.
+    driven = cubes * np.asarray(fluid_pressure, dtype=float)
+    flow = np.zeros((places.size, lanes.size))
+    weight = np.zeros_like(flow)
+    rim = _rim(inlet_diameter, spacing) / spacing
+    for point in rim:
+        at = np.meshgrid(along + point[0], across + point[1], indexing="ij")
+        flow += map_coordinates(driven, at, order=1, mode="constant", cval=0.0)
+        weight += map_coordinates(cubes, at, order=1, mode="constant", cval=gap_cap**3)
+    return flow / weight, weight / len(rim)
+
+
+def over_places(values: Array, unit: str, source: str, note: str) -> SourcedValue:
+    """Return the mean of what was read at several places, their standard deviation its spread."""
+    deviation = float(values.std())
+    return SourcedValue(float(values.mean()), unit, source=source, uncertainty=deviation, note=note)
 
 
 def conductance_over_cube(inlet_diameter: float, viscosity: float) -> float:
@@ -212,29 +221,6 @@ def _rim(diameter: float, spacing: float) -> Array:
     quarter = max(6, math.ceil(math.pi * diameter / (4 * spacing))) if diameter > 0 else 1
     angle = (np.arange(4 * quarter) + 0.5) * (math.pi / (2 * quarter))
     return 0.5 * diameter * np.column_stack([np.cos(angle), np.sin(angle)])
-
-
-def _pocket_pressure(
-    places: Array,
-    lanes: Array,
-    rim: Array,
-    pressure: Array,
-    conductance: Array,
-    outside: float,
-) -> tuple[Array, Array]:
-    """Return the weighted rim mean and the mean weight (places x lanes); all lengths in cells."""
-    from scipy.ndimage import map_coordinates
-
-    flow = np.zeros((places.size, lanes.size))
-    weight = np.zeros_like(flow)
-    # The product is interpolated, not its factors: next to a lug's edge the factors would put the
-    # lug's pressure on the channel's conductance.
-    driven = conductance * pressure
-    for along, across in rim:
-        at = np.meshgrid(places + along, lanes + across, indexing="ij")
-        flow += map_coordinates(driven, at, order=1, mode="constant", cval=0.0)
-        weight += map_coordinates(conductance, at, order=1, mode="constant", cval=outside)
-    return flow / weight, weight / len(rim)
 
 
 def _checked_maps(

@@ -9,7 +9,7 @@ from underfoot.core import InputError, SourcedValue
 from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative, positive
 
-from .reading import GAP_CAP, conductance_over_cube, lagged, pocket_pressure
+from .reading import GAP_CAP, conductance_over_cube, lagged, over_places, pocket_pressure
 
 SOURCE = "pockets at uniform pressure in the computed film, at fixed places in the floor"
 
@@ -158,23 +158,16 @@ def array_reading(
     central = np.ascontiguousarray(by_place[:, :, offsets // 2, :])
     above = (by_place > threshold).any(axis=(1, 3)).sum(axis=0) * (samples[1] - samples[0])
 
-    def spread(values: Array, unit: str, note: str = "") -> SourcedValue:
-        return SourcedValue(
-            float(values.mean()),
-            unit,
-            source=SOURCE,
-            uncertainty=float(values.std()),
-            note="spread over where the shoe comes down" + note,
-        )
-
+    spread = "spread over where the shoe comes down"
     return ArrayReading(
         time=samples,
         pressure=central,
         sensor_peaks=central.max(axis=0),
-        peak=spread(by_place.max(axis=(0, 1, 3)), "Pa"),
+        peak=over_places(by_place.max(axis=(0, 1, 3)), "Pa", SOURCE, spread),
         row_peaks=tuple(
-            spread(by_place[:, row].max(axis=(0, 2)), "Pa") for row in range(array.rows)
+            over_places(by_place[:, row].max(axis=(0, 2)), "Pa", SOURCE, spread)
+            for row in range(array.rows)
         ),
-        duration=spread(above, "s", f"; above {threshold:g} Pa"),
+        duration=over_places(above, "s", SOURCE, f"{spread}; above {threshold:g} Pa"),
         threshold=threshold,
     )

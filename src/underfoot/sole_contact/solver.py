@@ -13,8 +13,6 @@ from .march import Counts, History
 from .sole_state import SoleState, SolverSettings
 from .stepping import Reporting, SlidingSole
 
-__all__ = ["SoleContact", "SolverSettings", "solve_sliding"]
-
 
 @dataclass(frozen=True, slots=True)
 class SoleContact(SoleState):

@@ -216,9 +216,7 @@ class SlidingSole:
         self._load, self._speed = normal_force, speed
         if shoe_angle is not None and shoe_angle != self._angle:
             self._check_stretch(shoe_angle)
-            march = self._march
-            clearance = self._clearance(shoe_angle)
-            march.turn(clearance)
+            self._march.turn(self._clearance(shoe_angle))
             self._angle = shoe_angle
 
     def bookmark(self) -> Bookmark:

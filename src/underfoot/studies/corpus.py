@@ -1,14 +1,22 @@
-"""Contact friction of pairs on everybody's measurements: each source predicted from all others."""
+"""Everybody's measurements: each source predicted from all others; effects from whole cases."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
-from underfoot.calibrate.corpus import Condition, corpus
+from underfoot.calibrate.corpus import Condition, Reading, corpus
+from underfoot.calibrate.corpus_cases import (
+    Contrast,
+    Stand,
+    contrasts,
+    verdict,
+    whole_shoe_stands,
+)
 from underfoot.calibrate.pair_law import (
     LAWS,
     CorpusScore,
@@ -20,7 +28,11 @@ from underfoot.calibrate.pair_law import (
     scored,
     source_left_out,
 )
-from underfoot.core import content_hash
+from underfoot.case import Case
+from underfoot.compute.run import run
+from underfoot.core import UnderfootError, content_hash
+from underfoot.core.arrays import Array
+from underfoot.questions.outcomes import program_hash
 
 from .figure import PRINTED, Figure, Panel, line, points
 from .runner import Computed, Options, Table, kept, part
@@ -30,6 +42,9 @@ STEPS, QUICK_STEPS = 600, 150
 """Of the sampler's walkers."""
 LAW = "pair"
 QUICK_LAWS = ("one constant", LAW)
+QUICK_SOURCES = ("khaday_2021", "li_2006", "mohamed_2011", "report_g6", "strobel_2012")
+"""Whose effects and whole shoes the quick form computes."""
+NEVER_ABSENT = {"hardness", "roughness", "groove direction", "depth", "edge radius"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +77,7 @@ def compute(options: Options) -> Computed:
     content = content_hash([repr(c) for c in conditions])
     keys = [content_hash(asdict(split), content, options.seed) for split in splits]
     results: dict[tuple[str, str], SourceScore] = {}
-    fits = part(options.progress, 0.0, 0.9)
+    fits = part(options.progress, 0.0, 0.5)
     work = kept("corpus-1", draws_of, splits, keys, processes=options.processes)
     for number, (split, arrays) in enumerate(work, start=1):
         fits("leaving one source out", number / len(splits))
@@ -74,15 +89,28 @@ def compute(options: Options) -> Computed:
     posterior = fitted(law_named(LAW), conditions, steps=steps, seed=options.seed)
     own = [results[LAW, source] for source in sources]
     best = scores[-1]
+    sides, shoes = _compared(options)
+    effects, shares = _effects(sides)
+    whole, inside = _whole(shoes)
+    words = Counter(row[effects.columns.index("verdict")] for row in effects.rows)
     return Computed(
         {
+            **shares,
+            **inside,
             **{
                 f"pair.{name}": Quantity.of(getattr(best, name))
                 for name in ("r2", "inside_50", "inside_95", "rank_correlation")
             },
             "pair.gain": Quantity.of(best.log_density - scores[0].log_density),
         },
-        (_scores(scores), _sources(own), _constants(posterior)),
+        (
+            _scores(scores),
+            _sources(own),
+            _constants(posterior),
+            effects,
+            whole,
+            _basis(sides, shoes),
+        ),
         {"predicted": _figure(own)},
         (
             f"Contact friction of a source that was not used: R2 of ln COF {best.r2:.2f}, "
@@ -91,8 +119,161 @@ def compute(options: Options) -> Computed:
             f"{len(conditions)} readings.",
             "The error between laboratories is the largest part of the interval: a pair that "
             "nobody measured is known to a factor of two to three either way.",
+            f"Published effects as whole cases: {words['right']} right, {words['undecided']} "
+            f"undecided, {words['absent']} absent, {words['wrong']} wrong and "
+            f"{words['not computed']} not computed (counted by fluid).",
         ),
     )
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """COF of what stands for one condition, at the medians and in the joint draws."""
+
+    cof: float
+    draws: Array
+    reason: str = ""
+
+
+def whole_cof(case: Case) -> Mapping[str, Any]:
+    """Return COF of a case and its draws, or why there is none."""
+    try:
+        result = run(case, quick=True)
+        return {"cof": result.value("cof"), "draws": result.fields["cof_draws"].values}
+    except UnderfootError as error:
+        return {"reason": np.array(" ".join(str(error).split()))}
+
+
+def _compared(
+    options: Options,
+) -> tuple[list[tuple[Contrast, Side, Side]], list[tuple[Condition, Stand, Side]]]:
+    sources = [s for s in corpus() if not options.quick or s.name in QUICK_SOURCES]
+    sides = [one for source in sources if source.verified for one in contrasts(source)]
+    shoes = [one for source in sources if source.verified for one in whole_shoe_stands(source)]
+    stands = [stand for one in sides for stand in (one.over, one.under)]
+    stands += [stand for _, stand in shoes]
+    cases = {case.hash: case for stand in stands for case in stand.cases}
+    keys = [content_hash(name, program_hash()) for name in cases]
+    values: dict[str, Mapping[str, Any]] = {}
+    runs = part(options.progress, 0.5, 1.0)
+    work = kept(
+        "corpus_cases-1", whole_cof, list(cases.values()), keys, processes=options.processes
+    )
+    for number, (case, arrays) in enumerate(work, start=1):
+        runs("whole cases", number / len(cases))
+        values[case.hash] = arrays
+
+    def side(stand: Stand) -> Side:
+        own = [values[case.hash] for case in stand.cases]
+        reason = stand.reason or next((str(v["reason"]) for v in own if "reason" in v), "")
+        if reason:
+            return Side(np.nan, np.array([np.nan]), reason)
+        cof, draws = (np.mean([v[name] for v in own], axis=0) for name in ("cof", "draws"))
+        return Side(float(cof), draws)
+
+    return (
+        [(one, side(one.over), side(one.under)) for one in sides],
+        [(condition, stand, side(stand)) for condition, stand in shoes],
+    )
+
+
+def _effects(sides: list[tuple[Contrast, Side, Side]]) -> tuple[Table, dict[str, Quantity]]:
+    rows: list[dict[str, Any]] = []
+    for one, over, under in sides:
+        reason = over.reason or under.reason
+        drawn, ratio = over.draws / under.draws, over.cof / under.cof
+        higher = np.mean(drawn > 1) + np.mean(drawn == 1) / 2
+        chance = higher if one.rises else 1 - higher
+        low, high = np.quantile(drawn, (0.025, 0.975))
+        slope = (over.cof - under.cof) / one.step
+        rows.append(
+            {
+                "source": one.source,
+                "effect": one.effect,
+                "fluid": one.fluid,
+                "about": one.topic,
+                "published": one.published,
+                "computed ratio": ratio,
+                "low 95 %": low,
+                "high 95 %": high,
+                "per mm": slope,
+                "probability of the sign": np.nan if reason else chance,
+                "verdict": "not computed" if reason else verdict(ratio, chance),
+            }
+        )
+    table = Table.of(
+        "effects",
+        "Published effects: COF of one whole case over that of the other, with joint draws",
+        rows,
+    )
+    known = [row for row in rows if row["verdict"] != "not computed"]
+    right: dict[tuple[str, str], list[bool]] = {}
+    for row, (one, over, under) in zip(rows, sides, strict=True):
+        if row in known:
+            sign = row["verdict"] != "absent" and (over.cof > under.cof) == one.rises
+            right.setdefault((one.source, one.effect), []).append(sign)
+    absent = [row for row in known if row["verdict"] == "absent" and NEVER_ABSENT & {row["about"]}]
+    return table, {
+        "effects.right_sign": Quantity.of(float(np.mean([np.mean(v) for v in right.values()]))),
+        "effects.absent": Quantity.of(len(absent)),
+    }
+
+
+def _whole(shoes: list[tuple[Condition, Stand, Side]]) -> tuple[Table, dict[str, Quantity]]:
+    rows: list[dict[str, Any]] = []
+    for condition, _, side in shoes:
+        low, inner_low, inner_high, high = np.quantile(side.draws, (0.025, 0.25, 0.75, 0.975))
+        reading = condition.reading
+        rows.append(
+            {
+                "source": condition.source,
+                "condition": condition.id,
+                "measured": _measured(reading),
+                "predicted median": side.cof,
+                "low 95 %": low,
+                "high 95 %": high,
+                "inside 50 %": _inside(reading, inner_low, inner_high, side),
+                "inside 95 %": _inside(reading, low, high, side),
+            }
+        )
+    title = "Whole shoes: readings against the whole case that stands for them"
+    known = [row for row in rows if row["inside 95 %"]]
+    return Table.of("whole", title, rows), {
+        f"whole.inside_{level}": Quantity.of(
+            float(np.mean([row[f"inside {level} %"] == "yes" for row in known]))
+        )
+        for level in (50, 95)
+    }
+
+
+def _basis(
+    sides: list[tuple[Contrast, Side, Side]], shoes: list[tuple[Condition, Stand, Side]]
+) -> Table:
+    stands = [(c.source, c.id, stand.taken, side.reason) for c, stand, side in shoes]
+    stands += [
+        (one.source, one.effect, one.over.taken + one.under.taken, over.reason or under.reason)
+        for one, over, under in sides
+    ]
+    rows = [
+        (source, name, ", ".join(dict.fromkeys(taken)), reason)
+        for source, name, taken, reason in stands
+    ]
+    title = "What the sources leave open and was taken, and why an effect is not computed"
+    columns = ("source", "effect or condition", "taken", "not computed because")
+    return Table("basis", title, columns, list(dict.fromkeys(rows)))
+
+
+def _measured(reading: Reading) -> str:
+    if not reading.is_censored:
+        return f"{reading.low:.3g}"
+    words = {"lower": f"at least {reading.low:.3g}", "upper": f"at most {reading.high:.3g}"}
+    return words.get(reading.kind, f"{reading.low:.3g} to {reading.high:.3g}")
+
+
+def _inside(reading: Reading, low: float, high: float, side: Side) -> str:
+    if side.reason:
+        return ""
+    return "yes" if reading.low <= high and reading.high >= low else "no"
 
 
 def _scores(scores: list[CorpusScore]) -> Table:

@@ -1,11 +1,8 @@
 """Measurements: files to trials, trials to the numbers the field publishes."""
 
-from .array_pressures import SensorArrayReading, sensor_array_reading
-from .available import ACOF_WINDOWS, available_friction, available_frictions, mean_friction
 from .axes import Axes, axes_of, axis_name, axis_vector, heel_candidates, heel_of
 from .describe import Description, described, described_file
-from .edits import EditError
-from .events import body_mass, body_weight, stances
+from .events import EditError, Stance, body_mass, body_weight, contacts, stances
 from .filters import FILTERS, FORCE_FILTER, MARKER_FILTER, LowPass, low_passed, velocity
 from .gait import (
     DEFINITIONS,
@@ -15,18 +12,26 @@ from .gait import (
     required_frictions,
     stance_frictions,
 )
-from .gait_context import GaitContext, foot_angle, gait_context, stance_curves
+from .gait_context import (
+    GaitContext,
+    SlipCourse,
+    foot_angle,
+    gait_context,
+    slip_course,
+    stance_curves,
+)
 from .heel import HeelMotion, SlipDefinition, contact_from_heel, heel_motion
 from .measurement import Flag, Measurement, mean_of
-from .outcome import Outcome, OutcomeLimits
 from .plates import finished_plate
 from .pressures import (
     Passage,
     Pulse,
     PulseDefinition,
+    SensorArrayReading,
     heel_track,
     passages,
     pressure_pulse,
+    sensor_array_reading,
     sensor_rows,
 )
 from .readers import (
@@ -39,20 +44,9 @@ from .readers import (
     read_trial,
     read_trials,
 )
-from .slip_course import SlipCourse, slip_course
-from .slips import Slip, slip, slip_of
-from .stance import Stance, contacts
-from .trial import (
-    Channel,
-    Edit,
-    Event,
-    Marker,
-    Plate,
-    PlateAccuracy,
-    Trial,
-    file_checksum,
-    joined,
-)
+from .slip_friction import ACOF_WINDOWS, available_friction, available_frictions, mean_friction
+from .slips import Outcome, OutcomeLimits, Slip, slip, slip_of
+from .trial import Channel, Edit, Event, Marker, Plate, PlateAccuracy, Trial, file_checksum, joined
 
 __all__ = [
     "ACOF_WINDOWS", "DEFINITIONS", "FILTERS", "FORCE_FILTER", "MARKER_FILTER", "Axes", "Channel",

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
 
@@ -87,9 +88,7 @@ class AlphaBeta:
 
 
 def alpha_beta(
-    fluid: Sequence[str],
-    dry_adhesion: Sequence[float] | np.ndarray,
-    lubricated_adhesion: Sequence[float] | np.ndarray,
+    fluid: Sequence[str], dry_adhesion: ArrayLike, lubricated_adhesion: ArrayLike
 ) -> AlphaBeta:
     """Return Eq. 26, F_adhesion(lubricated) = alpha + beta F_adhesion(dry), for every fluid.
 
@@ -111,7 +110,8 @@ def alpha_beta(
     for name in dict.fromkeys(names):
         if np.ptp(x[[n == name for n in names]]) == 0:
             raise DataError("one dry adhesion only: no slope", where=name)
-    model = statistics.linear_model(y, predictors, terms, name="lubricated adhesion")
+    response = "lubricated adhesion"
+    model = statistics.linear_model(y, predictors, terms, name=response)
     rows = []
     for i, name in enumerate(predictors["fluid"].levels):
         at = model.design.rows({"fluid": np.array([i, i]), "dry adhesion": np.array([0.0, 1.0])})
@@ -120,18 +120,12 @@ def alpha_beta(
         errors = np.sqrt(np.einsum("ij,jk,ik->i", contrasts, model.covariance, contrasts))
         numbers = map(float, (*values, *errors))
         rows.append(FluidCoefficients(name, *numbers, n=names.count(name)))
-    return AlphaBeta(
-        tuple(rows),
-        model,
-        statistics.analysis_of_variance(
-            y, predictors, terms, ss_type=2, name="lubricated adhesion"
-        ),
-        statistics.analysis_of_variance(
-            y, predictors, terms, ss_type=3, name="lubricated adhesion"
-        ),
-        tuple(statistics.tukey_hsd(model, "fluid")),
-        float(np.abs(y - model.fitted).mean()),
+    two, three = (
+        statistics.analysis_of_variance(y, predictors, terms, ss_type=kind, name=response)
+        for kind in (2, 3)
     )
+    tukey, residual = tuple(statistics.tukey_hsd(model, "fluid")), np.abs(y - model.fitted).mean()
+    return AlphaBeta(tuple(rows), model, two, three, tukey, float(residual))
 
 
 def _mean(name: str, values: Sequence[float]) -> Measurement:

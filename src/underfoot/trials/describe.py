@@ -10,10 +10,9 @@ import numpy as np
 
 from underfoot.core import InputError, unknown_name
 
-from .axes import Axes, DirectionSource, axes_of, axis_name, heel_candidates
+from .axes import LEVEL, Axes, DirectionSource, Ramp, axes_of, axis_name, heel_candidates
 from .gait import DEFINITIONS, RcofDefinition, RequiredFriction, required_frictions
 from .measurement import mean_of
-from .ramp import LEVEL, Ramp
 from .readers import Profile, read_profile, read_trials
 from .trial import Edit, Plate, Trial, joined
 
@@ -61,22 +60,21 @@ class Description:
     def text(self) -> str:
         """Return the description as lines of text."""
         trial = self.trial
-        lines = [f"{trial.name}: {trial.source}, sha256 {trial.checksum[:12]}"]
-        lines += [f"  {key}: {value}" for key, value in list(trial.settings.items())[:_SHOWN]]
-        lines += ["", "Axes"]
-        lines.append(f"  vertical {axis_name(self.axes.up)} ({self.axes.up_from})")
-        lines.append(f"  walking  {axis_name(self.axes.walking)} ({self.axes.walking_from})")
-        lines.append(f"  surface  {self.axes.ramp.words}")
-        lines += self._plates() + self._markers() + self._channels()
-        if trial.events:
-            lines += ["", "Events in the file"]
-            lines += [f"  {e.time:8.3f} s  {e.side:6s} {e.name}" for e in trial.events[:40]]
-        lines += self._stances()
-        if trial.notes:
-            lines += ["", "Notes", *(f"  - {note}" for note in trial.notes)]
-        if trial.edits:
-            lines += ["", "Edits"]
-            lines += [f"  - {_edit_words(e)}" for e in trial.edits]
+        axes = self.axes
+        events = [f"  {e.time:8.3f} s  {e.side:6s} {e.name}" for e in trial.events[:40]]
+        lines = [
+            f"{trial.name}: {trial.source}, sha256 {trial.checksum[:12]}",
+            *(f"  {key}: {value}" for key, value in list(trial.settings.items())[:_SHOWN]),
+            *("", "Axes", f"  vertical {axis_name(axes.up)} ({axes.up_from})"),
+            f"  walking  {axis_name(axes.walking)} ({axes.walking_from})",
+            f"  surface  {axes.ramp.words}",
+            *(*self._plates(), *self._markers(), *self._channels()),
+            *(["", "Events in the file", *events] if events else []),
+            *self._stances(),
+        ]
+        for title, items in (("Notes", trial.notes), ("Edits", map(_edit_words, trial.edits))):
+            listed = [f"  - {item}" for item in items]
+            lines += ["", title, *listed] if listed else []
         return "\n".join(lines)
 
     def _plates(self) -> list[str]:

@@ -6,10 +6,9 @@ import numpy as np
 
 from underfoot.core import DataError
 
-from .events import body_mass
+from .events import Stance, body_mass
 from .plates import plate_axes
 from .simulate.c3d_file import c3d_bytes
-from .stance import Stance
 from .trial import Plate, Trial
 
 

@@ -12,10 +12,7 @@ from .baseline import runs
 from .filters import MARKER_FILTER, LowPass, bridged, low_passed
 from .trial import Marker
 
-PLANES = {
-    "horizontal": "speed in the plane of the floor",
-    "3d": "speed in three dimensions",
-}
+PLANES = {"horizontal": "speed in the plane of the floor", "3d": "speed in three dimensions"}
 DERIVATIVES = {
     "differences": "central differences of the filtered path",
     "savitzky-golay": "Savitzky-Golay derivative, 3rd order, window of the same cutoff",

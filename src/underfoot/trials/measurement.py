@@ -1,11 +1,9 @@
 """A number from a trial that carries what made it: uncertainty, flags and conventions."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -91,7 +89,7 @@ class Measurement(Presentable):
         n: int = 0,
         flags: tuple[Flag, ...] = (),
         conventions: Mapping[str, str] | None = None,
-    ) -> Measurement:
+    ) -> Self:
         """Return a measurement without a value, saying why."""
         said = dict(conventions or {})
         return cls(name, None, unit, reason=reason, n=n, flags=flags, conventions=said)

@@ -12,15 +12,13 @@ import numpy as np
 
 from underfoot.core import UnderfootError
 
-from .axes import Axes, DirectionSource, heel_candidates, marker_velocity
+from .axes import LEVEL, Axes, DirectionSource, Ramp, heel_candidates, marker_velocity
 from .baseline import longest_run, runs
-from .events import BodyWeight
+from .events import BodyWeight, Stance, contacts
 from .filters import LowPass, low_passed
 from .heel import contact_from_heel, marker_jumps
 from .measurement import Flag
 from .plates import plate_named
-from .ramp import LEVEL, Ramp
-from .stance import Stance, contacts
 from .trial import Plate, Trial
 
 _ASSUMED = "assumed; kept by every real step that comes with this package"
@@ -38,6 +36,10 @@ class Limit:
     def flag(self, measured: float, words: str) -> Flag:
         """Return the flag of a value beyond the limit."""
         return Flag(self.name, words, True, float(measured), self.value, self.unit, self.source)
+
+    def above(self, measured: float, words: str) -> tuple[Flag, ...]:
+        """Return the flag of a value if it lies above the limit."""
+        return (self.flag(measured, words),) if measured > self.value else ()
 
 
 RCOF = Limit(
@@ -128,10 +130,8 @@ def other_foot_flags(
         return ()
     middle = float(np.median(values))
     ratio = max(shear / middle, middle / shear) if min(shear, middle) > 0 else math.inf
-    if ratio <= OTHER_FOOT.value:
-        return ()
     words = f"RCOF {shear:.2f} here and {middle:.2f} on the other plates: a gain or a turn"
-    return (OTHER_FOOT.flag(ratio, words),)
+    return OTHER_FOOT.above(ratio, words)
 
 
 def _force_flags(
@@ -140,8 +140,8 @@ def _force_flags(
     part = plate.force[stance.start : stance.stop]
     normal = part @ up
     rate, duration = plate.rate, stance.duration
-    if duration > LONG_STANCE.value:
-        yield LONG_STANCE.flag(duration, f"stance of {duration:.2f} s: is the sampling rate right?")
+    words = f"stance of {duration:.2f} s: is the sampling rate right?"
+    yield from LONG_STANCE.above(duration, words)
     if duration < SHORT_STANCE.value:
         yield SHORT_STANCE.flag(duration, f"stance of {duration:.2f} s: running, or a wrong rate")
     thirds = len(normal) // 3
@@ -152,8 +152,7 @@ def _force_flags(
         yield HUMP.flag(middle / float(humps), words)
     if weight is not None:
         ratio, mean = stance.peak / weight.newtons, float(normal.mean()) / weight.newtons
-        if ratio > HIGH_PEAK.value:
-            yield HIGH_PEAK.flag(ratio, f"peak of {ratio:.2f} body weights ({weight.source})")
+        yield from HIGH_PEAK.above(ratio, f"peak of {ratio:.2f} body weights ({weight.source})")
         if not MEAN_LOW.value <= mean <= MEAN_HIGH.value:
             limit = MEAN_LOW if mean < MEAN_LOW.value else MEAN_HIGH
             words = f"mean force of {mean:.2f} body weights ({weight.source}): gain or unit?"
@@ -166,8 +165,7 @@ def _force_flags(
     padded = (plate.force @ up)[max(0, stance.start - 50) : stance.stop]
     smooth = low_passed(padded, rate, LowPass(cutoff=min(36.0, 0.4 * rate)))
     slope = float(np.diff(smooth[: len(smooth) // 2]).max(initial=0.0)) * rate / own
-    if slope > LOADING_RATE.value:
-        yield LOADING_RATE.flag(slope, f"loading rate of {slope:.0f} body weights a second")
+    yield from LOADING_RATE.above(slope, f"loading rate of {slope:.0f} body weights a second")
     yield from _sample_flags(plate, stance, up)
 
 
@@ -191,8 +189,8 @@ def _sample_flags(plate: Plate, stance: Stance, up: np.ndarray) -> Iterator[Flag
     firm = normal[inner]
     edge = max(1, len(firm) // 20)
     lost = firm[edge:-edge] < 20.0
-    if lost.any():
-        yield DROP_OUT.flag(lost.sum() / rate, f"the force drops out for {int(lost.sum())} samples")
+    words = f"the force drops out for {int(lost.sum())} samples"
+    yield from DROP_OUT.above(lost.sum() / rate, words)
     if rate >= 150.0:
         begin, end = stance.start - 2 * margin, stance.start + (stance.stop - stance.start) // 4
         share = _high_share(plate.force[max(0, begin) : end], rate)
@@ -267,13 +265,11 @@ def baseline_error(
 def _level_flags(plate: Plate, stance: Stance, up: np.ndarray, low_pass: LowPass) -> Iterator[Flag]:
     normal = 0.8 * stance.peak
     drift = baseline_error(plate, stance, up, normal, 0.2)
-    if drift > DRIFT.value:
-        words = f"the unloaded level before or after the step moves RCOF by {drift:.3f}: drift"
-        yield DRIFT.flag(drift, words)
+    words = f"the unloaded level before or after the step moves RCOF by {drift:.3f}: drift"
+    yield from DRIFT.above(drift, words)
     noise = unloaded_noise(plate, up, low_pass)
-    if 2.0 * noise / normal > VIBRATION.value:
-        words = f"the unloaded plate swings by {noise:.1f} N (standard deviation): vibration"
-        yield VIBRATION.flag(2.0 * noise / normal, words)
+    words = f"the unloaded plate swings by {noise:.1f} N (standard deviation): vibration"
+    yield from VIBRATION.above(2.0 * noise / normal, words)
 
 
 def unloaded_noise(plate: Plate, up: np.ndarray, low_pass: LowPass) -> float:
@@ -311,13 +307,11 @@ def _path_flags(trial: Trial, stance: Stance, axes: Axes) -> Iterator[Flag]:
     }
     if stance.plate in heights:
         away = max(abs(height - heights[stance.plate]) for height in heights.values())
-        if away > PLATE_HEIGHT.value:
-            words = f"plates differ by {1e3 * away:.0f} mm in height: stairs or a step"
-            yield PLATE_HEIGHT.flag(away, words)
+        words = f"plates differ by {1e3 * away:.0f} mm in height: stairs or a step"
+        yield from PLATE_HEIGHT.above(away, words)
     angle = _braking_to_driving(plate_named(trial, stance.plate), stance, axes)
-    if angle > SHEAR_TURN.value:
-        words = f"driving is turned by {math.degrees(angle):.0f} deg against braking: a turn"
-        yield SHEAR_TURN.flag(angle, words)
+    words = f"driving is turned by {math.degrees(angle):.0f} deg against braking: a turn"
+    yield from SHEAR_TURN.above(angle, words)
     middle = 0.5 * (stance.contact + stance.toe_off)
     whole = marker_velocity(trial, stance.contact, stance.toe_off, None)
     if whole is None:
@@ -326,13 +320,9 @@ def _path_flags(trial: Trial, stance: Stance, axes: Axes) -> Iterator[Flag]:
     speed = float(np.linalg.norm(whole - climb * axes.up))
     slope = axes.ramp.angle if axes.ramp.plate_frame == "horizontal" else 0.0
     expected = speed * math.tan(slope)
-    if abs(climb - expected) > CLIMB.value:
-        words = f"the body rises at {climb:.2f} m/s: stairs, a ramp or a jump"
-        if slope:
-            words = f"the body rises at {climb:.2f} m/s, the ramp at {expected:.2f} m/s"
-        yield CLIMB.flag(abs(climb - expected), words)
-    if speed > FAST.value:
-        yield FAST.flag(speed, f"{speed:.1f} m/s is faster than people walk")
+    ground = f", the ramp at {expected:.2f} m/s" if slope else ": stairs, a ramp or a jump"
+    yield from CLIMB.above(abs(climb - expected), f"the body rises at {climb:.2f} m/s{ground}")
+    yield from FAST.above(speed, f"{speed:.1f} m/s is faster than people walk")
     first = marker_velocity(trial, stance.contact, middle, axes.up)
     second = marker_velocity(trial, middle, stance.toe_off, axes.up)
     if first is None or second is None:
@@ -340,9 +330,8 @@ def _path_flags(trial: Trial, stance: Stance, axes: Axes) -> Iterator[Flag]:
     if min(np.linalg.norm(first), np.linalg.norm(second)) < 0.3:
         return
     angle = _angle(first, second)
-    if angle > TURN.value:
-        words = f"the walk turns by {math.degrees(angle):.0f} deg during the step"
-        yield TURN.flag(angle, words)
+    words = f"the walk turns by {math.degrees(angle):.0f} deg during the step"
+    yield from TURN.above(angle, words)
 
 
 def _braking_to_driving(plate: Plate, stance: Stance, axes: Axes) -> float:
@@ -388,9 +377,8 @@ def _marker_flags(
     if heel.times is None:
         landings = [t for t in contact_from_heel(heel, axes.up) if abs(t - stance.contact) < 0.4]
         gap = min((abs(t - stance.contact) for t in landings), default=0.0)
-        if gap > LATE.value:
-            words = f"heel and force come down {1e3 * gap:.0f} ms apart: forces late or early"
-            yield LATE.flag(gap, words)
+        words = f"heel and force come down {1e3 * gap:.0f} ms apart: forces late or early"
+        yield from LATE.above(gap, words)
     near = (heel.time > stance.contact - 0.1) & (heel.time < stance.toe_off)
     leaps = int(marker_jumps(heel.positions)[near].sum())
     if leaps:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, InputError
 
@@ -72,7 +73,7 @@ def pressure_scan(
     sensor: Channel,
     marker: Marker,
     *,
-    position: Sequence[float] | np.ndarray,
+    position: ArrayLike,
     sliding: np.ndarray | None = None,
     heel_back: float = 0.0,
     heel_middle: float = 0.0,

@@ -1,10 +1,9 @@
 """Protocols as data: how numbers are taken, and which rules every trial has to keep."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Self
 
 from underfoot.core import InputError, content_hash, display, to_si, unknown_name
 from underfoot.core.catalogue import Catalogue, Entry, Leaf
@@ -94,7 +93,7 @@ class Protocol:
         given = self.method[key].given
         return tuple(str(item) for item in (given if isinstance(given, list | tuple) else [given]))
 
-    def with_settings(self, settings: Mapping[str, object]) -> Protocol:
+    def with_settings(self, settings: Mapping[str, object]) -> Self:
         """Return the protocol with settings of its method replaced."""
         changed = {key: Leaf(value, source="command line") for key, value in settings.items()}
         return replace(self, method={**self.method, **changed})

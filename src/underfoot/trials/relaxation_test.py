@@ -135,15 +135,9 @@ def relaxation_reading(
         Measurement("force at 2 %", low_force, "N", noise, conventions=said),
         Measurement("peak force", float(f[peak]), "N", noise, conventions=said),
         Measurement("final force", final, "N", settled, "", len(tail), flags, meant),
-        t[begin:end] - t[begin],
-        d[begin:end],
-        f[begin:end],
-        hold - begin,
-        level,
-        float(t[hold] - t[begin]),
-        float(t[end - 1] - t[hold]),
-        thickness,
-        tuple(notes),
+        *(t[begin:end] - t[begin], d[begin:end], f[begin:end]),
+        *(hold - begin, level, float(t[hold] - t[begin]), float(t[end - 1] - t[hold])),
+        *(thickness, tuple(notes)),
     )
 
 

@@ -1,12 +1,10 @@
 """One recording as read: channels, plates, markers, events, where it came from, its edits."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TypeVar
+from typing import Self, TypeVar
 
 import numpy as np
 
@@ -210,11 +208,11 @@ class Trial(Presentable):
         """Return the first marker that has one of ``names``, as ``channel`` does."""
         return _named("marker", names, self.markers, self.name)
 
-    def with_edits(self, *edits: Edit) -> Trial:
+    def with_edits(self, *edits: Edit) -> Self:
         """Return the trial with further edits; ``stances`` applies them or raises."""
         return replace(self, edits=(*self.edits, *edits))
 
-    def with_notes(self, *notes: str) -> Trial:
+    def with_notes(self, *notes: str) -> Self:
         """Return the trial with further notes."""
         return replace(self, notes=(*self.notes, *notes))
 
@@ -247,17 +245,16 @@ def joined(first: Trial, second: Trial) -> Trial:
     def both(one: Mapping[str, _T], other: Mapping[str, _T]) -> dict[str, _T]:
         return {**one, **{f"{n} (2)" if n in one else n: value for n, value in other.items()}}
 
-    return Trial(
-        f"{first.name} + {second.name}",
-        both(first.channels, second.channels),
-        (*first.plates, *second.plates),
-        both(first.markers, second.markers),
-        f"{first.source} + {second.source}",
-        hashlib.sha256(f"{first.checksum}{second.checksum}".encode()).hexdigest(),
-        (*first.notes, *second.notes),
-        (*first.events, *second.events),
-        (*first.edits, *second.edits),
-        {**first.settings, **second.settings},
+    return replace(
+        first.with_notes(*second.notes).with_edits(*second.edits),
+        name=f"{first.name} + {second.name}",
+        channels=both(first.channels, second.channels),
+        plates=(*first.plates, *second.plates),
+        markers=both(first.markers, second.markers),
+        source=f"{first.source} + {second.source}",
+        checksum=hashlib.sha256(f"{first.checksum}{second.checksum}".encode()).hexdigest(),
+        events=(*first.events, *second.events),
+        settings={**first.settings, **second.settings},
     )
 
 

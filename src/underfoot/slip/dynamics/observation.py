@@ -7,9 +7,8 @@ import numpy as np
 
 from underfoot.core.arrays import Array
 from underfoot.trials.measurement import Measurement
-from underfoot.trials.outcome import Outcome, OutcomeLimits
 from underfoot.trials.pressures import pressure_pulse
-from underfoot.trials.slips import Slip, slip
+from underfoot.trials.slips import Outcome, OutcomeLimits, Slip, slip
 from underfoot.trials.trial import Channel, Marker
 
 from .motion import SlipMotion

@@ -10,7 +10,7 @@ from scipy.ndimage import map_coordinates
 
 from underfoot.core import InputError
 from underfoot.core.arrays import Array
-from underfoot.sole_contact.reading import _pocket_pressure, _rim
+from underfoot.sole_contact.reading import GAP_CAP, pocket_pressure
 from underfoot.sole_contact.sole_state import SoleState
 
 from .motion import SlipMotion
@@ -19,7 +19,6 @@ from .walker import Walker
 MAP_X: NDArray[np.float64] = np.linspace(-10e-3, 90e-3, 51)
 MAP_Y: NDArray[np.float64] = np.linspace(-36e-3, 36e-3, 37)
 """m, places in the sole's frame (x from its rear end) at which a sensor's reading is kept."""
-GAP_CAP, SMALLEST_GAP = 0.3e-3, 1e-7  # m, as in outsole.floor_sensor_reading
 SHOWN = 0.02  # of the load on the film: below it a map says nothing about shape
 
 
@@ -56,15 +55,9 @@ def sensor_map(state: SoleState, inlet_diameter: float) -> Array:
     """
     if not (state.fluid_pressure > 0).any():
         return np.zeros((MAP_X.size, MAP_Y.size))
-    spacing = state.spacing
-    return _pocket_pressure(
-        (MAP_X - state.x[0]) / spacing,
-        (MAP_Y - state.y[0]) / spacing,
-        _rim(inlet_diameter, spacing) / spacing,
-        state.fluid_pressure,
-        np.clip(state.film_thickness, SMALLEST_GAP, GAP_CAP) ** 3,
-        GAP_CAP**3,
-    )[0]
+    film = (state.x, state.y, state.fluid_pressure, state.film_thickness)
+    pocket = {"inlet_diameter": inlet_diameter, "gap_cap": GAP_CAP, "spacing": state.spacing}
+    return pocket_pressure(*film, MAP_X, MAP_Y, **pocket)[0]
 
 
 class MappedRun(Protocol):

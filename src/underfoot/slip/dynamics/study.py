@@ -8,6 +8,7 @@ import numpy as np
 
 from underfoot.core import Cache, ConvergenceError, Progress, SourcedValue, Status, silent
 from underfoot.core.arrays import Array
+from underfoot.core.progress import part
 
 from .full_model import ROOM, FullRun, Setting, full_runs
 from .motion import COLUMNS, STEP, SlipMotion
@@ -43,11 +44,11 @@ class SlipStudy:
     array: FloorSensors
     subjects: tuple[SubjectSlip, ...]
     full: bool
-    fit: ReducedFit | None
-    pressure_error: float | None
-    representative: FullRun | None
-    full_runs: tuple[FullRun, ...]
-    breaches: tuple[str, ...]
+    fit: ReducedFit | None = None
+    pressure_error: float | None = None
+    representative: FullRun | None = None
+    full_runs: tuple[FullRun, ...] = ()
+    breaches: tuple[str, ...] = ()
     failed: int = 0
     sole: ReducedSole | None = None
 
@@ -208,13 +209,6 @@ def slip_study(
     if setting.viscosity is None:
         return _dry_study(setting, population, array, walkers, limits)
     options = {"inlet_diameter": array.inlet_diameter, "step": step, "cache": cache}
-
-    def part(low: float, high: float) -> Progress:
-        def report(stage: str, fraction: float, residual: float | None = None) -> None:
-            progress(stage, low + (high - low) * fraction, residual)
-
-        return report
-
     if full:
         runs = full_runs(setting, walkers, progress=progress, **options)
         good = [r for r in runs if r.motion.status is Status.CONVERGED]
@@ -230,15 +224,13 @@ def slip_study(
             array,
             tuple(subjects),
             True,
-            None,
-            None,
-            _nearest(good, subjects),
-            tuple(good),
-            _breaches(setting, good),
-            len(runs) - len(good),
+            representative=good[_middle(subjects)],
+            full_runs=tuple(good),
+            breaches=_breaches(setting, good),
+            failed=len(runs) - len(good),
         )
     people = design(population, fit_runs + held_out)
-    runs = full_runs(setting, people, progress=part(0.0, 0.8), **options)
+    runs = full_runs(setting, people, progress=part(progress, 0.0, 0.8), **options)
     good = [r for r in runs if r.motion.status is Status.CONVERGED]
     if len(good) < max(4, len(runs) // 2):
         raise ConvergenceError(
@@ -247,18 +239,13 @@ def slip_study(
     every = max(len(good) // max(held_out, 1), 2)
     tested = good[every - 1 :: every][:held_out]
     used = [r for r in good if not any(r is t for t in tested)]
+    fitted_to, kept_out = ([r.motion for r in some] for some in (used, tested))
     rows = [row for r in used for row in r.area_rows()]
-    fit = fitted_reduced(
-        setting,
-        [r.motion for r in used],
-        [r.motion for r in tested],
-        rows,
-        progress=part(0.8, 0.93),
-    )
+    fit = fitted_reduced(setting, fitted_to, kept_out, rows, progress=part(progress, 0.8, 0.93))
     shape = pressure_shape(used, setting.shoe_angle)
     subjects = _reduced_subjects(fit.sole, shape, walkers, array, limits)
     chosen = walkers[_middle(subjects)]
-    middle_run = full_runs(setting, [chosen], progress=part(0.95, 1.0), **options)
+    middle_run = full_runs(setting, [chosen], progress=part(progress, 0.95, 1.0), **options)
     return SlipStudy(
         setting,
         population,
@@ -280,17 +267,16 @@ _REMEDY = "Use a finer grid, a thicker start film, or a narrower population"
 
 def _reduced_subjects(
     sole: ReducedSole,
-    shape: PressureShape,
+    shape: PressureShape | None,
     walkers: Sequence[Walker],
     array: FloorSensors,
     limits: OutcomeLimits | None,
 ) -> list[SubjectSlip]:
     subjects = []
     for i, walker in enumerate(walkers):
-        motion = sole.motion(walker)
-        thin = _thinned(motion)
-        pressures = array_pressures(thin, shape.maps(thin), array)
-        subjects.append(_subject(thin, pressures, array, limits, i))
+        motion = _thinned(sole.motion(walker))
+        pressures = None if shape is None else array_pressures(motion, shape.maps(motion), array)
+        subjects.append(_subject(motion, pressures, array, limits, i))
     return subjects
 
 
@@ -306,13 +292,8 @@ def _dry_study(
     constants = np.ones(len(NAMES))
     constants[[1, 2]] = 0.0
     sole = ReducedSole(constants, None, 1e-3, setting.shoe_angle, speeds, cofs)
-    subjects = [
-        _subject(_thinned(sole.motion(walker)), None, array, limits, i)
-        for i, walker in enumerate(walkers)
-    ]
-    return SlipStudy(
-        setting, population, array, tuple(subjects), False, None, None, None, (), (), 0, sole
-    )
+    subjects = _reduced_subjects(sole, None, walkers, array, limits)
+    return SlipStudy(setting, population, array, tuple(subjects), False, sole=sole)
 
 
 def _subject(
@@ -353,10 +334,6 @@ def _middle(subjects: Sequence[SubjectSlip]) -> int:
     pool = crossed if crossed.any() else np.ones(speeds.size, dtype=bool)
     middle = float(np.median(speeds[pool]))
     return int(np.argmin(np.where(pool, np.abs(speeds - middle), np.inf)))
-
-
-def _nearest(runs: Sequence[FullRun], subjects: Sequence[SubjectSlip]) -> FullRun:
-    return runs[_middle(subjects)]
 
 
 def _wilson(hits: int, count: int) -> tuple[float, float]:

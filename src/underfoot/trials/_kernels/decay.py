@@ -17,17 +17,13 @@ def linear_part(
     e = np.exp(-x / np.maximum(tau[:, None], 1e-300))
     rise = 1.0 - e
     if start is not None or end is not None:
-        if start is not None and end is not None:
-            a, b = np.full(len(tau), end), np.full(len(tau), start)
-        elif start is not None:
-            b = np.full(len(tau), start)
-            rest = y - start * e
-            a = np.maximum((rise * rest).sum(axis=1) / _positive((rise**2).sum(axis=1)), 0.0)
-        else:
-            assert end is not None
-            a = np.full(len(tau), end)
-            rest = y - end * rise
-            b = np.maximum((e * rest).sum(axis=1) / _positive((e**2).sum(axis=1)), 0.0)
+
+        def level(given: float | None, shape: np.ndarray, rest: np.ndarray) -> np.ndarray:
+            if given is not None:
+                return np.full(len(tau), given)
+            return np.maximum((shape * rest).sum(axis=1) / _positive((shape**2).sum(axis=1)), 0.0)
+
+        a, b = level(end, rise, y - (start or 0.0) * e), level(start, e, y - (end or 0.0) * rise)
     else:
         saa, sbb, sab = (rise**2).sum(axis=1), (e**2).sum(axis=1), (rise * e).sum(axis=1)
         ra, rb = rise @ y, e @ y

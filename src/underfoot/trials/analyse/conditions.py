@@ -14,8 +14,7 @@ from underfoot.core import DataError, InputError, nearest_match, units
 
 from ..readers import SUFFIXES, Profile, read_profile
 from ..readers.sheet import is_workbook, workbook_rows
-from ..readers.text import decoded, is_number, name_and_unit
-from ..readers.unit_factors import si_unit
+from ..readers.text import decoded, is_number, name_and_unit, si_unit
 from .file_result import FileResult
 
 NAMES = ("conditions.csv", "conditions.xlsx")

@@ -9,8 +9,7 @@ import numpy as np
 from underfoot.core import Progress, UnderfootError, silent
 
 from ..axes import axes_of
-from ..edits import EditError
-from ..events import stances
+from ..events import EditError, stances
 from ..gait import DEFINITIONS, required_friction, stance_frictions
 from ..readers import Profile, read_trials
 from ..trial import Trial, joined

@@ -8,7 +8,7 @@ from typing import Any
 
 from underfoot.core import InputError, nearest_match, to_si
 
-from ..edits import EditError
+from ..events import EditError
 from ..readers.text import is_number
 from ..trial import Edit
 from .conditions import named_file, table_columns

@@ -1,11 +1,9 @@
 """What one file gave: numbers, rules kept or broken, a verdict, and curves for the figures."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -22,19 +20,14 @@ MEAN_OF_STEPS = "mean of the steps"  # the item that stands for all steps of a f
 class FileResult:
     """Outcome of one file.
 
-    Parameters:
-        file, checksum: Name and SHA-256.
-        verdict: "accepted", "caution" (read the reasons before using the numbers) or "refused".
-        reasons: Why, in words.
-        measurements: One entry per number: item (trial, step, sensor), then as
-            ``Measurement.as_dict``.
-        main: The numbers that stand for the file in tables: name to SI value.
-        facts: What the rules were checked against.
-        curves: Series for figures, thinned.
-        conditions: What the laboratory noted about the file.
-        edits: The edit log: step, what, before, after, rcof before and after, why.
-        steps: One entry per contact with a plate: number, plate, side, contact, toe off, RCOF or
-            the reason of its rejection, verdict, flags, and the gait around it.
+    ``file`` and ``checksum``: name and SHA-256. ``verdict``: "accepted", "caution" (read the
+    reasons before using the numbers) or "refused". ``reasons``: why, in words. ``measurements``:
+    one entry per number: item (trial, step, sensor), then as ``Measurement.as_dict``. ``main``: the
+    numbers that stand for the file in tables: name to SI value. ``facts``: what the rules were
+    checked against. ``curves``: series for figures, thinned. ``conditions``: what the laboratory
+    noted about the file. ``edits``: the edit log: step, what, before, after, rcof before and after,
+    why. ``steps``: one entry per contact with a plate: number, plate, side, contact, toe off, RCOF
+    or the reason of its rejection, verdict, flags, and the gait around it.
     """
 
     file: str
@@ -59,7 +52,7 @@ class FileResult:
         return {one.name: getattr(self, one.name) for one in fields(self)}
 
     @classmethod
-    def from_dict(cls, data: Mapping[str, Any]) -> FileResult:
+    def from_dict(cls, data: Mapping[str, Any]) -> Self:
         """Return the result written by ``as_dict``."""
         plain: dict[str, Any] = {
             key: tuple(v) if isinstance(v, list) else v for key, v in data.items()

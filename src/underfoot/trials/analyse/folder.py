@@ -11,20 +11,18 @@ from underfoot.core import Progress, UnderfootError, content_hash, silent
 from underfoot.core.pool import available_processors, in_processes
 from underfoot.core.provenance import version
 
-from ..edits import EditError
+from ..events import EditError
 from ..protocols import Protocol
 from ..readers import Profile, read_trials, with_channels
 from ..trial import Edit, Trial, file_checksum, joined
 from .conditions import person_condition, profile_of, study_folder
 from .edit_table import edits_of
 from .file_result import REFUSED, Draft, FileResult
-from .kinds import STEP_KINDS, analysed_trial
-from .long_tables import curve_table, step_tables
 from .methods import methods_paragraphs
 from .readings import reading_results
-from .steps import check_ramp
+from .steps import STEP_KINDS, analysed_trial, check_ramp
 from .study import Study, study_of
-from .tables import Table, edit_table, file_table, measurement_table
+from .tables import Table, curve_table, edit_table, file_table, measurement_table, step_tables
 
 _CODE = "2"  # raised when the numbers of a file change, so that stored results are made again
 _DIED = "the process that analysed it ended without an answer"
@@ -77,21 +75,15 @@ def analyse_folder(
     same files, protocol, profile and conditions give the same result, whatever the number of
     processes.
 
-    Parameters:
-        profile: What columns, axes and markers are called; by default ``profile.toml`` in the
-            folder.
-        conditions: What was noted about the files; by default ``conditions.csv`` or ``.xlsx`` in
-            the folder.
-        names, merge_spelling: Pattern of file names and what spellings count as one; see
-            ``study_folder``.
-        store: Folder that keeps the result of each file: an interrupted run goes on where it
-            stopped.
-        processes: Number of processes; by default the number of processors.
+    ``profile``: what columns, axes and markers are called; by default ``profile.toml`` in the
+    folder. ``conditions``: what was noted about the files; by default ``conditions.csv`` or
+    ``.xlsx`` in the folder. ``names`` and ``merge_spelling``: pattern of file names and what
+    spellings count as one; see ``study_folder``. ``store``: folder that keeps the result of each
+    file: an interrupted run goes on where it stopped. ``processes``: number of processes; by
+    default the number of processors.
 
-    Errors:
-        InputError: No such folder, no trial file in it, a wrong profile, ramp or table of
-            conditions.
-        EditError: An edit by hand that names no step, changes nothing or contradicts another.
+    InputError: no such folder, no trial file in it, a wrong profile, ramp or table of conditions.
+    EditError: an edit by hand that names no step, changes nothing or contradicts another.
     """
     folder = Path(folder)
     check_ramp(protocol)

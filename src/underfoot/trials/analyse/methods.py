@@ -4,8 +4,8 @@ import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
+from ..events import CONTACT_FORCE
 from ..protocols import KINDS, Protocol
-from ..stance import CONTACT_FORCE
 from .file_result import CAUTION, MEAN_OF_STEPS, REFUSED, FileResult
 from .steps import protocol_ramp
 from .study import Study

@@ -1,30 +1,119 @@
-"""Analysis of recordings with steps: walking, and human slips."""
+"""Analysis of one file by the kind of its protocol: steps, slides, disks, relaxation."""
 
-from dataclasses import asdict, replace
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, fields, replace
 from typing import Any
 
 import numpy as np
 
 from underfoot.core import DataError, InputError, UnderfootError, unknown_name
 
-from ..array_pressures import sensor_array_reading
-from ..axes import Axes, axes_of
-from ..events import no_contact_reason, stances
+from ..axes import Axes, Ramp, axes_of
+from ..events import Stance, no_contact_reason, stances
 from ..filters import LowPass
 from ..gait import DEFINITIONS, RcofDefinition, RequiredFriction, stance_frictions
-from ..gait_context import gait_context, stance_curves
+from ..gait_context import gait_context, slip_course, stance_curves
 from ..measurement import Measurement, mean_of
-from ..outcome import OutcomeLimits
+from ..pin_on_disk import friction_point
 from ..plates import plate_named
+from ..pressure_map import pressure_scan
+from ..pressures import sensor_array_reading
 from ..protocols import Protocol
-from ..ramp import Ramp
 from ..readers import Profile
-from ..slip_course import slip_course
-from ..slips import Slip, SlipDefinition, slip_of
-from ..stance import Stance
+from ..relaxation_test import relaxation_reading
+from ..slip_friction import slide_friction
+from ..slips import OutcomeLimits, Slip, SlipDefinition, slip_of
 from ..trial import Trial
-from .edit_table import edit_log
+from .edit_table import EDIT_COLUMNS, edit_log
 from .file_result import MEAN_OF_STEPS, Draft, rates
+
+
+def analysed_trial(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
+    """Analyse one trial into ``draft`` by the kind of the protocol.
+
+    An `UnderfootError` says what makes the whole file useless; single numbers that can't be
+    measured are kept as "not estimated".
+    """
+    if protocol.kind in STEP_KINDS:
+        analysed_steps(trial, draft, protocol, profile)
+        return
+    for edit in trial.edits:
+        draft.refusals.append(f"excluded by hand: {edit.why}")
+        excluded = (draft.file, edit.what, "used", "excluded", "", None, None, edit.why)
+        draft.edits.append(dict(zip(EDIT_COLUMNS, excluded, strict=True)))
+    _KINDS[protocol.kind](trial, draft, protocol, profile)
+
+
+def _slip_tester(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
+    found = slide_friction(trial, protocol, axes_of(trial, vertical=profile.vertical))
+    rates(trial, draft)
+    draft.add("slide", found.cof, main="cof")
+    draft.facts.update(found.facts)
+    series = {key: getattr(found, key) for key in ("time", "normal", "shear", "ratio")}
+    draft.curve("slide", **series, begin=found.window[0], end=found.window[1])
+    if not profile.sensors or not trial.markers:
+        return
+    name, position = next(iter(profile.sensors.items()))
+    marker = next(iter(trial.markers.values()))
+    sensor = trial.channel(name)
+    try:
+        scan = pressure_scan(trial, sensor, marker, position=position)
+    except DataError as error:
+        draft.cautions.append(f"no pressure scan: {error.what}")
+        return
+    draft.cautions += list(scan.flags)
+    highest = float(scan.pressure.max())
+    peak = Measurement("peak fluid pressure", highest, "Pa", scan.baseline_sd)
+    draft.add("scan", peak, main="scan_peak_pressure")
+    stored = {
+        f.name: getattr(scan, f.name) for f in fields(scan) if f.name not in ("trial", "flags")
+    }
+    for name in ("along", "pressure"):
+        stored[name] = [float(f"{v:.7g}") for v in stored[name]]
+    draft.curves["scan"] = stored
+
+
+def _pin_on_disk(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
+    speed = draft.conditions.get("speed")
+    point = friction_point(trial, speed=speed if isinstance(speed, float) else None)
+    draft.add(trial.name, point.cof, main="cof")
+    draft.facts["duration"] = float(point.time[-1] - point.time[0])
+    if point.normal is not None:
+        draft.facts["normal_force"] = point.normal
+    if point.shear is not None:
+        draft.main["friction_force"] = point.shear
+    if point.speed is not None:
+        draft.facts["sliding_speed"] = draft.main["speed"] = point.speed
+    begin, end = point.window
+    cof = point.cof.value or np.nan
+    draft.curve("run", time=point.time, ratio=point.ratio, begin=begin, end=end, cof=cof)
+
+
+def _relaxation(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
+    thickness = draft.conditions.get("thickness")
+    if not isinstance(thickness, float):
+        raise DataError(
+            "the thickness of the block is not known",
+            where=trial.name,
+            remedy='Add a column "thickness (mm)" to conditions.csv',
+        )
+    found = relaxation_reading(trial, thickness)
+    for name in ("force_2_percent", "peak_force", "final_force"):
+        draft.add("test", getattr(found, name), main=name)
+    draft.facts["hold_time"] = found.hold_time
+    draft.facts["compression"] = found.peak_displacement / (2.0 * thickness)
+    time, force = found.hold
+    log = np.unique(np.geomspace(1, len(time) - 1, 300).astype(int))
+    draft.curve("hold", time=time[log], force=force[log], final=found.final_force.value or 0.0)
+
+
+_KINDS: Mapping[str, Callable[[Trial, Draft, Protocol, Profile], None]] = {
+    "slip_tester": _slip_tester,
+    "pin_on_disk": _pin_on_disk,
+    "boundary": _pin_on_disk,
+    "relaxation": _relaxation,
+}
+
 
 STEP_KINDS = ("gait", "human_slip")
 _SETTINGS = ("filter", "gate", "gate_body_weight", "shear", "peak", "braking", "part")
@@ -222,28 +311,19 @@ def _sensors(walk: _Walk, one: Slip, walking: np.ndarray) -> None:
         near = (channel.time > one.contact - 0.1) & (channel.time < one.contact + 0.6)
         step = max(1, int(near.sum()) // 150)
         kilopascal = 1e-3 * (channel.values[near] - pulse.baseline)
-        pulses.append(
-            {
-                "sensor": name,
-                "along": places[name][0] - float(middle[0]),
-                "across": places[name][1] - float(middle[1]),
-                "time": [round(float(t), 4) for t in (channel.time[near] - one.contact)[::step]],
-                "kPa": [None if np.isnan(v) else round(float(v), 3) for v in kilopascal[::step]],
-            }
-        )
+        along, beside = (float(p - m) for p, m in zip(places[name], middle, strict=True))
+        times = [round(float(t), 4) for t in (channel.time[near] - one.contact)[::step]]
+        shown = [None if np.isnan(v) else round(float(v), 3) for v in kilopascal[::step]]
+        pulse_of = {"sensor": name, "along": along, "across": beside, "time": times, "kPa": shown}
+        pulses.append(pulse_of)
         passage = reading.passages.get(name)
         if passage is not None:
             draft.add(f"sensor {name}", passage.speed)
             draft.add(f"sensor {name}", passage.lateral)
             if passage.speed.value is not None and pulse.peak.value is not None:
-                draft.curve(
-                    "sensor_rows",
-                    sensor=name,
-                    row=passage.row,
-                    pressure=float(pulse.peak.value),
-                    irss=float(passage.speed.value),
-                    ml=float(passage.lateral.value or 0.0),
-                )
+                speeds = {"irss": passage.speed.value, "ml": passage.lateral.value or 0.0}
+                facts = {"row": passage.row, "pressure": pulse.peak.value, **speeds}
+                draft.curve("sensor_rows", sensor=name, **facts)
     if pulses:
         quiet = trial.channel(next(iter(reading.pulses)))
         draft.facts["baseline_samples"] = float(np.sum(quiet.time < one.contact - 0.05))
@@ -267,19 +347,14 @@ def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
         values.append(own)
         assert stance.walking is not None  # an RCOF has one
         force = plate_named(trial, stance.plate).force[stance.start : stance.stop]
-        draft.curve(
-            "steps",
-            step=stance.label,
-            time=step.time - stance.contact,
-            ratio=step.ratio,
-            normal=step.normal,
-            along=force @ axes.ramp.surface(axes.up, stance.walking)[1],
-            across=force @ np.cross(axes.up, stance.walking),
-            gate=step.gate_time - stance.contact,
-            peak_time=step.peak_time - stance.contact,
-            peak=own.value,
-            verdict=step.verdict,
-        )
+        series: dict[str, Any] = {
+            "time": step.time - stance.contact, "ratio": step.ratio, "normal": step.normal,
+            "along": force @ axes.ramp.surface(axes.up, stance.walking)[1],
+            "across": force @ np.cross(axes.up, stance.walking),
+            "gate": step.gate_time - stance.contact,
+            "peak_time": step.peak_time - stance.contact, "peak": own.value,
+        }  # fmt: skip
+        draft.curve("steps", step=stance.label, **series, verdict=step.verdict)
         curves = stance_curves(trial, stance, step.ratio, definition.filter, axes)
         draft.curve("normalised", step=stance.label, **curves)
     draft.facts["steps"] = float(len(values))
@@ -296,14 +371,9 @@ def _rejected_curve(walk: _Walk, stance: Stance) -> None:
     up = axes.up if stance.walking is None else axes.ramp.surface(axes.up, stance.walking)[0]
     normal = force @ up
     shear = np.linalg.norm(force - np.outer(normal, up), axis=1)
-    walk.draft.curve(
-        "rejected",
-        step=stance.label,
-        time=np.arange(len(force)) / plate.rate,
-        normal=normal,
-        ratio=shear / np.maximum(normal, 1.0),
-        reason=stance.reason,
-    )
+    time, ratio = np.arange(len(force)) / plate.rate, shear / np.maximum(normal, 1.0)
+    words = {"step": stance.label, "reason": stance.reason}
+    walk.draft.curve("rejected", time=time, normal=normal, ratio=ratio, **words)
 
 
 def _step_entry(

@@ -14,8 +14,7 @@ from ..pressure_map import PressureScan, pressure_map
 from ..protocols import Protocol
 from ..statistics import precision
 from ..stribeck_fit import METHODS as FIT_METHODS
-from ..stribeck_fit import stribeck_fit
-from ..viscosity_speed_curve import master_curve
+from ..stribeck_fit import master_curve, stribeck_fit
 from . import tables
 from .conditions import NUMBERS, person_condition
 from .file_result import FileResult

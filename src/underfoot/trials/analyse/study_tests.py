@@ -1,10 +1,8 @@
 """The statistical tests of a study, each with its convention and what is doubtful about it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
 import numpy as np
 
@@ -39,13 +37,14 @@ class Finding:
     values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     @classmethod
-    def of_anova(cls, found: statistics.AnovaTable, cautions: tuple[str, ...] = ()) -> Finding:
+    def of_anova(cls, found: statistics.AnovaTable, cautions: tuple[str, ...] = ()) -> Self:
         """Return an analysis of variance as a finding."""
         rows = tuple((r.term, r.sum_of_squares, r.df, r.f, r.p) for r in found.rows)
         plain = "".join(c if c.isalnum() else "_" for c in found.model.response_name.casefold())
         name = f"anova_{plain}_type_{found.ss_type}"
         columns = ("term", "sum of squares", "df", "F", "p")
-        return _finding(name, found.title, columns, rows, cautions=(*cautions, *found.warnings))
+        table = Table(name, found.title, columns, rows)
+        return cls(name, found.title, table, (*cautions, *found.warnings))
 
 
 def _finding(

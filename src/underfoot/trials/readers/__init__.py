@@ -32,12 +32,13 @@ SUFFIXES = (
 )  # fmt: skip
 _LARGEST = 2_000_000_000  # bytes; a recording of hours stays far below
 _READERS = {
-    "C3D": "c3d.read_c3d", "TRC": "trc.read_trc", "Cortex": "cortex_forces.read_cortex_forces",
-    "CETR": "tribometer_logs.read_cetr", "PCS": "tribometer_logs.read_pcs",
-    "motion": "motion.read_motion", "BioWare": "bioware.read_bioware",
-    "Qualisys": "qualisys.read_qualisys", "Vicon": "vicon_csv.read_vicon_csv",
+    "C3D": "c3d.read_c3d", "TRC": "text_exports.read_trc", "motion": "text_exports.read_motion",
+    "Cortex": "text_exports.read_cortex_forces", "BioWare": "text_exports.read_bioware",
+    "Qualisys": "text_exports.read_qualisys", "Vicon": "text_exports.read_vicon_csv",
+    "CETR": "instrument_logs.read_cetr", "PCS": "instrument_logs.read_pcs",
     "JSON": "pose_json.read_pose_json", "MATLAB": "matlab.read_matlab",
-    "Pedar": "insoles.read_pedar", "F-Scan": "insoles.read_fscan", "table": "columns.read_columns",
+    "Pedar": "instrument_logs.read_pedar", "F-Scan": "instrument_logs.read_fscan",
+    "table": "columns.read_columns",
 }  # fmt: skip
 
 

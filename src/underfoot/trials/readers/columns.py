@@ -13,8 +13,7 @@ from ..trial import Trial
 from .draft import Draft
 from .profile import PlateColumns, Profile
 from .sheet import Sheet, sheet_from
-from .text import is_number
-from .unit_factors import si_unit
+from .text import is_number, si_unit
 
 _TIME = ("time", "t", "abs time", "time s", "zeit", "tiempo", "temps", "elapsed time", "timestamp")
 _FORCE = re.compile(

@@ -11,8 +11,7 @@ from underfoot.core import DataError
 from ..plates import finished_plate
 from ..trial import Channel, Event, Marker, Plate, Trial
 from .profile import Profile
-from .text import decoded, lines_of, rate_of, table, truncated, unique_names
-from .unit_factors import in_si, si_unit
+from .text import decoded, in_si, lines_of, rate_of, si_unit, table, truncated, unique_names
 
 
 @dataclass

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 from underfoot.core import InputError, nearest_match, to_si
 
 from ..trial import PlateAccuracy
-from .unit_factors import known_units, si_unit
+from .text import known_units, si_unit
 
 T = TypeVar("T")
 _DIRECTIONS = ("x", "y", "z", "+x", "+y", "+z", "-x", "-y", "-z")

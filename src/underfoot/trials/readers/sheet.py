@@ -12,7 +12,7 @@ import numpy as np
 from underfoot.core import DataError
 
 from . import text
-from .unit_factors import si_unit
+from .text import si_unit
 
 _MOST_CELLS = 50_000_000
 _HEAD = 300  # lines in which the table must begin

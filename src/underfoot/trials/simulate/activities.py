@@ -7,19 +7,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from . import walk
 from .c3d_file import walk_c3d
-from .walk import (
-    GRAVITY,
-    MARKER_RATE,
-    RATE,
-    WalkRecording,
-    foot_markers,
-    heel_path,
-    plate_corners,
-    raised_cosines,
-    stance_load,
-    stance_ratio,
-)
 
 DURATION = 4.0
 Motion = tuple[
@@ -30,34 +19,41 @@ Motion = tuple[
 
 def activity(
     name: str, rng: np.random.Generator, *, mass: float = 70.0, markers: bool = True
-) -> WalkRecording:
+) -> walk.WalkRecording:
     """Return a made-up recording of an activity, a key of ``ACTIVITIES``.
 
     ``mass`` is that of the person (kg). Without ``markers`` (heels, toes, pelvis) only the plates
     tell.
     """
-    time = np.arange(round(DURATION * RATE)) / RATE
+    time = np.arange(round(DURATION * walk.RATE)) / walk.RATE
     if name in _STEPS:
-        motion = _steps(time, mass * GRAVITY, **_STEPS[name])
+        motion = _steps(time, mass * walk.GRAVITY, **_STEPS[name])
     else:
-        load, height = (raised_cosines(time, knots) for knots in _STANDING[name])
-        motion = _standing_feet(time, mass * GRAVITY * load, height)
+        load, height = (walk.raised_cosines(time, knots) for knots in _STANDING[name])
+        motion = _standing_feet(time, mass * walk.GRAVITY * load, height)
     forces, centres, heels, body, heights = motion
     noisy = [force + rng.normal(0.0, 0.6, force.shape) for force in forces]
-    frames = np.arange(round(DURATION * MARKER_RATE)) / MARKER_RATE
+    frames = np.arange(round(DURATION * walk.MARKER_RATE)) / walk.MARKER_RATE
     left, right, pelvis = (
         np.column_stack([np.interp(frames, time, path[:, i]) for i in range(3)])
         for path in (heels[1], heels[0], body)
     )
-    found = foot_markers({"R": right, "L": left}, pelvis, (0.2, 0.0, 0.02), 0.1, 0.05)
+    found = walk.foot_markers({"R": right, "L": left}, pelvis, (0.2, 0.0, 0.02), 0.1, 0.05)
     noise = {key: path + rng.normal(0.0, 3e-4, path.shape) for key, path in found.items()}
     if not markers:
         noise = {"origin": np.full((len(frames), 3), 5.0)}
-    corners = (plate_corners(0.0, 0.45, heights[0]), plate_corners(0.65, 0.45, heights[1]))
-    return WalkRecording(noise, (noisy[0], noisy[1]), (centres[0], centres[1]), {}, {}, corners)
+    corners = (
+        walk.plate_corners(0.0, 0.45, heights[0]),
+        walk.plate_corners(0.65, 0.45, heights[1]),
+    )
+    return walk.WalkRecording(
+        noise, (noisy[0], noisy[1]), (centres[0], centres[1]), {}, {}, corners
+    )
 
 
-def activity_c3d(recording: WalkRecording, *, crossed: bool = False, mass: float = 0.0) -> bytes:
+def activity_c3d(
+    recording: walk.WalkRecording, *, crossed: bool = False, mass: float = 0.0
+) -> bytes:
     """Return a recording of an activity as C3D; ``crossed`` writes corners 3 and 4 exchanged."""
     order = (0, 1, 3, 2) if crossed else (0, 1, 2, 3)
     return walk_c3d(recording, origin=0.0, order=order, mass=mass)
@@ -73,7 +69,7 @@ def _heel(
     speeds = [(before, 0.0), (top, swing), *still, (end + 0.05, swing), (end + 0.42, 0.0)]
     heights = [(before, 0.0), (top, 0.12), (contact, 0.0), (lift, 0.0)]
     heights += [(lift + 0.28, 0.2), (lift + 0.72, 0.0)]
-    return heel_path(time, contact, place, speeds, heights)
+    return walk.heel_path(time, contact, place, speeds, heights)
 
 
 def _steps(
@@ -98,25 +94,25 @@ def _steps(
         share = (time - contact) / stance
         place = np.array([0.15 + 0.62 * i, 0.08 * side, rise * i])
         load = half_sine * np.sin(np.pi * np.clip(share, 0, 1)) * ((share > 0) & (share < 1))
-        load = load if half_sine else stance_load(share)
+        load = load if half_sine else walk.stance_load(share)
         # A short transient of the heel, so that forces have the frequencies of real ones.
         impact = 0.12 * np.exp(-(((share - 0.03) / 0.006) ** 2))
         normal = weight * (load + impact * (load > 0))
         angle = turn * np.clip((share - 0.2) / 0.6, 0, 1)
-        push = ratio * stance_ratio(share) * normal
+        push = ratio * walk.stance_ratio(share) * normal
         forces.append(
             np.column_stack((-push * np.cos(angle), -push * np.sin(angle) + 0.05 * push, normal))
         )
-        walk = 0.22 * np.clip(share, 0, 1)
+        forward = 0.22 * np.clip(share, 0, 1)
         zero = np.full(len(time), place[1])
-        centres.append(np.column_stack((place[0] + walk, zero, np.full(len(time), place[2]))))
+        centres.append(np.column_stack((place[0] + forward, zero, np.full(len(time), place[2]))))
         heels.append(_heel(time, contact, stance, place, speed))
     since = time - 1.2
     way = turn * np.clip(since / stance, 0, 2)
     body = np.column_stack(
         (
-            np.cumsum(speed * np.cos(way)) / RATE - speed * 1.2 + 0.15,
-            np.cumsum(speed * np.sin(way)) / RATE,
+            np.cumsum(speed * np.cos(way)) / walk.RATE - speed * 1.2 + 0.15,
+            np.cumsum(speed * np.sin(way)) / walk.RATE,
             0.95 + rise * np.clip(since / pace, 0, 2),
         )
     )
@@ -126,7 +122,7 @@ def _steps(
 def _standing_feet(time: np.ndarray, vertical: np.ndarray, height: np.ndarray) -> Motion:
     """Both feet side by side over the gap: half of the load on each plate, a little push."""
     sway = 0.01 * vertical * np.sin(2 * np.pi * 0.6 * time)
-    landing = np.gradient(vertical, 1.0 / RATE)
+    landing = np.gradient(vertical, 1.0 / walk.RATE)
     push = sway - 0.12 * vertical * np.clip(landing / 4e4, -1.0, 1.0)
     forces, centres, heels = [], [], []
     for i, side in enumerate((-1.0, 1.0)):

@@ -55,13 +55,10 @@ def simulated_folder(
     Beside the trials: conditions.csv (what a laboratory notes), profile.toml, truth.csv and
     SYNTHETIC.txt. The same kind, count and seed give the same bytes.
 
-    Parameters:
-        kind: A key of ``KINDS``.
-        count: Trials for "slips" and "relaxation"; persons for "study"; repeats of the whole series
-            for "pin_on_disk"; scans per shoe for "tester".
+    ``kind``: A key of ``KINDS``. ``count``: trials for "slips" and "relaxation"; persons for
+    "study"; repeats of the whole series for "pin_on_disk"; scans per shoe for "tester".
 
-    Errors:
-        InputError: Unknown kind; count below one.
+    InputError: unknown kind; count below one.
     """
     if kind not in _MAKERS:
         raise unknown_name("kind of data", kind, KINDS, where="simulate")

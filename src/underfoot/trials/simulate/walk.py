@@ -96,19 +96,10 @@ def walk_with_slip(
     left = _slipping_heel(time, landing, truth, begin, end)
     # A heel turns about the ball of the foot: it rises by centimetres before it goes forward.
     at = FIRST_CONTACT
-    right = heel_path(
-        time,
-        at,
-        np.array([0.15, -0.1, 0.0]),
-        [
-            *_swing(at, 4.2),
-            (at + 0.03, 0.02),
-            (at + 0.43, 0.03),
-            (at + 0.65, 4.4),
-            (at + 0.95, 0.0),
-        ],
-        [*_swing(at, 0.12), (at, 0.0), (at + 0.35, 0.0), (at + 0.6, 0.2), (at + 0.9, 0.0)],
-    )
+    speeds = [*_swing(at, 4.2), (at + 0.03, 0.02), (at + 0.43, 0.03), (at + 0.65, 4.4)]
+    heights = [*_swing(at, 0.12), (at, 0.0), (at + 0.35, 0.0), (at + 0.6, 0.2), (at + 0.9, 0.0)]
+    place = np.array([0.15, -0.1, 0.0])
+    right = heel_path(time, at, place, [*speeds, (at + 0.95, 0.0)], heights)
     pressures = _pressures(time, left, truth)
     dry, dry_centre, rcof = _dry_step(time, right, truth)
     slip, slip_centre = _slip_step(time, left, truth)
@@ -145,15 +136,9 @@ def walk_with_slip(
     for force in (dry, slip):
         offset = defects.force_offset * rng.uniform(-1, 1, 3)
         forces.append(force + offset + rng.normal(0, defects.force_noise, force.shape))
-    return WalkRecording(
-        markers,
-        (forces[0], forces[1]),
-        (dry_centre, slip_centre),
-        pressures,
-        SENSORS,
-        (plate_corners(0.0), plate_corners(0.62)),
-        facts,
-    )
+    plates = (forces[0], forces[1]), (dry_centre, slip_centre)
+    corners = plate_corners(0.0), plate_corners(0.62)
+    return WalkRecording(markers, *plates, pressures, SENSORS, corners, facts)
 
 
 def plate_corners(begin: float, half_width: float = 0.3, height: float = 0.0) -> np.ndarray:
@@ -216,14 +201,9 @@ def _slipping_heel(
     peak, at, lift = begin + truth.rise, SLIP_CONTACT, end + 0.12
     slide = [(begin, 0.02), (peak, truth.peak_speed), (end, 0.03), (end + 0.2, 0.035)]
     turn = np.where(time < begin, 0.0, truth.angle)
-    return heel_path(
-        time,
-        at,
-        landing,
-        [*_swing(at, 4.2), *slide, (end + 0.45, 1.5), (end + 0.8, 0.0)],
-        [*_swing(at, 0.12), (at, 0.0), (lift, 0.0), (lift + 0.25, 0.15), (lift + 0.5, 0.0)],
-        turn,
-    )
+    speeds = [*_swing(at, 4.2), *slide, (end + 0.45, 1.5), (end + 0.8, 0.0)]
+    heights = [*_swing(at, 0.12), (at, 0.0), (lift, 0.0), (lift + 0.25, 0.15), (lift + 0.5, 0.0)]
+    return heel_path(time, at, landing, speeds, heights, turn)
 
 
 def stance_load(share: np.ndarray, second: float = 1.0) -> np.ndarray:
@@ -264,14 +244,8 @@ def _slip_step(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return force and centre of pressure while sliding at ``truth.acof``."""
     end = truth.slip_start + truth.rise + truth.fall + 0.15
-    normal = (
-        truth.mass
-        * GRAVITY
-        * raised_cosines(
-            time - SLIP_CONTACT,
-            [(0.0, 0.0), (0.1, 0.8), (max(0.55, end) - 0.1, 0.75), (max(0.6, end), 0.0)],
-        )
-    )
+    load = [(0.0, 0.0), (0.1, 0.8), (max(0.55, end) - 0.1, 0.75), (max(0.6, end), 0.0)]
+    normal = truth.mass * GRAVITY * raised_cosines(time - SLIP_CONTACT, load)
     ratio = truth.acof * np.clip((time - SLIP_CONTACT) / 0.02, 0, 1)
     force = np.column_stack(
         (-ratio * np.cos(truth.angle) * normal, -ratio * np.sin(truth.angle) * normal, normal)

@@ -31,10 +31,10 @@ from .mixed import independence_warning as independence_warning
 from .mixed import mixed_model as mixed_model
 from .mixed import person_means as person_means
 from .mixed import repeated_measures as repeated_measures
-from .precision import OutlierTest as OutlierTest
-from .precision import Precision as Precision
-from .precision import precision as precision
-from .two_samples import Line as Line
-from .two_samples import TTest as TTest
-from .two_samples import regression_line as regression_line
-from .two_samples import t_test as t_test
+from .samples import Line as Line
+from .samples import OutlierTest as OutlierTest
+from .samples import Precision as Precision
+from .samples import TTest as TTest
+from .samples import precision as precision
+from .samples import regression_line as regression_line
+from .samples import t_test as t_test

@@ -13,9 +13,8 @@ from underfoot.core import DataError, InputError, unknown_name
 class Predictor:
     """One explanatory variable: a factor (with levels) or a covariate (without).
 
-    Parameters:
-        values: Shape (n,): level numbers of a factor, numbers of a covariate.
-        levels: Names of the levels; empty for a covariate.
+    ``values``: shape (n,): level numbers of a factor, numbers of a covariate. ``levels``: names of
+    the levels; empty for a covariate.
     """
 
     name: str
@@ -37,14 +36,16 @@ class Predictor:
         return coding[values.astype(int)]
 
 
+Columns = Mapping[str, Sequence[object] | np.ndarray | Predictor]
+"""Explanatory variables by name: text makes a factor, numbers a covariate."""
+
+
 @dataclass(frozen=True, slots=True)
 class Design:
     """Model matrix with its terms.
 
-    Parameters:
-        matrix: Shape (n, p), the intercept first.
-        terms: Names such as ``"shoe"`` or ``"shoe:fluid"``, in order.
-        slices: Columns of each term.
+    ``matrix``: shape (n, p), the intercept first. ``terms``: names such as ``"shoe"`` or
+    ``"shoe:fluid"``, in order. ``slices``: columns of each term.
     """
 
     matrix: np.ndarray
@@ -92,11 +93,9 @@ def predictor(
 
     Levels stand in the order of their first appearance, so that tables read as the data do.
 
-    Parameters:
-        rows: Which values count, shape (n,) of bool; all by default.
+    ``rows``: which values count, shape (n,) of bool; all by default.
 
-    Raises:
-        InputError: A factor with one level, a covariate that is not finite or constant.
+    InputError: a factor with one level, a covariate that is not finite or constant.
     """
     if isinstance(values, Predictor):
         if rows is None or rows.all():
@@ -129,8 +128,7 @@ def predictor(
 def design(predictors: Mapping[str, Predictor], terms: Sequence[str]) -> Design:
     """Return the model matrix of ``terms``, factors coded to sum to zero.
 
-    Raises:
-        InputError: A term names no predictor, or appears twice.
+    InputError: a term names no predictor, or appears twice.
     """
     coded = {name: p.columns() for name, p in predictors.items()}
     matrices = [np.ones((len(next(iter(coded.values()))), 1))]

@@ -1,10 +1,9 @@
 """Fisher's exact test for tables of any size: by enumeration, by Monte Carlo where that is long."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import lgamma
+from typing import Self
 
 import numpy as np
 
@@ -50,8 +49,7 @@ def fisher_exact(table: Sequence[Sequence[int]] | np.ndarray) -> ExactTest:
     five seconds, p is the share of 100 000 random tables with the same margins (Patefield's
     algorithm, fixed seed), and ``p_error`` its standard error.
 
-    Raises:
-        InputError: Negative or broken counts, fewer than two filled rows or columns.
+    InputError: negative or broken counts, fewer than two filled rows or columns.
     """
     counts = np.asarray(table)
     if counts.ndim != 2 or (counts < 0).any() or not np.equal(np.mod(counts, 1), 0).all():
@@ -110,7 +108,7 @@ class _Weights:
         self.ways = np.add.reduceat(ways, np.flatnonzero(first))
 
     @classmethod
-    def joined(cls, parts: Sequence[tuple[np.ndarray, np.ndarray]]) -> _Weights:
+    def joined(cls, parts: Sequence[tuple[np.ndarray, np.ndarray]]) -> Self:
         return cls(*(np.concatenate(part) for part in zip(*parts, strict=True)))
 
 

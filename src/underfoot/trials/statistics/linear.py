@@ -6,17 +6,18 @@ packages reorder the terms of a type I analysis and drop empty cells in silence.
 
 import warnings as python_warnings
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from string import ascii_lowercase
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, InputError, unknown_name
 
-from .design import Design, Predictor, crossed, design, empty_cells, parts, predictor
+from .design import Columns, Design, Predictor, crossed, design, empty_cells, parts, predictor
 
 TYPES = {
     1: "type I (sequential)",
@@ -30,8 +31,8 @@ EXACT = 1e-18  # share of the variation left over below which a fit is exact, ro
 class FittedModel(ABC):
     """What comparisons need of a model.
 
-    Parameters:
-        coefficients, covariance: Of the fixed effects, shapes (p,) and (p, p), sum-to-zero coding.
+    ``coefficients`` and ``covariance``: of the fixed effects, shapes (p,) and (p, p), sum-to-zero
+    coding.
     """
 
     response_name: str
@@ -94,24 +95,20 @@ class LinearModel(FittedModel):
 
 
 def linear_model(
-    response: Sequence[float] | np.ndarray,
-    predictors: Mapping[str, Sequence[object] | np.ndarray | Predictor],
+    response: ArrayLike,
+    predictors: Columns,
     terms: Sequence[str] | None = None,
     *,
     name: str = "response",
 ) -> LinearModel:
     """Return the least-squares fit of a linear model.
 
-    Parameters:
-        response: Shape (n,). Rows whose response is missing are left out and counted in
-            ``warnings``.
-        predictors: Columns of length n: text makes a factor, numbers a covariate (see
-            ``predictor``).
-        terms: For example ``("shoe", "fluid", "shoe:fluid")``; all crossed by default.
+    ``response``: shape (n,). Rows whose response is missing are left out and counted in
+    ``warnings``. ``predictors``: columns of length n: text makes a factor, numbers a covariate (see
+    ``predictor``). ``terms``: for example ``("shoe", "fluid", "shoe:fluid")``; all crossed by
+    default.
 
-    Raises:
-        DataError: Lengths differ, a constant response, or no degrees of freedom left for the
-            residual.
+    DataError: lengths differ, a constant response, or no degrees of freedom left for the residual.
     """
     y, built, warnings = model_data(response, predictors, terms, name)
     rank = int(np.linalg.matrix_rank(built.matrix))
@@ -133,10 +130,7 @@ def linear_model(
 
 
 def model_data(
-    response: Sequence[float] | np.ndarray,
-    predictors: Mapping[str, Sequence[object] | np.ndarray | Predictor],
-    terms: Sequence[str] | None,
-    name: str,
+    response: ArrayLike, predictors: Columns, terms: Sequence[str] | None, name: str
 ) -> tuple[np.ndarray, Design, list[str]]:
     """Return complete responses, the design and warnings of empty cells (``linear_model``)."""
     y = np.asarray(response, dtype=float)
@@ -217,8 +211,8 @@ class AnovaTable:
 
 
 def analysis_of_variance(
-    response: Sequence[float] | np.ndarray,
-    predictors: Mapping[str, Sequence[object] | np.ndarray | Predictor],
+    response: ArrayLike,
+    predictors: Columns,
     terms: Sequence[str] | None = None,
     *,
     ss_type: int = 3,
@@ -231,12 +225,9 @@ def analysis_of_variance(
     as here. JMP, SPSS and SAS report type III. A covariate in an interaction is not centred: the
     factor's type III test is then about the covariate at zero, and a warning says so.
 
-    Parameters:
-        response, predictors, terms: As for ``linear_model``.
-        ss_type: 1, 2 or 3.
+    ``response``, ``predictors`` and ``terms``: as for ``linear_model``. ``ss_type``: 1, 2 or 3.
 
-    Raises:
-        InputError: Another type, or as for ``linear_model``.
+    InputError: another type, or as for ``linear_model``.
 
     Source: J. Fox, Applied Regression Analysis and Generalized Linear Models, ch. 8.
     """
@@ -305,8 +296,7 @@ def least_squares_means(model: FittedModel, factor: str) -> list[AdjustedMean]:
     Predictions on the grid of all levels, averaged with equal weights over the other factors,
     covariates at their mean. In unbalanced data they differ from the plain means of the groups.
 
-    Raises:
-        InputError: No such factor in the model.
+    InputError: no such factor in the model.
     """
     rows, counts, levels = _mean_rows(model.design, factor)
     means = rows @ model.coefficients
@@ -324,9 +314,7 @@ def tukey_hsd(model: FittedModel, factor: str, *, confidence: float = 0.95) -> l
     the model (JMP and R's emmeans do the same; a one-way Tukey test on a factorial experiment
     uses another mean square). Exact when balanced, conservative otherwise.
 
-    Raises:
-        InputError: No such factor; a confidence outside 0 to 1.
-        DataError: The model leaves no scatter.
+    InputError: no such factor; a confidence outside 0 to 1. DataError: the model leaves no scatter.
     """
     from scipy.stats import studentized_range
 
@@ -407,17 +395,13 @@ class Subset:
     parameters: int
 
 
-def all_subsets(
-    response: Sequence[float] | np.ndarray,
-    predictors: Mapping[str, Sequence[object] | np.ndarray | Predictor],
-) -> list[Subset]:
+def all_subsets(response: ArrayLike, predictors: Columns) -> list[Subset]:
     """Return R^2 and adjusted R^2 of all non-empty subsets (the report's Table 7), smallest first.
 
     An ordinal variable enters as a factor (text; k - 1 parameters) or as a trend (numbers; one).
     The largest of many adjusted R^2 is optimistic: it was picked.
 
-    Raises:
-        InputError: More than ten predictors; otherwise as ``linear_model``.
+    InputError: more than ten predictors; otherwise as ``linear_model``.
     """
     if len(predictors) > 10:
         raise InputError(f"{len(predictors)} predictors", where="predictors", allowed="ten at most")

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from underfoot.core import ConvergenceError, DataError, unknown_name
 
@@ -41,9 +42,7 @@ class Separation:
 def separation(matrix: np.ndarray, outcome: np.ndarray) -> Separation:
     """Return whether a direction b exists with X b >= 0 where y = 1 and <= 0 where y = 0.
 
-    Parameters:
-        matrix: Shape (n, p) of full rank, intercept first.
-        outcome: Shape (n,), 0 or 1.
+    ``matrix``: shape (n, p) of full rank, intercept first. ``outcome``: shape (n,), 0 or 1.
 
     Source: K. Konis, Linear programming algorithms for detecting separated data in binary
     logistic regression models, thesis, Oxford 2007.
@@ -150,8 +149,8 @@ class LogisticFit(_Fit[Coefficient]):
 
 
 def logistic_regression(
-    outcome: Sequence[int] | np.ndarray,
-    predictors: Mapping[str, Sequence[float] | np.ndarray],
+    outcome: ArrayLike,
+    predictors: Mapping[str, ArrayLike],
     *,
     method: str = "maximum_likelihood",
     confidence: float = 0.95,
@@ -162,15 +161,12 @@ def logistic_regression(
     answer and is refused; ``"firth"`` gives one. Predictors are scaled (and centred for the
     slopes) before iterating, so that predictors of the size of a COF converge.
 
-    Parameters:
-        outcome: Shape (n,), 0 or 1 (1 = slip).
-        predictors: Numbers, each shape (n,).
-        method: ``"maximum_likelihood"`` or ``"firth"``.
+    ``outcome``: shape (n,), 0 or 1 (1 = slip). ``predictors``: numbers, each shape (n,).
+    ``method``: ``"maximum_likelihood"`` or ``"firth"``.
 
-    Raises:
-        DataError: Outcome not binary or all equal; missing values; separated data with maximum
-            likelihood; predictors that depend on each other.
-        ConvergenceError: The iteration did not settle.
+    DataError: outcome not binary or all equal; missing values; separated data with maximum
+    likelihood; predictors that depend on each other. ConvergenceError: the iteration did not
+    settle.
 
     Source: D. Firth, Biometrika 80 (1993) 27; G. Heinze, M. Schemper, Stat. Med. 21 (2002) 2409.
     """
@@ -283,7 +279,7 @@ def _profile(
 
 
 def _checked(
-    outcome: Sequence[int] | np.ndarray, predictors: Mapping[str, Sequence[float] | np.ndarray]
+    outcome: ArrayLike, predictors: Mapping[str, ArrayLike]
 ) -> tuple[np.ndarray, np.ndarray, list[str]]:
     where = "logistic regression"
     y = np.asarray(outcome, dtype=float)
@@ -319,9 +315,7 @@ class ClusteredFit(_Fit[ClusteredCoefficient]):
 
 
 def clustered_logistic(
-    outcome: Sequence[int] | np.ndarray,
-    predictors: Mapping[str, Sequence[float] | np.ndarray],
-    cluster: Sequence[object],
+    outcome: ArrayLike, predictors: Mapping[str, ArrayLike], cluster: Sequence[object]
 ) -> ClusteredFit:
     """Return generalised estimating equations with exchangeable correlation within clusters.
 
@@ -329,13 +323,11 @@ def clustered_logistic(
     its bias-corrected form of Mancl and DeRouen; p uses the corrected error and t with
     (clusters - parameters) degrees of freedom.
 
-    Parameters:
-        outcome, predictors: As for ``logistic_regression``.
-        cluster: Whom each row belongs to, shape (n,).
+    ``outcome`` and ``predictors``: as for ``logistic_regression``. ``cluster``: whom each row
+    belongs to, shape (n,).
 
-    Raises:
-        DataError: Separated data, fewer clusters than needed, lengths differ.
-        ConvergenceError: The estimating equations did not settle.
+    DataError: separated data, fewer clusters than needed, lengths differ. ConvergenceError: the
+    estimating equations did not settle.
 
     Source: K.-Y. Liang, S. L. Zeger, Biometrika 73 (1986) 13; L. A. Mancl, T. A. DeRouen,
     Biometrics 57 (2001) 126.

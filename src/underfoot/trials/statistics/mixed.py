@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
 
@@ -39,14 +40,11 @@ class PersonMeans:
 
 
 def person_means(
-    response: Sequence[float] | np.ndarray,
-    factors: Mapping[str, Sequence[str]],
-    person: Sequence[object],
+    response: ArrayLike, factors: Mapping[str, Sequence[str]], person: Sequence[object]
 ) -> PersonMeans:
     """Return the mean of each person in each combination of levels; missing values are left out.
 
-    Raises:
-        DataError: Lengths differ, or nothing is left.
+    DataError: lengths differ, or nothing is left.
     """
     y = np.asarray(response, dtype=float)
     if any(len(column) != len(y) for column in (person, *factors.values())):
@@ -70,12 +68,10 @@ def person_means(
 class MixedModel(FittedModel):
     """Linear model of person means with a random intercept for each person (REML).
 
-    Parameters:
-        person_sd, residual_sd: Standard deviations between persons, and of a person's mean in one
-            condition about it.
-        within_df, between_df: Degrees of freedom of what varies within persons and of what only
-            differs between them.
-        within: Factors of which at least one person has several levels.
+    ``person_sd`` and ``residual_sd``: standard deviations between persons, and of a person's mean
+    in one condition about it. ``within_df`` and ``between_df``: degrees of freedom of what varies
+    within persons and of what only differs between them. ``within``: factors of which at least one
+    person has several levels.
     """
 
     person_sd: float
@@ -107,7 +103,7 @@ class MixedModel(FittedModel):
 
 
 def mixed_model(
-    response: Sequence[float] | np.ndarray,
+    response: ArrayLike,
     factors: Mapping[str, Sequence[str]],
     person: Sequence[object],
     terms: Sequence[str] | None = None,
@@ -122,14 +118,11 @@ def mixed_model(
     of repeated measures (with two levels, the paired t test). Degrees of freedom: persons -
     parameters for what differs between persons, rows - persons - parameters within.
 
-    Parameters:
-        response, person: Shape (n,), one row a trial.
-        factors: Columns of length n, as names.
-        terms: All crossed by default.
+    ``response`` and ``person``: shape (n,), one row a trial. ``factors``: columns of length n, as
+    names. ``terms``: all crossed by default.
 
-    Raises:
-        DataError: Fewer persons than the model needs; no person with two conditions and none
-            repeated; combinations of levels without a person.
+    DataError: fewer persons than the model needs; no person with two conditions and none repeated;
+    combinations of levels without a person.
 
     Source: J. C. Pinheiro, D. M. Bates, Mixed-Effects Models in S and S-PLUS, Springer 2000
     (degrees of freedom: section 2.4.2).
@@ -211,14 +204,11 @@ class RepeatedMeasures:
 
 
 def repeated_measures(
-    response: Sequence[float] | np.ndarray,
-    factors: Mapping[str, Sequence[str]],
-    person: Sequence[object],
+    response: ArrayLike, factors: Mapping[str, Sequence[str]], person: Sequence[object]
 ) -> RepeatedMeasures:
     """Return the repeated-measures analysis of variance (statsmodels' AnovaRM) of person means.
 
-    Raises:
-        DataError: A person lacks a combination of levels: use ``mixed_model``.
+    DataError: a person lacks a combination of levels: use ``mixed_model``.
 
     Source: S. W. Greenhouse, S. Geisser, Psychometrika 24 (1959) 95.
     """

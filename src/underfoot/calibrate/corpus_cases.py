@@ -1,0 +1,335 @@
+"""Cases that stand for the corpus: both sides of each published effect, and whole-shoe readings.
+
+What a source leaves open takes the geometric middle of its range, or a usual value; each such
+number is named beside the case. What cannot be computed is named with the reason.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+from underfoot.case import Case
+from underfoot.case.friction import FLOOR_RQ, SOLE_RQ
+from underfoot.core import InputError, to_si, unknown_name
+
+from .corpus import RQ_PER_RA, Condition, Effect, Source, Span
+
+WHOLE_SHOE = ("whole shoe", "walking")
+FLAT = ("block", "pin", "slipmeter", "pull slipmeter", "drop pad")
+HEEL = {
+    "length": "75 mm",
+    "width": "65 mm",
+    "profile": {"model": "rocker", "radius": "100 mm", "start": "35 mm"},
+}
+"""Rounded heel of a whole shoe (assumed): no source prints its shape."""
+SPECIMEN = {
+    "length": "30 mm",
+    "width": "30 mm",
+    "rear_radius": "0 mm",
+    "profile": {"model": "flat"},
+}
+"""Flat block, pin or pad (assumed): no source prints its size."""
+METHOD = {"from": "en_iso_13287"}
+SLID_FLAT = {"speed": "0.3 m/s", "normal_force": "100 N", "shoe_angle": "0 deg"}
+MOTION = {
+    "speed": ("speed", "m/s"),
+    "load": ("normal_force", "N"),
+    "shoe_angle": ("shoe_angle", "rad"),
+}
+VISCOSITY = {"water": 1e-3, "detergent": 1e-3, "oil": 75e-3, "aqueous": 0.2}
+"""Pa s, where a source names the fluid alone."""
+USUAL_RQ = {"sole": SOLE_RQ, "floor": FLOOR_RQ}
+SHORE_A = {"neolite": 93.0}
+USUAL_SHORE_A = 61.0
+"""Middle of 50 to 75, the market of outsoles; of Neolite from memory."""
+TREAD = {"depth": 3e-3, "channel_width": 3e-3, "lug_width": 5e-3, "edge_radius": 0.0}
+"""m, where not printed."""
+PITCH = 10e-3
+"""m, of a grid of which the share of land is printed."""
+GROOVES = {"across": "transverse", "along": "longitudinal"}
+PATTERNS = {
+    "grooves": GROOVES,
+    "strips": GROOVES,
+    "market": {"across": "grid"},
+    "not printed": {"across": "grid"},
+}
+"""Pattern of the case by the printed pattern and direction."""
+WEAR = {"new": "0 mm", "slight": "1 mm", "through": "3.5 mm"}
+"""Worn off at 7 deg (assumed): none is printed."""
+TOPICS = {
+    "shore_a": "hardness",
+    "sole_ra": "roughness",
+    "sole_rq": "roughness",
+    "floor_ra": "roughness",
+    "tread.direction": "groove direction",
+    "tread.depth": "depth",
+    "tread.edge_radius": "edge radius",
+    "tread.land": "tread area",
+    "wear": "wear",
+    "fluid": "fluid",
+    "shoe_angle": "shoe angle",
+}
+"""What an effect is about, by the number that differs between its sides."""
+ABSENT, DECIDED = 0.02, 0.75
+"""|ln ratio| below which an effect is absent; probability at which its sign is right."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stand:
+    """Cases whose mean COF stands for one condition, and what its source leaves open."""
+
+    cases: tuple[Case, ...] = ()
+    taken: tuple[str, ...] = ()
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Contrast:
+    """One published effect under one fluid: COF of ``over`` against that of ``under``.
+
+    ``rises`` is the published sign. ``low`` and ``high`` bound the published ratio (or slope, over
+    ``step`` in its unit); nan where the sign alone is published.
+    """
+
+    source: str
+    effect: str
+    fluid: str
+    topic: str
+    over: Stand
+    under: Stand
+    rises: bool
+    low: float = math.nan
+    high: float = math.nan
+    step: float = math.nan
+
+    @property
+    def reason(self) -> str:
+        """Why it cannot be computed; empty where it can."""
+        return self.over.reason or self.under.reason
+
+    @property
+    def published(self) -> str:
+        """What the source prints, in words."""
+        if math.isnan(self.low):
+            return "higher" if self.rises else "lower"
+        numbers = " to ".join(f"{x:g}" for x in dict.fromkeys((self.low, self.high)))
+        return f"{'ratio' if math.isnan(self.step) else 'per mm'} {numbers}"
+
+
+def verdict(ratio: float, chance: float) -> str:
+    """Return the verdict of an effect by its ratio and the probability of the published sign."""
+    if abs(math.log(ratio)) < ABSENT:
+        return "absent"
+    if chance >= DECIDED:
+        return "right"
+    return "wrong" if chance <= 1 - DECIDED else "undecided"
+
+
+def contrasts(source: Source) -> list[Contrast]:
+    """Return every effect of a source, once for each fluid and step of an order."""
+    return [one for effect in source.effects for one in _of(effect, source)]
+
+
+def whole_shoe_stands(source: Source) -> list[tuple[Condition, Stand]]:
+    """Return each condition of whole shoes with the cases that stand for it."""
+    return [
+        (c, stand(described(c))) for c in source.conditions if c.words.get("device") in WHOLE_SHOE
+    ]
+
+
+def described(condition: Condition) -> dict[str, Any]:
+    """Return a condition as one table, as effects write theirs."""
+    members = [described(member) for member in condition.members]
+    table = {**condition.words, **condition.numbers}
+    return {**table, "members": members} if members else table
+
+
+def stand(table: Mapping[str, Any]) -> Stand:
+    """Return the cases of a condition's or effect's contents, or why there is none."""
+    taken: dict[str, None] = {}
+    try:
+        members = table.get("members") or [{}]
+        cases = tuple(_Contents({**table, **one}, taken).case() for one in members)
+    except InputError as error:
+        return Stand(reason=" ".join(str(error).split()))
+    return Stand(cases, tuple(taken))
+
+
+def _of(effect: Effect, source: Source) -> Iterator[Contrast]:
+    content = effect.content
+    base = content.get("conditions", {})
+    low = high = step = math.nan
+    if effect.kind == "order":
+        pairs = [(two, one, two["change"] == "up") for one, two in pairwise(content["sequence"])]
+        pairs = [({"wear": a["wear"]}, {"wear": b["wear"]}, up) for a, b, up in pairs]
+    elif effect.kind == "slope":
+        first, last = content["over"]
+        low, high = content["low"], content["high"]
+        first_m, last_m = (to_si(end, "m", where=effect.id) for end in (first, last))
+        step = 1e3 * (last_m - first_m)
+        pairs = [(_nested(content["per"], last), _nested(content["per"], first), low > 0)]
+    elif effect.kind == "ratio":
+        low = content.get("low", content.get("ratio"))
+        high = content.get("high", content.get("ratio"))
+        pairs = [(_side(content, "numerator", source), _side(content, "denominator", source))]
+        pairs = [(*pairs[0], low > 1)]
+    else:
+        pairs = [(content["higher"], content["lower"], True)]
+    for over, under, rises in pairs:
+        for fluid in content.get("fluids", [None]):
+            shared = base if fluid is None else {**base, "fluid": fluid}
+            yield Contrast(
+                source.name,
+                effect.id + (f": {over['wear']}" if effect.kind == "order" else ""),
+                fluid or _fluid(_merged(shared, over), _merged(shared, under)),
+                _topic(over, under),
+                stand(_merged(shared, over)),
+                stand(_merged(shared, under)),
+                rises,
+                low,
+                high,
+                step,
+            )
+
+
+def _side(content: Mapping[str, Any], name: str, source: Source) -> Mapping[str, Any]:
+    if f"{name}_conditions" in content:
+        return content[f"{name}_conditions"]
+    return described(next(c for c in source.conditions if c.id == content[name]))
+
+
+def _fluid(over: Mapping[str, Any], under: Mapping[str, Any]) -> str:
+    tables = [member for side in (over, under) for member in side.get("members") or [side]]
+    return ", ".join(dict.fromkeys(str(table.get("fluid", "not given")) for table in tables))
+
+
+def _nested(path: str, item: Any) -> dict[str, Any]:
+    head, _, rest = path.partition(".")
+    return {head: _nested(rest, item) if rest else item}
+
+
+def _merged(base: Mapping[str, Any], more: Mapping[str, Any]) -> dict[str, Any]:
+    both = {key: {**base[key], **more[key]} for key in base.keys() & more.keys() if key == "tread"}
+    return {**base, **more, **both}
+
+
+def _topic(over: Mapping[str, Any], under: Mapping[str, Any]) -> str:
+    flat = [
+        {**side, **{f"tread.{key}": item for key, item in side.get("tread", {}).items()}}
+        for side in (over, under)
+    ]
+    names = [TOPICS[key] for key in TOPICS if flat[0].get(key) != flat[1].get(key)]
+    return ", ".join(dict.fromkeys(names)) or "other"
+
+
+@dataclass(frozen=True, slots=True)
+class _Contents:
+    """What a source writes of a condition; ``taken`` collects what it leaves open."""
+
+    table: Mapping[str, Any]
+    taken: dict[str, None]
+
+    def case(self) -> Case:
+        device = self.table.get("device")
+        whole = device in WHOLE_SHOE
+        if not whole and device not in FLAT:
+            raise InputError(f"{device} is no device of ours", where="device")
+        motion: dict[str, Any] = dict(METHOD if whole else SLID_FLAT)
+        for key, (name, unit) in MOTION.items():
+            if key in self.table:
+                motion[name] = f"{self.middle(key, unit):.6g} {unit}"
+            else:
+                self.taken[key] = None
+        self.taken["shape" if whole else "size"] = None
+        return Case.from_mapping(
+            {
+                "name": str(device),
+                "shoe": {
+                    "material": {"shore_a": self.shore_a()},
+                    "roughness": {"rq": self.rq("sole")},
+                    "heel": HEEL if whole else SPECIMEN,
+                    "tread": self.tread(whole),
+                    "wear": {"depth": self.wear(), "angle": "7 deg" if whole else "0 deg"},
+                },
+                "floor": {"roughness": {"rq": self.rq("floor")}},
+                "contaminant": self.fluid(),
+                "motion": motion,
+                "numerics": {"tread_positions": 1},
+            }
+        )
+
+    def middle(self, key: str, unit: str) -> float:
+        """Return a number in SI, the geometric middle of a range."""
+        return self._middle(self.table[key], key, unit)
+
+    def _middle(self, item: Any, key: str, unit: str) -> float:
+        if isinstance(item, Span):
+            low, high = item.low, item.high
+        else:
+            ends = item if isinstance(item, list) else [item]
+            low, high = (to_si(end, unit, where=key) for end in (ends[0], ends[-1]))
+        if high > low:
+            self.taken[key] = None
+        return math.sqrt(low * high)
+
+    def shore_a(self) -> float:
+        if "shore_a" in self.table:
+            return self.middle("shore_a", "1")
+        self.taken["shore_a"] = None
+        return SHORE_A.get(self.table.get("compound", ""), USUAL_SHORE_A)
+
+    def rq(self, part: str) -> str:
+        rq = math.sqrt(math.prod(USUAL_RQ[part]))
+        for name, factor in ((f"{part}_ra", RQ_PER_RA), (f"{part}_rq", 1.0)):
+            if name in self.table:
+                rq = factor * self.middle(name, "m")
+                break
+        else:
+            self.taken[f"{part}_rq"] = None
+        return f"{1e6 * rq:.4g} um"
+
+    def fluid(self) -> Any:
+        fluid = self.table.get("fluid")
+        if fluid == "dry":
+            return "none"
+        if fluid not in VISCOSITY:
+            raise InputError("the source names no fluid", where="fluid")
+        viscosity = VISCOSITY[fluid]
+        if "viscosity" in self.table:
+            viscosity = self.middle("viscosity", "Pa*s")
+        else:
+            self.taken["viscosity"] = None
+        family = "oil" if fluid == "oil" else "aqueous"
+        return {"viscosity": f"{1e3 * viscosity:.6g} cP", "family": family}
+
+    def tread(self, whole: bool) -> dict[str, Any]:
+        printed = self.table.get("tread", {})
+        if not printed and not whole:
+            return {"pattern": "none"}
+        usual = "not printed" if whole else "grooves"
+        drawn = PATTERNS.get(printed.get("pattern", usual))
+        pattern = drawn and drawn.get(printed.get("direction", "across"))
+        if pattern is None:
+            written = " ".join(map(str, printed.values()))
+            raise unknown_name("pattern", written, PATTERNS, where="tread")
+        numbers = dict(TREAD)
+        for key in TREAD:
+            if key in printed:
+                numbers[key] = self._middle(printed[key], f"tread.{key}", "m")
+            else:
+                self.taken[f"tread.{key}"] = None
+        if "land" in printed:
+            numbers["lug_width"] = PITCH * math.sqrt(printed["land"])
+            numbers["channel_width"] = PITCH - numbers["lug_width"]
+        texts = {key: f"{1e3 * number:.6g} mm" for key, number in numbers.items()}
+        return {"pattern": pattern, **texts}
+
+    def wear(self) -> str:
+        worn = self.table.get("wear", "new")
+        if worn not in WEAR:
+            raise unknown_name("wear", str(worn), WEAR, where="wear")
+        if worn != "new":
+            self.taken["wear"] = None
+        return WEAR[worn]
