@@ -81,7 +81,7 @@ def test_free_sided_lugs_compress_as_blocks():
     sole.land = land
     sole.tread_depth = np.where(land, depth, 0.0)
     with_lugs = layered_compliance(sole, modulus=modulus, poisson_ratio=0.49, thickness=0.02)
-    lugs = with_lugs._weighted[-1]
+    lugs = with_lugs._parts[-1]
     compressed = lugs[1] * lugs[0](lugs[1] * 1e5)
     expected = block_compression(land, spacing, np.array(depth), modulus, 0.49) * 1e5
     assert compressed[land] == pytest.approx(expected[land], rel=2e-3)

@@ -103,7 +103,14 @@ def compute(options: Options) -> Computed:
             },
             "pair.gain": Quantity.of(best.log_density - scores[0].log_density),
         },
-        (_scores(scores), _sources(own), _constants(posterior), effects, whole),
+        (
+            _scores(scores),
+            _sources(own),
+            _constants(posterior),
+            effects,
+            whole,
+            _basis(sides, shoes),
+        ),
         {"predicted": _figure(own)},
         (
             f"Contact friction of a source that was not used: R2 of ln COF {best.r2:.2f}, "
@@ -192,8 +199,6 @@ def _effects(sides: list[tuple[Contrast, Side, Side]]) -> tuple[Table, dict[str,
                 "per mm": slope,
                 "probability of the sign": np.nan if reason else chance,
                 "verdict": "not computed" if reason else verdict(ratio, chance),
-                "taken or reason": reason
-                or ", ".join(dict.fromkeys(one.over.taken + one.under.taken)),
             }
         )
     table = Table.of(
@@ -216,7 +221,7 @@ def _effects(sides: list[tuple[Contrast, Side, Side]]) -> tuple[Table, dict[str,
 
 def _whole(shoes: list[tuple[Condition, Stand, Side]]) -> tuple[Table, dict[str, Quantity]]:
     rows: list[dict[str, Any]] = []
-    for condition, stand, side in shoes:
+    for condition, _, side in shoes:
         low, inner_low, inner_high, high = np.quantile(side.draws, (0.025, 0.25, 0.75, 0.975))
         reading = condition.reading
         rows.append(
@@ -229,7 +234,6 @@ def _whole(shoes: list[tuple[Condition, Stand, Side]]) -> tuple[Table, dict[str,
                 "high 95 %": high,
                 "inside 50 %": _inside(reading, inner_low, inner_high, side),
                 "inside 95 %": _inside(reading, low, high, side),
-                "taken or reason": side.reason or ", ".join(stand.taken),
             }
         )
     title = "Whole shoes: readings against the whole case that stands for them"
@@ -240,6 +244,23 @@ def _whole(shoes: list[tuple[Condition, Stand, Side]]) -> tuple[Table, dict[str,
         )
         for level in (50, 95)
     }
+
+
+def _basis(
+    sides: list[tuple[Contrast, Side, Side]], shoes: list[tuple[Condition, Stand, Side]]
+) -> Table:
+    stands = [(c.source, c.id, stand.taken, side.reason) for c, stand, side in shoes]
+    stands += [
+        (one.source, one.effect, one.over.taken + one.under.taken, over.reason or under.reason)
+        for one, over, under in sides
+    ]
+    rows = [
+        (source, name, ", ".join(dict.fromkeys(taken)), reason)
+        for source, name, taken, reason in stands
+    ]
+    title = "What the sources leave open and was taken, and why an effect is not computed"
+    columns = ("source", "effect or condition", "taken", "not computed because")
+    return Table("basis", title, columns, list(dict.fromkeys(rows)))
 
 
 def _measured(reading: Reading) -> str:
