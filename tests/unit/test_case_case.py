@@ -5,11 +5,11 @@ import math
 import pytest
 
 from underfoot.case import Case, CaseError, assumptions, describe, paths, unit_at
-from underfoot.case.describe import differences
 from underfoot.case.parts import fields
 from underfoot.case.quantity import default_of
 from underfoot.case.section import quantity_of
 from underfoot.core import InputError, to_si
+from underfoot.questions.comparison import case_differences
 
 TEXT = """\
 # my shoe
@@ -242,11 +242,11 @@ def test_a_case_is_frozen(case):
 
 def test_differences_name_the_changed_values(case):
     other = case.replace({"contaminant.viscosity": "41 cP", "motion.normal_force": "250 N"})
-    assert differences(case, other) == [
+    assert case_differences([case, other]) == [
         ("contaminant.viscosity", "219 cP", "41 cP"),
         ("motion.normal_force", "500 N", "250 N"),
     ]
-    assert differences(case, case) == []
+    assert case_differences([case, case]) == []
 
 
 def test_tested_ranges_are_known_before_a_run(case):
@@ -258,7 +258,9 @@ def test_tested_ranges_are_known_before_a_run(case):
 
 
 DEFAULTS = [
-    pytest.param(field, path, id=path) for path, field in fields() if default_of(field) is not None
+    pytest.param(field, path, id=path)
+    for path, field in fields().items()
+    if default_of(field) is not None
 ]
 
 

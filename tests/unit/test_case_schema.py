@@ -31,7 +31,7 @@ def test_every_quantity_shows_its_unit_and_range():
     assert schema["properties"]["floor"]["anyOf"][1]["type"] == "string"
     assert "required" not in schema["$defs"]["Shoe"]
     text = schema_text()
-    units = {quantity.unit for _, f in fields() if (quantity := quantity_of(f))}
+    units = {quantity.unit for _, f in fields().items() if (quantity := quantity_of(f))}
     assert all(f'"unit": "{unit}"' in text for unit in units)
 
 

@@ -1,6 +1,6 @@
 """The case: shoe, floor, contaminant, motion and one option in each slot; frozen, with a hash."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Never, Self
@@ -19,7 +19,7 @@ from .errors import CaseError, placed, translated
 from .friction import FrictionOption
 from .motion import Motion, Sensor
 from .numerics import Numerics
-from .parts import FILE_VERSION, CaseParts, field_at, keys, path_kind, unit_at
+from .parts import FILE_VERSION, CaseParts, field_at, path_kind, unit_at
 from .people import Risk, Walkers
 from .quantity import DOOR
 from .section import (
@@ -182,16 +182,13 @@ class Case(Presentable):
     ) -> None:
         """Set every section from what is given and the catalogue."""
         if "contaminant" not in given:
-            raise CaseError(
-                [
-                    InputError(
-                        "this section is missing",
-                        where=places("contaminant"),
-                        remedy='Write contaminant = "glycerol_90pct" (any fluid of the catalogue), '
-                        'or contaminant = "none" for a dry floor',
-                    )
-                ]
+            error = InputError(
+                "this section is missing",
+                where=places("contaminant"),
+                remedy='Write contaminant = "glycerol_90pct" (any fluid of the catalogue), '
+                'or contaminant = "none" for a dry floor',
             )
+            raise CaseError([error])
         allow = lenient if callable(lenient) else (lambda _path: lenient)
         found = composed(given, catalogue, places, folder, allow)
         try:
@@ -319,28 +316,21 @@ class Case(Presentable):
         Names, comments, sources and who walks (``slip``) don't count.
         """
         content: dict[str, Any] = {}
-        for path, section in walk(self._parts):
-            if path == "slip":
-                continue
-            cls = type(section)
-            if isinstance(section, Option):
+        for path, section, name in self._values():
+            cls, here = type(section), f"{path}.{name}"
+            if isinstance(section, Option) and name == section.key:
                 own = cls.__module__.startswith("underfoot.")
-                content[f"{path}.{section.key}"] = (
-                    section.name if own else f"{cls.__module__}:{cls.__qualname__}"
-                )
-            for name in cls.model_fields:
-                value, here = getattr(section, name), f"{path}.{name}"
-                if value is None or isinstance(value, Section) or here in self.idle_paths:
-                    continue
-                if name not in (*cls.uncounted, *cls.replaced):
-                    content[here] = _rounded(value)
-                    origin = section._origins.get(name)
-                    if (
-                        origin is not None
-                        and origin.value == value
-                        and origin.uncertainty is not None
-                    ):
-                        content[f"{here}.uncertainty"] = _rounded(origin.uncertainty)
+                content[here] = section.name if own else f"{cls.__module__}:{cls.__qualname__}"
+                continue
+            value = getattr(section, name)
+            left_out = path == "slip" or here in self.idle_paths
+            if left_out or value is None or isinstance(value, Section):
+                continue
+            if name not in (*cls.uncounted, *cls.replaced):
+                content[here] = _rounded(value)
+                origin = section._origins.get(name)
+                if origin and origin.value == value and origin.uncertainty is not None:
+                    content[f"{here}.uncertainty"] = _rounded(origin.uncertainty)
         return content_hash(content)[:32]
 
     def __eq__(self, other: object) -> bool:
@@ -360,16 +350,17 @@ class Case(Presentable):
     @cached_property
     def origins(self) -> Mapping[str, Origin]:
         """Where each value comes from, by dotted path."""
-        origins: dict[str, Origin] = {}
+        return {
+            f"{path}.{name}": origin
+            for path, section, name in self._values()
+            if (origin := section.origin(name)) is not None
+        }
+
+    def _values(self) -> Iterator[tuple[str, Section, str]]:
+        """Yield path, section and name of every value, of an option its key first."""
         for path, section in walk(self._parts):
-            names = list(type(section).model_fields)
-            if isinstance(section, Option):
-                names.insert(0, section.key)
-            for name in names:
-                origin = section.origin(name)
-                if origin is not None:
-                    origins[f"{path}.{name}"] = origin
-        return origins
+            key = (section.key,) if isinstance(section, Option) else ()
+            yield from ((path, section, name) for name in (*key, *type(section).model_fields))
 
     @property
     def entries(self) -> Mapping[str, str]:
@@ -395,9 +386,7 @@ class Case(Presentable):
     def _holder(self, path: str) -> tuple[Section | None, str]:
         """Return the section that holds a value, and the value's name in it."""
         path = current_path(path)
-        known = field_at(path) is not None or path in keys()
-        if not known:
-            path_kind(path)
+        path_kind(path)
         section: Any = self._parts
         *parents, name = path.split(".")
         for part in parents:
@@ -425,9 +414,8 @@ class Case(Presentable):
 
     def table(self) -> Table:
         """Return every value that is set with its origin."""
-        rows = [(path, value, origin) for path, value, origin in self.rows()]
         rq = self.effective_rq
-        rows.append(("effective Rq of the interface", str(rq), rq.source))
+        rows = [*self.rows(), ("effective Rq of the interface", str(rq), rq.source)]
         if self.contaminant is None:
             rows.append(("contaminant", "none", "dry floor"))
         return Table(f"{self.name}  [{self.hash[:12]}]", ("value", "given", "origin"), rows)
@@ -446,19 +434,12 @@ class Case(Presentable):
             "name": self.name,
             "description": self.description,
         }
-        for path, section in walk(self._parts):
-            table = tree
+        for path, section, name in self._values():
+            table, here = tree, f"{path}.{name}"
             for part in path.split("."):
                 table = table.setdefault(part, {})
-            names = list(type(section).model_fields)
-            for name in [section.key, *names] if isinstance(section, Option) else names:
-                origin = section.origin(name)
-                if (
-                    origin is not None
-                    and f"{path}.{name}" not in self.idle_paths
-                    and name not in type(section).replaced
-                ):
-                    table[name] = _origin_toml(origin, f"{path}.{name}")
+            if here in self.origins and not (here in self.idle_paths or name in section.replaced):
+                table[name] = _origin_toml(self.origins[here], here)
         if self.contaminant is None:
             tree["contaminant"] = DRY
         return tree
@@ -491,26 +472,21 @@ def _version(mapping: Mapping[str, Any], places: toml.Places) -> int:
         )
         raise CaseError([error])
     if version > FILE_VERSION:
-        raise CaseError(
-            [
-                InputError(
-                    f"the file was written for version {version} of the case format",
-                    where=places("file_version"),
-                    allowed=f"{FILE_VERSION} or older",
-                    remedy="Update underfoot",
-                )
-            ]
+        error = InputError(
+            f"the file was written for version {version} of the case format",
+            where=places("file_version"),
+            allowed=f"{FILE_VERSION} or older",
+            remedy="Update underfoot",
         )
+        raise CaseError([error])
     return version
 
 
 def _current(mapping: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return a mapping in the paths of version 2, and the edits that make it so."""
     edits: dict[str, Any] = {}
-    moves = upgrade(mapping)
-    for old, new, value in moves:
-        edits[old] = None
-        edits[new] = value
+    for old, new, value in upgrade(mapping):
+        edits |= {old: None, new: value}
     if not edits:
         return dict(mapping), edits
     current = _edited(mapping, edits)
@@ -582,11 +558,8 @@ def _as_text(item: Any, path: str) -> Any:
     """Return a given value as TOML writes it: SI numbers as text with their unit."""
     if isinstance(item, Section):
         item = {key: value for key, value in item.tree().items() if key not in item.replaced}
-    if isinstance(item, Origin):
-        return _origin_toml(item, path)
-    if isinstance(item, SourcedValue):
-        origin = origin_of(item)
-        assert origin is not None
+    origin = None if isinstance(item, Mapping) else origin_of(item)
+    if origin is not None:
         return _origin_toml(origin, path)
     if isinstance(item, Mapping):
         leaf = "value" in item
@@ -620,12 +593,9 @@ def _unit_in(path: str) -> str:
 def _origin_toml(origin: Origin, path: str) -> Any:
     leaf = origin.leaf
     given = _as_text(leaf.given, path)
-    if origin.kind == DEFAULT and isinstance(origin.value, str) and origin.value == given:
-        marks: dict[str, Any] = {"source": leaf.source or None}
-    else:
-        marks = {
-            "uncertainty": leaf.uncertainty,
-            "source": leaf.source or None,
+    marks: dict[str, Any] = {"uncertainty": leaf.uncertainty, "source": leaf.source or None}
+    if origin.kind != DEFAULT or not isinstance(origin.value, str) or origin.value != given:
+        marks |= {
             "assumed": True if leaf.assumed else None,
             "verified": None if leaf.verified else False,
             "note": leaf.note or None,

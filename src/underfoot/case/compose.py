@@ -1,6 +1,6 @@
 """From what a case gives and the catalogue to one complete tree of values with their origins."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -34,6 +34,11 @@ _ALTERNATIVES = {
 class Composition:
     """Tree of values with origins, catalogue entries by section, and what went wrong."""
 
+    catalogue: Catalogue
+    places: Place
+    folder: Path
+    lenient: Callable[[str], bool]
+    """whether a given value at a path is left out where no chosen option takes it"""
     tree: dict[str, Any] = field(default_factory=dict)
     entries: dict[str, str] = field(default_factory=dict)
     errors: list[InputError] = field(default_factory=list)
@@ -56,18 +61,18 @@ def composed(
     sub-section), then what is given. Catalogue values that the chosen options don't take are left
     out; given ones too where ``lenient`` says so of their path, else they are an error later.
     """
-    found = Composition()
+    found = Composition(catalogue, places, folder, lenient)
     tables = {key: expanded(item, key, found.entries) for key, item in given.items()}
     laid: dict[str, Origin] = {}
     for section in sorted(CATALOGUE_SECTIONS, key=lambda path: path.count(".")):
         name = _from(tables, section)
         if name is not None and not (section == "contaminant" and name == DRY):
-            _lay(found, laid, section, name, catalogue, places)
+            _lay(found, laid, section, name)
     try:
         own = leaves(_without_from(tables), source="")
     except InputError as error:
         raise CaseError([*found.errors, placed(error, places)]) from error
-    record = _friction_record(found, tables, catalogue)
+    record = _friction_record(found, tables)
     for path, leaf in own.items():
         origin = leaf.given if isinstance(leaf.given, Origin) else origin_of(leaf.given)
         if origin is None:
@@ -82,9 +87,9 @@ def composed(
     tree = _nested({**record, **laid}, tables)
     if tables.get("contaminant") is not None and _from(tables, "contaminant") == DRY:
         tree["contaminant"] = None
-    found.tree = _settled(found, CaseParts, tree, "", folder, lenient, places)
-    _settle_hardness(found, lenient, places)
-    _settle_reads(found, lenient, places)
+    found.tree = _settled(found, CaseParts, tree, "")
+    _settle_hardness(found)
+    _settle_reads(found)
     return found
 
 
@@ -104,16 +109,9 @@ def expanded(item: Any, path: str, entries: dict[str, str] | None = None) -> Any
     return {key: expanded(below, f"{path}.{key}", entries) for key, below in item.items()}
 
 
-def _lay(
-    found: Composition,
-    laid: dict[str, Origin],
-    section: str,
-    name: Any,
-    catalogue: Catalogue,
-    places: Place,
-) -> None:
+def _lay(found: Composition, laid: dict[str, Origin], section: str, name: Any) -> None:
     kind, part = CATALOGUE_SECTIONS[section]
-    where = places(f"{section}.from")
+    catalogue, where = found.catalogue, found.places(f"{section}.from")
     if not isinstance(name, str):
         found.errors.append(InputError(f"{name!r} is no name", where=where, allowed="text"))
         return
@@ -139,17 +137,13 @@ def _lay(
 def _part(entry: Entry, part: str, section: str) -> dict[str, Leaf]:
     if part:
         return entry.under(part)
-    other = {"shoe.material": "roughness.", "contaminant": "boundary."}.get(section)
-    if other is None:
-        return dict(entry.values)
+    other = {"shoe.material": "roughness.", "contaminant": "boundary."}.get(section, "-")
     return {path: leaf for path, leaf in entry.values.items() if not path.startswith(other)}
 
 
-def _friction_record(
-    found: Composition, tables: Mapping[str, Any], catalogue: Catalogue
-) -> dict[str, Origin]:
+def _friction_record(found: Composition, tables: Mapping[str, Any]) -> dict[str, Origin]:
     """Return what the catalogue knows of friction under the fluid and the chosen law takes."""
-    name = found.entries.get("contaminant")
+    catalogue, name = found.catalogue, found.entries.get("contaminant")
     if name is None or ("fluid", name) not in catalogue.entries:
         return {}
     try:
@@ -170,11 +164,7 @@ def _of_another_fluid(origin: Origin, entries: Mapping[str, str]) -> bool:
 
 def _nested(origins: Mapping[str, Origin], tables: Mapping[str, Any]) -> dict[str, Any]:
     """Return the values as nested tables; the empty tables that were given are kept."""
-    tree: dict[str, Any] = {}
-    for section in _sections(tables):
-        table = tree
-        for part in section.split("."):
-            table = table.setdefault(part, {})
+    tree = _sections(tables)
     for path, origin in origins.items():
         *parents, key = path.split(".")
         table = tree
@@ -186,21 +176,16 @@ def _nested(origins: Mapping[str, Origin], tables: Mapping[str, Any]) -> dict[st
     return tree
 
 
-def _sections(table: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
-    for key, item in table.items():
-        if isinstance(item, Mapping) and "value" not in item:
-            yield f"{prefix}{key}"
-            yield from _sections(item, f"{prefix}{key}.")
+def _sections(table: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        key: _sections(item)
+        for key, item in table.items()
+        if isinstance(item, Mapping) and "value" not in item
+    }
 
 
 def _settled(
-    found: Composition,
-    model: type[Section],
-    table: dict[str, Any],
-    path: str,
-    folder: Path,
-    lenient: Callable[[str], bool],
-    places: Place,
+    found: Composition, model: type[Section], table: dict[str, Any], path: str
 ) -> dict[str, Any]:
     """Return a section's table without what its option does not take, with what files hold."""
     if issubclass(model, Option) and not model.name:
@@ -215,23 +200,23 @@ def _settled(
                 continue
             if from_catalogue(table[key]):
                 del table[key]
-            elif lenient(here):
+            elif found.lenient(here):
                 del table[key]
                 found.dropped[here] = f'not used by {model.key} = "{model.name}"'
     try:
-        table = model.completed(table, folder, path)
+        table = model.completed(table, found.folder, path)
     except InputError as error:
-        found.errors.append(placed(error, places))
+        found.errors.append(placed(error, found.places))
         found.failed.append(path)
     for key, info in model.model_fields.items():
         section = section_in(info)
         if section is not None and isinstance(table.get(key), dict):
             below = f"{path}.{key}" if path else key
-            table[key] = _settled(found, section, table[key], below, folder, lenient, places)
+            table[key] = _settled(found, section, table[key], below)
     return table
 
 
-def _settle_hardness(found: Composition, lenient: Callable[[str], bool], places: Place) -> None:
+def _settle_hardness(found: Composition) -> None:
     material = found.tree.get("shoe", {})
     for part in ("material", "modulus"):
         material = material.get(part) if isinstance(material, dict) else None
@@ -241,19 +226,19 @@ def _settle_hardness(found: Composition, lenient: Callable[[str], bool], places:
     found.tree["hardness"] = None
     if not isinstance(given, dict) or not given:
         return
-    if lenient("hardness.model"):
+    if found.lenient("hardness.model"):
         found.dropped["hardness.model"] = "not used beside a measured modulus"
         return
     found.errors.append(
         InputError(
             "is not used: the modulus of the compound is given",
-            where=places("hardness.model"),
+            where=found.places("hardness.model"),
             remedy="Remove it, or shoe.material.modulus",
         )
     )
 
 
-def _settle_reads(found: Composition, lenient: Callable[[str], bool], places: Place) -> None:
+def _settle_reads(found: Composition) -> None:
     """Take out, or refuse, what only options that were not chosen would read."""
     chosen = set()
     for name, slot in _top_slots().items():
@@ -267,14 +252,10 @@ def _settle_reads(found: Composition, lenient: Callable[[str], bool], places: Pl
         if path in chosen or not isinstance(table, dict) or key not in table:
             continue
         if not from_catalogue(table[key]):
-            if not lenient(path):
-                found.errors.append(
-                    InputError(
-                        "is not read by any chosen option",
-                        where=places(path),
-                        remedy=f"Remove it, or choose {' or '.join(readers)}",
-                    )
-                )
+            if not found.lenient(path):
+                remedy = f"Remove it, or choose {' or '.join(readers)}"
+                what = "is not read by any chosen option"
+                found.errors.append(InputError(what, where=found.places(path), remedy=remedy))
                 continue
             found.dropped[path] = "not read by any chosen option"
         del table[key]

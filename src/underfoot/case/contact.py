@@ -13,6 +13,7 @@ from underfoot.core import Breach, Cache, SourcedValue
 from .context import Context
 from .quantity import Flag, Quantity, default
 from .section import Option
+from .surfaces import WAVES
 
 if TYPE_CHECKING:
     from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
@@ -37,40 +38,40 @@ class HardnessOption(Option):
     def build(self, shore_a: float) -> tuple[SourcedValue, list[Breach]]:
         """Return Young's modulus, Pa, and what leaves the range of the relation."""
 
-    def _sourced(self, modulus: float, shore_a: float) -> SourcedValue:
-        return SourcedValue(
+
+class _Published(HardnessOption):
+    """Relation of ``material`` by the option's name."""
+
+    def build(self, shore_a: float) -> tuple[SourcedValue, list[Breach]]:
+        from underfoot import material
+
+        relation, breaches = {
+            "gent": (material.youngs_modulus_gent, material.gent_breaches),
+            "ruess": (material.youngs_modulus_ruess, material.ruess_breaches),
+        }[self.name]
+        modulus = float(relation(shore_a))
+        sourced = SourcedValue(
             modulus,
             "Pa",
             source=f"{self.source} from Shore A {shore_a:g}",
             uncertainty=HARDNESS_SPREAD * modulus,
             note="static modulus from hardness, good to tens of percent",
         )
+        return sourced, breaches(shore_a)
 
 
-class GentHardness(HardnessOption):
+class GentHardness(_Published):
     """Gent 1958."""
 
     name: ClassVar[str] = "gent"
     source: ClassVar[str] = "Gent 1958"
 
-    def build(self, shore_a: float) -> tuple[SourcedValue, list[Breach]]:
-        from underfoot import material
 
-        modulus = float(material.youngs_modulus_gent(shore_a))
-        return self._sourced(modulus, shore_a), material.gent_breaches(shore_a)
-
-
-class RuessHardness(HardnessOption):
+class RuessHardness(_Published):
     """Ruess."""
 
     name: ClassVar[str] = "ruess"
     source: ClassVar[str] = "Ruess"
-
-    def build(self, shore_a: float) -> tuple[SourcedValue, list[Breach]]:
-        from underfoot import material
-
-        modulus = float(material.youngs_modulus_ruess(shore_a))
-        return self._sourced(modulus, shore_a), material.ruess_breaches(shore_a)
 
 
 class RoughContactOption(Option):
@@ -103,11 +104,7 @@ class ContactTableOption(RoughContactOption):
 
     name: ClassVar[str] = "contact_table"
     source: ClassVar[str] = "sliding rough contact by boundary elements"
-    reads: ClassVar[tuple[str, ...]] = (
-        "interface.hurst",
-        "interface.longest_wave",
-        "interface.shortest_wave",
-    )
+    reads: ClassVar[tuple[str, ...]] = WAVES
 
     def build(self, context: Context) -> PressureGapLaw:
         from underfoot.rough_contact import ContactTable
@@ -117,12 +114,9 @@ class ContactTableOption(RoughContactOption):
         side = TABLE_WAVES * waves.longest_wave
         spacing = min(side / TABLE_CELLS, waves.shortest_wave / 2)
         cells = 2 * math.ceil(side / spacing / 2)
-        surfaces = [
-            self_affine(
-                cells, side / cells, rq, waves.hurst, waves.longest_wave, waves.shortest_wave, seed
-            )
-            for seed in range(TABLE_SURFACES)
-        ]
+        shape = (rq, waves.hurst, waves.longest_wave, waves.shortest_wave)
+        seeds = range(TABLE_SURFACES)
+        surfaces = [self_affine(cells, side / cells, *shape, seed) for seed in seeds]
         speed = context.motion.speed
         table = ContactTable.from_surfaces(
             surfaces,
@@ -182,11 +176,9 @@ class FiniteElementCompliance(ComplianceOption):
     def build(self, context: Context, sole: SoleMap) -> Compliance:
         from underfoot.sole_contact.finite_element import finite_element_compliance
 
+        store = Cache("sole_compliance-1")
         return finite_element_compliance(
-            sole,
-            **_layers(context),
-            cache=Cache("sole_compliance-1"),
-            progress=context.progress,
+            sole, **_layers(context), cache=store, progress=context.progress
         )
 
 

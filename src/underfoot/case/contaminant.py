@@ -57,7 +57,6 @@ class MeasuredFluid(ContaminantSection):
 
     @property
     def is_oil(self) -> bool:
-        """Whether the fluid is an oil; else it is aqueous."""
         return self.family == "oil"
 
     def build(self) -> SourcedValue:

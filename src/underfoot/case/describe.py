@@ -19,15 +19,10 @@ def assumptions(case: Case) -> list[str]:
         if leaf.verified and not leaf.assumed:
             continue
         section, _, key = path.rpartition(".")
-        parts = [
-            leaf.note,
-            leaf.erratum,
-            leaf.source,
-            "" if leaf.verified else "from memory, not verified",
-        ]
-        reason = "; ".join(part for part in parts if part) or "assumed"
+        memory = "" if leaf.verified else "from memory, not verified"
+        reason = "; ".join(filter(None, (leaf.note, leaf.erratum, leaf.source, memory)))
         given = value_text(origin, unit_at(path)).partition(" ± ")[0]
-        groups.setdefault((section, reason), []).append(f"{key} = {given}")
+        groups.setdefault((section, reason or "assumed"), []).append(f"{key} = {given}")
     lines = [f"{section}: {', '.join(keys)} ({why})" for (section, why), keys in groups.items()]
     if case.interface.name == "composite":
         for path, roughness in (("shoe", case.shoe.roughness), ("floor", case.floor.roughness)):
@@ -49,14 +44,3 @@ def tested_range_breaches(case: Case) -> list[str]:
     if case.contaminant is not None:
         breaches += case.contaminant.breaches()
     return [str(breach) for breach in breaches]
-
-
-def differences(first: Case, second: Case) -> list[tuple[str, str, str]]:
-    """Return (path, first, second) of the values in which two cases differ."""
-    left, right = ({path: value for path, value, _ in case.rows()} for case in (first, second))
-    paths = [*left, *(path for path in right if path not in left)]
-    return [
-        (path, left.get(path, "-"), right.get(path, "-"))
-        for path in paths
-        if left.get(path) != right.get(path)
-    ]

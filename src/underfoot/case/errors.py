@@ -29,13 +29,7 @@ class CaseError(InputError):
     def __init__(self, errors: Iterable[InputError]) -> None:
         self.errors = tuple(errors)
         first = self.errors[0]
-        super().__init__(
-            first.what,
-            where=first.where,
-            allowed=first.allowed,
-            nearest=first.nearest,
-            remedy=first.remedy,
-        )
+        super().__init__(first.what, where=first.where, **first.parts)
 
     def __str__(self) -> str:
         if len(self.errors) == 1:
@@ -49,13 +43,7 @@ class CaseError(InputError):
 
 def placed(error: InputError, places: Place) -> InputError:
     """Return the error with its place in the file."""
-    return type(error)(
-        error.what,
-        where=places(error.where or ""),
-        allowed=error.allowed,
-        nearest=error.nearest,
-        remedy=error.remedy,
-    )
+    return type(error)(error.what, where=places(error.where or ""), **error.parts)
 
 
 def translated(
@@ -68,13 +56,11 @@ def translated(
 ) -> list[InputError]:
     """Return the findings of a validation; what is missing within ``without`` is left out."""
     skipped = tuple(tuple(section.split(".")) for section in without)
-    errors = []
-    for item in error.errors(include_url=False):
-        location = item["loc"]
-        if item["type"] == "missing" and any(location[: len(s)] == s for s in skipped):
-            continue
-        errors.append(_translated(item, model, tree, places))
-    return errors
+    return [
+        _translated(item, model, tree, places)
+        for item in error.errors(include_url=False)
+        if item["type"] != "missing" or not any(item["loc"][: len(s)] == s for s in skipped)
+    ]
 
 
 def _owner(model: type[Section], tree: Any, location: tuple[str, ...]) -> type[Section] | None:
@@ -145,29 +131,22 @@ def _not_taken(owner: type[Section] | None, key: str, where: str) -> InputError:
             remedy=f"Remove it, or write {choice}",
         )
     siblings = {name for o in owner.options().values() for name in o.model_fields}
-    error = unknown_name("key", key, known | {owner.key}, where=where)
-    nearest = nearest_match(key, known | siblings | {owner.key})
-    if nearest is None or nearest in known or nearest == owner.key:
+    known |= {owner.key}
+    error = unknown_name("key", key, known, where=where)
+    nearest = nearest_match(key, known | siblings)
+    if nearest is None or nearest in known:
         return error
     takers = [name for name, o in owner.options().items() if nearest in o.model_fields]
     choice = " or ".join(f'{owner.key} = "{name}"' for name in takers)
-    return InputError(
-        error.what,
-        where=where,
-        allowed=error.allowed,
-        nearest=nearest,
-        remedy=f"{nearest} belongs to {choice}",
-    )
+    pieces = {"nearest": nearest, "remedy": f"{nearest} belongs to {choice}"}
+    return InputError(error.what, where=where, **(error.parts | pieces))
 
 
 def _missing(owner: type[Section] | None, key: str, where: str) -> InputError:
     field = None if owner is None else owner.model_fields.get(key)
+    add = 'Add it, or take the section from the catalogue with from = "name"'
     if field is not None and section_in(field) is not None:
-        return InputError(
-            "this section is missing",
-            where=where,
-            remedy='Add it, or take the section from the catalogue with from = "name"',
-        )
+        return InputError("this section is missing", where=where, remedy=add)
     extra = field.json_schema_extra if field is not None else None
     stated = extra if isinstance(extra, dict) else {}
     what, remedy = str(stated.get("missing", "is missing")), stated.get("remedy")
@@ -175,10 +154,4 @@ def _missing(owner: type[Section] | None, key: str, where: str) -> InputError:
         what = f'is missing for {owner.key} = "{owner.name}"'
     if remedy is None and field is not None and field.description:
         remedy = f"Give {key}: {field.description}"
-    return InputError(
-        what,
-        where=where,
-        remedy=str(remedy)
-        if remedy
-        else 'Add it, or take the section from the catalogue with from = "name"',
-    )
+    return InputError(what, where=where, remedy=str(remedy) if remedy else add)

@@ -9,15 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import Field
 
 from underfoot.core import InputError, RangeError, SourcedValue
 from underfoot.core.catalogue import Catalogue
 
 from .context import Context
-from .quantity import Force, Friction, Pressure, Quantity, Speed, Viscosity, required
+from .quantity import Force, Friction, Pressure, Quantity, Speed, Viscosity, optional, required
 from .section import CaseView, Option, Section
-from .surfaces import SurfaceRoughness
+from .surfaces import WAVES, SurfaceRoughness
 from .tables import as_written, plain, table_columns, table_source, with_checksum
 
 if TYPE_CHECKING:
@@ -84,12 +83,11 @@ class PairOption(FrictionOption):
     reads: ClassVar[tuple[str, ...]] = ("contaminant.family",)
     uncounted: ClassVar[tuple[str, ...]] = ("draws_file",)
 
-    draws_file: str | None = Field(
-        default=None,
-        description="draws calibrated to readings of your own by underfoot calibrate pair; the "
-        "path counts from the case file's folder",
+    draws_file: str | None = optional(
+        "draws calibrated to readings of your own by underfoot calibrate pair; the "
+        "path counts from the case file's folder"
     )
-    sha256: str | None = Field(default=None, description="checksum of the file that is meant")
+    sha256: str | None = optional("checksum of the file that is meant")
 
     @classmethod
     def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
@@ -113,13 +111,9 @@ class PairOption(FrictionOption):
 class _Measured(FrictionOption):
     """What was measured with the fluid: COF_BL, its pair, and the hysteresis part."""
 
-    hysteresis_cof: Friction | None = Field(
-        default=None, description="hysteresis part, if measured"
-    )
-    cof_bl: Friction | None = Field(
-        default=None, description="COF in boundary lubrication (Eq. 17)"
-    )
-    pair: str | None = Field(default=None, description="sole and floor it was measured on")
+    hysteresis_cof: Friction | None = optional("hysteresis part, if measured")
+    cof_bl: Friction | None = optional("COF in boundary lubrication (Eq. 17)")
+    pair: str | None = optional("sole and floor it was measured on")
 
     def _optional(self, name: str) -> SourcedValue | None:
         return None if getattr(self, name, None) is None else self.sourced(name)
@@ -153,9 +147,8 @@ class BoundaryOption(_Measured):
         others, own = measured_fluids(context.catalogue), self.measured(context)
         if own is None:
             own = boundary_friction_at(_viscosity(context), others, fluid=context.fluid)
-        return BoundaryLaw.measured(
-            own, cof_hysteresis=self._optional("hysteresis_cof"), others=others
-        )
+        hysteresis = self._optional("hysteresis_cof")
+        return BoundaryLaw.measured(own, cof_hysteresis=hysteresis, others=others)
 
 
 class StribeckOption(_Measured):
@@ -168,8 +161,8 @@ class StribeckOption(_Measured):
     source: ClassVar[str] = "friction of the pair and fluid as measured at the speed"
     chosen_by: ClassVar[tuple[str, ...]] = ("cof_bl", "tau_hydro", "cof_asymptote")
 
-    tau_hydro: Speed | None = Field(default=None, description="decay speed (Eq. 17)")
-    cof_asymptote: Friction | None = Field(default=None, description="COF at high speed (Eq. 17)")
+    tau_hydro: Speed | None = optional("decay speed (Eq. 17)")
+    cof_asymptote: Friction | None = optional("COF at high speed (Eq. 17)")
 
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import BoundaryLaw, StribeckLaw, stribeck_law_at
@@ -201,8 +194,8 @@ class AdhesionBlockingOption(FrictionOption):
     beta: Annotated[float, Quantity("1", 0.0, 1.0)] = required(
         "share of dry adhesion left (Eq. 26)", remedy=_remedy
     )
-    load: Force | None = Field(default=None, description="load at which alpha was measured")
-    pair: str | None = Field(default=None, description="sole and floor it was measured on")
+    load: Force | None = optional("load at which alpha was measured")
+    pair: str | None = optional("sole and floor it was measured on")
 
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.fluid import AdhesionBlocking
@@ -224,19 +217,14 @@ class ConstantOption(FrictionOption):
     dry: ClassVar[bool] = True
 
     cof: Friction = required("measured coefficient of friction, all parts")
-    hysteresis_cof: Friction | None = Field(default=None, description="its hysteresis part")
+    hysteresis_cof: Friction | None = optional("its hysteresis part")
 
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import ConstantLaw
 
-        hysteresis, sourced = self.hysteresis_cof or 0.0, self.sourced("cof")
-        return ConstantLaw(
-            self.cof - hysteresis,
-            hysteresis,
-            sourced.source,
-            context.viscosity_value,
-            sourced.uncertainty,
-        )
+        part, whole = self.hysteresis_cof or 0.0, self.sourced("cof")
+        measured = (whole.source, context.viscosity_value, whole.uncertainty)
+        return ConstantLaw(self.cof - part, part, *measured)
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         if (self.hysteresis_cof or 0.0) > self.cof:
@@ -250,9 +238,9 @@ class ConstantOption(FrictionOption):
 class _Mechanism(_Measured):
     """Law of a mechanism that makes friction fall with speed."""
 
-    reads: ClassVar[tuple[str, ...]] = ("interface.hurst", "interface.longest_wave")
-    tau_hydro: Speed | None = Field(
-        default=None, description="decay speed (Eq. 17): with it, cof_bl is a limit at low speed"
+    reads: ClassVar[tuple[str, ...]] = WAVES[:2]
+    tau_hydro: Speed | None = optional(
+        "decay speed (Eq. 17): with it, cof_bl is a limit at low speed"
     )
 
     def _asperity_law(self, context: Context) -> SpeedEffectLaw:
@@ -275,14 +263,8 @@ class _Mechanism(_Measured):
         from underfoot.friction import SpeedEffectLaw
 
         law = self._asperity_law(context)
-        return SpeedEffectLaw(
-            effect,
-            law.cof_boundary,
-            law.cof_hysteresis,
-            _viscosity(context),
-            RIVAL_DEVIATION[self.name],
-            law.assumed,
-        )
+        levels = (law.cof_boundary, law.cof_hysteresis, _viscosity(context))
+        return SpeedEffectLaw(effect, *levels, RIVAL_DEVIATION[self.name], law.assumed)
 
 
 class AsperityEhlOption(_Mechanism):
@@ -291,10 +273,8 @@ class AsperityEhlOption(_Mechanism):
     name: ClassVar[str] = "asperity_ehl"
     source: ClassVar[str] = "films at single asperities, calibrated on the report's fluids"
 
-    fine_roughness: Annotated[float, Quantity("m", 1e-10, 1e-4)] | None = Field(
-        default=None,
-        description="roughness finer than a stylus sees; default: the one calibrated on the "
-        "report's fluids",
+    fine_roughness: Annotated[float, Quantity("m", 1e-10, 1e-4)] | None = optional(
+        "roughness finer than a stylus sees; default: the one calibrated on the report's fluids"
     )
 
     def build(self, context: Context) -> FrictionLaw:
@@ -335,17 +315,15 @@ class ViscoelasticAreaOption(_Mechanism):
 
     name: ClassVar[str] = "viscoelastic_area"
     source: ClassVar[str] = "contact area from the compound's relaxation spectrum"
-    reads: ClassVar[tuple[str, ...]] = (*_Mechanism.reads, "interface.shortest_wave")
+    reads: ClassVar[tuple[str, ...]] = WAVES
 
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import ViscoelasticArea, modulus_exponent
 
-        rubber, wave = context.rubber(), context.interface.shortest_wave
-        rest = ViscoelasticArea(0.0).rest_speed
+        rest, wave = ViscoelasticArea(0.0).rest_speed, context.interface.shortest_wave
         fast = max(context.motion.speed, 2 * rest)
-        exponent = modulus_exponent(
-            rubber.complex_modulus, 2 * math.pi * rest / wave, 2 * math.pi * fast / wave
-        )
+        frequencies = (2 * math.pi * speed / wave for speed in (rest, fast))
+        exponent = modulus_exponent(context.rubber().complex_modulus, *frequencies)
         return self._rival(ViscoelasticArea(exponent), context)
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
@@ -369,20 +347,14 @@ class BowdenTaborOption(FrictionOption):
     name: ClassVar[str] = "bowden_tabor"
     source: ClassVar[str] = "Bowden and Tabor; Persson 2001, elastic contact area"
     dry: ClassVar[bool] = True
-    reads: ClassVar[tuple[str, ...]] = (
-        "interface.hurst",
-        "interface.longest_wave",
-        "interface.shortest_wave",
-    )
+    reads: ClassVar[tuple[str, ...]] = WAVES
 
     shear_strength: Annotated[float, Quantity("Pa", 0.0, 1e9)] = required(
         "of the real contact",
         remedy="Take it from a measured adhesion: COF times pressure over the share of real "
         'contact, as shear_strength = "0.3 MPa"',
     )
-    hysteresis_cof: Friction | None = Field(
-        default=None, description="hysteresis part, if measured"
-    )
+    hysteresis_cof: Friction | None = optional("hysteresis part, if measured")
 
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import BowdenTaborLaw, ShearStrength
@@ -422,10 +394,9 @@ class TableOption(FrictionOption):
     dry: ClassVar[bool] = True
     replaced: ClassVar[tuple[str, ...]] = ("table_file",)
 
-    table_file: str | None = Field(
-        default=None,
-        description="file (CSV, XLSX) with columns speed, cof and, where known, sd, pressure, "
-        "viscosity; the path counts from the case file's folder",
+    table_file: str | None = optional(
+        "file (CSV, XLSX) with columns speed, cof and, where known, sd, pressure, "
+        "viscosity; the path counts from the case file's folder"
     )
     readings: tuple[FrictionReading, ...] = required(
         "the same readings written in the case",
@@ -433,10 +404,8 @@ class TableOption(FrictionOption):
         remedy='Write friction.table_file = "law.csv" (columns speed, cof, and sd where known), or '
         'choose "constant"',
     )
-    readings_source: str | None = Field(default=None, description="who read them, and on what")
-    hysteresis_cof: Friction | None = Field(
-        default=None, description="hysteresis part, if measured"
-    )
+    readings_source: str | None = optional("who read them, and on what")
+    hysteresis_cof: Friction | None = optional("hysteresis part, if measured")
 
     @classmethod
     def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
@@ -568,10 +537,7 @@ def _hysteresis(context: Context) -> float | None:
 
     if context.shoe.material.relaxation is None:
         return None
-    rubber, rq = (
-        context.rubber(),
-        context.floor.roughness.rq_or_estimate or math.sqrt(FLOOR_RQ[0] * FLOOR_RQ[1]),
-    )
+    rq = context.floor.roughness.rq_or_estimate or math.sqrt(FLOOR_RQ[0] * FLOOR_RQ[1])
     shortest, roll_off, longest = HYSTERESIS_WAVES
     wavenumber = np.geomspace(2 * math.pi / longest, 2 * math.pi / shortest, 60)
     shape = wavenumber * roll_off / (2 * math.pi)
@@ -581,7 +547,7 @@ def _hysteresis(context: Context) -> float | None:
         HYSTERESIS_PRESSURE,
         wavenumber,
         spectrum,
-        rubber.complex_modulus,
+        context.rubber().complex_modulus,
         context.motion.speed,
         context.poisson_ratio,
     )

@@ -12,7 +12,7 @@ from pydantic import Field
 
 from underfoot.core import InputError, RangeError, display, to_si
 
-from .quantity import Flag, Force, Length, Quantity, Speed, default
+from .quantity import Flag, Force, Length, Quantity, Speed, default, optional
 from .section import CaseView, Option, Section
 from .tables import as_written, plain, table_columns
 
@@ -75,7 +75,6 @@ class HeldMotion(Motion):
 
     @property
     def to_steady_state(self) -> bool:
-        """Whether the result is the steady state."""
         return self.steady
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
@@ -94,9 +93,7 @@ class MotionPoint(Section):
     time: Instant
     normal_force: AnyForce
     speed: AnySpeed = Field(description="of the shoe, forward positive")
-    shoe_angle: ShoeAngle | None = Field(
-        default=None, description="toe up positive; default: motion.shoe_angle"
-    )
+    shoe_angle: ShoeAngle | None = optional("toe up positive; default: motion.shoe_angle")
 
 
 class MotionFromHistory(Motion):
@@ -106,10 +103,9 @@ class MotionFromHistory(Motion):
     chosen_by: ClassVar[tuple[str, ...]] = ("history", "history_points")
     replaced: ClassVar[tuple[str, ...]] = ("history",)
 
-    history: str | None = Field(
-        default=None,
-        description="file (CSV, XLSX) with columns time, normal_force, speed and, where it turns, "
-        "shoe_angle; the path counts from the case file's folder",
+    history: str | None = optional(
+        "file (CSV, XLSX) with columns time, normal_force, speed and, where it turns, "
+        "shoe_angle; the path counts from the case file's folder"
     )
     history_points: tuple[MotionPoint, ...] = Field(
         description="the same points written in the case"
@@ -151,14 +147,16 @@ class MotionFromHistory(Motion):
     def build(self) -> MotionHistory | None:
         from underfoot.sole_contact.motion_history import MotionHistory
 
-        points = self.history_points
-        angle = self.shoe_angle
-        return MotionHistory(
-            np.array([point.time for point in points]),
-            np.array([point.normal_force for point in points]),
-            np.array([point.speed for point in points]),
-            np.array([angle if p.shoe_angle is None else p.shoe_angle for p in points]),
-        )
+        points = [
+            (
+                p.time,
+                p.normal_force,
+                p.speed,
+                self.shoe_angle if p.shoe_angle is None else p.shoe_angle,
+            )
+            for p in self.history_points
+        ]
+        return MotionHistory(*np.array(points).reshape(-1, 4).T)
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         listed = f"{where}.{'history' if self.history else 'history_points'}"
@@ -206,10 +204,9 @@ class FloorArray(Section):
     columns: Count = Field(description="across (G.5.1: 3)")
     spacing: Length = Field(description="between rows and between columns (G.5.1: 30 mm)")
     inlet_diameter: Length = Field(description="of each sensor (G.5.1: 4 mm)")
-    position: Annotated[float, Quantity("m", -5.0, 5.0)] | None = Field(
-        default=None,
-        description="of the first row, ahead of the shoe's rear end at time 0; default: the shoe "
-        "has the array under its middle at the end",
+    position: Annotated[float, Quantity("m", -5.0, 5.0)] | None = optional(
+        "of the first row, ahead of the shoe's rear end at time 0; default: the shoe "
+        "has the array under its middle at the end"
     )
 
 

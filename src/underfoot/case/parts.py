@@ -60,64 +60,50 @@ class CaseParts(Section):
     slip: Walkers = Walkers()
 
 
-def fields(model: type[Section] = CaseParts, prefix: str = "") -> Iterator[tuple[str, FieldInfo]]:
-    """Yield every value of a section tree with its dotted path; of a slot, those of all options."""
+def _nodes(
+    model: type[Section], prefix: str = ""
+) -> Iterator[tuple[str, FieldInfo, type[Section] | None]]:
+    """Yield path, field and section of all below a section; of a slot, that of all options."""
     if issubclass(model, Option) and not model.name:
         seen: set[str] = set()
         for option in model.known().values():
-            for path, field in fields(option, prefix):
-                if path not in seen:
-                    seen.add(path)
-                    yield path, field
+            below = [node for node in _nodes(option, prefix) if node[0] not in seen]
+            seen |= {path for path, *_ in below}
+            yield from below
         return
     for name, field in model.model_fields.items():
         section = section_in(field)
-        if section is None:
-            yield f"{prefix}{name}", field
-        else:
-            yield from fields(section, f"{prefix}{name}.")
-
-
-def slots(model: type[Section] = CaseParts, prefix: str = "") -> Iterator[tuple[str, type[Option]]]:
-    """Yield every slot of a section tree with its dotted path."""
-    if issubclass(model, Option) and not model.name:
-        seen = {}
-        for option in model.known().values():
-            seen |= dict(slots(option, prefix))
-        yield from seen.items()
-        return
-    for name, field in model.model_fields.items():
-        section = section_in(field)
+        yield f"{prefix}{name}", field, section
         if section is not None:
-            if issubclass(section, Option):
-                yield f"{prefix}{name}", section
-            yield from slots(section, f"{prefix}{name}.")
+            yield from _nodes(section, f"{prefix}{name}.")
 
 
 @lru_cache(maxsize=1)
-def _field_table(_count: int) -> dict[str, FieldInfo]:
-    return dict(fields())
+def _tables(_count: int) -> tuple[dict[str, FieldInfo], dict[str, type[Option]]]:
+    nodes = list(_nodes(CaseParts))
+    return (
+        {path: field for path, field, section in nodes if section is None},
+        {path: slot for path, _, slot in nodes if slot is not None and issubclass(slot, Option)},
+    )
 
 
-@lru_cache(maxsize=1)
-def _slot_table(_count: int) -> dict[str, type[Option]]:
-    return dict(slots())
+def fields() -> dict[str, FieldInfo]:
+    """Return every value by its dotted path; of a slot, those of all options."""
+    return _tables(Option.count())[0]
 
 
 def slot_table() -> dict[str, type[Option]]:
     """Return every slot by its dotted path."""
-    return _slot_table(Option.count())
+    return _tables(Option.count())[1]
 
 
 def field_at(path: str) -> FieldInfo | None:
     """Return the field at a dotted path, or None; the first option of a slot that has it."""
     path = current_path(path)
-    field = _field_table(Option.count()).get(path)
-    if field is None and path not in keys():
+    if path not in fields() and path not in keys():
         for slot in slot_table().values():
             slot.options()  # those of other packages
-        field = _field_table(Option.count()).get(path)
-    return field
+    return fields().get(path)
 
 
 def keys() -> dict[str, type[Option]]:
@@ -127,20 +113,19 @@ def keys() -> dict[str, type[Option]]:
 
 def paths() -> list[str]:
     """Return every dotted path that a case file may set, sections included."""
-    leaves = [*(path for path, _ in fields()), *keys()]
+    leaves = [*fields(), *keys()]
     sections = {path.rsplit(".", depth)[0] for path in leaves for depth in (1, 2, 3)}
     return sorted({*leaves, *sections})
 
 
 def unit_at(path: str) -> str:
     """Return the SI unit of the value at a dotted path, ``"1"`` for words."""
-    path = current_path(path)
     field = field_at(path)
-    if field is None:
-        if path in keys():
-            return "1"
-        raise unknown_path(path)
-    return unit_of(field)
+    if field is not None:
+        return unit_of(field)
+    if current_path(path) in keys():
+        return "1"
+    raise unknown_path(current_path(path))
 
 
 def sections_at(path: str) -> list[type[Section]]:
@@ -153,11 +138,9 @@ def sections_at(path: str) -> list[type[Section]]:
         for model in models:
             field = model.model_fields.get(part)
             section = None if field is None else section_in(field)
-            if section is None:
-                continue
-            if issubclass(section, Option) and not section.name:
+            if section is not None and issubclass(section, Option) and not section.name:
                 below += section.known().values()
-            else:
+            elif section is not None:
                 below.append(section)
         models = list(dict.fromkeys(below))
     return models
@@ -165,7 +148,7 @@ def sections_at(path: str) -> list[type[Section]]:
 
 def path_kind(path: str) -> str:
     """Return "section" or "value"; refuse unknown paths."""
-    path = path.removesuffix(".from") if path.endswith(".from") else path
+    path = path.removesuffix(".from")
     if field_at(path) is not None or path in keys():
         return "value"
     if sections_at(path):

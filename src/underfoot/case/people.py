@@ -20,6 +20,10 @@ _SLIPS = (
     "steps"
 )
 _STEPS = "recorded steps of dry walking that come with the package, see slip dynamics"
+_ADULTS = "adults on level floor; derived from G.6, see slip probability"
+_MARKERS = "ten recorded steps with heel and toe markers"
+_LANDING = "heel directly behind the first row of sensors"
+Count = Annotated[int, Field(ge=1, le=20, strict=True)]
 Mass = Annotated[float, Quantity("kg", 5.0, 400.0)]
 MassSpread = Annotated[float, Quantity("kg", 0.0, 100.0)]
 Pace = Annotated[float, Quantity("m/s", 0.3, 4.0)]
@@ -43,57 +47,40 @@ class Risk(Option):
     slot: ClassVar[str] = "risk"
     usual: ClassVar[str | None] = "report_g6"
 
-    rcof_mean: Friction = default(
-        0.20, 0.20, "adults on level floor; derived from G.6, see slip probability", assumed=True
-    )
-    rcof_sd: Friction = default(
-        0.03, 0.03, "adults on level floor; derived from G.6, see slip probability", assumed=True
-    )
-
-    @property
-    def model(self) -> str:
-        """Name of the slip model."""
-        return self.name
+    rcof_mean: Friction = default(0.20, 0.20, _ADULTS, assumed=True)
+    rcof_sd: Friction = default(0.03, 0.03, _ADULTS, assumed=True)
 
     @abstractmethod
     def build(self) -> SlipModel:
         """Return the slip model."""
 
 
-class ReportRisk(Risk):
+class _Published(Risk):
+    def build(self) -> SlipModel:
+        from underfoot.slip import slip_model
+
+        return slip_model(self.name)
+
+
+class ReportRisk(_Published):
     """Logistic of the report's human slips."""
 
     name: ClassVar[str] = "report_g6"
     source: ClassVar[str] = f"{_REPORT}, G.6.3"
 
-    def build(self) -> SlipModel:
-        from underfoot.slip import ReportG6
 
-        return ReportG6()
-
-
-class BeschornerRisk(Risk):
+class BeschornerRisk(_Published):
     """Logistic of Beschorner et al. 2016."""
 
     name: ClassVar[str] = "beschorner_2016"
     source: ClassVar[str] = "Beschorner et al. 2016"
 
-    def build(self) -> SlipModel:
-        from underfoot.slip import Beschorner2016
 
-        return Beschorner2016()
-
-
-class ChangRisk(Risk):
+class ChangRisk(_Published):
     """Available against required friction, Chang 2004."""
 
     name: ClassVar[str] = "chang_2004"
     source: ClassVar[str] = "Chang 2004"
-
-    def build(self) -> SlipModel:
-        from underfoot.slip import Chang2004
-
-        return Chang2004()
 
 
 class Walkers(Section):
@@ -121,12 +108,8 @@ class Walkers(Section):
         "the leg stops the landing heel as in a dry step; constant: all by slip.brake_time_mean; "
         "none: friction alone stops it",
     )
-    brake_time_mean: Time = default(
-        0.011, "11 ms", "ten recorded steps with heel and toe markers", assumed=True
-    )
-    brake_time_sd: TimeSpread = default(
-        0.007, "7 ms", "ten recorded steps with heel and toe markers", assumed=True
-    )
+    brake_time_mean: Time = default(0.011, "11 ms", _MARKERS, assumed=True)
+    brake_time_sd: TimeSpread = default(0.007, "7 ms", _MARKERS, assumed=True)
     rcof_step_sd: Friction = default(
         0.015, 0.015, "14 steps of six persons about their own mean (95 %: 0.010 to 0.030)"
     )
@@ -141,20 +124,12 @@ class Walkers(Section):
         f"the heel stays on the floor and the foot inclined throughout a slip ({_REPORT}, G.5.1)",
         assumed=True,
     )
-    sensor_rows: Annotated[int, Field(ge=1, le=20, strict=True)] = default(
-        3, 3, f"{_REPORT}, G.5.1"
-    )
-    sensor_columns: Annotated[int, Field(ge=1, le=20, strict=True)] = default(
-        3, 3, f"{_REPORT}, G.5.1"
-    )
+    sensor_rows: Count = default(3, 3, f"{_REPORT}, G.5.1")
+    sensor_columns: Count = default(3, 3, f"{_REPORT}, G.5.1")
     sensor_spacing: Spacing = default(30e-3, "30 mm", f"{_REPORT}, G.5.1")
     sensor_inlet: Inlet = default(4e-3, "4 mm", f"{_REPORT}, G.5.1")
-    landing_from: Place = default(
-        0.0, "0 mm", "heel directly behind the first row of sensors", assumed=True
-    )
-    landing_to: Place = default(
-        0.02, "20 mm", "heel directly behind the first row of sensors", assumed=True
-    )
+    landing_from: Place = default(0.0, "0 mm", _LANDING, assumed=True)
+    landing_to: Place = default(0.02, "20 mm", _LANDING, assumed=True)
     lateral_sd: Width = default(0.01, "10 mm", "how well a step hits a line", assumed=True)
     time_step: Step = default(
         8e-3, "8 ms", "halving it moves peak speed by 0.5 %, peak pressure by 3 %"

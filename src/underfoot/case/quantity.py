@@ -87,12 +87,7 @@ class Quantity:
 
 def refusal(kind: Literal["input", "range"], error: InputError) -> PydanticCustomError:
     """Return the validation error that carries our message."""
-    context = {
-        "what": error.what,
-        "allowed": error.allowed,
-        "nearest": error.nearest,
-        "remedy": error.remedy,
-    }
+    context = {"what": error.what, **error.parts}
     if kind == "range":
         return PydanticCustomError("underfoot_range", "{what}", context)
     return PydanticCustomError("underfoot_input", "{what}", context)
@@ -118,6 +113,11 @@ def required(
 ) -> Any:
     """Return a field without default; ``missing`` and ``remedy`` are the answer to its absence."""
     return Field(description=description, json_schema_extra={"missing": missing, "remedy": remedy})
+
+
+def optional(description: str) -> Any:
+    """Return a field that may be left out: None."""
+    return Field(default=None, description=description)
 
 
 def default_of(field: FieldInfo) -> Default | None:

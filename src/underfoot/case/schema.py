@@ -86,7 +86,8 @@ def _definition(section: type[Section], definitions: dict[str, Any], kind: str) 
         }
     required: list[str] = []
     if issubclass(section, Option):
-        choice = _sourced({"const": section.name}, section.source)
+        choice = _sourced({"const": section.name})
+        choice |= {"description": section.source} if section.source else {}
         usual = section.usual == section.name or section.chosen_by or kind
         properties[section.key] = choice
         required = [] if usual else [section.key]
@@ -116,19 +117,13 @@ def _leaf(field: FieldInfo) -> dict[str, Any]:
     quantity = quantity_of(field)
     if quantity is not None:
         kinds = ["number", "string"] if quantity.unit == "1" else ["string"]
-        entry = _sourced({"type": kinds})
-        entry |= {
-            "unit": quantity.unit,
-            "minimum_si": quantity.low,
-            "maximum_si": quantity.high,
-        }
+        limits = {"minimum_si": quantity.low, "maximum_si": quantity.high}
+        entry = _sourced({"type": kinds}) | {"unit": quantity.unit} | limits
     else:
         parts = [part for part in _parts(field.annotation) if part is not type(None)]
         literal = next((p for p in parts if typing.get_origin(p) is typing.Literal), None)
-        if literal is not None:
-            entry = _sourced({"enum": list(typing.get_args(literal))})
-        else:
-            entry = _sourced({"type": _TYPES.get(parts[0], "string")})
+        choices = {"enum": list(typing.get_args(literal))}
+        entry = _sourced(choices if literal else {"type": _TYPES.get(parts[0], "string")})
     return _described(entry, field)
 
 
@@ -137,12 +132,11 @@ def _described(entry: dict[str, Any], field: FieldInfo) -> dict[str, Any]:
     if known is not None:
         entry = {**entry, "default": known.text}
     description = field.description or (known.source if known is not None else "")
-    return {**entry, "description": description} if description else entry
+    return entry | ({"description": description} if description else {})
 
 
-def _sourced(plain: dict[str, Any], description: str = "") -> dict[str, Any]:
-    entry: dict[str, Any] = {"anyOf": [plain, {"$ref": f"#/$defs/{_SOURCED}"}]}
-    return {**entry, "description": description} if description else entry
+def _sourced(plain: dict[str, Any]) -> dict[str, Any]:
+    return {"anyOf": [plain, {"$ref": f"#/$defs/{_SOURCED}"}]}
 
 
 def _parts(annotation: Any) -> list[Any]:

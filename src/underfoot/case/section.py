@@ -154,11 +154,11 @@ class Section(BaseModel):
             return None
         field = type(self).model_fields[name]
         known = default_of(field)
-        if known is not None and name not in self.model_fields_set:
+        if name not in self.model_fields_set:
+            if known is None:
+                return None
             leaf = Leaf(known.text, source=known.source, assumed=known.assumed)
             return Origin(DEFAULT, leaf, value=value)
-        if name not in self.model_fields_set:
-            return None
         return Origin(GIVEN, Leaf(plain_text(value, unit_of(field))), value=value)
 
     def sourced(self, name: str) -> SourcedValue:
@@ -217,19 +217,14 @@ class Option(Section):
         if not name:
             return
         present = cls._known.setdefault(cls.slot, {})
-        other = present.get(name)
+        other, where = present.get(name), f"{cls.__module__}.{cls.__qualname__}"
+        option = f'the {cls.slot} option "{name}"'
         if other is not None and other.__module__.startswith("underfoot."):
-            raise InputError(
-                f'the {cls.slot} option "{name}" is defined by Underfoot',
-                where=f"{cls.__module__}.{cls.__qualname__}",
-                remedy="Give the class another name",
-            )
-        if missing := sorted(cls.__abstractmethods__):
-            raise InputError(
-                f'the {cls.slot} option "{name}" does not define {", ".join(missing)}',
-                where=f"{cls.__module__}.{cls.__qualname__}",
-                remedy=f"Define it as the other options of {cls.slot} do",
-            )
+            what, remedy = "is defined by Underfoot", "Give the class another name"
+            raise InputError(f"{option} {what}", where=where, remedy=remedy)
+        if missing := ", ".join(sorted(cls.__abstractmethods__)):
+            remedy = f"Define it as the other options of {cls.slot} do"
+            raise InputError(f"{option} does not define {missing}", where=where, remedy=remedy)
         present[name] = cls
 
     @classmethod
@@ -344,15 +339,9 @@ def origin_of(item: Any) -> Origin | None:
     if isinstance(item, Origin):
         return item
     if isinstance(item, SourcedValue):
-        uncertainty = item.uncertainty
-        leaf = Leaf(
-            plain_text(item.value, item.unit),
-            source=item.source,
-            uncertainty=None if uncertainty is None else plain_text(uncertainty, item.unit),
-            assumed=item.assumed,
-            note=item.note,
-        )
-        return Origin(GIVEN, leaf)
+        value, spread = (plain_text(x, item.unit) for x in (item.value, item.uncertainty))
+        marks = {"source": item.source, "assumed": item.assumed, "note": item.note}
+        return Origin(GIVEN, Leaf(value, uncertainty=spread, **marks))
     if isinstance(item, Mapping) and "value" in item:
         marks = {name: item[name] for name in (*INHERITED, "erratum") if name in item}
         return Origin(GIVEN, Leaf(item["value"], uncertainty=item.get("uncertainty"), **marks))
@@ -371,8 +360,7 @@ def _section_in(annotation: Any) -> type[Section] | None:
     if isinstance(annotation, type) and issubclass(annotation, Section):
         return annotation
     if typing.get_origin(annotation) in (typing.Union, types.UnionType, typing.Annotated):
-        parts = (_section_in(part) for part in typing.get_args(annotation))
-        return next((part for part in parts if part is not None), None)
+        return next(filter(None, map(_section_in, typing.get_args(annotation))), None)
     return None
 
 
@@ -385,13 +373,8 @@ def item_section(field: FieldInfo) -> type[Section] | None:
     """Return the section of which a field holds a list, or None."""
     parts = [field.annotation, *typing.get_args(field.annotation)]
     lists = [part for part in parts if typing.get_origin(part) is tuple]
-    found = [_section_in(item) for part in lists for item in typing.get_args(part)]
-    return next((item for item in found if item is not None), None)
-
-
-def marks_of(field: FieldInfo) -> list[Any]:
-    """Return the marks (such as the unit) annotated on a field."""
-    return [*field.metadata, *_marks_in(field.annotation)]
+    items = [_section_in(item) for part in lists for item in typing.get_args(part)]
+    return next(filter(None, items), None)
 
 
 def _marks_in(annotation: Any) -> list[Any]:
@@ -403,7 +386,8 @@ def _marks_in(annotation: Any) -> list[Any]:
 
 def quantity_of(field: FieldInfo) -> Quantity | None:
     """Return the unit and range of a field; None for words, counts and switches."""
-    return next((mark for mark in marks_of(field) if isinstance(mark, Quantity)), None)
+    marks = [*field.metadata, *_marks_in(field.annotation)]
+    return next((mark for mark in marks if isinstance(mark, Quantity)), None)
 
 
 _UNITS: dict[int, tuple[FieldInfo, str]] = {}

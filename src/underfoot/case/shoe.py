@@ -8,7 +8,7 @@ from pydantic import Field
 
 from underfoot.core import InputError, RangeError, display
 
-from .quantity import Flag, Length, Quantity, default
+from .quantity import Flag, Length, Quantity, default, optional
 from .section import CATALOGUE, CaseView, Section, origin_of
 from .sole import SolePlan, TreadPattern
 from .surfaces import SurfaceRoughness
@@ -43,8 +43,8 @@ class Relaxation(Section):
 class Material(Section):
     """Outsole compound. A measured modulus goes before one from hardness."""
 
-    shore_a: Hardness | None = Field(default=None, description="Shore A hardness")
-    modulus: Modulus | None = Field(default=None, description="measured Young's modulus")
+    shore_a: Hardness | None = optional("Shore A hardness")
+    modulus: Modulus | None = optional("measured Young's modulus")
     poisson_ratio: Poisson = default(0.49, 0.49, "rubber, nearly incompressible", assumed=True)
     bulk_modulus: Modulus | None = None
     density: Density | None = None
@@ -94,9 +94,7 @@ class OutsoleFile(Section):
     file: str = Field(
         description="STEP, STL, OBJ or PLY; the path counts from the case file's folder"
     )
-    sha256: str | None = Field(
-        default=None, description="checksum of the file that is meant; another file is refused"
-    )
+    sha256: str | None = optional("checksum of the file that is meant; another file is refused")
     unit: Literal["auto", "mm", "cm", "m", "inch"] = default("auto", "auto", _READ)
     down: Direction = default("auto", "auto", _READ)
     forward: Direction = default("auto", "auto", _READ)
@@ -105,8 +103,8 @@ class OutsoleFile(Section):
     region: Literal["whole", "heel", "forepart"] = default(
         "whole", "whole", "all of the file; the part far from the floor is trimmed"
     )
-    region_length: Length | None = Field(
-        default=None, description="of the region; default: rear 30 %, front 45 % of a whole sole"
+    region_length: Length | None = optional(
+        "of the region; default: rear 30 %, front 45 % of a whole sole"
     )
     map_spacing: Annotated[float, Quantity("m", 2e-5, 0.002)] = default(
         0.25 * _mm, "0.25 mm", "of the height map, finer than the grid of the solver"

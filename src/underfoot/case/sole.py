@@ -11,7 +11,7 @@ from pydantic import Field
 
 from underfoot.core import InputError, RangeError, display
 
-from .quantity import Angle, Depth, LargeRadius, Length, Quantity, Rounding, default
+from .quantity import Angle, Depth, LargeRadius, Length, Quantity, Rounding, default, optional
 from .section import CaseView, Option, Section
 
 if TYPE_CHECKING:
@@ -95,9 +95,7 @@ class SolePlan(Option):
     width: Length = default(60 * _mm, "60 mm", _ASSUMED, assumed=True)
     profile: RearProfile = Field(default={}, validate_default=True)
     edge_radius: Rounding = default(2 * _mm, "2 mm", _ASSUMED, assumed=True)
-    crown_radius: LargeRadius | None = Field(
-        default=None, description="radius of a sole bulged across"
-    )
+    crown_radius: LargeRadius | None = optional("radius of a sole bulged across")
 
     @property
     def widest(self) -> float:
@@ -162,17 +160,14 @@ class WholePlan(SolePlan):
     side: Literal["left", "right"] = default("right", "right", "which foot, seen from above")
     waist_width: Length = Field(description="at its narrowest")
     ball_width: Length = Field(description="across the ball")
-    toe_spring: Rounding | None = Field(default=None, description="how far the tip is up")
-    toe_start: Length | None = Field(
-        default=None, description="where the toe begins to rise, from the rear end"
-    )
+    toe_spring: Rounding | None = optional("how far the tip is up")
+    toe_start: Length | None = optional("where the toe begins to rise, from the rear end")
     reach: Length = default(
         12 * _mm, "12 mm", "parts of the tilted sole higher above the floor are trimmed off"
     )
 
     @property
     def widest(self) -> float:
-        """Largest width, m."""
         return max(self.width, self.ball_width)
 
     def build(self, tread: TreadPattern, outsole_thickness: float) -> SoleShape:
@@ -192,8 +187,7 @@ class WholePlan(SolePlan):
         if (self.toe_spring is None) != (self.toe_start is None):
             missing = "toe_spring" if self.toe_spring is None else "toe_start"
             yield InputError(
-                "a toe spring needs both its height and where it starts",
-                where=f"{where}.{missing}",
+                "a toe spring needs both its height and where it starts", where=f"{where}.{missing}"
             )
 
 
@@ -223,18 +217,13 @@ class TreadPattern(Option):
 
     arc_channel: ArcChannel | None = None
 
-    @property
-    def pattern(self) -> str:
-        """Name of the pattern."""
-        return self.name
-
     @abstractmethod
     def build(self) -> Tread | None:
         """Return the lugs; None for an untreaded sole."""
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         if self.arc_channel is not None:
-            yield from _through(case, self.arc_channel.depth, f"{where}.arc_channel.depth")
+            yield from through_outsole(case, self.arc_channel.depth, f"{where}.arc_channel.depth")
             yield from _resolved(case, f"{where}.arc_channel.width", self.arc_channel.width)
 
 
@@ -287,12 +276,10 @@ class Lugs(TreadPattern):
                 allowed="above 0 mm",
                 remedy='Write pattern = "none" for a sole without tread',
             )
-        yield from _through(case, self.depth, f"{where}.depth")
-        widths = [
-            name for name in ("lug_width", "channel_width", "lug_length") if hasattr(self, name)
-        ]
-        for name in widths:
-            yield from _resolved(case, f"{where}.{name}", getattr(self, name))
+        yield from through_outsole(case, self.depth, f"{where}.depth")
+        for name in ("lug_width", "channel_width", "lug_length"):
+            if hasattr(self, name):
+                yield from _resolved(case, f"{where}.{name}", getattr(self, name))
         smallest = min(self.lug_width, getattr(self, "lug_length", math.inf))
         rounding = min(self.depth or math.inf, smallest / 2)
         if self.edge_radius > rounding:
@@ -384,7 +371,8 @@ class HexagonTread(Lugs):
     name: ClassVar[str] = "hexagons"
 
 
-def _through(case: CaseView, depth: float, where: str) -> Iterator[InputError]:
+def through_outsole(case: CaseView, depth: float, where: str) -> Iterator[InputError]:
+    """Yield the error of a depth that reaches through the outsole."""
     thickness = case.shoe.sole.outsole_thickness
     if depth >= thickness:
         yield RangeError(

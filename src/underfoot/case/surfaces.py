@@ -9,7 +9,7 @@ from pydantic import Field
 
 from underfoot.core import InputError, RangeError, SourcedValue, display
 
-from .quantity import Length, Quantity, default
+from .quantity import Length, Quantity, default, optional
 from .section import CaseView, Option, Section
 
 Roughness = Annotated[float, Quantity("m", 1e-9, 1e-3)]
@@ -21,15 +21,19 @@ STEEPEST = 0.5
 """Largest rms slope of the interface's longest waves (small-slope theory, assumed)."""
 
 
+WAVES = ("interface.hurst", "interface.longest_wave", "interface.shortest_wave")
+"""What options that need the self-affine interface read of it."""
+
+
 class SurfaceRoughness(Section):
     """Roughness numbers of a profile after the cut-off."""
 
-    ra: Roughness | None = Field(default=None, description="mean deviation")
-    rq: Roughness | None = Field(default=None, description="root-mean-square deviation")
-    rz: Roughness | None = Field(default=None, description="mean peak-to-valley height")
-    rp: Roughness | None = Field(default=None, description="highest peak")
-    rt: Roughness | None = Field(default=None, description="total height")
-    cutoff: Cutoff | None = Field(default=None, description="cut-off wavelength of the filter")
+    ra: Roughness | None = optional("mean deviation")
+    rq: Roughness | None = optional("root-mean-square deviation")
+    rz: Roughness | None = optional("mean peak-to-valley height")
+    rp: Roughness | None = optional("highest peak")
+    rt: Roughness | None = optional("total height")
+    cutoff: Cutoff | None = optional("cut-off wavelength of the filter")
 
     @property
     def rq_or_estimate(self) -> float | None:
@@ -44,7 +48,7 @@ class SurfaceRoughness(Section):
         if self.rq is not None:
             return self.sourced("rq").uncertainty
         spread = self.sourced("ra").uncertainty
-        return None if spread is None else RQ_PER_RA * spread
+        return spread and RQ_PER_RA * spread
 
 
 class Floor(Section):

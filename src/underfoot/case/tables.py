@@ -119,19 +119,14 @@ def table_columns(
 
 def as_written(read: Mapping[str, Array], columns: Columns) -> list[dict[str, str | float]]:
     """Return the rows of a table as a case file writes them."""
-    count = len(next(iter(read.values()), ()))
-    rows: list[dict[str, str | float]] = []
-    for row in range(count):
-        units = {name: columns[name][0] for name in read}
-        rows.append(
-            {
-                name: float(values[row])
-                if units[name] == "1"
-                else f"{values[row]:.12g} {units[name]}"
-                for name, values in read.items()
-            }
-        )
-    return rows
+    units = [columns[name][0] for name in read]
+    return [
+        {
+            name: float(value) if unit == "1" else f"{value:.12g} {unit}"
+            for name, unit, value in zip(read, units, row, strict=True)
+        }
+        for row in zip(*read.values(), strict=True)
+    ]
 
 
 def table_source(path: Path) -> str:

@@ -23,6 +23,27 @@ _HEAD = """\
 """
 
 
+_DRY_FRICTION = """\
+[friction]
+model = "constant"
+cof = 0.8  # measured on this shoe and floor, dry: set your own
+"""
+_FRICTION = """\
+[friction]
+# model = "pair"                             # of compound, roughness and fluid; others: underfoot \
+explain friction.model
+
+[interface]
+# roughness_beyond_cutoff = 2.0              # interface against both stylus Rq together; assumed, \
+uncertain: vary it
+"""
+_RISK = """
+[risk]
+# rcof_mean = 0.20  # friction that the people who walk there need, and its
+# rcof_sd = 0.03    # standard deviation between them
+"""
+
+
 def template(
     *,
     shoe: str,
@@ -46,10 +67,9 @@ def template(
         dry = section == "contaminant" and entry == DRY
         titles[section] = "dry" if dry else catalogue.entry(kind, entry, where=section).title
     title = name or f"{titles['shoe']}; {titles['contaminant']}"
+    head = {"file_version": FILE_VERSION, "name": title, "description": description}
     lines = [_HEAD.format(title=title, file=file)]
-    lines.append(f"file_version = {FILE_VERSION}")
-    lines.append(f"name = {_text(title)}")
-    lines.append(f"description = {_text(description)}\n")
+    lines += [*(f"{key} = {_text(value)}" for key, value in head.items()), ""]
     for section, entry in chosen.items():
         lines.append(f"[{section}]")
         kind, _ = CATALOGUE_SECTIONS[section]
@@ -58,19 +78,8 @@ def template(
         if entry != DRY or section != "contaminant":
             lines += _overrides(section, entry, catalogue)
         lines.append("")
-    if contaminant == DRY:
-        lines += ["[friction]", 'model = "constant"']
-        lines += ["cof = 0.8  # measured on this shoe and floor, dry: set your own", ""]
-    else:
-        lines += ["[friction]"]
-        about = "# of compound, roughness and fluid; others: underfoot explain friction.model"
-        lines += [_commented('# model = "pair"', about), "", "[interface]"]
-        about = "# interface against both stylus Rq together; assumed, uncertain: vary it"
-        lines += [_commented("# roughness_beyond_cutoff = 2.0", about), ""]
-    lines += ["[risk]"]
-    lines += ["# rcof_mean = 0.20  # friction that the people who walk there need, and its"]
-    lines += ["# rcof_sd = 0.03    # standard deviation between them"]
-    return "\n".join(lines) + "\n"
+    lines.append(_DRY_FRICTION if contaminant == DRY else _FRICTION)
+    return "\n".join(lines) + _RISK
 
 
 def _overrides(section: str, name: str, catalogue: Catalogue) -> list[str]:
@@ -90,8 +99,8 @@ def _overrides(section: str, name: str, catalogue: Catalogue) -> list[str]:
 
 
 def _remark(field: FieldInfo | None, *, assumed: bool) -> str:
-    parts = [(field.description or "") if field else "", "assumed" if assumed else ""]
-    text = "; ".join(part for part in parts if part)
+    described = field.description if field else ""
+    text = "; ".join(filter(None, (described, "assumed" if assumed else "")))
     return f"# {text}" if text else ""
 
 

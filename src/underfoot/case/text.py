@@ -1,7 +1,5 @@
 """Case files as text: read, change a value with its comments kept, write, and where keys stand."""
 
-import os
-import tempfile
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
@@ -9,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from underfoot.core import InputError, nearest_match
+from underfoot.core.files import whole_file
 
 
 def read(path: Path) -> str:
@@ -143,17 +142,15 @@ def _table(tree: Mapping[str, Any]) -> Any:
 def _inline(value: Any) -> Any:
     import tomlkit
 
+    if not isinstance(value, dict | list | tuple):
+        return value
     if isinstance(value, dict):
         inline = tomlkit.inline_table()
-        for key, item in value.items():
-            inline[key] = _inline(item)
+        inline.update({key: _inline(item) for key, item in value.items()})
         return inline
-    if isinstance(value, list | tuple):
-        array = tomlkit.array()
-        for item in value:
-            array.append(_inline(item))
-        return array
-    return value
+    array = tomlkit.array()
+    array.extend(map(_inline, value))
+    return array
 
 
 def save(text: str, path: Path, *, overwrite: bool = False) -> None:
@@ -162,16 +159,8 @@ def save(text: str, path: Path, *, overwrite: bool = False) -> None:
         raise InputError(
             f"the file {path} exists", remedy="Choose another name, or add --overwrite"
         )
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}-")
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(text)
-        os.chmod(name, 0o644)
-        os.replace(name, path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+    with whole_file(path) as part:
+        part.write_text(text, encoding="utf-8")
 
 
 class Places:

@@ -5,38 +5,28 @@ from typing import Any
 
 from underfoot.core.leaves import INHERITED
 
+_MOVED = {
+    ("contaminant.boundary", "friction"): "cof_bl tau_hydro cof_asymptote alpha beta load pair",
+    ("interface", "friction"): "constant_cof=cof hysteresis_cof dry_adhesion_cof fine_roughness "
+    "friction_table=table_file friction_readings=readings friction_source=readings_source "
+    "shear_strength",
+    ("shoe.heel", "shoe.heel.profile"): "facet_angle=angle facet_length=length "
+    "rocker_radius=radius rocker_start=start",
+    ("shoe.sole", "shoe.sole.midsole"): "midsole_modulus=modulus midsole_thickness=thickness "
+    "midsole_poisson_ratio=poisson_ratio",
+    ("sensor", "sensor.array"): "rows columns array_spacing=spacing array_position=position "
+    "array_inlet_diameter=inlet_diameter",
+}
 RENAMED = {
     "models.friction": "friction.model",
     "models.asperity": "rough_contact.model",
     "models.compliance": "compliance.model",
     "models.hardness": "hardness.model",
-    "interface.constant_cof": "friction.cof",
-    "interface.hysteresis_cof": "friction.hysteresis_cof",
-    "interface.dry_adhesion_cof": "friction.dry_adhesion_cof",
-    "interface.fine_roughness": "friction.fine_roughness",
-    "interface.friction_table": "friction.table_file",
-    "interface.friction_readings": "friction.readings",
-    "interface.friction_source": "friction.readings_source",
-    "interface.shear_strength": "friction.shear_strength",
-    "contaminant.boundary.cof_bl": "friction.cof_bl",
-    "contaminant.boundary.tau_hydro": "friction.tau_hydro",
-    "contaminant.boundary.cof_asymptote": "friction.cof_asymptote",
-    "contaminant.boundary.alpha": "friction.alpha",
-    "contaminant.boundary.beta": "friction.beta",
-    "contaminant.boundary.load": "friction.load",
-    "contaminant.boundary.pair": "friction.pair",
-    "shoe.heel.facet_angle": "shoe.heel.profile.angle",
-    "shoe.heel.facet_length": "shoe.heel.profile.length",
-    "shoe.heel.rocker_radius": "shoe.heel.profile.radius",
-    "shoe.heel.rocker_start": "shoe.heel.profile.start",
-    "shoe.sole.midsole_modulus": "shoe.sole.midsole.modulus",
-    "shoe.sole.midsole_thickness": "shoe.sole.midsole.thickness",
-    "shoe.sole.midsole_poisson_ratio": "shoe.sole.midsole.poisson_ratio",
-    "sensor.rows": "sensor.array.rows",
-    "sensor.columns": "sensor.array.columns",
-    "sensor.array_spacing": "sensor.array.spacing",
-    "sensor.array_inlet_diameter": "sensor.array.inlet_diameter",
-    "sensor.array_position": "sensor.array.position",
+    **{
+        f"{old}.{key.partition('=')[0]}": f"{new}.{key.rpartition('=')[2]}"
+        for (old, new), moved in _MOVED.items()
+        for key in moved.split()
+    },
 }
 """Path in a file of version 1: path in version 2."""
 SHORT = {"shoe.heel.profile": "shoe.heel.profile.model"}
@@ -57,9 +47,7 @@ def current_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
         below = {old: new for old, new in RENAMED.items() if old.startswith(f"{path}.")}
         if isinstance(value, Mapping) and below and "value" not in value:
             rest = {key: item for key, item in value.items() if f"{path}.{key}" not in below}
-            for key, item in value.items():
-                if f"{path}.{key}" in below:
-                    changed[below[f"{path}.{key}"]] = item
+            changed |= {below[f"{path}.{k}"]: item for k, item in value.items() if k not in rest}
             if rest and path not in GONE:
                 changed[path] = rest
         elif path in SHORT and not isinstance(value, Mapping):

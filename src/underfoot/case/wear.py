@@ -11,8 +11,9 @@ from pydantic import Field
 
 from underfoot.core import InputError, RangeError, display
 
-from .quantity import Angle, Depth, Force, Length, Quantity, default
+from .quantity import Angle, Depth, Force, Length, Quantity, default, optional
 from .section import CaseView, Option
+from .sole import through_outsole
 
 if TYPE_CHECKING:
     from underfoot.shoe.shape import SoleWear
@@ -32,23 +33,12 @@ class Wear(Option):
 
     depth: Depth = default(0.0, "0 mm", "unworn beyond the heel shape given")
 
-    @property
-    def mode(self) -> str:
-        """Name of the option."""
-        return self.name
-
     @abstractmethod
     def build(self) -> SoleWear | None:
         """Return what is worn away as geometry; None where a contact must be solved for it."""
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        thickness = case.shoe.sole.outsole_thickness
-        if self.depth >= thickness:
-            yield RangeError(
-                f"{display(self.depth, 'm')} goes through the outsole",
-                where=f"{where}.depth",
-                allowed=f"below {display(thickness, 'm')} (shoe.sole.outsole_thickness)",
-            )
+        yield from through_outsole(case, self.depth, f"{where}.depth")
 
 
 class PlaneWear(Wear):
@@ -73,8 +63,8 @@ class PatchWear(Wear):
     patch_form: Literal["ellipse", "rectangle"] = default("ellipse", "ellipse", "patch")
     patch_length: Length = Field(description="along the shoe")
     patch_width: Length = Field(description="across the shoe")
-    patch_position: Length | None = Field(
-        default=None, description="its middle from the rear end; default: it begins there"
+    patch_position: Length | None = optional(
+        "its middle from the rear end; default: it begins there"
     )
     patch_lateral: Place = default(0.0, "0 mm", "its middle on the centre line")
     patch_taper: Taper = default(
@@ -120,9 +110,7 @@ class ArchardWear(Wear):
         "the shoe wears at three angles of early stance; their span",
         assumed=True,
     )
-    normal_force: Force | None = Field(
-        default=None, description="while wearing; default motion.normal_force"
-    )
+    normal_force: Force | None = optional("while wearing; default motion.normal_force")
     wear_rate: WearRate = default(
         3.7500000000000005e-10,  # as the text gives it, to the last digit
         "0.375 mm^3/(N*m)",

@@ -113,7 +113,7 @@ class TreadPositions:
             "tread_position": f"COF {self._range('cof')}, load on the film "
             f"{self._range('fluid_load', 'N')} over {len(self.places)} positions of the pattern. "
             "Numbers are means over them; maps and histories show the position that the case "
-            "describes" + (f"; {failed}" if failed else ""),
+            "describes" + (f"; {failed}" if failed else "")
         }
 
     def assumptions(self) -> tuple[str, ...]:

@@ -64,25 +64,17 @@ class Result(Presentable):
 
     @property
     def usable(self) -> bool:
-        """Whether the numbers are a result."""
         return self.status.usable
 
     def headline(self) -> tuple[str, ...]:
-        """Return COF, load on the film and slip probability in sentences."""
         return summary.headline(self.status, self.scalars, self.labels)
 
     def cautions(self) -> tuple[str, ...]:
-        """Return why the headline may not be trusted."""
-        return summary.cautions(
-            self.status,
-            self.scalars,
-            self.breaches,
-            self.assumptions,
-            self.provenance.closures.get("slip", ""),
-        )
+        slip_model = self.provenance.closures.get("slip", "")
+        inputs = (self.breaches, self.assumptions, slip_model)
+        return summary.cautions(self.status, self.scalars, *inputs)
 
     def table(self) -> Table:
-        """Return every quantity with its uncertainty."""
         return summary.table(self.scalars, self.labels)
 
     def tables(self) -> tuple[Table, ...]:
@@ -111,13 +103,8 @@ class Result(Presentable):
     def to_dict(self) -> dict[str, Any]:
         """Return plain data: every scalar an object with value, unit, uncertainty, assumed."""
         scalars = {name: value.as_dict() for name, value in self.scalars.items()}
-        status = {
-            "value": str(self.status),
-            "unit": None,
-            "uncertainty": None,
-            "reason": self.status.remedy,
-            "assumed": False,
-        }
+        status = {"value": str(self.status), "unit": None, "uncertainty": None}
+        status |= {"reason": self.status.remedy, "assumed": False}
         return {
             "format": FORMAT,
             "name": self.name,
@@ -194,17 +181,13 @@ class Result(Presentable):
             table.writerow(["status", str(self.status), *[""] * 5, self.status.remedy])
             for name, scalar in self.scalars.items():
                 remark = scalar.note or (scalar.reason if scalar.uncertainty is None else "")
-                table.writerow(
-                    [
-                        name,
-                        "" if scalar.value is None else repr(scalar.value),
-                        scalar.unit,
-                        "" if scalar.uncertainty is None else repr(scalar.uncertainty),
-                        *(("", "") if scalar.interval is None else map(repr, scalar.interval)),
-                        "yes" if scalar.assumed else "no",
-                        remark,
-                    ]
+                low, high = scalar.interval or (None, None)
+                value, *spread = (
+                    "" if number is None else repr(number)
+                    for number in (scalar.value, scalar.uncertainty, low, high)
                 )
+                assumed = "yes" if scalar.assumed else "no"
+                table.writerow([name, value, scalar.unit, *spread, assumed, remark])
 
     @classmethod
     def load(cls, folder: Path | str) -> Result:
@@ -230,11 +213,11 @@ class Result(Presentable):
                     allowed=f"format {FORMAT} or older",
                     remedy="Update underfoot",
                 )
-            reserved = {"format", "name", "status", "labels", "breaches", "assumptions"}
+            reserved = "format name status labels breaches assumptions provenance".split()
             scalars = {
                 name: SourcedValue(**entry)
                 for name, entry in stored.items()
-                if name not in reserved | {"provenance"}
+                if name not in reserved
             }
             provenance = dict(stored["provenance"])
             for key in ("citations", "errata"):

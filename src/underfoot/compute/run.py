@@ -29,28 +29,8 @@ from underfoot.sole_contact.edge_peak import peak_pressure
 from underfoot.sole_contact.lug_edges import EdgedLaw
 from underfoot.sole_contact.solver import SoleContact
 
-from .contact import (
-    Recorder,
-    blind_sensor,
-    cost,
-    edged_law,
-    history_fields,
-    scanned,
-    solved_motion,
-)
-from .numbers import (
-    FILM_ERROR,
-    SUCTION_SPREAD,
-    grid_errors,
-    grid_words,
-    readings,
-    regime,
-    scalars,
-    sole_name,
-    spread_origin,
-    undetermined,
-    with_grid_errors,
-)
+from . import numbers
+from .contact import Recorder, blind_sensor, cost, edged_law, history_fields, scanned, solved_motion
 from .positions import Place, tread_positions
 from .resolve import resolved, turned
 from .result import Result
@@ -114,7 +94,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
     if isinstance(local_law, EdgedLaw):
         lugs = local_law.lugs(**local)
         pull = case.sourced("film.suction")
-        pull = pull if pull.uncertainty else replace(pull, uncertainty=SUCTION_SPREAD)
+        pull = pull if pull.uncertainty else replace(pull, uncertainty=numbers.SUCTION_SPREAD)
         suction = pull, lugs.suction_share(parts)
     sampled = sampled_cof(
         law,
@@ -123,8 +103,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         speed=speed,
         wet=contact.wet,
         fluid_inputs={} if context.viscosity is None else {"viscosity": context.viscosity},
-        film_error=FILM_ERROR,
-        sole=sole_name(case),
+        film_error=numbers.FILM_ERROR,
+        sole=numbers.sole_name(case),
         contact_factor=1.0 if lugs is None else lugs.factor_map(),
         suction=suction,
         seed=case.numerics.seed,
@@ -146,7 +126,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             case, there, body, asperities, viscosity=viscosity, progress=progress
         )
 
-    numbers, risk, labels = undetermined(case, contact.status), None, {}
+    values, risk, labels = numbers.undetermined(case, contact.status), None, {}
     positions = None
     if contact.status.usable:
         if "compliance" not in own:
@@ -155,11 +135,11 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         solved = time.perf_counter()
         if positions:
             friction, sampled = positions.friction(friction, sampled)
-        numbers, risk = scalars(case, contact, friction, sensor, sampled, slip)
-        numbers |= recorder.array_scalars()
+        values, risk = numbers.scalars(case, contact, friction, sensor, sampled, slip)
+        values |= recorder.array_scalars()
         if positions:
-            numbers = positions.averaged(numbers)
-        share = (numbers["fluid_load"].value or 0.0) / contact.normal_force
+            values = positions.averaged(values)
+        share = (values["fluid_load"].value or 0.0) / contact.normal_force
         remarks = {
             "lug_edges": "" if lugs is None else lugs.words(),
             "cof_spread_basis": getattr(law, "spread_basis", ""),
@@ -167,7 +147,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             "edge_peak": peak_pressure(sole, contact.total_pressure).remark,
             "sensor": blind_sensor(case, sensor, contact),
         }
-        labels = regime(share) | spread_origin(sampled)
+        labels = numbers.regime(share) | numbers.spread_origin(sampled)
         labels |= {name: remark for name, remark in remarks.items() if remark}
         coarse_spacing = case.numerics.quick_grid_spacing
         if case.numerics.grid_check and not quick and coarse_spacing > spacing:
@@ -181,10 +161,14 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
                 case, Place(), progress
             )
             if coarse.status.usable:
-                there = readings(coarse, scanned(case, coarse_sole, coarse, viscosity=viscosity))
-                errors = grid_errors(readings(contact, sensor), there, coarse_spacing / spacing)
-                numbers = with_grid_errors(numbers, errors)
-                labels["grid_error"] = grid_words(numbers, errors, spacing, coarse_spacing)
+                there = numbers.readings(
+                    coarse, scanned(case, coarse_sole, coarse, viscosity=viscosity)
+                )
+                errors = numbers.grid_errors(
+                    numbers.readings(contact, sensor), there, coarse_spacing / spacing
+                )
+                values = numbers.with_grid_errors(values, errors)
+                labels["grid_error"] = numbers.grid_words(values, errors, spacing, coarse_spacing)
     breaches = [
         *context.modulus_breaches,
         *sole.breaches,
@@ -201,7 +185,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         labels["objects"] = "; ".join(f"{slot}: {text}" for slot, text in identities.items())
     return Result(
         name=case.name,
-        scalars=numbers,
+        scalars=values,
         labels=labels,
         fields=_fields(
             sole,
@@ -234,7 +218,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             },
             citations=_unique(
                 each.source
-                for each in (law, asperities, context.modulus, numbers["slip_probability"])
+                for each in (law, asperities, context.modulus, values["slip_probability"])
             ),
             errata=tuple(
                 f"{path}: {origin.leaf.erratum}"

@@ -47,10 +47,7 @@ def slip_setting(case: Case, *, quick: bool = True) -> Setting:
 
 
 def slip_population(
-    case: Case,
-    *,
-    subjects: int | None = None,
-    histories: Sequence[GaitHistory] | None = None,
+    case: Case, *, subjects: int | None = None, histories: Sequence[GaitHistory] | None = None
 ) -> Population:
     """Return the people of a case; ``histories`` of your own replace the packaged steps.
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
@@ -102,7 +103,7 @@ def archard_state(case: Case, *, progress: Progress = silent) -> ArchardStep:
     """
     context, new, wear = resolved(case), new_sole(case), case.shoe.wear
     if not isinstance(wear, ArchardWear):
-        raise InputError(f'mode = "{wear.mode}"', where="shoe.wear.mode", allowed="archard")
+        raise InputError(f'mode = "{wear.name}"', where="shoe.wear.mode", allowed="archard")
     spacing = case.numerics.quick_grid_spacing
     force = wear.normal_force or case.motion.normal_force
     half, middle = wear.angle_range / 2, wear.angle
@@ -176,16 +177,9 @@ def file_outsole(case: Case) -> FileOutsole:
     outsole = case.shoe.outsole
     if outsole is None:
         raise InputError("the case has no outsole file", where="shoe.outsole.file")
-    settings = FileSettings(
-        unit=outsole.unit,
-        down=outsole.down,
-        forward=outsole.forward,
-        foot=outsole.foot,
-        mirror=outsole.mirror,
-        region=outsole.region,
-        region_length=outsole.region_length,
-        spacing=outsole.map_spacing,
-    )
+    same = ("unit", "down", "forward", "foot", "mirror", "region", "region_length")
+    given: dict[str, Any] = {name: getattr(outsole, name) for name in same}
+    settings = FileSettings(**given, spacing=outsole.map_spacing)
     return _read(outsole.file, outsole.sha256 or "", settings)
 
 
@@ -347,20 +341,9 @@ def outsole_from(
         outsole = Outsole.model_validate({**plain, **tree}, context=DOOR)
     except ValidationError as error:
         raise CaseError(translated(error, Outsole, tree, places)) from None
-    view = cast("Any", _Alone(outsole))
+    fine = SimpleNamespace(grid_spacing=0.0, quick_grid_spacing=0.0)  # no grid sets what is small
+    view = cast("Any", SimpleNamespace(shoe=outsole, numerics=fine))
     problems = [p for path, part in walk(outsole) for p in part.problems(view, path)]
     if problems:
         raise CaseError([placed(error, places) for error in problems])
     return outsole
-
-
-class _Alone:
-    """An outsole as the checks of its sections see it: no grid sets its resolution."""
-
-    def __init__(self, outsole: Outsole) -> None:
-        self.shoe = outsole
-        self.numerics = _Fine()
-
-
-class _Fine:
-    grid_spacing = quick_grid_spacing = 0.0

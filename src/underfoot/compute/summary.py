@@ -67,15 +67,13 @@ class FrictionLimit:
     def __str__(self) -> str:
         if self.kind == "dry":
             return "The floor is dry: the friction of the dry pair is the limit."
+        limit = "the limit is the adhesion that the fluid blocks where the surfaces touch."
         if self.kind == "film":
-            return (
-                f"The film carries {100 * self.film_share:.0f} % of the load; without the film the "
-                f"same surfaces would have a COF of about {self.cof_without_film:.2f}."
+            limit = (
+                "without the film the same surfaces would have a COF of about "
+                f"{self.cof_without_film:.2f}."
             )
-        return (
-            f"The film carries {100 * self.film_share:.0f} % of the load; the limit is the "
-            "adhesion that the fluid blocks where the surfaces touch."
-        )
+        return f"The film carries {100 * self.film_share:.0f} % of the load; {limit}"
 
 
 def friction_limit(scalars: Mapping[str, SourcedValue]) -> FrictionLimit:

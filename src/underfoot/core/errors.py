@@ -30,6 +30,11 @@ class UnderfootError(Exception):
         self.nearest = nearest
         self.remedy = remedy
 
+    @property
+    def parts(self) -> dict[str, str | None]:
+        """All but ``what`` and ``where``, by name."""
+        return {name: getattr(self, name) for name in ("allowed", "nearest", "remedy")}
+
     def __str__(self) -> str:
         parts = [f"{self.where}: {self.what}" if self.where else self.what]
         if self.allowed:

@@ -92,7 +92,7 @@ class Comparison(Presentable):
         lead = (first.cof.value or 0.0) - (second.cof.value or 0.0)
         better, other = self.label(first.letter), self.label(second.letter)
         chance = first.better_than_next
-        sure = "probability not estimated" if chance is None else f"probability {_chance(chance)}"
+        sure = f"probability {_chance(chance, 'not estimated')}"
         if lead == 0.0 or (chance is not None and chance < DECIDED):
             order = f"The order of {better} and {other} is not decided: COF higher by {lead:.3f}"
         else:
@@ -124,8 +124,8 @@ class Comparison(Presentable):
                     rank.letter,
                     rank.name,
                     value_text("cof", rank.cof),
-                    "" if rank.interval is None else "{:.3f} to {:.3f}".format(*rank.interval),
-                    "" if rank.better_than_next is None else _chance(rank.better_than_next),
+                    "{:.3f} to {:.3f}".format(*rank.interval) if rank.interval else "",
+                    _chance(rank.better_than_next, ""),
                 )
                 for rank in self.ranking
             ],
@@ -196,28 +196,20 @@ def compare(
 ) -> Comparison:
     """Return results side by side, ranked by COF; cases are computed first.
 
-    Parameters
-    ----------
-    *items
-        Two to eight results or cases.
-    quick
-        Compute cases on the coarse grid.
-    catalogue
-        Where the stored cases of results find their entries; the built-in one by default.
-    progress
-        Receives stage, fraction and residual.
+    Parameters:
+        *items: Two to eight results or cases.
+        quick: Compute cases on the coarse grid.
+        catalogue: Where the stored cases of results find their entries; the built-in one by
+            default.
+        progress: Receives stage, fraction and residual.
 
-    Notes
-    -----
     The probability that one COF is higher than another is the share of the joint draws in which it
     is: what two cases have in common (laboratory, compound, floor, law, the model's error of the
     film) is drawn once for both and cancels. Results without draws, or of different laws or seeds,
     count as independent: Phi(d / s), d their difference and s = sqrt(s1^2 + s2^2).
 
-    Raises
-    ------
-    InputError
-        Fewer than two or more than eight items.
+    Raises:
+        InputError: Fewer than two or more than eight items.
     """
     _check_count(len(items))
     results = tuple(
@@ -292,21 +284,19 @@ def _check_count(count: int) -> None:
 def _ranking(results: Sequence[Result]) -> tuple[Rank, ...]:
     if not all(result.status.usable for result in results):
         return ()
-    order = sorted(range(len(results)), key=lambda k: -results[k].value("cof"))
+    order = sorted(zip(LETTERS, results, strict=False), key=lambda one: -one[1].value("cof"))
     ranks = []
-    for place, k in enumerate(order):
-        cof = results[k].scalars["cof"]
-        after = order[place + 1 : place + 2]
-        chance = _chance_higher(results[k], results[after[0]]) if after else None
-        ranks.append(Rank(LETTERS[k], results[k].name, cof, _interval(cof), chance))
+    for place, (letter, result) in enumerate(order, start=1):
+        cof = result.scalars["cof"]
+        chance = _chance_higher(result, order[place][1]) if place < len(order) else None
+        ranks.append(Rank(letter, result.name, cof, _interval(cof), chance))
     return tuple(ranks)
 
 
 def _chance_higher(first: Result, second: Result) -> float | None:
     """Return the probability that the first COF is higher, from shared draws where there are."""
-    draws = [result.fields.get("cof_draws") for result in (first, second)]
+    a, b = (result.fields.get("cof_draws") for result in (first, second))
     laws = {result.provenance.closures.get("friction") for result in (first, second)}
-    a, b = draws
     if laws != {"pair"} or a is None or b is None or a.size != b.size:
         return probability_higher(first.scalars["cof"], second.scalars["cof"])
     higher, equal = np.mean(a.values > b.values), np.mean(a.values == b.values)
@@ -335,14 +325,12 @@ def _different_from_first(values: Sequence[SourcedValue | None]) -> tuple[str, .
     first = values[0]
     if first is None or first.value is None or first.uncertainty is None:
         return None
-    known, letters = False, []
-    for letter, other in zip(LETTERS[1:], values[1:], strict=False):
-        if other is None or other.value is None or other.uncertainty is None:
-            continue
-        known = True
-        if abs(other.value - first.value) > Z95 * hypot(first.uncertainty, other.uncertainty):
-            letters.append(letter)
-    return tuple(letters) if known else None
+    differs = {
+        letter: abs(other.value - first.value) > Z95 * hypot(first.uncertainty, other.uncertainty)
+        for letter, other in zip(LETTERS[1:], values[1:], strict=False)
+        if other is not None and other.value is not None and other.uncertainty is not None
+    }
+    return tuple(letter for letter in differs if differs[letter]) if differs else None
 
 
 def _reasons(results: Sequence[Result]) -> tuple[str, ...]:
@@ -369,7 +357,9 @@ def _reasons(results: Sequence[Result]) -> tuple[str, ...]:
     return tuple(reasons)
 
 
-def _chance(probability: float) -> str:
+def _chance(probability: float | None, unknown: str) -> str:
+    if probability is None:
+        return unknown
     return "above 99 %" if probability > 0.99 else percent(probability)
 
 

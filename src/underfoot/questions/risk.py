@@ -89,15 +89,9 @@ class RiskAssessment(Presentable):
     @property
     def best(self) -> list[ChangeEffect]:
         """Return the changes that reduce the slip probability, the most effective first."""
-        present = self.outcome.number("slip_probability")
-        useful = [
-            each
-            for each in self.changes
-            if each.computed and each.number("slip_probability") < present
-        ]
-        return sorted(
-            useful, key=lambda each: (each.number("slip_probability"), -each.number("cof"))
-        )
+        slip, present = "slip_probability", self.outcome.number("slip_probability")
+        useful = [each for each in self.changes if each.computed and each.number(slip) < present]
+        return sorted(useful, key=lambda each: (each.number(slip), -each.number("cof")))
 
     def headline(self) -> tuple[str, ...]:
         if not self.usable:
@@ -156,14 +150,10 @@ class RiskAssessment(Presentable):
         return Table("Most effective changes (each simulated)", heads, rows)
 
     def tables(self) -> tuple[Table, ...]:
-        rows = [
-            (
-                one.name,
-                percent(one.probability),
-                "not reachable" if one.needed_acof is None else f"{one.needed_acof:.3f}",
-            )
-            for one in self.models
-        ]
+        rows = []
+        for one in self.models:
+            needed = "not reachable" if one.needed_acof is None else f"{one.needed_acof:.3f}"
+            rows.append((one.name, percent(one.probability), needed))
         heads = ("Model", "Slip probability", f"COF needed for {percent(self.target)}")
         models = Table("Slip probability of the same friction by every model", heads, rows)
         return (self.table(), models) if self.usable else ()
@@ -246,17 +236,13 @@ def risk_assessment(
             variants.append(case.replace(change.values))
         except UnderfootError as error:
             reasons[number] = str(error)
-    computed = outcomes(
-        [case, *variants],
-        quick=quick,
-        processes=processes,
-        progress=progress,
-        stage="Simulating changes",
+    cases, stage = [case, *variants], "Simulating changes"
+    present, *rest = outcomes(
+        cases, quick=quick, processes=processes, progress=progress, stage=stage
     )
-    present, rest = computed[0], iter(computed[1:])
     effects = []
     for number, change in enumerate(tried):
-        outcome = None if number in reasons else next(rest)
+        outcome = None if number in reasons else rest.pop(0)
         failed = outcome is not None and not outcome.usable
         reason = str(outcome.status) if outcome is not None and failed else reasons.get(number, "")
         effects.append(ChangeEffect(change, outcome, reason))
@@ -273,12 +259,11 @@ def risk_assessment(
 
 def model_risks(case: Case, acof: SourcedValue, target: float) -> tuple[ModelRisk, ...]:
     """Return the slip probability by each published model, and the ACOF for ``target``."""
-    models: list[tuple[str, str, SlipModel]] = []
-    for name in MODELS:
-        model = slip_model(name)
-        models.append((name, model.source, model))
-    for slope in QUOTED_SLOPES:
-        models.append((f"slope {slope:g}", _QUOTED, ReportG6(slope=slope)))
+    published = [(name, slip_model(name)) for name in MODELS]
+    models: list[tuple[str, str, SlipModel]] = [
+        *((name, model.source, model) for name, model in published),
+        *((f"slope {slope:g}", _QUOTED, ReportG6(slope=slope)) for slope in QUOTED_SLOPES),
+    ]
     rcof = RcofPopulation(case.risk.rcof_mean, case.risk.rcof_sd)
     risks = []
     for name, source, model in models:
@@ -316,5 +301,5 @@ def _missing(case: Case, outcome: Outcome, target: float) -> float | None:
     if not outcome.usable:
         return None
     rcof = RcofPopulation(case.risk.rcof_mean, case.risk.rcof_sd)
-    needed = _needed(target, rcof, slip_model(case.risk.model))
+    needed = _needed(target, rcof, slip_model(case.risk.name))
     return None if needed is None else max(needed - outcome.number("cof"), 0.0)

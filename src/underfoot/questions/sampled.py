@@ -48,7 +48,6 @@ def sampled(
     """
     if not most > least:
         raise InputError(f"{most:g}", where="most", allowed="above least")
-
     if not least > 0:
         raise InputError(f"{least:g}", where="least", allowed="above 0")
     if any(not factor > 0 for factor in factors):

@@ -114,17 +114,20 @@ class Effect:
         departures = (self.low.number(name) - centre, self.high.number(name) - centre)
         return math.sqrt(sum(each**2 for each in departures) / 2)
 
+    def ends(self) -> tuple[str, str]:
+        """Return the input's low and high value as text."""
+        return display(self.low_value, self.unit), display(self.high_value, self.unit)
+
     def results(self, name: str) -> tuple[str, str]:
         """Return a number at the low and at the high value as text."""
-        low, high = (
-            "not computed"
-            if not end.usable
-            else "no film"
-            if end.scalars[name].value is None
-            else quantity_text(end.number(name), end.scalars[name].unit)
-            for end in (self.low, self.high)
-        )
-        return low, high
+
+        def text(end: Outcome) -> str:
+            if not end.usable:
+                return "not computed"
+            value, unit = end.scalars[name].value, end.scalars[name].unit
+            return "no film" if value is None else quantity_text(value, unit)
+
+        return text(self.low), text(self.high)
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,10 +189,9 @@ class Sensitivity(Presentable):
         ]
         if self.effects:
             first = self.ranked("cof")[0]
-            low, high = first.results("cof")
+            inputs, results = " to ".join(first.ends()), " to ".join(first.results("cof"))
             sentences.append(
-                f"Most effective input: {first.path}, {display(first.low_value, first.unit)} to "
-                f"{display(first.high_value, first.unit)} changes the COF from {low} to {high}."
+                f"Most effective input: {first.path}, {inputs} changes the COF from {results}."
             )
         return tuple(sentences)
 
@@ -207,13 +209,9 @@ class Sensitivity(Presentable):
         rows = []
         for name, label in QUANTITIES.items():
             band, unit = self.band(name), self.nominal.scalars[name].unit
-            rows.append(
-                (
-                    label,
-                    quantity_text(band.value, unit, band.deviation),
-                    f"{quantity_text(band.lowest, unit)} to {quantity_text(band.highest, unit)}",
-                )
-            )
+            value = quantity_text(band.value, unit, band.deviation)
+            low, high = (quantity_text(end, unit) for end in (band.lowest, band.highest))
+            rows.append((label, value, f"{low} to {high}"))
         return Table("Law and inputs together", ("Quantity", "Value ± 1 sd", "Variants"), rows)
 
     def tables(self) -> tuple[Table, ...]:
@@ -223,12 +221,7 @@ class Sensitivity(Presentable):
         tables = [self.table()]
         for name, label in QUANTITIES.items():
             rows = [
-                (
-                    effect.path,
-                    display(effect.low_value, effect.unit),
-                    display(effect.high_value, effect.unit),
-                    *effect.results(name),
-                )
+                (effect.path, *effect.ends(), *effect.results(name))
                 for effect in self.ranked(name)[:MOST_INPUTS]
             ]
             tables.append(Table(f"{label}: one standard deviation to either side", heads, rows))
@@ -269,19 +262,13 @@ class Sensitivity(Presentable):
             "quantity unit nominal input low_input high_input input_unit at_low at_high deviation "
             "reason".split()
         )
+        nominal = self.nominal
         rows = [
             (
-                name,
-                self.nominal.scalars[name].unit,
-                self.nominal.number(name),
-                effect.path,
-                effect.low_value,
-                effect.high_value,
-                effect.unit,
-                effect.low.number(name),
-                effect.high.number(name),
-                effect.deviation(name, self.nominal),
-                effect.reason,
+                *(name, nominal.scalars[name].unit, nominal.number(name)),
+                *(effect.path, effect.low_value, effect.high_value, effect.unit),
+                *(effect.low.number(name), effect.high.number(name)),
+                *(effect.deviation(name, nominal), effect.reason),
             )
             for name in QUANTITIES
             for effect in self.ranked(name)
@@ -297,26 +284,19 @@ class Sensitivity(Presentable):
         inputs = math.sqrt(sum(each**2 for each in deviations if not math.isnan(each)))
         law = self.nominal.spread(name)
         law = 0.0 if math.isnan(law) else law
-        return Band(
-            value,
-            math.hypot(inputs, law),
-            inputs,
-            law,
-            min(values),
-            max(values),
-            tuple(
-                effect.path
-                for effect, deviation in zip(self.effects, deviations, strict=True)
-                if math.isnan(deviation)
-            ),
-        )
+        pairs = zip(self.effects, deviations, strict=True)
+        failed = tuple(effect.path for effect, each in pairs if math.isnan(each))
+        both = math.hypot(inputs, law)
+        return Band(value, both, inputs, law, min(values), max(values), failed)
 
     def ranked(self, name: str) -> list[Effect]:
         """Return the effects on a number, largest first."""
-        return sorted(
-            self.effects,
-            key=lambda effect: -_or_zero(effect.deviation(name, self.nominal)),
-        )
+
+        def size(effect: Effect) -> float:
+            deviation = effect.deviation(name, self.nominal)
+            return 0.0 if math.isnan(deviation) else -deviation
+
+        return sorted(self.effects, key=size)
 
 
 def open_inputs(case: Case, inputs: Sequence[OpenInput] = OPEN_INPUTS) -> list[OpenInput]:
@@ -367,37 +347,21 @@ def sensitivity(
 ) -> Sensitivity:
     """Return the results of a case and the effect of its open inputs, one at a time.
 
-    Parameters
-    ----------
-    case
-        What to vary.
-    inputs
-        What to vary in it; None takes ``open_inputs(case)``.
-    quick
-        Use the coarse grid: differences need less resolution than values.
-    processes, progress
-        As for ``outcomes``; progress sees every case of the plan.
+    Parameters:
+        case: What to vary.
+        inputs: What to vary in it; None takes ``open_inputs(case)``.
+        quick: Use the coarse grid: differences need less resolution than values.
+        processes, progress: As for ``outcomes``; progress sees every case of the plan.
 
-    Notes
-    -----
     Two runs an input, at one standard deviation to either side. First order: effects of two
     inputs together are not looked for, and their independence is assumed.
     """
     plan = variants(case, inputs)
     cases = [case, *(end for *_, low, high in plan for end in (low, high))]
-    results = outcomes(
-        cases,
-        quick=quick,
-        processes=processes,
-        progress=progress,
-        stage="Simulating variants",
-    )
+    stage = "Simulating variants"
+    results = outcomes(cases, quick=quick, processes=processes, progress=progress, stage=stage)
     effects = [
         Effect(each.path, each.reason, low, high, unit_at(each.path), *results[k : k + 2])
         for k, (each, low, high, _, _) in zip(range(1, len(cases), 2), plan, strict=True)
     ]
     return Sensitivity(results[0], tuple(effects), quick)
-
-
-def _or_zero(value: float) -> float:
-    return 0.0 if math.isnan(value) else value

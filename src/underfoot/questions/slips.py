@@ -122,25 +122,15 @@ class SlipPopulation(Presentable):
         if self.wet:
             rows += self._sensor_rows()
         if study.fit is not None:
-            error = study.fit.held_out
-            rows.append(
-                (
-                    "Reduced model on full runs held out",
-                    f"± {error.peak_speed:.2g} m/s",
-                    f"{error}; on fitted runs ± {study.fit.fitted.peak_speed:.2g} m/s",
-                )
-            )
+            error, fitted = study.fit.held_out, study.fit.fitted.peak_speed
+            label, value = "Reduced model on full runs held out", f"± {error.peak_speed:.2g} m/s"
+            rows.append((label, value, f"{error}; on fitted runs ± {fitted:.2g} m/s"))
             if study.pressure_error is not None:
                 rows.append(("  peak pressure", f"± {percent(study.pressure_error)}", "relative"))
         if (start := study.slip_start()) is not None:
-            rows.append(
-                (
-                    "Slip start",
-                    f"{1e3 * start[0]:.0f} ms",
-                    f"at {start[1]:.2f} of body weight; in 39 slips of people 20 ms, 0.27 "
-                    "(Iraqi et al. 2018)",
-                )
-            )
+            people = "in 39 slips of people 20 ms, 0.27 (Iraqi et al. 2018)"
+            remark = f"at {start[1]:.2f} of body weight; {people}"
+            rows.append(("Slip start", f"{1e3 * start[0]:.0f} ms", remark))
         for name, (label, unit, _, values) in BANDS.items():
             speeds = self._by(name)
             if None not in speeds.values():
@@ -153,12 +143,12 @@ class SlipPopulation(Presentable):
         study = self.study
         people = study.population
         model = "full model for every walker" if study.full else "reduced model fitted to full runs"
-        lines = [f"model: {model}"] if self.wet else []
-        lines.append(f"moving mass: {people.effective_mass:.3g} of the body mass (assumed)")
         low, high = people.weight_transfer
-        lines.append(
-            f"a slipping foot takes on {low:.2g} to {high:.2g} of the dry step's load (assumed)"
-        )
+        lines = [f"model: {model}"] if self.wet else []
+        lines += [
+            f"moving mass: {people.effective_mass:.3g} of the body mass (assumed)",
+            f"a slipping foot takes on {low:.2g} to {high:.2g} of the dry step's load (assumed)",
+        ]
         if any(spread.assumed for spread in (people.mass, people.rcof, people.heel_speed)):
             lines.append(
                 f"people: RCOF {people.rcof.mean:.3g} ± {people.rcof.sd:.2g}, heel contact at "
@@ -199,23 +189,14 @@ class SlipPopulation(Presentable):
             walker, seen = subject.walker, subject.seen
             rows.append(
                 (
-                    walker.name,
-                    walker.history.name,
-                    f"{walker.mass:.1f}",
-                    f"{walker.rcof:.4f}",
+                    *(walker.name, walker.history.name, f"{walker.mass:.1f}", f"{walker.rcof:.4f}"),
                     f"{walker.walking_speed or math.nan:.3f}",
                     f"{walker.heel_speed:.3f}",
                     f"{math.degrees(walker.shoe_angle):.2f}",
-                    f"{1e3 * walker.landing:.1f}",
-                    f"{1e3 * walker.lateral:.1f}",
-                    f"{seen.peak_speed:.4f}",
-                    seen.start,
-                    f"{seen.distance:.4f}",
-                    str(seen.outcome),
-                    seen.slipped,
-                    seen.crossed,
-                    f"{seen.peak_pressure:.0f}",
-                    seen.duration,
+                    *(f"{1e3 * place:.1f}" for place in (walker.landing, walker.lateral)),
+                    *(f"{seen.peak_speed:.4f}", seen.start, f"{seen.distance:.4f}"),
+                    *(str(seen.outcome), seen.slipped, seen.crossed),
+                    *(f"{seen.peak_pressure:.0f}", seen.duration),
                     "; ".join(map(str, seen.flags)),
                 )
             )
@@ -232,14 +213,13 @@ class SlipPopulation(Presentable):
 
     def _sensor_rows(self) -> list[tuple[str, str, str]]:
         correlation = self.study.correlation()
-        missing = "fewer than three walkers crossed the sensors, or no scatter"
-        rows = [
-            (
-                "Correlation of peak speed and peak pressure",
-                "not estimated" if correlation is None else f"{correlation:.2f}",
-                missing if correlation is None else "Pearson",
-            )
-        ]
+        value, remark = (
+            "not estimated",
+            "fewer than three walkers crossed the sensors, or no scatter",
+        )
+        if correlation is not None:
+            value, remark = f"{correlation:.2f}", "Pearson"
+        rows = [("Correlation of peak speed and peak pressure", value, remark)]
         levels = self.study.rows()
         if np.isfinite(levels).all():
             text = " / ".join(f"{pressure / 1e3:.3g}" for pressure in levels) + " kPa"
@@ -297,9 +277,6 @@ def measured_rcof(path: Path) -> tuple[float, float, str]:
     Raises:
         InputError: No such file, no RCOF in it, or one person only.
     """
-
-    import numpy as np
-
     from underfoot.trials.analyse.file_result import MEAN_OF_STEPS
 
     try:

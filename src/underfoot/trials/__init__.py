@@ -3,7 +3,6 @@
 from .axes import Axes, axes_of, axis_name, axis_vector, heel_candidates, heel_of
 from .describe import Description, described, described_file
 from .events import EditError, Stance, body_mass, body_weight, contacts, stances
-from .filters import FILTERS, FORCE_FILTER, MARKER_FILTER, LowPass, low_passed, velocity
 from .gait import (
     DEFINITIONS,
     RcofDefinition,
@@ -44,6 +43,7 @@ from .readers import (
     read_trial,
     read_trials,
 )
+from .signals import FILTERS, FORCE_FILTER, MARKER_FILTER, LowPass, low_passed, velocity
 from .slip_friction import ACOF_WINDOWS, available_friction, available_frictions, mean_friction
 from .slips import Outcome, OutcomeLimits, Slip, slip, slip_of
 from .trial import Channel, Edit, Event, Marker, Plate, PlateAccuracy, Trial, file_checksum, joined

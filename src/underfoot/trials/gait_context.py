@@ -9,10 +9,10 @@ import numpy as np
 
 from .axes import Axes, marker_velocity, toe_candidates
 from .events import Stance
-from .filters import MARKER_FILTER, LowPass, bridged, low_passed
 from .heel import heel_motion
 from .measurement import Flag
 from .plates import plate_named
+from .signals import MARKER_FILTER, LowPass, bridged, low_passed
 from .slips import OutcomeLimits, Slip
 from .trial import Marker, Trial
 

@@ -8,8 +8,7 @@ import numpy as np
 
 from underfoot.core import InputError, unknown_name
 
-from .baseline import runs
-from .filters import MARKER_FILTER, LowPass, bridged, low_passed
+from .signals import MARKER_FILTER, LowPass, bridged, low_passed, runs
 from .trial import Marker
 
 PLANES = {"horizontal": "speed in the plane of the floor", "3d": "speed in three dimensions"}

@@ -9,9 +9,9 @@ import numpy as np
 
 from underfoot.core import DataError, InputError
 
-from .baseline import runs, saturated
 from .heel import HeelMotion
 from .measurement import Flag, Measurement, remark
+from .signals import runs, saturated
 from .slips import Slip
 from .trial import Channel, Trial
 

@@ -20,9 +20,12 @@ from .linear import tukey_hsd as tukey_hsd
 from .logistic import ClusteredFit as ClusteredFit
 from .logistic import Coefficient as Coefficient
 from .logistic import LogisticFit as LogisticFit
+from .logistic import LogisticLine as LogisticLine
+from .logistic import RiskCurve as RiskCurve
 from .logistic import Separation as Separation
 from .logistic import clustered_logistic as clustered_logistic
 from .logistic import logistic_regression as logistic_regression
+from .logistic import risk_curve as risk_curve
 from .logistic import separation as separation
 from .mixed import MixedModel as MixedModel
 from .mixed import PersonMeans as PersonMeans
