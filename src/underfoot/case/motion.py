@@ -166,18 +166,14 @@ class MotionFromHistory(Motion):
             yield InputError(error.what, where=listed, allowed=error.allowed, remedy=error.remedy)
             return
         assert history is not None
-        if abs(history.time[-1] - self.duration) > 1e-9:
-            yield InputError(
-                f"the history lasts {display(float(history.time[-1]), 's')}",
-                where=f"{where}.duration",
-                remedy="Leave motion.duration out: the history says it",
-            )
-        if abs(history.normal_force[-1] - self.normal_force) > 1e-6:
-            yield InputError(
-                f"the history ends with {history.normal_force[-1]:g} N",
-                where=f"{where}.normal_force",
-                remedy="Leave motion.normal_force out: the history says it",
-            )
+        last, force = float(history.time[-1]), history.normal_force[-1]
+        for name, what, differs in (
+            ("duration", f"lasts {display(last, 's')}", abs(last - self.duration) > 1e-9),
+            ("normal_force", f"ends with {force:g} N", abs(force - self.normal_force) > 1e-6),
+        ):
+            if differs:
+                remedy = f"Leave motion.{name} out: the history says it"
+                yield InputError(f"the history {what}", where=f"{where}.{name}", remedy=remedy)
 
 
 def read_motion_table(path: Path, where: str) -> list[dict[str, str | float]]:
