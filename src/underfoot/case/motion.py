@@ -147,16 +147,9 @@ class MotionFromHistory(Motion):
     def build(self) -> MotionHistory | None:
         from underfoot.sole_contact.motion_history import MotionHistory
 
-        points = [
-            (
-                p.time,
-                p.normal_force,
-                p.speed,
-                self.shoe_angle if p.shoe_angle is None else p.shoe_angle,
-            )
-            for p in self.history_points
-        ]
-        return MotionHistory(*np.array(points).reshape(-1, 4).T)
+        points = [(p.time, p.normal_force, p.speed, p.shoe_angle) for p in self.history_points]
+        time, force, speed, angle = np.array(points, dtype=float).reshape(-1, 4).T.copy()
+        return MotionHistory(time, force, speed, np.where(np.isnan(angle), self.shoe_angle, angle))
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         listed = f"{where}.{'history' if self.history else 'history_points'}"
