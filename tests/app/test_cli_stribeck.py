@@ -101,7 +101,7 @@ def test_every_law_explains_itself(name):
     assert found.exit_code == 0
     assert len(found.output.splitlines()) <= 36  # one screen
     whole = called("explain", name, "--full").output
-    assert "Parameters\n----" in whole
+    assert "Parameters:\n    " in whole
     assert len(whole) > len(found.output)
 
 

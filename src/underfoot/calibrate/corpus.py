@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import resources
@@ -109,17 +109,9 @@ class Condition:
     @property
     def pair(self) -> str:
         """Name of compound, floor and fluid: what shares one error of the pair."""
-        hardness = self.numbers["shore_a"]
-        return "|".join(
-            str(part)
-            for part in (
-                self.source,
-                self.words.get("compound"),
-                hardness.low,
-                self.words.get("floor"),
-                self.words.get("fluid"),
-            )
-        )
+        compound, floor, fluid = map(self.words.get, ("compound", "floor", "fluid"))
+        parts = (self.source, compound, self.numbers["shore_a"].low, floor, fluid)
+        return "|".join(map(str, parts))
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,24 +229,14 @@ def _condition(
                 'floor_rq = { range = ["0.3 um", "4 um"], note = "not printed" }',
             )
         if words["fluid"] not in FLUIDS:
-            raise DataError(
-                f'unknown fluid "{words["fluid"]}"',
-                where=f"{where}.fluid",
-                allowed=", ".join(FLUIDS),
-                nearest=nearest_match(str(words["fluid"]), FLUIDS),
-            )
+            raise _unknown(f'fluid "{words["fluid"]}"', words["fluid"], FLUIDS, f"{where}.fluid")
     return Condition(source, name, numbers, words, reading, members)
 
 
 def _readings(measured: dict[str, Any], where: str) -> Iterator[tuple[str | None, Reading]]:
     kind = measured.get("kind")
     if kind not in KINDS:
-        raise DataError(
-            f"unknown kind of measurement {kind!r}",
-            where=f"{where}.measured.kind",
-            allowed=", ".join(KINDS),
-            nearest=nearest_match(str(kind), KINDS),
-        )
+        raise _unknown(f"kind of measurement {kind!r}", kind, KINDS, f"{where}.measured.kind")
     lacking = KINDS[kind] - measured.keys()
     if lacking:
         raise DataError(f"{', '.join(sorted(lacking))} missing", where=f"{where}.measured")
@@ -319,12 +301,13 @@ def _effect(source: str, entry: dict[str, Any]) -> Effect:
 def _known(table: Mapping[str, Any], keys: tuple[str, ...], where: str) -> None:
     for key in table:
         if key not in keys:
-            raise DataError(
-                f'unknown key "{key}"',
-                where=where,
-                allowed=", ".join(keys),
-                nearest=nearest_match(key, keys),
-            )
+            raise _unknown(f'key "{key}"', key, keys, where)
+
+
+def _unknown(what: str, given: object, known: Iterable[str], where: str) -> DataError:
+    known = tuple(known)
+    near = nearest_match(str(given), known)
+    return DataError(f"unknown {what}", where=where, allowed=", ".join(known), nearest=near)
 
 
 def sampled_numbers(condition: Condition, shares: Array) -> dict[str, Array]:

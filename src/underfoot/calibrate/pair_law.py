@@ -27,9 +27,9 @@ DRAWS = 8
 SD_SOURCE = 0.33
 """Between laboratories, sd of ln COF: reproducibility limits of 70 and 100 % of one shoe on eight
 machines, over 2.8 (Jung and Fischer 1993, Safety Science 16:115): 0.25 and 0.36."""
-SPREADS = ("source", "pair", "reading", "dry part of a source")
 SPREAD_PRIOR = (SD_SOURCE, 0.4, 0.2, 0.7)
-"""The first log-normal with sd 0.35 of its logarithm, the others half-normal."""
+"""Of a source, a pair, a reading and the dry part of a source; the first log-normal with sd 0.35 of
+its logarithm, the others half-normal."""
 DEFAULTS = {"loss_tangent": LOSS_TANGENT}
 """Of a compound whose loss tangent is not printed (assumed)."""
 
@@ -95,6 +95,10 @@ def _eq_17(theta: Array, numbers: dict[str, Array], fluid: str) -> Array:
 
 
 _L = np.log
+_CONTACT = (
+    ("ln film, aqueous", "ln film, oil", "ln dry", "ln kappa_0, Pa m"),
+    ((_L(0.10), 0.5), (_L(0.08), 0.5), (_L(0.4), 0.5), (_L(1.08e-3), 0.5)),
+)
 LAWS = (
     PairLaw("one constant", ("ln COF",), ((_L(0.25), 1.0),), _constant),
     PairLaw(
@@ -104,10 +108,7 @@ LAWS = (
         _by_fluid,
     ),
     PairLaw(
-        "Eq. 26",
-        ("ln dry adhesion", "ln hysteresis"),
-        ((_L(0.5), 0.4), (_L(0.05), 0.5)),
-        _eq_26,
+        "Eq. 26", ("ln dry adhesion", "ln hysteresis"), ((_L(0.5), 0.4), (_L(0.05), 0.5)), _eq_26
     ),
     PairLaw(
         "Eq. 17 in viscosity x speed",
@@ -116,31 +117,11 @@ LAWS = (
         _eq_17,
         dry=1,
     ),
-    PairLaw(
-        "pair, without roughness and hardness",
-        ("ln film, aqueous", "ln film, oil", "ln dry", "ln kappa_0, Pa m"),
-        ((_L(0.10), 0.5), (_L(0.08), 0.5), (_L(0.4), 0.5), (_L(1.08e-3), 0.5)),
-        _without_roughness,
-        dry=2,
-    ),
+    PairLaw("pair, without roughness and hardness", *_CONTACT, _without_roughness, dry=2),
     PairLaw(
         "pair",
-        (
-            "ln film, aqueous",
-            "ln film, oil",
-            "ln dry",
-            "ln kappa_0, Pa m",
-            "roughness exponent",
-            "hardness exponent",
-        ),
-        (
-            (_L(0.10), 0.5),
-            (_L(0.08), 0.5),
-            (_L(0.4), 0.5),
-            (_L(1.08e-3), 0.5),
-            (1.5, 0.8),
-            (0.15, 0.10),
-        ),
+        (*_CONTACT[0], "roughness exponent", "hardness exponent"),
+        (*_CONTACT[1], (1.5, 0.8), (0.15, 0.10)),
         _pair,
         dry=2,
     ),
@@ -229,9 +210,8 @@ class PairPosterior:
         shared = generator.normal(0.0, self.spreads[:, 0])
         noise = np.sqrt(self.spreads[:, 2:3] ** 2 + rows.error**2 + variance)
         own = np.stack([pairs[c.pair] for c in conditions], axis=1)
-        return (
-            mean + shared[:, None] + own + noise * generator.normal(size=(count, len(conditions)))
-        )
+        readings = noise * generator.normal(size=(count, len(conditions)))
+        return mean + shared[:, None] + own + readings
 
 
 def fitted(

@@ -56,30 +56,25 @@ class StribeckCurve:
     def rows(self) -> list[dict[str, Any]]:
         """Return one row for each speed, SI units."""
         known = {} if self.points is None else dict(zip(*self.points, strict=True))
-        found = []
-        for i, speed in enumerate(self.speed):
-            found.append(
-                {
-                    "fluid": self.label,
-                    "viscosity_Pa_s": self.viscosity,
-                    "speed_m_per_s": float(speed),
-                    "viscosity_times_speed_Pa_m": self.viscosity * float(speed),
-                    "cof": float(sum(part[i] for part in self.parts.values())),
-                    "cof_sd": None if self.deviation is None else float(self.deviation[i]),
-                    **dict(zip(("cof_low_95", "cof_high_95"), self._bounds(i), strict=True)),
-                    **{name: float(part[i]) for name, part in self.parts.items()},
-                    "adhesion_left": float(self.adhesion_left[i]),
-                    "adhesion_state": self.states[i],
-                    **({} if self.regimes is None else self.regimes.row(i)),
-                    "published_cof": None if speed not in known else float(known[speed]),
-                }
-            )
-        return found
-
-    def _bounds(self, i: int) -> tuple[float | None, float | None]:
-        if self.interval is None:
-            return None, None
-        return float(self.interval[0][i]), float(self.interval[1][i])
+        low, high = self.interval or (None, None)
+        return [
+            {
+                "fluid": self.label,
+                "viscosity_Pa_s": self.viscosity,
+                "speed_m_per_s": float(speed),
+                "viscosity_times_speed_Pa_m": self.viscosity * float(speed),
+                "cof": float(sum(part[i] for part in self.parts.values())),
+                "cof_sd": None if self.deviation is None else float(self.deviation[i]),
+                "cof_low_95": None if low is None else float(low[i]),
+                "cof_high_95": None if high is None else float(high[i]),
+                **{name: float(part[i]) for name, part in self.parts.items()},
+                "adhesion_left": float(self.adhesion_left[i]),
+                "adhesion_state": self.states[i],
+                **({} if self.regimes is None else self.regimes.row(i)),
+                "published_cof": None if speed not in known else float(known[speed]),
+            }
+            for i, speed in enumerate(self.speed)
+        ]
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
@@ -105,7 +100,7 @@ def stribeck_curve(
     """
     from underfoot.case.friction import measured_fluids
     from underfoot.compute.resolve import resolved
-    from underfoot.friction import sampled_points
+    from underfoot.friction.sampled_cof import PARTS, sampled_points
 
     if not pressure > 0:
         raise InputError(f"{pressure:g} Pa", where="--pressure", allowed="above 0")
@@ -137,11 +132,7 @@ def stribeck_curve(
         law=law.name,
         viscosity=fluid.value,
         speed=speed,
-        parts={
-            "adhesion": found.adhesion / pressure,
-            "hysteresis": found.hysteresis / pressure,
-            "viscous": found.viscous / pressure,
-        },
+        parts={name: getattr(found, name) / pressure for name in PARTS},
         interval=None if spread is None else (spread.low, spread.high),
         deviation=None if spread is None else spread.deviation,
         adhesion_left=left,

@@ -86,13 +86,10 @@ def fluid_points(
     boundary = friction.cof_boundary.value
     if boundary is None:
         raise InputError("no boundary friction was measured", where=friction.fluid)
-    fitted = friction.tau_hydro is not None and friction.cof_asymptote is not None
-    if fitted:
-        assert friction.tau_hydro is not None
-        assert friction.cof_asymptote is not None
-        cof = stribeck_cof(
-            speed, boundary, friction.tau_hydro.value or 0.0, friction.cof_asymptote.value or 0.0
-        )
+    tau, left = friction.tau_hydro, friction.cof_asymptote
+    fitted = tau is not None and left is not None
+    if tau is not None and left is not None:
+        cof = stribeck_cof(speed, boundary, tau.value or 0.0, left.value or 0.0)
     else:
         cof = np.full(speed.shape, boundary)
     return CofPoints(
@@ -112,16 +109,9 @@ def roughness_series(catalogue: Catalogue) -> tuple[CofPoints, ...]:
     from underfoot.friction import stribeck_cof
 
     entry = catalogue.entry("published", "pin_on_disk_g2")
-    columns = [
-        entry.numbers(f"roughness_series.{name}", unit)
-        for name, unit in (
-            ("viscosity", "Pa*s"),
-            ("rq", "m"),
-            ("cof_bl", "1"),
-            ("tau_hydro", "m/s"),
-            ("cof_asymptote", "1"),
-        )
-    ]
+    units = {"viscosity": "Pa*s", "rq": "m", "cof_bl": "1", "tau_hydro": "m/s"}
+    units["cof_asymptote"] = "1"
+    columns = [entry.numbers(f"roughness_series.{name}", unit) for name, unit in units.items()]
     return tuple(
         CofPoints(
             fluid="glycerol_25pct" if viscosity < 3e-3 else "glycerol_50pct",

@@ -14,7 +14,6 @@ NORMAL_FORCE = 20.9
 RANGES = {
     "contact pressure": Range(0.0, PIN_PRESSURE, "Pa", f"{REPORT}, G.3.1: one load; lower assumed"),
     "sliding speed": Range(0.0, 0.01, "m/s", f"{REPORT}, G.3.1: one speed"),
-    **FILM_RANGE,
 }
 
 
@@ -69,4 +68,4 @@ class AdhesionBlockingLaw(UncertainInputs):
 
     @property
     def ranges(self) -> Mapping[str, Range]:
-        return RANGES
+        return {**RANGES, **FILM_RANGE}

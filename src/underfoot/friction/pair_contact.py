@@ -48,7 +48,6 @@ MOST = 1.0
 SOURCE = "law of the pair, calibrated on published measurements (underfoot studies run corpus)"
 RANGES = {
     "sliding speed": Range(0.01, 1.0, "m/s", "speeds of the measurements behind the law"),
-    **FILM_RANGE,
     "viscosity": Range(0.5e-3, 0.3, "Pa*s", "fluids of the measurements behind the law"),
 }
 LABORATORY, DRY_PART = "laboratory", "dry part of the laboratory"
@@ -334,4 +333,4 @@ class PairContactLaw(UncertainInputs):
 
     @property
     def ranges(self) -> Mapping[str, Range]:
-        return RANGES
+        return {"sliding speed": RANGES["sliding speed"], **FILM_RANGE, **RANGES}
