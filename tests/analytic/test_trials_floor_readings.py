@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from underfoot.core import DataError, InputError
 from underfoot.trials import profile_from
 from underfoot.trials.analyse import analyse_folder
-from underfoot.trials.floor_classes import SCHEMES, class_scheme, cof_of_pendulum
+from underfoot.trials.analyse.readings import SCHEMES, class_scheme, cof_of_pendulum
 from underfoot.trials.protocols import protocol
 from underfoot.trials.readers import read_trial
 

@@ -229,7 +229,7 @@ def test_simulated_folders_are_labelled_and_repeatable(tmp_path):
 
 def test_boundary_folder(tmp_path):
     """Forces built from known adhesion and hysteresis: Eq. 22 to 26 must give them back."""
-    from underfoot.trials.simulate.tester import disk_run
+    from underfoot.trials.simulate.folder import disk_run
 
     rng = np.random.default_rng(9)
     pairs = {

@@ -120,7 +120,7 @@ def test_complete_separation_on_the_scale_of_a_cof():
 
 def test_reports_risk_model_is_consistent_with_its_percentages():
     # G.6: slope -49.2 of ACOF - RCOF, 50 % at -0.06.
-    from underfoot.trials.risk_curves import LogisticLine
+    from underfoot.trials.statistics.logistic import LogisticLine
 
     line = LogisticLine(-2.952, -49.2)
     assert line.at_probability(0.5) == pytest.approx(-0.06, abs=5e-5)
@@ -162,7 +162,7 @@ def test_clusters_against_statsmodels():
 
 
 def test_risk_curve_band():
-    from underfoot.trials.risk_curves import risk_curve
+    from underfoot.trials.statistics.logistic import risk_curve
 
     fit = logistic_regression(_DISTRESS, {"temperature": _TEMPERATURE})
     curve = risk_curve(fit, np.array([31.0, 70.0]))

@@ -26,11 +26,11 @@ from underfoot.trials import (
 )
 from underfoot.trials.analyse import analyse_folder
 from underfoot.trials.analyse.steps import rcof_definition
-from underfoot.trials.baseline import saturated, unloaded
 from underfoot.trials.events import no_contact_reason
 from underfoot.trials.gait_context import gait_context
 from underfoot.trials.plates import channel_forces, ordered_corners, plate_axes
 from underfoot.trials.protocols import protocol
+from underfoot.trials.signals import saturated, unloaded
 from underfoot.trials.simulate import (
     Defects,
     SlipTruth,

@@ -23,8 +23,7 @@ from underfoot.questions.outcomes import Outcome, outcomes
 from underfoot.slip import ADULTS_LEVEL_WALKING as ADULTS
 from underfoot.slip import MODELS, ReportG6, slip_model
 from underfoot.slip.dynamics import cof_table, slip_study
-from underfoot.trials.risk_curves import risk_curve
-from underfoot.trials.statistics.logistic import logistic_regression
+from underfoot.trials.statistics.logistic import logistic_regression, risk_curve
 
 from .figure import PRINTED, Figure, Layer, Panel, grouped_bars, line, points
 from .runner import Computed, Options, Table, part

@@ -3,7 +3,6 @@
 from .axes import Axes, axes_of, axis_name, axis_vector, heel_candidates, heel_of
 from .describe import Description, described, described_file
 from .events import EditError, Stance, body_mass, body_weight, contacts, stances
-from .filters import FILTERS, FORCE_FILTER, MARKER_FILTER, LowPass, low_passed, velocity
 from .gait import (
     DEFINITIONS,
     RcofDefinition,
@@ -20,7 +19,6 @@ from .gait_context import (
     slip_course,
     stance_curves,
 )
-from .heel import HeelMotion, SlipDefinition, contact_from_heel, heel_motion
 from .measurement import Flag, Measurement, mean_of
 from .plates import finished_plate
 from .pressures import (
@@ -44,8 +42,19 @@ from .readers import (
     read_trial,
     read_trials,
 )
+from .signals import FILTERS, FORCE_FILTER, MARKER_FILTER, LowPass, low_passed, velocity
 from .slip_friction import ACOF_WINDOWS, available_friction, available_frictions, mean_friction
-from .slips import Outcome, OutcomeLimits, Slip, slip, slip_of
+from .slips import (
+    HeelMotion,
+    Outcome,
+    OutcomeLimits,
+    Slip,
+    SlipDefinition,
+    contact_from_heel,
+    heel_motion,
+    slip,
+    slip_of,
+)
 from .trial import Channel, Edit, Event, Marker, Plate, PlateAccuracy, Trial, file_checksum, joined
 
 __all__ = [

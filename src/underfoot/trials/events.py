@@ -9,9 +9,9 @@ import numpy as np
 from underfoot.core import InputError, unknown_name
 
 from .axes import Axes, Direction, DirectionSource, axes_of, heel_candidates, walking_direction
-from .baseline import runs
 from .measurement import Flag
 from .plates import plate_axes, plate_named
+from .signals import runs
 from .trial import Edit, Plate, Trial
 
 CONTACT_FORCE = 20.0  # N

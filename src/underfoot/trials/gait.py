@@ -12,10 +12,10 @@ from underfoot.core.presentation import Presentable, Table
 
 from .axes import Axes, DirectionSource, axes_of
 from .events import Stance, body_weight, stances
-from .filters import FILTERS, FORCE_FILTER, LowPass, low_passed
 from .measurement import Flag, Measurement, remark
 from .plates import baseline_words, plate_axes, plate_named, up_from_normal
 from .plausibility import baseline_error, other_foot_flags, rcof_flags, step_flags
+from .signals import FILTERS, FORCE_FILTER, LowPass, low_passed
 from .slips import Outcome, Slip, slip_of
 from .trial import Plate, Trial
 

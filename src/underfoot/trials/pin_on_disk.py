@@ -141,16 +141,11 @@ def friction_point(
     reason = "" if error is not None else "too few samples for a scatter"
     mean, seen = float(values.mean()), tuple(map(caution, flags))
     measurement = Measurement("cof", mean, "1", error, reason, len(values), seen, said)
-    return FrictionPoint(
-        trial.name,
-        measurement,
-        _speed(trial, kept) if speed is None else speed,
-        None if normal is None else float(np.abs(normal[kept]).mean()),
-        None if shear is None else float(np.abs(shear[kept]).mean()),
-        time,
-        ratio,
-        (float(time[kept[0]]), float(time[kept[-1]])),
-    )
+    speed = _speed(trial, kept) if speed is None else speed
+    forces = normal, shear
+    load, push = (None if f is None else float(np.abs(f[kept]).mean()) for f in forces)
+    ends = float(time[kept[0]]), float(time[kept[-1]])
+    return FrictionPoint(trial.name, measurement, speed, load, push, time, ratio, ends)
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,8 +4,8 @@ import numpy as np
 
 from underfoot.core import DataError
 
-from .baseline import SHEAR_WARNING, enough, saturated, unloaded
 from .measurement import Flag, remark
+from .signals import SHEAR_WARNING, enough, saturated, unloaded
 from .trial import Plate, Trial
 
 KINDS = {

@@ -13,12 +13,11 @@ import numpy as np
 from underfoot.core import UnderfootError
 
 from .axes import LEVEL, Axes, DirectionSource, Ramp, heel_candidates, marker_velocity
-from .baseline import longest_run, runs
 from .events import BodyWeight, Stance, contacts
-from .filters import LowPass, low_passed
-from .heel import contact_from_heel, marker_jumps
 from .measurement import Flag
 from .plates import plate_named
+from .signals import LowPass, longest_run, low_passed, runs
+from .slips import contact_from_heel, marker_jumps
 from .trial import Plate, Trial
 
 _ASSUMED = "assumed; kept by every real step that comes with this package"

@@ -9,9 +9,8 @@ from numpy.typing import ArrayLike
 from underfoot.core import DataError, InputError
 
 from .axes import Axes, axes_of
-from .baseline import saturated
-from .filters import MARKER_FILTER, LowPass, bridged, low_passed
 from .measurement import Measurement, remark
+from .signals import MARKER_FILTER, LowPass, bridged, low_passed, saturated
 from .trial import Channel, Marker, Trial
 
 NARROW = 1.5  # spacings; pressure bumps narrower than this can hide between scans
@@ -151,17 +150,8 @@ def pressure_scan(
         flags.append(f"scanned from {ends} only")
     line_load = float(np.sum(pressure * speed) / sensor.rate)
     lateral = float(np.interp(at[under], time, sideways).mean())
-    return PressureScan(
-        where,
-        along[under],
-        pressure,
-        lateral,
-        mean_speed,
-        change,
-        deviation,
-        line_load,
-        tuple(flags),
-    )
+    numbers = lateral, mean_speed, change, deviation, line_load
+    return PressureScan(where, along[under], pressure, *numbers, tuple(flags))
 
 
 def pressure_map(

@@ -9,11 +9,11 @@ import numpy as np
 from underfoot.core import DataError, InputError, unknown_name
 
 from .axes import Axes, axes_of
-from .filters import LowPass, low_passed
 from .gait import SHEARS
 from .measurement import Measurement, caution
 from .plates import baseline_words
 from .protocols import Protocol
+from .signals import LowPass, low_passed
 from .trial import Channel, Plate, Trial
 
 ACOF_WINDOWS = (0.002, 0.05, 0.1, 0.2)  # s

@@ -10,7 +10,6 @@ from underfoot.core import DataError, InputError, UnderfootError, unknown_name
 
 from ..axes import Axes, Ramp, axes_of
 from ..events import Stance, no_contact_reason, stances
-from ..filters import LowPass
 from ..gait import DEFINITIONS, RcofDefinition, RequiredFriction, stance_frictions
 from ..gait_context import gait_context, slip_course, stance_curves
 from ..measurement import Measurement, mean_of
@@ -21,6 +20,7 @@ from ..pressures import sensor_array_reading
 from ..protocols import Protocol
 from ..readers import Profile
 from ..relaxation_test import relaxation_reading
+from ..signals import LowPass
 from ..slip_friction import slide_friction
 from ..slips import OutcomeLimits, Slip, SlipDefinition, slip_of
 from ..trial import Trial

@@ -9,7 +9,6 @@ import numpy as np
 from underfoot.core import UnderfootError
 
 from ..boundary import alpha_beta, friction_split
-from ..floor_classes import class_scheme, cof_of_pendulum
 from ..pressure_map import PressureScan, pressure_map
 from ..protocols import Protocol
 from ..statistics import precision
@@ -18,6 +17,7 @@ from ..stribeck_fit import master_curve, stribeck_fit
 from . import tables
 from .conditions import NUMBERS, person_condition
 from .file_result import FileResult
+from .readings import class_scheme, cof_of_pendulum
 from .study_tests import Finding, comparison_findings, persons_of, slip_findings, varying
 from .tables import Table, condition_table, quantity_name
 

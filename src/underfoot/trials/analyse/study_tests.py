@@ -10,8 +10,7 @@ from underfoot.core import DataError, UnderfootError
 
 from .. import statistics
 from ..protocols import Protocol
-from ..risk_curves import risk_curve
-from ..statistics.logistic import METHODS
+from ..statistics.logistic import METHODS, risk_curve
 from .conditions import person_condition
 from .file_result import FileResult
 from .tables import Cell, Table, decimals_of, quantity_name

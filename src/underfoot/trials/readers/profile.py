@@ -16,15 +16,10 @@ _DIRECTIONS = ("x", "y", "z", "+x", "+y", "+z", "-x", "-y", "-z")
 # Tables of a profile with the keys they may have; none: any key, as the laboratory's own names.
 _PARTS: dict[str, tuple[str, ...]] = {
     "file": tuple("delimiter header_line sheet rate time time_unit subtract_baseline".split()),
-    "channels": (),
-    "plates": (),
-    "markers": (),
-    "axes": ("vertical", "walking"),
-    "heel": ("left", "right"),
-    "subject": ("mass",),
-    "sensors": (),
-    "accuracy": ("gain", "crosstalk", "source"),
-}
+    "channels": (), "plates": (), "markers": (),
+    "axes": ("vertical", "walking"), "heel": ("left", "right"), "subject": ("mass",),
+    "sensors": (), "accuracy": ("gain", "crosstalk", "source"),
+}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

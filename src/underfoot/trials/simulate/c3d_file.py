@@ -50,26 +50,19 @@ def c3d_bytes(
     names, count = list(analog), len(analog)
     groups: dict[str, dict[str, bytes]] = {
         "POINT": {
-            "USED": _integers([len(markers)]),
-            "FRAMES": _integers([frames]),
-            "DATA_START": _integers([0]),
-            "SCALE": _floats([-1.0]),
-            "RATE": _floats([marker_rate]),
-            "UNITS": _texts(["mm"], single=True),
-            "LABELS": _texts(list(markers)),
+            "USED": _integers([len(markers)]), "FRAMES": _integers([frames]),
+            "DATA_START": _integers([0]), "SCALE": _floats([-1.0]), "RATE": _floats([marker_rate]),
+            "UNITS": _texts(["mm"], single=True), "LABELS": _texts(list(markers)),
             "DESCRIPTIONS": _texts([description] * len(markers)),
         },
         "ANALOG": {
-            "USED": _integers([count]),
-            "GEN_SCALE": _floats([1.0]),
-            "RATE": _floats([analog_rate]),
+            "USED": _integers([count]), "GEN_SCALE": _floats([1.0]), "RATE": _floats([analog_rate]),
             "SCALE": _floats([1.0] * count, vector=True),
             "OFFSET": _integers([0] * count, vector=True),
-            "UNITS": _texts([unit for _, unit in analog.values()]),
-            "LABELS": _texts(names),
+            "UNITS": _texts([unit for _, unit in analog.values()]), "LABELS": _texts(names),
             "DESCRIPTIONS": _texts([description] * count),
         },
-    }
+    }  # fmt: skip
     if plates:
         channels = [[names.index(name) + 1 for name in own] for *_, own in plates]
         groups["FORCE_PLATFORM"] = {

@@ -11,9 +11,90 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import ConvergenceError, DataError, unknown_name
+from underfoot.core import ConvergenceError, DataError, InputError, unknown_name
 
-from ._kernels.likelihood import information, log_likelihood, maximised, objective, probability
+
+def log_likelihood(eta: np.ndarray, y: np.ndarray) -> float:
+    """Return sum(y eta - log(1 + exp eta))."""
+    return float(np.sum(y * eta - np.logaddexp(0.0, eta)))
+
+
+def information(matrix: np.ndarray, eta: np.ndarray) -> np.ndarray:
+    """Return X' diag(p (1 - p)) X, shape (p, p)."""
+    p = probability(eta)
+    return matrix.T @ ((p * (1.0 - p))[:, None] * matrix)
+
+
+def probability(eta: np.ndarray) -> np.ndarray:
+    """Return 1 / (1 + exp(-eta)) without overflow."""
+    return 0.5 * (1.0 + np.tanh(0.5 * eta))
+
+
+def objective(matrix: np.ndarray, eta: np.ndarray, y: np.ndarray, firth: bool) -> float:
+    """Return the log-likelihood, plus half the log-determinant of the information for Firth."""
+    value = log_likelihood(eta, y)
+    if not firth:
+        return value
+    sign, logdet = np.linalg.slogdet(information(matrix, eta))
+    return value + 0.5 * float(logdet) if sign > 0 else -np.inf
+
+
+def maximised(
+    matrix: np.ndarray,
+    y: np.ndarray,
+    start: np.ndarray,
+    free: np.ndarray,
+    firth: bool,
+    *,
+    steps: int = 200,
+    tolerance: float = 1e-17,
+) -> tuple[np.ndarray, float, bool]:
+    """Return (coefficients, objective, converged); only ``free`` coefficients move.
+
+    The penalty is that of an orthonormal basis of the columns: another constant than
+    ``objective`` of the matrix itself.
+
+    Newton steps on the (modified) score with the Fisher information as curvature, at most 5 in
+    any scaled coefficient, halved until the objective rises; settled when a step promises less
+    than ``tolerance``, or when rounding hides a promise below 1e-8.
+    """
+    beta = start.copy()
+    eta = matrix @ beta
+    # The penalty and the leverages depend on the space of the columns only: an orthonormal basis
+    # keeps them exact when the columns are nearly alike.
+    basis = np.linalg.qr(matrix)[0]
+    value = objective(basis, eta, y, firth)
+    for _ in range(steps):
+        p = probability(eta)
+        weight = p * (1.0 - p)
+        curvature = matrix.T @ (weight[:, None] * matrix)
+        residual = y - p
+        if firth:
+            inverse = np.linalg.pinv(basis.T @ (weight[:, None] * basis))
+            leverage = weight * np.einsum("ij,jk,ik->i", basis, inverse, basis)
+            residual = residual + leverage * (0.5 - p)
+        score = matrix[:, free].T @ residual
+        step = np.linalg.lstsq(curvature[np.ix_(free, free)], score, rcond=None)[0]
+        # Twice the expected rise of the objective: the same in every unit of the predictors.
+        gain = float(score @ step)
+        if np.max(np.abs(step), initial=0.0) > 5.0:
+            step *= 5.0 / np.max(np.abs(step))
+        scale = 1.0
+        for _ in range(40):
+            trial = beta.copy()
+            trial[free] += scale * step
+            trial_eta = matrix @ trial
+            trial_value = objective(basis, trial_eta, y, firth)
+            if trial_value >= value - 1e-13 * abs(value):
+                break
+            scale *= 0.5
+        else:
+            return beta, value, gain < 1e-8
+        beta, eta, value = trial, trial_eta, trial_value
+        if gain < tolerance:
+            return beta, value, True
+    return beta, value, False
+
 
 METHODS = {
     "maximum_likelihood": "maximum likelihood",
@@ -369,3 +450,87 @@ def clustered_logistic(
     )
     dependence = float(np.asarray(structure.dep_params))
     return ClusteredFit("clustered", coefficients, corrected, dependence, len(order), len(y))
+
+
+@dataclass(frozen=True, slots=True)
+class LogisticLine:
+    """p(x) = 1 / (1 + exp(-(intercept + slope x))) given by two published numbers."""
+
+    intercept: float
+    slope: float
+    source: str = ""
+
+    def probability(self, x: float | np.ndarray) -> np.ndarray:
+        """Return the slip probability at ``x``."""
+        return 0.5 * (1.0 + np.tanh(0.5 * (self.intercept + self.slope * np.asarray(x, float))))
+
+    def at_probability(self, probability: float) -> float:
+        """Return the x at which the risk equals ``probability``."""
+        _between(probability)
+        return float((np.log(probability / (1.0 - probability)) - self.intercept) / self.slope)
+
+
+@dataclass(frozen=True, slots=True)
+class RiskCurve:
+    """A fitted risk curve on a grid, with its band.
+
+    ``x``, ``risk``, ``low``, ``high``: shape (m,). ``half``: x at a risk of one half, and its
+    standard error (delta method).
+    """
+
+    name: str
+    x: np.ndarray
+    risk: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    half: float
+    half_error: float
+    method: str
+    confidence: float
+
+
+def risk_curve(
+    fit: LogisticFit | ClusteredFit, x: np.ndarray | None = None, *, confidence: float = 0.95
+) -> RiskCurve:
+    """Return the risk curve of a logistic fit with one predictor, with a pointwise band.
+
+    The band is symmetric on the logit: eta +- z sqrt(var(b0) + 2 x cov + x^2 var(b1)). It covers
+    the curve, not single persons. With errors by person (``clustered_logistic``) it is as wide as
+    the number of persons asks for.
+
+    ``x``: where to evaluate, shape (m,); by default where the risk runs from 0.5 % to 99.5 %.
+
+    InputError: a fit with several predictors, or a slope of zero.
+    """
+    from scipy.stats import norm
+
+    if len(fit.coefficients) != 2:
+        raise InputError(
+            f"{len(fit.coefficients) - 1} predictors", where="risk_curve", allowed="one"
+        )
+    _between(confidence)
+    b0, b1 = fit.estimates
+    if b1 == 0:
+        raise InputError("the slope is zero", where="risk_curve")
+    line = LogisticLine(float(b0), float(b1))
+    if x is None:
+        ends = sorted((line.at_probability(0.005), line.at_probability(0.995)))
+        x = np.linspace(ends[0], ends[1], 201)
+    x = np.asarray(x, dtype=float)
+    rows = np.column_stack((np.ones_like(x), x))
+    error = np.sqrt(np.einsum("ij,jk,ik->i", rows, fit.covariance, rows))
+    eta = b0 + b1 * x
+    z = float(norm.ppf(0.5 + confidence / 2))
+    half = float(-b0 / b1)
+    gradient = np.array([-1.0 / b1, b0 / b1**2])
+    half_error = float(np.sqrt(gradient @ fit.covariance @ gradient))
+    risk, low, high = (
+        0.5 * (1.0 + np.tanh(0.5 * value)) for value in (eta, eta - z * error, eta + z * error)
+    )
+    name = fit.coefficients[1].name
+    return RiskCurve(name, x, risk, low, high, half, half_error, fit.method, confidence)
+
+
+def _between(value: float) -> None:
+    if not 0.0 < value < 1.0:
+        raise InputError(f"{value} is not a probability", where="risk", allowed="between 0 and 1")
