@@ -360,7 +360,7 @@ def test_forces_turned_against_the_markers_are_no_steps(turns):
 
 
 def test_a_marker_of_noise_alone_does_not_leap():
-    from underfoot.trials.heel import marker_jumps
+    from underfoot.trials.slips import marker_jumps
 
     still = np.random.default_rng(0).normal(0.0, 3e-4, (4000, 3)) + 0.5
     assert not marker_jumps(still).any()

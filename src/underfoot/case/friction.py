@@ -425,10 +425,8 @@ class TableOption(FrictionOption):
         from underfoot.friction import SpeedTableLaw
 
         readings, viscosity = self.readings, context.viscosity_value
-        speed = np.array([reading.speed for reading in readings])
-        cof = np.array([reading.cof for reading in readings])
-        sd = np.array([np.nan if r.sd is None else r.sd for r in readings])
-        fluids = np.array([np.nan if r.viscosity is None else r.viscosity for r in readings])
+        rows = [(r.speed, r.cof, r.sd, r.viscosity) for r in readings]
+        speed, cof, sd, fluids = np.array(rows, dtype=float).reshape(-1, 4).T.copy()
         pressures = [r.pressure for r in readings if r.pressure is not None]
         notes = []
         if viscosity is not None and np.isfinite(fluids).all():

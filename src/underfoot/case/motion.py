@@ -147,16 +147,9 @@ class MotionFromHistory(Motion):
     def build(self) -> MotionHistory | None:
         from underfoot.sole_contact.motion_history import MotionHistory
 
-        points = [
-            (
-                p.time,
-                p.normal_force,
-                p.speed,
-                self.shoe_angle if p.shoe_angle is None else p.shoe_angle,
-            )
-            for p in self.history_points
-        ]
-        return MotionHistory(*np.array(points).reshape(-1, 4).T)
+        points = [(p.time, p.normal_force, p.speed, p.shoe_angle) for p in self.history_points]
+        time, force, speed, angle = np.array(points, dtype=float).reshape(-1, 4).T.copy()
+        return MotionHistory(time, force, speed, np.where(np.isnan(angle), self.shoe_angle, angle))
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         listed = f"{where}.{'history' if self.history else 'history_points'}"
@@ -166,18 +159,14 @@ class MotionFromHistory(Motion):
             yield InputError(error.what, where=listed, allowed=error.allowed, remedy=error.remedy)
             return
         assert history is not None
-        if abs(history.time[-1] - self.duration) > 1e-9:
-            yield InputError(
-                f"the history lasts {display(float(history.time[-1]), 's')}",
-                where=f"{where}.duration",
-                remedy="Leave motion.duration out: the history says it",
-            )
-        if abs(history.normal_force[-1] - self.normal_force) > 1e-6:
-            yield InputError(
-                f"the history ends with {history.normal_force[-1]:g} N",
-                where=f"{where}.normal_force",
-                remedy="Leave motion.normal_force out: the history says it",
-            )
+        last, force = float(history.time[-1]), history.normal_force[-1]
+        for name, what, differs in (
+            ("duration", f"lasts {display(last, 's')}", abs(last - self.duration) > 1e-9),
+            ("normal_force", f"ends with {force:g} N", abs(force - self.normal_force) > 1e-6),
+        ):
+            if differs:
+                remedy = f"Leave motion.{name} out: the history says it"
+                yield InputError(f"the history {what}", where=f"{where}.{name}", remedy=remedy)
 
 
 def read_motion_table(path: Path, where: str) -> list[dict[str, str | float]]:

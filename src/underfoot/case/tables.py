@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core import DataError, InputError, nearest_match, to_si
+from underfoot.core.files import checksum
 
 from .section import origin_of
 
@@ -46,8 +47,6 @@ def with_checksum(table: dict[str, Any], key: str, folder: Path, where: str) -> 
     Raises:
         InputError: No such file, or another one than ``sha256`` of the table means.
     """
-    from underfoot.core.files import checksum
-
     name, meant = plain(table.get(key)), plain(table.get("sha256"))
     if not isinstance(name, str):
         return table

@@ -6,6 +6,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import tomlkit
+from tomlkit.items import InlineTable, Item
+
 from underfoot.core import InputError, nearest_match
 from underfoot.core.files import whole_file
 
@@ -55,8 +58,6 @@ def changed(text: str, settings: Mapping[str, Any], expand: Callable[[Any, str],
     ``{"from": name}`` of a catalogue entry, ``{"model": name}`` of an option. A section that is
     named anew loses what the file said about it.
     """
-    import tomlkit
-
     document = tomlkit.parse(text)
     for path, value in settings.items():
         _set(document, path.split("."), expand(value, path), expand)
@@ -64,9 +65,6 @@ def changed(text: str, settings: Mapping[str, Any], expand: Callable[[Any, str],
 
 
 def _set(document: Any, parts: list[str], value: Any, expand: Callable[[Any, str], Any]) -> None:
-    import tomlkit
-    from tomlkit.items import Item
-
     table = document
     for depth, part in enumerate(parts[:-1]):
         item = table.get(part)
@@ -107,16 +105,11 @@ def _set(document: Any, parts: list[str], value: Any, expand: Callable[[Any, str
 
 
 def _table_like(parent: Any) -> Any:
-    import tomlkit
-    from tomlkit.items import InlineTable
-
     return tomlkit.inline_table() if isinstance(parent, InlineTable) else tomlkit.table()
 
 
 def written(tree: Mapping[str, Any], comment: str = "") -> str:
     """Return nested mappings as TOML: a mapping with ``value`` stands on one line."""
-    import tomlkit
-
     document = tomlkit.document()
     if comment:
         document.add(tomlkit.comment(comment))
@@ -127,8 +120,6 @@ def written(tree: Mapping[str, Any], comment: str = "") -> str:
 
 
 def _table(tree: Mapping[str, Any]) -> Any:
-    import tomlkit
-
     table = tomlkit.table()
     below = {k: v for k, v in tree.items() if isinstance(v, Mapping) and "value" not in v}
     for key, value in tree.items():
@@ -140,8 +131,6 @@ def _table(tree: Mapping[str, Any]) -> Any:
 
 
 def _inline(value: Any) -> Any:
-    import tomlkit
-
     if not isinstance(value, dict | list | tuple):
         return value
     if isinstance(value, dict):

@@ -268,8 +268,7 @@ class PairContactLaw(UncertainInputs):
                 medians |= {"laboratory": 1.0, "pair": 1.0}
             object.__setattr__(self, "medians", medians)
         if self.draws.errors:
-            basis = "calibrated to readings"
-            object.__setattr__(self, "spread_basis", basis)
+            object.__setattr__(self, "spread_basis", "calibrated to readings")
 
     @property
     def source(self) -> str:
@@ -279,12 +278,12 @@ class PairContactLaw(UncertainInputs):
     @property
     def assumptions(self) -> tuple[str, ...]:
         """What no measurement stands behind."""
-        words = [
-            "friction.pair: contact friction of this pair was not measured; a reading of your own "
-            "narrows it (underfoot calibrate pair)."
-        ]
-        if self.draws.errors:
-            words = []
+        words = []
+        if not self.draws.errors:
+            words.append(
+                "friction.pair: contact friction of this pair was not measured; a reading of your "
+                "own narrows it (underfoot calibrate pair)."
+            )
         for part, (low, high) in (("shoe", self.pair.sole_rq), ("floor", self.pair.floor_rq)):
             if high > low:
                 words.append(

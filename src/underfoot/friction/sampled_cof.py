@@ -140,15 +140,8 @@ def sampled_cof(
         hysteresis = min(hysteresis, solid)
         return np.array([solid + viscous, solid - hysteresis, hysteresis, viscous])
 
-    spread = propagated(
-        parts,
-        inputs,
-        confidence=confidence,
-        samples=samples,
-        seed=seed,
-        shares=False,
-        joint=joint,
-    )
+    options = {"samples": samples, "seed": seed, "shares": False}
+    spread = propagated(parts, inputs, confidence=confidence, joint=joint, **options)
     return SampledCof(
         *spread.draws.T,
         share=_shares(spread),
@@ -184,14 +177,8 @@ def sampled_points(
         solid = (shear.adhesion + shear.hysteresis) / pressure + values.get(MODEL, 0.0)
         return np.maximum(solid, 0.0) + shear.viscous / pressure
 
-    return propagated(
-        points,
-        inputs,
-        samples=samples,
-        seed=seed,
-        shares=False,
-        joint=_joint(law, samples, seed),
-    )
+    joint = _joint(law, samples, seed)
+    return propagated(points, inputs, samples=samples, seed=seed, shares=False, joint=joint)
 
 
 def _inputs(

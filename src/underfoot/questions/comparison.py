@@ -142,13 +142,8 @@ class Comparison(Presentable):
     def to_dict(self) -> dict[str, Any]:
         return {
             "ranking": [
-                {
-                    "letter": rank.letter,
-                    "name": rank.name,
-                    "cof": rank.cof.as_dict(),
-                    "interval_95": rank.interval,
-                    "higher_than_next": rank.better_than_next,
-                }
+                {"letter": rank.letter, "name": rank.name, "cof": rank.cof.as_dict()}
+                | {"interval_95": rank.interval, "higher_than_next": rank.better_than_next}
                 for rank in self.ranking
             ],
             "quantities": [

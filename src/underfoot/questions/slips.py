@@ -27,15 +27,11 @@ from underfoot.sole_contact.reading import BLIND
 if TYPE_CHECKING:
     from underfoot.case import Case
 
+_BRAKED = {"heel_brake": "constant"}
 BANDS: dict[str, tuple[str, str, dict[str, str], tuple[float, ...]]] = {
     "effective_mass": ("moving mass", "of the body mass (assumed)", {}, (0.06, 0.114, 0.17)),
     "weight_transfer": ("load of a slip", "of the dry load (0.35 to 0.75)", {}, (0.35, 0.75, 1.0)),
-    "brake_time": (
-        "braking of the heel",
-        "s, time constant",
-        {"heel_brake": "constant"},
-        (0.004, 0.011, 0.025),
-    ),
+    "brake_time": ("braking of the heel", "s, time constant", _BRAKED, (0.004, 0.011, 0.025)),
 }
 """Fields of a walker that a slip hangs on: what it is, of what, what it takes, values."""
 NUMBERS = {

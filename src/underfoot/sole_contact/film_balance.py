@@ -155,7 +155,7 @@ class FilmBalance:
         self, operator: FilmOperator, fluid: Array, full: Mask
     ) -> tuple[Array, Array, Array, Cavity]:
         """Return liquid fraction, imbalance, its derivative by gap and the cavity of a set."""
-        pattern, floor = self._pattern, self._problem.cavity_pressure
+        pattern, floor = self._pattern, self._problem.settings.cavity_pressure
         pressure = pattern.scatter(np.where(full, fluid + floor, np.where(self._wet, floor, 0.0)))
         cavity = Cavity(operator, self._film & (pattern.scatter(full.astype(float)) == 0))
         fraction = operator.cavity_fraction(pressure, cavity, self._content)

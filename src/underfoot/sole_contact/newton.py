@@ -79,7 +79,7 @@ def implicit_step(
     area = problem.spacing**2
     size = pattern.size
     wet = pattern.gather(film)
-    floor = np.where(wet, problem.cavity_pressure, 0.0)
+    floor = np.where(wet, problem.settings.cavity_pressure, 0.0)
     full = np.zeros(size, dtype=bool)
     balance = None
     if problem.viscosity is not None:
@@ -95,7 +95,7 @@ def implicit_step(
     solve, count = None, 0
     faint = 1e-9 * load / (size * area)
 
-    for iteration in range(problem.most_newton + 1):
+    for iteration in range(problem.settings.most_newton + 1):
         local_gap = pattern.gather(gap)
         total = pattern.gather(pressure)
         asperity = problem.law.pressure(local_gap)
@@ -114,7 +114,7 @@ def implicit_step(
         error = max(error, 0.01 * float(np.abs(lacking).max()) / problem.decay)
         attempt.residuals.append(error)
         tick(error)
-        if error < problem.tolerance:
+        if error < problem.settings.tolerance:
             attempt.state = State(
                 pressure,
                 approach,
@@ -125,7 +125,7 @@ def implicit_step(
                 np.ones_like(gap) if rows is None else np.minimum(rows.fraction, 1.0),
             )
             return attempt
-        if iteration == problem.most_newton or _hopeless(attempt.residuals):
+        if iteration == problem.settings.most_newton or _hopeless(attempt.residuals):
             break
 
         linear = Linearisation(pattern, stiffness, full, rows)
@@ -133,7 +133,7 @@ def implicit_step(
         near = len(attempt.residuals) > 1 and error < NEAR * attempt.residuals[-2]
         if solve is None or count > STALE or not near:
             try:
-                solve = cells.preconditioner.factorise(linear, problem.backend)
+                solve = cells.preconditioner.factorise(linear, problem.settings.backend)
             except ConvergenceError:
                 break
 
@@ -146,7 +146,7 @@ def implicit_step(
 
         right = -residual - linear.residual(np.zeros(size), lacking)
         # far from the solution an exact Newton step is wasted
-        exact = problem.krylov_tolerance
+        exact = problem.settings.krylov_tolerance
         step, count, _ = krylov_solution(
             product,
             solve,

@@ -7,6 +7,7 @@ from underfoot.film import Conductance
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
 
 from .compliance import Compliance
+from .sole_state import SolverSettings
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,11 +22,7 @@ class Problem:
     wall_speed: float
     largest_gap: float
     decay: float  # m, gap over which the asperity pressure falls by about e
-    backend: str | None
-    tolerance: float
-    most_newton: int
-    krylov_tolerance: float
-    cavity_pressure: float = 0.0  # Pa above that of the air, 0 or less
+    settings: SolverSettings
 
     def gap(self, pressure: Array, approach: float) -> Array:
         """Return the mean gap of a pressure field and an approach."""

@@ -115,11 +115,7 @@ class SlidingSole:
             wall_speed=0.0,
             largest_gap=min(4 * settings.pool_depth, 5e-3),
             decay=decay,
-            backend=settings.backend,
-            tolerance=settings.tolerance,
-            most_newton=settings.most_newton,
-            krylov_tolerance=settings.krylov_tolerance,
-            cavity_pressure=settings.cavity_pressure,
+            settings=settings,
         )
         lift = settings.start_film if viscosity is not None else touch
         blank = np.zeros_like(clearance)

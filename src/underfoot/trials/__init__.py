@@ -19,7 +19,6 @@ from .gait_context import (
     slip_course,
     stance_curves,
 )
-from .heel import HeelMotion, SlipDefinition, contact_from_heel, heel_motion
 from .measurement import Flag, Measurement, mean_of
 from .plates import finished_plate
 from .pressures import (
@@ -45,7 +44,17 @@ from .readers import (
 )
 from .signals import FILTERS, FORCE_FILTER, MARKER_FILTER, LowPass, low_passed, velocity
 from .slip_friction import ACOF_WINDOWS, available_friction, available_frictions, mean_friction
-from .slips import Outcome, OutcomeLimits, Slip, slip, slip_of
+from .slips import (
+    HeelMotion,
+    Outcome,
+    OutcomeLimits,
+    Slip,
+    SlipDefinition,
+    contact_from_heel,
+    heel_motion,
+    slip,
+    slip_of,
+)
 from .trial import Channel, Edit, Event, Marker, Plate, PlateAccuracy, Trial, file_checksum, joined
 
 __all__ = [

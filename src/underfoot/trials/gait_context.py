@@ -9,11 +9,10 @@ import numpy as np
 
 from .axes import Axes, marker_velocity, toe_candidates
 from .events import Stance
-from .heel import heel_motion
 from .measurement import Flag
 from .plates import plate_named
 from .signals import MARKER_FILTER, LowPass, bridged, low_passed
-from .slips import OutcomeLimits, Slip
+from .slips import OutcomeLimits, Slip, heel_motion
 from .trial import Marker, Trial
 
 FLAT = (0.3, 0.5)  # share of the stance in which the foot lies flat

@@ -14,10 +14,10 @@ from underfoot.core import UnderfootError
 
 from .axes import LEVEL, Axes, DirectionSource, Ramp, heel_candidates, marker_velocity
 from .events import BodyWeight, Stance, contacts
-from .heel import contact_from_heel, marker_jumps
 from .measurement import Flag
 from .plates import plate_named
 from .signals import LowPass, longest_run, low_passed, runs
+from .slips import contact_from_heel, marker_jumps
 from .trial import Plate, Trial
 
 _ASSUMED = "assumed; kept by every real step that comes with this package"

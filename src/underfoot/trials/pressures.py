@@ -9,10 +9,9 @@ import numpy as np
 
 from underfoot.core import DataError, InputError
 
-from .heel import HeelMotion
 from .measurement import Flag, Measurement, remark
 from .signals import runs, saturated
-from .slips import Slip
+from .slips import HeelMotion, Slip
 from .trial import Channel, Trial
 
 BASELINE_SAMPLES = 500  # fewer let noise pass 5 standard deviations in 1 % of empty records

@@ -14,10 +14,10 @@ from underfoot.trials.axes import Axes, axes_of, marker_velocity
 from underfoot.trials.events import Stance, body_mass
 from underfoot.trials.gait import RcofDefinition, RequiredFriction, required_frictions
 from underfoot.trials.gait_context import FLAT, heel_speed
-from underfoot.trials.heel import HeelMotion, heel_motion
 from underfoot.trials.plates import plate_named
 from underfoot.trials.readers import read_trial
 from underfoot.trials.signals import low_passed
+from underfoot.trials.slips import HeelMotion, heel_motion
 from underfoot.trials.trial import Marker, Trial
 
 from .gait import LEAST_LOAD, GaitHistory

@@ -1,8 +1,5 @@
 """Statistics of the field's studies, each test named with its convention."""
 
-from .design import Predictor as Predictor
-from .design import crossed as crossed
-from .design import predictor as predictor
 from .fisher import ExactTest as ExactTest
 from .fisher import fisher_exact as fisher_exact
 from .linear import AdjustedMean as AdjustedMean
@@ -10,12 +7,15 @@ from .linear import AnovaRow as AnovaRow
 from .linear import AnovaTable as AnovaTable
 from .linear import Comparison as Comparison
 from .linear import LinearModel as LinearModel
+from .linear import Predictor as Predictor
 from .linear import Subset as Subset
 from .linear import all_subsets as all_subsets
 from .linear import analysis_of_variance as analysis_of_variance
+from .linear import crossed as crossed
 from .linear import least_squares_means as least_squares_means
 from .linear import letters as letters
 from .linear import linear_model as linear_model
+from .linear import predictor as predictor
 from .linear import tukey_hsd as tukey_hsd
 from .logistic import ClusteredFit as ClusteredFit
 from .logistic import Coefficient as Coefficient

@@ -14,8 +14,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
 
-from .design import parts
-from .linear import AnovaRow, FittedModel, linear_model, model_data
+from .linear import AnovaRow, FittedModel, linear_model, model_data, parts
 
 
 def independence_warning(persons: Sequence[object]) -> tuple[str, ...]:
