@@ -10,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from scipy.stats import norm
 
@@ -75,7 +76,8 @@ def test_a_limit_becomes_a_probability_and_keeping_a_part_is_a_departure() -> No
     assert tile.limit is not None
     assert tile.limit.value == 0.31
     assert tile.cof.value is not None
-    expected = norm.sf(0.31, tile.cof.value, tile.cof.uncertainty)
+    spread = np.log(tile.high / tile.cof.value) / norm.ppf(0.975)
+    expected = norm.sf(np.log(0.31), np.log(tile.cof.value), spread)
     assert tile.probability == pytest.approx(expected)
 
 

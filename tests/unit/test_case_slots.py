@@ -12,6 +12,7 @@ import pytest
 from underfoot.case import Case, CaseError
 from underfoot.case.friction import FrictionOption
 from underfoot.case.quantity import Friction, required
+from underfoot.case.section import Option
 from underfoot.compute.run import run
 from underfoot.core import InputError
 from underfoot.friction import ConstantLaw
@@ -23,12 +24,24 @@ BASE = {
     "motion": "slip_tester_g4",
     "numerics": {"grid_spacing": "3 mm", "quick_grid_spacing": "4 mm"},
 }
+
+
+@pytest.fixture(autouse=True)
+def options_of_the_package_afterwards():
+    """Options that a test defines are gone after it."""
+    known = {slot: dict(options) for slot, options in Option._known.items()}
+    yield
+    Option._known.clear()
+    Option._known.update(known)
+
+
 COMMAND = "from underfoot.cli import main; main()"
 LAW = '''
 """A law of twenty lines."""
 from typing import ClassVar
 from underfoot.case.friction import FrictionOption
 from underfoot.case.quantity import Friction, required
+from underfoot.case.section import Option
 from underfoot.friction import ConstantLaw
 
 class Sticky(FrictionOption):

@@ -264,7 +264,7 @@ def method_prediction(
     Notes
     -----
     The mean over the averaging window is Simpson's rule on its beginning, middle and end. The
-    probability of passing takes the COF as normally distributed.
+    probability of passing takes ln COF as normally distributed.
 
     Raises
     ------
@@ -419,8 +419,14 @@ def _condition(
     else:
         values = [each.number("cof") for each in window]
         mean = values[0] if len(values) == 1 else (values[0] + 4 * values[1] + values[2]) / 6
-        law = middle.spread("cof")
-        deviation = math.hypot(0.0 if math.isnan(law) else law, band.inputs if band else 0.0)
+        law, interval = middle.spread("cof"), middle.scalars["cof"].interval
+        known = 0.0 if math.isnan(law) else law
+        deviation = math.hypot(known, band.inputs if band else 0.0)
+        # of ln COF: half the interval of the draws where there is one, and the open inputs
+        spread = known / max(mean, 1e-9)
+        if interval is not None and interval[0] > 0:
+            spread = math.log(interval[1] / interval[0]) / (2 * _Z95)
+        spread = math.hypot(spread, band.inputs / max(mean, 1e-9) if band else 0.0)
         cof = SourcedValue(
             mean,
             "1",
@@ -428,9 +434,10 @@ def _condition(
             uncertainty=deviation,
             note="friction law and open inputs" if band else "friction law alone",
         )
-        low, high = max(mean - _Z95 * deviation, 0.0), mean + _Z95 * deviation
-        if limit is not None and limit.value is not None:
-            probability = probability_at_least(mean, deviation, limit.value)
+        low, high = mean * math.exp(-_Z95 * spread), mean * math.exp(_Z95 * spread)
+        if limit is not None and limit.value:
+            least = math.log(limit.value)
+            probability = probability_at_least(math.log(max(mean, 1e-9)), spread, least)
     return Condition(
         name,
         title,
