@@ -51,7 +51,7 @@ def test_grooves_lie_as_printed_and_land_sets_the_grid():
         stand({**BLOCK, "tread": {"pattern": "grooves", "direction": way}}).cases[0].shoe.tread
         for way in ("along", "across")
     )
-    assert (along.pattern, across.pattern) == ("longitudinal", "transverse")
+    assert (along.name, across.name) == ("longitudinal", "transverse")
     shoe = {"device": "whole shoe", "fluid": "oil", "tread": {"land": 0.36}}
     (case,) = stand(shoe).cases
     assert case.shoe.tread.lug_width == pytest.approx(6e-3)

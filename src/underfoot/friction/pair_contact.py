@@ -25,13 +25,14 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.special import ndtri
 
 from underfoot.core import DataError, InputError, Range, SourcedValue
 from underfoot.core.arrays import Array
 from underfoot.core.checks import positive
 
 from .law import FILM_RANGE, UncertainInputs
-from .propagation import named_generator
+from .propagation import named_shares
 
 ROUGHNESS = 8.3e-6
 """Rq (m) of the pair at which ``kappa_0`` holds: the report's polyurethane pin on vinyl."""
@@ -132,7 +133,7 @@ class PairDraws:
         """
         if name in self.errors:
             return self.errors[name]
-        return deviation * named_generator(seed, name).standard_normal(self.count)
+        return deviation * ndtri(named_shares(seed, name, self.count))
 
     def columns(self) -> dict[str, Array]:
         """Return every array by name, as a file of draws has them."""
@@ -222,7 +223,7 @@ class Pair:
         """Return draws (draws,) of the inputs of ``PairContactLaw``, by name."""
         numbers: dict[str, ArrayLike] = {"shore_a": self.shore_a}
         for name, (low, high) in zip(("sole_rq", "floor_rq"), self._rq, strict=True):
-            share = named_generator(seed, f"{name} {low:.3g} {high:.3g}").random(draws.count)
+            share = named_shares(seed, f"{name} {low:.3g} {high:.3g}", draws.count)
             numbers[name] = low * (high / low) ** share
         if self.hysteresis is not None:
             numbers["hysteresis"] = self.hysteresis

@@ -120,17 +120,24 @@ def propagated(
     )
 
 
-def named_generator(seed: int, name: str) -> np.random.Generator:
-    """Return the generator of a cause: the same seed and name give the same numbers."""
-    return np.random.default_rng([seed, zlib.crc32(name.encode())])
+def named_shares(seed: int, name: str, samples: int) -> Array:
+    """Return (samples,) shares between 0 and 1 of a cause, one from each stratum.
+
+    The same seed and name give the same numbers: what two cases have in common.
+    """
+    return _strata(np.random.default_rng([seed, zlib.crc32(name.encode())]), samples)
+
+
+def _strata(generator: np.random.Generator, samples: int) -> Array:
+    shares = (generator.permutation(samples) + generator.random(samples)) / samples
+    return np.clip(shares, 1e-12, 1 - 1e-12)
 
 
 def _draws(
     value: float, deviation: float | None, samples: int, generator: np.random.Generator
 ) -> Array:
     spread = deviation or 0.0
-    strata = (generator.permutation(samples) + generator.random(samples)) / samples
-    normal = ndtri(np.clip(strata, 1e-12, 1 - 1e-12))
+    normal = ndtri(_strata(generator, samples))
     if value > 0 and spread > LOGNORMAL_ABOVE * value:
         width = math.sqrt(math.log1p((spread / value) ** 2))
         return value * np.exp(width * (normal - 0.5 * width))

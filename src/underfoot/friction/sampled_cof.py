@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.special import ndtri
 
 from underfoot.core import SourcedValue
 from underfoot.core.arrays import Array, Mask
 
 from .law import SMALLEST_FILM, FrictionLaw, FrictionParts
-from .propagation import Propagated, named_generator, propagated
+from .propagation import Propagated, named_shares, propagated
 
 PARTS = ("adhesion", "hysteresis", "viscous")
 CLASSES = 64
@@ -103,8 +104,7 @@ def sampled_cof(
     joint = dict(_joint(law, samples, seed))
     if film_error and np.any(fluid_pressure):
         inputs[FILM] = SourcedValue(0.0, "1", "", film_error)
-        normal = named_generator(seed, f"{FILM} {sole}").standard_normal(samples)
-        joint[FILM] = film_error * normal
+        joint[FILM] = film_error * ndtri(named_shares(seed, f"{FILM} {sole}", samples))
     pull, pull_share = suction or (None, 0.0)
     if pull is not None and pull.value and pull_share:
         inputs[SUCTION] = pull
