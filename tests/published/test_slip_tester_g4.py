@@ -27,7 +27,9 @@ pytestmark = pytest.mark.slow
 
 @cache
 def result(shoe: str, fluid: str) -> Result:
-    return run(Case.load(EXAMPLES / f"{shoe}_{fluid}.toml").replace("friction", "stribeck"))
+    case = Case.load(EXAMPLES / f"{shoe}_{fluid}.toml")
+    # the bound below is that of the pin's law, which knows no edges of lugs
+    return run(case.replace({"friction": "stribeck", "film.lug_edges": False}))
 
 
 @pytest.mark.parametrize("fluid", ["glycerol", "detergent"])
