@@ -171,7 +171,7 @@ def test_bowden_tabor_with_area_proportional_to_load_is_a_coefficient():
     [
         (lambda: AsperityEHL(SCALE, 0.0), "modulus"),
         (lambda: AsperityEHL(SCALE, 2e6, 0.5, -1e-9), "fine_roughness"),
-        (lambda: AsperityEHL(SCALE, 2e6, 0.5, 1e-9, "bearings"), '"bearing"'),  # type: ignore[arg-type]  # wrong on purpose
+        (lambda: AsperityEHL(SCALE, 2e6, 0.5, 1e-9, "bearings"), '"bearing"'),
         (lambda: MeanFilmSharing(0.0, 20.9, 5e6, 1e-6), "radius"),
         (lambda: ViscoelasticArea(-0.1), "exponent"),
         (lambda: ShearStrength(1e5, " "), "no source"),

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import typer
 
 from underfoot.cli.output import finish
 from underfoot.core import InputError, SourcedValue
@@ -112,7 +113,7 @@ def test_a_report_names_its_failures_and_the_command_says_written_in_part(
     written = write_report(answer, tmp_path / "out")
     assert [line.partition(" ")[0] for line in written.failures] == ["numbers.csv", "Not"]
     assert json.loads((tmp_path / "out" / "answer.json").read_text())["answer"]["value"] == 42.0
-    with pytest.raises(Exception) as stop:  # noqa: PT011
+    with pytest.raises(typer.Exit) as stop:
         finish(answer, written, json=False)
     assert stop.value.exit_code == WRITTEN_IN_PART
     seen = capsys.readouterr()

@@ -447,7 +447,7 @@ def _wedge_squeeze_figure(sole: ReducedSole, passages: Mapping[str, Array]) -> F
 
 def held_load(sole: ReducedSole, time: Array, speed: float, force: float = 500.0) -> Array:
     """Return the film's load (n,) N under a force and speed that are held from contact on."""
-    motion = SimpleNamespace(
+    held: Any = SimpleNamespace(  # the fields of a slip that the film depends on
         time=time,
         normal=np.full(time.size, force),
         drive=np.zeros(time.size),
@@ -455,5 +455,5 @@ def held_load(sole: ReducedSole, time: Array, speed: float, force: float = 500.0
         speed=np.full(time.size, speed),
         walker=SimpleNamespace(moving_mass=8.0),
     )
-    load, _ = sole.carried_at(motion)  # type: ignore[arg-type]
+    load, _ = sole.carried_at(held)
     return np.asarray(load)
