@@ -19,7 +19,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item):
-    """Tests in a browser fail in CI where there is none; elsewhere the summary says so."""
+    """Tests in a browser fail in CI where there is none; on a desk they are skipped, and say so."""
     if item.get_closest_marker("browser") and not any(map(shutil.which, CHROMIUM)):
         (pytest.fail if os.environ.get("CI") == "true" else pytest.skip)(NO_BROWSER)
 
