@@ -7,13 +7,17 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
+from pydantic import Field, ValidationError
 from scipy.stats import qmc
 
 from underfoot.case import Case, CaseError
 from underfoot.case import text as toml
+from underfoot.case.errors import translated
+from underfoot.case.quantity import Flag
+from underfoot.case.section import Section
 from underfoot.core import InputError, content_hash, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.catalogue import Catalogue, catalogue_folders
@@ -45,8 +49,6 @@ from .inputs import (
 from .record import Job
 
 FILE_VERSION = 1
-KINDS = ("sweep", "sensitivity", "optimise", "robust")
-GRIDS = ("quick", "standard")
 SECTIONS = "file_version name description base set vary uncertain conditions outputs method".split()
 UNITS = {
     **dict.fromkeys(("cof", "cof_adhesion", "cof_hysteresis", "cof_viscous"), "1"),
@@ -64,36 +66,43 @@ ALIASES = {"wear": WEAR}
 MOST_CASES = 1_000_000
 
 
-@dataclass(frozen=True, slots=True)
-class Method:
+Count = Annotated[int, Field(ge=1, le=10**6, strict=True)]
+
+
+class Method(Section):
     """How a study is done.
 
     Attributes:
         kind: sweep, sensitivity, optimise or robust (optimise over draws).
         budget: Full runs at most; None where lists and steps say it all.
-        design: grid, sobol or lhs.
+        design: grid, sobol or lhs; None for a grid where lists and steps make one, else sobol.
         analysis: morris or sobol, of a sensitivity.
         on: runs or surrogate, of a sensitivity.
         active: Share of the runs of a sweep that go where the surrogate is worst.
         draws: Of the uncertain inputs, the same for every design.
         batch: Designs that are proposed together.
-        quick: Grid of the runs; ``front_quick`` that on which a front is run again, None for none.
+        grid: Of the runs; ``front_grid`` that on which a front is run again, None for none.
         fields: Keep maps.
         seed: Of designs and draws.
     """
 
-    kind: str = "sweep"
-    budget: int | None = None
-    design: str = "sobol"
-    analysis: str = "sobol"
-    on: str = "surrogate"
-    active: float = 0.0
-    draws: int = 1
-    batch: int = 8
-    quick: bool = True
-    front_quick: bool | None = None
-    fields: bool = False
-    seed: int = 0
+    kind: Literal["sweep", "sensitivity", "optimise", "robust"] = "sweep"
+    budget: Count | None = None
+    design: Literal["grid", "sobol", "lhs"] | None = None
+    analysis: Literal["morris", "sobol"] = "sobol"
+    on: Literal["runs", "surrogate"] = "surrogate"
+    active: Annotated[float, Field(ge=0, le=0.9)] = 0.0
+    draws: Count = 8
+    batch: Count = 8
+    grid: Literal["quick", "standard"] = "quick"
+    front_grid: Literal["quick", "standard"] | None = None
+    fields: Flag = False
+    seed: Annotated[int, Field(ge=0, le=2**31, strict=True)] = 0
+
+    @property
+    def quick(self) -> bool:
+        """Whether the runs are on the coarse grid."""
+        return self.grid == "quick"
 
 
 @dataclass(frozen=True)
@@ -510,56 +519,16 @@ class _Reader:
     def method(self, uncertain: bool, vary: Sequence[Input]) -> Method:
         """Return the method with its defaults."""
         table = self.table("method")
+        try:
+            found = Method.model_validate(table)
+        except ValidationError as error:
+            self.errors += translated(error, Method, table, lambda key: self.place("method", key))
+            return Method()
         steps = all(isinstance(one, Choice) or one.steps for one in vary)
-        words = {
-            "kind": KINDS,
-            "design": ("grid", "sobol", "lhs"),
-            "analysis": ("morris", "sobol"),
-            "on": ("runs", "surrogate"),
-            "grid": GRIDS,
-            "front_grid": GRIDS,
-        }
-        numbers = {"budget": (1, 10**6), "draws": (1, 1000), "batch": (1, 1000), "seed": (0, 2**31)}
-        known = (*words, *numbers, "active", "fields")
-        given: dict[str, Any] = {}
-        for key, value in table.items():
-            where = self.place("method", key)
-            if key not in known:
-                self.fail(unknown_name("key", key, known, where=where))
-            elif key in words:
-                if value not in words[key]:
-                    self.fail(unknown_name("choice", str(value), words[key], where=where))
-                else:
-                    given[key] = value
-            elif key == "fields":
-                if not isinstance(value, bool):
-                    self.fail(InputError(f"{value!r}", where=where, allowed="true or false"))
-                given[key] = value
-            elif key == "active":
-                if (
-                    isinstance(value, bool)
-                    or not isinstance(value, int | float)
-                    or not 0 <= value < 1
-                ):
-                    self.fail(InputError(f"{value!r}", where=where, allowed="0 to below 1"))
-                given[key] = value
-            else:
-                low, high = numbers[key]
-                whole = isinstance(value, int) and not isinstance(value, bool)
-                if not whole or not low <= value <= high:
-                    allowed = f"a whole number from {low} to {high}"
-                    self.fail(InputError(f"{value!r}", where=where, allowed=allowed))
-                given[key] = value
-        kind = given.get("kind", "sweep")
-        given["quick"] = given.pop("grid", "quick") == "quick"
-        if "front_grid" in given:
-            given["front_quick"] = given.pop("front_grid") == "quick"
-        if kind == "sweep" and "design" not in given and steps and not given.get("budget"):
-            given["design"] = "grid"
-        if uncertain and "draws" not in given and kind != "sensitivity":
-            given["draws"] = 8
-        grid = given.get("design") == "grid"
-        if grid and not steps:
+        if found.design is None:
+            plain = found.kind == "sweep" and steps and not found.budget
+            found = found.model_copy(update={"design": "grid" if plain else "sobol"})
+        if found.design == "grid" and not steps:
             self.fail(
                 InputError(
                     "a grid needs steps",
@@ -567,7 +536,7 @@ class _Reader:
                     remedy='Write steps = 5 beside from and to, or design = "sobol"',
                 )
             )
-        if not grid and "budget" not in given:
+        if found.design != "grid" and found.budget is None:
             self.fail(
                 InputError(
                     "is missing",
@@ -575,7 +544,7 @@ class _Reader:
                     allowed="full runs at most, as budget = 200",
                 )
             )
-        if kind == "robust" and not uncertain:
+        if found.kind == "robust" and not uncertain:
             self.fail(
                 InputError(
                     "nothing is uncertain",
@@ -583,7 +552,4 @@ class _Reader:
                     remedy='Add [uncertain], or write kind = "optimise"',
                 )
             )
-        try:
-            return Method(**given)
-        except TypeError:
-            return Method()  # an unknown key, which is among the errors
+        return found
