@@ -24,6 +24,7 @@ from .viewer import viewer_script, viewer_section
 from .writing import Writer, Written, data_writers
 
 if TYPE_CHECKING:
+    import xarray
     from matplotlib.figure import Figure
 
 SEEN = "Seen through the floor: the heel's back edge is at the bottom, walking direction up."
@@ -144,14 +145,13 @@ def _comparison_sections(
     return parts, viewer_script() if comparison.usable else ""
 
 
-@plot.register(Case)
-def _plot_case(case: Case) -> Figure:
+def sole_fields(case: Case) -> xarray.Dataset:
     """Return the height of a case's sole above the floor, on the coarse grid."""
     import xarray
 
     sole = sole_map(case, case.numerics.quick_grid_spacing, silent)
     labels = {"units": "m", "long_name": "height of the undeformed sole"}
-    fields = xarray.Dataset(
+    return xarray.Dataset(
         {
             "clearance": (("x", "y"), sole.clearance, labels),
             "inside": (("x", "y"), sole.inside),
@@ -161,6 +161,12 @@ def _plot_case(case: Case) -> Figure:
         },
         coords={"x": sole.x, "y": sole.y},
     )
+
+
+@plot.register(Case)
+def _plot_case(case: Case) -> Figure:
+    """Return the height of a case's sole above the floor, on the coarse grid."""
+    fields = sole_fields(case)
     figure = new_figure(9.0, 6.0)
     left, right = figure.subplots(1, 2, width_ratios=[1.0, 1.3])
     draw_map(left, fields, quantities([fields])[0])

@@ -36,10 +36,10 @@ def viewer_section(results: Sequence[Result]) -> str:
     return environment().get_template("viewer.html").render(scene=scene, data=data)
 
 
-def viewer_script() -> str:
-    """Return the program that draws every viewer of a page."""
+def viewer_script(*further: str) -> str:
+    """Return the program that draws every viewer of a page; ``further`` scripts can start more."""
     templates = environment()
-    parts = [templates.get_template(name).render() for name in SCRIPTS]
+    parts = [templates.get_template(name).render() for name in (*SCRIPTS, *further)]
     return "(() => {\n" + "\n".join(parts) + "\n})();"
 
 
