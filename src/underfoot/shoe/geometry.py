@@ -74,6 +74,7 @@ class SoleMap(_Areas):
         spacing: Side of a cell, m.
         outline: (n, 2) closed polygon of the plan form in m, for drawings.
         breaches: What the grid resolves too coarsely to be trusted.
+        whole: The map that this one is a part of, on the same cells; None where it is all.
     """
 
     x: Array
@@ -85,6 +86,7 @@ class SoleMap(_Areas):
     spacing: float
     outline: Array
     breaches: tuple[Breach, ...] = field(default=())
+    whole: "SoleMap | None" = field(default=None, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         self._check_shapes("sole", "clearance", "inside", "land", "tread_depth")
