@@ -42,6 +42,17 @@ class DrawnSole:
             for each, size in zip(self.computed, self.height.shape, strict=True)
         )
 
+    @property
+    def plane(self) -> tuple[float, float, float]:
+        """Return (a, b, c) of the plane a + b x + c y (m) through the land, least squares."""
+        there = self.land & np.isfinite(self.height)
+        if np.count_nonzero(there) < 3:
+            there = np.isfinite(self.height)
+        along, across = np.meshgrid(self.x, self.y, indexing="ij")
+        design = np.stack([np.ones(there.sum()), along[there], across[there]], axis=1)
+        a, b, c = np.linalg.lstsq(design, self.height[there], rcond=None)[0]
+        return float(a), float(b), float(c)
+
     def placed(self, values: Floats) -> Floats:
         """Return a field of the data set, (..., nx, ny), on this grid, nan where none was solved."""
         placed = np.full((*values.shape[:-2], *self.height.shape), np.nan)

@@ -154,7 +154,7 @@ def pane(
         "x0": float(x[0]),
         "y0": float(y[0]),
         "spacing": sole.spacing,
-        "plane": _plane(sole),
+        "plane": sole.plane,
         "outline": outline,
         "computed": computed,
         "height": packed(sole.height),
@@ -182,17 +182,6 @@ def _outline(dataset: xarray.Dataset) -> list[list[float]]:
         return []
     rim = np.stack([dataset["outline_x"].values, dataset["outline_y"].values], axis=1)
     return [[float(f"{v:.5g}") for v in point] for point in rim[np.isfinite(rim).all(axis=1)]]
-
-
-def _plane(sole: DrawnSole) -> list[float]:
-    """Return (a, b, c) of a + b x + c y through the land: heights are exaggerated from it."""
-    there = sole.land & np.isfinite(sole.height)
-    if np.count_nonzero(there) < 3:
-        there = np.isfinite(sole.height)
-    along, across = np.meshgrid(sole.x, sole.y, indexing="ij")
-    design = np.stack([np.ones(there.sum()), along[there], across[there]], axis=1)
-    found = np.linalg.lstsq(design, sole.height[there], rcond=None)[0]
-    return [float(value) for value in found]
 
 
 def _history(
