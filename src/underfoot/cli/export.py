@@ -35,7 +35,9 @@ def export(
     to: Annotated[Kind, typer.Option("--to", help="Kind of file.", show_default=False)],
     field: Annotated[
         str | None,
-        typer.Option("--field", help="What the colours show, as fluid_pressure.", show_default=False),
+        typer.Option(
+            "--field", help="What the colours show, as fluid_pressure.", show_default=False
+        ),
     ] = None,
     pressed: Annotated[
         bool, typer.Option("--pressed", help="The sole under load, not undeformed.")

@@ -104,9 +104,7 @@ def export_result(
     return write(_scene(result, found, chosen, pressed), path)
 
 
-def _scene(
-    result: Result, found: tuple[Quantity, ...], chosen: Quantity, pressed: bool
-) -> _Scene:
+def _scene(result: Result, found: tuple[Quantity, ...], chosen: Quantity, pressed: bool) -> _Scene:
     dataset, sole = result.fields, drawn_sole(result.fields)
     if pressed and sole.pressed is None:
         raise DataError(
@@ -147,9 +145,7 @@ def _colours(
 
 def _surface(scene: _Scene, points: NDArray[np.float64]) -> Any:
     trimesh = optional_module("trimesh", "cad", WORK)
-    return trimesh.Trimesh(
-        points, scene.mesh.triangles, vertex_colors=scene.colours, process=False
-    )
+    return trimesh.Trimesh(points, scene.mesh.triangles, vertex_colors=scene.colours, process=False)
 
 
 def _write_glb(scene: _Scene, path: Path) -> Exported:
@@ -190,9 +186,7 @@ def _write_obj(scene: _Scene, path: Path) -> Exported:
 
 def _write_vtu(scene: _Scene, path: Path) -> Exported:
     meshio = optional_module("meshio", "paraview", WORK)
-    fields = {
-        f"{name} ({scene.units[name]})": [scene.of_faces(name)] for name in scene.values
-    }
+    fields = {f"{name} ({scene.units[name]})": [scene.of_faces(name)] for name in scene.values}
     quads = [("quad", scene.mesh.quads)]
     meshio.Mesh(scene.mesh.points, quads, cell_data=fields).write(str(path))
     return Exported(path, "m", "z up, x forward", "", scene.units)

@@ -94,9 +94,7 @@ def sole_mesh(sole: DrawnSole, *, pressed: bool = False) -> SoleMesh:
     return SoleMesh(points, np.arange(len(points)).reshape(-1, 4), np.concatenate(cells))
 
 
-def _corner_heights(
-    sole: DrawnSole, height: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _corner_heights(sole: DrawnSole, height: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the heights (nx, ny, 4) of the corners of all cells, in the order of ``_CORNERS``."""
     nx, ny = height.shape
 

@@ -12,7 +12,7 @@ from .slab import land_profile
 
 NODES = 2.5e-3
 """m between the points that the cutting surface is fitted to."""
-CLEAR = 0.3e-3
+CLEAR = 0.1e-3
 """m by which the cutting surface passes under land that is not worn; thinner wear is left out."""
 _BEYOND = 6e-3  # m of cutting surface around the plan form
 _DOWN = 60e-3  # m of the cutting body below its surface
@@ -42,5 +42,5 @@ def worn_solid(body: Any, shape: SoleShape) -> Any:
     removed = wear.worn_height(grid_x, grid_y, plain, shape) - plain
     height = plain + removed - CLEAR * np.exp(-3 * removed / CLEAR)
     points = np.stack([grid_x, grid_y, height], axis=-1) * MM
-    surface = kernel().SplineSurfaceApproximation(points, tol=0.02)
+    surface = kernel().SplineSurfaceInterpolation(points)
     return body - surface.Extrude(kernel().Vec(0.0, 0.0, -_DOWN * MM))
