@@ -61,8 +61,8 @@ def make(
 ) -> None:
     """Make a sole: the same description serves the solver (in a case) and the CAD.
 
-    Give an outsole file, or a pattern; lengths that are not given are assumed and said. The file is read back and its
-    volume compared with the solid's; meshes must be watertight.
+    Give an outsole file, or a pattern; lengths that are not given are assumed and said. The file
+    is read back and its volume compared with the solid's; meshes must be watertight.
     """
     from underfoot.core import InputError
     from underfoot.shoe.parametric import write_sole

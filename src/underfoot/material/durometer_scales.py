@@ -30,8 +30,8 @@ SCALES = (
     SHORE_A,
     DurometerScale(
         "Shore D", 50.0, 1.0, 30.0, 49.0, 5.0,
-        "Qi, Joyce and Boyce 2003: one modulus for S_A and S_D + 50; spread: the usual tolerance of "
-        "5 points",
+        "Qi, Joyce and Boyce 2003: one modulus for S_A and S_D + 50; spread: the usual tolerance "
+        "of 5 points",
     ),
     DurometerScale(
         "Asker C", -10.8, 0.8333, 45.0, 75.0, 5.0,
@@ -79,7 +79,7 @@ def durometer_reading(text: str, *, where: str = "") -> DurometerReading:
         InputError: No number, a scale that is not known, or a reading beyond those that the
             scale's conversion was given for.
     """
-    found = _READING.fullmatch(text.lower().replace("°", " ").replace("-", " "))
+    found = _READING.fullmatch(text.lower().strip().replace("°", " ").replace("-", " "))
     words = "" if found is None else (found["before"] + found["after"]).replace(" ", "")
     scale = None if found is None else _NAMES.get(words)
     names = ", ".join(f'"62 {each.name}"' for each in SCALES)

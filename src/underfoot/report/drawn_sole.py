@@ -54,7 +54,7 @@ class DrawnSole:
         return float(a), float(b), float(c)
 
     def placed(self, values: Floats) -> Floats:
-        """Return a field of the data set, (..., nx, ny), on this grid, nan where none was solved."""
+        """Return a field of the data set, (..., nx, ny), on this grid, nan beside it."""
         placed = np.full((*values.shape[:-2], *self.height.shape), np.nan)
         placed[(..., *self.computed)] = values[(..., *self.own)]
         return placed

@@ -227,7 +227,7 @@ name = {name}
 from = "work_shoe_half_tread"   # stands in for what is not given below
 
 [shoe.material]
-shore_a = "62 A"                # hardness of the outsole: set your own; "40 Shore D", "55 Asker C" are converted
+shore_a = "62 A"                # set your own; "40 Shore D" and "55 Asker C" are converted
 # modulus = "5 MPa"             # measured in compression: goes before the hardness
 # [shoe.roughness]              # of the outsole's surface, from a profilometer
 # rq = "8 um"
@@ -251,7 +251,7 @@ outsole_thickness = {thickness}
 from = "vinyl_g4"               # others: underfoot catalogue floor
 
 [contaminant]
-from = "glycerol_90pct"         # others: underfoot catalogue fluid; contaminant = "none" for a dry floor
+from = "glycerol_90pct"         # others: underfoot catalogue fluid
 # viscosity = "100 cP"
 
 [motion]
