@@ -178,7 +178,6 @@ def soft_ehl():
         effective_modulus=effective,
     )
     return SimpleNamespace(
-        cut=None,
         sole=sole,
         body=body,
         law=law,
