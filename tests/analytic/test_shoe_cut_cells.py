@@ -51,7 +51,7 @@ def test_the_area_of_lugs_is_smooth_in_their_width():
         counted.append(np.count_nonzero(sole.land) * sole.spacing**2)
     smooth, jumps = (np.abs(np.diff(each, 2)).max() / each[0] for each in (cut, counted))
     assert smooth < 0.015  # the rim of the plan form is not cut
-    assert smooth < 0.2 * jumps
+    assert smooth < 0.35 * jumps
 
 
 def test_a_sole_without_lugs_is_not_cut():
