@@ -242,6 +242,7 @@ def trimmed(sole: SoleMap, reach: float, padding: float = 0.004) -> SoleMap:
         inside=sole.inside[part],
         land=sole.land[part],
         tread_depth=sole.tread_depth[part],
+        cut=sole.cut and sole.cut.part(part),
         whole=sole,
     )
 
