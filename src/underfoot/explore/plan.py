@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -18,7 +19,7 @@ from underfoot.case import text as toml
 from underfoot.case.errors import translated
 from underfoot.case.quantity import Flag
 from underfoot.case.section import Section
-from underfoot.core import InputError, content_hash, unknown_name
+from underfoot.core import InputError, content_hash, to_si, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.catalogue import Catalogue, catalogue_folders
 from underfoot.shoe.geometry import CELLS_REFUSED
@@ -49,7 +50,7 @@ from .inputs import (
 from .record import Job
 
 FILE_VERSION = 1
-SECTIONS = "file_version name description base set vary uncertain conditions outputs method".split()
+SECTIONS = "file_version name description base set vary uncertain conditions reading outputs method".split()
 UNITS = {
     **dict.fromkeys(("cof", "cof_adhesion", "cof_hysteresis", "cof_viscous"), "1"),
     **dict.fromkeys(("fluid_load", "fluid_load_sensor", "normal_force"), "N"),
@@ -105,6 +106,16 @@ class Method(Section):
         return self.grid == "quick"
 
 
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What was measured in one condition: an output, its value and standard deviation, SI."""
+
+    output: str
+    unit: str
+    value: float
+    sd: float
+
+
 @dataclass(frozen=True)
 class StudyPlan:
     """Everything a study is made of.
@@ -117,6 +128,7 @@ class StudyPlan:
         states: Conditions that every design is run in.
         remarks: What reading the file decided, in words.
         text: The study file.
+        readings: Of a calibration: what was measured in each state.
     """
 
     name: str
@@ -132,6 +144,7 @@ class StudyPlan:
     method: Method
     remarks: tuple[str, ...]
     text: str
+    readings: tuple[Reading, ...] = ()
 
     @property
     def dimensions(self) -> tuple[Input | Distribution, ...]:
@@ -253,7 +266,8 @@ def read_plan(
             follow.append(found)
         elif found is not None:
             vary.append(found)
-    if not vary and not reader.errors:
+    calibrates = "reading" in plain
+    if not vary and not calibrates and not reader.errors:
         reader.fail(
             InputError(
                 "nothing is varied",
@@ -275,7 +289,9 @@ def read_plan(
         distribution = reader.attempt(read_distribution, path, given, where, known)
         if distribution is not None:
             uncertain.append(distribution)
-    states = reader.conditions(known)
+    states, readings = reader.conditions(known), ()
+    if calibrates:
+        states, readings = reader.readings(known)
     taken = [one.path for one in (*vary, *follow, *uncertain)]
     taken += [*(joint.paths if joint else ()), *(states[0].changes if states else ())]
     for path in {path for path in taken if taken.count(path) > 1}:
@@ -287,7 +303,9 @@ def read_plan(
                 remedy="Keep it in one of them",
             )
         )
-    method = reader.method(bool(uncertain or joint), [*vary])
+    method = reader.method(bool(uncertain or joint), vary)
+    if calibrates:
+        method = method.model_copy(update={"kind": "sensitivity"})
     require, maximise, minimise = reader.outputs(case, states)
     if not maximise + minimise and method.kind in ("optimise", "robust") and not reader.errors:
         reader.fail(
@@ -318,6 +336,7 @@ def read_plan(
         method,
         remarks,
         text,
+        readings,
     )
     total = plan.designs * plan.cases_per_design if method.budget else _grid_size(plan)
     if total > MOST_CASES:
@@ -473,6 +492,46 @@ class _Reader:
             Condition(", ".join(text for *_, text in row), {path: value for path, value, _ in row})
             for row in product(*choices)
         )
+
+    def readings(self, catalogue: Catalogue) -> tuple[tuple[Condition, ...], tuple[Reading, ...]]:
+        """Return the condition of each reading, and what was measured in it."""
+        states, found, given = [], [], self.plain["reading"]
+        for number, one in enumerate(given if isinstance(given, list) else [given], start=1):
+            where = self.place("reading") + f"[{number}]"
+            if not isinstance(one, Mapping) or not isinstance(one.get("when", {}), Mapping):
+                self.fail(InputError(f"{one!r} is no table", where=where))
+                continue
+            changes = {}
+            for path, value in one.get("when", {}).items():
+                choice = self.attempt(
+                    read_conditions, path, value, f'{where}.when."{path}"', catalogue
+                )
+                if choice is not None:
+                    changes[path] = choice.options[0]
+            outputs = [key for key in one if key not in ("when", "sd", "name")]
+            if len(outputs) != 1 or outputs[0] not in UNITS or "sd" not in one:
+                what = f"{', '.join(outputs) or 'nothing'} was measured"
+                self.fail(
+                    InputError(
+                        what,
+                        where=where,
+                        allowed=f"one of {', '.join(UNITS)}, with its sd",
+                        remedy="Write cof = 0.24, sd = 0.02",
+                    )
+                )
+                continue
+            unit = UNITS[outputs[0]]
+            value, sd = (
+                self.attempt(partial(to_si, where=f"{where}.{key}"), one[key], unit)
+                for key in (outputs[0], "sd")
+            )
+            if value is None or sd is None:
+                continue
+            if sd <= 0:
+                self.fail(InputError(f"{one['sd']}", where=f"{where}.sd", allowed="above 0"))
+            states.append(Condition(str(one.get("name", f"reading {number}")), changes))
+            found.append(Reading(outputs[0], unit, value, sd))
+        return tuple(states), tuple(found)
 
     def outputs(
         self, case: Case, states: Sequence[Condition]
