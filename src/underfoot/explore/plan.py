@@ -50,7 +50,9 @@ from .inputs import (
 from .record import Job
 
 FILE_VERSION = 1
-SECTIONS = "file_version name description base set vary uncertain conditions reading outputs method".split()
+SECTIONS = (
+    "file_version name description base set vary uncertain conditions outputs method reading"
+).split()
 UNITS = {
     **dict.fromkeys(("cof", "cof_adhesion", "cof_hysteresis", "cof_viscous"), "1"),
     **dict.fromkeys(("fluid_load", "fluid_load_sensor", "normal_force"), "N"),

@@ -29,10 +29,10 @@ from .surrogate import FEWEST, Surrogate
 
 FIRST = 0.4
 """Share of an optimisation's designs that are spread evenly first."""
-POPULATION, GENERATIONS = 80, 80
+POPULATION, GENERATIONS = 60, 50
 SAMPLES = 64
 """Draws of the goals at a candidate, by which its growth of the hypervolume is averaged."""
-CANDIDATES = 120
+CANDIDATES = 80
 """Designs of a batch are chosen among so many of the surrogates' front."""
 BEYOND = 0.1
 """The hypervolume's reference lies this share of the goals' range beyond the worst of them."""

@@ -32,12 +32,13 @@ function startStudy(root) {
     const design = designs[number];
     find("chosen").hidden = false;
     find("title").textContent = `Design ${design.number}${design.front ? ", on the front" : ""}`;
-    find("values").replaceChildren(...columns.map((column, k) => {
-      const row = document.createElement("tr"), head = document.createElement("th"), cell = document.createElement("td");
-      head.scope = "row"; head.textContent = label(k); cell.className = "number"; cell.textContent = short(design.values[k]);
-      row.append(head, cell);
-      return row;
-    }));
+    const row = (tag, texts) => {
+      const made = document.createElement("tr");
+      made.append(...texts.map((text) => { const cell = document.createElement(tag); cell.textContent = text; return cell; }));
+      return made;
+    };
+    find("names").replaceChildren(row("th", columns.map((_, k) => label(k))));
+    find("values").replaceChildren(row("td", design.values.map(short)));
     find("command").textContent = design.reason || "Its case file: underfoot study export. Check it in full: underfoot run on that file.";
     const place = find("sole"), stored = root.querySelector(`template[data-sole="${design.number}"]`);
     for (const canvas of place.querySelectorAll("canvas")) canvas.getContext("webgl2")?.getExtension("WEBGL_lose_context")?.loseContext();
