@@ -123,7 +123,7 @@ def test_map_is_bilinear_between_its_nodes():
 )
 def test_patches_that_do_not_fit(kind, words):
     with pytest.raises(InputError, match=words):
-        WornPatch(2e-3, **kind).check_within(HEEL)
+        WornPatch(2e-3, **kind).on(HEEL)
 
 
 def test_wear_deeper_than_the_sole():

@@ -89,9 +89,6 @@ def sole_shape(case: Case, progress: Progress = silent) -> SoleShape:
     removed = wear.build()
     if removed is None:
         return new.worn(archard_state(case, progress=progress).worn)
-    check = getattr(removed, "check_within", None)
-    if check is not None:
-        check(new)
     return new.worn(removed)
 
 
@@ -239,6 +236,7 @@ def trimmed(sole: SoleMap, reach: float, padding: float = 0.004) -> SoleMap:
         inside=sole.inside[part],
         land=sole.land[part],
         tread_depth=sole.tread_depth[part],
+        removed=None if sole.removed is None else sole.removed[part],
     )
 
 

@@ -74,6 +74,7 @@ class SoleMap(_Areas):
         spacing: Side of a cell, m.
         outline: (n, 2) closed polygon of the plan form in m, for drawings.
         breaches: What the grid resolves too coarsely to be trusted.
+        removed: Thickness of the land that wear has taken, m; None for a new sole.
     """
 
     x: Array
@@ -85,9 +86,10 @@ class SoleMap(_Areas):
     spacing: float
     outline: Array
     breaches: tuple[Breach, ...] = field(default=())
+    removed: Array | None = None
 
     def __post_init__(self) -> None:
-        self._check_shapes("sole", "clearance", "inside", "land", "tread_depth")
+        self._check_shapes("sole", "clearance", "inside", "land", "tread_depth", "removed")
         if not self.inside.any():
             raise InputError(
                 "no cell centre lies within the plan form",
@@ -127,6 +129,7 @@ class SoleSurface(_Areas):
         remarks: Decisions and repairs on the way, a sentence each.
         base: (nx, ny) height in m that the land would have without its channels; None to carry the
             land on across them (linear between the land on both sides).
+        removed: Thickness of the land that wear has taken, m; None for a new sole.
     """
 
     x: Array
@@ -139,10 +142,11 @@ class SoleSurface(_Areas):
     name: str = "sole"
     remarks: tuple[str, ...] = field(default=())
     base: Array | None = None
+    removed: Array | None = None
 
     def __post_init__(self) -> None:
         positive(self.spacing, "surface.spacing")
-        self._check_shapes("surface", "height", "land", "tread_depth", "base")
+        self._check_shapes("surface", "height", "land", "tread_depth", "base", "removed")
         if not self.inside.any():
             raise InputError(
                 "the sole has no height anywhere",

@@ -75,6 +75,9 @@ def heel_map(
         spacing=float(spacing),
         outline=np.column_stack([along(rim[:, 0], rim[:, 1]) - rear, rim[:, 1]]),
         breaches=tuple(breaches_of_grid),
+        removed=None
+        if heel.wear is None
+        else heel.land_height(x, y_map) - heel.unworn_height(x, y_map),
     )
 
 
@@ -284,6 +287,7 @@ def surface_map(
         spacing=float(spacing),
         outline=outline,
         breaches=tuple(resolution_breaches(surface, spacing)),
+        removed=None if surface.removed is None else surface.removed[cells],
     )
 
 

@@ -34,15 +34,19 @@ from underfoot.shoe import SoleMap
 INLET = 1.06
 NARROWEST = 0.1e-3
 """m: a lug edge drawn sharper is moulded with about this radius (assumed)."""
+ROUNDED = 0.5e-3
+"""m: an edge rounds by as much as its lug wears, up to this: then the round is as deep as rubber
+yields at the edge of a lug under a foot, and the pressure that wears it is even (assumed)."""
 ON_RUBBER = 0.12
 LIFTING, LIFT = 0.12, 1.9
 """Shift of the pressure, over the length, from which a lug lifts; loss of contact per shift."""
 LACKING = 0.25
 """Share of the gap that lacks fluid behind the edge (0.15 to 0.3 computed)."""
-STEPS, RELAXATION = 200, 0.1
+STEPS, RELAXATION, STILL = 200, 0.1, 1e-6
 IDLE = 20e3
 """Pa: a lug whose contact bears less on the mean hardly touches."""
 GAPS = 400
+FAR_FILM = 1e-3  # m, a film that no wall shear comes from
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,7 +112,7 @@ def lug_edges(sole: SoleMap, edge_radius: float, *, forward: bool = True) -> Lug
 
     Parameters:
         sole: Map; lugs are connected land beside grooves.
-        edge_radius: Of the lugs, m; sharper than 0.1 mm counts as that.
+        edge_radius: Of the new lugs, m; sharper than 0.1 mm counts as that. Wear rounds it.
         forward: Whether the sole slides towards the toe (fluid meets the front of a lug), else to
             the rear.
     """
@@ -126,12 +130,13 @@ def lug_edges(sole: SoleMap, edge_radius: float, *, forward: bool = True) -> Lug
     cells = _sums(numbers, count, np.ones(numbers.shape))
     faces = np.maximum(_sums(numbers, count, leading), 1)
     length = cells / faces * sole.spacing
+    worn = np.zeros(count) if sole.removed is None else _sums(numbers, count, sole.removed) / cells
     return LugEdges(
         numbers,
         length,
         cells * sole.spacing**2 / length,
         _sums(numbers, count, sole.tread_depth) / cells,
-        np.full(count, max(edge_radius, NARROWEST)),
+        np.maximum(edge_radius + np.minimum(worn, ROUNDED), NARROWEST),
         _sums(numbers, count, from_groove) / faces,
     )
 
@@ -186,8 +191,11 @@ def lug_friction(
         emptied *= np.maximum(1 - 4 / 3 * np.sqrt(back * edges.length) / edges.width, 0.0)
         sheared = drag / gap * (lifted - 0.5 * emptied) / p
         now = cof_contact * np.maximum(1 - film + pull, 0.0) + sheared
-        mu += RELAXATION * (now - mu)
-        pull += RELAXATION * (emptied * suction / p - pull)
+        change, drawn = now - mu, emptied * suction / p - pull
+        mu += RELAXATION * change
+        pull += RELAXATION * drawn
+        if max(np.abs(change).max(), np.abs(drawn).max()) < STILL:
+            break
     bears = load / cells > IDLE
     film, pull = (np.where(bears, edges.fed * each, 0.0) for each in (film, pull))
     load = np.where(bears, load, 0.0)
@@ -239,6 +247,12 @@ class EdgedLaw:
             speed=speed,
             suction=self.suction,
         )
+
+    def mean_factor(self, pressure: float, speed: float) -> float:
+        """Return the mean factor on contact friction if every lug bore ``pressure`` (Pa), 1."""
+        borne = np.where(self.edges.label > 0, pressure, 0.0)
+        lugs = self.lugs(borne, speed, np.full_like(borne, FAR_FILM))
+        return float(np.average(lugs.factor, weights=self.edges.length * self.edges.width))
 
     def __call__(
         self, contact_pressure: Array, speed: float, film_thickness: Array
