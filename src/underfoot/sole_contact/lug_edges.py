@@ -35,8 +35,8 @@ INLET = 1.06
 NARROWEST = 0.1e-3
 """m: a lug edge drawn sharper is moulded with about this radius (assumed)."""
 EXCESS, ROUNDED = 0.36, 0.5e-3
-"""What the leading edge of a lug bears more than its mean (finite elements: friction 0.2, height half
-the length), and so wears more: its radius grows by this share of what is removed, up to 0.5 mm
+"""What the leading edge of a lug bears more than its mean (finite elements: friction 0.2, height
+half the length), and so wears more: its radius grows by this share of what is removed, up to 0.5 mm
 (assumed)."""
 ON_RUBBER = 0.12
 LIFTING, LIFT = 0.12, 1.9
