@@ -236,6 +236,7 @@ def trimmed(sole: SoleMap, reach: float, padding: float = 0.004) -> SoleMap:
         inside=sole.inside[part],
         land=sole.land[part],
         tread_depth=sole.tread_depth[part],
+        cut=sole.cut and sole.cut.part(part),
         removed=None if sole.removed is None else sole.removed[part],
     )
 

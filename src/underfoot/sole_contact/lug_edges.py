@@ -128,15 +128,17 @@ def lug_edges(sole: SoleMap, edge_radius: float, *, forward: bool = True) -> Lug
     ahead = np.roll(numbers, step, axis=0)  # the cell met first by the fluid
     leading = (numbers > 0) & (ahead != numbers)
     from_groove = leading & np.roll(groove, step, axis=0)
-    cells = _sums(numbers, count, np.ones(numbers.shape))
+    area = np.ones(numbers.shape) if sole.cut is None else sole.cut.area
+    cells = _sums(numbers, count, area)
     faces = np.maximum(_sums(numbers, count, leading), 1)
     length = cells / faces * sole.spacing
-    worn = np.zeros(count) if sole.removed is None else _sums(numbers, count, sole.removed) / cells
+    removed = 0.0 if sole.removed is None else sole.removed
+    worn = _sums(numbers, count, removed * area) / cells
     return LugEdges(
         numbers,
         length,
         cells * sole.spacing**2 / length,
-        _sums(numbers, count, sole.tread_depth) / cells,
+        _sums(numbers, count, sole.tread_depth * area) / cells,
         np.maximum(edge_radius + np.minimum(EXCESS * worn, ROUNDED), NARROWEST),
         _sums(numbers, count, from_groove) / faces,
     )
