@@ -78,6 +78,7 @@ class SoleMap(_Areas):
         outline: (n, 2) closed polygon of the plan form in m, for drawings.
         breaches: What the grid resolves too coarsely to be trusted.
         cut: How the outlines of lugs cut the cells; None: not at all.
+        whole: The map that this one is a part of, on the same cells; None where it is all.
         removed: Thickness of the land that wear has taken, m; None for a new sole.
     """
 
@@ -91,6 +92,7 @@ class SoleMap(_Areas):
     outline: Array
     breaches: tuple[Breach, ...] = field(default=())
     cut: CutCells | None = None
+    whole: "SoleMap | None" = field(default=None, repr=False, compare=False)
     removed: Array | None = None
 
     def __post_init__(self) -> None:
