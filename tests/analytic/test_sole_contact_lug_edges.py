@@ -136,8 +136,9 @@ def test_wear_rounds_the_edges_of_the_lugs_that_it_meets():
     new, worn = (sole_map(each, 1e-3) for each in (case, case.replace({"shoe.wear": wear})))
     before, after = lug_edges(new, 0.2e-3), lug_edges(worn, 0.2e-3)
     assert (before.edge == 0.2e-3).all()
-    assert after.edge.max() > 0.4e-3
-    assert after.edge.min() == 0.2e-3  # in front nothing wears
+    assert after.edge.max() == pytest.approx(0.3e-3, abs=0.07e-3)
+    assert after.edge.min() < 0.2e-3  # where little is gone, the moulded round is ground off first
+    assert np.count_nonzero(after.edge == 0.2e-3) > 5  # in front nothing wears
     lifted = [
         friction(one_lug(edge=float(edges.edge.max())), drag=0.03).film.item()
         for edges in (before, after)

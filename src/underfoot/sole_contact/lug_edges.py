@@ -113,7 +113,8 @@ def lug_edges(sole: SoleMap, edge_radius: float, *, forward: bool = True) -> Lug
 
     Parameters:
         sole: Map; lugs are connected land beside grooves.
-        edge_radius: Of the new lugs, m; sharper than 0.1 mm counts as that. Wear rounds it.
+        edge_radius: Of the new lugs, m; sharper than 0.1 mm counts as that. Wear takes this round
+            off and makes its own.
         forward: Whether the sole slides towards the toe (fluid meets the front of a lug), else to
             the rear.
     """
@@ -139,7 +140,10 @@ def lug_edges(sole: SoleMap, edge_radius: float, *, forward: bool = True) -> Lug
         length,
         cells * sole.spacing**2 / length,
         _sums(numbers, count, sole.tread_depth * area) / cells,
-        np.maximum(edge_radius + np.minimum(EXCESS * worn, ROUNDED), NARROWEST),
+        # the floor cuts the moulded round off, and the edge rounds anew
+        np.maximum.reduce(
+            [edge_radius - worn, np.minimum(EXCESS * worn, ROUNDED), np.full(count, NARROWEST)]
+        ),
         _sums(numbers, count, from_groove) / faces,
     )
 
