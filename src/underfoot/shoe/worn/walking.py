@@ -10,21 +10,15 @@ from underfoot.core.checks import not_negative
 
 from ..shape import SoleShape
 
-LANDING = tuple(
-    (math.radians(angle), share)
-    for angle, share in (
-        (3.5, 0.497),
-        (6.5, 0.202),
-        (9.5, 0.127),
-        (12.5, 0.098),
-        (15.5, 0.059),
-        (18.5, 0.017),
-    )
+SHARES = (
+    *(0.266, 0.139, 0.092, 0.078, 0.069, 0.056, 0.049, 0.041, 0.037),
+    *(0.036, 0.033, 0.029, 0.024, 0.019, 0.015, 0.009, 0.004, 0.004),
 )
-"""Foot angles (rad) from heel contact down to 2 deg, and the share of load times time at each: ten
+LANDING = tuple((math.radians(2.5 + degree), share) for degree, share in enumerate(SHARES))
+"""Foot angles (rad) from 20 deg down to 2 deg and the share of load times time at each degree: ten
 recorded steps of four laboratories that come with the package (the mean of the laboratories')."""
 NODES = 801
-CUT = 10e-6
+CUT = 30e-6
 """m: mean thickness that one round of cuts takes off the rear of a heel."""
 REAR = 30e-3  # m, its length
 
@@ -53,8 +47,8 @@ class WalkingWear:
 
     Where the foot bears the load F at an angle while it slides by s, wear takes the volume
     V = k F s (Archard 1953). So at each angle the floor plane cuts off a volume in proportion to
-    load times time there; sliding is taken as even in time. The angles take turns in rounds of a
-    hundredth of a millimetre until the most worn place has lost ``depth``. A sole stiff against its
+    load times time there; sliding is taken as even in time. The angles take turns in rounds of a few
+    hundredths of a millimetre until the most worn place has lost ``depth``. A sole stiff against its
     wear; the planes do not lean sideways.
 
     Parameters:
