@@ -22,17 +22,12 @@ def test_each_packaged_effect_yields_cases_or_a_reason():
         if one.topic != "fluid" and not one.reason:
             pairs = zip(one.over.cases, one.under.cases, strict=True)
             assert all(over.hash != under.hash for over, under in pairs), one.effect
-    assert {one.source for one in rows if one.reason} == {
-        "manning_1991",
-        "minia_flooring_materials",
-        "mohamed_2011",
-        "strobel_2012",
-    }
+    assert not [one.reason for one in rows if one.reason]
 
 
 def test_every_condition_of_whole_shoes_has_cases():
     shoes = [one for source in corpus() for one in whole_shoe_stands(source)]
-    assert len(shoes) == 13
+    assert len(shoes) == 15
     assert all(side.cases and not side.reason for _, side in shoes)
 
 
@@ -56,7 +51,7 @@ def test_grooves_lie_as_printed_and_land_sets_the_grid():
     (case,) = stand(shoe).cases
     assert case.shoe.tread.lug_width == pytest.approx(6e-3)
     assert case.shoe.tread.channel_width == pytest.approx(4e-3)
-    assert case.contaminant.is_oil
+    assert case.contaminant.chemistry == "oil"
     assert (case.motion.speed, case.motion.normal_force) == (0.3, 500.0)
     assert math.degrees(case.motion.shoe_angle) == pytest.approx(7)
 
@@ -64,7 +59,6 @@ def test_grooves_lie_as_printed_and_land_sets_the_grid():
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        ({"fluid": "dry"}, "a dry case needs a measured coefficient"),
         ({"fluid": None}, "names no fluid"),
         ({"device": "ramp"}, "ramp is no device"),
         ({"shoe_angle": "backwards"}, "is not a number with a unit"),

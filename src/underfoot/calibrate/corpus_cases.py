@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import Any
 
 from underfoot.case import Case
-from underfoot.case.friction import FLOOR_RQ, SOLE_RQ
+from underfoot.case.surfaces import FLOOR_RQ, SOLE_RQ
 from underfoot.core import InputError, to_si, unknown_name
 
 from .corpus import RQ_PER_RA, Condition, Effect, Source, Span
@@ -48,7 +48,8 @@ TREAD = {"depth": 3e-3, "channel_width": 3e-3, "lug_width": 5e-3, "edge_radius":
 """m, where not printed."""
 PITCH = 10e-3
 """m, of a grid of which the share of land is printed."""
-GROOVES = {"across": "transverse", "along": "longitudinal"}
+GROOVES = {"across": "transverse", "along": "longitudinal", "oblique": "transverse"}
+OBLIQUE = "45 deg"
 PATTERNS = {
     "grooves": GROOVES,
     "strips": GROOVES,
@@ -58,6 +59,9 @@ PATTERNS = {
 """Pattern of the case by the printed pattern and direction."""
 WEAR = {"new": "0 mm", "slight": "1 mm", "through": "3.5 mm"}
 """Worn off at 7 deg (assumed): none is printed."""
+WALKING = {"forwards": "0 deg", "backwards": "7 deg"}
+"""Shoe angle (assumed): the most friction of a step forwards is had flat on the sole, of one
+backwards on the heel."""
 TOPICS = {
     "shore_a": "hardness",
     "sole_ra": "roughness",
@@ -70,6 +74,7 @@ TOPICS = {
     "wear": "wear",
     "fluid": "fluid",
     "shoe_angle": "shoe angle",
+    "walking": "shoe angle",
 }
 """What an effect is about, by the number that differs between its sides."""
 ABSENT, DECIDED = 0.02, 0.75
@@ -242,12 +247,14 @@ class _Contents:
                 motion[name] = f"{self.middle(key, unit):.6g} {unit}"
             else:
                 self.taken[key] = None
+        if "walking" in self.table:
+            motion["shoe_angle"] = WALKING[self.table["walking"]]
         self.taken["shape" if whole else "size"] = None
         return Case.from_mapping(
             {
                 "name": str(device),
                 "shoe": {
-                    "material": {"shore_a": self.shore_a()},
+                    "material": self.material(),
                     "roughness": {"rq": self.rq("sole")},
                     "heel": HEEL if whole else SPECIMEN,
                     "tread": self.tread(whole),
@@ -273,6 +280,11 @@ class _Contents:
         if high > low:
             self.taken[key] = None
         return math.sqrt(low * high)
+
+    def material(self) -> dict[str, Any]:
+        compound = self.table.get("compound")
+        named = {"polymer": compound} if compound else {}
+        return {**named, "shore_a": self.shore_a()}
 
     def shore_a(self) -> float:
         if "shore_a" in self.table:
@@ -301,7 +313,7 @@ class _Contents:
             viscosity = self.middle("viscosity", "Pa*s")
         else:
             self.taken["viscosity"] = None
-        family = "oil" if fluid == "oil" else "aqueous"
+        family = {"oil": "oil", "detergent": "detergent"}.get(fluid, "aqueous")
         return {"viscosity": f"{1e3 * viscosity:.6g} cP", "family": family}
 
     def tread(self, whole: bool) -> dict[str, Any]:
@@ -324,6 +336,9 @@ class _Contents:
             numbers["lug_width"] = PITCH * math.sqrt(printed["land"])
             numbers["channel_width"] = PITCH - numbers["lug_width"]
         texts = {key: f"{1e3 * number:.6g} mm" for key, number in numbers.items()}
+        if printed.get("direction") == "oblique":
+            self.taken["tread.angle"] = None
+            texts["angle"] = OBLIQUE
         return {"pattern": pattern, **texts}
 
     def wear(self) -> str:

@@ -43,6 +43,9 @@ class Relaxation(Section):
 class Material(Section):
     """Outsole compound. A measured modulus goes before one from hardness."""
 
+    polymer: str | None = optional(
+        "TPU, PU, SBR, NBR, ...; soles of one polymer share the error of its friction"
+    )
     shore_a: Hardness | None = optional("Shore A hardness")
     modulus: Modulus | None = optional("measured Young's modulus")
     poisson_ratio: Poisson = default(0.49, 0.49, "rubber, nearly incompressible", assumed=True)
