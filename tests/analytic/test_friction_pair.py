@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.special import erf
 
 from underfoot.calibrate.pair_law import fitted, law_named
 from underfoot.calibrate.pair_readings import PairReading
@@ -23,6 +24,7 @@ from underfoot.friction import (
 )
 from underfoot.friction.law import PIN_PRESSURE, FrictionLaw
 from underfoot.friction.pair_contact import ROUGHNESS, PairConstants
+from underfoot.rough_contact.contact_table import QUANTITIES, ContactTable
 from underfoot.studies.corpus import readings
 
 TILE = Pair(shore_a=65, sole_rq=(8e-6, 8e-6), floor_rq=(3e-6, 3e-6), family="aqueous")
@@ -208,6 +210,24 @@ def test_a_dry_case_is_computed_and_says_what_stands_behind_it():
     assert any("no dry reading" in line for line in found.assumptions)
     with pytest.raises(InputError, match='or None and "dry"'):
         PairContactLaw(TILE, None)
+
+
+def test_a_contact_table_gives_hysteresis_and_dry_area(tmp_path):
+    ones = np.ones((4, 1))
+    values = {name: 0.1 * ones for name in QUANTITIES} | {"cof_hysteresis": 0.06 * ones}
+    nodes = np.geomspace(1e4, 1e6, 4), np.array([0.3])
+    ContactTable(*nodes, values, values, np.full((4, 1), 2)).save(tmp_path / "rubber.npz")
+    case = Case(
+        shoe="work_shoe_full_tread",
+        floor="vinyl_g4",
+        contaminant="none",
+        motion={"from": "slip_tester_g4", "speed": 0.3},
+        friction={"model": "pair", "contact_table": str(tmp_path / "rubber.npz")},
+    )
+    found = case.friction.build(resolved(case))
+    assert found.pair.hysteresis == pytest.approx(0.06)
+    assert erf(3e5 / found.pair.full_contact) == pytest.approx(0.1)
+    assert any("0.060 from rubber.npz" in line for line in found.assumptions)
 
 
 def test_hardnesses_of_one_polymer_share_its_error():

@@ -80,29 +80,49 @@ class PairOption(FrictionOption):
     dry: ClassVar[bool] = True
     source: ClassVar[str] = "calibrated on published measurements of other pairs"
     reads: ClassVar[tuple[str, ...]] = ("contaminant.family",)
-    uncounted: ClassVar[tuple[str, ...]] = ("draws_file",)
+    uncounted: ClassVar[tuple[str, ...]] = ("draws_file", "contact_table")
 
     draws_file: str | None = optional(
         "draws calibrated to readings of your own by underfoot calibrate pair; the "
         "path counts from the case file's folder"
     )
     sha256: str | None = optional("checksum of the file that is meant")
+    contact_table: str | None = optional(
+        "contact table of the rubber on the floor (ContactTable.save), for hysteresis and, dry, "
+        "real contact area; default: theory where a spectrum is given, else a closed form"
+    )
+    contact_table_sha256: str | None = optional("checksum of the contact table that is meant")
 
     @classmethod
     def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
-        return with_checksum(table, "draws_file", folder, where)
+        table = with_checksum(table, "draws_file", folder, where)
+        return with_checksum(
+            table, "contact_table", folder, where, checksum_key="contact_table_sha256"
+        )
 
     def build(self, context: Context) -> FrictionLaw:
+        from scipy.special import erfinv
+
         from underfoot.friction import Pair, PairContactLaw, packaged_pair_draws, read_pair_draws
+        from underfoot.rough_contact import ContactTable
 
         material = context.shoe.material
+        hysteresis, origin, full_contact = _hysteresis(context), "Persson theory", None
+        if self.contact_table:
+            table = ContactTable.load(self.contact_table)
+            at = HYSTERESIS_PRESSURE, context.motion.speed
+            area = float(table.real_contact_fraction(*at))
+            hysteresis, origin = float(table.cof_hysteresis(*at)), Path(self.contact_table).name
+            full_contact = HYSTERESIS_PRESSURE / float(erfinv(min(area, 1 - 1e-9)))
         draws = read_pair_draws(Path(self.draws_file)) if self.draws_file else None
         pair = Pair(
             shore_a=_hardness(context),
             sole_rq=_span(context.shoe.roughness, SOLE_RQ),
             floor_rq=_span(context.floor.roughness, FLOOR_RQ),
             family=context.contaminant.chemistry if context.contaminant else "dry",
-            hysteresis=_hysteresis(context),
+            hysteresis=hysteresis,
+            hysteresis_origin=origin,
+            full_contact=full_contact,
             polymer=material.polymer,
             shore_a_deviation=(material.shore_a and material.sourced("shore_a").uncertainty) or 0.0,
         )

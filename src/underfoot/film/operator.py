@@ -285,8 +285,7 @@ def upwinding(gap: Array, carried: Array, conductance: Array, *, from_a: bool) -
     The correction is half the limited slope (van Leer) of the upstream cell: second order without
     widening the Newton matrix.
     """
-    # a sealed contact conducts nothing: its Peclet number ends at a million
-    ratio = carried / np.maximum(conductance, 1e-6 * carried + 1e-300)
+    ratio = carried / conductance
     peclet = np.maximum(ratio[1:], ratio[:-1])
     step = gap[1:] - gap[:-1]
     before = np.zeros_like(step)

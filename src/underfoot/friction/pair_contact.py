@@ -215,7 +215,8 @@ class Pair:
     ``sole_rq`` and ``floor_rq`` (m) are (low, high): equal where measured, else the range over
     which it is drawn, evenly in its logarithm. ``hysteresis`` is the COF that the package's own
     theory gives for the compound's spectrum; None takes the closed form at a loss tangent of 0.2.
-    ``polymer`` names what soles of one compound share, whatever their hardness and roughness.
+    ``hysteresis_origin`` names where it comes from. ``full_contact`` is p_R (Pa) where a contact
+    table gives it. ``polymer`` names what soles of one compound share, whatever their hardness and roughness.
     ``shore_a_deviation`` is the standard deviation of the hardness.
     """
 
@@ -224,6 +225,8 @@ class Pair:
     floor_rq: tuple[float, float]
     family: Family
     hysteresis: float | None = None
+    hysteresis_origin: str = "given"
+    full_contact: float | None = None
     polymer: str | None = None
     shore_a_deviation: float = 0.0
 
@@ -259,7 +262,8 @@ class Pair:
             "pair": np.exp(draws.error(self.compound_and_floor, draws.sd_pair, seed)),
         }
         if self.family == "dry":
-            full = FULL_CONTACT * np.hypot(numbers["sole_rq"], numbers["floor_rq"])
+            rq = np.hypot(numbers["sole_rq"], numbers["floor_rq"])
+            full = self.full_contact or FULL_CONTACT * rq
             drawn["full_contact"] = np.broadcast_to(full, film.shape)
         return drawn
 
@@ -332,6 +336,9 @@ class PairContactLaw(UncertainInputs):
                 )
         if self.pair.hysteresis is None:
             words.append("shoe.material: loss tangent 0.2 for the hysteresis, no spectrum is given")
+        else:
+            given = f"hysteresis COF {self.pair.hysteresis:.3f} from {self.pair.hysteresis_origin}"
+            words.append(f"friction.pair: {given}")
         return tuple(words)
 
     @property
