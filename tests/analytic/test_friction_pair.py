@@ -23,7 +23,7 @@ from underfoot.friction import (
     sampled_points,
 )
 from underfoot.friction.law import PIN_PRESSURE, FrictionLaw
-from underfoot.friction.pair_contact import ROUGHNESS, PairConstants
+from underfoot.friction.pair_contact import HIGHEST_WET, ROUGHNESS, PairConstants
 from underfoot.rough_contact.contact_table import QUANTITIES, ContactTable
 from underfoot.studies.corpus import readings
 
@@ -47,6 +47,7 @@ def test_limits_at_rest_and_when_the_dry_part_has_faded():
     assert contact_cof(law(), 100.0) == pytest.approx(0.14, rel=1e-9)
     assert contact_cof(law(), 1e-3 / 0.2) == pytest.approx(0.14 + 0.3 / math.e)
     assert contact_cof(law(laboratory=2.0, pair=0.5), 0.0) == pytest.approx(0.44)
+    assert contact_cof(law(laboratory=5.0), 0.0) == pytest.approx(HIGHEST_WET)
 
 
 @settings(deadline=None, max_examples=40)
@@ -197,9 +198,13 @@ def test_dry_adhesion_follows_the_real_contact_area():
     """At 8.3 um and the pressure of the pins it is what water leaves at rest; far above full
     contact the shear stress is a constant, the strength of the contact."""
     assert dry_cof(ROUGHNESS, PIN_PRESSURE) == pytest.approx(0.44)
-    assert dry_cof(2 * ROUGHNESS, 1e4) - 0.04 == pytest.approx((dry_cof(ROUGHNESS, 1e4) - 0.04) / 2, rel=1e-3)
+    assert dry_cof(2 * ROUGHNESS, 1e4) - 0.04 == pytest.approx(
+        (dry_cof(ROUGHNESS, 1e4) - 0.04) / 2, rel=1e-3
+    )
     assert dry_cof(2e-6) > dry_cof(4e-6) > dry_cof(8e-6)
-    assert 2e9 * (dry_cof(pressure=2e9) - 0.04) == pytest.approx(1e9 * (dry_cof(pressure=1e9) - 0.04))
+    assert 2e9 * (dry_cof(pressure=2e9) - 0.04) == pytest.approx(
+        1e9 * (dry_cof(pressure=1e9) - 0.04)
+    )
 
 
 def test_a_dry_case_is_computed_and_says_what_stands_behind_it():

@@ -1,5 +1,7 @@
 """Contact tables: nodes are solutions, the rest is interpolation with limits."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -108,7 +110,7 @@ def test_law_goes_through_the_nodes(table):
     gap = table.mean_gap(PRESSURE, SPEED[0])
     np.testing.assert_allclose(law.pressure(gap), PRESSURE, rtol=1e-9)
     flow = table.flow_factor(PRESSURE, SPEED[0])
-    np.testing.assert_allclose(law.flow_factor(gap), flow, atol=1e-9)
+    np.testing.assert_allclose(law.flow_factor(gap), np.maximum(flow, run.SEALED), atol=1e-9)
     assert law.breaches(pressure=1e7, speed=0.1)[0].quantity == "pressure"
     assert "test texture" in law.source
     dense = np.geomspace(*PRESSURE[[0, -1]], 40)
@@ -317,7 +319,7 @@ def test_an_elastic_table_scales_with_roughness_and_modulus(height, stiffness, t
     pressure = np.geomspace(1e3, 3e5, 6)
     store = Cache("scaled", folder=tmp_path)
     first = ContactTable.from_surfaces([surface], Elastomer(3e6, 0.5), pressure, [1.0], cache=store)
-    higher = HeightMap(height * surface.heights, surface.spacing)
+    higher = replace(surface, heights=height * surface.heights)
     second = ContactTable.from_surfaces(
         [higher], Elastomer(3e6 * stiffness, 0.5), height * stiffness * pressure, [1.0], cache=store
     )

@@ -18,7 +18,13 @@ from scipy.stats import norm, qmc, spearmanr
 from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
 from underfoot.fluid import BLOCKING
-from underfoot.friction.pair_contact import LOSS_TANGENT, Family, PairConstants, PairDraws, contact_terms
+from underfoot.friction.pair_contact import (
+    LOSS_TANGENT,
+    Family,
+    PairConstants,
+    PairDraws,
+    contact_terms,
+)
 
 from .corpus import NUMBERS, Condition, sampled_numbers
 
@@ -207,9 +213,7 @@ class PairPosterior:
         generator = np.random.default_rng(seed)
         rows = generator.choice(self.theta.shape[0], count, replace=False)
         columns, spreads = self.theta[rows].T, self.spreads[rows].T
-        return PairDraws(
-            _constants(columns), spreads[0], spreads[3], spreads[1]
-        )
+        return PairDraws(_constants(columns), spreads[0], spreads[3], spreads[1])
 
     def expected(self, conditions: Sequence[Condition]) -> Array:
         """Return the mean of ln COF (rows,) without errors: equal for equal conditions."""

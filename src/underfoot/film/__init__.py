@@ -19,6 +19,8 @@ from .pressure import FilmPressure as FilmPressure
 from .pressure import film_history as film_history
 from .pressure import film_pressure as film_pressure
 from .regimes import SHARE_LIMITS as SHARE_LIMITS
+from .pad_strike import Strike as Strike
+from .pad_strike import touch_time as touch_time
 from .regimes import Lubrication as Lubrication
 from .regimes import RegimeComparison as RegimeComparison
 from .regimes import RegimeMap as RegimeMap

@@ -62,6 +62,10 @@ RANGES = {
     "viscosity": Range(0.5e-3, 0.3, "Pa*s", "fluids of the measurements behind the law"),
 }
 Family = Literal["aqueous", "detergent", "oil", "dry"]
+HIGHEST_WET, HIGHEST_DRY = 1.39, 3.0
+"""Highest COF of a contact: static friction of strips of soft natural rubber under 90 % glycerol on
+steel, the highest read under a fluid (Yamaguchi, Katsurashima, Shibata and Hokkirigawa, design of
+tread blocks; sliding they read 1.18); of clean soft rubber dry (assumed)."""
 UNITS = {"kappa": "Pa*m", "full_contact": "Pa"}
 LABORATORY, DRY_PART = "laboratory", "dry part of the laboratory"
 
@@ -272,8 +276,8 @@ class Pair:
 class PairContactLaw(UncertainInputs):
     """tau = l (film + hysteresis + dry exp(-eta V / kappa)) p_c + eta V / h.
 
-    l is the factor of laboratory and pair, 1 at the median. No COF is the highest: 1.18 was read on
-    soft rubber strips under 90 % glycerol (Yamaguchi et al. 2017).
+    l is the factor of laboratory and pair, 1 at the median. No COF of the contact is above what was
+    ever read (``HIGHEST_WET``).
 
     Parameters:
         pair: What is known of sole, floor and fluid.
@@ -346,9 +350,7 @@ class PairContactLaw(UncertainInputs):
         """Medians with the standard deviations of the draws, which are joint."""
         drawn = self.pair.drawn(self.draws, 0)
         return {
-            name: SourcedValue(
-                value, UNITS.get(name, "1"), self.source, float(drawn[name].std())
-            )
+            name: SourcedValue(value, UNITS.get(name, "1"), self.source, float(drawn[name].std()))
             for name, value in self.medians.items()
         }
 
@@ -371,9 +373,13 @@ class PairContactLaw(UncertainInputs):
         if self.viscosity is None:
             area = erf(pressure / m["full_contact"])
             area *= PIN_PRESSURE / erf(PIN_PRESSURE / (FULL_CONTACT * ROUGHNESS))
-            return factor * (m["film"] + m["dry"]) * area, hysteresis
-        left = np.exp(-self.viscosity * velocity / m["kappa"])
-        return factor * (m["film"] + m["dry"] * left) * pressure, hysteresis
+            adhesion, highest = factor * (m["film"] + m["dry"]) * area, HIGHEST_DRY
+        else:
+            left = np.exp(-self.viscosity * velocity / m["kappa"])
+            adhesion = factor * (m["film"] + m["dry"] * left) * pressure
+            highest = HIGHEST_WET
+        most = np.minimum(1.0, highest * pressure / np.maximum(adhesion + hysteresis, 1e-30))
+        return adhesion * most, hysteresis * most
 
     @property
     def ranges(self) -> Mapping[str, Range]:

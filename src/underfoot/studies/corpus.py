@@ -169,7 +169,7 @@ def _compared(
         if reason:
             return Side(np.nan, np.array([np.nan]), reason)
         cof, draws = (np.mean([v[name] for v in own], axis=0) for name in ("cof", "draws"))
-        return Side(float(cof), draws)
+        return Side(float(cof) * stand.contact_time, draws * stand.contact_time)
 
     return (
         [(one, side(one.over), side(one.under)) for one in sides],
