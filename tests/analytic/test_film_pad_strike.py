@@ -1,4 +1,4 @@
-"""A grooved pad dropped on a wet floor: Stefan's squeeze in the limit, and what depth and width do."""
+"""A grooved pad dropped on a wet floor: Stefan's squeeze in the limit; depth and width."""
 
 import math
 from dataclasses import replace
@@ -25,8 +25,8 @@ def test_a_thick_fluid_between_ribs_and_deep_grooves_leaves_as_stefan_says():
 
     stefan = thick.viscosity * thick.rib**2 / (2 * pressure) * (floor**-2 - thick.pool**-2)
     assert stefan > 0.5  # else the start matters
-    thin = replace(thick, viscosity=0.5)
-    assert touch_time(thin, stop) == pytest.approx(stefan / 10, rel=0.03)
+    thin = replace(thick, viscosity=0.2)
+    assert touch_time(thin, stop) == pytest.approx(stefan / 25, rel=0.03)
 
 
 def test_deeper_wider_and_closer_grooves_let_a_pad_touch_sooner():

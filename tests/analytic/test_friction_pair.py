@@ -219,7 +219,7 @@ def test_a_dry_case_is_computed_and_says_what_stands_behind_it():
 
 def test_a_contact_table_gives_hysteresis_and_dry_area(tmp_path):
     ones = np.ones((4, 1))
-    values = {name: 0.1 * ones for name in QUANTITIES} | {"cof_hysteresis": 0.06 * ones}
+    values = dict.fromkeys(QUANTITIES, 0.1 * ones) | {"cof_hysteresis": 0.06 * ones}
     nodes = np.geomspace(1e4, 1e6, 4), np.array([0.3])
     ContactTable(*nodes, values, values, np.full((4, 1), 2)).save(tmp_path / "rubber.npz")
     case = Case(

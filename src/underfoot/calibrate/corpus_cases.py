@@ -1,7 +1,8 @@
 """Cases that stand for the corpus: both sides of each published effect, and whole-shoe readings.
 
 What a source leaves open takes the geometric middle of its range, or a usual value, an open
-roughness two values; each such number is named beside the case. What cannot be computed is named with the reason.
+roughness two values; each such number is named beside the case. What cannot be computed is named
+with the reason.
 """
 
 import math

@@ -63,8 +63,8 @@ class FrictionOption(Option):
             yield InputError(
                 f"the law {self.name} needs a fluid",
                 where=f"{where}.{self.key}",
-                remedy='On a dry floor write friction.model = "pair", or "constant" with a measured '
-                "friction.cof",
+                remedy='On a dry floor write friction.model = "pair", or "constant" with a '
+                "measured friction.cof",
             )
 
 

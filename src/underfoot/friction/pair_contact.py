@@ -16,10 +16,10 @@ fades, and adhesion follows the real contact area of the roughness (Persson 2001
 with p_R in proportion to R: rough pairs grip less dry and more wet. No dry reading stands behind
 it: adhesion at 8.3 um is taken as what water leaves of it at rest.
 
-The form under a fluid is the film at single asperities (rougher pairs shed it at higher eta V); its constants
-are calibrated on published measurements (``underfoot.calibrate.pair_law``) and are measurements of
-no single pair. A laboratory, its dry-like part and a pair each have an error of their own, learned
-between the sources; they are the largest part of the interval.
+The form under a fluid is the film at single asperities (rougher pairs shed it at higher eta V); its
+constants are calibrated on published measurements (``underfoot.calibrate.pair_law``) and are
+measurements of no single pair. A laboratory, its dry-like part and a pair each have an error of
+their own, learned between the sources; they are the largest part of the interval.
 """
 
 from __future__ import annotations
@@ -220,8 +220,8 @@ class Pair:
     which it is drawn, evenly in its logarithm. ``hysteresis`` is the COF that the package's own
     theory gives for the compound's spectrum; None takes the closed form at a loss tangent of 0.2.
     ``hysteresis_origin`` names where it comes from. ``full_contact`` is p_R (Pa) where a contact
-    table gives it. ``polymer`` names what soles of one compound share, whatever their hardness and roughness.
-    ``shore_a_deviation`` is the standard deviation of the hardness.
+    table gives it. ``polymer`` names what soles of one compound share, whatever their hardness and
+    roughness. ``shore_a_deviation`` is the standard deviation of the hardness.
     """
 
     shore_a: float
