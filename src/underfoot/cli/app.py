@@ -14,6 +14,7 @@ from .micro import micro
 from .outsole import outsole_app
 from .stribeck import stribeck
 from .studies import studies_app
+from .study import study_app
 from .trials import trials_app
 
 RENAMED = {
@@ -77,7 +78,7 @@ COMMANDS: tuple[Callable[..., None], ...] = (
 for command in COMMANDS:
     app.command(cls=Command)(guarded(command))
 app.command("test", cls=Command)(guarded(cases.by_method))
-for group in (trials_app, calibrate_app, studies_app, outsole_app):
+for group in (trials_app, calibrate_app, studies_app, study_app, outsole_app):
     app.add_typer(group)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import erf, hypot, sqrt
+from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -17,6 +17,7 @@ from underfoot.compute.run import run
 from underfoot.core import InputError, Progress, SourcedValue, nearest_match, silent
 from underfoot.core.presentation import Presentable, Table, percent, value_text
 from underfoot.core.progress import part
+from underfoot.friction.propagation import probability_higher
 
 if TYPE_CHECKING:
     from underfoot.core.catalogue import Catalogue
@@ -255,18 +256,6 @@ def case_differences(cases: Sequence[Case]) -> list[tuple[str, ...]]:
     return [row for row in rows if len(set(row[1:])) > 1]
 
 
-def probability_higher(first: SourcedValue, second: SourcedValue) -> float | None:
-    """Return the probability that the larger of two values is larger; None if not estimated."""
-    if first.value is None or second.value is None:
-        return None
-    if first.uncertainty is None or second.uncertainty is None:
-        return None
-    spread = hypot(first.uncertainty, second.uncertainty)
-    if spread == 0.0:
-        return 1.0 if first.value != second.value else 0.5
-    return 0.5 * (1.0 + erf(abs(first.value - second.value) / spread / sqrt(2.0)))
-
-
 def _check_count(count: int) -> None:
     if not 2 <= count <= len(LETTERS):
         raise InputError(
@@ -290,12 +279,14 @@ def _ranking(results: Sequence[Result]) -> tuple[Rank, ...]:
 
 def _chance_higher(first: Result, second: Result) -> float | None:
     """Return the probability that the first COF is higher, from shared draws where there are."""
-    a, b = (result.fields.get("cof_draws") for result in (first, second))
     laws = {result.provenance.closures.get("friction") for result in (first, second)}
-    if laws != {"pair"} or a is None or b is None or a.size != b.size:
-        return probability_higher(first.scalars["cof"], second.scalars["cof"])
-    higher, equal = np.mean(a.values > b.values), np.mean(a.values == b.values)
-    return float(higher + 0.5 * equal)
+    both = []
+    for result in (first, second):
+        cof, draws = result.scalars["cof"], result.fields.get("cof_draws")
+        if cof.value is None:
+            return None
+        both.append((cof.value, cof.uncertainty, None if draws is None else draws.values))
+    return probability_higher(*both, shared=laws == {"pair"})
 
 
 def _interval(scalar: SourcedValue) -> tuple[float, float] | None:
