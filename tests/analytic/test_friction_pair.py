@@ -261,7 +261,7 @@ def test_a_compound_and_a_floor_of_the_catalogue_are_drawn_over_their_spread():
 
 @pytest.mark.slow
 def test_packaged_draws_are_those_of_the_packaged_corpus():
-    """Refitted with a fifth of the steps: medians within a tenth of the posterior's width."""
+    """Refitted from another seed: medians within a tenth of the posterior's width."""
     posterior = fitted(law_named("pair"), readings(), steps=2500, seed=5)
     again, packaged = posterior.draws(1000, seed=1), packaged_pair_draws()
     for name in PairConstants.__dataclass_fields__:
