@@ -9,6 +9,7 @@ from typer.core import TyperCommand
 from . import cases, tools
 from .calibrate import calibrate_app
 from .contact import contact
+from .export import export
 from .guard import guarded, say
 from .micro import micro
 from .outsole import outsole_app
@@ -65,6 +66,7 @@ COMMANDS: tuple[Callable[..., None], ...] = (
     cases.sensitivity,
     cases.risk,
     cases.wear,
+    export,
     stribeck,
     contact,
     micro,

@@ -22,7 +22,7 @@ from underfoot.friction.propagation import probability_higher
 if TYPE_CHECKING:
     from underfoot.core.catalogue import Catalogue
 
-LETTERS = "ABCDEFGH"
+LETTERS = "ABCDEFGHIJKL"
 DECIDED = 0.75
 """Least probability at which an order is stated."""
 Z95 = 1.96
@@ -57,7 +57,7 @@ class ComparedQuantity:
 
 @dataclass(frozen=True, slots=True)
 class Comparison(Presentable):
-    """Two to eight results side by side."""
+    """Two to twelve results side by side."""
 
     kind: ClassVar[str] = "comparison"
 
@@ -193,7 +193,7 @@ def compare(
     """Return results side by side, ranked by COF; cases are computed first.
 
     Parameters:
-        *items: Two to eight results or cases.
+        *items: Two to twelve results or cases.
         quick: Compute cases on the coarse grid.
         catalogue: Where the stored cases of results find their entries; the built-in one by
             default.
@@ -205,7 +205,7 @@ def compare(
     count as independent: Phi(d / s), d their difference and s = sqrt(s1^2 + s2^2).
 
     Raises:
-        InputError: Fewer than two or more than eight items.
+        InputError: Fewer than two or more than twelve items.
     """
     _check_count(len(items))
     results = tuple(
