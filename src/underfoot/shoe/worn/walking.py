@@ -47,9 +47,9 @@ class WalkingWear:
 
     Where the foot bears the load F at an angle while it slides by s, wear takes the volume
     V = k F s (Archard 1953). So at each angle the floor plane cuts off a volume in proportion to
-    load times time there; sliding is taken as even in time. The angles take turns in rounds of a few
-    hundredths of a millimetre until the most worn place has lost ``depth``. A sole stiff against its
-    wear; the planes do not lean sideways.
+    load times time there; sliding is taken as even in time. The angles take turns in rounds of a
+    few hundredths of a millimetre until the most worn place has lost ``depth``. The sole is stiff
+    against its wear; the planes do not lean sideways.
 
     Parameters:
         depth: Largest thickness removed, m.
