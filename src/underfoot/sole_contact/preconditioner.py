@@ -22,7 +22,7 @@ from underfoot.film import Pattern
 from .compliance import Compliance
 from .film_balance import Linearisation
 
-POLES = 2
+POLES = 1
 
 
 @dataclass(frozen=True, slots=True)
