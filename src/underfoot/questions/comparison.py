@@ -290,9 +290,9 @@ def _ranking(results: Sequence[Result]) -> tuple[Rank, ...]:
 
 def _chance_higher(first: Result, second: Result) -> float | None:
     """Return the probability that the first COF is higher, from shared draws where there are."""
-    a, b = (result.fields.get("cof_draws") for result in (first, second))
+    a, b = (result.data.get("cof_draws") for result in (first, second))
     laws = {result.provenance.closures.get("friction") for result in (first, second)}
-    if laws != {"pair"} or a is None or b is None or a.size != b.size:
+    if laws != {"pair"} or a is None or b is None or a.values.size != b.values.size:
         return probability_higher(first.scalars["cof"], second.scalars["cof"])
     higher, equal = np.mean(a.values > b.values), np.mean(a.values == b.values)
     return float(higher + 0.5 * equal)
@@ -330,7 +330,7 @@ def _different_from_first(values: Sequence[SourcedValue | None]) -> tuple[str, .
 
 def _reasons(results: Sequence[Result]) -> tuple[str, ...]:
     reasons = []
-    sides = [float(np.median(np.diff(result.fields["x"].values))) for result in results]
+    sides = [float(np.median(np.diff(result.data["x"].values))) for result in results]
     if max(sides) > 1.01 * min(sides):
         grids = ", ".join(
             f"{letter} {side * 1e3:.3g} mm" for letter, side in zip(LETTERS, sides, strict=False)

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from underfoot.core.fields import Fields
 from underfoot.core.units import display_unit
-
-if TYPE_CHECKING:
-    import xarray
 
 SHARE = "fluid_share"
 HEIGHT_NAMES = ("clearance", "height")
@@ -64,7 +61,7 @@ class Scale:
         return self.peak > 1.001 * self.high
 
 
-def quantities(datasets: Sequence[xarray.Dataset]) -> tuple[Quantity, ...]:
+def quantities(datasets: Sequence[Fields]) -> tuple[Quantity, ...]:
     """Return what all of the data sets hold on (x, y), the usual five first, heights last.
 
     Titles come from ``long_name``, units from ``units``: a field of a later version is drawn
@@ -76,7 +73,7 @@ def quantities(datasets: Sequence[xarray.Dataset]) -> tuple[Quantity, ...]:
     return tuple(_quantity(name, datasets) for name in common)
 
 
-def drawn(dataset: xarray.Dataset, quantity: Quantity) -> NDArray[np.float64]:
+def drawn(dataset: Fields, quantity: Quantity) -> NDArray[np.float64]:
     """Return a quantity in its shown unit, (nx, ny), nan outside the sole or where there is none.
 
     A stress below 1e-3 of its peak counts as none, the share of the fluid where nothing carries.
@@ -88,7 +85,7 @@ def drawn(dataset: xarray.Dataset, quantity: Quantity) -> NDArray[np.float64]:
     return values
 
 
-def raw(dataset: xarray.Dataset, name: str) -> NDArray[np.float64]:
+def raw(dataset: Fields, name: str) -> NDArray[np.float64]:
     """Return a field in SI as (nx, ny); the share of the fluid is made from the pressures."""
     if name != SHARE:
         return np.array(dataset[name].transpose("x", "y").values, dtype=float)
@@ -98,7 +95,7 @@ def raw(dataset: xarray.Dataset, name: str) -> NDArray[np.float64]:
     return np.divide(fluid, total, out=np.full_like(total, np.nan), where=carried)
 
 
-def inside(dataset: xarray.Dataset) -> NDArray[np.bool_]:
+def inside(dataset: Fields) -> NDArray[np.bool_]:
     """Return where the sole is, (nx, ny)."""
     if "inside" in dataset:
         return np.asarray(dataset["inside"].transpose("x", "y").values, dtype=bool)
@@ -108,7 +105,7 @@ def inside(dataset: xarray.Dataset) -> NDArray[np.bool_]:
     return np.isfinite(raw(dataset, height))
 
 
-def spacing(dataset: xarray.Dataset) -> float:
+def spacing(dataset: Fields) -> float:
     """Return the side of a cell in m."""
     return float(np.median(np.diff(dataset["x"].values)))
 
@@ -134,7 +131,7 @@ def scale(fields: Sequence[NDArray[np.float64]], quantity: Quantity) -> Scale:
     return Scale(0.0, max(high, 1e-12), peak)
 
 
-def _names(dataset: xarray.Dataset) -> list[str]:
+def _names(dataset: Fields) -> list[str]:
     found = [
         str(name)
         for name, field in dataset.data_vars.items()
@@ -145,7 +142,7 @@ def _names(dataset: xarray.Dataset) -> list[str]:
     return found
 
 
-def _quantity(name: str, datasets: Sequence[xarray.Dataset]) -> Quantity:
+def _quantity(name: str, datasets: Sequence[Fields]) -> Quantity:
     if name == SHARE:
         return Quantity(name, _TITLES[name], 0.01, "%", _COLOURS[name])
     attributes = datasets[0][name].attrs
@@ -164,7 +161,7 @@ def _quantity(name: str, datasets: Sequence[xarray.Dataset]) -> Quantity:
     return Quantity(name, title, factor, _typeset(unit), colours, name in _LOGARITHMIC)
 
 
-def _is_stress(dataset: xarray.Dataset, name: str) -> bool:
+def _is_stress(dataset: Fields, name: str) -> bool:
     return name != SHARE and dataset[name].attrs.get("units") == "Pa"
 
 

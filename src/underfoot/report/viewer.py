@@ -7,17 +7,19 @@ import json
 import zlib
 from collections.abc import Sequence
 from dataclasses import asdict
+from functools import cache
+from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from underfoot.core.fields import Fields
+
 from .html import environment
 from .quantities import HEIGHT_NAMES, Quantity, drawn, inside, quantities, raw, scale, spacing
 
 if TYPE_CHECKING:
-    import xarray
-
     from underfoot.compute.result import Result
 
 SCRIPTS = ("viewer_data.js", "viewer_draw.js", "viewer_page.js")
@@ -49,7 +51,7 @@ def viewer_scene(results: Sequence[Result]) -> dict[str, Any]:
     Lengths in m, fields in their shown units. Arrays are (nx, ny) in C order as float16 of value
     over ``scale`` (relative error below 5e-4), high bytes first, deflated, base64.
     """
-    datasets = [result.fields for result in results]
+    datasets = [result.data for result in results]
     found = quantities(datasets)
     fields = {q.name: [drawn(dataset, q) for dataset in datasets] for q in found}
     histories = {q.name: [_history(dataset, q) for dataset in datasets] for q in found}
@@ -67,7 +69,7 @@ def viewer_scene(results: Sequence[Result]) -> dict[str, Any]:
     return {
         "panes": panes,
         "quantities": listed,
-        "colours": {q.colours: _colour_map(q.colours) for q in found},
+        "colours": {q.colours: colour_tables()[q.colours] for q in found},
     }
 
 
@@ -76,7 +78,7 @@ def _pane(
     fields: dict[str, NDArray[np.float64]],
     histories: dict[str, tuple[NDArray[np.float64], NDArray[np.float64]] | None],
 ) -> dict[str, Any]:
-    dataset = result.fields
+    dataset = result.data
     mask = inside(dataset)
     rows, columns = np.nonzero(mask.any(axis=1))[0], np.nonzero(mask.any(axis=0))[0]
     crop = (slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1))
@@ -108,7 +110,7 @@ def _pane(
     }
 
 
-def _outline(dataset: xarray.Dataset) -> list[list[float]]:
+def _outline(dataset: Fields) -> list[list[float]]:
     """Return the rim as [x, y] in m, to which the page draws the outermost cells; or nothing."""
     if "outline_x" not in dataset or "outline_y" not in dataset:
         return []
@@ -133,7 +135,7 @@ def _plane(
 
 
 def _history(
-    dataset: xarray.Dataset, quantity: Quantity
+    dataset: Fields, quantity: Quantity
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
     """Return (times in s, frames) of ``<name>_history`` on (time, x, y), thinned if long."""
     name = f"{quantity.name}_history"
@@ -143,12 +145,15 @@ def _history(
     instants = [dim for dim in field.dims if dim not in ("x", "y")]
     if len(instants) != 1 or not {"x", "y"} <= set(field.dims):
         return None
-    values = field.transpose(instants[0], "x", "y")
+    values = field.transpose(instants[0], "x", "y").values
     count = values.shape[0]
     most = max(2, _MOST_HISTORY_CELLS // (values.shape[1] * values.shape[2]))
     chosen = np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
     time = np.asarray(dataset[instants[0]].values if instants[0] in dataset else range(count))
-    frames = [drawn(dataset.assign({quantity.name: values[number]}), quantity) for number in chosen]
+    frames = [
+        drawn(dataset.assign({quantity.name: (("x", "y"), values[number], field.attrs)}), quantity)
+        for number in chosen
+    ]
     return time[chosen].astype(float), np.stack(frames)
 
 
@@ -169,8 +174,7 @@ def unpacked(stored: dict[str, Any], shape: tuple[int, int]) -> NDArray[np.float
     return halves.astype(float) * stored["scale"]
 
 
-def _colour_map(name: str) -> str:
-    import matplotlib
-
-    table = matplotlib.colormaps[name](np.arange(256))[:, :3]
-    return base64.b64encode((table * 255.0).round().astype(np.uint8).tobytes()).decode("ascii")
+@cache
+def colour_tables() -> dict[str, str]:
+    """Return the 256 colours (RGB bytes, base64) of each of Matplotlib's maps in use here."""
+    return json.loads(files(__package__).joinpath("templates/colours.json").read_text())
