@@ -186,8 +186,8 @@ def wear(
         str | None,
         typer.Option(
             "--mode",
-            help="archard (pressure times sliding; the default), plane (the default for an outsole "
-            "from a file) or patch.",
+            help="walk (cut by the floor at the angles of landing; the default), archard (pressure "
+            "times sliding), plane or patch.",
             show_default=False,
         ),
     ] = None,

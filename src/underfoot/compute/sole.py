@@ -91,9 +91,6 @@ def sole_shape(case: Case, progress: Progress = silent) -> SoleShape:
     removed = wear.build()
     if removed is None:
         return new.worn(archard_state(case, progress=progress).worn)
-    check = getattr(removed, "check_within", None)
-    if check is not None:
-        check(new)
     return new.worn(removed)
 
 
@@ -250,6 +247,7 @@ def trimmed(sole: SoleMap, reach: float, padding: float = 0.004) -> SoleMap:
         tread_depth=sole.tread_depth[part],
         cut=sole.cut and sole.cut.part(part),
         whole=sole,
+        removed=None if sole.removed is None else sole.removed[part],
     )
 
 

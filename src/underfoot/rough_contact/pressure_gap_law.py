@@ -1,7 +1,7 @@
 """Pressure-gap laws of a rough interface: exponential, through computed points, from theory."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -227,6 +227,20 @@ class TabulatedLaw(_PresentableLaw):
         ):
             values.setflags(write=False)
             object.__setattr__(self, name, values)
+
+    def scaled(self, gap: float, pressure: float) -> "TabulatedLaw":
+        """Return the law of an elastic contact alike, gaps and pressures times factors above 0.
+
+        Heights times a make gaps times a, and pressures times a and the ratio of E / (1 - nu^2);
+        flow factors stay. An elastic contact has no speed.
+        """
+        ranges = {
+            name: replace(limits, low=limits.low * pressure, high=limits.high * pressure)
+            for name, limits in self.ranges.items()
+            if name == "pressure"
+        }
+        nodes = gap * self.gap, pressure * self.node_pressure, self.node_flow_factor
+        return TabulatedLaw(self.name, self.source, *nodes, ranges=ranges)
 
     def pressure(self, gap: ArrayLike) -> Array:
         """Return the asperity pressure (Pa) at mean gap ``gap`` (m), any sign and shape."""

@@ -85,6 +85,9 @@ def heel_map(
         outline=np.column_stack([along(rim[:, 0], rim[:, 1]) - rear, rim[:, 1]]),
         breaches=tuple(breaches_of_grid),
         cut=cut,
+        removed=None
+        if heel.wear is None
+        else heel.land_height(x, y_map) - heel.unworn_height(x, y_map),
     )
 
 
@@ -322,6 +325,7 @@ def surface_map(
         outline=outline,
         breaches=tuple(resolution_breaches(surface, spacing)),
         cut=cut_cells(level, covered, level_at),
+        removed=None if surface.removed is None else surface.removed[cells],
     )
 
 
