@@ -10,7 +10,6 @@ from underfoot.core import Breach, InputError, Range, breaches
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import between, not_negative, positive
 
-from ._kernels.height_buffer import tilted_rows
 from ._kernels.regions import distance_to, local_width, nearest_true
 from .cut_cells import Cells, cut_cells
 from .geometry import CELLS_REFUSED, CELLS_WANTED, SoleMap, SoleSurface, centred
@@ -292,6 +291,8 @@ def surface_map(
     count_y = math.ceil((high - low) / spacing - 1e-9) + 2 * margin
     x = (np.arange(count_x, dtype=np.float64) + 0.5 - margin) * spacing
     y = (low + high) / 2 + centred(count_y, spacing)
+    from ._kernels.height_buffer import tilted_rows  # compiled: numba takes a while to import
+
     clearance, origin = tilted_rows(
         (surface.x, surface.y), base, inside, (x + rear, y), cosine, sine
     )
