@@ -87,9 +87,9 @@ def _found(case: Case, result: Result, keep_fields: bool) -> dict[str, Any]:
         },
         "units": {name: each.unit for name, each in scalars.items()},
         "law": result.provenance.closures["friction"],
-        "draws": draws,
+        "draws": np.empty(0) if drawn is None else drawn.values,
         "breaches": result.breaches,
-        "maps": result.fields if keep_fields else None,
+        "maps": result.data if keep_fields else None,
     }
 
 

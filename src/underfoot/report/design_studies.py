@@ -13,6 +13,7 @@ import numpy as np
 
 from underfoot.case import unit_at
 from underfoot.core import Progress, UnderfootError, silent
+from underfoot.core.fields import Fields
 from underfoot.core.files import whole_file
 from underfoot.core.presentation import Table, percent
 from underfoot.core.units import display_unit
@@ -30,7 +31,6 @@ from .viewer import viewer_script, viewer_section
 from .writing import Written
 
 if TYPE_CHECKING:
-    import xarray
     from matplotlib.figure import Figure
 
 MOST_SOLES = 24
@@ -46,7 +46,7 @@ class ShownStudy(StudyResult):
     ``soles`` has the fields of designs by number; ``missing`` says why there is no surrogate.
     """
 
-    soles: Mapping[int, xarray.Dataset] = field(default_factory=dict)
+    soles: Mapping[int, Fields] = field(default_factory=dict)
     models: Sequence[Surrogate] = ()
     indices: Sequence[Effects] = ()
     missing: str = ""
@@ -57,7 +57,7 @@ class _Sole:
     """What the viewer takes of a result."""
 
     name: str
-    fields: xarray.Dataset
+    data: Fields
 
 
 def shown(study: Study, result: StudyResult, progress: Progress = silent) -> ShownStudy:

@@ -11,7 +11,7 @@ from underfoot.case import Case
 from underfoot.compute.result import Result
 from underfoot.compute.sole import sole_map
 from underfoot.core import silent
-from underfoot.core.fields import labelled
+from underfoot.core.fields import Fields, labelled
 from underfoot.core.presentation import Table
 from underfoot.questions.comparison import Comparison
 from underfoot.questions.risk import RiskAssessment
@@ -26,7 +26,6 @@ from .viewer import viewer_script, viewer_section
 from .writing import Writer, Written, data_writers
 
 if TYPE_CHECKING:
-    import xarray
     from matplotlib.figure import Figure
 
 SEEN = "Seen through the floor: the heel's back edge is at the bottom, walking direction up."
@@ -148,7 +147,7 @@ def _comparison_sections(
     return parts, viewer_script() if comparison.usable else ""
 
 
-def sole_fields(case: Case) -> xarray.Dataset:
+def sole_fields(case: Case) -> Fields:
     """Return the height of a case's sole above the floor, on the coarse grid."""
     sole = sole_map(case, case.numerics.quick_grid_spacing, silent)
     labels = {"units": "m", "long_name": "height of the undeformed sole"}
