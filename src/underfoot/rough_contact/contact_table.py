@@ -11,7 +11,6 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import PchipInterpolator
 
 from underfoot import core
 from underfoot.core.arrays import Array
@@ -432,6 +431,8 @@ def _table(
         mean = np.where(usable, array, 0.0).sum(axis=0) / np.maximum(count, 1)
         for row, hole in enumerate(holes):
             if hole.any():
+                from scipy.interpolate import PchipInterpolator
+
                 through = PchipInterpolator(np.log(p[~hole]), mean[row, ~hole])
                 mean[row, hole] = through(np.log(p[hole]))
         square = np.where(usable, (array - mean) ** 2, 0.0).sum(axis=0)

@@ -6,7 +6,6 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicHermiteSpline, PPoly
 
 from underfoot.core import Breach, InputError, Range, breaches
 from underfoot.core.arrays import Array
@@ -207,6 +206,8 @@ class TabulatedLaw(_PresentableLaw):
                 where=self.name,
                 allowed="gap rising, pressure falling and positive, flow factor finite and >= 0",
             )
+        from scipy.interpolate import CubicHermiteSpline
+
         logarithm = np.log(pressure)
         slope = pchip_slopes(gap, logarithm)
         # an end slope of zero would let the pressure stop rising: take the secant there
@@ -282,6 +283,8 @@ class TabulatedLaw(_PresentableLaw):
 
     def _cubic(self, coefficients: np.ndarray, gap: ArrayLike, slope: int = 0) -> Array:
         """Return a cubic of the gap or its slope, beyond the nodes that of the outermost node."""
+        from scipy.interpolate import PPoly
+
         inside = np.clip(gap, self.gap[0], self.gap[-1])
         return PPoly.construct_fast(coefficients, self.gap)(inside, slope)
 

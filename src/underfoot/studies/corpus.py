@@ -139,7 +139,7 @@ def whole_cof(case: Case) -> Mapping[str, Any]:
     """Return COF of a case and its draws, or why there is none."""
     try:
         result = run(case, quick=True)
-        return {"cof": result.value("cof"), "draws": result.fields["cof_draws"].values}
+        return {"cof": result.value("cof"), "draws": result.data["cof_draws"].values}
     except UnderfootError as error:
         return {"reason": np.array(" ".join(str(error).split()))}
 
