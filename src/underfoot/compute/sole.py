@@ -50,6 +50,16 @@ WEAR_STEP = 0.25e-3
 """Thickness that Archard wear removes between two contacts, m."""
 
 
+def bottom_surface(case: Case) -> SoleSurface:
+    """Return the bottom of the case's sole in its own frame, worn as the case says.
+
+    On the cells of the file's height map, or of the coarse grid for a parametric sole.
+    """
+    if case.shoe.outsole is not None:
+        return file_surface(case)
+    return shoe.heel_surface(sole_shape(case), spacing=case.numerics.quick_grid_spacing)
+
+
 def sole_map(
     case: Case,
     spacing: float,
