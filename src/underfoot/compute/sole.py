@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,12 +36,14 @@ from underfoot.core import (
     silent,
 )
 from underfoot.shoe import SoleMap, SoleSurface, heel_map, rotated_surface, surface_map
-from underfoot.shoe.files import FileOutsole, FileSettings, outsole_from_file
 from underfoot.shoe.shape import SoleShape
 from underfoot.shoe.worn import ArchardStep, WornMap, archard_wear, worn_surface
 from underfoot.sole_contact.solver import SolverSettings, solve_sliding
 
 from .resolve import resolved, youngs_modulus
+
+if TYPE_CHECKING:
+    from underfoot.shoe.files import FileOutsole, FileSettings
 
 BOTTOMED = 0.5
 """Share of the outsole's thickness beyond which the load bottoms it out: refused."""
@@ -91,9 +93,6 @@ def sole_shape(case: Case, progress: Progress = silent) -> SoleShape:
     removed = wear.build()
     if removed is None:
         return new.worn(archard_state(case, progress=progress).worn)
-    check = getattr(removed, "check_within", None)
-    if check is not None:
-        check(new)
     return new.worn(removed)
 
 
@@ -174,20 +173,24 @@ def _dry_contact(
     return sole, contact.contact_pressure
 
 
-def file_outsole(case: Case) -> FileOutsole:
+def file_outsole(case: Case) -> "FileOutsole":
     """Return the outsole in the file of the case, as the case says it is to be read."""
     outsole = case.shoe.outsole
     if outsole is None:
         raise InputError("the case has no outsole file", where="shoe.outsole.file")
     same = ("unit", "down", "forward", "foot", "mirror", "region", "region_length")
     given: dict[str, Any] = {name: getattr(outsole, name) for name in same}
+    from underfoot.shoe.files import FileSettings
+
     settings = FileSettings(**given, spacing=outsole.map_spacing)
     return _read(outsole.file, outsole.sha256 or "", settings)
 
 
 @lru_cache(maxsize=4)
-def _read(path: str, checksum: str, settings: FileSettings) -> FileOutsole:
+def _read(path: str, checksum: str, settings: "FileSettings") -> "FileOutsole":
     """Read a file once in a process: the checksum is part of the key."""
+    from underfoot.shoe.files import outsole_from_file
+
     return outsole_from_file(path, settings)
 
 
@@ -250,6 +253,7 @@ def trimmed(sole: SoleMap, reach: float, padding: float = 0.004) -> SoleMap:
         tread_depth=sole.tread_depth[part],
         cut=sole.cut and sole.cut.part(part),
         whole=sole,
+        removed=None if sole.removed is None else sole.removed[part],
     )
 
 

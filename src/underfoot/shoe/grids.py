@@ -11,7 +11,6 @@ from underfoot.core import Breach, InputError, Range, breaches
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import between, not_negative, positive
 
-from ._kernels.height_buffer import tilted_rows
 from ._kernels.regions import distance_to, local_width, nearest_true
 from .cut_cells import Cells, cut_cells
 from .geometry import CELLS_REFUSED, CELLS_WANTED, SoleMap, SoleSurface, centred
@@ -87,6 +86,9 @@ def heel_map(
         outline=np.column_stack([along(rim[:, 0], rim[:, 1]) - rear, rim[:, 1]]),
         breaches=tuple(breaches_of_grid),
         cut=cut,
+        removed=None
+        if heel.wear is None
+        else heel.land_height(x, y_map) - heel.unworn_height(x, y_map),
     )
 
 
@@ -290,6 +292,8 @@ def surface_map(
     count_y = math.ceil((high - low) / spacing - 1e-9) + 2 * margin
     x = (np.arange(count_x, dtype=np.float64) + 0.5 - margin) * spacing
     y = (low + high) / 2 + centred(count_y, spacing)
+    from ._kernels.height_buffer import tilted_rows  # compiled: numba takes a while to import
+
     clearance, origin = tilted_rows(
         (surface.x, surface.y), base, inside, (x + rear, y), cosine, sine
     )
@@ -322,6 +326,7 @@ def surface_map(
         outline=outline,
         breaches=tuple(resolution_breaches(surface, spacing)),
         cut=cut_cells(level, covered, level_at),
+        removed=None if surface.removed is None else surface.removed[cells],
     )
 
 
