@@ -190,7 +190,8 @@ def file_places(count: int) -> tuple[Place, ...]:
     for k in range(count - 1):
         around = 2 * math.pi * k / (count - 1)
         reach = math.sqrt(2 * count / (3 * (count - 1)))
-        turn, direction = reach * math.cos(around), reach * math.sin(around)
+        turn = reach * math.cos(around)
+        direction = round(reach * math.sin(around), 12)  # half way round is at rest, not next to it
         found.append(Place((0.0, 0.0), ANGLE_BAND * turn, DIRECTION_BAND * direction))
     return tuple(found)
 
