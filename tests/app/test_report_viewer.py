@@ -6,13 +6,15 @@ import functools
 import itertools
 import re
 
+import matplotlib
 import numpy as np
 import pytest
 from chromium import opened
 
+from underfoot.core.fields import from_xarray
 from underfoot.questions.comparison import case_differences, compare
 from underfoot.report import page_text, write_report
-from underfoot.report.viewer import unpacked, viewer_scene
+from underfoot.report.viewer import colour_tables, unpacked, viewer_scene
 
 
 @pytest.fixture(scope="module")
@@ -295,7 +297,7 @@ def test_a_history_can_be_walked_through(worn_shoe_result, tmp_path):
     frames = share[:, None, None] * fields.fluid_pressure.values
     fields["fluid_pressure_history"] = (("time", "x", "y"), frames, {"units": "Pa"})
     path = tmp_path / "history.html"
-    result = dataclasses.replace(worn_shoe_result, fields=fields)
+    result = dataclasses.replace(worn_shoe_result, data=from_xarray(fields))
     path.write_text(page_text(result, {}), encoding="utf-8")
     with opened(path) as tab:
         assert tab.value("document.querySelector('[data-part=time-row]').hidden")
@@ -401,3 +403,10 @@ def test_differences_between_cases_are_listed_for_any_number(worn_shoe_case):
     assert case_differences([worn_shoe_case, worn_shoe_case, thin]) == [
         ("contaminant.viscosity", "219 cP", "219 cP", "41 cP")
     ]
+
+
+def test_the_colour_tables_are_those_of_matplotlib():
+    for name, table in colour_tables().items():
+        colours = matplotlib.colormaps[name](np.arange(256))[:, :3] * 255
+        stored = np.frombuffer(base64.b64decode(table), np.uint8).reshape(256, 3)
+        assert np.array_equal(stored, colours.round())

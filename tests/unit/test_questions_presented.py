@@ -178,7 +178,7 @@ def test_wear_says_when_the_limit_is_exceeded_and_when_friction_rises():
         "range) of tread left at the most worn place."
     )
     assert found.headline()[2] == "COF 0.100 new and 0.120 at the last state."
-    assert any("rises with wear" in caution for caution in found.cautions())
+    assert any("still rises" in caution for caution in found.cautions())
     assert not any("rises" in caution for caution in series([0.12, 0.11, 0.10]).cautions())
     assert not any("rises" in caution for caution in series([0.100, 0.104]).cautions())
     assert "No result for state 1" in " ".join(series([0.1, None, 0.1]).cautions())
@@ -190,8 +190,15 @@ def test_wear_says_when_the_limit_is_exceeded_and_when_friction_rises():
     assert not series([None, None]).usable
     rows = found.data_tables()["wear"].rows
     assert [row[5] for row in rows] == [0.10, 0.11, 0.12]
-    patch, _, _ = found.tables()[1].rows
+    patch, _, slight, _ = found.tables()[1].rows
     assert patch[1].startswith(("agrees", "disagrees", "not testable"))
+    assert slight[1] == "disagrees"
+    for cofs, verdict in (
+        ([0.10, 0.12, 0.11, 0.05], "agrees"),
+        ([0.10, 0.12, 0.05, 0.06], "disagrees"),
+        ([0.10, None, 0.05], "not testable on this series"),
+    ):
+        assert series(cofs).tables()[1].rows[2][1] == verdict
 
 
 def test_a_limit_is_a_force_or_a_share_and_a_depth_has_a_unit():

@@ -78,7 +78,7 @@ def _found(case: Case, result: Result, keep_fields: bool) -> dict[str, Any]:
         ending = Ending.NOT_CONVERGED if result.status is Status.NOT_CONVERGED else Ending.FAILED
         return {"ending": ending, "reason": f"{result.status}. {result.status.remedy}"}
     scalars = {**result.scalars, **measures(case, result)}
-    draws = result.fields["cof_draws"].values if "cof_draws" in result.fields else np.empty(0)
+    draws = result.data["cof_draws"].values if "cof_draws" in result.data else np.empty(0)
     return {
         "ending": Ending.COMPUTED,
         "numbers": {name: _finite(each.value) for name, each in scalars.items()},
@@ -105,7 +105,7 @@ def measures(case: Case, result: Result) -> Mapping[str, SourcedValue]:
     left = np.maximum(case.shoe.sole.outsole_thickness - surface.height, 0.0)
     volume = float(np.nansum(left)) * surface.spacing**2
     density = case.shoe.material.density
-    approach = float(result.fields["approach_history"].values[-1])
+    approach = float(result.data["approach_history"].values[-1])
     values = {
         "land": surface.land_ratio,
         "rubber_volume": volume,

@@ -282,7 +282,7 @@ def _chance_higher(first: Result, second: Result) -> float | None:
     laws = {result.provenance.closures.get("friction") for result in (first, second)}
     both = []
     for result in (first, second):
-        cof, draws = result.scalars["cof"], result.fields.get("cof_draws")
+        cof, draws = result.scalars["cof"], result.data.get("cof_draws")
         if cof.value is None:
             return None
         both.append((cof.value, cof.uncertainty, None if draws is None else draws.values))
@@ -321,7 +321,7 @@ def _different_from_first(values: Sequence[SourcedValue | None]) -> tuple[str, .
 
 def _reasons(results: Sequence[Result]) -> tuple[str, ...]:
     reasons = []
-    sides = [float(np.median(np.diff(result.fields["x"].values))) for result in results]
+    sides = [float(np.median(np.diff(result.data["x"].values))) for result in results]
     if max(sides) > 1.01 * min(sides):
         grids = ", ".join(
             f"{letter} {side * 1e3:.3g} mm" for letter, side in zip(LETTERS, sides, strict=False)
