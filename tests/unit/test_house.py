@@ -120,8 +120,9 @@ def test_lock_holds_each_dependency_at_an_allowed_version():
         return [int(part) for part in re.findall(r"\d+", version)]
 
     wanted = [*project["dependencies"]]
-    for extra in project["optional-dependencies"].values():
-        wanted += [line for line in extra if not line.startswith("underfoot[")]
+    for name, extra in project["optional-dependencies"].items():
+        if name != "accelerator":  # a gigabyte that goes by the machine's graphics processor
+            wanted += [line for line in extra if not line.startswith("underfoot[")]
     for line in wanted:
         match = re.match(r"([\w.-]+)>=([\w.]+)", line)
         assert match, f"no lowest version: {line}"

@@ -26,7 +26,7 @@ FigureMakers = dict[str, "Callable[[], Figure]"]
 _HOMES = {
     "compute": ("results",),
     "case": ("results",),
-    "questions": ("results", "question_figures", "slips"),
+    "questions": ("results", "question_figures", "slips", "wear_page"),
     "film": ("regime_figure",),
     "explore": ("design_studies",),
     "report": ("outsole", "design_studies"),

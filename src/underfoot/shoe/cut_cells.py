@@ -15,6 +15,8 @@ from underfoot.core.arrays import Array, Mask
 
 SAMPLES = 4
 """Samples along each side of a cell; between them the outline is a straight ramp."""
+LEAST_AREA = 0.1
+"""Cells: what a cell stands for at least, where a sliver of a height map leaves it nothing."""
 _SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
 _CORNERS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
 Cells = NDArray[np.intp]
@@ -101,7 +103,7 @@ def _areas(own: Cells, other: Cells, within: Array, beyond: Array, shape: tuple[
     pairs = np.maximum(total(own, np.ones(own.size)) + total(other, np.ones(own.size)), 1.0)
     taken, left = beyond / pairs[other], (1 - within) / pairs[own]
     area = 1.0 + total(own, taken) - total(own, left) - total(other, taken) + total(other, left)
-    return area.reshape(shape)
+    return np.maximum(area, LEAST_AREA).reshape(shape)
 
 
 def _pairs(land: Mask, channel: Mask) -> tuple[Cells, Cells]:
