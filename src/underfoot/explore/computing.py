@@ -78,7 +78,7 @@ def _found(case: Case, result: Result, keep_fields: bool) -> dict[str, Any]:
         ending = Ending.NOT_CONVERGED if result.status is Status.NOT_CONVERGED else Ending.FAILED
         return {"ending": ending, "reason": f"{result.status}. {result.status.remedy}"}
     scalars = {**result.scalars, **measures(case, result)}
-    draws = result.data["cof_draws"].values if "cof_draws" in result.data else np.empty(0)
+    drawn = result.data.get("cof_draws")
     return {
         "ending": Ending.COMPUTED,
         "numbers": {name: _finite(each.value) for name, each in scalars.items()},
