@@ -182,7 +182,7 @@ def tread_positions(
     tread, count = _tread(case), position_count(case, quick=quick)
     if tread is None or count == 1:
         return None
-    own = _numbers(case, law_on(sole), sole, contact, viscosity)
+    own = place_numbers(case, law_on(sole), sole, contact, viscosity)
     eased = case.replace("numerics.tolerance", max(case.numerics.tolerance, TOLERANCE))
     kept = [(Place(), own)] if quick else []
     coarse = None
@@ -192,7 +192,7 @@ def tread_positions(
         except ConvergenceError:
             continue
         if there[1].status.usable:
-            kept.append((place, _numbers(case, law_on(there[0]), *there, viscosity)))
+            kept.append((place, place_numbers(case, law_on(there[0]), *there, viscosity)))
             coarse = there if k == 0 else coarse
     if not kept or kept[0][0] != Place():  # nowhere to compare the two grids
         kept, coarse = [(Place(), own)], None
@@ -244,7 +244,7 @@ def _stage(progress: Progress, number: int, count: int) -> Progress:
     return report
 
 
-def _numbers(
+def place_numbers(
     case: Case,
     law: FrictionLaw | EdgedLaw,
     sole: SoleMap,
