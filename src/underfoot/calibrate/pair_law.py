@@ -364,7 +364,8 @@ class CorpusScore:
     ``log_density``: sum over sources of the mean over their rows. ``r2`` of ln COF over values
     (bounds left out). ``rms_error``, ``bias``: of ln COF, means over sources. ``inside_50``,
     ``inside_95``: shares of the rows, means over sources. ``rank_correlation``: Spearman's within
-    sources of four and more values, mean; equal predictions are ties; nan where there is none.
+    sources of four and more values, mean; equal predictions are ties, all of them equal count 0;
+    nan where there is no such source.
     """
 
     law: str
@@ -393,7 +394,7 @@ def corpus_score(law: str, sources: Sequence[SourceScore]) -> CorpusScore:
         if rows.size >= 4:
             values = [one.conditions[row].reading.low for row in rows]
             rank: Any = spearmanr(values, one.expected[rows].round(6))
-            ranks.append(rank.statistic)
+            ranks.append(np.nan_to_num(rank.statistic))
     each = [one.score for one in sources]
     return CorpusScore(
         law=law,

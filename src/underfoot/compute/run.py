@@ -121,7 +121,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
     sensor = scanned(case, sole, contact, viscosity=viscosity)
 
     def solved_quick(case: Case, place: Place, progress: Progress) -> tuple[SoleMap, SoleContact]:
-        there = sole_map(case, case.numerics.quick_grid_spacing, shift=place.shift, turn=place.turn)
+        where = {"shift": place.shift, "turn": place.turn, "direction": place.direction}
+        there = sole_map(case, case.numerics.quick_grid_spacing, **where)
         body = case.compliance.build(turned(context, place.turn), there)
         return there, solved_motion(
             case, there, body, asperities, viscosity=viscosity, progress=progress

@@ -35,7 +35,7 @@ from underfoot.core import (
     display,
     silent,
 )
-from underfoot.shoe import SoleMap, SoleSurface, heel_map, surface_map
+from underfoot.shoe import SoleMap, SoleSurface, heel_map, rotated_surface, surface_map
 from underfoot.shoe.shape import SoleShape
 from underfoot.shoe.worn import ArchardStep, WornMap, archard_wear, worn_surface
 from underfoot.sole_contact.solver import SolverSettings, solve_sliding
@@ -52,6 +52,16 @@ WEAR_STEP = 0.25e-3
 """Thickness that Archard wear removes between two contacts, m."""
 
 
+def bottom_surface(case: Case) -> SoleSurface:
+    """Return the bottom of the case's sole in its own frame, worn as the case says.
+
+    On the cells of the file's height map, or of the coarse grid for a parametric sole.
+    """
+    if case.shoe.outsole is not None:
+        return file_surface(case)
+    return shoe.heel_surface(sole_shape(case), spacing=case.numerics.quick_grid_spacing)
+
+
 def sole_map(
     case: Case,
     spacing: float,
@@ -59,14 +69,16 @@ def sole_map(
     *,
     shift: tuple[float, float] = (0.0, 0.0),
     turn: float = 0.0,
+    direction: float = 0.0,
 ) -> SoleMap:
     """Return the tilted sole of the case on a grid of ``spacing`` (m).
 
-    ``shift`` (x, y; m) moves the tread's pattern under the sole, ``turn`` (rad) adds to the shoe
-    angle; wear stays where it is. Neither holds for an outsole from a file.
+    ``shift`` (x, y; m) moves the tread's pattern under a parametric sole, ``direction`` (rad,
+    anticlockwise seen from above) turns a sole from a file against the sliding; ``turn`` (rad) adds
+    to the shoe angle of both. Wear stays where it is.
     """
     if case.shoe.outsole is not None:
-        return file_sole_map(case, spacing)
+        return file_sole_map(case, spacing, turn=turn, direction=direction)
     shape = sole_shape(case, progress)
     if shape.tread is not None and any(shift):
         shape = cast("SoleShape", replace(cast("Any", shape), tread=shape.tread.moved(shift)))
@@ -199,14 +211,18 @@ def file_surface(case: Case) -> SoleSurface:
     return surface if removed is None else worn_surface(surface, removed)
 
 
-def file_sole_map(case: Case, spacing: float) -> SoleMap:
+def file_sole_map(
+    case: Case, spacing: float, *, turn: float = 0.0, direction: float = 0.0
+) -> SoleMap:
     """Return the tilted outsole of the case's file on the solver's grid, trimmed to its reach.
+
+    ``turn`` (rad) adds to the shoe angle, ``direction`` turns the sole over the floor.
 
     Raises:
         InputError: Channels below the grid, a region or unit that doesn't fit, tread deeper than
             the outsole, nothing under the load.
     """
-    surface = file_surface(case)
+    surface = rotated_surface(file_surface(case), direction)
     thickness = case.shoe.sole.outsole_thickness
     deepest = float(np.max(surface.tread_depth))
     if deepest >= thickness:
@@ -218,7 +234,7 @@ def file_sole_map(case: Case, spacing: float) -> SoleMap:
         )
     assert case.shoe.outsole is not None  # file_surface refuses a case without one
     sole = trimmed(
-        surface_map(surface, shoe_angle=case.motion.shoe_angle, spacing=spacing),
+        surface_map(surface, shoe_angle=case.motion.shoe_angle + turn, spacing=spacing),
         case.shoe.outsole.reach,
     )
     check_load(case, sole)

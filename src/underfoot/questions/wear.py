@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from underfoot.compute.sole import bottom_surface
 from underfoot.core import InputError, Progress, display, silent, to_si, unknown_name
 from underfoot.core.presentation import Presentable, Table, percent
 from underfoot.core.progress import part
@@ -20,6 +21,7 @@ from .wear_limit import Crossing, LimitCrossing, WearPoint, limit_crossing
 
 if TYPE_CHECKING:
     from underfoot.case import Case
+    from underfoot.shoe import SoleSurface
     from underfoot.shoe.worn import WearMeasures
 
 MODES = ("walk", "archard", "plane", "patch")
@@ -87,7 +89,7 @@ class WearSeries(Presentable):
     ``limit`` is the fluid load (N) that counts as worn out; ``crossings`` has, for the load under
     the sole ("fluid_load") and as the floor sensors read it ("fluid_load_sensor"), the wear at
     which it is exceeded. ``untreaded`` is the last state without any tread; None where the sole
-    comes from a file.
+    comes from a file. ``soles`` are the bottoms of the states in their own frame.
     """
 
     kind: ClassVar[str] = "wear"
@@ -100,6 +102,7 @@ class WearSeries(Presentable):
     assumptions: tuple[str, ...]
     quick: bool = True
     untreaded: Outcome | None = None
+    soles: tuple[SoleSurface, ...] = ()
 
     def __repr__(self) -> str:
         return f"<WearSeries of {self.name!r}, {self.mode}: {len(self.points)} states>"
@@ -343,6 +346,7 @@ def wear_series(
         assumptions=_assumptions(cases[-1], mode, inputs),
         quick=quick,
         untreaded=results[-1] if bare else None,
+        soles=tuple(map(bottom_surface, cases)),
     )
 
 

@@ -26,7 +26,7 @@ FigureMakers = dict[str, "Callable[[], Figure]"]
 _HOMES = {
     "compute": ("results",),
     "case": ("results",),
-    "questions": ("results", "question_figures", "slips"),
+    "questions": ("results", "question_figures", "slips", "wear_page"),
     "film": ("regime_figure",),
     "report": ("outsole",),
     **dict.fromkeys(("friction", "rough_contact", "slip", "material"), ("laws",)),
