@@ -38,6 +38,11 @@ class Field:
         """Return the number of axes."""
         return self.values.ndim
 
+    @property
+    def size(self) -> int:
+        """Return the number of values."""
+        return self.values.size
+
     def transpose(self, *dims: str) -> Field:
         """Return the field with its axes in the order given."""
         if dims == self.dims:
