@@ -105,7 +105,7 @@ class Fields:
                 values = each.values.astype(np.int8) if truth else each.values
                 options = COMPRESSION if each.ndim else {}
                 stored = file.create_variable(name, each.dims, values.dtype, values, **options)
-                stored.attrs.update(each.attrs | ({"dtype": "bool"} if truth else {}))
+                stored.attrs.update({**each.attrs, **({"dtype": "bool"} if truth else {})})
 
 
 def labelled(
