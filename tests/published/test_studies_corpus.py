@@ -43,8 +43,6 @@ def test_a_source_left_out_is_predicted_better_than_by_one_constant():
     assert 1 < softer["computed ratio"] < 1.3
     dry = effects["strobel_2012", "hardest_and_smoothest_sole_highest_dry", "dry"]
     assert dry["verdict"] == "right"
-    direction = effects["mohamed_2011", "treads_across_above_along", "water"]
-    assert direction["computed ratio"] > 1.02  # smooth soles wipe and suck in thin fluids too
     assert effects["li_2006", "depth_per_mm", "water"]["verdict"] == "right"
     assert {row["inside 95 %"] for row in whole.values()} == {"yes"}
     for row in effects.values():

@@ -62,14 +62,15 @@ def in_processes(
 
 def answered(
     function: Callable[[Item], Answer],
-    items: Iterable[Item],
+    items: Iterable[Item | None],
     processes: int,
     died: Callable[[Item], Answer],
 ) -> Iterator[Answer]:
     """Yield the answers of ``function`` in the order in which they end.
 
-    An item is taken from ``items`` when a worker is free for it, not before. With one process the
-    work is done here. Otherwise as ``in_processes``.
+    An item is taken from ``items`` when a worker is free for it, not before; None says that there
+    is none until a further answer has been used. With one process the work is done here. Otherwise
+    as ``in_processes``.
     """
     waiting = iter(items)
     if processes > 1:
@@ -84,7 +85,8 @@ def answered(
         waiting = iter([*pool.left_over, *waiting])
     # one process is asked for, or the script has no "if __name__ == '__main__'" to start others
     for item in waiting:
-        yield function(item)
+        if item is not None:
+            yield function(item)
 
 
 class _Numbered(Generic[Item, Answer]):
@@ -190,8 +192,8 @@ class _Pool:
         if self.again:
             worker.task = self.again.pop()
         else:
-            item = next(items, self)
-            if item is self:
+            item = next(items, None)
+            if item is None:
                 return
             worker.task = _Task(item)
         with suppress(OSError):  # it died: its pipe says so at the next wait

@@ -24,6 +24,8 @@ _EXAMPLES = {
     "kg": "70 kg",
     "kg/m^3": "1100 kg/m^3",
     "m^2": "10 mm^2",
+    "m^3": "100 cm^3",
+    "N/m": "200 N/mm",
     "m^3/Pa": "0.3 mm^3/MPa",
     "1/m": "4 1/mm",
     "1": "0.5",
@@ -36,12 +38,15 @@ _SCALES = {
     "Pa*s": ((1e-3, "cP"),),
     "rad": ((math.pi / 180.0, "deg"),),
     "m^2": ((1e-4, "cm^2"), (1e-6, "mm^2")),
+    "m^3": ((1e-6, "cm^3"), (1e-9, "mm^3")),
+    "N/m": ((1e6, "kN/mm"), (1e3, "N/mm"), (1.0, "N/m")),
 }
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
 _ALIASES = {"%": "percent", "deg C": "degC", "mPa s": "mPa*s", "mPas": "mPa*s", "Pa s": "Pa*s"}
 _KNOWN = (
     "m mm um nm cm inch N kN mN kgf lbf Pa kPa MPa GPa psi bar cP mPa*s Pa*s P m/s mm/s cm/s "
-    "s ms us min rad deg degC degF K kg g Hz kHz rad/s mm^2 cm^2 m^2 1/s 1/mm kg/m^3 g/cm^3 "
+    "s ms us min rad deg degC degF K kg g Hz kHz rad/s mm^2 cm^2 m^2 cm^3 N/mm 1/s 1/mm kg/m^3 "
+    "g/cm^3 "
     "percent"
 ).split()
 # Powers of ten of the units people write most: a unit library takes a second to start, and moving

@@ -51,10 +51,10 @@ def _per_row(count: int, most: int) -> int:
     return -(-count // -(-count // most))
 
 
-def viewer_script() -> str:
-    """Return the program that draws every viewer of a page."""
+def viewer_script(*further: str) -> str:
+    """Return the program that draws every viewer of a page; ``further`` scripts can start more."""
     templates = environment()
-    parts = [templates.get_template(name).render() for name in SCRIPTS]
+    parts = [templates.get_template(name).render() for name in (*SCRIPTS, *further)]
     return "(() => {\n" + "\n".join(parts) + "\n})();"
 
 
