@@ -229,4 +229,4 @@ def unpacked(stored: dict[str, Any], shape: tuple[int, int]) -> NDArray[np.float
 @cache
 def colour_tables() -> dict[str, str]:
     """Return the 256 colours (RGB bytes, base64) of each of Matplotlib's maps in use here."""
-    return json.loads(files(__package__).joinpath("templates/colours.json").read_text())
+    return json.loads(files("underfoot.report").joinpath("templates/colours.json").read_text())
