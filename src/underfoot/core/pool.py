@@ -183,7 +183,7 @@ class _Pool:
         by_kernel = threading.current_thread() is threading.main_thread()
         arguments = (theirs, self.function, os.getpid(), by_kernel)
         process = context.Process(target=_serve, args=arguments)
-        with _one_thread():
+        with one_thread():
             process.start()
         theirs.close()
         return _Worker(process, ours)
@@ -216,7 +216,8 @@ class _Pool:
 
 
 @contextmanager
-def _one_thread() -> Iterator[None]:
+def one_thread() -> Iterator[None]:
+    """Let processes that start within have one thread each in numerical libraries."""
     before = {name: os.environ.get(name) for name in _THREADS}
     os.environ.update(dict.fromkeys(_THREADS, "1"))  # a worker reads them as it starts
     try:
@@ -231,7 +232,7 @@ def _one_thread() -> Iterator[None]:
 
 def _serve(pipe: Connection, function: Callable[[Any], Any], parent: int, by_kernel: bool) -> None:
     """Answer items of the parent until it closes the pipe."""
-    _watch_parent(parent, by_kernel)
+    watch_parent(parent, by_kernel)
     pipe.send((True, None))
     while True:
         try:
@@ -248,7 +249,7 @@ def _serve(pipe: Connection, function: Callable[[Any], Any], parent: int, by_ker
             pipe.send((False, UnderfootError(f"{type(message[1]).__name__}: {message[1]}")))
 
 
-def _watch_parent(parent: int, by_kernel: bool) -> None:
+def watch_parent(parent: int, by_kernel: bool) -> None:
     """Make this worker end with its parent; Ctrl-C, which reaches the group, is the parent's."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if sys.platform == "linux" and by_kernel:

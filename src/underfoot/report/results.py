@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from underfoot.case import Case
 from underfoot.compute.result import Result
@@ -194,7 +194,10 @@ def history_figure(result: Result) -> Figure:
     figure = new_figure(7.5, 2.8)
     axes = figure.add_subplot()
     time = fields["time"].values * 1e3
-    styles = ({"color": "0.3", "linestyle": "--"}, {"color": "tab:blue"})
+    styles: tuple[dict[str, Any], ...] = (
+        {"color": "0.3", "linestyle": "--"},
+        {"color": "tab:blue"},
+    )
     for (name, label), style in zip(_LOADS, styles, strict=True):
         if name in fields:
             axes.plot(time, fields[name].values, label=label, **style)
