@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core.fields import Fields
+from underfoot.core.presentation import quantity_text
 from underfoot.questions.comparison import LETTERS
 
 from .drawn_sole import DrawnSole, drawn_sole
@@ -125,7 +126,7 @@ def listed_quantity(
         "log": quantity.logarithmic,
         "stress": quantity.stress,
         "meaning": quantity.meaning,
-        "loads": [f"{load:.3g} N" for load in loads if load is not None],
+        "loads": [quantity_text(load, "N") for load in loads if load is not None],
         **asdict(limits),
         "cut": limits.cut,
     }
