@@ -12,7 +12,7 @@ from underfoot.core.arrays import Array, Mask
 from .._kernels.height_buffer import extents as _extents
 from .._kernels.height_buffer import height_buffer
 from .._kernels.mesh_edges import shared_edges, soup_keys
-from .read import Mesh
+from .mesh import Mesh
 
 _MOST_CELLS = 60_000_000
 
