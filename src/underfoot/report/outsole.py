@@ -257,8 +257,13 @@ def case_text(inspection: OutsoleInspection, out: Path) -> str:
         value = getattr(settings, name)
         mark = "" if value != getattr(plain, name) else "# "
         lines.append(f'{mark}{name} = "{value}"')
-    if settings.mirror:
-        lines.append("mirror = true")
+    for name in ("mirror", "cut_floor"):
+        if getattr(settings, name):
+            lines.append(f"{name} = true")
+    if settings.solid is not None:
+        lines.append(f"solid = {json.dumps(settings.solid, ensure_ascii=False)}")
+    if settings.side != plain.side:
+        lines.append(f'side = "{settings.side}"')
     if settings.region_length is not None:
         lines.append(f'region_length = "{settings.region_length * 1e3:g} mm"')
     if settings.spacing != plain.spacing:

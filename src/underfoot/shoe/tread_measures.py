@@ -31,6 +31,7 @@ NOISE_FACTOR = 6.0
 """A channel is this many standard deviations of the noise deep: the base lies 3 below the land."""
 WIDEST_CHANNEL = 50e-3
 """A hollow wider than this is an arch: no land, but no channel with depth and width, m."""
+_MOST_NOISE = 0.1e-3  # m: to begin with
 SMALLEST_PIECE = 1e-6
 """A channel or lug of less area is a speck, m^2."""
 LUG_REACH = 10e-3
@@ -67,8 +68,8 @@ def tread_map(
     """
     inside = np.isfinite(height)
     above = height - rolled_base(height, spacing, ROLLING_RADIUS, STEEPEST_RIM)
-    noise = height_noise(height)
-    for _ in range(2):  # walls count as noise between far heights until the land is known
+    noise = min(height_noise(height), _MOST_NOISE)
+    for _ in range(2):  # walls count as noise until the land is known
         level = max(SHALLOWEST_CHANNEL, NOISE_FACTOR * noise)
         channel = inside & (np.where(inside, above, 0.0) > level)
         noise = height_noise(np.where(channel, np.nan, height), lag)
