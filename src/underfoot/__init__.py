@@ -15,12 +15,25 @@ if TYPE_CHECKING:
     from .compute.result import Result
     from .compute.run import run
     from .core.catalogue import catalogue
+    from .explore import Study, optimise, sweep
     from .questions.comparison import compare
     from .questions.explanation import explain
 
     __version__: str
 
-__all__ = ["Case", "Result", "__version__", "catalogue", "compare", "explain", "load", "run"]
+__all__ = [
+    "Case",
+    "Result",
+    "Study",
+    "__version__",
+    "catalogue",
+    "compare",
+    "explain",
+    "load",
+    "optimise",
+    "run",
+    "sweep",
+]
 
 _HOMES = {
     "Case": ".case",
@@ -28,8 +41,11 @@ _HOMES = {
     "catalogue": ".core.catalogue",
     "compare": ".questions.comparison",
     "explain": ".questions.explanation",
+    "Study": ".explore.study",
     "load": ".case",
+    "optimise": ".explore.sweeps",
     "run": ".compute.run",
+    "sweep": ".explore.sweeps",
 }
 
 

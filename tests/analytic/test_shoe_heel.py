@@ -35,7 +35,9 @@ def test_land_ratio_over_whole_pitches(pattern, ratio):
     tread = Tread(pattern, 5 * MM, 2.5 * MM, 3 * MM)
     sole = heel_map(heel(rear_radius=0.0, tread=tread), shoe_angle=0.0, spacing=0.5 * MM)
     assert tread.land_ratio == pytest.approx(ratio)
-    assert sole.land_ratio == pytest.approx(ratio, rel=1e-12)
+    assert sole.land_ratio == pytest.approx(
+        ratio, rel=1e-9
+    )  # the pattern keeps 1e-12 m off centres
 
 
 def test_longitudinal_lug_is_centred():

@@ -26,6 +26,7 @@ def flat_map(x, y, clearance):
         clearance=clearance - clearance.min(),
         inside=ones,
         land=ones,
+        cut=None,
         tread_depth=np.zeros_like(clearance),
         spacing=float(x[1] - x[0]),
     )
@@ -177,7 +178,13 @@ def soft_ehl():
         effective_modulus=effective,
     )
     return SimpleNamespace(
-        sole=sole, body=body, law=law, solved=solved, film=film, viscosity=viscosity, speed=speed
+        sole=sole,
+        body=body,
+        law=law,
+        solved=solved,
+        film=film,
+        viscosity=viscosity,
+        speed=speed,
     )
 
 

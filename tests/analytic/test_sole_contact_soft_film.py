@@ -32,6 +32,7 @@ SQUEEZED = {
 def flat_map(x, y, clearance):
     ones = np.ones(clearance.shape, bool)
     return SimpleNamespace(
+        cut=None,
         x=x,
         y=y,
         clearance=clearance,

@@ -12,7 +12,7 @@ import pytest
 
 from underfoot.core import Cancelled, UnderfootError
 from underfoot.core import progress as progress_module
-from underfoot.core.pool import in_processes
+from underfoot.core.pool import answered, in_processes
 from underfoot.core.progress import TimeLeft, bar
 
 # A parent whose workers work for a minute: most in Python, some in a call that holds the lock.
@@ -161,3 +161,41 @@ def test_the_guard_restores_the_old_folder_of_a_process_killed_between_two_renam
     subprocess.run([sys.executable, "-c", script, str(tmp_path)], check=False)
     until(lambda: [path.name for path in tmp_path.iterdir()] == ["out"], 3)
     assert (Path(tmp_path) / "out" / "a").read_text() == "1"
+
+
+def fatal_once(place):
+    if not Path(place).exists():
+        Path(place).write_text("")
+        os.kill(os.getpid(), signal.SIGKILL)
+    return "second try"
+
+
+def test_a_dead_worker_is_replaced_and_its_item_tried_once_more(tmp_path):
+    places = [str(tmp_path / name) for name in "abc"]
+    assert dict(in_processes(fatal_once, places, 2)) == dict.fromkeys(range(3), "second try")
+
+
+def test_items_are_taken_when_a_worker_is_free():
+    taken = []
+
+    def items():
+        for number in range(6):
+            taken.append(number)
+            yield number
+
+    answers = answered(squared, items(), 2, died=squared)
+    assert next(answers) in (0, 1)
+    assert len(taken) <= 4
+    assert sorted(answers)[-1] == 25
+
+
+def test_a_script_without_a_guard_of_main_does_the_work_itself(tmp_path):
+    script = tmp_path / "bare.py"
+    script.write_text(
+        "from underfoot.core.pool import in_processes\n"
+        "print(dict(in_processes(abs, [-1, -2, -3], 2)))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, str(script)], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.stdout.splitlines()[-1] == "{0: 1, 1: 2, 2: 3}"

@@ -13,7 +13,7 @@ from underfoot.questions.comparison import compare
 from underfoot.report import figures
 from underfoot.report.common_grid import common_grid, difference, on_grid, sole_on_grid
 from underfoot.report.maps import comparison_figure, grid_note, map_figure
-from underfoot.report.quantities import SHARE, Quantity, drawn, quantities, scale
+from underfoot.report.quantities import Quantity, carried_load, drawn, quantities, scale
 from underfoot.report.viewer import packed, unpacked, viewer_scene
 
 PRESSURE = Quantity("contact_pressure", "", 1e3, "kPa")
@@ -51,7 +51,7 @@ def test_a_field_that_is_not_known_is_drawn_by_its_own_labels():
     found = {q.name: q for q in quantities([sole(1e-3, warmth=(heat, "K", "flash temperature"))])}
     assert found["warmth"].title == "Flash temperature"
     assert found["warmth"].unit == "K"
-    assert list(found)[:4] == ["contact_pressure", "fluid_pressure", "film_thickness", SHARE]
+    assert list(found)[:4] == ["contact_pressure", "fluid_pressure", "film_thickness", "warmth"]
     assert list(found)[-1] == "clearance"
     assert "inside" not in found
 
@@ -62,15 +62,16 @@ def test_only_what_all_results_hold_is_compared():
     assert "warmth" not in [q.name for q in both]
 
 
-def test_the_share_of_the_fluid_is_between_its_ends_and_empty_where_nothing_carries():
+def test_a_pressure_tells_the_load_that_it_carries():
     dataset = sole(1e-3)
-    quantity = next(q for q in quantities([dataset]) if q.name == SHARE)
-    share = drawn(dataset, quantity)
-    pressed = dataset.fluid_pressure.values + dataset.contact_pressure.values
-    np.testing.assert_allclose(
-        share[pressed > 0], (100 * dataset.fluid_pressure.values / pressed.clip(1))[pressed > 0]
+    found = {q.name: q for q in quantities([dataset])}
+    half_disc = 0.5 * np.pi * 0.02**2
+    assert carried_load(dataset, found["fluid_pressure"]) == pytest.approx(
+        1e5 * half_disc, rel=0.02
     )
-    assert np.isnan(share[pressed == 0]).all()
+    assert carried_load(dataset, found["film_thickness"]) is None
+    fluid = drawn(dataset, found["fluid_pressure"])
+    assert np.isnan(fluid[dataset.fluid_pressure.values == 0]).all()
 
 
 def test_a_lone_peak_does_not_swallow_the_scale_but_is_told():
@@ -141,7 +142,7 @@ def test_a_history_of_a_field_becomes_frames_and_a_long_one_is_thinned(worn_shoe
     scene = viewer_scene([as_result(worn_shoe_result, dataset)])
     pane = scene["panes"][0]
     past = pane["histories"]["contact_pressure"]
-    assert len(past["frames"]) == len(past["time"]) == 30
+    assert len(past["frames"]) == len(past["labels"]) == 30
     last = unpacked(past["frames"][-1], (pane["nx"], pane["ny"]))
     now = unpacked(pane["fields"]["contact_pressure"], (pane["nx"], pane["ny"]))
     np.testing.assert_allclose(last, 30 * now, rtol=2e-3)
@@ -177,7 +178,7 @@ def test_three_results_are_ranked_and_beyond_their_bands_or_not(worn_shoe_result
     assert "coefficient of friction" in comparison.headline()[1]
     assert any("grids differ" in caution for caution in comparison.cautions())
     assert "2 mm" in grid_note([result.fields for result in results])
-    assert len(figures(comparison)) == 5
+    assert len(figures(comparison)) == 4
     fields = [result.fields for result in results]
     assert len(comparison_figure(fields, quantities(fields)[0]).axes) >= 5
     failed = dataclasses.replace(results[1], status=Status.NOT_CONVERGED)

@@ -1,5 +1,8 @@
 """What the sliding solvers refuse, mark and accept."""
 
+import importlib
+from pathlib import Path
+
 import array_api_strict
 import numpy as np
 import pytest
@@ -157,13 +160,36 @@ def test_single_maxwell_term_over_a_thousandfold_rise():
         assert result.complementarity_error <= 1e-6
 
 
-def test_any_array_namespace_gives_the_same_contact():
-    other = array_api_strict.asarray(waves(64))
-    one = steady_sliding(**{**GOOD, "height": waves(64)})
-    two = steady_sliding(**{**GOOD, "height": other})
+def on_device(height: np.ndarray, device: str):
+    """Return the heights as an array of another library where it and its device are there."""
+    if device == "strict":
+        return array_api_strict.asarray(height)
+    library, _, place = device.partition(" ")
+    module = pytest.importorskip(library, reason=f"{library}, an extra, is not installed")
+    if place == "cuda" and not module.cuda.is_available():
+        pytest.skip("no CUDA device on this machine")
+    return module.asarray(height, **({"device": place} if library == "torch" else {}))
+
+
+@pytest.mark.parametrize("device", ["strict", "torch cpu", "torch cuda", "cupy"])
+@pytest.mark.parametrize("pressure", [2e4, 2e5])  # partial contact and full
+def test_any_array_library_and_device_gives_the_same_contact(device, pressure):
+    other = on_device(waves(64), device)
+    one = steady_sliding(**{**GOOD, "height": waves(64), "pressure": pressure})
+    two = steady_sliding(**{**GOOD, "height": other, "pressure": pressure})
     assert isinstance(two.pressure, type(other))
     assert two.cof_hysteresis == pytest.approx(one.cof_hysteresis, rel=1e-6)
-    np.testing.assert_allclose(np.asarray(two.pressure), one.pressure, atol=1e-3 * 2e4)
+    back = two.pressure.get() if device == "cupy" else two.pressure
+    back = back.cpu() if device.startswith("torch") else back
+    np.testing.assert_allclose(np.asarray(back), one.pressure, atol=1e-3 * pressure)
+
+
+@pytest.mark.slow
+def test_memory_is_that_of_sixteen_fields(monkeypatch):
+    monkeypatch.syspath_prepend(Path(__file__).parents[2] / "benchmarks")
+    benchmark = importlib.import_module("rough_contact")
+    for pressure, speed in ((0.3, 0.0), (1.0, 1.0)):
+        assert benchmark.memory_in_arrays(2048, pressure, speed, "auto") < 16.0
 
 
 def test_libraries_and_threads_give_the_same_contact():

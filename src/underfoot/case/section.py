@@ -89,6 +89,7 @@ class Section(BaseModel):
             given = given.tree()
         if not isinstance(given, Mapping):
             return handler(given)
+        given = cls.in_own_terms(given)
         origins = {key: found for key, item in given.items() if (found := origin_of(item))}
         plain = {
             key: origins[key].leaf.given if key in origins else item for key, item in given.items()
@@ -99,6 +100,11 @@ class Section(BaseModel):
         section._origins = {key: cls._bound(section, key, found) for key, found in origins.items()}
         section._entry = entry
         return section
+
+    @classmethod
+    def in_own_terms(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return what was given with the terms of a trade put into the fields of the section."""
+        return given
 
     @classmethod
     def _bound(cls, section: Section, key: str, origin: Origin) -> Origin:
@@ -115,7 +121,7 @@ class Section(BaseModel):
                 if uncertainty < 0:
                     raise InputError(f"{written} is negative", allowed="0 or more")
             except InputError as error:
-                raise _at(cls, (key, "uncertainty"), error, written) from error
+                raise refused_at(cls, (key, "uncertainty"), error, written) from error
         return replace(origin, value=getattr(section, key), uncertainty=uncertainty)
 
     def tree(self) -> dict[str, Any]:
@@ -275,7 +281,7 @@ class Option(Section):
             option = next(chosen, None) or cls.known().get(cls.usual or "")
             if option is None:
                 error = InputError("is missing", allowed=", ".join(cls.options()))
-                raise _at(cls, (cls.key,), error, given)
+                raise refused_at(cls, (cls.key,), error, given)
             return option
         option = cls.known().get(str(name))
         if option is not None:
@@ -284,7 +290,7 @@ class Option(Section):
         try:
             return cls._load(name) if ":" in str(name) else _named(cls.options(), str(name))
         except InputError as error:
-            raise _at(cls, (cls.key,), error, name) from error
+            raise refused_at(cls, (cls.key,), error, name) from error
 
     @classmethod
     def _load(cls, address: str) -> type[Option]:
@@ -329,7 +335,10 @@ def _named(options: Mapping[str, type[Option]], name: str) -> type[Option]:
     return options[name]
 
 
-def _at(cls: type[Section], path: tuple[str, ...], error: InputError, given: Any) -> Exception:
+def refused_at(
+    cls: type[Section], path: tuple[str, ...], error: InputError, given: Any
+) -> ValidationError:
+    """Return the validation error of a field that was given what it can't be."""
     details = InitErrorDetails(type=refusal("input", error), loc=path, input=given)
     return ValidationError.from_exception_data(cls.__name__, [details])
 
@@ -346,6 +355,12 @@ def origin_of(item: Any) -> Origin | None:
         marks = {name: item[name] for name in (*INHERITED, "erratum") if name in item}
         return Origin(GIVEN, Leaf(item["value"], uncertainty=item.get("uncertainty"), **marks))
     return None
+
+
+def leaf_of(item: Any) -> Leaf:
+    """Return a given value with the marks that it carries."""
+    origin = origin_of(item)
+    return Leaf(item) if origin is None else origin.leaf
 
 
 def plain_text(value: Any, unit: str) -> Any:

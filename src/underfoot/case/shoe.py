@@ -1,6 +1,7 @@
 """Sections for the shoe: compound, surface, shape or outsole file, tread, wear, layers."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -9,7 +10,7 @@ from pydantic import Field
 from underfoot.core import InputError, RangeError, display
 
 from .quantity import Flag, Length, Quantity, default, optional
-from .section import CATALOGUE, CaseView, Section, origin_of
+from .section import CATALOGUE, GIVEN, CaseView, Origin, Section, leaf_of, origin_of, refused_at
 from .sole import SolePlan, TreadPattern
 from .surfaces import SurfaceRoughness
 from .tables import plain, with_checksum
@@ -43,12 +44,30 @@ class Relaxation(Section):
 class Material(Section):
     """Outsole compound. A measured modulus goes before one from hardness."""
 
-    shore_a: Hardness | None = optional("Shore A hardness")
+    shore_a: Hardness | None = optional(
+        'Shore A hardness; "40 Shore D" and "55 Asker C" are converted, with their spread'
+    )
     modulus: Modulus | None = optional("measured Young's modulus")
     poisson_ratio: Poisson = default(0.49, 0.49, "rubber, nearly incompressible", assumed=True)
     bulk_modulus: Modulus | None = None
     density: Density | None = None
     relaxation: Relaxation | None = None
+
+    @classmethod
+    def in_own_terms(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        from underfoot.material.durometer_scales import durometer_reading
+
+        leaf = leaf_of(given.get("shore_a"))
+        if not isinstance(leaf.given, str):
+            return given
+        try:
+            reading = durometer_reading(leaf.given)
+        except InputError as error:
+            raise refused_at(cls, ("shore_a",), error, leaf.given) from error
+        leaf = replace(leaf, given=round(reading.shore_a, 1))
+        if reading.note():
+            leaf = replace(leaf, uncertainty=reading.scale.spread, source=reading.note())
+        return {**given, "shore_a": Origin(GIVEN, leaf)}
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         if self.shore_a is None and self.modulus is None:

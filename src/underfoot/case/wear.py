@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+import re
 from abc import abstractmethod
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
 from underfoot.core import InputError, RangeError, display
 
 from .quantity import Angle, Depth, Force, Length, Quantity, default, optional
-from .section import CaseView, Option
+from .section import GIVEN, CaseView, Option, Origin, leaf_of, refused_at
 from .sole import through_outsole
 
 if TYPE_CHECKING:
@@ -21,6 +23,11 @@ if TYPE_CHECKING:
 WearAngle = Annotated[float, Quantity("rad", 0.0, math.radians(45))]
 Place = Annotated[float, Quantity("m", -0.2, 0.2)]
 Taper = Annotated[float, Quantity("rad", math.radians(0.5), math.radians(60))]
+DIN_FORCE, DIN_WAY = 10.0, 40.0
+"""N and m: load and way of the abrasion test, ISO 4649 (DIN 53516)."""
+_ABRASION = re.compile(
+    r"\s*(?:(?:DIN|ISO)(?:\s*(?:53516|4649))?\s+)?(?P<volume>\d+(?:\.\d+)?)\s*mm(?:\^?3|³)\s*"
+)
 WearRate = Annotated[float, Quantity("m^2/N", 1e-20, 1e-6)]
 
 
@@ -111,6 +118,7 @@ class ArchardWear(Wear):
         assumed=True,
     )
     normal_force: Force | None = optional("while wearing; default motion.normal_force")
+    abrasion: str | None = optional('volume lost in ISO 4649, as "DIN 150 mm3": sets wear_rate')
     wear_rate: WearRate = default(
         3.7500000000000005e-10,  # as the text gives it, to the last digit
         "0.375 mm^3/(N*m)",
@@ -118,6 +126,30 @@ class ArchardWear(Wear):
         "floors are far gentler, and only the sliding distance depends on it",
         assumed=True,
     )
+
+    @classmethod
+    def in_own_terms(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return ``abrasion``, the volume lost in the abrasion test, as ``wear_rate``.
+
+        k = V / (10 N x 40 m), the load and the way of ISO 4649 (DIN 53516), method A.
+        """
+        leaf = leaf_of(given.get("abrasion"))
+        if leaf.given is None:
+            return given
+        words = _ABRASION.fullmatch(leaf.given) if isinstance(leaf.given, str) else None
+        try:
+            if leaf_of(given.get("wear_rate")).given is not None:
+                raise InputError("abrasion and wear_rate say the same thing twice")
+            if words is None:
+                example = 'the volume lost, as "DIN 150 mm3"'
+                raise InputError(f"{leaf.given!r} is no abrasion", allowed=example)
+        except InputError as error:
+            raise refused_at(cls, ("abrasion",), error, leaf.given) from error
+        volume = float(words["volume"])
+        rate = f"{volume / (DIN_FORCE * DIN_WAY):.6g} mm^3/(N*m)"
+        source = f"{volume:g} mm^3 lost on the abrasive sheet of ISO 4649; floors are far gentler"
+        leaf = replace(leaf, given=rate, source=source)
+        return {**given, "abrasion": None, "wear_rate": Origin(GIVEN, leaf)}
 
     def build(self) -> SoleWear | None:
         return None

@@ -9,11 +9,13 @@ from typer.core import TyperCommand
 from . import cases, tools
 from .calibrate import calibrate_app
 from .contact import contact
+from .export import export
 from .guard import guarded, say
 from .micro import micro
 from .outsole import outsole_app
 from .stribeck import stribeck
 from .studies import studies_app
+from .study import study_app
 from .trials import trials_app
 
 RENAMED = {
@@ -64,6 +66,7 @@ COMMANDS: tuple[Callable[..., None], ...] = (
     cases.sensitivity,
     cases.risk,
     cases.wear,
+    export,
     stribeck,
     contact,
     micro,
@@ -77,7 +80,7 @@ COMMANDS: tuple[Callable[..., None], ...] = (
 for command in COMMANDS:
     app.command(cls=Command)(guarded(command))
 app.command("test", cls=Command)(guarded(cases.by_method))
-for group in (trials_app, calibrate_app, studies_app, outsole_app):
+for group in (trials_app, calibrate_app, studies_app, study_app, outsole_app):
     app.add_typer(group)
 
 

@@ -126,7 +126,7 @@ def compare(
         ),
     ],
 ) -> None:
-    """Rank two to eight results or cases by friction, with the probability of the order.
+    """Rank two to twelve results or cases by friction, with the probability of the order.
 
     With --out: the soles side by side, one colour scale, maps of the differences. --set and
     --quick apply to case files.

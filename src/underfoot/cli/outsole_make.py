@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from .guard import say
 from .options import AsJson, Overwrite, Settings, setting
 
 if TYPE_CHECKING:
@@ -28,6 +29,10 @@ def _given(text: str) -> Any:
     return typer.Option(help=text, show_default=False)
 
 
+USUAL = {"lug": "6 mm", "channel": "4 mm", "depth": "3 mm"}
+"""What a lug is where nothing is said: common work shoes (assumed)."""
+FURTHER = {"blocks": {"lug_length": "9 mm"}, "chevrons": {"arm": "12 mm", "angle": "35 deg"}}
+"""What some patterns need beyond that (assumed)."""
 PATTERNS = "none, grid, blocks, transverse, longitudinal, bars, chevrons, circles, hexagons."
 
 
@@ -56,8 +61,8 @@ def make(
 ) -> None:
     """Make a sole: the same description serves the solver (in a case) and the CAD.
 
-    Give an outsole file, or a pattern with lug, channel and depth. The file is read back and its
-    volume compared with the solid's; meshes must be watertight.
+    Give an outsole file, or a pattern; lengths that are not given are assumed and said. The file
+    is read back and its volume compared with the solid's; meshes must be watertight.
     """
     from underfoot.core import InputError
     from underfoot.shoe.parametric import write_sole
@@ -67,7 +72,7 @@ def make(
         raise InputError(
             "no sole" if spec is None else "a file and --pattern together",
             where="underfoot outsole make",
-            allowed="an outsole file, or --pattern with --lug, --channel and --depth",
+            allowed="an outsole file, or --pattern, as hexagons",
         )
     if out is not None and out.exists() and not overwrite:
         raise InputError(
@@ -167,17 +172,13 @@ def _from_options(
             )
         given["channel"] = f"{whole_pitch - lug!r} m"
     chosen = _settings(settings)
-    missing = [
-        f"--{name}"
-        for name in ("lug", "channel", "depth")
-        if pattern != "none" and given[name] is None and LENGTHS[name] not in chosen
-    ]
+    usual = USUAL if pattern != "none" else {}
+    usual = usual | (FURTHER.get(pattern, {}))
+    missing = [n for n in usual if given[n] is None and LENGTHS[n] not in chosen]
     if missing:
-        raise InputError(
-            f'the pattern "{pattern}" needs {", ".join(missing)}',
-            where="underfoot outsole make",
-            allowed='lengths, for example --lug "6 mm" --channel "3 mm" --depth "4 mm"',
-        )
+        given |= {name: usual[name] for name in missing}
+        named = ", ".join(f'--{name.replace("_", "-")} "{usual[name]}"' for name in missing)
+        say(f"Assumed: {named}")
     tread: dict[str, Any] = {"pattern": pattern}
     for name, path in LENGTHS.items():
         if given[name] is not None:

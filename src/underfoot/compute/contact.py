@@ -28,6 +28,8 @@ from .sole import file_sole_map
 
 READ_STEPS = 24
 """Instants, spread over the time steps, at which the scans are read for a history."""
+PICTURED = {"contact_pressure": "asperity contact pressure", "fluid_pressure": "fluid pressure"}
+"""Maps that a motion history keeps at the same number of instants."""
 FILM_WORTH_SEEING = 0.01
 """Share of the load on the film below which no caution about the sensor is given."""
 COF_WORDS = {
@@ -118,6 +120,7 @@ class Recorder:
     times: list[float] = field(default_factory=list)
     places: list[float] = field(default_factory=list)
     array_frames: list[tuple[np.ndarray, ...]] = field(default_factory=list)
+    pictures: list[tuple[float, dict[str, np.ndarray]]] = field(default_factory=list)
     _last_read: float = -math.inf
     _array: ArrayReading | None = None
 
@@ -135,6 +138,7 @@ class Recorder:
         self.times.append(state.time)
         self.places.append(place + (state.time - before) * state.speed)
         self._read(state)
+        self._picture(state)
 
     def _read(self, state: SoleState) -> None:
         every = self.case.motion.duration / READ_STEPS
@@ -152,6 +156,13 @@ class Recorder:
             # single precision: the frames of a whole history are kept
             maps = state.fluid_pressure, state.film_thickness
             self.array_frames.append(tuple(each.astype(np.float32) for each in maps))
+
+    def _picture(self, state: SoleState) -> None:
+        last = self.pictures[-1][0] if self.pictures else -math.inf
+        every = self.case.motion.duration / READ_STEPS
+        if self.case.motion.build() is not None and state.time >= last + every:
+            maps = {name: getattr(state, name).astype(np.float32) for name in PICTURED}
+            self.pictures.append((state.time, maps))
 
     def array(self) -> ArrayReading | None:
         """Return what the array in the floor saw; None where the case has none."""
@@ -241,7 +252,16 @@ def history_fields(
     }
     for name, values in recorder.cof.items():
         variables[f"{name}_history"] = in_time(values, "1", COF_WORDS[name])
-    coordinates = {"time": in_time(history.time, "s", "time")}
+    coordinates: dict[str, Any] = {"time": in_time(history.time, "s", "time")}
+    if recorder.pictures:
+        times, maps = zip(*recorder.pictures, strict=True)
+        coordinates["picture_time"] = (("picture_time",), np.array(times), {"units": "s"})
+        for name, words in PICTURED.items():
+            variables[f"{name}_history"] = (
+                ("picture_time", "x", "y"),
+                np.stack([each[name] for each in maps]),
+                {"units": "Pa", "long_name": words},
+            )
     read = recorder.array()
     if read is not None:
         variables["array_pressure"] = (

@@ -31,6 +31,7 @@ from underfoot.sole_contact.solver import SoleContact
 
 from . import numbers
 from .contact import Recorder, blind_sensor, cost, edged_law, history_fields, scanned, solved_motion
+from .pictured import pictured_fields
 from .positions import Place, tread_positions
 from .resolve import resolved, turned
 from .result import Result
@@ -192,7 +193,10 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             contact,
             sensor,
             parts.total - np.where(contact.wet, 0.0, parts.viscous),
-            history_fields(contact, recorder),
+            (
+                history_fields(contact, recorder),
+                pictured_fields(sole, contact, compliance, _map_angle(case)),
+            ),
             None if sampled is None else sampled.cof,
         ).assign(positions.fields() if positions else {}),
         status=status,
@@ -261,6 +265,11 @@ def _with_objects(case: Case, objects: Mapping[str, Any]) -> tuple[Case, dict[st
     return case, own
 
 
+def _map_angle(case: Case) -> float:
+    """Return the angle from which the sole rolls: a steady motion is solved on the map as it is."""
+    return 0.0 if case.motion.build() is None else case.motion.shoe_angle
+
+
 def _identity(item: Any) -> str:
     """Return a text that stands for an object in a hash: its class and what its repr says."""
     cls = f"{type(item).__module__}.{type(item).__qualname__}"
@@ -279,13 +288,15 @@ def _fields(
     contact: SoleContact,
     sensor: SensorReading,
     shear: object,
-    in_time: tuple[dict[str, Any], dict[str, Any]],
+    further: Iterable[tuple[dict[str, Any], dict[str, Any]]],
     draws: np.ndarray | None,
 ) -> xarray.Dataset:
     def on_sole(values: object, unit: str, name: str) -> tuple[tuple[str, str], object, dict]:
         return (("x", "y"), values, {"units": unit, "long_name": name})
 
-    (histories, times), drawn = in_time, {"units": "1", "long_name": "draws of COF"}
+    drawn = {"units": "1", "long_name": "draws of COF"}
+    variables = {name: each for more, _ in further for name, each in more.items()}
+    coordinates = {name: each for _, more in further for name, each in more.items()}
     return xarray.Dataset(
         {
             "contact_pressure": on_sole(
@@ -305,13 +316,13 @@ def _fields(
             ),
             "outline_x": ("outline", sole.outline[:, 0], {"units": "m"}),
             "outline_y": ("outline", sole.outline[:, 1], {"units": "m"}),
-            **histories,
+            **variables,
             **({} if draws is None else {"cof_draws": ("draw", draws, drawn)}),
         },
         coords={
             "x": ("x", sole.x, {"units": "m", "long_name": "along the walking direction"}),
             "y": ("y", sole.y, {"units": "m", "long_name": "across"}),
-            **times,
+            **coordinates,
             "sensor_x": ("sensor_x", sensor.x, {"units": "m"}),
             "sensor_y": ("sensor_y", sensor.scan_y, {"units": "m"}),
         },

@@ -226,7 +226,10 @@ def file_sole_map(case: Case, spacing: float) -> SoleMap:
 
 
 def trimmed(sole: SoleMap, reach: float, padding: float = 0.004) -> SoleMap:
-    """Return the map without rows and columns that lie more than ``reach`` (m) above the floor."""
+    """Return the map without rows and columns that lie more than ``reach`` (m) above the floor.
+
+    The result keeps the whole map for pictures (``SoleMap.whole``).
+    """
     near = sole.clearance <= reach
     margin = max(1, math.ceil(padding / sole.spacing))
     keep = []
@@ -242,6 +245,8 @@ def trimmed(sole: SoleMap, reach: float, padding: float = 0.004) -> SoleMap:
         inside=sole.inside[part],
         land=sole.land[part],
         tread_depth=sole.tread_depth[part],
+        cut=sole.cut and sole.cut.part(part),
+        whole=sole,
     )
 
 

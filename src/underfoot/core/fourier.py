@@ -17,11 +17,7 @@ VARIABLE = "UNDERFOOT_FFT"
 
 
 class Transform(Protocol):
-    """Real FFT of one shape and precision; results may live in buffers that the next call reuses.
-
-    ``forward`` gives the half spectrum over axis 1, ``backward`` the real field. Both may be
-    overwritten by the caller and by the next call of the same method.
-    """
+    """Real FFT of one shape and precision, into new arrays: the half spectrum is over axis 1."""
 
     def forward(self, field: AnyArray) -> AnyArray:
         """Return the half spectrum of a real field."""

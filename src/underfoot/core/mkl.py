@@ -144,18 +144,16 @@ class _System:
 
 
 class MklTransform:
-    """Real FFT of C-ordered NumPy arrays of one shape and precision, into its own buffers."""
+    """Real FFT of C-ordered NumPy arrays of one shape and precision."""
 
     def __init__(self, shape: tuple[int, int], dtype: Any, threads: int = 1) -> None:
         self.shape = shape
         self.dtype = np.dtype(dtype)
         single = self.dtype == np.float32
-        half = shape[1] // 2 + 1
+        self._half = (shape[0], shape[1] // 2 + 1)
+        self._complex = np.dtype(np.complex64 if single else np.complex128)
         self._library: Any = mkl_library()
-        self._spectrum = np.empty((shape[0], half), np.complex64 if single else np.complex128)
-        self._field = np.empty(shape, self.dtype)
-        self._spectrum_at, self._field_at = _address(self._spectrum), _address(self._field)
-        real, complex_ = (0, shape[1], 1), (0, half, 1)
+        real, complex_ = (0, shape[1], 1), (0, self._half[1], 1)
         self._handles = [
             self._plan(_SINGLE if single else _DOUBLE, into, out, threads)
             for into, out in ((real, complex_), (complex_, real))
@@ -163,15 +161,17 @@ class MklTransform:
 
     def forward(self, field: Any) -> Any:
         field = np.ascontiguousarray(field, dtype=self.dtype)
+        spectrum = np.empty(self._half, self._complex)
         compute = self._library.DftiComputeForward
-        self._check(compute(self._handles[0], _address(field), self._spectrum_at))
-        return self._spectrum
+        self._check(compute(self._handles[0], _address(field), _address(spectrum)))
+        return spectrum
 
     def backward(self, spectrum: Any) -> Any:
-        spectrum = np.ascontiguousarray(spectrum, dtype=self._spectrum.dtype)
-        where = self._spectrum_at if spectrum is self._spectrum else _address(spectrum)
-        self._check(self._library.DftiComputeBackward(self._handles[1], where, self._field_at))
-        return self._field
+        spectrum = np.ascontiguousarray(spectrum, dtype=self._complex)
+        field = np.empty(self.shape, self.dtype)
+        compute = self._library.DftiComputeBackward
+        self._check(compute(self._handles[1], _address(spectrum), _address(field)))
+        return field
 
     def __del__(self) -> None:
         for handle in getattr(self, "_handles", ()):

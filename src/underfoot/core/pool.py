@@ -1,27 +1,29 @@
 """Work in several processes that end with this one, however it ends.
 
 Each worker watches its parent: after Ctrl-C, SIGTERM or a kill of the parent, and after an error or
-a cancel in it, no worker goes on.
+a cancel in it, no worker goes on. A worker that dies is replaced, and its item tried once more.
 """
 
 import ctypes
 import multiprocessing
 import os
+import pickle
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
-from multiprocessing.connection import wait
-from typing import TypeVar
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
+from typing import Any, Generic, TypeVar
 
 from .errors import UnderfootError
 from .progress import Progress, silent
 
 Item = TypeVar("Item")
 Answer = TypeVar("Answer")
+TRIES = 2
+"""Workers that an item may cost before it counts as the cause of their death."""
 _THREADS = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
 _PR_SET_PDEATHSIG = 1  # of <linux/prctl.h>
 
@@ -47,66 +49,176 @@ def in_processes(
     ``function`` is importable by name, as is what it takes and returns. ``processes`` are the
     workers at most, None for one a processor; with 1, or one item, the work is done here.
     ``progress`` is told ``stage`` and the share done after each item; an exception that it raises
-    (``Cancelled``) ends the work. Where a worker ended without an answer (killed, out of memory),
-    ``died`` gives that of its item; without it ``UnderfootError`` is raised. Errors of
+    (``Cancelled``) ends the work. Where two workers in turn ended without an answer (killed, out of
+    memory), ``died`` gives that of their item; without it ``UnderfootError`` is raised. Errors of
     ``function`` pass through.
     """
     count = min(processes or available_processors(), len(items))
-    done: set[int] = set()
+    answers = answered(_Numbered(function), enumerate(items), count, _Numbered(died))
+    for done, (index, answer) in enumerate(answers, start=1):
+        yield index, answer
+        progress(stage, done / len(items))
 
-    def told(index: int) -> None:
-        done.add(index)
-        progress(stage, len(done) / len(items))
 
-    if count > 1:
+def answered(
+    function: Callable[[Item], Answer],
+    items: Iterable[Item],
+    processes: int,
+    died: Callable[[Item], Answer],
+) -> Iterator[Answer]:
+    """Yield the answers of ``function`` in the order in which they end.
+
+    An item is taken from ``items`` when a worker is free for it, not before. With one process the
+    work is done here. Otherwise as ``in_processes``.
+    """
+    waiting = iter(items)
+    if processes > 1:
+        pool = _Pool(function, processes)
         try:
-            with worker_pool(count) as pool:
-                jobs = {pool.submit(function, item): index for index, item in enumerate(items)}
-                for job in as_completed(jobs):
-                    answer = job.result()
-                    yield jobs[job], answer
-                    told(jobs[job])
-            return
-        except BrokenProcessPool:
-            rest = [index for index in range(len(items)) if index not in done]
-            if _workers_start():
-                for index, answer in _one_at_a_time(function, items, rest, died):
-                    yield index, answer
-                    told(index)
-                return
+            yield from pool.answers(waiting, died)
+        except BaseException:
+            # GeneratorExit, KeyboardInterrupt and Cancelled too: nobody waits for answers any more
+            pool.end(kill=True)
+            raise
+        pool.end()
+        waiting = iter([*pool.left_over, *waiting])
     # one process is asked for, or the script has no "if __name__ == '__main__'" to start others
-    for index in range(len(items)):
-        if index not in done:
-            yield index, function(items[index])
-            told(index)
+    for item in waiting:
+        yield function(item)
+
+
+class _Numbered(Generic[Item, Answer]):
+    """A function of (index, item) that keeps the index."""
+
+    def __init__(self, function: Callable[[Item], Answer] | None) -> None:
+        self.function = function
+
+    def __call__(self, numbered: tuple[int, Item]) -> tuple[int, Answer]:
+        if self.function is None:
+            raise UnderfootError(
+                "a worker process ended without an answer",
+                remedy="It may have run out of memory: use fewer processes or a coarser grid",
+            )
+        return numbered[0], self.function(numbered[1])
+
+
+@dataclass(eq=False)
+class _Worker:
+    """A process, our end of its pipe and what it works on."""
+
+    process: Any
+    pipe: Connection
+    ready: bool = False
+    task: "_Task | None" = None
+
+
+@dataclass(eq=False)
+class _Task:
+    item: Any
+    tries: int = 0
+
+
+class _Pool:
+    """Fresh processes of one thread each.
+
+    Fresh ones because a forked process can inherit locks of numerical libraries' threads. One pipe
+    a worker, because the queue of a killed process may hold half a message.
+    """
+
+    def __init__(self, function: Callable[[Any], Any], processes: int) -> None:
+        self.function = function
+        self.again: list[_Task] = []
+        self.lost_before_ready = 0
+        self.workers: list[_Worker] = []
+        self.processes = processes
+
+    def answers(self, items: Iterator[Any], died: Callable[[Any], Any]) -> Iterator[Any]:
+        """Yield answers until nothing is left; stop where no worker can be started."""
+        self.workers = [self._started() for _ in range(self.processes)]
+        while True:
+            for worker in self.workers:
+                if worker.ready and worker.task is None:
+                    self._give(worker, items)
+            if not (self.again or any(w.task or not w.ready for w in self.workers)):
+                return
+            heard = wait([worker.pipe for worker in self.workers])
+            for worker in [w for w in self.workers if w.pipe in heard]:
+                try:
+                    good, answer = worker.pipe.recv()
+                except (EOFError, OSError, pickle.UnpicklingError):
+                    yield from self._replace(worker, died)
+                    if self.lost_before_ready > self.processes:
+                        return
+                    continue
+                if not worker.ready:
+                    worker.ready, self.lost_before_ready = True, 0
+                    continue
+                worker.task = None
+                if not good:
+                    raise answer
+                self._give(worker, items)  # before the answer is used: it must not wait for that
+                yield answer
+
+    @property
+    def left_over(self) -> list[Any]:
+        """Items that were taken and not answered."""
+        return [task.item for task in self.again]
+
+    def end(self, *, kill: bool = False) -> None:
+        """End the workers, at once or when they find nothing to do."""
+        for worker in self.workers:
+            worker.pipe.close()
+            if kill:
+                worker.process.kill()
+        for worker in self.workers:
+            worker.process.join()
+        self.workers = []
+
+    def _started(self) -> _Worker:
+        context = multiprocessing.get_context("spawn")
+        ours, theirs = context.Pipe()
+        # the kernel's signal comes when the thread that started the worker ends: fit for main alone
+        by_kernel = threading.current_thread() is threading.main_thread()
+        arguments = (theirs, self.function, os.getpid(), by_kernel)
+        process = context.Process(target=_serve, args=arguments)
+        with _one_thread():
+            process.start()
+        theirs.close()
+        return _Worker(process, ours)
+
+    def _give(self, worker: _Worker, items: Iterator[Any]) -> None:
+        if self.again:
+            worker.task = self.again.pop()
+        else:
+            item = next(items, self)
+            if item is self:
+                return
+            worker.task = _Task(item)
+        with suppress(OSError):  # it died: its pipe says so at the next wait
+            worker.pipe.send(worker.task.item)
+
+    def _replace(self, worker: _Worker, died: Callable[[Any], Any]) -> Iterator[Any]:
+        worker.pipe.close()
+        worker.process.join()
+        self.lost_before_ready += not worker.ready
+        self.workers.remove(worker)
+        task = worker.task
+        if task is not None:
+            task.tries += 1
+            if task.tries < TRIES:
+                self.again.append(task)
+        if self.lost_before_ready <= self.processes:
+            self.workers.append(self._started())
+        if task is not None and task.tries >= TRIES:
+            yield died(task.item)
 
 
 @contextmanager
-def worker_pool(processes: int) -> Iterator[ProcessPoolExecutor]:
-    """Yield a pool of fresh processes of one thread each; they are killed if the block fails.
-
-    Fresh ones because a forked process can inherit locks of numerical libraries' threads.
-    """
+def _one_thread() -> Iterator[None]:
     before = {name: os.environ.get(name) for name in _THREADS}
     os.environ.update(dict.fromkeys(_THREADS, "1"))  # a worker reads them as it starts
-    # the kernel's signal comes when the thread that started the worker ends: fit for the main one
-    by_kernel = threading.current_thread() is threading.main_thread()
-    pool = ProcessPoolExecutor(
-        processes,
-        mp_context=multiprocessing.get_context("spawn"),
-        initializer=_watch_parent,
-        initargs=(os.getpid(), by_kernel),
-    )
     try:
-        yield pool
-        pool.shutdown()
-    except BaseException:
-        # GeneratorExit, KeyboardInterrupt and Cancelled too: nobody waits for the answers any more
-        workers = list((getattr(pool, "_processes", None) or {}).values())
-        for worker in workers:
-            worker.kill()
-        pool.shutdown(wait=True, cancel_futures=True)
-        raise
+        yield
     finally:
         for name, value in before.items():
             if value is None:
@@ -115,35 +227,23 @@ def worker_pool(processes: int) -> Iterator[ProcessPoolExecutor]:
                 os.environ[name] = value
 
 
-def _one_at_a_time(
-    function: Callable[[Item], Answer],
-    items: Sequence[Item],
-    rest: list[int],
-    died: Callable[[Item], Answer] | None,
-) -> Iterator[tuple[int, Answer]]:
-    """Yield the answers of one worker, to find the item that kills it."""
-    while rest:
+def _serve(pipe: Connection, function: Callable[[Any], Any], parent: int, by_kernel: bool) -> None:
+    """Answer items of the parent until it closes the pipe."""
+    _watch_parent(parent, by_kernel)
+    pipe.send((True, None))
+    while True:
         try:
-            with worker_pool(1) as pool:
-                while rest:
-                    answer = pool.submit(function, items[rest[0]]).result()
-                    yield rest.pop(0), answer
-        except BrokenProcessPool:
-            index = rest.pop(0)
-            if died is None:
-                raise UnderfootError(
-                    "a worker process ended without an answer",
-                    remedy="It may have run out of memory: use fewer processes or a coarser grid",
-                ) from None
-            yield index, died(items[index])
-
-
-def _workers_start() -> bool:
-    try:
-        with worker_pool(1) as pool:
-            return pool.submit(os.getpid).result() > 0
-    except BrokenProcessPool:
-        return False
+            item = pipe.recv()
+        except (EOFError, OSError):
+            return
+        try:
+            message = True, function(item)
+        except Exception as error:
+            message = False, error
+        try:
+            pipe.send(message)
+        except (pickle.PicklingError, TypeError, AttributeError):
+            pipe.send((False, UnderfootError(f"{type(message[1]).__name__}: {message[1]}")))
 
 
 def _watch_parent(parent: int, by_kernel: bool) -> None:

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import platform
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
+from functools import cache
 from importlib import metadata
+from pathlib import Path
 from typing import Any
+
+from .cache import content_hash
 
 
 def package_version(name: str) -> str:
@@ -23,6 +28,19 @@ def package_version(name: str) -> str:
 def version() -> str:
     """Return the version of this package."""
     return package_version("underfoot")
+
+
+@cache
+def program_hash() -> str:
+    """Return a hash of the package's own text: numbers of another code are not ours."""
+    return files_hash((str(Path(__file__).parents[1]),))
+
+
+def files_hash(folders: Sequence[str]) -> str:
+    """Return a hash of the program and data files in folders."""
+    paths = (path for folder in folders for path in sorted(Path(folder).rglob("*")))
+    texts = (path for path in paths if path.suffix in (".py", ".toml", ".csv"))
+    return content_hash(*(path.read_text(encoding="utf-8", errors="replace") for path in texts))
 
 
 @dataclass(frozen=True, slots=True)

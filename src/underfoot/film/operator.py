@@ -13,10 +13,11 @@ x face is
 so that volume is conserved in full film, in cavities and across their borders. For given h the
 balance is linear in p and theta, and any mixture of their columns is an M-matrix: it can be
 factorised without pivoting. A face lies between ``a``, the cell on its far side along the axis, and
-``b``. It is two half-cells in series, exact for a step in the gap: with conductances K_a, K_b,
+``b``. It is two parts in series, exact for a step in the gap: with conductances K_a, K_b and the
+share t of the way between the centres that b's gap reaches (1/2, or where an edge cuts the cells),
 
-    k = 2 K_a K_b / (K_a + K_b)            pressure flow per unit pressure difference
-    h_c = (a K_b + b K_a) / (K_a + K_b)    gap that carries the shear flow
+    k = K_a K_b / (t K_a + (1 - t) K_b)                              pressure flow per difference
+    h_c = ((1 - t) a K_b + t b K_a) / (t K_a + (1 - t) K_b)          gap that carries the shear flow
 
 Taking the gap linear between cell centres instead doubles the film under a lug beside a channel.
 """
@@ -81,7 +82,7 @@ class FilmOperator:
     kx: FaceValue  # m^3/(Pa s)
     ky: FaceValue
     carry: FaceValue
-    storage: float  # cell area over time step, m^2/s; 0 for a steady film
+    storage: Array | float  # area of the cells over time step, m^2/s; 0 for a steady film
 
     @property
     def by_pressure(self) -> Stencil:
@@ -116,9 +117,7 @@ class FilmOperator:
         ``content`` is the liquid per area before the time step, m.
         """
         outflow = divergence(*self.flows(pressure, fraction))
-        if self.storage:
-            outflow += self.storage * (self.gap * fraction - content)
-        return outflow
+        return outflow + self.storage * (self.gap * fraction - content)
 
     def cavity_fraction(
         self, pressure: Array, cavity: Cavity, content: Array | float = 0.0
@@ -186,9 +185,10 @@ def film_operator(
     *,
     spacing: tuple[float, float],
     speed: float,
-    storage: float = 0.0,
+    storage: Array | float = 0.0,
     roughness_flow: Array | None = None,
     upwinding: Upwinding | None = None,
+    edges: tuple[Array | float, Array | float] = (0.5, 0.5),
 ) -> FilmOperator:
     """Return the mass balance of a film of given gap.
 
@@ -198,23 +198,25 @@ def film_operator(
         spacing: Cell size along x and along y, m.
         speed: U, mean speed of the walls on the grid along +x, m/s (minus half the sliding speed
             where the grid moves with the sole).
-        storage: Area of a cell over the time step, m^2/s; 0 for a steady film.
+        storage: Area of the cells over the time step, m^2/s; 0 for a steady film.
         roughness_flow: s, flow per width that roughness carries besides, (nx, ny), m^2/s.
         upwinding: Of the x faces; None for rigid walls.
+        edges: t of the x faces, (nx - 1, ny), and of the y faces, (nx, ny - 1).
     """
     dx, dy = spacing
     k, dk = along
-    kx = series_conductance(k[1:], k[:-1], dk[1:], dk[:-1])
+    kx = series_conductance(k[1:], k[:-1], dk[1:], dk[:-1], edges[0])
     m, dm = across
-    ky = series_conductance(m[:, 1:], m[:, :-1], dm[:, 1:], dm[:, :-1])
+    ky = series_conductance(m[:, 1:], m[:, :-1], dm[:, 1:], dm[:, :-1], edges[1])
     a, b = gap[1:], gap[:-1]
-    shear = shear_gap(a, b, k[1:], k[:-1], dk[1:], dk[:-1])
+    shear = shear_gap(a, b, (k[1:], k[:-1], dk[1:], dk[:-1]), edges[0])
     if upwinding is not None:
         shear = upwind_blend(a, b, shear, upwinding, from_a=speed < 0)
     carry = FaceValue(*(dy * speed * part for part in shear))
     if roughness_flow is not None:
         nil = np.zeros_like(a)
-        more = shear_gap(roughness_flow[1:], roughness_flow[:-1], k[1:], k[:-1], nil, nil)
+        flow = roughness_flow[1:], roughness_flow[:-1]
+        more = shear_gap(*flow, (k[1:], k[:-1], nil, nil), edges[0])
         carry = carry._replace(value=carry.value + dy * more.value)
     return FilmOperator(
         gap,
@@ -235,17 +237,32 @@ def divergence(flow_x: Array, flow_y: Array) -> Array:
     return outflow
 
 
-def series_conductance(ka: Array, kb: Array, dka: Array, dkb: Array) -> FaceValue:
-    """Return the conductance of two half-cells in series; ``dka`` is dK_a/da."""
-    total = ka + kb
-    return FaceValue(2 * ka * kb / total, 2 * (kb / total) ** 2 * dka, 2 * (ka / total) ** 2 * dkb)
+def series_conductance(
+    ka: Array, kb: Array, dka: Array, dkb: Array, place: Array | float = 0.5
+) -> FaceValue:
+    """Return the conductance of two parts in series; ``dka`` is dK_a/da, ``place`` is t."""
+    total = place * ka + (1 - place) * kb
+    return FaceValue(
+        ka * kb / total, (1 - place) * (kb / total) ** 2 * dka, place * (ka / total) ** 2 * dkb
+    )
 
 
-def shear_gap(a: Array, b: Array, ka: Array, kb: Array, dka: Array, dkb: Array) -> FaceValue:
-    """Return the gap that carries the shear flow through a face."""
-    total = ka + kb
-    gap = (a * kb + b * ka) / total
-    return FaceValue(gap, (kb + (b - gap) * dka) / total, (ka + (a - gap) * dkb) / total)
+def shear_gap(
+    a: Array, b: Array, conductances: tuple[Array, Array, Array, Array], place: Array | float = 0.5
+) -> FaceValue:
+    """Return the gap that carries the shear flow.
+
+    ``conductances`` are K_a, K_b, dK_a/da and dK_b/db, ``place`` is t.
+    """
+    ka, kb, dka, dkb = conductances
+    rest = 1 - place
+    total = place * ka + rest * kb
+    gap = (rest * a * kb + place * b * ka) / total
+    return FaceValue(
+        gap,
+        (rest * kb + place * (b - gap) * dka) / total,
+        (place * ka + rest * (a - gap) * dkb) / total,
+    )
 
 
 def upwind_blend(

@@ -120,6 +120,29 @@ def propagated(
     )
 
 
+def probability_higher(
+    first: tuple[float, float | None, Array | None],
+    second: tuple[float, float | None, Array | None],
+    *,
+    shared: bool,
+) -> float | None:
+    """Return the probability that the first of two values is the higher one; None if not estimated.
+
+    Each is its value, its standard deviation and its draws. ``shared`` draws are counted pair by
+    pair, so that what both have in common cancels: P = (n(a > b) + n(a = b) / 2) / n. Otherwise the
+    values count as independent: Phi((a - b) / sqrt(s_a^2 + s_b^2)).
+    """
+    (a, spread_a, draws_a), (b, spread_b, draws_b) = first, second
+    if shared and draws_a is not None and draws_b is not None and draws_a.size == draws_b.size:
+        return float(np.mean(draws_a > draws_b) + 0.5 * np.mean(draws_a == draws_b))
+    if spread_a is None or spread_b is None:
+        return None
+    spread = math.hypot(spread_a, spread_b)
+    if spread == 0.0:
+        return 0.5 * (1.0 + float(np.sign(a - b)))
+    return 0.5 * (1.0 + math.erf((a - b) / spread / math.sqrt(2.0)))
+
+
 def named_shares(seed: int, name: str, samples: int) -> Array:
     """Return (samples,) shares between 0 and 1 of a cause, one from each stratum.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import erf, hypot, sqrt
+from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -17,11 +17,12 @@ from underfoot.compute.run import run
 from underfoot.core import InputError, Progress, SourcedValue, nearest_match, silent
 from underfoot.core.presentation import Presentable, Table, percent, value_text
 from underfoot.core.progress import part
+from underfoot.friction.propagation import probability_higher
 
 if TYPE_CHECKING:
     from underfoot.core.catalogue import Catalogue
 
-LETTERS = "ABCDEFGH"
+LETTERS = "ABCDEFGHIJKL"
 DECIDED = 0.75
 """Least probability at which an order is stated."""
 Z95 = 1.96
@@ -56,7 +57,7 @@ class ComparedQuantity:
 
 @dataclass(frozen=True, slots=True)
 class Comparison(Presentable):
-    """Two to eight results side by side."""
+    """Two to twelve results side by side."""
 
     kind: ClassVar[str] = "comparison"
 
@@ -192,7 +193,7 @@ def compare(
     """Return results side by side, ranked by COF; cases are computed first.
 
     Parameters:
-        *items: Two to eight results or cases.
+        *items: Two to twelve results or cases.
         quick: Compute cases on the coarse grid.
         catalogue: Where the stored cases of results find their entries; the built-in one by
             default.
@@ -204,7 +205,7 @@ def compare(
     count as independent: Phi(d / s), d their difference and s = sqrt(s1^2 + s2^2).
 
     Raises:
-        InputError: Fewer than two or more than eight items.
+        InputError: Fewer than two or more than twelve items.
     """
     _check_count(len(items))
     results = tuple(
@@ -255,18 +256,6 @@ def case_differences(cases: Sequence[Case]) -> list[tuple[str, ...]]:
     return [row for row in rows if len(set(row[1:])) > 1]
 
 
-def probability_higher(first: SourcedValue, second: SourcedValue) -> float | None:
-    """Return the probability that the larger of two values is larger; None if not estimated."""
-    if first.value is None or second.value is None:
-        return None
-    if first.uncertainty is None or second.uncertainty is None:
-        return None
-    spread = hypot(first.uncertainty, second.uncertainty)
-    if spread == 0.0:
-        return 1.0 if first.value != second.value else 0.5
-    return 0.5 * (1.0 + erf(abs(first.value - second.value) / spread / sqrt(2.0)))
-
-
 def _check_count(count: int) -> None:
     if not 2 <= count <= len(LETTERS):
         raise InputError(
@@ -290,12 +279,14 @@ def _ranking(results: Sequence[Result]) -> tuple[Rank, ...]:
 
 def _chance_higher(first: Result, second: Result) -> float | None:
     """Return the probability that the first COF is higher, from shared draws where there are."""
-    a, b = (result.fields.get("cof_draws") for result in (first, second))
     laws = {result.provenance.closures.get("friction") for result in (first, second)}
-    if laws != {"pair"} or a is None or b is None or a.size != b.size:
-        return probability_higher(first.scalars["cof"], second.scalars["cof"])
-    higher, equal = np.mean(a.values > b.values), np.mean(a.values == b.values)
-    return float(higher + 0.5 * equal)
+    both = []
+    for result in (first, second):
+        cof, draws = result.scalars["cof"], result.fields.get("cof_draws")
+        if cof.value is None:
+            return None
+        both.append((cof.value, cof.uncertainty, None if draws is None else draws.values))
+    return probability_higher(*both, shared=laws == {"pair"})
 
 
 def _interval(scalar: SourcedValue) -> tuple[float, float] | None:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from functools import cache, partial
-from pathlib import Path
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +16,7 @@ from underfoot.core import Progress, SourcedValue, Status, content_hash, silent
 from underfoot.core.cache import Cache
 from underfoot.core.pool import available_processors, in_processes
 from underfoot.core.progress import part
+from underfoot.core.provenance import files_hash, program_hash
 
 if TYPE_CHECKING:
     from underfoot.case import Case
@@ -142,18 +142,4 @@ def _computed_alone(case: Case, *, quick: bool) -> Outcome:
 
 
 def _key(case: Case, quick: bool) -> str:
-    return content_hash(case.hash, quick, program_hash(), _files(case.catalogue.folders))
-
-
-@cache
-def program_hash() -> str:
-    """Return a hash of the package's own text: numbers of another code are not ours."""
-    import underfoot
-
-    return _files((str(Path(str(underfoot.__file__)).parent),))
-
-
-def _files(folders: Sequence[str]) -> str:
-    paths = (path for folder in folders for path in sorted(Path(folder).rglob("*")))
-    texts = (path for path in paths if path.suffix in (".py", ".toml", ".csv"))
-    return content_hash(*(path.read_text(encoding="utf-8", errors="replace") for path in texts))
+    return content_hash(case.hash, quick, program_hash(), files_hash(case.catalogue.folders))

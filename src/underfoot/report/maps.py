@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from underfoot.questions.comparison import LETTERS
+
 from .common_grid import common_grid, difference, on_grid, sole_on_grid
 from .html import new_figure
 from .quantities import Quantity, Scale, drawn, inside, quantities, scale
@@ -23,7 +25,6 @@ if TYPE_CHECKING:
 _FEW_SENSORS = 12
 """More readings than this along x are a scanned track, fewer an array of sensors."""
 _SENSED = "fluid_pressure"
-LETTERS = "ABCDEFGH"
 _REACH = 0.995
 """Quantile of the differences at which their colour scale ends: single cells at edges beyond."""
 
@@ -173,8 +174,7 @@ def _difference_style(changes: Sequence[np.ndarray], quantity: Quantity) -> tupl
     largest = float(sizes.max())
     moved = sizes[sizes > 1e-3 * largest]
     reach = (float(np.quantile(moved, _REACH)) if moved.size else 0.0) or 1.0
-    unit = "% points" if quantity.unit == "%" else quantity.unit
-    return Quantity("difference", "", 1.0, unit, "RdBu_r"), Scale(-reach, reach, reach)
+    return Quantity("difference", "", 1.0, quantity.unit, "RdBu_r"), Scale(-reach, reach, reach)
 
 
 def grid_note(datasets: Sequence[xarray.Dataset]) -> str:

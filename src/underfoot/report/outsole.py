@@ -34,8 +34,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_HIGHEST = 98.0  # percentile of the heights at which colours end: walls and welts go beyond
-_PATCH, _CLOSED = "#e3c16f", "#c8553d"
+_PATCH, _CLOSED = "#e3c16f", "#9a86b8"
 _UNITS = {"area": "_m2", "length": "_m", "width": "_m", "depth": "_m", "circle": "_m"}
 
 
@@ -163,7 +162,7 @@ def outsole_figure(surface: SoleSurface, measures: TreadMeasures) -> Figure:
     heights, depths, parts = figure.subplots(1, 3)
     millimetres = surface.height * 1e3
     shown = millimetres[surface.inside]
-    high = max(float(np.percentile(shown, _HIGHEST)), float(shown.min()) + 0.1)
+    high = max(float(shown.max()), float(shown.min()) + 0.1)
     depth = channel_depth(surface) * 1e3
     deepest = max(float(np.nanmax(depth)), 0.1)
     depth = np.where(surface.land | ~surface.inside, np.nan, depth)
@@ -225,8 +224,13 @@ _CASE = """\
 name = {name}
 
 [shoe]
-from = "work_shoe_half_tread"  # compound and roughness; set your own
-# material.shore_a = 60
+from = "work_shoe_half_tread"   # stands in for what is not given below
+
+[shoe.material]
+shore_a = "62 A"                # set your own; "40 Shore D" and "55 Asker C" are converted
+# modulus = "5 MPa"             # measured in compression: goes before the hardness
+# [shoe.roughness]              # of the outsole's surface, from a profilometer
+# rq = "8 um"
 
 [shoe.outsole]
 file = {file}
@@ -235,17 +239,26 @@ sha256 = "{sha256}"
 
 [shoe.sole]
 outsole_thickness = {thickness}
-# midsole_modulus = "2 MPa"
-# midsole_thickness = "15 mm"
+# [shoe.sole.midsole]
+# modulus = "2 MPa"
+# thickness = "15 mm"
+
+# [shoe.wear]                   # how far it is worn: ground off at one angle
+# depth = "1 mm"
+# angle = "7 deg"
 
 [floor]
-from = "vinyl_g4"
+from = "vinyl_g4"               # others: underfoot catalogue floor
 
 [contaminant]
-from = "glycerol_90pct"
+from = "glycerol_90pct"         # others: underfoot catalogue fluid
+# viscosity = "100 cP"
 
 [motion]
-from = "slip_tester_g4"
+from = "slip_tester_g4"         # others: underfoot catalogue setup
+# normal_force = "500 N"
+# speed = "0.3 m/s"
+# shoe_angle = "7 deg"          # toe up
 """
 
 

@@ -14,24 +14,27 @@ from underfoot.core.units import display_unit
 if TYPE_CHECKING:
     import xarray
 
-SHARE = "fluid_share"
 HEIGHT_NAMES = ("clearance", "height")
-_PARTS = ("contact_pressure", "fluid_pressure")
-_FIRST = (*_PARTS, "film_thickness", SHARE, "shear_stress")
+_NOT_DRAWN = ("pressed_height",)
+"""Fields that shape the picture instead of colouring it."""
+_FIRST = ("contact_pressure", "fluid_pressure", "film_thickness", "shear_stress")
 _TITLES = {
     "contact_pressure": "Contact pressure",
     "fluid_pressure": "Fluid pressure",
     "film_thickness": "Film thickness",
-    SHARE: "Load carried by fluid",
     "shear_stress": "Local shear",
     "clearance": "Height above the floor",
 }
 _COLOURS = {
     "film_thickness": "YlGnBu_r",
-    SHARE: "cividis",
     **dict.fromkeys(HEIGHT_NAMES, "cividis"),
 }
 _LOGARITHMIC = ("film_thickness",)
+_LOADS = {
+    "contact_pressure": "the load per area that the touching rubber carries",
+    "fluid_pressure": "the load per area that the fluid carries",
+}
+"""Pressures whose integral over the sole is a load, and what they say to a designer."""
 _UNLOADED = 1e-3
 """Stress below this share of its peak is drawn as none."""
 _PEAK_RATIO = 1.5
@@ -40,7 +43,10 @@ _PEAK_RATIO = 1.5
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """One field on the sole and how it is drawn: ``shown = SI value / factor`` in ``unit``."""
+    """One field on the sole and how it is drawn: ``shown = SI value / factor`` in ``unit``.
+
+    ``meaning`` explains a field to whom its title says little. ``stress``: none drawn is zero.
+    """
 
     name: str
     title: str
@@ -48,6 +54,8 @@ class Quantity:
     unit: str
     colours: str = "viridis"
     logarithmic: bool = False
+    meaning: str = ""
+    stress: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +73,7 @@ class Scale:
 
 
 def quantities(datasets: Sequence[xarray.Dataset]) -> tuple[Quantity, ...]:
-    """Return what all of the data sets hold on (x, y), the usual five first, heights last.
+    """Return what all of the data sets hold on (x, y), the usual four first, heights last.
 
     Titles come from ``long_name``, units from ``units``: a field of a later version is drawn
     without being known here. Truth values (inside, land, wet) are no quantities.
@@ -79,23 +87,26 @@ def quantities(datasets: Sequence[xarray.Dataset]) -> tuple[Quantity, ...]:
 def drawn(dataset: xarray.Dataset, quantity: Quantity) -> NDArray[np.float64]:
     """Return a quantity in its shown unit, (nx, ny), nan outside the sole or where there is none.
 
-    A stress below 1e-3 of its peak counts as none, the share of the fluid where nothing carries.
+    A stress below 1e-3 of its peak counts as none.
     """
     values = np.where(inside(dataset), raw(dataset, quantity.name), np.nan) / quantity.factor
     values[~np.isfinite(values)] = np.nan
-    if _is_stress(dataset, quantity.name) and np.nanmin(values, initial=0.0) >= 0.0:
+    if quantity.stress and np.nanmin(values, initial=0.0) >= 0.0:
         values[values <= _UNLOADED * np.nanmax(values, initial=0.0)] = np.nan
     return values
 
 
 def raw(dataset: xarray.Dataset, name: str) -> NDArray[np.float64]:
-    """Return a field in SI as (nx, ny); the share of the fluid is made from the pressures."""
-    if name != SHARE:
-        return np.array(dataset[name].transpose("x", "y").values, dtype=float)
-    contact, fluid = (raw(dataset, part) for part in _PARTS)
-    total = contact + fluid
-    carried = total > _UNLOADED * np.nanmax(total, initial=0.0)
-    return np.divide(fluid, total, out=np.full_like(total, np.nan), where=carried)
+    """Return a field in SI as (nx, ny)."""
+    return np.array(dataset[name].transpose("x", "y").values, dtype=float)
+
+
+def carried_load(dataset: xarray.Dataset, quantity: Quantity) -> float | None:
+    """Return the load in N of a pressure that carries one, sum p dA; None for other fields."""
+    if quantity.name not in _LOADS:
+        return None
+    pressure = np.where(inside(dataset), raw(dataset, quantity.name), 0.0)
+    return float(pressure.sum()) * spacing(dataset) ** 2
 
 
 def inside(dataset: xarray.Dataset) -> NDArray[np.bool_]:
@@ -119,8 +130,6 @@ def scale(fields: Sequence[NDArray[np.float64]], quantity: Quantity) -> Scale:
     if values.size == 0:
         return Scale(0.0, 1.0, 0.0)
     peak = float(values.max())
-    if quantity.name == SHARE:
-        return Scale(0.0, 100.0, peak)
     if quantity.logarithmic:
         positive = values[values > 0.0]
         low = float(positive.min()) if positive.size else 1.0
@@ -135,19 +144,14 @@ def scale(fields: Sequence[NDArray[np.float64]], quantity: Quantity) -> Scale:
 
 
 def _names(dataset: xarray.Dataset) -> list[str]:
-    found = [
+    return [
         str(name)
         for name, field in dataset.data_vars.items()
-        if set(field.dims) == {"x", "y"} and field.dtype.kind in "fiu"
+        if set(field.dims) == {"x", "y"} and field.dtype.kind in "fiu" and name not in _NOT_DRAWN
     ]
-    if all(part in found for part in _PARTS):
-        found.append(SHARE)
-    return found
 
 
 def _quantity(name: str, datasets: Sequence[xarray.Dataset]) -> Quantity:
-    if name == SHARE:
-        return Quantity(name, _TITLES[name], 0.01, "%", _COLOURS[name])
     attributes = datasets[0][name].attrs
     largest = 0.0
     lowest = 0.0
@@ -161,11 +165,9 @@ def _quantity(name: str, datasets: Sequence[xarray.Dataset]) -> Quantity:
     factor, unit = display_unit(largest, str(attributes.get("units", "1")))
     title = _TITLES.get(name) or _title(str(attributes.get("long_name", name)))
     colours = "RdBu_r" if lowest < 0.0 else _COLOURS.get(name, "viridis")
-    return Quantity(name, title, factor, _typeset(unit), colours, name in _LOGARITHMIC)
-
-
-def _is_stress(dataset: xarray.Dataset, name: str) -> bool:
-    return name != SHARE and dataset[name].attrs.get("units") == "Pa"
+    stress = attributes.get("units") == "Pa"
+    meaning, logarithmic = _LOADS.get(name, ""), name in _LOGARITHMIC
+    return Quantity(name, title, factor, _typeset(unit), colours, logarithmic, meaning, stress)
 
 
 def _title(text: str) -> str:

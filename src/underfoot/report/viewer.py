@@ -12,8 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from underfoot.questions.comparison import LETTERS
+
+from .drawn_sole import DrawnSole, drawn_sole
 from .html import environment
-from .quantities import HEIGHT_NAMES, Quantity, drawn, inside, quantities, raw, scale, spacing
+from .quantities import Quantity, carried_load, drawn, quantities, scale
 
 if TYPE_CHECKING:
     import xarray
@@ -21,6 +24,7 @@ if TYPE_CHECKING:
     from underfoot.compute.result import Result
 
 SCRIPTS = ("viewer_data.js", "viewer_draw.js", "viewer_page.js")
+_DIFFERENCES = "RdBu_r"
 _MOST_HISTORY_CELLS = 1_500_000
 """Cells of all instants of one history; more is thinned in time so that a page stays small."""
 
@@ -30,10 +34,20 @@ def viewer_section(results: Sequence[Result]) -> str:
 
     The page needs ``viewer_script`` once, after its sections, and the style sheets of this room.
     """
-    scene = viewer_scene(results)
+    return scene_section(viewer_scene(results))
+
+
+def scene_section(scene: dict[str, Any]) -> str:
+    """Return the viewer of a scene as a part of a page."""
     # "<" would let a name in the data end the script element
     data = json.dumps(scene, ensure_ascii=False, allow_nan=False).replace("<", "\\u003c")
-    return environment().get_template("viewer.html").render(scene=scene, data=data)
+    template = environment().get_template("viewer.html")
+    return template.render(scene=scene, data=data, letters=LETTERS, per_row=_per_row)
+
+
+def _per_row(count: int, most: int) -> int:
+    """Return how many soles stand in a row, at most ``most``, so that the rows are even."""
+    return -(-count // -(-count // most))
 
 
 def viewer_script() -> str:
@@ -55,57 +69,111 @@ def viewer_scene(results: Sequence[Result]) -> dict[str, Any]:
     histories = {q.name: [_history(dataset, q) for dataset in datasets] for q in found}
     panes = []
     for number, result in enumerate(results):
-        own = {name: values[number] for name, values in fields.items()}
-        past = {name: values[number] for name, values in histories.items()}
-        panes.append(_pane(result, own, past))
+        sole = drawn_sole(result.fields)
+        past = [(q.name, histories[q.name][number]) for q in found]
+        panes.append(
+            pane(
+                result.name,
+                sole,
+                {q.name: sole.placed(fields[q.name][number]) for q in found},
+                outline=_outline(result.fields),
+                histories={
+                    name: history([f"{shown_time(t)}" for t in times], sole.placed(frames))
+                    for name, each in past
+                    if each is not None
+                    for times, frames in (each,)
+                },
+            )
+        )
     listed = []
     for q in found:
         drawn_ones = [*fields[q.name], *(past[1] for past in histories[q.name] if past)]
-        limits = scale([np.ravel(field) for field in drawn_ones], q)
-        own = {"name": q.name, "title": q.title, "unit": q.unit, "colours": q.colours}
-        listed.append({**own, "log": q.logarithmic, **asdict(limits), "cut": limits.cut})
+        loads = [carried_load(dataset, q) for dataset in datasets]
+        listed.append(listed_quantity(q, drawn_ones, loads))
+    return scene(panes, listed)
+
+
+def scene(
+    panes: list[dict[str, Any]], listed: list[dict[str, Any]], steps: str = ""
+) -> dict[str, Any]:
+    """Return the data of a viewer: its panes, what can be coloured, and the colour tables.
+
+    ``steps`` names the slider of the histories; it is time where nothing is said.
+    """
+    names = {q["colours"] for q in listed} | ({_DIFFERENCES} if len(panes) > 1 else set())
+    colours = {name: _colour_map(name) for name in sorted(names)}
+    return {"panes": panes, "quantities": listed, "colours": colours, "steps": steps}
+
+
+def listed_quantity(
+    quantity: Quantity,
+    fields: Sequence[NDArray[np.float64]],
+    loads: Sequence[float | None] = (),
+) -> dict[str, Any]:
+    """Return a quantity for the viewer with the colour scale of all its ``fields``.
+
+    ``loads`` are those that it carries in each pane, N.
+    """
+    limits = scale([np.ravel(field) for field in fields], quantity)
     return {
-        "panes": panes,
-        "quantities": listed,
-        "colours": {q.colours: _colour_map(q.colours) for q in found},
+        "name": quantity.name,
+        "title": quantity.title,
+        "unit": quantity.unit,
+        "factor": quantity.factor,
+        "colours": quantity.colours,
+        "log": quantity.logarithmic,
+        "stress": quantity.stress,
+        "meaning": quantity.meaning,
+        "loads": [f"{load:.3g} N" for load in loads if load is not None],
+        **asdict(limits),
+        "cut": limits.cut,
     }
 
 
-def _pane(
-    result: Result,
+def pane(
+    name: str,
+    sole: DrawnSole,
     fields: dict[str, NDArray[np.float64]],
-    histories: dict[str, tuple[NDArray[np.float64], NDArray[np.float64]] | None],
+    *,
+    outline: list[list[float]],
+    histories: dict[str, dict[str, Any]],
+    heights: Sequence[NDArray[np.float64]] = (),
 ) -> dict[str, Any]:
-    dataset = result.fields
-    mask = inside(dataset)
-    rows, columns = np.nonzero(mask.any(axis=1))[0], np.nonzero(mask.any(axis=0))[0]
-    crop = (slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1))
-    x, y = dataset["x"].values[crop[0]], dataset["y"].values[crop[1]]
-    name = next((name for name in HEIGHT_NAMES if name in dataset), None)
-    height = np.zeros(mask.shape) if name is None else raw(dataset, name)
-    height = np.where(mask & np.isfinite(height), height, np.nan)
-    land = np.asarray(dataset["land"].transpose("x", "y"), bool) if "land" in dataset else mask
+    """Return one sole for the viewer with its fields on the grid of the sole.
+
+    ``heights`` are the shapes of the sole at the instants of its histories, where it changes.
+    """
+    x, y = sole.x, sole.y
+    rows, columns = sole.computed
+    ends = (rows.start, rows.stop, columns.start, columns.stop)
+    computed = [int(end) for end in ends] if sole.in_part else None
     return {
-        "name": result.name,
+        "name": name,
         "nx": int(x.size),
         "ny": int(y.size),
         "x0": float(x[0]),
         "y0": float(y[0]),
-        "spacing": spacing(dataset),
-        "plane": _plane(x, y, height[crop], land[crop]),
-        "outline": _outline(dataset),
-        "height": packed(height[crop]),
-        "land": packed(land[crop].astype(float)),
-        "fields": {name: packed(values[crop]) for name, values in fields.items()},
-        "histories": {
-            name: {
-                "time": [float(f"{t:.4g}") for t in past[0]],
-                "frames": [packed(frame[crop]) for frame in past[1]],
-            }
-            for name, past in histories.items()
-            if past is not None
-        },
+        "spacing": sole.spacing,
+        "plane": sole.plane,
+        "outline": outline,
+        "computed": computed,
+        "height": packed(sole.height),
+        "pressed": None if sole.pressed is None else packed(sole.pressed),
+        "land": packed(sole.land.astype(float)),
+        "heights": [packed(height) for height in heights],
+        "fields": {name: packed(values) for name, values in fields.items()},
+        "histories": histories,
     }
+
+
+def history(labels: Sequence[str], frames: NDArray[np.float64]) -> dict[str, Any]:
+    """Return the frames (n, nx, ny) of a field and what each instant is called."""
+    return {"labels": list(labels), "frames": [packed(frame) for frame in frames]}
+
+
+def shown_time(seconds: float) -> str:
+    """Return a time on the slider."""
+    return f"{seconds * 1e3:.3g} ms"
 
 
 def _outline(dataset: xarray.Dataset) -> list[list[float]]:
@@ -114,22 +182,6 @@ def _outline(dataset: xarray.Dataset) -> list[list[float]]:
         return []
     rim = np.stack([dataset["outline_x"].values, dataset["outline_y"].values], axis=1)
     return [[float(f"{v:.5g}") for v in point] for point in rim[np.isfinite(rim).all(axis=1)]]
-
-
-def _plane(
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    height: NDArray[np.float64],
-    land: NDArray[np.bool_],
-) -> list[float]:
-    """Return (a, b, c) of a + b x + c y through the land: heights are exaggerated from it."""
-    there = land & np.isfinite(height)
-    if np.count_nonzero(there) < 3:
-        there = np.isfinite(height)
-    along, across = np.meshgrid(x, y, indexing="ij")
-    design = np.stack([np.ones(there.sum()), along[there], across[there]], axis=1)
-    found = np.linalg.lstsq(design, height[there], rcond=None)[0]
-    return [float(value) for value in found]
 
 
 def _history(

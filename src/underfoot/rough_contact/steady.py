@@ -182,19 +182,16 @@ def steady_sliding(
     )
     with threads_limited(threads):
         exact = transform(shape, xp.float64, xp=xp, threads=threads, library=fft)
-        surface = 1.0 * exact.forward(h)
         slope, short = periodic.slope_numbers(
-            surface, asarray(qx**2 + qy**2), shape, 0.5 * math.pi / max(steps)
+            exact.forward(h), asarray(qx**2 + qy**2), shape, 0.5 * math.pi / max(steps)
         )
         if slope == 0.0:
             return _flat(h, float(pressure), float(speed), xp)
         rms = float(xp.std(h))
         unit = 0.5 * slope * abs(complex(young(np.asarray([slope / rms * abs(speed)]))[0]))
         unit /= 1.0 - poisson_ratio**2
-        surface /= rms
         state, operators, applications = solve_nested(
             (h - xp.mean(h)) / rms,
-            surface,
             replace(body, scale=unit / rms),
             pressure / unit,
             exact=exact,
@@ -204,7 +201,7 @@ def steady_sliding(
         )
         p, gap = _physical(state, unit, rms, float(pressure), xp)
         transformed = exact.forward(p)
-        on_slope = periodic.work_against_slope(transformed, surface, odd, shape) * rms
+        on_slope = periodic.work_against_slope(transformed, exact.forward(h), odd, shape)
         lost = 0.0
         if np.any(table.imag):
             lost = (

@@ -10,6 +10,7 @@ from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import positive
 
 from ._kernels.regions import carried_on
+from .cut_cells import CutCells
 
 CELLS_REFUSED = 2.0
 """A channel or lug of fewer cells is refused: its width would be wrong by half or more."""
@@ -31,6 +32,7 @@ class _Areas:
     inside: Any
     land: Mask
     spacing: float
+    cut: CutCells | None
 
     def _check_shapes(self, where: str, *names: str) -> None:
         shape = (self.x.size, self.y.size)
@@ -48,7 +50,8 @@ class _Areas:
     @property
     def land_area(self) -> float:
         """Area that can touch the floor, m^2."""
-        return float(np.count_nonzero(self.land)) * self.spacing**2
+        cells = np.count_nonzero(self.land) if self.cut is None else self.cut.area[self.land].sum()
+        return float(cells) * self.spacing**2
 
     @property
     def land_ratio(self) -> float:
@@ -74,6 +77,8 @@ class SoleMap(_Areas):
         spacing: Side of a cell, m.
         outline: (n, 2) closed polygon of the plan form in m, for drawings.
         breaches: What the grid resolves too coarsely to be trusted.
+        cut: How the outlines of lugs cut the cells; None: not at all.
+        whole: The map that this one is a part of, on the same cells; None where it is all.
     """
 
     x: Array
@@ -85,6 +90,8 @@ class SoleMap(_Areas):
     spacing: float
     outline: Array
     breaches: tuple[Breach, ...] = field(default=())
+    cut: CutCells | None = None
+    whole: "SoleMap | None" = field(default=None, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         self._check_shapes("sole", "clearance", "inside", "land", "tread_depth")
@@ -139,6 +146,7 @@ class SoleSurface(_Areas):
     name: str = "sole"
     remarks: tuple[str, ...] = field(default=())
     base: Array | None = None
+    cut: CutCells | None = None
 
     def __post_init__(self) -> None:
         positive(self.spacing, "surface.spacing")

@@ -11,13 +11,16 @@ from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import between, not_negative, positive
 
 from ._kernels.height_buffer import tilted_rows
-from ._kernels.regions import local_width, nearest_true
+from ._kernels.regions import distance_to, local_width, nearest_true
+from .cut_cells import Cells, cut_cells
 from .geometry import CELLS_REFUSED, CELLS_WANTED, SoleMap, SoleSurface, centred
 from .shape import Heel, SoleShape
 
 HALF, NARROW = 50.0, 10.0
 """Percentiles of the local width by area: what is refused, and what is listed."""
 _BISECTIONS = 48
+_FAR = 1.0
+"""m: the distance to a channel where there is none."""
 
 
 def heel_map(
@@ -60,6 +63,13 @@ def heel_map(
         x = _solved(along, target, y_map, -2 * margin * spacing - heel.length, 3 * heel.length)
     inside = heel.inward_distance(x, y_map) > 0
     height, land, tread_depth = cut_heel(heel, x, y_map, spacing)
+    stretch = np.gradient(x, axis=0)
+
+    def level_at(i: Cells, j: Cells, along: Array, across: Array) -> Array:
+        place = (x[i, j] + along * stretch[i, j], y_map[i, j] + across * spacing)
+        return channel_level(heel, *place, spacing)
+
+    cut = cut_cells(channel_level(heel, x, y_map, spacing), inside, level_at)
     land &= inside
     clearance = np.where(inside, x * sine + height * cosine, np.inf)
     if inside.any():
@@ -75,6 +85,7 @@ def heel_map(
         spacing=float(spacing),
         outline=np.column_stack([along(rim[:, 0], rim[:, 1]) - rear, rim[:, 1]]),
         breaches=tuple(breaches_of_grid),
+        cut=cut,
     )
 
 
@@ -142,6 +153,22 @@ def cut_heel(
         into = arc.channel_distance(x, y)
         height, land = _cut(height, land, into > 0, unworn + arc.depth, base)
     return height, land, lug
+
+
+def channel_level(heel: SoleShape, x: Array, y: Array, spacing: float = 0.0) -> Array:
+    """Return the distance (m) into the open channels of ``cut_heel``: 0 or less on land."""
+    depth = heel.unworn_height(x, y) - heel.land_height(x, y)
+    level = np.full(x.shape, -_FAR)
+    tread, arc = heel.tread, heel.arc_channel
+    if tread is not None and tread.depth > 0:
+        sipes = tread.sipes
+        level = np.minimum(tread.channel_distance(x, y), depth + tread.depth)
+        if sipes is not None and spacing <= sipes.width / CELLS_REFUSED * (1 + 1e-9):
+            slit = np.minimum(tread.slit_distance(x, y), depth + sipes.depth)
+            level = np.maximum(level, slit)
+    if arc is not None and arc.depth > 0:
+        level = np.maximum(level, np.minimum(arc.channel_distance(x, y), depth + arc.depth))
+    return level
 
 
 def _cut(
@@ -274,6 +301,15 @@ def surface_map(
     if covered.any():
         clearance -= clearance.min()
     land = covered & surface.land[cells]
+    origin = np.where(covered, origin, surface.x[0])
+    stretch = np.gradient(origin, axis=0)
+    into = _signed_distance(surface)
+
+    def level_at(i: Cells, j: Cells, along: Array, across: Array) -> Array:
+        return into(origin[i, j] + along * stretch[i, j], y[j] + across * spacing)
+
+    level = into(origin, np.broadcast_to(y, origin.shape))
+    level = np.where(land, np.minimum(level, 0.0), np.maximum(level, np.finfo(float).tiny))
     return SoleMap(
         x=x,
         y=y,
@@ -284,7 +320,27 @@ def surface_map(
         spacing=float(spacing),
         outline=outline,
         breaches=tuple(resolution_breaches(surface, spacing)),
+        cut=cut_cells(level, covered, level_at),
     )
+
+
+def _signed_distance(surface: SoleSurface) -> Callable[[Array, Array], Array]:
+    """Return the distance (m) into the channels of a height map at points (x, y)."""
+    from scipy.ndimage import map_coordinates
+
+    land, channel = surface.land, surface.inside & ~surface.land
+    level = np.full(land.shape, -_FAR)
+    if channel.any():
+        to_land, to_channel = distance_to(land) - 0.5, distance_to(channel) - 0.5
+        level = np.where(land, -to_channel, to_land) * surface.spacing
+
+    def at(x: Array, y: Array) -> Array:
+        place = [(x - surface.x[0]) / surface.spacing, (y - surface.y[0]) / surface.spacing]
+        return np.asarray(
+            map_coordinates(level, np.broadcast_arrays(*place), order=1, mode="nearest")
+        )
+
+    return at
 
 
 def _cells(surface: SoleSurface, x: Array, y: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -14,6 +14,7 @@ import numpy as np
 
 from underfoot.core import InputError
 from underfoot.core.arrays import Array
+from underfoot.shoe.cut_cells import CutCells
 from underfoot.shoe.geometry import SoleMap
 
 from ._kernels.elastic import (
@@ -194,8 +195,11 @@ def layered_compliance(
     height = np.where(sole.tread_depth > 0, sole.tread_depth, 0.0)
     # untreaded land beside the lugs is as stiff as a lug of the least height the grid can tell
     height = np.maximum(height, min(0.5 * sole.spacing, depth))
-    lug_give = block_compression(land, sole.spacing, height, modulus, poisson_ratio)
-    lug = partial(free_sided_symbol, **elastic, uniform=float(lug_give[land].mean()))
+    cut = sole.cut or CutCells.none(shape)
+    edges = cut.along, cut.across
+    lug_give = block_compression(land, sole.spacing, height, modulus, poisson_ratio, edges)
+    uniform = float(np.average(lug_give[land], weights=cut.area[land]))
+    lug = partial(free_sided_symbol, **elastic, uniform=uniform)
     smooth = partial(attenuation, depth=depth)
     lugs = influence(lug)
     return ConvolutionCompliance(
@@ -203,7 +207,7 @@ def layered_compliance(
         [
             (influence(lambda q: rest(q) * smooth(q)), None),
             (influence(lambda q: footprint(q) * smooth(q)), plan_weight),
-            (lugs, balanced_weights(lugs, land, lug_give)),
+            (lugs, balanced_weights(lugs, land, lug_give, cut.area)),
         ],
         lambda q: (rest(q) + footprint(q)) * smooth(q) + lug(q),
     )

@@ -89,7 +89,8 @@ class FilmBalance:
     ) -> None:
         self._problem, self._pattern, self._film = problem, pattern, film
         self._content = content
-        self._storage = problem.spacing**2 / duration
+        self._storage = problem.spacing**2 / duration * problem.cut.film_area
+        self._area = pattern.gather(problem.cut.film_area)
         self._wet = pattern.gather(film)
         self._give = pattern.gather(problem.compliance.self_compliance)
         # upwinding from the gap at the start of the step: it stays out of the Newton matrix
@@ -107,7 +108,8 @@ class FilmBalance:
     ) -> FilmRows:
         """Return the balance at a gap (nx, ny) and a fluid pressure (size,), Pa above the cavities.
 
-        Which cells are full is judged on the balance of those that were, ``full``.
+        ``fluid`` is load per area of a whole cell, as are the columns by pressure. Which cells are
+        full is judged on the balance of those that were, ``full``.
         """
         pattern, wet, give = self._pattern, self._wet, self._give
         problem = self._problem
@@ -121,8 +123,10 @@ class FilmBalance:
             speed=0.5 * problem.wall_speed,
             storage=self._storage,
             upwinding=self._lean,
+            edges=(problem.cut.along[:-1], problem.cut.across[:, :-1]),
         )
         by_pressure = pattern.rows_of(operator.by_pressure)
+        by_pressure /= pattern.neighbours_of(self._area, 1.0)
         by_fraction = pattern.rows_of(operator.by_fraction)
 
         before = full
@@ -156,7 +160,8 @@ class FilmBalance:
     ) -> tuple[Array, Array, Array, Cavity]:
         """Return liquid fraction, imbalance, its derivative by gap and the cavity of a set."""
         pattern, floor = self._pattern, self._problem.settings.cavity_pressure
-        pressure = pattern.scatter(np.where(full, fluid + floor, np.where(self._wet, floor, 0.0)))
+        above = fluid / self._area
+        pressure = pattern.scatter(np.where(full, above + floor, np.where(self._wet, floor, 0.0)))
         cavity = Cavity(operator, self._film & (pattern.scatter(full.astype(float)) == 0))
         fraction = operator.cavity_fraction(pressure, cavity, self._content)
         net = operator.imbalance(pressure, np.minimum(fraction, 1.0), self._content)

@@ -123,14 +123,15 @@ def lug_edges(sole: SoleMap, edge_radius: float, *, forward: bool = True) -> Lug
     ahead = np.roll(numbers, step, axis=0)  # the cell met first by the fluid
     leading = (numbers > 0) & (ahead != numbers)
     from_groove = leading & np.roll(groove, step, axis=0)
-    cells = _sums(numbers, count, np.ones(numbers.shape))
+    area = np.ones(numbers.shape) if sole.cut is None else sole.cut.area
+    cells = _sums(numbers, count, area)
     faces = np.maximum(_sums(numbers, count, leading), 1)
     length = cells / faces * sole.spacing
     return LugEdges(
         numbers,
         length,
         cells * sole.spacing**2 / length,
-        _sums(numbers, count, sole.tread_depth) / cells,
+        _sums(numbers, count, sole.tread_depth * area) / cells,
         np.full(count, max(edge_radius, NARROWEST)),
         _sums(numbers, count, from_groove) / faces,
     )

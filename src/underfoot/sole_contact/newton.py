@@ -80,6 +80,8 @@ def implicit_step(
     size = pattern.size
     wet = pattern.gather(film)
     floor = np.where(wet, problem.settings.cavity_pressure, 0.0)
+    floor = floor * pattern.gather(problem.cut.film_area)
+    land = pattern.gather(problem.cut.area)
     full = np.zeros(size, dtype=bool)
     balance = None
     if problem.viscosity is not None:
@@ -98,8 +100,8 @@ def implicit_step(
     for iteration in range(problem.settings.most_newton + 1):
         local_gap = pattern.gather(gap)
         total = pattern.gather(pressure)
-        asperity = problem.law.pressure(local_gap)
-        stiffness = problem.law.stiffness(local_gap)
+        asperity = land * problem.law.pressure(local_gap)
+        stiffness = land * problem.law.stiffness(local_gap)
         above = total - asperity - floor
         rows, residual, imbalance = None, above, 0.0
         if balance is not None:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from underfoot.core.arrays import Array, Mask
 from underfoot.film import Conductance
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
+from underfoot.shoe.cut_cells import CutCells
 
 from .compliance import Compliance
 from .sole_state import SolverSettings
@@ -12,7 +13,11 @@ from .sole_state import SolverSettings
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """What does not change during a run; SI, arrays (nx, ny)."""
+    """What does not change during a run; SI, arrays (nx, ny).
+
+    Pressures of cells are loads per area of a whole cell: where an outline cuts the cell, that of
+    the contact is ``cut.area`` times the pressure there, that of the fluid ``cut.film_area`` times.
+    """
 
     clearance: Array
     spacing: float
@@ -23,6 +28,7 @@ class Problem:
     largest_gap: float
     decay: float  # m, gap over which the asperity pressure falls by about e
     settings: SolverSettings
+    cut: CutCells
 
     def gap(self, pressure: Array, approach: float) -> Array:
         """Return the mean gap of a pressure field and an approach."""

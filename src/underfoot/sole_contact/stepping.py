@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from underfoot.core import ConvergenceError, InputError, Progress, Status, silent
 from underfoot.core.arrays import Array
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
+from underfoot.shoe.cut_cells import CutCells
 from underfoot.shoe.geometry import SoleMap
 
 from ._solver_checks import check_demand, check_setup
@@ -116,6 +117,7 @@ class SlidingSole:
             largest_gap=min(4 * settings.pool_depth, 5e-3),
             decay=decay,
             settings=settings,
+            cut=sole.cut or CutCells.none(clearance.shape),
         )
         lift = settings.start_film if viscosity is not None else touch
         blank = np.zeros_like(clearance)

@@ -32,7 +32,7 @@ from underfoot.case import Case
 from underfoot.compute.run import run
 from underfoot.core import UnderfootError, content_hash
 from underfoot.core.arrays import Array
-from underfoot.questions.outcomes import program_hash
+from underfoot.core.provenance import program_hash
 
 from .figure import PRINTED, Figure, Panel, line, points
 from .runner import Computed, Options, Table, kept, part

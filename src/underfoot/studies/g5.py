@@ -16,7 +16,7 @@ from underfoot.case import Case
 from underfoot.compute.slips import slips
 from underfoot.core import content_hash
 from underfoot.core.catalogue import Catalogue
-from underfoot.questions.outcomes import program_hash
+from underfoot.core.provenance import program_hash
 from underfoot.slip.dynamics import ReducedSole, SlipStudy
 from underfoot.trials.statistics.linear import all_subsets
 

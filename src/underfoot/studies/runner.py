@@ -18,7 +18,7 @@ from underfoot.core.pool import in_processes
 from underfoot.core.presentation import Presentable
 from underfoot.core.presentation import Table as ShownTable
 from underfoot.core.progress import part as part
-from underfoot.questions.outcomes import program_hash
+from underfoot.core.provenance import program_hash
 
 from .figure import Figure
 from .statements import STUDIES, Study, study

@@ -19,19 +19,20 @@ function halfFloat(bits) {
 
 // Each cell is a quad of its own. Corners are shared in height with neighbours on the same level
 // (both land or both channel, slope below 2); where they are not, an upright wall joins them. So
-// lugs and channels keep their true, sharp shape. `kind`: 0 coloured cell, 1 wall, 2 side.
+// lugs and channels keep their true, sharp shape. `kind`: 0 coloured cell, 1 wall, 2 side. A point
+// is x, y, height, height under load, place among the cells (2), kind.
 function soleMesh(pane) {
-  const { nx, ny, spacing: d, height, land, x0, y0, plane } = pane;
+  const { nx, ny, spacing: d, height, land, x0, y0, plane } = pane, pressed = pane.pressed || height;
   const known = (i, j) => i >= 0 && j >= 0 && i < nx && j < ny && !Number.isNaN(height[i * ny + j]);
   const level = (i, j, k) => known(i, j) && land[i * ny + j] === land[k]
     && Math.abs(height[i * ny + j] - height[k]) < 2 * d;
   const corner = (i, j, ci, cj) => {
     const own = i * ny + j;
-    let sum = 0, count = 0;
+    let sum = 0, low = 0, count = 0;
     for (let a = i + ci - 1; a <= i + ci; a++) for (let b = j + cj - 1; b <= j + cj; b++) {
-      if (level(a, b, own)) { sum += height[a * ny + b]; count++; }
+      if (level(a, b, own)) { sum += height[a * ny + b]; low += pressed[a * ny + b]; count++; }
     }
-    return sum / count;
+    return [sum / count, low / count];
   };
   const flat = (x, y) => plane[0] + plane[1] * x + plane[2] * y;
   let top = 0;
@@ -39,20 +40,21 @@ function soleMesh(pane) {
     top = Math.max(top, height[k] - flat(x0 + Math.floor(k / ny) * d, y0 + (k % ny) * d));
   }
   top += 0.004;
-  const corners = new Float32Array(nx * ny * 4).fill(NaN);
+  const corners = new Float32Array(nx * ny * 8).fill(NaN); // of each cell: 4 corners, 2 heights
   for (let i = 0; i < nx; i++) for (let j = 0; j < ny; j++) if (known(i, j)) {
-    for (let c = 0; c < 4; c++) corners[(i * ny + j) * 4 + c] = corner(i, j, c >> 1, c & 1);
+    for (let c = 0; c < 4; c++) corners.set(corner(i, j, c >> 1, c & 1), (i * ny + j) * 8 + c * 2);
   }
+  const both = (i, j, c) => corners.subarray((i * ny + j) * 8 + c * 2, (i * ny + j) * 8 + c * 2 + 2);
   const points = [], faces = [], rim = onRim(pane, known);
   const point = (i, j, ci, cj, z, kind) => {
     const inset = kind ? 0.5 : 0.002;
-    points.push(...rim(i + ci, j + cj), z,
+    points.push(...rim(i + ci, j + cj), z[0], z[1],
       i + (kind ? 0.5 : ci ? 1 - inset : inset), j + (kind ? 0.5 : cj ? 1 - inset : inset), kind);
-    return points.length / 6 - 1;
+    return points.length / 7 - 1;
   };
   const quad = (a, b, c, e) => faces.push(a, b, c, b, e, c);
   for (let i = 0; i < nx; i++) for (let j = 0; j < ny; j++) if (known(i, j)) {
-    const z = corners.subarray((i * ny + j) * 4, (i * ny + j) * 4 + 4);
+    const z = [0, 1, 2, 3].map((c) => both(i, j, c));
     quad(point(i, j, 0, 0, z[0], 0), point(i, j, 0, 1, z[1], 0),
       point(i, j, 1, 0, z[2], 0), point(i, j, 1, 1, z[3], 0));
     for (const [di, dj, p, q] of [[1, 0, [1, 0], [1, 1]], [0, 1, [0, 1], [1, 1]],
@@ -61,13 +63,12 @@ function soleMesh(pane) {
       let other, kind = 1;
       if (known(a, b)) {
         if (di < 0 || dj < 0) continue; // the neighbour has drawn it
-        const at = (a * ny + b) * 4;
-        other = [corners[at + (p[0] - di) * 2 + p[1] - dj], corners[at + (q[0] - di) * 2 + q[1] - dj]];
-        if (Math.abs(other[0] - zp) + Math.abs(other[1] - zq) < 1e-7) continue;
+        other = [p, q].map((c) => both(a, b, (c[0] - di) * 2 + c[1] - dj));
+        if (Math.abs(other[0][0] - zp[0]) + Math.abs(other[1][0] - zq[0]) < 1e-7) continue;
       } else {
         kind = 2;
         const up = (c) => flat(x0 + (i + c[0] - 0.5) * d, y0 + (j + c[1] - 0.5) * d) + top;
-        other = [up(p), up(q)];
+        other = [p, q].map((c) => [up(c), up(c)]);
       }
       quad(point(i, j, ...p, zp, kind), point(i, j, ...q, zq, kind),
         point(i, j, ...p, other[0], kind), point(i, j, ...q, other[1], kind));
@@ -105,7 +106,7 @@ function gridLines(pane, top) {
   const low = (v) => Math.floor(v / step) * step, high = (v) => Math.ceil(v / step) * step;
   const xs = [low(x0), high(x0 + (nx - 1) * d)], ys = [low(y0), high(y0 + (ny - 1) * d)];
   const lift = (x, y, up) => [x, y, plane[0] + plane[1] * x + plane[2] * y + up];
-  const add = (to, x, y, up = top) => to.push(...lift(x, y, up), 0, 0, 3);
+  const add = (to, x, y, up = top) => { const at = lift(x, y, up); to.push(...at, at[2], 0, 0, 3); };
   for (let x = xs[0]; x < xs[1] + 1e-9; x += step) { add(lines, x, ys[0]); add(lines, x, ys[1]); }
   for (let y = ys[0]; y < ys[1] + 1e-9; y += step) { add(lines, xs[0], y); add(lines, xs[1], y); }
   const size = 0.04 * (xs[1] - xs[0]) + 0.002, from = xs[1] + 0.3 * size, tip = from + 2.4 * size, mid = (ys[0] + ys[1]) / 2;

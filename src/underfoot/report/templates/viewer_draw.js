@@ -1,12 +1,12 @@
 // One canvas: the sole drawn by WebGL 2, seen by a camera that turns about a point.
 
 const VERTEX = `#version 300 es
-layout(location = 0) in vec3 place; layout(location = 1) in vec2 cell; layout(location = 2) in float kind;
-uniform mat4 camera; uniform vec3 plane; uniform float stretch;
+layout(location = 0) in vec4 place; layout(location = 1) in vec2 cell; layout(location = 2) in float kind;
+uniform mat4 camera; uniform vec3 plane; uniform float stretch, load;
 out vec3 world; out vec2 at; flat out float sort;
 void main() {
   float base = plane.x + plane.y * place.x + plane.z * place.y;
-  world = vec3(place.xy, base + stretch * (place.z - base));
+  world = vec3(place.xy, base + stretch * (mix(place.z, place.w, load) - base));
   at = cell; sort = kind; gl_Position = camera * vec4(world, 1.0);
 }`;
 
@@ -14,7 +14,7 @@ const FRAGMENT = `#version 300 es
 precision highp float; precision highp sampler2D;
 in vec3 world; in vec2 at; flat in float sort; out vec4 colour;
 uniform sampler2D field, form, colours; uniform vec3 light, rubber, line; uniform vec2 limits;
-uniform bool logarithmic, picking; uniform float spacing;
+uniform vec4 computed; uniform bool logarithmic, picking; uniform float spacing;
 const float NONE = -1e29;
 void main() {
   ivec2 own = ivec2(at);
@@ -27,7 +27,8 @@ void main() {
   if (sort > 2.5) { colour = vec4(line, 1.0); return; }
   vec3 normal = normalize(cross(dFdx(world), dFdy(world)));
   float shade = abs(dot(normal, light));
-  vec3 base = rubber * (sort > 1.5 ? 0.8 : sort > 0.5 ? 0.7 : 1.0);
+  bool solved = all(greaterThanEqual(at, computed.xy)) && all(lessThan(at, computed.zw));
+  vec3 base = mix(line, rubber, solved ? 1.0 : 0.4) * (sort > 1.5 ? 0.8 : sort > 0.5 ? 0.7 : 1.0);
   ivec2 last = textureSize(field, 0).yx - 1;
   vec2 mine = texelFetch(form, own.yx, 0).rg;
   float value = texelFetch(field, own.yx, 0).r;
@@ -97,23 +98,29 @@ class Drawing {
     this.program = program(gl);
     gl.useProgram(this.program);
     this.place = {};
-    for (const name of ["camera", "plane", "stretch", "field", "form", "colours", "light", "rubber", "line", "limits", "logarithmic", "picking", "spacing"]) {
+    for (const name of ["camera", "plane", "stretch", "field", "form", "colours", "load", "computed", "light", "rubber", "line", "limits", "logarithmic", "picking", "spacing"]) {
       this.place[name] = gl.getUniformLocation(this.program, name);
     }
-    const mesh = soleMesh(pane);
-    this.count = mesh.faces.length;
-    this.top = mesh.top;
-    this.sole = this.buffer(mesh.points, mesh.faces);
-    const { lines, arrow, tip, far } = gridLines(pane, mesh.top);
-    this.lineCount = lines.length / 6; this.arrowCount = arrow.length / 6; this.arrow = tip; this.far = far;
+    this.shape();
+    const { lines, arrow, tip, far } = gridLines(pane, this.top);
+    this.lineCount = lines.length / 7; this.arrowCount = arrow.length / 7; this.arrow = tip; this.far = far;
     this.grid = this.buffer(lines, null);
     this.pointer = this.buffer(arrow, null);
-    const form = new Float32Array(pane.nx * pane.ny * 2);
-    pane.height.forEach((h, k) => { form[2 * k] = Number.isNaN(h) ? -1e30 : h; form[2 * k + 1] = pane.land[k]; });
-    this.form = this.texture(1, gl.RG32F, gl.RG, gl.FLOAT, form, pane.ny, pane.nx);
     this.tables = {};
     for (const [name, bytes] of Object.entries(colours)) this.tables[name] = this.texture(2, gl.RGB8, gl.RGB, gl.UNSIGNED_BYTE, bytes, 256, 1);
     gl.enable(gl.DEPTH_TEST);
+  }
+
+  // Take the shape of the sole from its pane, again where it has worn.
+  shape() {
+    const { gl, pane } = this, mesh = soleMesh(pane);
+    if (this.sole) gl.deleteVertexArray(this.sole);
+    this.count = mesh.faces.length;
+    this.top = mesh.top;
+    this.sole = this.buffer(mesh.points, mesh.faces);
+    const form = new Float32Array(pane.nx * pane.ny * 2);
+    pane.height.forEach((h, k) => { form[2 * k] = Number.isNaN(h) ? -1e30 : h; form[2 * k + 1] = pane.land[k]; });
+    this.form = this.texture(1, gl.RG32F, gl.RG, gl.FLOAT, form, pane.ny, pane.nx, this.form);
   }
 
   buffer(points, faces) {
@@ -121,9 +128,9 @@ class Drawing {
     gl.bindVertexArray(made);
     gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
     gl.bufferData(gl.ARRAY_BUFFER, points, gl.STATIC_DRAW);
-    [[3, 0], [2, 12], [1, 20]].forEach(([size, start], k) => {
+    [[4, 0], [2, 16], [1, 24]].forEach(([size, start], k) => {
       gl.enableVertexAttribArray(k);
-      gl.vertexAttribPointer(k, size, gl.FLOAT, false, 24, start);
+      gl.vertexAttribPointer(k, size, gl.FLOAT, false, 28, start);
     });
     if (faces) {
       gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
@@ -165,7 +172,10 @@ class Drawing {
     gl.uniformMatrix4fv(at.camera, false, this.matrix);
     gl.uniform3fv(at.plane, this.pane.plane);
     gl.uniform1f(at.stretch, view.stretch);
+    gl.uniform1f(at.load, view.load);
     gl.uniform1f(at.spacing, this.pane.spacing);
+    const [i0, i1, j0, j1] = this.pane.computed || [-1, 1e6, -1, 1e6];
+    gl.uniform4f(at.computed, i0, j0, i1, j1);
     gl.uniform3fv(at.light, [0, 1, 2].map((k) => (-f[k] + 0.45 * u[k] - 0.35 * r[k]) / 1.152));
     gl.uniform3fv(at.rubber, theme.rubber);
     gl.uniform3fv(at.line, theme.line);
@@ -215,7 +225,8 @@ class Drawing {
   }
 
   placeOfCell(cell, view) {
-    const { ny, x0, y0, spacing: d, height, plane } = this.pane;
+    const { ny, x0, y0, spacing: d, plane } = this.pane;
+    const height = (view.load && this.pane.pressed) || this.pane.height;
     const x = x0 + Math.floor(cell / ny) * d, y = y0 + (cell % ny) * d, base = plane[0] + plane[1] * x + plane[2] * y;
     return this.placeOf([x, y, base + view.stretch * (height[cell] - base)]);
   }

@@ -1,5 +1,7 @@
 // Controls: quantity, view, height, time, theme; mouse, touch and keyboard; values of a point.
 
+const LETTERS = "ABCDEFGHIJKL";
+
 async function startViewer(root) {
   const scene = JSON.parse(root.querySelector("script[type='application/json']").textContent);
   const find = (name) => root.querySelector(`[data-part="${name}"]`);
@@ -9,22 +11,24 @@ async function startViewer(root) {
     const count = pane.nx * pane.ny;
     pane.height = await unpack(pane.height, count);
     pane.land = await unpack(pane.land, count);
+    if (pane.pressed) pane.pressed = await unpack(pane.pressed, count);
     pane.ready = {};
     for (const [name, stored] of Object.entries(pane.fields)) pane.ready[name] = await unpack(stored, count);
   }
   const stages = [...root.querySelectorAll(".stage")];
   const drawings = stages.map((stage, k) => new Drawing(stage.querySelector("canvas"), scene.panes[k], colours));
-  const state = { quantity: scene.quantities[0], frame: -1, cell: -1, pane: 0 };
-  const view = { opening: 0.5, stretch: 1 };
-  const views = { below: [0, 0], oblique: [-0.5, 0.75], side: [-Math.PI / 2, 1.45] };
-  let waiting = false;
+  const state = { quantity: scene.quantities[0], frame: scene.steps ? 0 : -1, cell: -1, pane: 0, difference: false };
+  const view = { opening: 0.5, stretch: 1, load: 0 };
+  const views = { below: [0, 0], oblique: [-0.5, 0.75], part: [-0.5, 0.75, true], side: [-Math.PI / 2, 1.45] };
+  let waiting = false, printing = 0;
 
-  // Corners of the box about all soles and their grids, in m.
-  function corners() {
+  // Corners of the box about all soles and their grids, in m, or about what was computed of them.
+  function corners(part) {
     const found = [];
     scene.panes.forEach((p, k) => {
       const q = p.plane, ends = [p.y0 - 0.003, p.y0 + p.ny * p.spacing + 0.003], top = drawings[k].top;
-      for (const x of [p.x0 - 0.003, drawings[k].far]) for (const y of ends) for (const z of [0, top]) {
+      const along = part && p.computed ? p.computed.slice(0, 2).map((i) => p.x0 + i * p.spacing) : [p.x0 - 0.003, drawings[k].far];
+      for (const x of along) for (const y of ends) for (const z of [0, top]) {
         found.push([x, y, q[0] + q[1] * x + q[2] * y + z]);
       }
     });
@@ -32,8 +36,8 @@ async function startViewer(root) {
   }
 
   // Where to stand so that everything just fits, seen from a side.
-  function fit(turn, tilt) {
-    const points = corners(), { canvas } = drawings[0], lens = Math.tan(view.opening / 2) * 0.96;
+  function fit(turn, tilt, part) {
+    const points = corners(part), { canvas } = drawings[0], lens = Math.tan(view.opening / 2) * 0.96;
     const { right, up, forward } = axes({ turn, tilt }), dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     const wide = lens * canvas.clientWidth / Math.max(canvas.clientHeight, 1);
     let target = [0, 1, 2].map((k) => points.reduce((sum, p) => sum + p[k], 0) / points.length), distance = 0;
@@ -79,27 +83,60 @@ async function startViewer(root) {
         if (there) put(mark, drawing.placeOfCell(cellIn(k), view));
         put(stages[k].querySelector(".toe"), drawing.placeOf(drawing.arrow));
       });
+      // a canvas of WebGL prints empty: pictures of what is seen lie ready for the printer
+      clearTimeout(printing);
+      printing = setTimeout(keepForPrint, 400);
     });
   }
 
   // The picked place in another pane, by its coordinates.
   function cellIn(k) {
-    const from = scene.panes[state.pane], to = scene.panes[k];
-    if (k === state.pane) return state.cell;
-    const x = from.x0 + Math.floor(state.cell / from.ny) * from.spacing, y = from.y0 + (state.cell % from.ny) * from.spacing;
+    return k === state.pane ? state.cell : sameCell(scene.panes[state.pane], state.cell, scene.panes[k]);
+  }
+  function sameCell(from, cell, to) {
+    const x = from.x0 + Math.floor(cell / from.ny) * from.spacing, y = from.y0 + (cell % from.ny) * from.spacing;
     const i = Math.round((x - to.x0) / to.spacing), j = Math.round((y - to.y0) / to.spacing);
     return i >= 0 && j >= 0 && i < to.nx && j < to.ny ? i * to.ny + j : -1;
   }
 
+  // The values of a pane at the instant shown; its shape follows where it wears.
+  async function valuesNow(drawing, q) {
+    const { pane } = drawing, past = pane.histories[q.name], count = pane.nx * pane.ny;
+    if (!past || state.frame < 0) return pane.ready[q.name];
+    const frame = Math.min(state.frame, past.frames.length - 1);
+    if (pane.heights.length && pane.frame !== frame) {
+      pane.frame = frame;
+      pane.height = await unpack(pane.heights[frame], count);
+      drawing.shape();
+    }
+    return unpack(past.frames[frame], count);
+  }
+
+  // What each sole has more than the first (or, on a logarithmic scale, how many times as much).
+  function differences(fields, q) {
+    const first = scene.panes[0], part = (v, there) => (Number.isNaN(v) && q.stress && there ? 0 : v);
+    const made = fields.map((values, k) => values.map((value, cell) => {
+      const pane = scene.panes[k], at = k ? sameCell(pane, cell, first) : -1;
+      if (at < 0) return NaN;
+      const a = part(fields[0][at], !Number.isNaN(first.height[at])), b = part(value, !Number.isNaN(pane.height[cell]));
+      return q.log ? (a > 0 && b > 0 ? b / a : NaN) : a === 0 && b === 0 ? NaN : b - a;
+    }));
+    const sizes = made.flatMap((values) => [...values].filter((v) => v === v).map((v) => Math.abs(q.log ? Math.log(v) : v))).sort((a, b) => a - b);
+    const most = sizes[sizes.length - 1] || 0, usual = sizes[Math.floor(0.995 * (sizes.length - 1))] || 0;
+    const reach = Math.max(usual || most, q.log ? 0.05 : 1e-12 * q.high), end = q.log ? Math.exp(reach) : reach;
+    const title = `${q.title}: ${q.log ? "times that of A" : "more than A (red) or less (blue)"}`;
+    return [made, { ...q, title, unit: q.log ? "" : q.unit, colours: "RdBu_r", low: q.log ? 1 / end : -end, high: end,
+      peak: q.log ? Math.exp(most) : most, cut: most > 1.001 * reach, loads: [], meaning: "" }];
+  }
+
   async function choose(quantity) {
     state.quantity = quantity;
-    for (const drawing of drawings) {
-      const past = drawing.pane.histories[quantity.name], frame = past && state.frame >= 0 ? past.frames[Math.min(state.frame, past.frames.length - 1)] : null;
-      const values = frame ? await unpack(frame, drawing.pane.nx * drawing.pane.ny) : drawing.pane.ready[quantity.name];
-      if (state.quantity !== quantity) return;
-      drawing.show(values, quantity);
-    }
-    legend(quantity);
+    const fields = await Promise.all(drawings.map((drawing) => valuesNow(drawing, quantity)));
+    if (state.quantity !== quantity) return;
+    drawings.forEach((drawing, k) => { drawing.own = fields[k]; });
+    const [shown, scale] = state.difference ? differences(fields, quantity) : [fields, quantity];
+    drawings.forEach((drawing, k) => drawing.show(shown[k], scale));
+    legend(scale);
     timeline(quantity);
     tell();
     redraw();
@@ -115,9 +152,14 @@ async function startViewer(root) {
       tick.style.left = `${100 * at}%`; tick.textContent = text;
       return tick;
     }));
-    const none = scene.panes.some((pane) => pane.ready[q.name].some((v, k) => Number.isNaN(v) && !Number.isNaN(pane.height[k])));
-    const unit = q.unit ? ` ${q.unit}` : "";
-    find("bar-note").textContent = [none ? "Plain rubber: none." : "", q.cut ? `A few cells are above the scale, up to ${shortNumber(q.peak)}${unit}.` : ""].join(" ").trim();
+    const none = drawings.some(({ values, pane }) => values.some((v, k) => Number.isNaN(v) && !Number.isNaN(pane.height[k])));
+    const unit = q.unit ? ` ${q.unit}` : "", letter = (k) => (q.loads.length > 1 ? `${LETTERS[k]} ` : "");
+    find("bar-note").textContent = [
+      q.meaning && `${q.meaning[0].toUpperCase()}${q.meaning.slice(1)}, ${q.loads.map((load, k) => letter(k) + load).join(", ")} in all.`,
+      none && (state.difference ? "Plain rubber: none in either." : "Plain rubber: none."),
+      scene.panes.some((pane) => pane.computed) && "Pale: outside the part that was computed.",
+      q.cut && `A few cells are above the scale, up to ${shortNumber(q.peak)}${unit}.`,
+    ].filter(Boolean).join(" ");
     drawings.forEach((d) => d.canvas.setAttribute("aria-label", `Sole of ${d.pane.name} from below, coloured by ${q.title}. Arrow keys turn it, Enter shows the values at its centre.`));
   }
 
@@ -128,7 +170,7 @@ async function startViewer(root) {
     slider.max = past.frames.length - 1;
     const at = state.frame < 0 ? past.frames.length - 1 : Math.min(state.frame, past.frames.length - 1);
     slider.value = at;
-    find("time-value").textContent = `${shortNumber(past.time[at] * 1e3)} ms`;
+    find("time-value").textContent = past.labels[at];
   }
 
   function tell() {
@@ -146,22 +188,46 @@ async function startViewer(root) {
       });
       return made;
     };
-    const rows = scene.panes.length > 1 ? [row("th", ["", ...scene.panes.map((_, k) => "ABCDEFGH"[k])])] : [];
+    const rows = scene.panes.length > 1 ? [row("th", ["", ...scene.panes.map((_, k) => LETTERS[k])])] : [];
     for (const q of scene.quantities) {
       rows.push(row("td", [q.title, ...drawings.map((drawing, k) => {
-        const cell = cellIn(k), values = q === state.quantity ? drawing.values : drawing.pane.ready[q.name];
-        const v = cell < 0 || Number.isNaN(drawing.pane.height[cell]) ? null : values[cell];
-        return v === null ? "no sole" : Number.isNaN(v) ? "none" : `${shortNumber(v)} ${q.unit}`.trim();
+        const cell = cellIn(k), values = q === state.quantity ? drawing.own : drawing.pane.ready[q.name];
+        return valueText(drawing.pane, cell, values, q);
+      })]));
+    }
+    const [rubber, fluid] = ["contact_pressure", "fluid_pressure"].map((name) => scene.quantities.find((q) => q.name === name));
+    if (rubber && fluid) {
+      rows.push(row("td", ["Share of the load on the fluid", ...scene.panes.map((pane, k) => {
+        const [p, f] = [rubber, fluid].map((q) => (pane.ready[q.name][cellIn(k)] || 0) * q.factor);
+        return p + f > 0 ? `${shortNumber(100 * f / (p + f))} %` : "no load";
       })]));
     }
     find("values-place").textContent = `At x ${x.toFixed(1)} mm, y ${y.toFixed(1)} mm`;
     find("values-table").replaceChildren(...rows);
   }
 
+  function valueText(pane, cell, values, q) {
+    if (cell < 0 || Number.isNaN(pane.height[cell])) return "no sole";
+    const [i, j] = [Math.floor(cell / pane.ny), cell % pane.ny], part = pane.computed;
+    if (part && (i < part[0] || i >= part[1] || j < part[2] || j >= part[3])) return "not computed";
+    return Number.isNaN(values[cell]) ? "none" : `${shortNumber(values[cell])} ${q.unit}`.trim();
+  }
+
   function pick(k, x, y) {
+    state.pane = k; state.cell = drawings[k].cellAt(x, y, view, theme());
+    tell(); point(k, x, y); redraw();
+  }
+
+  // The value under the pointer, beside it.
+  function point(k, x, y) {
+    const tip = stages[k].querySelector(".tip"), { canvas, pane, values, quantity } = drawings[k];
     const cell = drawings[k].cellAt(x, y, view, theme());
-    state.pane = k; state.cell = cell;
-    tell(); redraw();
+    drawings[k].draw(view, theme());
+    tip.hidden = cell < 0;
+    if (cell < 0) return;
+    tip.textContent = valueText(pane, cell, values, quantity);
+    const left = x > canvas.clientWidth - 130;
+    tip.style.transform = `translate(${x + (left ? -12 : 12)}px, ${Math.max(y - 32, 0)}px) translateX(${left ? "-100%" : "0"})`;
   }
 
   function orbit(dx, dy) {
@@ -180,15 +246,23 @@ async function startViewer(root) {
 
   stages.forEach((stage, k) => {
     const canvas = stage.querySelector("canvas"), pointers = new Map();
-    let moved = 0;
+    let moved = 0, hovering = false;
+    canvas.addEventListener("pointerleave", (e) => { if (e.pointerType === "mouse") stage.querySelector(".tip").hidden = true; });
     canvas.addEventListener("pointerdown", (e) => {
       canvas.setPointerCapture(e.pointerId);
       pointers.set(e.pointerId, [e.clientX, e.clientY]);
       if (pointers.size === 1) moved = 0;
     });
     canvas.addEventListener("pointermove", (e) => {
-      const before = pointers.get(e.pointerId);
-      if (!before) return;
+      const before = pointers.get(e.pointerId), box = canvas.getBoundingClientRect();
+      if (!before) {
+        if (e.pointerType === "mouse" && !hovering) {
+          hovering = true;
+          requestAnimationFrame(() => { hovering = false; point(k, e.clientX - box.left, e.clientY - box.top); });
+        }
+        return;
+      }
+      stage.querySelector(".tip").hidden = true;
       const dx = e.clientX - before[0], dy = e.clientY - before[1];
       moved += Math.abs(dx) + Math.abs(dy);
       if (pointers.size === 2) {
@@ -242,13 +316,57 @@ async function startViewer(root) {
     redraw();
   });
   find("time").addEventListener("input", (e) => { state.frame = Number(e.target.value); choose(state.quantity); });
-  // a canvas of WebGL prints empty: it is drawn once more and copied at once
-  const snapshot = (drawing) => { drawing.draw(view, theme()); return drawing.canvas.toDataURL("image/png"); };
-  find("save").addEventListener("click", () => drawings.forEach((drawing) => {
+  const pressed = find("load"), difference = find("difference");
+  pressed.hidden = !scene.panes.some((pane) => pane.pressed);
+  pressed.addEventListener("click", () => {
+    view.load = 1 - view.load;
+    pressed.setAttribute("aria-pressed", String(view.load === 1));
+    redraw();
+  });
+  if (difference) difference.addEventListener("click", () => {
+    state.difference = !state.difference;
+    difference.setAttribute("aria-pressed", String(state.difference));
+    choose(state.quantity);
+  });
+  const snapshot = (drawing) => { drawing.draw(view, theme()); return drawing.canvas; };
+  function keepForPrint() {
+    stages.forEach((stage, k) => { stage.querySelector("img.print").src = snapshot(drawings[k]).toDataURL("image/png"); });
+  }
+
+  // What is seen with its title and colour bar, as one picture of the page's width.
+  function picture() {
+    const ratio = drawings[0].canvas.width / drawings[0].canvas.clientWidth, head = 76;
+    const frame = root.querySelector(".stages").getBoundingClientRect();
+    const made = document.createElement("canvas"), pen = made.getContext("2d"), style = getComputedStyle(root);
+    made.width = frame.width * ratio; made.height = (frame.height + head) * ratio;
+    pen.scale(ratio, ratio);
+    pen.fillStyle = style.getPropertyValue("--paper") || "#fff"; pen.fillRect(0, 0, frame.width, frame.height + head);
+    pen.fillStyle = style.color; pen.font = `600 15px ${style.fontFamily}`;
+    pen.fillText(document.title, 12, 22);
+    pen.font = `13px ${style.fontFamily}`;
+    const q = drawings[0].quantity, table = colours[q.colours], wide = Math.min(420, frame.width - 24);
+    pen.fillText(find("bar-title").textContent, 12, 40);
+    for (let k = 0; k < wide; k++) {
+      const c = 3 * Math.floor(255 * k / wide);
+      pen.fillStyle = `rgb(${table[c]},${table[c + 1]},${table[c + 2]})`; pen.fillRect(12 + k, 46, 1.5, 10);
+    }
+    pen.fillStyle = style.color; pen.textAlign = "center";
+    for (const [at, text] of ticks(q)) pen.fillText(text, 12 + at * wide, 71);
+    pen.textAlign = "left";
+    drawings.forEach((drawing, k) => {
+      const box = stages[k].getBoundingClientRect(), x = box.left - frame.left, y = box.top - frame.top + head;
+      pen.drawImage(snapshot(drawing), x, y, box.width, box.height);
+      if (drawings.length > 1) pen.fillText(`${LETTERS[k]} ${drawing.pane.name}`, x + 10, y + 18);
+    });
+    return made;
+  }
+  find("save").addEventListener("click", () => {
     const link = document.createElement("a");
-    link.href = snapshot(drawing); link.download = `${drawing.pane.name}, ${state.quantity.title}.png`; link.click();
-  }));
-  addEventListener("beforeprint", () => stages.forEach((stage, k) => { stage.querySelector("img.print").src = snapshot(drawings[k]); }));
+    link.href = picture().toDataURL("image/png");
+    link.download = `${document.title}, ${drawings[0].quantity.title}.png`.replace(/[\\/:*?"<>|]/g, "");
+    link.click();
+  });
+  addEventListener("beforeprint", keepForPrint);
   find("full").addEventListener("click", () => (document.fullscreenElement ? document.exitFullscreen() : root.requestFullscreen()));
   find("full").hidden = !document.fullscreenEnabled;
   new ResizeObserver(redraw).observe(root);

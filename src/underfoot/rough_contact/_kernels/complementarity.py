@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 from underfoot.core.arrays import AnyArray
 
@@ -133,8 +134,9 @@ def _on_grid(
             if bool(xp.all(contact)):
                 return ContactState(p, xp.zeros_like(p), step, 0.0, True, [*history, 0.0], True)
             p = xp.astype(p, xp.float64 if double else xp.float32)
+            del closed
         if not bool(xp.any(contact)):
-            contact = single == xp.max(single)
+            contact = height == xp.max(height)
         part = Restriction(contact, xp, work)
         if known is None or changed > _RENEW * part.nodes:
             known = operators.pressure(part.spread(part.constant()))
@@ -147,8 +149,7 @@ def _on_grid(
         missing = load - float(xp.sum(p))
         negligible = 0.3 * tolerance if double else max(0.3 * tolerance, 1e-7)
         if abs(missing) > negligible * load:
-            share = missing / float(xp.sum(response))
-            p = p + xp.astype(part.spread(response * share), p.dtype)
+            p += part.spread(response * (missing / float(xp.sum(response))))
             gap = None
         if gap is None:
             gap = _gap(operators, p, height if double else single, double)
@@ -156,13 +157,14 @@ def _on_grid(
         mean = float(xp.sum(residual)) / part.nodes
         residual = xp.astype(-residual, xp.float32)
         part.shift(residual, mean)
-        p = p + part.spread(
+        gap = None  # before the next one is made: fields are what a large grid costs
+        p += part.spread(
             residual_correction(operators, part, residual, response, reduction, workspace)
         )
         gap = _gap(operators, p, height if double else single, double)
         gap -= float(xp.sum(part.take(gap))) / part.nodes
         lowest = float(xp.min(p))
-        carried = float(xp.sum(xp.abs(gap * p))) / load
+        carried = _absolute_product(xp, gap, p) / load
         unbalanced = abs(float(xp.sum(p)) / load - 1.0)
         error = max(-float(xp.min(gap)), carried, unbalanced)
         history.append(error)
@@ -176,20 +178,21 @@ def _on_grid(
         settled = lowest >= 0.0 or not search.settle
         if error <= tolerance and settled and (double or not exact):
             return ContactState(p, gap, step, error, True, history)
+        before, contact = contact, kept | ((gap < 0.0) & ~contact)
+        changed = int(xp.count_nonzero(contact != before))
+        if exact and not double and error <= max(_SWITCH, 3.0 * tolerance):
+            double = True
+            gap = single = None
+            p = xp.astype(p, xp.float64)
+            continue
+        if lowest < 0.0:
+            gap = None
         if error <= tolerance and double:
             # a node on the very edge may change sides for ever: see whether it matters
             trial, its_gap, its_error = _clipped(operators, p, height, load, double)
             if its_error <= tolerance:
                 history[-1] = its_error
                 return ContactState(trial, its_gap, step, its_error, True, history)
-        before, contact = contact, kept | ((gap < 0.0) & ~contact)
-        changed = int(xp.count_nonzero(contact != before))
-        if exact and not double and error <= max(_SWITCH, 3.0 * tolerance):
-            double = True
-            p = xp.astype(p, xp.float64)
-            gap = None
-        elif lowest < 0.0:
-            gap = None
     p, gap, error = _clipped(operators, p, height if double else single, load, double)
     return ContactState(p, gap, step, error, False, history)
 
@@ -199,15 +202,21 @@ def _clipped(
 ) -> tuple[AnyArray, AnyArray, float]:
     """Return (pressure, gap, error) with the negative pressures of ``p`` taken out."""
     xp = operators.xp
-    p = xp.where(p > 0.0, p, xp.zeros_like(p))
-    p = p * xp.asarray(load / max(float(xp.sum(p)), 1e-300), dtype=p.dtype)
+    p = xp.clip(p, 0.0, None)
+    p *= xp.asarray(load / max(float(xp.sum(p)), 1e-300), dtype=p.dtype)
     gap = _gap(operators, p, height, double)
     gap -= float(xp.sum(gap * p)) / load
-    error = max(-float(xp.min(gap)), float(xp.sum(xp.abs(gap) * p)) / load)
+    error = max(-float(xp.min(gap)), _absolute_product(xp, gap, p) / load)
     return p, gap, error
 
 
+def _absolute_product(xp: Any, gap: AnyArray, p: AnyArray) -> float:
+    product = gap * p
+    product *= xp.sign(product)
+    return float(xp.sum(product))
+
+
 def _gap(operators: Operators, pressure: AnyArray, height: AnyArray, double: bool) -> AnyArray:
-    if double:
-        return operators.exact_displacement(pressure) - height
-    return operators.displacement(pressure) - height
+    gap = (operators.exact_displacement if double else operators.displacement)(pressure)
+    gap -= height
+    return gap

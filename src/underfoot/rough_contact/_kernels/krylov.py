@@ -1,5 +1,6 @@
 """Minimum-residual correction of the pressure on a given contact, a part of the grid."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -24,8 +25,9 @@ class Restriction:
     def __init__(self, inside: AnyArray, xp: Any, work: AnyArray) -> None:
         self.xp = xp
         self._flat = xp.reshape(inside, (-1,))
+        self.points = self._flat.shape[0]
         self.nodes = int(xp.count_nonzero(self._flat))
-        self.gathered = xp is np and self.nodes < _GATHER_BELOW * self._flat.shape[0]
+        self.gathered = xp is np and self.nodes < _GATHER_BELOW * self.points
         self._shape = inside.shape
         if self.gathered:
             self._index = xp.nonzero(self._flat)[0]
@@ -34,7 +36,7 @@ class Restriction:
             self.size = self.nodes
         else:
             self._mask = xp.astype(self._flat, xp.float32)
-            self.size = self._flat.shape[0]
+            self.size = self.points
 
     def take(self, field: AnyArray) -> AnyArray:
         """Return a new vector with the values of ``field`` on the nodes."""
@@ -66,10 +68,16 @@ class Restriction:
 
 
 class Workspace:
-    """Room for the search directions, allocated once and grown when a contact needs more."""
+    """Room for the search directions, allocated once and grown when a contact needs more.
 
-    def __init__(self, steps: int, xp: Any, like: AnyArray = None) -> None:
-        self.steps = steps
+    ``steps`` of them at most; fewer, down to 3, where contact is so large that they and their
+    images would take more than ``arrays`` double arrays of the grid.
+    """
+
+    def __init__(
+        self, steps: int, xp: Any, like: AnyArray = None, *, arrays: float = math.inf
+    ) -> None:
+        self._steps, self._arrays = steps, arrays
         self._xp = xp
         device = {} if xp is np else {"device": like.device}
         self._kind: dict[str, Any] = {"dtype": xp.float32, **device}
@@ -77,14 +85,15 @@ class Workspace:
         self._directions: AnyArray = None
         self._length = 0
 
-    def rows(self, size: int) -> tuple[AnyArray, AnyArray]:
-        """Return two (steps, size) arrays of undefined content."""
-        if self.steps * size > self._length:
+    def rows(self, size: int, points: int) -> tuple[AnyArray, AnyArray]:
+        """Return two (steps, size) arrays of undefined content for a grid of ``points``."""
+        steps = min(self._steps, max(3, int(min(self._arrays * points / size, 1e6))))
+        if steps * size > self._length:
             self._images = self._directions = None
-            self._length = self.steps * size
+            self._length = steps * size
             self._images = self._xp.empty(self._length, **self._kind)
             self._directions = self._xp.empty(self._length, **self._kind)
-        shape, end = (self.steps, size), self.steps * size
+        shape, end = (steps, size), steps * size
         reshape = self._xp.reshape
         return reshape(self._images[:end], shape), reshape(self._directions[:end], shape)
 
@@ -105,15 +114,16 @@ def residual_correction(
     overwritten.
     """
     xp = operators.xp
-    images, directions = workspace.rows(part.size)
-    triangle = np.zeros((workspace.steps, workspace.steps))
-    weights = np.zeros(workspace.steps)
+    images, directions = workspace.rows(part.size, part.points)
+    steps = images.shape[0]
+    triangle = np.zeros((steps, steps))
+    weights = np.zeros(steps)
     r = residual
     left = _norm(r)
     goal = reduction * left
     total = float(xp.sum(response))
     step = 0
-    while left > goal and step < workspace.steps:
+    while left > goal and step < steps:
         z = part.take(operators.pressure(part.spread(r)))
         z -= response * _scalar(xp, float(xp.sum(z)) / total)
         w = part.take(operators.displacement(part.spread(z)))

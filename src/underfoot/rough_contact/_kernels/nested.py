@@ -15,13 +15,14 @@ _COARSEST = 4096
 _COARSE_TOLERANCE = 0.1
 _STEPS = 12
 """Search directions kept by the inner solver."""
+_ROOM, _SMALL = 3.0, 8e6
+"""Most double arrays of the grid for them, a fifth of a solve; more on small grids (64 MB)."""
 _REDUCTION, _COARSE_REDUCTION = 0.15, 0.3
 """Share of the residual that an inner solve leaves; insensitive between 0.1 and 0.3."""
 
 
 def solve_nested(
     height: AnyArray,
-    spectrum: AnyArray,
     body: Body,
     mean_pressure: float,
     *,
@@ -34,14 +35,17 @@ def solve_nested(
 
     With it, the operators of the fine grid and the cost in products with them.
 
-    ``spectrum`` is the half spectrum of ``height``, ``exact`` the double-precision transform.
+    ``exact`` is the double-precision transform.
     """
     xp = body.xp
-    workspace = Workspace(_STEPS, xp, height)
+    points = height.shape[0] * height.shape[1]
+    workspace = Workspace(_STEPS, xp, height, arrays=max(_ROOM, _SMALL / points))
     fine = Operators(body, height.shape, exact=exact)
     coarsenings = _coarsenings(height.shape)
+    spectrum = exact.forward(height)
     levels = [(factor, low_pass(spectrum, height.shape, factor, xp)) for factor in coarsenings[:-1]]
     levels.append(((1, 1), height))
+    del spectrum
     pressure: AnyArray = None
     before = (1, 1)
     cost = 0.0
@@ -49,22 +53,22 @@ def solve_nested(
     coarse = Search(max(_COARSE_TOLERANCE, tolerance), max_steps, False, False, _COARSE_REDUCTION)
     state: ContactState | None = None
     operators = fine
-    for factor, heights in levels:
+    while levels:
+        factor, heights = levels.pop(0)
         last = factor == (1, 1)
         operators = fine if last else Operators(body, heights.shape, factor)
         if pressure is None:
             guess = operators.pressure(xp.astype(heights, xp.float32)) + mean_pressure
-            pressure = xp.where(guess > 0.0, guess, xp.zeros_like(guess))
+            pressure = xp.clip(guess, 0.0, None)
         else:
             pressure = repeated(pressure, (before[0] // factor[0], before[1] // factor[1]), xp)
         state = solved_contact(
             operators, heights, pressure, mean_pressure, workspace, search if last else coarse
         )
-        pressure = xp.where(state.pressure > 0.0, state.pressure, xp.zeros_like(state.pressure))
+        pressure = xp.clip(state.pressure, 0.0, None)
         before = factor
         cost += operators.count * heights.shape[0] * heights.shape[1]
     assert state is not None
-    points = height.shape[0] * height.shape[1]
     return state, operators, cost / points
 
 

@@ -35,8 +35,8 @@ class Body:
 class Operators:
     """Displacement of a pressure (A p) and pressure of a displacement (S u) on one grid.
 
-    Single precision, in buffers that the next product overwrites; ``exact_displacement`` works in
-    double. The mean of every result is zero. ``count`` counts products.
+    Single precision; ``exact_displacement`` works in double. The mean of every result is zero.
+    ``count`` counts products.
     """
 
     def __init__(

@@ -26,6 +26,7 @@ from .modelling import (
     slit_outlines,
 )
 from .slab import break_points, slab
+from .worn_solid import worn_solid
 
 LEAST_PRINTABLE = 0.3e-3
 """m: walls and slits below this can be neither printed nor moulded (assumed: common nozzles)."""
@@ -46,12 +47,12 @@ class SoleSolid:
 
 
 def sole_solid(shape: SoleShape) -> SoleSolid:
-    """Return the new sole as a solid: the same description that ``heel_map`` samples.
+    """Return the sole, worn as it is, as a solid: the same description that ``heel_map`` samples.
 
     The land is cut from a slab, its rim and its lugs' edges are rounded by fillets; a channel keeps
     its depth straight above the land. Fillets roll along the surface, the map's rounding is
     straight above it: on a bevel of 10 degrees they differ by less than 2 % of the radius. Wear is
-    left out.
+    cut from it last (``worn_solid``).
 
     Raises:
         InputError: A lug, channel or sipe too small to be made; a toe or bevel through the top.
@@ -88,8 +89,7 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
             body = body - _prisms(slits) * _layer(lower, sipes.depth)
     if shape.arc_channel is not None and shape.arc_channel.depth > 0:
         body = body - _half_ring(shape.arc_channel) * _layer(lower, shape.arc_channel.depth)
-    if shape.wear is not None and shape.wear.depth > 0:
-        remarks.append("the solid is the new sole: its wear is left out")
+    body = worn_solid(body, shape)
     return SoleSolid(body, float(body.mass) / MM**3, len(lugs), tuple(remarks))
 
 
@@ -247,7 +247,7 @@ class SoleFile:
 
 
 def write_sole(shape: SoleShape, path: Path | str, *, solid: SoleSolid | None = None) -> SoleFile:
-    """Write the new sole as STEP, STL, OBJ or PLY in mm and read it back.
+    """Write the sole as STEP, STL, OBJ or PLY in mm and read it back.
 
     Parameters:
         shape: The sole in metres.

@@ -47,18 +47,25 @@ BONDED_END = 0.875
 finite elements of single blocks, +-2 % for area / (perimeter height) from 0.4 to 1.5."""
 
 
+NEAREST = 1e-3
+"""Cells: a free side is taken to be no nearer to a cell's centre."""
+
+
 def block_compression(
     mask: NDArray[np.bool_],
     spacing: float,
     height: Array,
     modulus: float,
     poisson_ratio: float,
+    edges: tuple[Array | float, Array | float] = (0.5, 0.5),
 ) -> Array:
     """Return the deflection (m/Pa) of blocks under a uniform pressure, 0 outside the mask.
 
     The blocks cover ``mask`` (nx, ny), are ``height`` (nx, ny, m) high, bonded at their base, free
-    at their sides and free of friction on their face. Rubber flows sideways as a parabola over the
-    height; q, the share of the pressure that this flow carries, is 1 at a free side and
+    at their sides and free of friction on their face. A free side lies where ``edges`` say, places
+    along x and y as in ``CutCells``, (nx, ny); half a cell away by default. Rubber flows sideways
+    as a parabola over the height; q, the share of the pressure that this flow carries, is 1 at a
+    free side and
 
         lap q = c q / d^2,  c = 3 / (2 (1 + nu)),   f = 0.875 d (q / E + (1 - q) / M)
 
@@ -76,13 +83,18 @@ def block_compression(
     diagonal = 1.5 / (1 + poisson_ratio) * (spacing / depth) ** 2
     right = np.zeros(count)
     rows, columns = [np.arange(count)], [np.arange(count)]
-    for along, across in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+    for axis, step in ((0, 1), (0, -1), (1, 1), (1, -1)):
+        along, across = (step, 0) if axis == 0 else (0, step)
         neighbour = number[inside[:, 0] + along, inside[:, 1] + across]
         held = neighbour >= 0
         rows.append(np.flatnonzero(held))
         columns.append(neighbour[held])
-        diagonal += np.where(held, 1.0, 2.0)  # a free side lies half a cell away
-        right += np.where(held, 0.0, 2.0)
+        place = np.pad(np.broadcast_to(edges[axis], mask.shape), 1, constant_values=0.5)
+        before = inside if step > 0 else inside - (axis == 0, axis == 1)
+        away = np.abs((step < 0) - place[before[:, 0], before[:, 1]])
+        free = 1 / np.maximum(away, NEAREST)
+        diagonal += np.where(held, 1.0, free)
+        right += np.where(held, 0.0, free)
     values = np.concatenate([diagonal, np.full(sum(map(len, rows)) - count, -1.0)])
     matrix = csr_matrix(
         (values, (np.concatenate(rows), np.concatenate(columns))), shape=(count, count)
@@ -152,18 +164,21 @@ def half_space_influence(shape: tuple[int, int], spacing: float, plane_modulus: 
     return total / (np.pi * plane_modulus)
 
 
-def balanced_weights(influence: Array, mask: NDArray[np.bool_], uniform: Array) -> Array:
-    """Return weights w, 0 outside the mask, such that w * K(w) equals ``uniform`` on the mask.
+def balanced_weights(
+    influence: Array, mask: NDArray[np.bool_], uniform: Array, area: Array | float = 1.0
+) -> Array:
+    """Return weights w, 0 outside the mask, such that w * K(w * area) is ``uniform`` on the mask.
 
     K is the convolution with the (positive) influence coefficients, ``uniform`` (nx, ny) the
-    deflection under a uniform pressure. w K w is symmetric, so work done by one pressure on the
-    deflection of another is reciprocal (symmetric matrix balancing, Sinkhorn 1964).
+    deflection under a uniform pressure, ``area`` what each cell carries of it, in cells. w K w is
+    symmetric, so work done by one pressure on the deflection of another is reciprocal (symmetric
+    matrix balancing, Sinkhorn 1964).
     """
     convolution = Convolution(influence, mask.shape)
     weight = mask.astype(float)
     target = np.where(mask, uniform, 1.0)
     for _ in range(80):
-        row = weight * convolution(weight)
+        row = weight * convolution(weight * area)
         error = np.abs(row[mask] / target[mask] - 1).max()
         if error < 1e-3:
             break

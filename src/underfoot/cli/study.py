@@ -1,0 +1,155 @@
+"""``underfoot study``: sweeps, sensitivities and optimisations of a case."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from .guard import guarded, say
+from .options import AsJson, Overwrite, ShowAll, optional
+from .output import finish, print_table
+
+if TYPE_CHECKING:
+    from underfoot.explore import Study
+
+study_app = typer.Typer(
+    name="study",
+    help="Design studies: sweep, sensitivity, robust optimisation; resumed where they stopped.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+)
+StudyPath = Annotated[
+    Path, typer.Argument(metavar="STUDY", help="Study file or folder.", show_default=False)
+]
+Folder = Annotated[
+    Path | None, optional("Folder of the study; by default out/NAME of the file.", "--out")
+]
+Workers = Annotated[
+    int | None,
+    typer.Option(
+        "--workers", min=1, help="Processes; by default one a processor.", show_default=False
+    ),
+]
+
+
+def _study(path: Path, out: Path | None = None) -> Study:
+    from underfoot.explore import Study
+
+    return Study.load(path, out)
+
+
+def check(study: StudyPath, json: AsJson = False) -> None:
+    """Print how many cases a study has, what they cost, which can't be built; compute nothing."""
+    from underfoot.explore.check import study_check
+
+    finish(study_check(_study(study).plan), None, json=json, everything=True)
+
+
+def run(
+    study: StudyPath,
+    out: Folder = None,
+    on: Annotated[
+        str | None,
+        optional('Where: "dask" (a cluster in this process) or "dask:tcp://host:8786".', "--on"),
+    ] = None,
+    workers: Workers = None,
+    json: AsJson = False,
+    everything: ShowAll = False,
+) -> None:
+    """Compute what is not finished, then write tables and report.html.
+
+    The same command goes on where it stopped, whatever stopped it.
+    """
+    from underfoot.core.progress import bar
+    from underfoot.report.design_studies import write_study_report
+
+    chosen = _study(study, out)
+    with bar(chosen.plan.name) as progress:
+        result = chosen.run(on, workers, progress)
+    with bar("report") as progress:
+        written = write_study_report(chosen, result, progress=progress)
+    finish(result, written, json=json, everything=everything)
+
+
+def work(study: StudyPath, out: Folder = None, workers: Workers = 1) -> None:
+    """Take open cases from the study's folder until it is done: for array jobs and second machines.
+
+    Needs no scheduler: any number of these share the folder.
+    """
+    from underfoot.core.progress import bar
+
+    chosen = _study(study, out)
+    with bar(chosen.plan.name) as progress:
+        count = chosen.work(workers, progress)
+    print(f"computed {count} cases; the study in {chosen.store.folder} is done")
+
+
+def status(study: StudyPath, out: Folder = None, json: AsJson = False) -> None:
+    """Print how far a study is, its throughput, the time left and why cases have no numbers."""
+    from underfoot.explore.status import study_status
+
+    finish(study_status(_study(study, out)), None, json=json, everything=True)
+
+
+def report(study: StudyPath, out: Folder = None) -> None:
+    """Write results.csv, results.parquet, surrogate.json and report.html of what is finished."""
+    from underfoot.core.progress import bar
+    from underfoot.report.design_studies import write_study_report
+
+    chosen = _study(study, out)
+    with bar("report") as progress:
+        written = write_study_report(chosen, chosen.result(), progress=progress)
+    finish(chosen.result(), written, json=False)
+
+
+def best(
+    study: StudyPath,
+    out: Folder = None,
+    count: Annotated[int, typer.Option("--count", min=1, help="Designs.")] = 5,
+    json: AsJson = False,
+) -> None:
+    """Print the best designs, with the probability that each has a higher COF than the next."""
+    import json as json_text
+    from itertools import pairwise
+
+    from underfoot.core.presentation import Table, percent
+
+    result = _study(study, out).result()
+    designs = result.best(count)
+    chances = [result.higher_cof(*pair) for pair in pairwise(designs)]
+    if json:
+        known = {(one["design"], one["grid"]): one for one in result.to_dict()["designs"]}
+        grids = ["quick" if one.quick else "standard" for one in designs]
+        rows = [known[one.number, grid] for one, grid in zip(designs, grids, strict=True)]
+        for row, chance in zip(rows, [*chances, None], strict=False):
+            row["higher_cof_than_next"] = chance
+        print(json_text.dumps(rows, indent=2))
+        return
+    table = result.design_table(designs, "Best designs")
+    texts = ["" if chance is None else percent(chance) for chance in [*chances, None]]
+    rows = [[*row, text] for row, text in zip(table.rows, texts, strict=False)]
+    print_table(Table(table.title, (*table.columns, "COF above the next"), rows))
+
+
+def export(
+    study: StudyPath,
+    to: Annotated[Path, typer.Argument(metavar="FOLDER", help="New folder.", show_default=False)],
+    out: Folder = None,
+    count: Annotated[int, typer.Option("--count", min=1, help="Best designs.")] = 3,
+    step: Annotated[
+        bool, typer.Option("--step/--no-step", help="Soles as STEP too (needs the extra cad).")
+    ] = True,
+    overwrite: Overwrite = False,
+) -> None:
+    """Write the table of all cases, and of the best designs case files and soles as STEP."""
+    from underfoot.explore.export import exported
+
+    for line in exported(_study(study, out), to, count=count, step=step, overwrite=overwrite):
+        say(line)
+    print(f"Files in {to}")
+
+
+for command in (check, run, work, status, report, best, export):
+    study_app.command()(guarded(command))

@@ -1,0 +1,108 @@
+"""Where the cases of a study are computed: processes of this machine, or a Dask cluster.
+
+A third engine needs no code: any number of ``underfoot study work`` share the study's folder.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
+
+from underfoot.core import InputError, UnderfootError
+from underfoot.core.optional import optional_module
+from underfoot.core.pool import TRIES, answered, available_processors
+
+from .record import Job, Record
+
+Engine = Callable[
+    [Callable[[Job], Record], Iterable[Job], Callable[[Job], Record]], Iterator[Record]
+]
+DASK = "dask"
+AHEAD = 2
+"""Cases that are sent ahead for each thread of a Dask cluster."""
+WAIT = 20
+"""s within which a scheduler must answer."""
+
+
+def engine(on: str | None, workers: int | None) -> tuple[Engine, int]:
+    """Return the engine of a name and its number of workers.
+
+    Parameters:
+        on: None for processes of this machine, ``"dask"`` for a Dask cluster in this process,
+            ``"dask:tcp://host:8786"`` (or a scheduler file) for one that runs.
+        workers: None for one a processor.
+
+    Raises:
+        InputError: Another name.
+    """
+    count = workers or available_processors()
+    if on is None or on == "pool":
+        return lambda function, jobs, died: answered(function, jobs, count, died), count
+    kind, _, address = on.partition(":")
+    if kind != DASK:
+        raise InputError(
+            f'"{on}"',
+            where="--on",
+            allowed='"dask", "dask:tcp://host:8786", or nothing for processes of this machine',
+        )
+    return lambda function, jobs, died: _on_dask(function, jobs, died, address, count), count
+
+
+def _on_dask(
+    function: Callable[[Job], Record],
+    jobs: Iterable[Job],
+    died: Callable[[Job], Record],
+    address: str,
+    workers: int,
+) -> Iterator[Record]:
+    """Yield records from a Dask cluster; its nannies replace workers that die."""
+    distributed = optional_module("distributed", "dask", "--on dask")
+    configured = optional_module("dask.config", "dask", "--on dask").set
+    settings = {"distributed.scheduler.allowed-failures": TRIES - 1}
+    with configured(settings), _client(distributed, address, workers) as client:
+        waiting, sent = iter(jobs), {}
+        ended = distributed.as_completed()
+        try:
+            while True:
+                room = AHEAD * max(sum(client.nthreads().values()), 1) - len(sent)
+                for job in _next(waiting, room):
+                    future = client.submit(function, job, key=f"case-{job.key}", pure=False)
+                    sent[future.key] = job
+                    ended.add(future)
+                if not sent:
+                    return
+                future = next(ended)
+                job = sent.pop(future.key)
+                yield died(job) if _was_killed(distributed, future) else future.result()
+                del future
+        except (OSError, distributed.CancelledError, distributed.comm.CommClosedError) as error:
+            raise UnderfootError(
+                f"the Dask scheduler {address} went away ({type(error).__name__})",
+                remedy="Finished cases are kept; start it and give the same command again",
+            ) from error
+
+
+def _client(distributed: Any, address: str, workers: int) -> Any:
+    if not address:
+        cluster = distributed.LocalCluster(
+            n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None
+        )
+        return cluster.get_client()
+    try:
+        if address.endswith(".json"):
+            return distributed.Client(scheduler_file=address, timeout=WAIT)
+        return distributed.Client(address, timeout=WAIT)
+    except (OSError, ValueError) as error:
+        raise InputError(
+            f"no Dask scheduler answers at {address} ({error})",
+            where="--on",
+            remedy="Start one with: dask scheduler, and workers with: dask worker ADDRESS",
+        ) from error
+
+
+def _next(jobs: Iterator[Job], count: int) -> list[Job]:
+    return [job for _, job in zip(range(count), jobs, strict=False)]
+
+
+def _was_killed(distributed: Any, future: Any) -> bool:
+    return future.status == "error" and isinstance(future.exception(), distributed.KilledWorker)

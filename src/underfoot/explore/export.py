@@ -1,0 +1,41 @@
+"""The best designs of a study as files for others: case files, soles as STEP, one table."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+from underfoot.compute.sole import new_sole
+from underfoot.core import InputError, MissingExtraError
+from underfoot.core.files import whole_folder
+
+from .study import Study
+
+
+def exported(
+    study: Study, folder: Path, *, count: int = 3, step: bool = True, overwrite: bool = False
+) -> list[str]:
+    """Write results.csv, and a case file and a STEP file of the best designs; return remarks.
+
+    The case of a design is that of its first condition and draw. A sole from a file, or one that
+    can't be made as a solid, has no STEP file; a remark says so.
+    """
+    result, plan = study.result(), study.plan
+    remarks = study.store.write_views(result.jobs)
+    with whole_folder(folder, overwrite=overwrite) as staging:
+        for name in ("results.csv", "results.parquet"):
+            if (study.store.folder / name).exists():
+                shutil.copyfile(study.store.folder / name, staging / name)
+        for one in result.best(count) if plan.goals else result.designs[:count]:
+            name = f"design_{one.number}"
+            job = next(job for job in result.jobs if job.design == one.number)
+            case = plan.base.replace({**job.changes, "name": f"{plan.name}, design {one.number}"})
+            case.save(staging / f"{name}.toml")
+            if step:
+                try:
+                    from underfoot.shoe.parametric import write_sole
+
+                    write_sole(new_sole(case), staging / f"{name}.step")
+                except (InputError, MissingExtraError) as error:
+                    remarks.append(f"{name}.step was not written: {error}")
+    return remarks

@@ -1,0 +1,275 @@
+"""What a study wants of a design: statistics of an output over conditions and draws, and bounds.
+
+    mean(cof) in canola_oil over conditions      a goal: statistic, output, conditions, over what
+    quantile(cof, 0.1) > 0.16                    a requirement
+    wear_life(cof > 0.16)                        wear at which a requirement stops to hold
+
+A bare output is its mean. Over conditions and draws, where nothing is said.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from underfoot.core import InputError, to_si, unknown_name
+from underfoot.core.arrays import Array
+from underfoot.core.presentation import quantity_text
+
+from .record import Record
+
+STATISTICS = ("mean", "min", "max", "sd", "quantile")
+OVER = ("conditions", "draws", "conditions and draws")
+LIFE = "wear_life"
+WEAR = "shoe.wear.depth"
+_CLAUSE = re.compile(r"\s+(in|over)\s+([^<>()]*?)(?=\s+(?:in|over)\s|$)")
+_STATISTIC = re.compile(r"(\w+)\s*\(\s*(\w+)\s*(?:,\s*([\d.]+)\s*)?\)|(\w+)")
+_BOUND = re.compile(r"(.+?)\s*(<=|>=|<|>)\s*(.+)")
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """A state that every design is run in: its label, and the changes that make it."""
+
+    label: str
+    changes: Mapping[str, object]
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The words of the label."""
+        return tuple(self.label.split(", ")) if self.label else ()
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """A statistic of an output; ``within`` names the conditions that count, () for all."""
+
+    output: str
+    unit: str
+    statistic: str = "mean"
+    share: float = 0.5
+    over: str = "conditions and draws"
+    within: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        inner = f"{self.output}, {self.share:g}" if self.statistic == "quantile" else self.output
+        text = inner if self.statistic == "mean" else f"{self.statistic}({inner})"
+        text += f" in {', '.join(self.within)}" if self.within else ""
+        return text + (f" over {self.over}" if self.over != OVER[2] else "")
+
+    def value(
+        self, records: Mapping[tuple[int, int], Record], states: Sequence[Condition]
+    ) -> float:
+        """Return the statistic over a design's records by (condition, draw); nan if one lacks.
+
+        Draws of the friction law count among the draws of COF. "Over conditions" takes the mean
+        over draws first, "over draws" the mean over conditions.
+        """
+        chosen = _chosen(states, self.within)
+        values = output_array(records, chosen, self.output, law=self.over != "conditions")
+        if self.over == "conditions":
+            values = values.mean(axis=(1, 2))
+        elif self.over == "draws":
+            values = values.mean(axis=0)
+        if np.isnan(values).any():
+            return float("nan")
+        if self.statistic == "quantile":
+            return float(np.quantile(values, self.share))
+        if self.statistic == "mean":  # of the numbers as computed, not of their draws
+            return float(output_array(records, chosen, self.output).mean())
+        return float({"min": np.min, "max": np.max, "sd": np.std}[self.statistic](values))
+
+
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """A goal and its bound (SI): ``sense`` 1 for at least, -1 for at most."""
+
+    goal: Goal
+    sense: int
+    bound: float
+
+    def __str__(self) -> str:
+        sign = ">" if self.sense > 0 else "<"
+        return f"{self.goal} {sign} {quantity_text(self.bound, self.goal.unit)}"
+
+    def margin(self, value: float | Array) -> float | Array:
+        """Return by how much a value holds the bound, SI; negative where it does not."""
+        return self.sense * (value - self.bound)
+
+
+@dataclass(frozen=True, slots=True)
+class WearLife:
+    """Wear (m) at which a requirement stops to hold, linear between the wears that were run.
+
+    The least over the other conditions; 0 where it does not hold new. Where it holds to the last
+    wear, that one: a lower bound.
+    """
+
+    requirement: Requirement
+    output = LIFE
+    unit = "m"
+
+    def __str__(self) -> str:
+        return f"{LIFE}({self.requirement})"
+
+    def value(
+        self, records: Mapping[tuple[int, int], Record], states: Sequence[Condition]
+    ) -> float:
+        """Return the life over the records of a design; nan where one lacks."""
+        groups: dict[str, list[tuple[float, float]]] = {}
+        goal = self.requirement.goal
+        for number in _chosen(states, goal.within):
+            rest = {k: v for k, v in states[number].changes.items() if k != WEAR}
+            wear = float(states[number].changes[WEAR])  # type: ignore[arg-type]
+            here = {(0, draw): r for (state, draw), r in records.items() if state == number}
+            alone = Goal(goal.output, goal.unit, goal.statistic, goal.share)
+            margin = self.requirement.margin(alone.value(here, [Condition("", {})]))
+            groups.setdefault(repr(rest), []).append((wear, float(margin)))
+        lives = [_crossing(sorted(group)) for group in groups.values()]
+        return float("nan") if np.isnan(lives).any() else min(lives)
+
+
+AnyGoal = Goal | WearLife
+
+
+def _crossing(margins: Sequence[tuple[float, float]]) -> float:
+    if any(np.isnan(margin) for _, margin in margins):
+        return float("nan")
+    before = None
+    for wear, margin in margins:
+        if margin < 0:
+            if before is None:
+                return 0.0
+            return before[0] + (wear - before[0]) * before[1] / (before[1] - margin)
+        before = wear, margin
+    return margins[-1][0]
+
+
+def output_array(
+    records: Mapping[tuple[int, int], Record],
+    conditions: Sequence[int],
+    name: str,
+    *,
+    law: bool = False,
+) -> Array:
+    """Return an output as (conditions, draws, law's draws), nan where a case has none."""
+    draws = sorted({draw for _, draw in records})
+    rows = []
+    for state in conditions:
+        for draw in draws:
+            record = records.get((state, draw))
+            if record is None or not record.usable:
+                rows.append(np.array([np.nan]))
+            elif law and name == "cof" and record.draws.size:
+                rows.append(record.draws)
+            else:
+                rows.append(np.array([record.number(name)]))
+    width = max(row.size for row in rows)
+    rows = [row if row.size == width else np.full(width, row.mean()) for row in rows]
+    return np.array(rows).reshape(len(conditions), len(draws), width)
+
+
+def _chosen(states: Sequence[Condition], within: Sequence[str]) -> list[int]:
+    return [k for k, state in enumerate(states) if set(within) <= set(state.parts)]
+
+
+def read_goal(
+    text: object,
+    where: str,
+    units: Mapping[str, str],
+    states: Sequence[Condition],
+    require: Sequence[Requirement] = (),
+) -> AnyGoal:
+    """Return the goal of a text; ``units`` are those of the outputs that there are."""
+    body, clauses = _clauses(text, where)
+    if body == LIFE:
+        if not require:
+            raise InputError(
+                f"{LIFE} of what", where=where, remedy=f"Write {LIFE}(cof > 0.16), or a requirement"
+            )
+        return _life(require[0], where, states)
+    if body.startswith(f"{LIFE}(") and body.endswith(")"):
+        inner = body[len(LIFE) + 1 : -1] + "".join(f" {k} {v}" for k, v in clauses.items())
+        return _life(read_requirement(inner, where, units, states), where, states)
+    match = _STATISTIC.fullmatch(body)
+    if match is None:
+        raise InputError(
+            f'"{text}" is no goal',
+            where=where,
+            allowed='an output, or "quantile(cof, 0.1) in canola_oil over conditions"',
+        )
+    statistic, output = (match[1] or "mean"), (match[2] or match[4])
+    if statistic not in STATISTICS:
+        raise unknown_name("statistic", statistic, STATISTICS, where=where)
+    if output not in units:
+        raise unknown_name("output", output, [*units, LIFE], where=where)
+    share = float(match[3]) if match[3] else 0.5
+    if (statistic == "quantile") != bool(match[3]) or not 0 < share < 1:
+        raise InputError(
+            f'"{text}"', where=where, allowed="quantile(output, share), share between 0 and 1"
+        )
+    over = clauses.get("over", OVER[2])
+    if over not in OVER:
+        raise unknown_name("word after over", over, OVER, where=where)
+    within = tuple(part.strip() for part in clauses.get("in", "").split(",") if part.strip())
+    words = sorted({part for state in states for part in state.parts})
+    for word in within:
+        if word not in words:
+            raise unknown_name("condition", word, words, where=where)
+    if not _chosen(states, within):
+        raise InputError(f"no condition is {' and '.join(within)}", where=where)
+    return Goal(output, units[output], statistic, share, over, within)
+
+
+def read_requirement(
+    text: object, where: str, units: Mapping[str, str], states: Sequence[Condition]
+) -> Requirement:
+    """Return the requirement of a text."""
+    body, clauses = _clauses(text, where)
+    match = _BOUND.fullmatch(body)
+    if match is None:
+        raise InputError(
+            f'"{text}" is no requirement', where=where, allowed='as "cof > 0.16 in canola_oil"'
+        )
+    whole = match[1] + "".join(f" {word} {rest}" for word, rest in clauses.items())
+    goal = read_goal(whole, where, units, states)
+    if not isinstance(goal, Goal):
+        raise InputError(f"{goal} can't be required", where=where, allowed="an output")
+    given: object = match[3]
+    if goal.unit == "1":
+        try:
+            given = float(match[3])
+        except ValueError:
+            given = match[3]
+    return Requirement(goal, 1 if ">" in match[2] else -1, to_si(given, goal.unit, where=where))
+
+
+def check_agreement(require: Sequence[Requirement], where: str) -> None:
+    """Refuse requirements that no design can meet."""
+    for one in require:
+        for other in require:
+            if one.goal == other.goal and one.sense > 0 > other.sense and one.bound >= other.bound:
+                raise InputError(
+                    f'"{one}" and "{other}" can\'t both hold', where=where, remedy="Drop one"
+                )
+
+
+def _life(requirement: Requirement, where: str, states: Sequence[Condition]) -> WearLife:
+    wears = {state.changes.get(WEAR) for state in states}
+    if None in wears or len(wears) < 2:
+        raise InputError(
+            f"{LIFE} needs at least two states of wear",
+            where=where,
+            remedy='Write wear = ["0 mm", "1 mm", "2 mm"] under [conditions]',
+        )
+    return WearLife(requirement)
+
+
+def _clauses(text: object, where: str) -> tuple[str, dict[str, str]]:
+    if not isinstance(text, str):
+        raise InputError(f"{text!r}", where=where, allowed="text, as quantile(cof, 0.1)")
+    clauses = {match[1]: match[2].strip() for match in _CLAUSE.finditer(text)}
+    return _CLAUSE.sub("", text).strip(), clauses

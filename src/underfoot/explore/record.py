@@ -1,0 +1,154 @@
+"""One case of a study: what is to be computed, and what came of it, each as one line of text."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+
+from underfoot.core import DataError, SourcedValue
+from underfoot.core.arrays import Array
+
+FORMAT = 1
+"""Version of the lines that this package writes; newer ones are refused."""
+
+
+class Ending(StrEnum):
+    """How a case of a study ended. All but COMPUTED have a reason and no numbers."""
+
+    COMPUTED = "computed"
+    NOT_CONVERGED = "not converged"
+    INFEASIBLE = "infeasible"
+    CRASHED = "crashed"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """A case that is to be computed: the changes of the base case, by dotted path.
+
+    Attributes:
+        key: Hash of what decides the numbers; equal keys are computed once.
+        design, condition, draw: Which design, in which condition, with which of the common draws.
+        batch: Designs of one batch are proposed together; the next needs all their records.
+        point: Place of the design in the unit cube of what is varied.
+        quick: On the coarse grid.
+        fields: Keep the maps too.
+    """
+
+    key: str
+    design: int
+    condition: int
+    draw: int
+    batch: int
+    point: tuple[float, ...]
+    changes: Mapping[str, Any]
+    quick: bool = True
+    fields: bool = False
+
+    def line(self) -> str:
+        """Return the job as a line of JSON."""
+        return json.dumps({"format": FORMAT, **asdict(self)}, ensure_ascii=False)
+
+    @classmethod
+    def from_line(cls, text: str) -> Job:
+        """Return the job of a line."""
+        plain = _known(json.loads(text))
+        return cls(**{**plain, "point": tuple(plain["point"])})
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """What came of a case.
+
+    Attributes:
+        key: Of its job.
+        ending, reason: How it ended, and why it has no numbers.
+        numbers: Name of a scalar: its value in SI; None where it was not determined.
+        spreads: Name of a scalar: its standard deviation, where it was estimated.
+        units: Name of a scalar: its SI unit.
+        law: Friction law; draws of COF of one law are shared between cases.
+        draws: (n,) joint draws of COF, empty where the law has no spread.
+        breaches: Inputs outside a tested range, in words.
+        seconds, cpu_seconds: That the case took, as the wall clock and as the processor counts.
+        program: Hash of the package's text, so that numbers of two versions are not mixed unseen.
+        worker: Process that computed it.
+        ended: When, s since 1970.
+        maps: Fields on the sole; never in the line, but in the study's ``fields.zarr``.
+    """
+
+    key: str
+    ending: Ending
+    reason: str = ""
+    numbers: Mapping[str, float | None] = field(default_factory=dict)
+    spreads: Mapping[str, float] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+    law: str = ""
+    draws: Array = field(default_factory=lambda: np.empty(0))
+    breaches: tuple[str, ...] = ()
+    seconds: float = 0.0
+    cpu_seconds: float = 0.0
+    program: str = ""
+    worker: str = ""
+    ended: float = 0.0
+    maps: Any = field(default=None, compare=False)
+
+    @property
+    def usable(self) -> bool:
+        """Whether there are numbers."""
+        return self.ending is Ending.COMPUTED
+
+    def number(self, name: str) -> float:
+        """Return a number in SI, nan where there is none."""
+        value = self.numbers.get(name)
+        return float("nan") if value is None else value
+
+    def sourced(self, name: str) -> SourcedValue:
+        """Return a number with its standard deviation."""
+        return SourcedValue(
+            self.numbers.get(name),
+            self.units.get(name, "1"),
+            "design study",
+            self.spreads.get(name),
+            reason=self.reason,
+        )
+
+    def line(self) -> str:
+        """Return the record as a line of JSON; draws as float32, base64."""
+        plain = {one.name: getattr(self, one.name) for one in fields(self) if one.name != "maps"}
+        packed = base64.b64encode(np.asarray(self.draws, "<f4").tobytes()).decode("ascii")
+        plain |= {"draws": packed, "breaches": list(self.breaches)}
+        return json.dumps({"format": FORMAT, **plain}, ensure_ascii=False, allow_nan=False)
+
+    @classmethod
+    def from_line(cls, text: str) -> Record:
+        """Return the record of a line."""
+        plain = _known(json.loads(text))
+        draws = np.frombuffer(base64.b64decode(plain["draws"]), "<f4").astype(float)
+        plain |= {"draws": draws, "ending": Ending(plain["ending"])}
+        return cls(**{**plain, "breaches": tuple(plain["breaches"])})
+
+
+def _known(plain: dict[str, Any]) -> dict[str, Any]:
+    version = plain.pop("format", None)
+    if not isinstance(version, int):
+        raise DataError("a line without its format")
+    if version > FORMAT:
+        raise NewerFormat(version)
+    return plain
+
+
+class NewerFormat(DataError):
+    """A line of a newer version of the program."""
+
+    def __init__(self, version: int) -> None:
+        super().__init__(
+            f"the study was written by a newer version (format {version})",
+            allowed=f"format {FORMAT} or older",
+            remedy="Update underfoot, or run the study in another folder",
+        )

@@ -1,0 +1,101 @@
+"""Readings of other durometers as Shore A."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from underfoot.core import InputError
+
+
+@dataclass(frozen=True, slots=True)
+class DurometerScale:
+    """A scale and its line to Shore A: A = ``offset`` + ``slope`` S.
+
+    ``low`` and ``high`` bound the readings for which the source gives the line; ``spread`` is the
+    uncertainty of the converted reading in points of Shore A.
+    """
+
+    name: str
+    offset: float
+    slope: float
+    low: float
+    high: float
+    spread: float
+    source: str
+
+
+SHORE_A = DurometerScale("Shore A", 0.0, 1.0, 0.0, 100.0, 0.0, "ISO 48-4, type A")
+SCALES = (
+    SHORE_A,
+    DurometerScale(
+        "Shore D", 50.0, 1.0, 30.0, 49.0, 5.0,
+        "Qi, Joyce and Boyce 2003: one modulus for S_A and S_D + 50; spread: the usual tolerance "
+        "of 5 points",
+    ),
+    DurometerScale(
+        "Asker C", -10.8, 0.8333, 45.0, 75.0, 5.0,
+        "hardness guide of a foam supplier (Foam Products Australia, 45 to 75 JIS C); spread: the "
+        "usual tolerance of 5 points",
+    ),
+)  # fmt: skip
+"""Scales of durometers that footwear is specified in."""
+_NAMES = {
+    "": SCALES[0], "a": SCALES[0], "sha": SCALES[0], "shorea": SCALES[0], "shore": SCALES[0],
+    "d": SCALES[1], "shd": SCALES[1], "shored": SCALES[1],
+    "c": SCALES[2], "askerc": SCALES[2], "asker": SCALES[2], "jisc": SCALES[2],
+}  # fmt: skip
+_READING = re.compile(
+    r"\s*(?P<before>[a-z ]*?)\s*(?P<number>\d+(?:\.\d+)?)\s*(?P<after>[a-z ]*)\s*"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class DurometerReading:
+    """A hardness as it was read: ``value`` on its ``scale``."""
+
+    value: float
+    scale: DurometerScale
+
+    @property
+    def shore_a(self) -> float:
+        """The reading in Shore A."""
+        return self.scale.offset + self.scale.slope * self.value
+
+    def note(self) -> str:
+        """Return what the conversion rests on; empty where nothing was converted."""
+        if self.scale is SHORE_A:
+            return ""
+        return (
+            f"{self.value:g} {self.scale.name} taken as Shore A {self.shore_a:.0f} ± "
+            f"{self.scale.spread:g} ({self.scale.source})"
+        )
+
+
+def durometer_reading(text: str, *, where: str = "") -> DurometerReading:
+    """Return the reading in a text such as "62 A", "55 Asker C" or "Shore D 40".
+
+    Raises:
+        InputError: No number, a scale that is not known, or a reading beyond those that the
+            scale's conversion was given for.
+    """
+    found = _READING.fullmatch(text.lower().strip().replace("°", " ").replace("-", " "))
+    words = "" if found is None else (found["before"] + found["after"]).replace(" ", "")
+    scale = None if found is None else _NAMES.get(words)
+    names = ", ".join(f'"62 {each.name}"' for each in SCALES)
+    if found is None or scale is None:
+        raise InputError(
+            f'"{text}" is no hardness on a known scale',
+            where=where,
+            allowed=f'62, "62 A", {names}',
+            nearest=text.replace(",", ".") if "," in text else None,
+        )
+    value = float(found["number"])
+    if not scale.low <= value <= scale.high:
+        raise InputError(
+            f"{value:g} {scale.name} is outside the readings that convert to Shore A",
+            where=where,
+            allowed=f"{scale.low:g} to {scale.high:g} {scale.name}",
+            remedy='Read the hardness in Shore A, or give the measured modulus (modulus = "5 MPa")',
+        )
+    return DurometerReading(value, scale)

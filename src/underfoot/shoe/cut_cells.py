@@ -1,0 +1,137 @@
+"""Square cells cut by the outlines of lugs: where edges lie, and the area of each cell.
+
+A cell is land or channel as its centre is; its share of the neighbours' area follows the outline.
+So the area of lugs is exact on any grid, and loads change smoothly with the width of a lug.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core.arrays import Array, Mask
+
+SAMPLES = 4
+"""Samples along each side of a cell; between them the outline is a straight ramp."""
+_SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
+_CORNERS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
+Cells = NDArray[np.intp]
+
+
+@dataclass(frozen=True, slots=True)
+class CutCells:
+    """How the outlines of lugs cut the cells of a map; arrays (nx, ny).
+
+    Attributes:
+        along, across: Where an edge crosses the way from a cell's centre to its neighbour's at +x
+            and at +y, as a share of that way; 0.5 where none does.
+        area: What a cell stands for of its own kind (land or not), in cells. A land cell takes in
+            what lies between its square and the outline, a channel cell what a lug leaves free.
+        film_area: The same for the pressure of the fluid, which falls from a lug's last centre to
+            that of the channel at the outline.
+    """
+
+    along: Array
+    across: Array
+    area: Array
+    film_area: Array
+
+    @classmethod
+    def none(cls, shape: tuple[int, ...]) -> Self:
+        """Return cells that nothing cuts."""
+        half, one = np.full(shape, 0.5), np.ones(shape)
+        return cls(half, half, one, one)
+
+    def part(self, keep: tuple[slice, slice]) -> Self:
+        """Return the cells of a part of the map."""
+        names = ("along", "across", "area", "film_area")
+        return replace(self, **{name: getattr(self, name)[keep] for name in names})
+
+
+def cut_cells(
+    level: Array, inside: Mask, level_at: Callable[[Cells, Cells, Array, Array], Array]
+) -> CutCells:
+    """Return the cells of a map as outlines cut them.
+
+    Parameters:
+        level: Signed distance (m) into a channel at the centres, (nx, ny): land where 0 or less.
+        inside: The plan form. Its rim cuts no cell.
+        level_at: Returns it near the cells (i, j), (n, 1), at offsets along x and y, (1, m), in
+            shares of a cell.
+    """
+    cut = CutCells.none(level.shape)
+    land = inside & (level <= 0)
+    channel = inside & ~land
+    cut = replace(cut, along=_crossing(level, inside, 0), across=_crossing(level, inside, 1))
+    own, other = _pairs(land, channel)
+    if own.size == 0:
+        return cut
+    cells = np.unique(np.concatenate([own, other]))
+    step = (np.arange(SAMPLES) + 0.5) / SAMPLES - 0.5
+    offsets = [part.reshape(1, -1) for part in np.meshgrid(step, step, indexing="ij")]
+    i, j = np.unravel_index(cells, level.shape)
+    depth = -level_at(i[:, None], j[:, None], *offsets)  # into the lug, m
+    spread = np.abs(np.diff(depth.reshape(-1, SAMPLES, SAMPLES), axis=1)).max(axis=(1, 2))
+    spread = np.maximum(
+        spread, np.abs(np.diff(depth.reshape(-1, SAMPLES, SAMPLES), axis=2)).max(axis=(1, 2))
+    )
+    covered = np.clip(0.5 + depth / np.maximum(spread[:, None], 1e-12), 0.0, 1.0)
+    at_own, at_other = np.searchsorted(cells, own), np.searchsorted(cells, other)
+    centre = np.maximum(-level.ravel()[own], 1e-12)
+    results = []
+    for fluid in (False, True):
+        # the fluid's pressure falls to that of the channel at the outline, contact's does not
+        within, beyond = (
+            covered[at] * (np.clip(depth[at] / centre[:, None], 0.0, 1.0) if fluid else 1.0)
+            for at in (at_own, at_other)
+        )
+        results.append(_areas(own, other, within.mean(axis=1), beyond.mean(axis=1), level.shape))
+    return replace(cut, area=results[0], film_area=results[1])
+
+
+def _areas(own: Cells, other: Cells, within: Array, beyond: Array, shape: tuple[int, ...]) -> Array:
+    """Return the area of each cell from what land covers of its own cell and of its neighbours."""
+    size = shape[0] * shape[1]
+
+    def total(at: Cells, values: Array) -> Array:
+        return np.bincount(at, values, size).astype(np.float64)
+
+    pairs = np.maximum(total(own, np.ones(own.size)) + total(other, np.ones(own.size)), 1.0)
+    taken, left = beyond / pairs[other], (1 - within) / pairs[own]
+    area = 1.0 + total(own, taken) - total(own, left) - total(other, taken) + total(other, left)
+    return area.reshape(shape)
+
+
+def _pairs(land: Mask, channel: Mask) -> tuple[Cells, Cells]:
+    """Return land cells and the channel cells beside them; across a corner where no side is."""
+    number = np.arange(land.size).reshape(land.shape)
+    found: list[tuple[Cells, Cells]] = []
+    beside = np.zeros(land.size, dtype=bool)
+    for ways in (_SIDES, _CORNERS):
+        new = []
+        for way in ways:
+            ahead = tuple(slice(max(step, 0), min(step, 0) or None) for step in way)
+            here = tuple(slice(max(-step, 0), min(-step, 0) or None) for step in way)
+            touching = land[here] & channel[ahead]
+            own, other = number[here][touching], number[ahead][touching]
+            alone = ~(beside[own] & beside[other])
+            new.append((own[alone], other[alone]))
+        found += new
+        for own, other in new:
+            beside[own] = beside[other] = True
+    own, other = (np.concatenate(each) for each in zip(*found, strict=True))
+    return own, other
+
+
+def _crossing(level: Array, inside: Mask, axis: int) -> Array:
+    """Return where the level crosses 0 on the way to the next cell, 0.5 where it does not."""
+    place = np.full(level.shape, 0.5)
+    here, ahead = (np.moveaxis(part, axis, 0) for part in (level, level))
+    here, ahead = here[:-1], ahead[1:]
+    mask = np.moveaxis(inside, axis, 0)
+    crossed = mask[:-1] & mask[1:] & ((here <= 0) != (ahead <= 0))
+    share = here / np.where(crossed, here - ahead, 1.0)
+    np.moveaxis(place, axis, 0)[:-1] = np.where(crossed, np.clip(share, 0.0, 1.0), 0.5)
+    return place
