@@ -46,7 +46,8 @@ def cap(polygon, z, up):
     """Triangles of a polygon at a height (number or function of x and y)."""
     parts = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon))
     corners = np.stack([shapely.get_coordinates(part)[:3] for part in parts])
-    twice = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    (ax, ay), (bx, by) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
+    twice = ax * by - ay * bx
     wrong = (twice < 0) == up
     corners[wrong] = corners[wrong][:, ::-1]
     return np.dstack([corners, np.full(corners.shape[:2], float(z))])
@@ -449,5 +450,53 @@ def trials() -> list[Trial]:
         Trial("3MF", by_trimesh("3mf", hexes), hex_truth),
         Trial("OFF", by_trimesh("off", hexes), hex_truth),
         Trial("BREP", step(step_bars, brep=True), step_truth),
-        Trial("small child's sole, 125 mm", stl(small), Truth(small_land / plan_small.area, 2.0, 2.0, 125.0, "right")),
+        Trial(
+            "small child's sole, 125 mm",
+            stl(small),
+            Truth(small_land / plan_small.area, 2.0, 2.0, 125.0, "right"),
+        ),
     ]
+
+
+def iges_block(low, high, unit):
+    """IGES text of a block of six bilinear B-spline faces (entity 128); ``unit`` is its flag."""
+    (x0, y0, z0), (x1, y1, z1) = low, high
+    corners = np.array([[(x, y, z) for z in (z0, z1)] for y in (y0, y1) for x in (x0, x1)])
+    a, b, c, d = corners[0], corners[1], corners[2], corners[3]
+    faces = [
+        (a[0], b[0], c[0], d[0]),
+        (a[1], b[1], c[1], d[1]),
+        (a[0], b[0], a[1], b[1]),
+        (c[0], d[0], c[1], d[1]),
+        (a[0], c[0], a[1], c[1]),
+        (b[0], d[0], b[1], d[1]),
+    ]
+    start = [f"{'A block of six faces':72}S{1:7}"]
+    fields = "1H,,1H;,4Hsole,8Hsole.igs,4Hhand,4Hhand,32,38,6,308,15,4Hsole,1.,"
+    fields += (
+        f"{unit},2HCM,1,0.01,15H20260101.000000,1E-6,100.,4Hhand,4Hhand,11,0,15H20260101.000000;"
+    )
+    glob = [fields[n : n + 72] for n in range(0, len(fields), 72)]
+    glob = [f"{line:72}G{n:7}" for n, line in enumerate(glob, start=1)]
+    directory, parameters = [], []
+    for face in faces:
+        points = ",".join(f"{value:.6f}" for corner in face for value in corner)
+        text = f"128,1,1,1,1,0,0,1,0,0,0.,0.,1.,1.,0.,0.,1.,1.,1.,1.,1.,1.,{points},0.,1.,0.,1.;"
+        rows, row = [], ""
+        for part in re.findall(r"[^,;]*[,;]", text):
+            if len(row) + len(part) > 64:
+                rows.append(row)
+                row = ""
+            row += part
+        rows.append(row)
+        entry, first = len(directory) + 1, len(parameters) + 1
+        numbers = [128, first, 0, 0, 0, 0, 0, 0]
+        directory.append("".join(f"{n:8}" for n in numbers) + f"{'00000000':>8}D{entry:7}")
+        numbers = [128, 0, 0, len(rows), 0]
+        tail = f"{'':8}{'':8}{'':8}{0:8}"
+        directory.append("".join(f"{n:8}" for n in numbers) + tail + f"D{entry + 1:7}")
+        for row in rows:
+            parameters.append(f"{row:64}{entry:8}P{len(parameters) + 1:7}")
+    end = f"S{len(start):7}G{len(glob):7}D{len(directory):7}P{len(parameters):7}"
+    lines = [*start, *glob, *directory, *parameters, f"{end:72}T{1:7}"]
+    return "\n".join(lines) + "\n"

@@ -27,7 +27,12 @@ def outsole() -> None:
 
 
 def inspect(
-    file: Annotated[Path, typer.Argument(help="STEP, IGES, BREP, 3DM, STL, OBJ, PLY, OFF, GLB or 3MF.", show_default=False)],
+    file: Annotated[
+        Path,
+        typer.Argument(
+            help="STEP, IGES, BREP, 3DM, STL, OBJ, PLY, OFF, GLB or 3MF.", show_default=False
+        ),
+    ],
     unit: Annotated[str, typer.Option(help="auto, mm, cm, m or inch.")] = "auto",
     down: Direction = "auto",
     forward: Direction = "auto",

@@ -35,7 +35,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _PATCH, _CLOSED = "#e3c16f", "#9a86b8"
-_UNITS = {"area": "_m2", "length": "_m", "width": "_m", "depth": "_m", "circle": "_m"}
+_UNITS = {
+    "area": "_m2",
+    "length": "_m",
+    "width": "_m",
+    "depth": "_m",
+    "circle": "_m",
+    "draft": "_rad",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +85,9 @@ class OutsoleInspection(Presentable):
             ("Land", f"{m.land_ratio:.0%} of the plan area"),
             ("Channel depth, median", spread(m.channel_depth, 1e3, "mm")),
             ("Channel width, median", spread(m.channel_width, 1e3, "mm")),
+            ("Draft of the walls", "none" if m.draft is None else f"{np.degrees(m.draft):.1f}°"),
             ("Channels open to the rim", "none" if drained is None else f"{drained:.0%} of area"),
+            ("Sipes", f"{m.sipe_count}, {m.sipe_length * 1e3:.3g} mm in all"),
             ("Lugs", f"{m.lug_count}"),
             ("Lug area, median", spread(m.lug_area, 1e6, "mm²")),
             ("Largest untreaded patch", f"{m.patch_area * 1e6:.4g} mm²"),

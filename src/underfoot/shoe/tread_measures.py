@@ -31,7 +31,15 @@ NOISE_FACTOR = 6.0
 """A channel is this many standard deviations of the noise deep: the base lies 3 below the land."""
 WIDEST_CHANNEL = 50e-3
 """A hollow wider than this is an arch: no land, but no channel with depth and width, m."""
+_ROUNDED = (0.25, 3.0)  # slope of a rounded edge: no floor of a channel, no wall
+_SLOPE_REACH = 0.5e-3  # m
 _MOST_NOISE = 0.1e-3  # m: to begin with
+WIDEST_SIPE = 1.2e-3
+"""A channel narrower than this is a slit, m."""
+SHORTEST_SIPE = 3e-3
+"""Of a slit that counts, m."""
+SHALLOWEST_WALL = 1.2e-3
+"""Depth of a channel whose walls show their draft, m."""
 SMALLEST_PIECE = 1e-6
 """A channel or lug of less area is a speck, m^2."""
 LUG_REACH = 10e-3
@@ -68,10 +76,11 @@ def tread_map(
     """
     inside = np.isfinite(height)
     above = height - rolled_base(height, spacing, ROLLING_RADIUS, STEEPEST_RIM)
+    rounded = _rounded_rim(height, spacing)
     noise = min(height_noise(height), _MOST_NOISE)
     for _ in range(2):  # walls count as noise until the land is known
         level = max(SHALLOWEST_CHANNEL, NOISE_FACTOR * noise)
-        channel = inside & (np.where(inside, above, 0.0) > level)
+        channel = inside & (np.where(inside, above, 0.0) > level) & ~(rounded <= level)
         noise = height_noise(np.where(channel, np.nan, height), lag)
     if channels is not None:
         channel |= inside & channels
@@ -89,6 +98,23 @@ def tread_map(
     floor = floor_depth(depth, channel)
     lugs = np.where(land & ~far, floor[nearest_true(channel)], 0.0)
     return TreadMap(land, lugs, base, level, noise)
+
+
+def _rounded_rim(height: Array, spacing: float) -> Array:
+    """Return the height over what a paraboloid that follows steep rims reaches; inf elsewhere.
+
+    Steep and no wall: a slope of 0.25 to 3. A rounded edge is shape of the sole, the level floor
+    of a channel that opens at the rim is not.
+    """
+    inside = np.isfinite(height)
+    steps = max(1, round(_SLOPE_REACH / spacing))
+    filled = np.pad(height[nearest_true(inside)], steps, mode="edge")
+    along = filled[2 * steps :, steps:-steps] - filled[: -2 * steps, steps:-steps]
+    across = filled[steps:-steps, 2 * steps :] - filled[steps:-steps, : -2 * steps]
+    slope = np.hypot(along, across) / (2 * steps * spacing)
+    above = height - rolled_base(height, spacing, ROLLING_RADIUS, (_ROUNDED[1], _ROUNDED[1]))
+    steep = inside & (slope > _ROUNDED[0]) & (slope < _ROUNDED[1])
+    return np.where(steep, above, np.inf)
 
 
 def height_noise(height: Array, lag: int = 1) -> float:
@@ -118,7 +144,10 @@ class TreadMeasures:
             the land around; arches (hollows wider than 50 mm) left out, as in the width.
         channel_width: The same of the local width: the largest disc in the channel that covers a
             place.
+        draft: Mean angle of the channels' walls from upright, rad; walls of 1.2 mm and more.
         drained_share: Of the channel area: connected through channels to the rim of the plan form.
+        sipe_count, sipe_length: Slits narrower than 1.2 mm and longer than 3 mm (parts of them
+            between wider channels count each); their length in all.
         lug_count: Pieces of land of 1 mm^2 and more, not connected by an edge of a cell.
         lug_area: 10, 50 and 90 % of the area of these pieces (each counts once).
         patch_area, patch_length, patch_width, patch_circle: Of the largest piece of land: its area,
@@ -132,7 +161,10 @@ class TreadMeasures:
     land_ratio: float
     channel_depth: tuple[float, float, float] | None
     channel_width: tuple[float, float, float] | None
+    draft: float | None
     drained_share: float | None
+    sipe_count: int
+    sipe_length: float
     lug_count: int
     lug_area: tuple[float, float, float]
     patch_area: float
@@ -146,12 +178,16 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
     """Return the measures of a sole's tread; docs/guide/outsole_files.md has each formula."""
     inside, land, spacing = surface.inside, surface.land, surface.spacing
     channel = inside & ~land
-    depth = width = drained = None
+    depth = width = drained = draft = None
+    sipe_count, sipe_length = 0, 0.0
     if channel.any():
         widths = local_width(channel, spacing)
         counted = channel & (widths <= WIDEST_CHANNEL)
         counted = counted if counted.any() else channel
-        depth = _shares(floor_depth(channel_depth(surface), channel)[counted])
+        floor = floor_depth(channel_depth(surface), channel)
+        depth = _shares(floor[counted])
+        draft = _draft(surface, floor, counted)
+        sipe_count, sipe_length = _sipes(channel, widths, spacing)
         width = _shares(widths[counted])
         drained = float(np.count_nonzero(draining(surface)) / np.count_nonzero(channel))
     areas = np.bincount(pieces(land)[0].ravel())[1:].astype(np.float64) * spacing**2
@@ -171,7 +207,10 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
         land_ratio=surface.land_ratio,
         channel_depth=depth,
         channel_width=width,
+        draft=draft,
         drained_share=drained,
+        sipe_count=sipe_count,
+        sipe_length=sipe_length,
         lug_count=int(lugs.size),
         lug_area=_shares(lugs),
         patch_area=float(areas.max()),
@@ -180,6 +219,47 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
         patch_circle=circle(patch),
         free_circle=circle(land),
     )
+
+
+def _draft(surface: SoleSurface, floor: Array, counted: Mask) -> float | None:
+    """Return the mean angle of the walls from upright, rad; None without walls deep enough.
+
+    tan = A / (P D / 2): A the area of cells at 25 to 75 % of the channel's depth, P the length of
+    the edges between land and channel, D the mean depth: points on a wall are as many as its run.
+    P by counting crossings in four directions (Cauchy and Crofton).
+    """
+    walled = counted & (floor >= SHALLOWEST_WALL)
+    land, spacing = surface.land, surface.spacing
+    if not walled.any():
+        return None
+    share = np.where(walled, channel_depth(surface) / np.where(walled, floor, 1.0), 0.0)
+    area = np.count_nonzero((share > 0.25) & (share < 0.75)) * spacing**2
+    crossings = 0.0
+    for (a, b), apart in (((1, 0), 1.0), ((0, 1), 1.0), ((1, 1), 0.5**0.5), ((1, -1), 0.5**0.5)):
+        for step in (1, -1):
+            beside = np.roll(walled, (step * a, step * b), (0, 1))
+            crossings += apart * np.count_nonzero(land & beside)
+    length = math.pi / 8 * crossings * spacing
+    if length == 0:
+        return None
+    return math.atan(area / (length * 0.5 * float(floor[walled].mean())))
+
+
+def _sipes(channel: Mask, widths: Array, spacing: float) -> tuple[int, float]:
+    """Return how many slits there are and their length in all, m."""
+    from scipy.ndimage import find_objects, sum_labels
+
+    numbers, count = pieces(channel & (widths < WIDEST_SIPE), diagonal=True)
+    if count == 0:
+        return 0, 0.0
+    extent = np.array(
+        [math.hypot(*(s.stop - s.start for s in box)) for box in find_objects(numbers)]
+    )
+    own = extent * spacing >= SHORTEST_SIPE
+    # area over width: a slit may be bent
+    inverse = np.where(numbers > 0, spacing**2 / np.maximum(widths, spacing), 0.0)
+    lengths = np.asarray(sum_labels(inverse, numbers, np.arange(1, count + 1)))
+    return int(np.count_nonzero(own)), float(lengths[own].sum())
 
 
 def largest_patch(surface: SoleSurface) -> Mask:

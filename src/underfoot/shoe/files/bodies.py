@@ -29,6 +29,7 @@ _STRAY_SHARE = 1e-3  # of the corners
 _BIG = (0.5, 0.4)  # of the longest body's extent along and across
 _SLENDER = 3.0  # height over width: a support, no lug
 _SAME = 0.03  # relative difference of the sizes of a pair
+_PARTED = 0.3  # of two bodies' heights that don't overlap: less is bodies that cross
 _SHEET = 1e-3  # of the length: a body thinner than it is a surface
 _CLEAR, _CLEARER = 0.03, 1.5  # share of channels that tells the ground's side, and its ratio
 _COARSE = 300  # cells along a body
@@ -266,7 +267,7 @@ def _without_stack(
         return keep, None, []
     part = {axis: _parting(bodies.low[big, axis], bodies.high[big, axis]) for axis in (1, 2)}
     axis = max(part, key=lambda name: part[name])
-    if part[axis] <= 0:
+    if part[axis] < _PARTED:
         return keep, None, []
     middle = (bodies.low + bodies.high)[:, axis] / 2
     number = np.flatnonzero(big)

@@ -92,8 +92,7 @@ def stated_unit(path: Path, kind: str) -> float | None:
     data = path.read_bytes()
     if kind == "IGES":
         lines = [line[:72] for line in data.splitlines() if line[72:73] == b"G"]
-        fields = re.sub(rb"\d+H[^,;]*", b"", b"".join(lines)).split(b",")
-        flag = fields[13].strip() if len(fields) > 13 else b""
+        flag = _iges_field(b"".join(lines), 13)
         return _IGES_UNITS.get(int(flag)) if flag.isdigit() else None
     if kind == "BREP":
         return None
@@ -111,6 +110,21 @@ def stated_unit(path: Path, kind: str) -> float | None:
             return float(factor[1]) * (_si_length(base[1]) or 1.0) if base else None
     simple = re.search(rb"=\((?=[^;]*LENGTH_UNIT\(\))([^;]*SI_UNIT[^;]*);", text)
     return _si_length(simple[1]) if simple else None
+
+
+def _iges_field(text: bytes, number: int) -> bytes:
+    """Return a field of an IGES section; texts are written as their length, H and characters."""
+    place = 0
+    for _ in range(number + 1):
+        written = re.compile(rb"\s*(\d+)H").match(text, place)
+        begin = place
+        if written:
+            place = written.end() + int(written[1])
+        end = re.compile(rb"[,;]").search(text, place)
+        if end is None:
+            return b""
+        place = end.end()
+    return text[begin : place - 1].strip()
 
 
 def _si_length(line: bytes) -> float | None:

@@ -8,6 +8,7 @@ from underfoot.core import DataError
 from underfoot.core.arrays import Array
 
 from .._kernels.regions import without_holes
+from .view import Soundness
 
 NARROWEST, WIDEST = 0.020, 0.150
 """Width of a sole or a piece of one, m."""
@@ -58,14 +59,29 @@ def check_sole(shape: Shape, where: str) -> None:
     """
     reason = _reason(shape)
     if reason:
-        raise DataError(
-            f"this is no sole: {reason}",
-            where=where,
-            allowed=f"a sole or a piece of one, {NARROWEST * 1e3:.0f} to {WIDEST * 1e3:.0f} mm "
-            "wide, that stands on a floor",
-            remedy="Check that the file holds the outsole, its unit and where the ground is "
-            "(--unit, --down)",
-        )
+        raise _no_sole(reason, where)
+
+
+def check_surface(sound: Soundness, where: str) -> None:
+    """Refuse loose triangles.
+
+    Raises:
+        DataError: No two faces share an edge.
+    """
+    if sound.open_edges == 3 * (sound.faces - sound.degenerate - sound.not_finite):
+        several = "no two of its faces share an edge, they make no surface"
+        raise _no_sole(several if sound.faces > 1 else "it is one triangle", where)
+
+
+def _no_sole(reason: str, where: str) -> DataError:
+    return DataError(
+        f"this is no sole: {reason}",
+        where=where,
+        allowed=f"a sole or a piece of one, {NARROWEST * 1e3:.0f} to {WIDEST * 1e3:.0f} mm wide, "
+        "that stands on a floor",
+        remedy="Check that the file holds the outsole, its unit and where the ground is (--unit, "
+        "--down)",
+    )
 
 
 def _reason(shape: Shape) -> str | None:

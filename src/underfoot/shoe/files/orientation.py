@@ -51,18 +51,20 @@ def box_axes(
 ) -> Array:
     """Return rows (long, across, thin), a right-handed frame; signs still mean nothing.
 
-    Thin: the direction in which the area spreads least (second moments of the triangles), taken
+    Thin: the direction in which the area spreads least (second moments of the triangles, A / 12
+    (sum of the corners' squares + 9 times their mean's)), taken
     as the file's axis when within 20 degrees of it. Long and across: the smallest rectangle around
     the plan form, or the file's axes when that rectangle is less than 10 % larger. ``down``, where
     the file's bodies tell it, is thin as it stands.
     """
-    centres, weights = _sample(triangles)
+    corners, weights = _sample(triangles)
     if settings.down in DIRECTIONS:
         thin = unit_vector(settings.down)
     elif down is not None:
         thin = down
     else:
-        moments = (centres * weights[:, None]).T @ centres / max(weights.sum(), 1e-300)
+        points = np.concatenate([corners, 3 * corners.mean(axis=1, keepdims=True)], axis=1)
+        moments = np.einsum("n,nki,nkj->ij", weights, points, points)
         _, vectors = np.linalg.eigh(moments)
         thin = _snapped(np.asarray(vectors[:, 0], dtype=np.float64))
         if settings.forward in DIRECTIONS:
@@ -74,17 +76,18 @@ def box_axes(
         along = along - (along @ thin) * thin
         along /= np.linalg.norm(along)
         return np.stack([along, np.cross(thin, along), thin])
-    along = _long_axis(centres, thin)
+    along = _long_axis(corners.reshape(-1, 3), thin)
     return np.stack([along, np.cross(thin, along), thin])
 
 
 def _sample(triangles: NDArray[np.float32]) -> tuple[Array, Array]:
+    """Return corners (n, 3, 3) about the centroid, and areas."""
     chosen = triangles[:: max(1, triangles.shape[0] // _SAMPLE)].astype(np.float64)
     chosen = chosen[np.isfinite(chosen).all(axis=(1, 2))]
     sides = chosen[:, 1:] - chosen[:, :1]
-    weights = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
-    centres = chosen.mean(axis=1)
-    return centres - np.average(centres, axis=0, weights=np.maximum(weights, 1e-30)), weights
+    areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    centre = np.average(chosen.mean(axis=1), axis=0, weights=np.maximum(areas, 1e-30))
+    return chosen - centre, areas
 
 
 def _snapped(vector: Array) -> Array:
@@ -96,7 +99,7 @@ def _snapped(vector: Array) -> Array:
     return axis_vector
 
 
-def _long_axis(centres: Array, thin: Array) -> Array:
+def _long_axis(corners: Array, thin: Array) -> Array:
     """Return the longer side of the smallest rectangle around the points seen along ``thin``."""
     from scipy.spatial import ConvexHull, QhullError
 
@@ -104,7 +107,7 @@ def _long_axis(centres: Array, thin: Array) -> Array:
     u = start - (start @ thin) * thin
     u /= np.linalg.norm(u)
     v = np.cross(thin, u)
-    points = np.asarray(np.column_stack([centres @ u, centres @ v]), dtype=np.float64)
+    points = np.asarray(np.column_stack([corners @ u, corners @ v]), dtype=np.float64)
     try:
         hull = points[ConvexHull(points).vertices]
     except (QhullError, ValueError):  # on a line, or too few: any frame will do for a refusal
@@ -264,6 +267,8 @@ def foot_of(plan: Mask, spacing: float, settings: FileSettings) -> tuple[str, st
 def standing_share(height: Array, spacing: float) -> float:
     """Return the share of the plan form within 2 mm of the resting plane, gaps bridged."""
     inside = np.isfinite(height)
+    if not inside.any():
+        return 0.0
     a, b, c = resting_plane(height, spacing)
     x, y = (np.arange(count) * spacing for count in height.shape)
     base = rolled_base(height, spacing, ROLLING_RADIUS, STEEPEST_RIM)

@@ -16,7 +16,7 @@ from . import orientation
 from .bodies import found_outsole
 from .cleaning import cleaned, plan_outline, without_ledges
 from .mesh import Mesh
-from .no_sole import TALL, Shape, check_sole
+from .no_sole import TALL, Shape, check_sole, check_surface
 from .read import read_mesh
 from .settings import DIRECTIONS, HEEL, SHARES, FileSettings, length_unit
 from .view import Soundness, View, extents, soundness, view
@@ -88,6 +88,7 @@ def outsole_from_mesh(
     chosen = settings or FileSettings()
     mesh = replace(mesh, triangles=np.ascontiguousarray(mesh.triangles, dtype=np.float32))
     sound = soundness(mesh, where)
+    check_surface(sound, where)
     found = found_outsole(mesh, chosen, where)
     remarks = [*mesh.remarks, *found.remarks]
     if len(found.meshes) == 1:
@@ -336,8 +337,8 @@ def _region(
 def _surface(height: Array, spacing: float, name: str, lag: int) -> tuple[SoleSurface, list[str]]:
     tread = tread_map(height, spacing, lag=lag)
     lugs = tread.tread_depth[tread.tread_depth > 0]
-    deep = float(np.percentile(lugs, 90)) if lugs.size else 0.0
-    height, cut_open, remarks = without_ledges(height, tread.land, spacing, deep)
+    deep = float(np.median(lugs)) if lugs.size else 0.0
+    height, cut_open, remarks = without_ledges(height, tread, spacing, deep)
     if remarks or cut_open.any() or not np.isfinite(height[tread.land]).all():
         tread = tread_map(height, spacing, channels=cut_open, lag=lag)
     inside = np.isfinite(height)
