@@ -71,6 +71,23 @@ def test_either_shoe_of_a_pair_can_be_chosen(tmp_path):
         read(straight)
 
 
+def test_draft_is_that_of_the_walls(tmp_path):
+    for name, degrees in (("draft of 8 degrees", 8.0), ("drafted piece 70 x 66", 8.0),
+                          ("hexagons, flat", 0.0)):  # fmt: skip
+        found = outsole_from_file(TRIALS[name].write(tmp_path), HALF)
+        assert np.degrees(found.draft) == pytest.approx(degrees, abs=0.2)
+
+
+def test_sipes_are_counted(tmp_path):
+    def slit(x, y):
+        return 3e-3 * ((np.mod(x, 10e-3) > 9.5e-3) & (np.abs(y) < 15e-3))
+
+    found = read(triangles(heel_body(slit, step=0.25e-3)), FileSettings(spacing=0.25e-3))
+    measures = tread_measures(found.surface)
+    assert measures.sipe_count == 5
+    assert measures.sipe_length == pytest.approx(5 * 30e-3, rel=0.1)
+
+
 def test_noise_of_a_scan_is_that_of_its_points():
     body = sole_body(lambda x, y: np.zeros_like(x), length=0.28, step=0.7e-3)
     vertices, faces = body
@@ -269,7 +286,7 @@ def test_layers_of_an_assembly_tell_where_the_ground_is(tmp_path):
     path = made.obj_groups({"outsole": sole * [1, 1, 0.9], **bodies})(tmp_path)
     found = outsole_from_file(path, HALF)
     assert found.down == "-z"
-    assert "Ground side: away from the other bodies" in said(found)
+    assert "Ground side: away from the rest of the file" in said(found)
     assert "Assumed: the ground side" not in said(found)
 
 

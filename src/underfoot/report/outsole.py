@@ -77,7 +77,7 @@ class OutsoleInspection(Presentable):
             return f"{middle:.3g} {unit}  (10 to 90 %: {low:.3g} to {high:.3g})"
 
         m = self.measures
-        drained = m.drained_share
+        drained, draft = m.drained_share, self.outsole.draft
         patch = f"{m.patch_length * 1e3:.3g} x {m.patch_width * 1e3:.3g} mm"
         rows = [
             ("Length x width", f"{m.length * 1e3:.4g} x {m.width * 1e3:.4g} mm"),
@@ -85,7 +85,7 @@ class OutsoleInspection(Presentable):
             ("Land", f"{m.land_ratio:.0%} of the plan area"),
             ("Channel depth, median", spread(m.channel_depth, 1e3, "mm")),
             ("Channel width, median", spread(m.channel_width, 1e3, "mm")),
-            ("Draft of the walls", "none" if m.draft is None else f"{np.degrees(m.draft):.1f}°"),
+            ("Draft of the walls", "none" if draft is None else f"{np.degrees(draft):.1f}°"),
             ("Channels open to the rim", "none" if drained is None else f"{drained:.0%} of area"),
             ("Sipes", f"{m.sipe_count}, {m.sipe_length * 1e3:.3g} mm in all"),
             ("Lugs", f"{m.lug_count}"),
@@ -115,6 +115,7 @@ class OutsoleInspection(Presentable):
             "foot": outsole.foot or None,
             "whole_length": outsole.whole_length,
             "thickness": outsole.thickness,
+            "draft": outsole.draft,
             "mesh": asdict(outsole.soundness),
             "measures": asdict(self.measures),
             "remarks": list(outsole.surface.remarks),

@@ -33,13 +33,13 @@ WIDEST_CHANNEL = 50e-3
 """A hollow wider than this is an arch: no land, but no channel with depth and width, m."""
 _ROUNDED = (0.25, 3.0)  # slope of a rounded edge: no floor of a channel, no wall
 _SLOPE_REACH = 0.5e-3  # m
+_GRAZED = 1e-3  # m from the rim
+_FINE = 0.4e-3  # m
 _MOST_NOISE = 0.1e-3  # m: to begin with
 WIDEST_SIPE = 1.2e-3
 """A channel narrower than this is a slit, m."""
 SHORTEST_SIPE = 3e-3
 """Of a slit that counts, m."""
-SHALLOWEST_WALL = 1.2e-3
-"""Depth of a channel whose walls show their draft, m."""
 SMALLEST_PIECE = 1e-6
 """A channel or lug of less area is a speck, m^2."""
 LUG_REACH = 10e-3
@@ -88,6 +88,10 @@ def tread_map(
     channel = without_specks(channel, cells)
     channel |= inside & ~channel & ~without_specks(inside & ~channel, cells)
     land = inside & ~channel
+    # what a tilted floor grazes along the rim alone is no land
+    numbers, _ = pieces(land)
+    land &= np.isin(numbers, numbers[land & ~rim(inside, max(1, round(_GRAZED / spacing)))])
+    channel = inside & ~land
     if not land.any():
         land, channel = inside.copy(), np.zeros_like(inside)
     base = carried_on(height, land)
@@ -144,7 +148,6 @@ class TreadMeasures:
             the land around; arches (hollows wider than 50 mm) left out, as in the width.
         channel_width: The same of the local width: the largest disc in the channel that covers a
             place.
-        draft: Mean angle of the channels' walls from upright, rad; walls of 1.2 mm and more.
         drained_share: Of the channel area: connected through channels to the rim of the plan form.
         sipe_count, sipe_length: Slits narrower than 1.2 mm and longer than 3 mm (parts of them
             between wider channels count each); their length in all.
@@ -161,7 +164,6 @@ class TreadMeasures:
     land_ratio: float
     channel_depth: tuple[float, float, float] | None
     channel_width: tuple[float, float, float] | None
-    draft: float | None
     drained_share: float | None
     sipe_count: int
     sipe_length: float
@@ -178,15 +180,17 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
     """Return the measures of a sole's tread; docs/guide/outsole_files.md has each formula."""
     inside, land, spacing = surface.inside, surface.land, surface.spacing
     channel = inside & ~land
-    depth = width = drained = draft = None
+    depth = width = drained = None
     sipe_count, sipe_length = 0, 0.0
     if channel.any():
-        widths = local_width(channel, spacing)
+        # a coarse map is halved: in cells across, widths come in steps of one
+        finer = 2 if spacing > _FINE else 1
+        cells = np.repeat(np.repeat(channel, finer, axis=0), finer, axis=1)
+        widths = local_width(cells, spacing / finer)[::finer, ::finer]
         counted = channel & (widths <= WIDEST_CHANNEL)
         counted = counted if counted.any() else channel
         floor = floor_depth(channel_depth(surface), channel)
         depth = _shares(floor[counted])
-        draft = _draft(surface, floor, counted)
         sipe_count, sipe_length = _sipes(channel, widths, spacing)
         width = _shares(widths[counted])
         drained = float(np.count_nonzero(draining(surface)) / np.count_nonzero(channel))
@@ -207,7 +211,6 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
         land_ratio=surface.land_ratio,
         channel_depth=depth,
         channel_width=width,
-        draft=draft,
         drained_share=drained,
         sipe_count=sipe_count,
         sipe_length=sipe_length,
@@ -219,30 +222,6 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
         patch_circle=circle(patch),
         free_circle=circle(land),
     )
-
-
-def _draft(surface: SoleSurface, floor: Array, counted: Mask) -> float | None:
-    """Return the mean angle of the walls from upright, rad; None without walls deep enough.
-
-    tan = A / (P D / 2): A the area of cells at 25 to 75 % of the channel's depth, P the length of
-    the edges between land and channel, D the mean depth: points on a wall are as many as its run.
-    P by counting crossings in four directions (Cauchy and Crofton).
-    """
-    walled = counted & (floor >= SHALLOWEST_WALL)
-    land, spacing = surface.land, surface.spacing
-    if not walled.any():
-        return None
-    share = np.where(walled, channel_depth(surface) / np.where(walled, floor, 1.0), 0.0)
-    area = np.count_nonzero((share > 0.25) & (share < 0.75)) * spacing**2
-    crossings = 0.0
-    for (a, b), apart in (((1, 0), 1.0), ((0, 1), 1.0), ((1, 1), 0.5**0.5), ((1, -1), 0.5**0.5)):
-        for step in (1, -1):
-            beside = np.roll(walled, (step * a, step * b), (0, 1))
-            crossings += apart * np.count_nonzero(land & beside)
-    length = math.pi / 8 * crossings * spacing
-    if length == 0:
-        return None
-    return math.atan(area / (length * 0.5 * float(floor[walled].mean())))
 
 
 def _sipes(channel: Mask, widths: Array, spacing: float) -> tuple[int, float]:

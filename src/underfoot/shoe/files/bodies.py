@@ -82,14 +82,14 @@ def found_outsole(mesh: Mesh, settings: FileSettings, where: str) -> Found:
         DataError: A pair without a choice.
     """
     mesh, remarks = _without_strays(mesh)
-    mesh, floor_remarks = without_floor(mesh, settings)
+    mesh, away, floor_remarks = without_floor(mesh, settings)
     remarks += floor_remarks
     if mesh.body is None and mesh.triangles.shape[0] <= MOST_FACES:
         body, count = components(mesh.triangles)
         mesh = replace(mesh, body=body, bodies=("",) * count)
     if mesh.body is None or np.ptp(mesh.body) == 0:
         _refuse_unknown(mesh, settings, where)
-        return Found((mesh,), None, tuple(remarks))
+        return Found((mesh,), away, tuple(remarks))
     bodies = _measured(mesh)
     keep, told = _named(bodies, settings, where)
     remarks += told
@@ -105,7 +105,7 @@ def found_outsole(mesh: Mesh, settings: FileSettings, where: str) -> Found:
         remarks += told
     if down is None and others.any() and keep.any():
         down = _away(bodies, keep, others)
-    return Found((_part(mesh, keep),), down, tuple(remarks))
+    return Found((_part(mesh, keep),), away if down is None else down, tuple(remarks))
 
 
 def _part(mesh: Mesh, keep: Mask) -> Mesh:
@@ -149,6 +149,7 @@ def _measured(mesh: Mesh) -> _Bodies:
     low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
     np.minimum.at(low, mesh.body, along.min(axis=1))
     np.maximum.at(high, mesh.body, along.max(axis=1))
+    low, high = (np.where(np.isfinite(low), each, 0.0) for each in (low, high))  # empty bodies
     sides = along[:, 1:] - along[:, :1]
     areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) / 2
     area = np.bincount(mesh.body, areas, minlength=count)
@@ -205,11 +206,18 @@ def _listed(names: list[str]) -> str:
 
 
 def _without_supports(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[str]]:
-    """Return the bodies without slender ones that stand upright, and where those stand."""
+    """Return the bodies without slender ones that stand out upright, and where those stand."""
     size = bodies.size
     slender = keep & (size[:, 2] > _SLENDER * size[:, :2].max(axis=1))
     slender &= size[:, 0] < 0.1 * size[keep, 0].max()
-    if not slender.any() or (keep & ~slender).sum() == 0:
+    rest = keep & ~slender
+    if not slender.any() or not rest.any():
+        return keep, []
+    beyond = np.maximum(
+        bodies.low[rest, 2].min() - bodies.low[:, 2], bodies.high[:, 2] - bodies.high[rest, 2].max()
+    )
+    slender &= beyond > size[:, :2].max(axis=1)
+    if not slender.any():
         return keep, []
     first = int(np.flatnonzero(slender)[0])
     middle = (bodies.low[first] + bodies.high[first]) / 2 @ bodies.axes

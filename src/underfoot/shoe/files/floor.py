@@ -20,42 +20,48 @@ _LEAST = 1e-4  # of the length
 _SAMPLE = 400_000
 
 
-def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, list[str]]:
-    """Return the mesh without a floor plane, and what was seen of one.
+def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | None, list[str]]:
+    """Return the mesh without a floor plane, where the ground is, and what was seen of a plane.
 
     A floor plane: faces level with each other that reach beyond all else by 15 % both ways; it is
     cut, as an assumption. Where it reaches beyond by 1 % it is cut when ``cut_floor`` is set, and
-    hinted at else.
+    hinted at else. A scan hangs together with the table it lies on: then the ground side is the one
+    away from it (a direction in the file's axes, else None).
     """
     axes = box_axes(mesh.triangles, FileSettings())
     chosen = mesh.triangles[:: max(1, mesh.triangles.shape[0] // _SAMPLE)]
     plane = _plane(chosen, axes)
     if plane is None:
-        return mesh, []
+        return mesh, None, []
     level, spread, size, rest = plane
     beyond = (size / np.maximum(rest, 1e-30)).min()
     if beyond < _AS_WIDE:
-        return mesh, []
+        return mesh, None, []
     what = f"flat plane of {size[0]:.4g} x {size[1]:.4g}, larger than all else in the file"
     if beyond < _WIDER and not settings.cut_floor:
-        return mesh, [f"There is a {what}: if it is a floor, cut it with --cut-floor."]
+        return mesh, None, [f"There is a {what}: if it is a floor, cut it with --cut-floor."]
     heights = mesh.triangles @ axes[2].astype(np.float32)
     keep = (np.abs(heights - np.float32(level)) > spread).any(axis=1)
     if not keep.any():
-        return mesh, []
+        return mesh, None, []
     lost = " What of the sole lies in it is lost."
+    rest = heights[keep]
+    away = axes[2] * (1.0 if float(np.nanmean(rest)) > level else -1.0)
+    down: Array | None = away if settings.down == "auto" else None
     if mesh.triangles.shape[0] <= MOST_FACES:
         # a plane that hangs together with nothing else goes alone: the land may stand on it
         number, count = components(mesh.triangles)
         apart = np.bincount(number, keep, minlength=count)[number] == 0
         if np.count_nonzero(apart) > 0.5 * np.count_nonzero(~keep):
-            keep, lost = ~apart, ""
+            keep, lost, down = ~apart, "", None
     body = None if mesh.body is None else mesh.body[keep]
     chosen_words = "was cut as floor" if settings.cut_floor else "was taken as floor and cut"
     begin = "A" if settings.cut_floor else "Assumed: a"
-    return replace(mesh, triangles=mesh.triangles[keep], body=body), [
-        f"{begin} {what}, {chosen_words} ({np.count_nonzero(~keep)} faces).{lost}"
-    ]
+    return (
+        replace(mesh, triangles=mesh.triangles[keep], body=body),
+        down,
+        [f"{begin} {what}, {chosen_words} ({np.count_nonzero(~keep)} faces).{lost}"],
+    )
 
 
 def _plane(triangles: Array, axes: Array) -> tuple[float, float, Array, Array] | None:

@@ -15,6 +15,7 @@ from ..tread_measures import WIDEST_CHANNEL, arch_area, height_noise, tread_map
 from . import orientation
 from .bodies import found_outsole
 from .cleaning import cleaned, plan_outline, without_ledges
+from .draft import wall_draft
 from .mesh import Mesh
 from .no_sole import TALL, Shape, check_sole, check_surface
 from .read import read_mesh
@@ -46,6 +47,7 @@ class FileOutsole:
         thickness: Median distance of both sides of the file's body over the land, m; None for a
             surface without thickness.
         whole_length: Of the sole before the region was cut, m.
+        draft: Median angle of the channels' walls from upright, rad; None without walls.
     """
 
     surface: SoleSurface
@@ -58,6 +60,7 @@ class FileOutsole:
     soundness: Soundness
     thickness: float | None
     whole_length: float
+    draft: float | None
 
 
 def outsole_from_file(path: Path | str, settings: FileSettings | None = None) -> FileOutsole:
@@ -130,6 +133,7 @@ def _outsole(
     axes, side_remarks = _sides(mesh, axes, unit, chosen, down)
     seen, axes, level_remarks = _level_view(mesh, axes, chosen.spacing)
     height, repaired = cleaned(seen.lowest, seen.spacing)
+    draft = wall_draft(mesh.triangles, seen, height)
     rows, columns = (np.nonzero(np.isfinite(height).any(axis=n))[0] for n in (1, 0))
     part = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
     height = height[part]
@@ -180,6 +184,7 @@ def _outsole(
         soundness=sound,
         thickness=body if body > _SHEET else None,
         whole_length=whole_length,
+        draft=draft,
     )
 
 
@@ -199,7 +204,7 @@ def _sides(
     low, high = extents(mesh.triangles, axes * unit)
     ground = None
     if down is not None:
-        ground = orientation.Choice(-1, "Ground side: away from the other bodies of the file.")
+        ground = orientation.Choice(-1, "Ground side: away from the rest of the file.")
     elif chosen.down == "auto" and high[2] - low[2] > TALL * (high[1] - low[1]):
         axes, ground = orientation.standing_axes(mesh.triangles, axes, unit)
         low, high = extents(mesh.triangles, axes * unit)
@@ -258,8 +263,8 @@ def _level_view(mesh: Mesh, axes: Array, spacing: float) -> tuple[View, Array, l
     a, b, c = orientation.resting_plane(height, spacing)
     centre = [(n - 1) / 2 * spacing for n in height.shape]
     level = a * centre[0] + b * centre[1] + c
-    lifted = View(
-        seen.axes, seen.first, spacing, seen.lowest - level, seen.highest - level, seen.facing
+    lifted = replace(
+        seen, lowest=seen.lowest - level, highest=seen.highest - level, level=float(level)
     )
     return lifted, axes, remarks
 

@@ -21,6 +21,8 @@ _MOST_CELLS = 60_000_000
 class View:
     """Lowest and highest surface over cells of a plane, in the frame ``axes`` (rows, m per unit).
 
+    Heights count from ``level`` (m) of that frame.
+
     ``facing`` is -1 where the lowest surface has its normal down, 1 up, 0 where there is none.
     """
 
@@ -30,6 +32,7 @@ class View:
     lowest: Array
     highest: Array
     facing: NDArray[np.int8]
+    level: float = 0.0
 
     @property
     def covered(self) -> Mask:
