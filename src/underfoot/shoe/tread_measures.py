@@ -33,7 +33,7 @@ WIDEST_CHANNEL = 50e-3
 """A hollow wider than this is an arch: no land, but no channel with depth and width, m."""
 _ROUNDED = (0.25, 3.0)  # slope of a rounded edge: no floor of a channel, no wall
 _SLOPE_REACH = 0.5e-3  # m
-_GRAZED = 1e-3  # m from the rim
+_GRAZED = (2e-3, 0.12)  # m from the rim, slope of the floor there
 _FINE = 0.4e-3  # m
 _MOST_NOISE = 0.1e-3  # m: to begin with
 WIDEST_SIPE = 1.2e-3
@@ -75,7 +75,8 @@ def tread_map(
         lag: Cells between heights that don't share noise: the scan's distance of points.
     """
     inside = np.isfinite(height)
-    above = height - rolled_base(height, spacing, ROLLING_RADIUS, STEEPEST_RIM)
+    rolled = rolled_base(height, spacing, ROLLING_RADIUS, STEEPEST_RIM)
+    above = height - rolled
     rounded = _rounded_rim(height, spacing)
     noise = min(height_noise(height), _MOST_NOISE)
     for _ in range(2):  # walls count as noise until the land is known
@@ -88,9 +89,14 @@ def tread_map(
     channel = without_specks(channel, cells)
     channel |= inside & ~channel & ~without_specks(inside & ~channel, cells)
     land = inside & ~channel
-    # what a tilted floor grazes along the rim alone is no land
+    # what only a tilted floor grazes, along the rim, is no land
     numbers, _ = pieces(land)
-    land &= np.isin(numbers, numbers[land & ~rim(inside, max(1, round(_GRAZED / spacing)))])
+    deeper = numbers[land & ~rim(inside, max(1, round(_GRAZED[0] / spacing)))]
+    steep = _slope(rolled, spacing) > _GRAZED[1]
+    steepness = np.bincount(numbers.ravel(), steep.ravel()) / np.maximum(
+        np.bincount(numbers.ravel()), 1
+    )
+    land &= np.isin(numbers, deeper) | (steepness[numbers] < 0.5)
     channel = inside & ~land
     if not land.any():
         land, channel = inside.copy(), np.zeros_like(inside)
@@ -111,14 +117,19 @@ def _rounded_rim(height: Array, spacing: float) -> Array:
     of a channel that opens at the rim is not.
     """
     inside = np.isfinite(height)
-    steps = max(1, round(_SLOPE_REACH / spacing))
-    filled = np.pad(height[nearest_true(inside)], steps, mode="edge")
-    along = filled[2 * steps :, steps:-steps] - filled[: -2 * steps, steps:-steps]
-    across = filled[steps:-steps, 2 * steps :] - filled[steps:-steps, : -2 * steps]
-    slope = np.hypot(along, across) / (2 * steps * spacing)
+    slope = _slope(height, spacing)
     above = height - rolled_base(height, spacing, ROLLING_RADIUS, (_ROUNDED[1], _ROUNDED[1]))
     steep = inside & (slope > _ROUNDED[0]) & (slope < _ROUNDED[1])
     return np.where(steep, above, np.inf)
+
+
+def _slope(height: Array, spacing: float) -> Array:
+    """Return the slope over 1 mm, carried on beyond the plan form."""
+    steps = max(1, round(_SLOPE_REACH / spacing))
+    filled = np.pad(height[nearest_true(np.isfinite(height))], steps, mode="edge")
+    along = filled[2 * steps :, steps:-steps] - filled[: -2 * steps, steps:-steps]
+    across = filled[steps:-steps, 2 * steps :] - filled[steps:-steps, : -2 * steps]
+    return np.hypot(along, across) / (2 * steps * spacing)
 
 
 def height_noise(height: Array, lag: int = 1) -> float:
