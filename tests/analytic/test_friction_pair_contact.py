@@ -7,23 +7,24 @@ from underfoot.calibrate.corpus import Condition, Reading, Span
 from underfoot.calibrate.pair_law import fitted, law_named, scored
 from underfoot.friction.pair_contact import PairConstants, contact_terms
 
-ONE = PairConstants(*(np.array([value]) for value in (0.10, 0.08, 0.35, 8e-4, 1.2, 0.15)))
+ONE = PairConstants(*(np.array([value]) for value in (0.10, 0.08, 0.35, 8e-4, 0.8, 1.2, 0.15)))
 PAIR = {"viscosity": 5e-3, "speed": 0.3, "sole_rq": 8e-6, "floor_rq": 2e-6, "shore_a": 60.0}
 
 
-def parts(numbers, oil=False):
-    film, hysteresis, dry, kappa = contact_terms(ONE, numbers, oil=oil)
+def parts(numbers, family="aqueous"):
+    film, hysteresis, dry, kappa = contact_terms(ONE, numbers, family=family)
     return film, hysteresis, dry * np.exp(-numbers["viscosity"] * abs(numbers["speed"]) / kappa)
 
 
-def cof(oil=False, **changes):
-    return sum(parts({**PAIR, **changes}, oil)).item()
+def cof(family="aqueous", **changes):
+    return sum(parts({**PAIR, **changes}, family)).item()
 
 
 def test_limits_of_drag():
     assert cof(speed=0.0) == pytest.approx(0.10 + 0.025 + 0.35)
     assert cof(speed=1e6) == pytest.approx(0.10 + 0.025)
-    assert cof(speed=1e6, oil=True) == pytest.approx(0.08 + 0.025)
+    assert cof(speed=1e6, family="oil") == pytest.approx(0.08 + 0.025)
+    assert cof(speed=0.0, family="detergent") == pytest.approx(0.8 * (0.10 + 0.35) + 0.025)
 
 
 def test_at_the_reference_roughness_the_dry_part_falls_to_1_over_e_at_kappa():

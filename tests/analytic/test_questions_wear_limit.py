@@ -102,13 +102,14 @@ def test_first_passing_takes_the_first_of_several():
 
 def test_trends_see_which_way_the_numbers_go():
     series = WearSeries("x", "plane", 5.0, tuple(states([1, 1.1, 1.2, 9])), {}, ())
-    region, friction, threshold = trends(series)
+    region, friction, slight, threshold = trends(series)
     assert region.agrees
     assert region.correlation == pytest.approx(1.0)
     assert friction.agrees
+    assert slight.agrees is False  # it falls from new
     assert threshold.agrees
     even = WearSeries("x", "plane", 5.0, tuple(states([1, 5, 6, 7])), {}, ())
-    assert trends(even)[2].agrees is False
+    assert trends(even)[3].agrees is False
 
 
 def test_the_patch_at_the_limit_is_measured_not_interpolated():

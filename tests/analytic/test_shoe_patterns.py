@@ -16,6 +16,9 @@ KINDS = {
     "chevrons": {"arm_length": 9e-3, "angle": 0.6},
     "circles": {},
     "hexagons": {"angle": 0.2},
+    "waves": {"wave_length": 20e-3, "wave_height": 6e-3, "angle": 0.3},
+    "rings": {"ring_width": 1.5e-3},
+    "graded_circles": {"front_lug_width": 3e-3, "graded_length": 20e-3},
 }
 SPACING = 5e-5
 
@@ -31,6 +34,8 @@ def test_distance_is_that_to_the_nearest_wall(pattern):
     )
     middle = (np.abs(x) < 1e-2) & (np.abs(y) < 1e-2)
     assert np.abs(found - brute * SPACING)[middle].max() < 1.5 * SPACING
+    if pattern == "graded_circles":
+        return  # its share is a mean over its length: below
     # 15 periods or more: the share of land is that of an endless tread but for the border
     assert (found <= 0).mean() == pytest.approx(tread.land_ratio, abs=0.04)
 
@@ -41,10 +46,45 @@ def test_largest_depth_of_a_lug_is_half_its_width(pattern):
     line = np.arange(0, 40e-3, SPACING)
     x, y = np.meshgrid(line, line, indexing="ij")
     deepest = -tread.channel_distance(x, y).min()
+    half = 0.75e-3 if pattern == "rings" else 2.5e-3
+    if pattern == "waves":  # its lugs are measured along the shoe, narrower across the flanks
+        assert 0.7 * half < deepest < 1.2 * half
+        return
     # only in the bend of a chevron a lug is wider than across its arms
-    assert deepest >= 2.5e-3 - SPACING
+    assert deepest >= half - SPACING
     if pattern != "chevrons":
-        assert deepest <= 2.5e-3 + 1e-9
+        assert deepest <= half + 1e-9
+
+
+@pytest.mark.parametrize(
+    "tread",
+    [
+        Tread("waves", 5e-3, 2e-3, 2e-3, wave_length=20e-3, wave_height=6e-3),
+        Tread("rings", 10e-3, 3e-3, 2e-3, ring_width=2e-3),
+        Tread("chevrons", 5e-3, 2e-3, 2e-3, arm_length=9e-3, angle=0.6),
+    ],
+    ids=lambda tread: tread.pattern,
+)
+def test_land_over_one_period_is_the_analytic_share(tread):
+    first, second = tread.periods
+    # midpoints of a fine grid over the cell that both periods span
+    share = (np.arange(600) + 0.5) / 600
+    a, b = np.meshgrid(share, share, indexing="ij")
+    x, y = (a * first[k] + b * second[k] for k in (0, 1))
+    land = float((tread.channel_distance(x, y) <= 0).mean())
+    assert land == pytest.approx(tread.land_ratio, abs=2e-3)
+
+
+def test_land_of_graded_lugs_is_the_mean_over_their_length():
+    length = 140e-3  # 20 rows
+    tread = Tread("graded_circles", 6e-3, 1e-3, 2e-3, front_lug_width=3e-3, graded_length=length)
+    x = 3e-3 + (np.arange(2800) + 0.5) / 2800 * length
+    y = (np.arange(500) + 0.5) / 500 * tread.periods[0, 1]
+    land = (tread.channel_distance(*np.meshgrid(x, y, indexing="ij")) <= 0).mean()
+    assert land == pytest.approx(tread.land_ratio, abs=3e-3)
+    rear, front = (tread.channel_distance(*np.meshgrid(x[k], y)).min() for k in (0, -1))
+    assert rear == pytest.approx(-3e-3, rel=0.02)
+    assert front == pytest.approx(-1.5e-3, rel=0.02)
 
 
 def test_existing_patterns_turned_by_a_right_angle_are_each_other():

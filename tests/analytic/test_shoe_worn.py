@@ -7,8 +7,15 @@ import numpy as np
 import pytest
 
 from underfoot.core import InputError
-from underfoot.shoe import Facet, Heel, Tread, WearPlane, heel_map
-from underfoot.shoe.worn import WornMap, WornPatch, archard_wear, wear_measures
+from underfoot.shoe import Facet, Flat, Heel, Tread, WearPlane, heel_map
+from underfoot.shoe.worn import (
+    WalkingWear,
+    WornMap,
+    WornPatch,
+    archard_wear,
+    walking,
+    wear_measures,
+)
 
 HEEL = Heel(
     length=0.06,
@@ -123,9 +130,39 @@ def test_map_is_bilinear_between_its_nodes():
 )
 def test_patches_that_do_not_fit(kind, words):
     with pytest.raises(InputError, match=words):
-        WornPatch(2e-3, **kind).check_within(HEEL)
+        WornPatch(2e-3, **kind).on(HEEL)
 
 
 def test_wear_deeper_than_the_sole():
     with pytest.raises(InputError, match="goes through the outsole"):
         replace(HEEL, wear=WornPatch(0.03, 0.02, 0.02))
+
+
+def test_walking_at_one_angle_alone_is_the_plane_of_that_angle(monkeypatch):
+    monkeypatch.setattr(walking, "LANDING", ((math.radians(7), 1.0),))
+    x = np.linspace(0.0, HEEL.length, 50)
+    walked, ground = (
+        HEEL.worn(wear).land_height(x, np.zeros(x.size))
+        for wear in (WalkingWear(1.3e-3), WearPlane(1.3e-3, math.radians(7)))
+    )
+    assert np.allclose(walked, ground, atol=2e-6)
+
+
+def test_walking_takes_at_each_angle_what_is_borne_there():
+    x, height = np.linspace(0.0, 0.06, 601), np.zeros(601)
+    width, volume = np.full(601, 0.05), 1e-6
+    offsets, worn = walking._round(x, height, width, volume)
+    assert (width * (worn - height)).sum() == pytest.approx(
+        volume * sum(share for _, share in walking.LANDING), rel=1e-9
+    )
+    assert len(offsets) == len(walking.LANDING)
+
+
+def test_a_worn_patch_below_the_measuring_cell_is_measured():
+    depth = HEEL.tread.depth
+    bulged = replace(HEEL, profile=Flat(), crown_radius=0.01, wear=WearPlane(depth + 5e-6))
+    # gone from 10 um of tread on: a strip of half width sqrt(2 R (5 + 10) um)
+    strip = 2 * math.sqrt(2 * 0.01 * 15e-6) * HEEL.length
+    for spacing in (0.5e-3, 1e-3):
+        found = wear_measures(bulged, spacing=spacing).worn_patch_area
+        assert found == pytest.approx(strip, rel=0.5)

@@ -123,3 +123,26 @@ def test_a_run_says_what_the_edges_do():
     assert with_edges.value("fluid_load") == pytest.approx(without.value("fluid_load"), rel=1e-6)
     low, high = with_edges.scalars["cof"].interval
     assert low < with_edges.value("cof") < high
+
+
+def test_wear_makes_the_edges_of_the_lugs_that_it_meets():
+    case = Case(
+        shoe="work_shoe_full_tread",
+        floor="vinyl_g4",
+        contaminant="glycerol_90pct",
+        motion={"from": "slip_tester_g4"},
+    )
+    wear = {"mode": "walk", "depth": "1 mm"}
+    new, worn = (sole_map(each, 1e-3) for each in (case, case.replace({"shoe.wear": wear})))
+    before, after = lug_edges(new, 0.0), lug_edges(worn, 0.0)
+    assert (before.edge == 0.1e-3).all()
+    assert after.edge.max() == pytest.approx(0.15e-3)
+    assert np.count_nonzero(after.edge == 0.1e-3) > 5  # in front nothing wears
+    moulded = lug_edges(worn, 0.4e-3).edge
+    assert moulded.min() < 0.2e-3  # wear takes a moulded round off
+    assert moulded.max() == 0.4e-3
+    lifted = [
+        friction(one_lug(edge=float(edges.edge.max())), drag=0.03).film.item()
+        for edges in (before, after)
+    ]
+    assert lifted[1] > lifted[0]

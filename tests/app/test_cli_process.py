@@ -63,8 +63,8 @@ def test_a_run_ends_with_a_table_and_leaves_a_whole_folder(finished):
     ):
         assert words in done.stdout
     names = {path.name for path in (folder / "result").iterdir()}
-    files = "case.toml result.nc result.json summary.csv report.html contact_pressure.png"
-    assert set(files.split()) <= names
+    files = "case.toml result.nc result.json summary.csv report.html .underfoot"
+    assert set(files.split()) == names
     assert [path.name for path in folder.iterdir()] == ["result"]
     stored = json.loads((folder / "result" / "result.json").read_text())
     # the law of this case is a constant: friction is exactly what the case gives

@@ -10,7 +10,10 @@ from hypothesis import strategies as st
 from underfoot.case import Case, CaseError
 from underfoot.compute.positions import (
     ANGLE_BAND,
+    DIRECTION_BAND,
+    Place,
     TreadPositions,
+    file_places,
     on_own_grid,
     places,
     position_count,
@@ -73,12 +76,35 @@ def test_positions_cover_both_directions_and_the_shoe_angle_evenly(count):
     found = places(np.eye(2), count)
     assert found[0].shift == (0.0, 0.0)
     assert len({place.shift for place in found}) == count
-    turns = [place.turn for place in found]
-    assert turns[0] == sum(turns) == 0.0
-    assert max(turns) == (ANGLE_BAND if count > 2 else 0.0)
+    turns = np.array([place.turn for place in found])
+    assert turns[0] == 0.0
+    assert turns.mean() == pytest.approx(0.0, abs=1e-12)
+    if count > 2:
+        assert np.mean(turns**2) == pytest.approx(ANGLE_BAND**2 / 3)
     # any half of the second direction holds half of the positions, give or take a little
     across = sum(place.shift[1] < 0.5 for place in found)
     assert abs(across - count / 2) <= 1
+
+
+@given(st.integers(5, 16), st.floats(0, 6.28))
+def test_waves_of_the_position_leave_no_error(count, phase):
+    """A wave along the pattern averages out, and so does its product with the shoe angle."""
+    found = places(np.array([[1.0, 0.0]]), count)
+    wave = np.cos([2 * math.pi * place.shift[0] + phase for place in found])
+    turn = np.array([place.turn for place in found])
+    assert wave.mean() == pytest.approx(0.0, abs=1e-12)
+    assert (wave * turn).mean() == pytest.approx(0.0, abs=1e-12)
+
+
+@given(st.integers(3, 16))
+def test_a_sole_from_a_file_varies_in_angle_and_direction(count):
+    found = file_places(count)
+    assert found[0] == Place()
+    for name, band in (("turn", ANGLE_BAND), ("direction", DIRECTION_BAND)):
+        values = np.array([getattr(place, name) for place in found])
+        assert values.mean() == pytest.approx(0.0, abs=1e-12)
+        if count > 3:
+            assert np.mean(values**2) == pytest.approx(band**2 / 3)
 
 
 @given(
@@ -194,7 +220,7 @@ def test_one_position_is_the_case_s_own(bars):
     assert "4 positions" in more.labels["tread_position"]
     assert "position of the tread" in more.labels["cof_spread_from"]
     assert "spread over tread positions" in more.summary()
-    assert any("shoe_angle: ±1 deg" in line for line in more.assumptions)
+    assert any("shoe_angle: ±1 deg over" in line for line in more.assumptions)
 
 
 @pytest.mark.slow

@@ -1,5 +1,7 @@
 """Contact tables: nodes are solutions, the rest is interpolation with limits."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -12,7 +14,7 @@ from underfoot.core import (
     RangeError,
     Status,
 )
-from underfoot.material import power_law_spectrum, report_elastomer
+from underfoot.material import Elastomer, power_law_spectrum, report_elastomer
 from underfoot.rough_contact import PressureGapLaw, steady_sliding
 from underfoot.rough_contact import contact_table as run
 from underfoot.rough_contact.composite import composite_surface
@@ -108,7 +110,7 @@ def test_law_goes_through_the_nodes(table):
     gap = table.mean_gap(PRESSURE, SPEED[0])
     np.testing.assert_allclose(law.pressure(gap), PRESSURE, rtol=1e-9)
     flow = table.flow_factor(PRESSURE, SPEED[0])
-    np.testing.assert_allclose(law.flow_factor(gap), flow, atol=1e-9)
+    np.testing.assert_allclose(law.flow_factor(gap), np.maximum(flow, run.SEALED), atol=1e-9)
     assert law.breaches(pressure=1e7, speed=0.1)[0].quantity == "pressure"
     assert "test texture" in law.source
     dense = np.geomspace(*PRESSURE[[0, -1]], 40)
@@ -308,3 +310,23 @@ def test_contact_area_falls_with_the_shortest_wave():
     assert found.status is not Status.NOT_CONVERGED
     with pytest.raises(InputError, match="shortest waves"):
         cutoff_dependence(surface, RUBBER, 0.1, 5e4, [96e-6, 4e-6])
+
+
+@pytest.mark.parametrize(("height", "stiffness"), [(3.0, 1.0), (1.0, 4.0), (2.5, 0.5)])
+def test_an_elastic_table_scales_with_roughness_and_modulus(height, stiffness, tmp_path):
+    """Heights times a and moduli times b: gaps times a, pressures times a b, flow factors as is."""
+    surface = self_affine(64, 4e-6, 1e-6, 0.8, 128e-6, 32e-6, seed=2)
+    pressure = np.geomspace(1e3, 3e5, 6)
+    store = Cache("scaled", folder=tmp_path)
+    first = ContactTable.from_surfaces([surface], Elastomer(3e6, 0.5), pressure, [1.0], cache=store)
+    higher = replace(surface, heights=height * surface.heights)
+    second = ContactTable.from_surfaces(
+        [higher], Elastomer(3e6 * stiffness, 0.5), height * stiffness * pressure, [1.0], cache=store
+    )
+    scaled, solved = first.law(1.0).scaled(height, height * stiffness), second.law(1.0)
+    at = height * stiffness * np.geomspace(2e3, 1e5, 7)
+    np.testing.assert_allclose(scaled.mean_gap(at), solved.mean_gap(at), rtol=2e-3)
+    gap = solved.mean_gap(at)
+    np.testing.assert_allclose(scaled.flow_factor(gap), solved.flow_factor(gap), atol=2e-3)
+    assert scaled.breaches(pressure=at[-1], speed=0.0) == []
+    assert scaled.breaches(pressure=1e3 * at[-1], speed=0.0)

@@ -3,11 +3,13 @@
 import math
 from dataclasses import replace
 
+import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from underfoot.shoe import Facet, Heel, Tread, WearPlane
-from underfoot.shoe.worn import WornPatch, wear_measures
+from underfoot.shoe import Facet, Heel, Tread, WearPlane, heel_map
+from underfoot.shoe.worn import WalkingWear, WornPatch, wear_measures
 
 PATTERNS = {
     "grid": {},
@@ -58,3 +60,30 @@ def test_more_wear_takes_more(heel, share, angle, plane):
     assert more.removed_volume >= less.removed_volume - 1e-15
     assert more.tread_left <= less.tread_left + 1e-12
     assert more.worn_patch_area >= less.worn_patch_area - 1e-12
+
+
+@given(heels(), st.floats(0.05e-3, 5e-3), st.floats(1.0, 1.5))
+@settings(max_examples=25, deadline=None)
+def test_walking_never_gives_material_back(heel, depth, more):
+    x = np.linspace(0.0, heel.length, 400)
+    new = heel.unworn_height(x, np.zeros(x.size))
+    less, later = (
+        heel.worn(WalkingWear(each)).land_height(x, np.zeros(x.size)) - new
+        for each in (depth, more * depth)
+    )
+    assert less.min() >= 0.0
+    assert (later >= less - 1e-9).all()
+    assert less.max() == pytest.approx(depth, rel=0.03, abs=30e-6)
+
+
+@given(heels())
+@settings(max_examples=3, deadline=None)
+def test_a_sole_walked_through_is_that_of_a_shoe_without_tread(heel):
+    wear = WalkingWear(0.012)
+    worn, bare = (
+        heel_map(shape.worn(wear), shoe_angle=math.radians(7), spacing=1e-3)
+        for shape in (heel, replace(heel, tread=None))
+    )
+    under = bare.clearance < 2e-3
+    assert worn.land[under].all()
+    assert np.allclose(worn.clearance[under], bare.clearance[under])

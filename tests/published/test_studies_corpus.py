@@ -21,11 +21,11 @@ def test_a_source_left_out_is_predicted_better_than_by_one_constant():
     verdicts = {one.statement.id: str(one.verdict) for one in result.judgements}
     assert verdicts["r2"] == "agrees"
     constants = next(table for table in result.computed.tables if table.name == "constants")
-    # the converged posterior of 12,000 steps: median 0.111, 95 % 0.073 to 0.159. The median of a
+    # the packaged posterior of 12,000 steps: median 0.105, 95 % 0.071 to 0.151. The median of a
     # quick run is good to a few per cent, its ends to a quarter (0.057 was seen).
     _, film, low, high = next(row for row in constants.rows if row[0] == "film, aqueous")
     assert 0.08 < film < 0.15
-    assert low < 0.111 < high
+    assert low < 0.105 < high
     law = law_named("pair")
     _, prior_sd = law.prior[law.parameters.index("ln film, aqueous")]
     assert math.log(high / low) < 0.75 * 2 * 1.96 * prior_sd
@@ -42,10 +42,8 @@ def test_a_source_left_out_is_predicted_better_than_by_one_constant():
     softer = effects["report_g6", "softest_outsole_highest", "aqueous"]
     assert 1 < softer["computed ratio"] < 1.3
     dry = effects["strobel_2012", "hardest_and_smoothest_sole_highest_dry", "dry"]
-    assert dry["verdict"] == "not computed"
-    basis = next(table for table in result.computed.tables if table.name == "basis")
-    reasons = {row[1]: row[3] for row in basis.rows}
-    assert "a dry case needs a measured" in reasons["hardest_and_smoothest_sole_highest_dry"]
+    assert dry["verdict"] == "right"
+    assert effects["li_2006", "depth_per_mm", "water"]["verdict"] == "right"
     assert {row["inside 95 %"] for row in whole.values()} == {"yes"}
     for row in effects.values():
         nothing = row["computed ratio"] and abs(math.log(row["computed ratio"])) < 0.02

@@ -137,8 +137,8 @@ def test_an_unknown_path_gets_the_nearest(case):
 
 
 def test_a_dry_floor_is_said_not_left_out(case):
-    with pytest.raises(CaseError, match="dry case needs a measured coefficient"):
-        case.replace("contaminant", "none")
+    with pytest.raises(CaseError, match="law boundary needs a fluid"):
+        case.replace({"contaminant": "none", "friction": "boundary"})
     dry = case.replace(
         {
             "contaminant": "none",

@@ -2,7 +2,7 @@
 
 import pytest
 
-from underfoot.case import Case, CaseError
+from underfoot.case import Case, CaseError, assumptions
 from underfoot.case.text import Places, key_lines
 from underfoot.core import InputError, RangeError
 
@@ -140,7 +140,11 @@ def test_a_shoe_without_a_catalogue_entry_says_what_is_missing():
     with pytest.raises(CaseError) as caught:
         Case.from_mapping(tree)
     assert "neither hardness nor modulus" in str(caught.value)
-    assert "neither Rq nor Ra" in str(caught.value)
+
+
+def test_a_missing_roughness_takes_a_middle_and_says_so():
+    case = Case.from_mapping({**GOOD, "floor": {"roughness": {"rz": "30 um"}}})
+    assert any("floor.roughness: not given" in line for line in assumptions(case))
 
 
 BAD_FILE = """\

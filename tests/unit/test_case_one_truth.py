@@ -266,7 +266,8 @@ def test_the_package_offers_a_clean_face():
 
     import underfoot as uf
 
-    names = ["Case", "Result", "__version__", "catalogue", "compare", "explain", "load", "run"]
+    names = ["Case", "Result", "Study", "__version__", "catalogue", "compare", "explain", "load"]
+    names += ["optimise", "run", "sweep"]
     assert dir(uf) == names
     assert not any(isinstance(getattr(uf, name), types.ModuleType) for name in names)
     assert "friction.cof" in repr(uf.explain("friction.cof"))

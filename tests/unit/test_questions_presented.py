@@ -70,7 +70,9 @@ def test_the_headline_has_the_number_first_and_marks_what_is_extrapolated():
         made.status, made.scalars, breaches, ("interface: a = 1 (b)",), "report_g6"
     )
     assert cautions[0].startswith("Slip probability extrapolated: ACOF - RCOF")
-    assert cautions[1] == "Inputs outside the tested range of: stribeck."
+    assert cautions[1] == (
+        "Beyond what was tested: the friction of this sole on this floor (stribeck)."
+    )
     assert "interface roughness" in cautions[2]
     assert summary.cautions(made.status, outcome().scalars, (), ("motion: a = 1",)) == ()
     failed = summary.headline(Status.NOT_CONVERGED, made.scalars, {})
@@ -178,7 +180,7 @@ def test_wear_says_when_the_limit_is_exceeded_and_when_friction_rises():
         "range) of tread left at the most worn place."
     )
     assert found.headline()[2] == "COF 0.100 new and 0.120 at the last state."
-    assert any("rises with wear" in caution for caution in found.cautions())
+    assert any("still rises" in caution for caution in found.cautions())
     assert not any("rises" in caution for caution in series([0.12, 0.11, 0.10]).cautions())
     assert not any("rises" in caution for caution in series([0.100, 0.104]).cautions())
     assert "No result for state 1" in " ".join(series([0.1, None, 0.1]).cautions())
@@ -190,8 +192,15 @@ def test_wear_says_when_the_limit_is_exceeded_and_when_friction_rises():
     assert not series([None, None]).usable
     rows = found.data_tables()["wear"].rows
     assert [row[5] for row in rows] == [0.10, 0.11, 0.12]
-    patch, _, _ = found.tables()[1].rows
+    patch, _, slight, _ = found.tables()[1].rows
     assert patch[1].startswith(("agrees", "disagrees", "not testable"))
+    assert slight[1] == "disagrees"
+    for cofs, verdict in (
+        ([0.10, 0.12, 0.11, 0.05], "agrees"),
+        ([0.10, 0.12, 0.05, 0.06], "disagrees"),
+        ([0.10, None, 0.05], "not testable on this series"),
+    ):
+        assert series(cofs).tables()[1].rows[2][1] == verdict
 
 
 def test_a_limit_is_a_force_or_a_share_and_a_depth_has_a_unit():
@@ -224,3 +233,16 @@ def test_old_option_names_answer_with_a_note(capsys):
     assert "--wanted is now --target" in done.stderr
     assert CliRunner().invoke(app, ["risk", "--target=3 %"]).stderr == ""
     assert seen.target == "3 %"
+
+
+def test_files_are_compared_by_their_names_and_checksums_only_where_these_are_alike():
+    from underfoot.questions.comparison import _with_short_names
+
+    sums = ("shoe.outsole.sha256", "a" * 64, "b" * 64)
+    apart = [("shoe.outsole.file", "/x/one.stl", "/x/two.stl"), sums]
+    assert _with_short_names(apart) == [("shoe.outsole.file", "one.stl", "two.stl")]
+    alike = [("shoe.outsole.file", "/x/one.stl", "/y/one.stl"), sums]
+    assert _with_short_names(alike)[1] == ("shoe.outsole.sha256", "a" * 8, "b" * 8)
+    assert _with_short_names(alike)[0] == alike[0]
+    changed = [sums]
+    assert _with_short_names(changed) == [("shoe.outsole.sha256", "a" * 8, "b" * 8)]

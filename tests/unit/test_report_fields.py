@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from underfoot.core import SourcedValue, Status
+from underfoot.core.fields import from_xarray
 from underfoot.questions.comparison import compare
 from underfoot.report import figures
 from underfoot.report.common_grid import common_grid, difference, on_grid, sole_on_grid
@@ -43,7 +44,7 @@ def sole(side, *, shift=0.0, seed=0, **fields):
 
 
 def as_result(worn_shoe_result, fields, **changes):
-    return dataclasses.replace(worn_shoe_result, fields=fields, **changes)
+    return dataclasses.replace(worn_shoe_result, data=from_xarray(fields), **changes)
 
 
 def test_a_field_that_is_not_known_is_drawn_by_its_own_labels():
@@ -199,7 +200,7 @@ def test_shared_draws_decide_an_order(worn_shoe_result):
             name=name,
             scalars={**worn_shoe_result.scalars, **cof(value, 0.4 * value)},
             provenance=provenance,
-            fields=worn_shoe_result.fields.assign(cof_draws=draws * factor),
+            data=from_xarray(worn_shoe_result.fields.assign(cof_draws=draws * factor)),
         )
 
     higher = compare(result("a", 1.0), result("b", 1.1)).ranking[0]
@@ -217,7 +218,7 @@ def test_an_order_is_stated_from_three_quarters_on(worn_shoe_result):
             name=name,
             scalars=scalars,
             provenance=provenance,
-            fields=worn_shoe_result.fields.drop_vars("cof_draws"),
+            data=from_xarray(worn_shoe_result.fields.drop_vars("cof_draws")),
         )
 
     # Phi(d / (0.02 sqrt 2)) = 0.75 at d = 0.0191

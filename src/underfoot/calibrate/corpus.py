@@ -108,9 +108,12 @@ class Condition:
 
     @property
     def pair(self) -> str:
-        """Name of compound, floor and fluid: what shares one error of the pair."""
+        """Name of compound, floor and fluid: what shares one error of the pair.
+
+        Soles of one polymer share it whatever their hardness.
+        """
         compound, floor, fluid = map(self.words.get, ("compound", "floor", "fluid"))
-        parts = (self.source, compound, self.numbers["shore_a"].low, floor, fluid)
+        parts = (self.source, compound or self.numbers["shore_a"].low, floor, fluid)
         return "|".join(map(str, parts))
 
 

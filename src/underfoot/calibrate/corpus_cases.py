@@ -1,18 +1,23 @@
 """Cases that stand for the corpus: both sides of each published effect, and whole-shoe readings.
 
-What a source leaves open takes the geometric middle of its range, or a usual value; each such
-number is named beside the case. What cannot be computed is named with the reason.
+What a source leaves open takes the geometric middle of its range, or a usual value, an open
+roughness two values; each such number is named beside the case. What cannot be computed is named
+with the reason.
 """
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
 from underfoot.case import Case
-from underfoot.case.friction import FLOOR_RQ, SOLE_RQ
+from underfoot.case.sole import Lugs
+from underfoot.case.surfaces import FLOOR_RQ, SOLE_RQ
+from underfoot.compute.resolve import resolved
 from underfoot.core import InputError, to_si, unknown_name
+from underfoot.film import Strike, touch_time
+from underfoot.rough_contact import ExponentialLaw
 
 from .corpus import RQ_PER_RA, Condition, Effect, Source, Span
 
@@ -48,7 +53,8 @@ TREAD = {"depth": 3e-3, "channel_width": 3e-3, "lug_width": 5e-3, "edge_radius":
 """m, where not printed."""
 PITCH = 10e-3
 """m, of a grid of which the share of land is printed."""
-GROOVES = {"across": "transverse", "along": "longitudinal"}
+GROOVES = {"across": "transverse", "along": "longitudinal", "oblique": "transverse"}
+OBLIQUE = "45 deg"
 PATTERNS = {
     "grooves": GROOVES,
     "strips": GROOVES,
@@ -56,8 +62,16 @@ PATTERNS = {
     "not printed": {"across": "grid"},
 }
 """Pattern of the case by the printed pattern and direction."""
+OPEN_SHARES = (0.25, 0.75)
+"""Where between its bounds a roughness that the source leaves open is taken, evenly in its
+logarithm: a case each, for smooth pairs wipe and seal where rough ones do not."""
+STRIKE = 50e-3
+"""s from a drop pad's touching the pool to the end of its pull (assumed)."""
 WEAR = {"new": "0 mm", "slight": "1 mm", "through": "3.5 mm"}
 """Worn off at 7 deg (assumed): none is printed."""
+WALKING = {"forwards": "0 deg", "backwards": "7 deg"}
+"""Shoe angle (assumed): the most friction of a step forwards is had flat on the sole, of one
+backwards on the heel."""
 TOPICS = {
     "shore_a": "hardness",
     "sole_ra": "roughness",
@@ -70,6 +84,7 @@ TOPICS = {
     "wear": "wear",
     "fluid": "fluid",
     "shoe_angle": "shoe angle",
+    "walking": "shoe angle",
 }
 """What an effect is about, by the number that differs between its sides."""
 ABSENT, DECIDED = 0.02, 0.75
@@ -78,11 +93,15 @@ ABSENT, DECIDED = 0.02, 0.75
 
 @dataclass(frozen=True, slots=True)
 class Stand:
-    """Cases whose mean COF stands for one condition, and what its source leaves open."""
+    """Cases whose mean COF stands for one condition, and what its source leaves open.
+
+    ``contact_time`` is the share of a drop pad's pull during which it touches, 1 for all else.
+    """
 
     cases: tuple[Case, ...] = ()
     taken: tuple[str, ...] = ()
     reason: str = ""
+    contact_time: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,11 +169,25 @@ def stand(table: Mapping[str, Any]) -> Stand:
     """Return the cases of a condition's or effect's contents, or why there is none."""
     taken: dict[str, None] = {}
     try:
-        members = table.get("members") or [{}]
-        cases = tuple(_Contents({**table, **one}, taken).case() for one in members)
+        members = [_Contents({**table, **one}, taken) for one in table.get("members") or [{}]]
+        cases = tuple(case for one in members for case in one.cases())
+        if table.get("device") == "drop pad" and cases[0].contaminant:
+            taken |= dict.fromkeys(("tread.lug_width", "pool", "drop", "pull time"))
+            times = [_contact_time(case) for case in cases]
+            return Stand(cases, tuple(taken), contact_time=sum(times) / len(times))
     except InputError as error:
         return Stand(reason=" ".join(str(error).split()))
     return Stand(cases, tuple(taken))
+
+
+def _contact_time(case: Case) -> float:
+    """Return the share of a drop pad's pull during which half its load rests on the floor."""
+    tread, context = case.shoe.tread, resolved(case)
+    if not isinstance(tread, Lugs) or context.viscosity_value is None:
+        return 1.0
+    asperities = ExponentialLaw(context.youngs_modulus, context.poisson_ratio, context.rq_value)
+    strike = Strike(tread.channel_width, tread.depth, tread.lug_width, context.viscosity_value)
+    return max(1 - touch_time(strike, asperities.pressure) / STRIKE, 0.0)
 
 
 def _of(effect: Effect, source: Source) -> Iterator[Contrast]:
@@ -230,6 +263,14 @@ class _Contents:
 
     table: Mapping[str, Any]
     taken: dict[str, None]
+    share: float = 0.5
+
+    def cases(self) -> tuple[Case, ...]:
+        """Return the case, or one each at the shares of an open roughness."""
+        self.case()
+        if not {"sole_rq", "floor_rq"} & self.taken.keys():
+            return (self.case(),)
+        return tuple(replace(self, share=share).case() for share in OPEN_SHARES)
 
     def case(self) -> Case:
         device = self.table.get("device")
@@ -242,12 +283,14 @@ class _Contents:
                 motion[name] = f"{self.middle(key, unit):.6g} {unit}"
             else:
                 self.taken[key] = None
+        if "walking" in self.table:
+            motion["shoe_angle"] = WALKING[self.table["walking"]]
         self.taken["shape" if whole else "size"] = None
         return Case.from_mapping(
             {
                 "name": str(device),
                 "shoe": {
-                    "material": {"shore_a": self.shore_a()},
+                    "material": self.material(),
                     "roughness": {"rq": self.rq("sole")},
                     "heel": HEEL if whole else SPECIMEN,
                     "tread": self.tread(whole),
@@ -264,15 +307,23 @@ class _Contents:
         """Return a number in SI, the geometric middle of a range."""
         return self._middle(self.table[key], key, unit)
 
-    def _middle(self, item: Any, key: str, unit: str) -> float:
+    def _ends(self, item: Any, key: str, unit: str) -> tuple[float, float]:
         if isinstance(item, Span):
-            low, high = item.low, item.high
-        else:
-            ends = item if isinstance(item, list) else [item]
-            low, high = (to_si(end, unit, where=key) for end in (ends[0], ends[-1]))
+            return item.low, item.high
+        ends = item if isinstance(item, list) else [item]
+        low, high = (to_si(end, unit, where=key) for end in (ends[0], ends[-1]))
+        return low, high
+
+    def _middle(self, item: Any, key: str, unit: str) -> float:
+        low, high = self._ends(item, key, unit)
         if high > low:
             self.taken[key] = None
         return math.sqrt(low * high)
+
+    def material(self) -> dict[str, Any]:
+        compound = self.table.get("compound")
+        named = {"polymer": compound} if compound else {}
+        return {**named, "shore_a": self.shore_a()}
 
     def shore_a(self) -> float:
         if "shore_a" in self.table:
@@ -281,14 +332,14 @@ class _Contents:
         return SHORE_A.get(self.table.get("compound", ""), USUAL_SHORE_A)
 
     def rq(self, part: str) -> str:
-        rq = math.sqrt(math.prod(USUAL_RQ[part]))
+        low, high = USUAL_RQ[part]
         for name, factor in ((f"{part}_ra", RQ_PER_RA), (f"{part}_rq", 1.0)):
             if name in self.table:
-                rq = factor * self.middle(name, "m")
+                low, high = (factor * end for end in self._ends(self.table[name], name, "m"))
                 break
-        else:
+        if high > low:
             self.taken[f"{part}_rq"] = None
-        return f"{1e6 * rq:.4g} um"
+        return f"{1e6 * low * (high / low) ** self.share:.4g} um"
 
     def fluid(self) -> Any:
         fluid = self.table.get("fluid")
@@ -301,7 +352,7 @@ class _Contents:
             viscosity = self.middle("viscosity", "Pa*s")
         else:
             self.taken["viscosity"] = None
-        family = "oil" if fluid == "oil" else "aqueous"
+        family = {"oil": "oil", "detergent": "detergent"}.get(fluid, "aqueous")
         return {"viscosity": f"{1e3 * viscosity:.6g} cP", "family": family}
 
     def tread(self, whole: bool) -> dict[str, Any]:
@@ -324,6 +375,9 @@ class _Contents:
             numbers["lug_width"] = PITCH * math.sqrt(printed["land"])
             numbers["channel_width"] = PITCH - numbers["lug_width"]
         texts = {key: f"{1e3 * number:.6g} mm" for key, number in numbers.items()}
+        if printed.get("direction") == "oblique":
+            self.taken["tread.angle"] = None
+            texts["angle"] = OBLIQUE
         return {"pattern": pattern, **texts}
 
     def wear(self) -> str:

@@ -18,7 +18,13 @@ from scipy.stats import norm, qmc, spearmanr
 from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
 from underfoot.fluid import BLOCKING
-from underfoot.friction.pair_contact import LOSS_TANGENT, PairConstants, PairDraws, contact_terms
+from underfoot.friction.pair_contact import (
+    LOSS_TANGENT,
+    Family,
+    PairConstants,
+    PairDraws,
+    contact_terms,
+)
 
 from .corpus import NUMBERS, Condition, sampled_numbers
 
@@ -30,6 +36,14 @@ machines, over 2.8 (Jung and Fischer 1993, Safety Science 16:115): 0.25 and 0.36
 SPREAD_PRIOR = (SD_SOURCE, 0.4, 0.2, 0.7)
 """Of a source, a pair, a reading and the dry part of a source; the first log-normal with sd 0.35 of
 its logarithm, the others half-normal."""
+FAMILIES: dict[str, Family] = {
+    "dry": "dry",
+    "water": "aqueous",
+    "detergent": "detergent",
+    "aqueous": "aqueous",
+    "oil": "oil",
+}
+"""Family of the law's fluids by that of the corpus."""
 DEFAULTS = {"loss_tangent": LOSS_TANGENT}
 """Of a compound whose loss tangent is not printed (assumed)."""
 
@@ -49,10 +63,14 @@ class PairLaw:
     dry: int | None = None
 
 
+def _constants(columns: Array) -> PairConstants:
+    return PairConstants(*np.exp(columns[:5]), *columns[5:])
+
+
 def _pair(theta: Array, numbers: dict[str, Array], fluid: str) -> Array:
     columns = theta.T[..., None]
-    constants = PairConstants(*np.exp(columns[:4]), *columns[4:])
-    film, hysteresis, dry, kappa = contact_terms(constants, numbers, oil=fluid == "oil")
+    constants = _constants(columns)
+    film, hysteresis, dry, kappa = contact_terms(constants, numbers, family=FAMILIES[fluid])
     drag = numbers["viscosity"] * np.abs(numbers["speed"])
     return np.log(film + hysteresis + dry * np.exp(-drag / kappa))
 
@@ -96,8 +114,8 @@ def _eq_17(theta: Array, numbers: dict[str, Array], fluid: str) -> Array:
 
 _L = np.log
 _CONTACT = (
-    ("ln film, aqueous", "ln film, oil", "ln dry", "ln kappa_0, Pa m"),
-    ((_L(0.10), 0.5), (_L(0.08), 0.5), (_L(0.4), 0.5), (_L(1.08e-3), 0.5)),
+    ("ln film, aqueous", "ln film, oil", "ln dry", "ln kappa_0, Pa m", "ln surfactant"),
+    ((_L(0.10), 0.5), (_L(0.08), 0.5), (_L(0.4), 0.5), (_L(1.08e-3), 0.5), (0.0, 0.3)),
 )
 LAWS = (
     PairLaw("one constant", ("ln COF",), ((_L(0.25), 1.0),), _constant),
@@ -195,9 +213,11 @@ class PairPosterior:
         generator = np.random.default_rng(seed)
         rows = generator.choice(self.theta.shape[0], count, replace=False)
         columns, spreads = self.theta[rows].T, self.spreads[rows].T
-        return PairDraws(
-            PairConstants(*np.exp(columns[:4]), *columns[4:]), spreads[0], spreads[3], spreads[1]
-        )
+        return PairDraws(_constants(columns), spreads[0], spreads[3], spreads[1])
+
+    def expected(self, conditions: Sequence[Condition]) -> Array:
+        """Return the mean of ln COF (rows,) without errors: equal for equal conditions."""
+        return Rows(conditions).predicted(self.law, self.theta)[0].mean(axis=0)
 
     def predicted(self, conditions: Sequence[Condition], seed: int = 0) -> Array:
         """Return draws of ln COF (draws, rows) as one unseen source would read the conditions."""
@@ -317,11 +337,12 @@ def scored(draws: Array, conditions: Sequence[Condition]) -> Score:
 
 @dataclass(frozen=True, slots=True)
 class SourceScore:
-    """One source predicted from all others."""
+    """One source predicted from all others: draws of ln COF, and their mean without errors."""
 
     source: str
     conditions: tuple[Condition, ...]
     draws: Array
+    expected: Array
     score: Score
 
 
@@ -331,8 +352,9 @@ def source_left_out(
     """Return how well a source is predicted by the law fitted to all others."""
     kept = [c for c in conditions if c.source != source]
     left = tuple(c for c in conditions if c.source == source)
-    draws = fitted(law, kept, steps=steps, seed=seed).predicted(left, seed)
-    return SourceScore(source, left, draws, scored(draws, left))
+    posterior = fitted(law, kept, steps=steps, seed=seed)
+    draws = posterior.predicted(left, seed)
+    return SourceScore(source, left, draws, posterior.expected(left), scored(draws, left))
 
 
 @dataclass(frozen=True, slots=True)
@@ -342,7 +364,8 @@ class CorpusScore:
     ``log_density``: sum over sources of the mean over their rows. ``r2`` of ln COF over values
     (bounds left out). ``rms_error``, ``bias``: of ln COF, means over sources. ``inside_50``,
     ``inside_95``: shares of the rows, means over sources. ``rank_correlation``: Spearman's within
-    sources of four and more values, mean; nan where there is none.
+    sources of four and more values, mean; equal predictions are ties, all of them equal count 0;
+    nan where there is no such source.
     """
 
     law: str
@@ -370,8 +393,8 @@ def corpus_score(law: str, sources: Sequence[SourceScore]) -> CorpusScore:
         rows = np.flatnonzero([not c.reading.is_censored for c in one.conditions])
         if rows.size >= 4:
             values = [one.conditions[row].reading.low for row in rows]
-            rank: Any = spearmanr(values, np.median(one.draws[:, rows], axis=0))
-            ranks.append(rank.statistic)
+            rank: Any = spearmanr(values, one.expected[rows].round(6))
+            ranks.append(np.nan_to_num(rank.statistic))
     each = [one.score for one in sources]
     return CorpusScore(
         law=law,

@@ -244,7 +244,7 @@ def _whole_cof(
         raise ConvergenceError(
             f"the case {case.name} gave no result: {result.status}", history=(), where=case.name
         )
-    fields = result.fields
+    fields = result.data
     sampled = sampled_cof(
         PairContactLaw(law.pair, law.viscosity, draws),
         fields["contact_pressure"].values,

@@ -24,8 +24,11 @@ HARDNESS_SPREAD = 0.3
 """Relative standard deviation of a modulus from hardness (assumed: tens of percent)."""
 TABLE_CELLS, TABLE_SURFACES, TABLE_WAVES = 128, 4, 4
 """Contact table: cells along a side, surfaces, longest waves along a side."""
-TABLE_PRESSURES = (1e3, 2e6)
-"""Contact table: lowest and highest nominal pressure, Pa."""
+TABLE_PRESSURES = (1e3, 2e6, 14)
+"""Contact table: lowest and highest nominal pressure, Pa, and their number."""
+ELASTIC_RQ, ELASTIC_MODULUS, ELASTIC_PRESSURES = 1e-6, 1e6, (1.0, 3e4, 22)
+"""Contact table of an elastic compound: Rq (m), Young's modulus and pressures (Pa) at which it is
+computed, once for every roughness and hardness."""
 
 
 class HardnessOption(Option):
@@ -99,7 +102,8 @@ class ExponentialContact(RoughContactOption):
 
 class ContactTableOption(RoughContactOption):
     """Self-affine surfaces of the interface's Rq in sliding contact with the outsole's rubber, with
-    the flow factors of their own gaps; computed once and cached.
+    the flow factors of their own gaps; computed once and cached. Elastic compounds of one set of
+    waves share one table: heights and pressures scale.
     """
 
     name: ClassVar[str] = "contact_table"
@@ -107,28 +111,37 @@ class ContactTableOption(RoughContactOption):
     reads: ClassVar[tuple[str, ...]] = WAVES
 
     def build(self, context: Context) -> PressureGapLaw:
+        from underfoot.material import Elastomer
         from underfoot.rough_contact import ContactTable
         from underfoot.surface import self_affine
 
-        rq, waves = context.rq_value, context.interface
+        rq, waves, speed = context.rq_value, context.interface, context.motion.speed
+        elastic = context.shoe.material.relaxation is None
+        height, rubber, pressures, speeds = (
+            (ELASTIC_RQ, Elastomer(ELASTIC_MODULUS, context.poisson_ratio), ELASTIC_PRESSURES, [1])
+            if elastic
+            else (rq, context.rubber(), TABLE_PRESSURES, [0.5 * speed, speed, 2.0 * speed])
+        )
         side = TABLE_WAVES * waves.longest_wave
         spacing = min(side / TABLE_CELLS, waves.shortest_wave / 2)
         cells = 2 * math.ceil(side / spacing / 2)
-        shape = (rq, waves.hurst, waves.longest_wave, waves.shortest_wave)
+        shape = (height, waves.hurst, waves.longest_wave, waves.shortest_wave)
         seeds = range(TABLE_SURFACES)
         surfaces = [self_affine(cells, side / cells, *shape, seed) for seed in seeds]
-        speed = context.motion.speed
         table = ContactTable.from_surfaces(
             surfaces,
-            context.rubber(),
-            np.geomspace(*TABLE_PRESSURES, 14),
-            np.array([0.5 * speed, speed, 2.0 * speed]),
+            rubber,
+            np.geomspace(*pressures),
+            np.array(speeds, dtype=float),
             poisson_ratio=context.poisson_ratio,
             cache=Cache("contact_table"),
             description=f"self-affine interface, Rq {rq * 1e6:.3g} um",
             progress=context.progress,
         )
-        return table.law(speed)
+        if not elastic:
+            return table.law(speed)
+        higher, stiffer = rq / ELASTIC_RQ, context.youngs_modulus / ELASTIC_MODULUS
+        return table.law(1.0).scaled(higher, higher * stiffer)
 
 
 class ComplianceOption(Option):

@@ -32,9 +32,9 @@ class ContaminantSection(Option):
         return []
 
     @property
-    def is_oil(self) -> bool:
-        """Whether the fluid is an oil; else it is aqueous."""
-        return False
+    def chemistry(self) -> Literal["aqueous", "detergent", "oil"]:
+        """Family of the fluid, by what its boundary film leaves of adhesion."""
+        return "aqueous"
 
 
 class MeasuredFluid(ContaminantSection):
@@ -51,13 +51,13 @@ class MeasuredFluid(ContaminantSection):
         '"constant" or "table", and no film',
     )
 
-    family: Literal["aqueous", "oil"] = default(
+    family: Literal["aqueous", "detergent", "oil"] = default(
         "aqueous", "aqueous", "not given: taken as no oil", assumed=True
     )
 
     @property
-    def is_oil(self) -> bool:
-        return self.family == "oil"
+    def chemistry(self) -> Literal["aqueous", "detergent", "oil"]:
+        return self.family
 
     def build(self) -> SourcedValue:
         return self.sourced("viscosity")

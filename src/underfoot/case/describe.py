@@ -26,7 +26,9 @@ def assumptions(case: Case) -> list[str]:
     lines = [f"{section}: {', '.join(keys)} ({why})" for (section, why), keys in groups.items()]
     if case.interface.name == "composite":
         for path, roughness in (("shoe", case.shoe.roughness), ("floor", case.floor.roughness)):
-            if roughness.rq is None and roughness.ra is not None:
+            if roughness.rq_or_estimate is None:
+                lines.append(f"{path}.roughness: not given, the middle of what is usual")
+            elif roughness.rq is None:
                 rq = display(roughness.rq_or_estimate or 0.0, "m")
                 lines.append(f"{path}.roughness: rq = {rq} (1.25 Ra, Gaussian heights)")
         rq = case.effective_rq

@@ -16,7 +16,7 @@ from underfoot.core.catalogue import Catalogue
 from .context import Context
 from .quantity import Force, Friction, Pressure, Quantity, Speed, Viscosity, optional, required
 from .section import CaseView, Option, Section
-from .surfaces import WAVES, SurfaceRoughness
+from .surfaces import FLOOR_RQ, SOLE_RQ, WAVES, SurfaceRoughness
 from .tables import as_written, plain, table_columns, table_source, with_checksum
 
 if TYPE_CHECKING:
@@ -27,8 +27,6 @@ PIN = ("setup", "pin_on_disk_g2")
 RIVAL_DEVIATION = {"mean_film_sharing": 0.095, "viscoelastic_area": 0.241}
 """Root mean square error of COF of five fluids predicted blind from 50 % glycerol with their COF_BL
 (docs/studies/g2.md); what stands behind ``asperity_ehl`` is in ``friction.asperity_ehl``."""
-SOLE_RQ, FLOOR_RQ = (1.25e-6, 10e-6), (0.3e-6, 4e-6)
-"""Rq (m) of soles (Ra 1 to 8 um) and of smooth to matt floors, where none is given (assumed)."""
 HYSTERESIS_WAVES = (2.5e-6, 0.2e-3, 0.8e-3)
 """Shortest wave, roll-off and longest wave (m) of the floor that make hysteresis: with these and a
 loss tangent of 0.2 theory gives the closed form of ``friction.pair_contact``."""
@@ -63,11 +61,10 @@ class FrictionOption(Option):
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         if case.contaminant is None and not self.dry:
             yield InputError(
-                "a dry case needs a measured coefficient of friction",
+                f"the law {self.name} needs a fluid",
                 where=f"{where}.{self.key}",
-                remedy="No publication of the catalogue prints one: measure it and write "
-                'friction.model = "constant" and friction.cof = 0.8 (and hysteresis_cof, its '
-                "hysteresis part)",
+                remedy='On a dry floor write friction.model = "pair", or "constant" with a '
+                "measured friction.cof",
             )
 
 
@@ -75,37 +72,61 @@ class PairOption(FrictionOption):
     """Contact friction from what is known of compound, both roughnesses and fluid.
 
     Its constants are calibrated on published measurements; the interval is that of a pair that
-    nobody measured. Roughness that is not given is drawn.
+    nobody measured. Roughness that is not given is drawn. Dry, adhesion follows the real area of
+    contact.
     """
 
     name: ClassVar[str] = "pair"
+    dry: ClassVar[bool] = True
     source: ClassVar[str] = "calibrated on published measurements of other pairs"
     reads: ClassVar[tuple[str, ...]] = ("contaminant.family",)
-    uncounted: ClassVar[tuple[str, ...]] = ("draws_file",)
+    uncounted: ClassVar[tuple[str, ...]] = ("draws_file", "contact_table")
 
     draws_file: str | None = optional(
         "draws calibrated to readings of your own by underfoot calibrate pair; the "
         "path counts from the case file's folder"
     )
     sha256: str | None = optional("checksum of the file that is meant")
+    contact_table: str | None = optional(
+        "contact table of the rubber on the floor (ContactTable.save), for hysteresis and, dry, "
+        "real contact area; default: theory where a spectrum is given, else a closed form"
+    )
+    contact_table_sha256: str | None = optional("checksum of the contact table that is meant")
 
     @classmethod
     def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
-        return with_checksum(table, "draws_file", folder, where)
+        table = with_checksum(table, "draws_file", folder, where)
+        return with_checksum(
+            table, "contact_table", folder, where, checksum_key="contact_table_sha256"
+        )
 
     def build(self, context: Context) -> FrictionLaw:
-        from underfoot.friction import Pair, PairContactLaw, packaged_pair_draws, read_pair_draws
+        from scipy.special import erfinv
 
-        assert context.contaminant is not None  # a dry case is refused
+        from underfoot.friction import Pair, PairContactLaw, packaged_pair_draws, read_pair_draws
+        from underfoot.rough_contact import ContactTable
+
+        material = context.shoe.material
+        hysteresis, origin, full_contact = _hysteresis(context), "Persson theory", None
+        if self.contact_table:
+            table = ContactTable.load(self.contact_table)
+            at = HYSTERESIS_PRESSURE, context.motion.speed
+            area = float(table.real_contact_fraction(*at))
+            hysteresis, origin = float(table.cof_hysteresis(*at)), Path(self.contact_table).name
+            full_contact = HYSTERESIS_PRESSURE / float(erfinv(min(area, 1 - 1e-9)))
         draws = read_pair_draws(Path(self.draws_file)) if self.draws_file else None
         pair = Pair(
             shore_a=_hardness(context),
             sole_rq=_span(context.shoe.roughness, SOLE_RQ),
             floor_rq=_span(context.floor.roughness, FLOOR_RQ),
-            oil=context.contaminant.is_oil,
-            hysteresis=_hysteresis(context),
+            family=context.contaminant.chemistry if context.contaminant else "dry",
+            hysteresis=hysteresis,
+            hysteresis_origin=origin,
+            full_contact=full_contact,
+            polymer=material.polymer,
+            shore_a_deviation=(material.shore_a and material.sourced("shore_a").uncertainty) or 0.0,
         )
-        return PairContactLaw(pair, _viscosity(context), draws or packaged_pair_draws())
+        return PairContactLaw(pair, context.viscosity_value, draws or packaged_pair_draws())
 
 
 class _Measured(FrictionOption):

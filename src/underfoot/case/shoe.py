@@ -44,6 +44,9 @@ class Relaxation(Section):
 class Material(Section):
     """Outsole compound. A measured modulus goes before one from hardness."""
 
+    polymer: str | None = optional(
+        "TPU, PU, SBR, NBR, ...; soles of one polymer share the error of its friction"
+    )
     shore_a: Hardness | None = optional(
         'Shore A hardness; "40 Shore D" and "55 Asker C" are converted, with their spread'
     )

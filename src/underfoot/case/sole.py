@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 _ASSUMED = "assumption"
 _mm = 1e-3
+_LUG_SIDES = ("lug_length", "ring_width", "front_lug_width")
 _CELLS = 2.0  # across a channel or lug: fewer and its width is wrong by half or more
 Turn = Annotated[float, Quantity("rad", -math.pi, math.pi)]
 Shift = Annotated[float, Quantity("m", -0.5, 0.5)]
@@ -252,6 +253,7 @@ class Lugs(TreadPattern):
 
     def build(self) -> Tread | None:
         from underfoot.shoe import Sipes, Tread
+        from underfoot.shoe.tread import FURTHER_LENGTHS
 
         cuts = self.sipes
         return Tread(
@@ -262,8 +264,7 @@ class Lugs(TreadPattern):
             self.edge_radius,
             (self.offset_along, self.offset_across),
             self.angle,
-            lug_length=getattr(self, "lug_length", None),
-            arm_length=getattr(self, "arm_length", None),
+            **{name: getattr(self, name) for name in FURTHER_LENGTHS.get(self.name, ())},
             sipes=cuts and Sipes(cuts.width, cuts.depth, cuts.spacing, cuts.angle),
         )
 
@@ -277,10 +278,10 @@ class Lugs(TreadPattern):
                 remedy='Write pattern = "none" for a sole without tread',
             )
         yield from through_outsole(case, self.depth, f"{where}.depth")
-        for name in ("lug_width", "channel_width", "lug_length"):
+        for name in ("lug_width", "channel_width", *_LUG_SIDES):
             if hasattr(self, name):
                 yield from _resolved(case, f"{where}.{name}", getattr(self, name))
-        smallest = min(self.lug_width, getattr(self, "lug_length", math.inf))
+        smallest = min([self.lug_width, *(getattr(self, name, math.inf) for name in _LUG_SIDES)])
         rounding = min(self.depth or math.inf, smallest / 2)
         if self.edge_radius > rounding:
             yield RangeError(
@@ -369,6 +370,42 @@ class HexagonTread(Lugs):
     """Hexagonal studs."""
 
     name: ClassVar[str] = "hexagons"
+
+
+class WaveTread(Lugs):
+    """Bars that wave across the shoe, crests forward."""
+
+    name: ClassVar[str] = "waves"
+
+    wave_length: Length = Field(description="across the shoe, crest to crest")
+    wave_height: Length = Field(description="along the shoe, trough to crest")
+
+
+class RingTread(Lugs):
+    """Round lugs with a closed hollow that can hold suction or fluid."""
+
+    name: ClassVar[str] = "rings"
+
+    ring_width: Length = Field(description="thickness of the wall")
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        yield from super().problems(case, where)
+        if self.ring_width >= self.lug_width / 2:
+            yield RangeError(
+                f"a wall of {display(self.ring_width, 'm')} leaves no hollow",
+                where=f"{where}.ring_width",
+                allowed=f"below {display(self.lug_width / 2, 'm')} (half of lug_width)",
+                remedy='Write pattern = "circles" for full studs',
+            )
+
+
+class GradedCircleTread(Lugs):
+    """Round studs that grow or shrink along the shoe, on one lattice."""
+
+    name: ClassVar[str] = "graded_circles"
+
+    front_lug_width: Length = Field(description="diameter at graded_length and beyond")
+    graded_length: Length = Field(description="from the first stud, along the shoe")
 
 
 def through_outsole(case: CaseView, depth: float, where: str) -> Iterator[InputError]:

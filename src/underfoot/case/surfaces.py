@@ -17,6 +17,8 @@ Cutoff = Annotated[float, Quantity("m", 1e-6, 0.1)]
 _mm, _um = 1e-3, 1e-6
 RQ_PER_RA = math.sqrt(math.pi / 2)
 """Rq over Ra of Gaussian heights, 1.253."""
+SOLE_RQ, FLOOR_RQ = (1.25e-6, 10e-6), (0.3e-6, 4e-6)
+"""Rq (m) of soles (Ra 1 to 8 um) and of smooth to matt floors, where none is given (assumed)."""
 STEEPEST = 0.5
 """Largest rms slope of the interface's longest waves (small-slope theory, assumed)."""
 
@@ -119,7 +121,10 @@ class Interface(Option):
 
 
 class CompositeInterface(Interface):
-    """Rq = f sqrt(Rq_shoe^2 + Rq_floor^2) of the stylus, with f = ``roughness_beyond_cutoff``."""
+    """Rq = f sqrt(Rq_shoe^2 + Rq_floor^2) of the stylus, with f = ``roughness_beyond_cutoff``.
+
+    A roughness that is not given takes the middle of its usual range; the result says so.
+    """
 
     name: ClassVar[str] = "composite"
     source: ClassVar[str] = "composite of the stylus Rq of shoe and floor"
@@ -133,9 +138,8 @@ class CompositeInterface(Interface):
     )
 
     def rq(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> SourcedValue:
-        ours, theirs = shoe.rq_or_estimate, floor.rq_or_estimate
-        if ours is None or theirs is None:
-            raise InputError("no roughness is given", where="interface.effective_rq")
+        ours = shoe.rq_or_estimate or math.sqrt(math.prod(SOLE_RQ))
+        theirs = floor.rq_or_estimate or math.sqrt(math.prod(FLOOR_RQ))
         return SourcedValue(
             self.roughness_beyond_cutoff * math.hypot(ours, theirs),
             "m",
@@ -151,17 +155,7 @@ class CompositeInterface(Interface):
         return math.hypot(*known) / squares if known and squares > 0 else None
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        unknown = [
-            p for p in ("shoe", "floor") if getattr(case, p).roughness.rq_or_estimate is None
-        ]
-        for path in unknown:
-            yield InputError(
-                "neither Rq nor Ra is given",
-                where=f"{path}.roughness",
-                remedy=f'Write {path}.roughness.rq = "5 um" (or ra), or interface.effective_rq',
-            )
-        if not unknown:
-            yield from self._too_rough(case, f"{where}.roughness_beyond_cutoff")
+        yield from self._too_rough(case, f"{where}.roughness_beyond_cutoff")
 
 
 class MeasuredInterface(Interface):

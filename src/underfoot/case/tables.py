@@ -41,13 +41,15 @@ def plain(given: Any) -> Any:
     return given if origin is None else origin.leaf.given
 
 
-def with_checksum(table: dict[str, Any], key: str, folder: Path, where: str) -> dict[str, Any]:
+def with_checksum(
+    table: dict[str, Any], key: str, folder: Path, where: str, *, checksum_key: str = "sha256"
+) -> dict[str, Any]:
     """Return the table with the full path under ``key`` and the checksum of that file.
 
     Raises:
-        InputError: No such file, or another one than ``sha256`` of the table means.
+        InputError: No such file, or another one than the checksum in the table means.
     """
-    name, meant = plain(table.get(key)), plain(table.get("sha256"))
+    name, meant = plain(table.get(key)), plain(table.get(checksum_key))
     if not isinstance(name, str):
         return table
     path = (folder / name).resolve()
@@ -63,9 +65,9 @@ def with_checksum(table: dict[str, Any], key: str, folder: Path, where: str) -> 
             f"{path.name} is not the file that the case means: its checksum is "
             f"{present[:12]}..., not {meant[:12]}...",
             where=f"{where}.{key}",
-            remedy="Bring back that file, or remove sha256 to take this one",
+            remedy=f"Bring back that file, or remove {checksum_key} to take this one",
         )
-    return {**table, key: str(path), "sha256": present}
+    return {**table, key: str(path), checksum_key: present}
 
 
 def table_columns(

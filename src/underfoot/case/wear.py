@@ -1,4 +1,4 @@
-"""Slot for the wear of the sole: a plane cut, a patch, or pressure times sliding."""
+"""Slot for the wear of the sole: by walking, a plane cut, a patch, or pressure times sliding."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .section import GIVEN, CaseView, Option, Origin, leaf_of, refused_at
 from .sole import through_outsole
 
 if TYPE_CHECKING:
-    from underfoot.shoe.shape import SoleWear
+    from underfoot.shoe.shape import SoleWear, WearOnSole
 
 WearAngle = Annotated[float, Quantity("rad", 0.0, math.radians(45))]
 Place = Annotated[float, Quantity("m", -0.2, 0.2)]
@@ -41,7 +41,7 @@ class Wear(Option):
     depth: Depth = default(0.0, "0 mm", "unworn beyond the heel shape given")
 
     @abstractmethod
-    def build(self) -> SoleWear | None:
+    def build(self) -> SoleWear | WearOnSole | None:
         """Return what is worn away as geometry; None where a contact must be solved for it."""
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
@@ -62,6 +62,18 @@ class PlaneWear(Wear):
         return WearPlane(self.depth, self.angle)
 
 
+class WalkWear(Wear):
+    """Cut by the floor at every angle from heel contact to flat, as walkers load it."""
+
+    name: ClassVar[str] = "walk"
+    source: ClassVar[str] = "load and angle of ten recorded steps that come with the package"
+
+    def build(self) -> WearOnSole:
+        from underfoot.shoe.worn import WalkingWear
+
+        return WalkingWear(self.depth)
+
+
 class PatchWear(Wear):
     """A worn patch of given size."""
 
@@ -78,7 +90,7 @@ class PatchWear(Wear):
         math.radians(3), "3 deg", "slope of the wear around it", assumed=True
     )
 
-    def build(self) -> SoleWear | None:
+    def build(self) -> WearOnSole:
         from underfoot.shoe.worn import WornPatch
 
         return WornPatch(

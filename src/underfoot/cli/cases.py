@@ -29,10 +29,13 @@ def run(
             "--no-advice", help="Do not simulate possible changes (never done with --quick)."
         ),
     ] = False,
+    maps: Annotated[
+        bool, typer.Option("--maps", help="Draw PNG maps too; report.html draws its own.")
+    ] = False,
 ) -> None:
     """Compute the friction of a case, then the effect of possible changes on the coarse grid.
 
-    Data, maps and report.html go to --out, by default out/CASE. With --json and no --out nothing
+    Data and report.html go to --out, by default out/CASE. With --json and no --out nothing
     is written.
     """
     from underfoot.compute.run import run as result_of
@@ -53,7 +56,7 @@ def run(
             advice = risk_assessment(given, processes=shared.processes, progress=progress)
     written = None
     if folder is not None:
-        written = write_report(result, folder, overwrite=shared.overwrite, advice=advice)
+        written = write_report(result, folder, overwrite=shared.overwrite, advice=advice, maps=maps)
     finish(result, written, json=shared.json, everything=shared.everything, advice=advice)
 
 
@@ -183,8 +186,8 @@ def wear(
         str | None,
         typer.Option(
             "--mode",
-            help="archard (pressure times sliding; the default), plane (the default for an outsole "
-            "from a file) or patch.",
+            help="walk (cut by the floor at the angles of landing; the default), archard (pressure "
+            "times sliding), plane or patch.",
             show_default=False,
         ),
     ] = None,

@@ -20,6 +20,11 @@ LENGTHS = {
     "depth": "tread.depth",
     "lug_length": "tread.lug_length",
     "arm": "tread.arm_length",
+    "wave_length": "tread.wave_length",
+    "wave_height": "tread.wave_height",
+    "ring": "tread.ring_width",
+    "front_lug": "tread.front_lug_width",
+    "graded_length": "tread.graded_length",
     "angle": "tread.angle",
     "edge": "tread.edge_radius",
 }
@@ -31,9 +36,18 @@ def _given(text: str) -> Any:
 
 USUAL = {"lug": "6 mm", "channel": "4 mm", "depth": "3 mm"}
 """What a lug is where nothing is said: common work shoes (assumed)."""
-FURTHER = {"blocks": {"lug_length": "9 mm"}, "chevrons": {"arm": "12 mm", "angle": "35 deg"}}
+FURTHER = {
+    "blocks": {"lug_length": "9 mm"},
+    "chevrons": {"arm": "12 mm", "angle": "35 deg"},
+    "waves": {"wave_length": "20 mm", "wave_height": "6 mm"},
+    "rings": {"lug": "12 mm", "ring": "3 mm"},
+    "graded_circles": {"front_lug": "4 mm", "graded_length": "60 mm"},
+}
 """What some patterns need beyond that (assumed)."""
-PATTERNS = "none, grid, blocks, transverse, longitudinal, bars, chevrons, circles, hexagons."
+PATTERNS = (
+    "none, grid, blocks, transverse, longitudinal, bars, chevrons (zigzag), waves, circles, "
+    "graded_circles, hexagons, rings."
+)
 
 
 def make(
@@ -48,6 +62,11 @@ def make(
     depth: Annotated[str | None, _given("Height of the lugs.")] = None,
     lug_length: Annotated[str | None, _given("Of blocks.")] = None,
     arm: Annotated[str | None, _given("Of chevrons, across.")] = None,
+    wave_length: Annotated[str | None, _given("Of waves, across.")] = None,
+    wave_height: Annotated[str | None, _given("Of waves, along.")] = None,
+    ring: Annotated[str | None, _given("Wall of rings.")] = None,
+    front_lug: Annotated[str | None, _given("Of graded circles, in front.")] = None,
+    graded_length: Annotated[str | None, _given("Over which they change.")] = None,
     angle: Annotated[str | None, _given("Of the pattern.")] = None,
     edge: Annotated[str | None, _given("Radius of the lugs' edges.")] = None,
     sipes: Annotated[str | None, _given('Width, depth and spacing: "0.5 mm, 2 mm, 4 mm".')] = None,
@@ -67,7 +86,9 @@ def make(
     from underfoot.core import InputError
     from underfoot.shoe.parametric import write_sole
 
-    given = dict(zip(LENGTHS, (lug, channel, depth, lug_length, arm, angle, edge), strict=True))
+    waves, round_lugs = (wave_length, wave_height), (ring, front_lug, graded_length)
+    sizes = (lug, channel, depth, lug_length, arm, *waves, *round_lugs, angle, edge)
+    given = dict(zip(LENGTHS, sizes, strict=True))
     if (spec is None) == (pattern is None):
         raise InputError(
             "no sole" if spec is None else "a file and --pattern together",

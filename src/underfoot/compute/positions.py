@@ -18,9 +18,12 @@ from underfoot.sole_contact.solver import SoleContact
 
 from .contact import cost, scanned
 from .numbers import scalars
+from .sole import file_surface
 
 ANGLE_BAND = math.radians(1)
-"""Change of the shoe angle at some of the positions, rad; assumed."""
+"""The shoe angle lies evenly within this of the case's, rad; assumed."""
+DIRECTION_BAND = math.radians(3)
+"""The same of the sliding direction against a sole from a file, rad; assumed."""
 TOLERANCE = 1e-3
 """Tolerance at the positions, a fifth faster than 1e-4: it moves loads by 0.1 %."""
 HELD = "spread of the friction law, its inputs and the position of the tread"
@@ -28,10 +31,14 @@ HELD = "spread of the friction law, its inputs and the position of the tread"
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a tread lies: its pattern shifted by (x, y), m, the shoe turned by ``turn``, rad."""
+    """Where a tread lies: its pattern shifted by (x, y), m, the shoe turned by ``turn``, rad.
+
+    A sole from a file is turned by ``direction`` (rad, anticlockwise seen from above) instead.
+    """
 
     shift: tuple[float, float] = (0.0, 0.0)
     turn: float = 0.0
+    direction: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,15 +118,19 @@ class TreadPositions:
             return {"tread_position": f"as the case describes it; {failed} of the average"}
         return {
             "tread_position": f"COF {self._range('cof')}, load on the film "
-            f"{self._range('fluid_load', 'N')} over {len(self.places)} positions of the pattern. "
+            f"{self._range('fluid_load', 'N')} over {len(self.places)} positions of the tread. "
             "Numbers are means over them; maps and histories show the position that the case "
             "describes" + (f"; {failed}" if failed else "")
         }
 
     def assumptions(self) -> tuple[str, ...]:
-        """Return the band of the shoe angle, where it was used."""
-        used = any(place.turn for place in self.places)
-        return ("motion.shoe_angle: ±1 deg at some positions of the tread",) * used
+        """Return the bands of shoe angle and sliding direction, where they were used."""
+        angle = any(place.turn for place in self.places)
+        direction = any(place.direction for place in self.places)
+        return (
+            *("motion.shoe_angle: ±1 deg over the positions of the tread",) * angle,
+            *("sliding direction: ±3 deg over the positions of the tread",) * direction,
+        )
 
     def fields(self) -> dict[str, Any]:
         """Return the variables of a data set: where the positions are, COF and load there."""
@@ -129,10 +140,12 @@ class TreadPositions:
 
         shift = np.array([place.shift for place in self.places])
         turn = [place.turn for place in self.places]
+        direction = [place.direction for place in self.places]
         return {
             "position_shift_x": at(shift[:, 0], "m", "shift of the tread's pattern, forward"),
             "position_shift_y": at(shift[:, 1], "m", "shift of the tread's pattern, across"),
             "position_turn": at(turn, "rad", "change of the shoe angle"),
+            "position_direction": at(direction, "rad", "change of the sliding direction"),
             "position_cof": at(self.values["cof"], "1", "coefficient of friction"),
             "position_fluid_load": at(self.values["fluid_load"], "N", "load carried by the fluid"),
         }
@@ -145,21 +158,42 @@ class TreadPositions:
 def places(periods: Array, count: int) -> tuple[Place, ...]:
     """Return ``count`` places of a pattern with the periods (n, 2), m; the first at rest.
 
-    Even along the first period and, with a second, a Hammersley set in both. The shoe angle goes
-    through 0, +1 and -1 deg as long as that comes out even.
+    A lattice rule: even along the first period, in steps of a golden share along a second, and a
+    shoe angle that goes twice round its band as a sine of the same variance (once below 5 places).
+    A quantity that is smooth in the place then has a mean with next to no error of the rule.
     """
+    step = _golden_step(count)
+    rounds = 2 if count >= 5 else 1
     found = []
     for k in range(count):
-        shares = np.array([k / count, _mirrored(k)])[: len(periods)]
+        shares = np.array([k / count, k * step % count / count])[: len(periods)]
         x, y = shares @ periods
-        turn = (0.0, ANGLE_BAND, -ANGLE_BAND)[k % 3] if k < count // 3 * 3 else 0.0
-        found.append(Place((float(x), float(y)), turn))
+        turn = math.sqrt(2 / 3) * math.sin(2 * math.pi * rounds * k / count)
+        found.append(Place((float(x), float(y)), ANGLE_BAND * turn))
     return tuple(found)
 
 
-def _mirrored(number: int) -> float:
-    """Return the binary digits of ``number`` mirrored at the point (van der Corput)."""
-    return int(f"{number:b}"[::-1], 2) / 2 ** number.bit_length()
+def _golden_step(count: int) -> int:
+    """Return the number without common divisor with ``count`` next to its golden share."""
+    golden = count * (math.sqrt(5) - 1) / 2
+    steps = [step for step in range(1, count + 1) if math.gcd(step, count) == 1]
+    return min(steps, key=lambda step: abs(step - golden))
+
+
+def file_places(count: int) -> tuple[Place, ...]:
+    """Return ``count`` places of a sole that can't be shifted under itself; the first at rest.
+
+    The others lie evenly on an ellipse of shoe angle and sliding direction, with the variance of
+    an even spread over both bands.
+    """
+    found = [Place()]
+    for k in range(count - 1):
+        around = 2 * math.pi * k / (count - 1)
+        reach = math.sqrt(2 * count / (3 * (count - 1)))
+        turn = reach * math.cos(around)
+        direction = round(reach * math.sin(around), 12)  # half way round is at rest, not next to it
+        found.append(Place((0.0, 0.0), ANGLE_BAND * turn, DIRECTION_BAND * direction))
+    return tuple(found)
 
 
 def tread_positions(
@@ -179,20 +213,22 @@ def tread_positions(
     at a place on the quick grid; what it gives becomes a value on the run's own grid by
     ``on_own_grid``.
     """
-    tread, count = _tread(case), position_count(case, quick=quick)
-    if tread is None or count == 1:
+    count = position_count(case, quick=quick)
+    if count == 1:
         return None
-    own = _numbers(case, law_on(sole), sole, contact, viscosity)
+    tread = _tread(case)
+    lying = file_places(count) if tread is None else places(tread.periods, count)
+    own = place_numbers(case, law_on(sole), sole, contact, viscosity)
     eased = case.replace("numerics.tolerance", max(case.numerics.tolerance, TOLERANCE))
     kept = [(Place(), own)] if quick else []
     coarse = None
-    for k, place in list(enumerate(places(tread.periods, count)))[len(kept) :]:
+    for k, place in list(enumerate(lying))[len(kept) :]:
         try:
             there = solve(eased, place, _stage(progress, k, count))
         except ConvergenceError:
             continue
         if there[1].status.usable:
-            kept.append((place, _numbers(case, law_on(there[0]), *there, viscosity)))
+            kept.append((place, place_numbers(case, law_on(there[0]), *there, viscosity)))
             coarse = there if k == 0 else coarse
     if not kept or kept[0][0] != Place():  # nowhere to compare the two grids
         kept, coarse = [(Place(), own)], None
@@ -217,8 +253,15 @@ def on_own_grid(own: float, quick: Array) -> Array:
 
 
 def position_count(case: Case, *, quick: bool) -> int:
-    """Return over how many positions of its tread a run averages; 1 for a sole without."""
-    count = case.numerics.tread_positions if _tread(case) else 1
+    """Return over how many positions of its tread a run averages; 1 for a sole without.
+
+    On the quick grid half as many, of a sole from a file at least 3 (its own and a pair).
+    """
+    count = case.numerics.tread_positions
+    if case.shoe.outsole is not None:
+        lugs = float(file_surface(case).tread_depth.max()) > 0
+        return (max(math.ceil(count / 2), min(count, 3)) if quick else count) if lugs else 1
+    count = count if _tread(case) else 1
     return math.ceil(count / 2) if quick else count
 
 
@@ -244,7 +287,7 @@ def _stage(progress: Progress, number: int, count: int) -> Progress:
     return report
 
 
-def _numbers(
+def place_numbers(
     case: Case,
     law: FrictionLaw | EdgedLaw,
     sole: SoleMap,

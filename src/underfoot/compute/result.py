@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from underfoot.core import DataError, Provenance, SourcedValue, Status
+from underfoot.core.fields import Fields, from_xarray
 from underfoot.core.files import whole_folder
 from underfoot.core.presentation import Presentable, Table, value_text
 
@@ -36,7 +37,7 @@ class Result(Presentable):
         scalars: Named values in SI with uncertainty (or the reason for its absence) and "assumed"
             marks.
         labels: Named words, such as the lubrication regime.
-        fields: Maps and histories as a labelled data set, CF-style names and units.
+        data: Maps and histories with axes, CF-style names and units; ``fields`` is their data set.
         status: How the computation ended; anything not ``usable`` is not a result.
         breaches: Inputs outside the range on which a closure was tested, in words.
         assumptions: What no measurement or publication stands behind, in words.
@@ -49,7 +50,7 @@ class Result(Presentable):
     name: str
     scalars: dict[str, SourcedValue]
     labels: dict[str, str]
-    fields: xarray.Dataset
+    data: Fields
     status: Status
     breaches: tuple[str, ...]
     assumptions: tuple[str, ...]
@@ -65,6 +66,11 @@ class Result(Presentable):
     @property
     def usable(self) -> bool:
         return self.status.usable
+
+    @property
+    def fields(self) -> xarray.Dataset:
+        """Return maps and histories as a labelled data set of xarray."""
+        return self.data.to_xarray()
 
     def headline(self) -> tuple[str, ...]:
         return summary.headline(self.status, self.scalars, self.labels)
@@ -160,19 +166,14 @@ class Result(Presentable):
         }
 
     def _write_fields(self, path: Path) -> None:
-        dataset = self.fields.assign_attrs(
+        self.data.to_netcdf(
+            path,
             Conventions="CF-1.11",
             title=self.name,
             source=f"underfoot {self.provenance.versions.get('underfoot', '')}".strip(),
             history=f"{self.provenance.created} computed from case {self.provenance.case_hash}",
             status=str(self.status),
         )
-        encoding: dict[Any, dict[str, Any]] = {
-            name: {"zlib": True, "complevel": 4, "shuffle": True}
-            for name, variable in dataset.data_vars.items()
-            if variable.ndim
-        }
-        dataset.to_netcdf(path, engine="h5netcdf", encoding=encoding)
 
     def _write_summary(self, path: Path) -> None:
         with path.open("w", newline="", encoding="utf-8") as stream:
@@ -202,10 +203,10 @@ class Result(Presentable):
         try:
             stored = json.loads((folder / "result.json").read_text(encoding="utf-8"))
             case_text = (folder / "case.toml").read_text(encoding="utf-8")
-            fields = xarray.Dataset()
+            fields = Fields()
             if (folder / FIELDS_FILE).exists():
                 with xarray.open_dataset(folder / FIELDS_FILE, engine="h5netcdf") as dataset:
-                    fields = dataset.load()
+                    fields = from_xarray(dataset)
             if stored["format"] > FORMAT:
                 raise DataError(
                     f"written by a newer version (format {stored['format']})",
@@ -226,7 +227,7 @@ class Result(Presentable):
                 name=stored["name"],
                 scalars=scalars,
                 labels=stored["labels"],
-                fields=fields,
+                data=fields,
                 status=Status(stored["status"]["value"]),
                 breaches=tuple(stored["breaches"]),
                 assumptions=tuple(stored["assumptions"]),

@@ -8,7 +8,6 @@ from itertools import chain
 from typing import Any
 
 import numpy as np
-import xarray
 
 from underfoot.case import Case, Option, assumptions
 from underfoot.core import (
@@ -20,6 +19,7 @@ from underfoot.core import (
     silent,
     unknown_name,
 )
+from underfoot.core.fields import Fields, labelled
 from underfoot.friction import FrictionLaw, cof, sampled_cof
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
 from underfoot.shoe import SoleMap
@@ -121,7 +121,8 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
     sensor = scanned(case, sole, contact, viscosity=viscosity)
 
     def solved_quick(case: Case, place: Place, progress: Progress) -> tuple[SoleMap, SoleContact]:
-        there = sole_map(case, case.numerics.quick_grid_spacing, shift=place.shift, turn=place.turn)
+        where = {"shift": place.shift, "turn": place.turn, "direction": place.direction}
+        there = sole_map(case, case.numerics.quick_grid_spacing, **where)
         body = case.compliance.build(turned(context, place.turn), there)
         return there, solved_motion(
             case, there, body, asperities, viscosity=viscosity, progress=progress
@@ -188,7 +189,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         name=case.name,
         scalars=values,
         labels=labels,
-        fields=_fields(
+        data=_fields(
             sole,
             contact,
             sensor,
@@ -290,14 +291,14 @@ def _fields(
     shear: object,
     further: Iterable[tuple[dict[str, Any], dict[str, Any]]],
     draws: np.ndarray | None,
-) -> xarray.Dataset:
+) -> Fields:
     def on_sole(values: object, unit: str, name: str) -> tuple[tuple[str, str], object, dict]:
         return (("x", "y"), values, {"units": unit, "long_name": name})
 
     drawn = {"units": "1", "long_name": "draws of COF"}
     variables = {name: each for more, _ in further for name, each in more.items()}
     coordinates = {name: each for _, more in further for name, each in more.items()}
-    return xarray.Dataset(
+    return labelled(
         {
             "contact_pressure": on_sole(
                 contact.contact_pressure, "Pa", "asperity contact pressure"
@@ -319,7 +320,7 @@ def _fields(
             **variables,
             **({} if draws is None else {"cof_draws": ("draw", draws, drawn)}),
         },
-        coords={
+        {
             "x": ("x", sole.x, {"units": "m", "long_name": "along the walking direction"}),
             "y": ("y", sole.y, {"units": "m", "long_name": "across"}),
             **coordinates,

@@ -17,7 +17,7 @@ from underfoot.slip.dynamics import (
 )
 from underfoot.sole_contact.sole_state import SolverSettings
 
-from .contact import pool_depth
+from .contact import edged_law, pool_depth
 from .resolve import resolved
 from .sole import sole_map
 
@@ -29,11 +29,12 @@ def slip_setting(case: Case, *, quick: bool = True) -> Setting:
     """
     spacing = case.numerics.quick_grid_spacing if quick else case.numerics.grid_spacing
     context, sole = resolved(case), sole_map(case, spacing)
+    asperities, friction = case.rough_contact.build(context), case.friction.build(context)
     return Setting(
         sole=sole,
         compliance=case.compliance.build(context, sole),
-        asperities=case.rough_contact.build(context),
-        friction=case.friction.build(context),
+        asperities=asperities,
+        friction=friction,
         viscosity=case.film.build(context),
         settings=SolverSettings(
             pool_depth=pool_depth(case),
@@ -43,6 +44,7 @@ def slip_setting(case: Case, *, quick: bool = True) -> Setting:
         ),
         shoe_angle=case.motion.shoe_angle,
         key=f"{case.hash} {spacing:.6g}",
+        edged=edged_law(case, context, friction, sole, asperities),
     )
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,19 +35,31 @@ from underfoot.core import (
     display,
     silent,
 )
-from underfoot.shoe import SoleMap, SoleSurface, heel_map, surface_map
-from underfoot.shoe.files import FileOutsole, FileSettings, outsole_from_file
+from underfoot.shoe import SoleMap, SoleSurface, heel_map, rotated_surface, surface_map
 from underfoot.shoe.shape import SoleShape
 from underfoot.shoe.worn import ArchardStep, WornMap, archard_wear, worn_surface
 from underfoot.sole_contact.solver import SolverSettings, solve_sliding
 
 from .resolve import resolved, youngs_modulus
 
+if TYPE_CHECKING:
+    from underfoot.shoe.files import FileOutsole, FileSettings
+
 BOTTOMED = 0.5
 """Share of the outsole's thickness beyond which the load bottoms it out: refused."""
 LINEAR_STRAIN = Range(0.0, 0.25, "1", "linear elasticity of rubber in compression")
 WEAR_STEP = 0.25e-3
 """Thickness that Archard wear removes between two contacts, m."""
+
+
+def bottom_surface(case: Case) -> SoleSurface:
+    """Return the bottom of the case's sole in its own frame, worn as the case says.
+
+    On the cells of the file's height map, or of the coarse grid for a parametric sole.
+    """
+    if case.shoe.outsole is not None:
+        return file_surface(case)
+    return shoe.heel_surface(sole_shape(case), spacing=case.numerics.quick_grid_spacing)
 
 
 def sole_map(
@@ -57,14 +69,16 @@ def sole_map(
     *,
     shift: tuple[float, float] = (0.0, 0.0),
     turn: float = 0.0,
+    direction: float = 0.0,
 ) -> SoleMap:
     """Return the tilted sole of the case on a grid of ``spacing`` (m).
 
-    ``shift`` (x, y; m) moves the tread's pattern under the sole, ``turn`` (rad) adds to the shoe
-    angle; wear stays where it is. Neither holds for an outsole from a file.
+    ``shift`` (x, y; m) moves the tread's pattern under a parametric sole, ``direction`` (rad,
+    anticlockwise seen from above) turns a sole from a file against the sliding; ``turn`` (rad) adds
+    to the shoe angle of both. Wear stays where it is.
     """
     if case.shoe.outsole is not None:
-        return file_sole_map(case, spacing)
+        return file_sole_map(case, spacing, turn=turn, direction=direction)
     shape = sole_shape(case, progress)
     if shape.tread is not None and any(shift):
         shape = cast("SoleShape", replace(cast("Any", shape), tread=shape.tread.moved(shift)))
@@ -89,9 +103,6 @@ def sole_shape(case: Case, progress: Progress = silent) -> SoleShape:
     removed = wear.build()
     if removed is None:
         return new.worn(archard_state(case, progress=progress).worn)
-    check = getattr(removed, "check_within", None)
-    if check is not None:
-        check(new)
     return new.worn(removed)
 
 
@@ -172,7 +183,7 @@ def _dry_contact(
     return sole, contact.contact_pressure
 
 
-def file_outsole(case: Case) -> FileOutsole:
+def file_outsole(case: Case) -> "FileOutsole":
     """Return the outsole in the file of the case, as the case says it is to be read."""
     outsole = case.shoe.outsole
     if outsole is None:
@@ -182,13 +193,17 @@ def file_outsole(case: Case) -> FileOutsole:
         *("solid", "side", "cut_floor"),
     )
     given: dict[str, Any] = {name: getattr(outsole, name) for name in same}
+    from underfoot.shoe.files import FileSettings
+
     settings = FileSettings(**given, spacing=outsole.map_spacing)
     return _read(outsole.file, outsole.sha256 or "", settings)
 
 
 @lru_cache(maxsize=4)
-def _read(path: str, checksum: str, settings: FileSettings) -> FileOutsole:
+def _read(path: str, checksum: str, settings: "FileSettings") -> "FileOutsole":
     """Read a file once in a process: the checksum is part of the key."""
+    from underfoot.shoe.files import outsole_from_file
+
     return outsole_from_file(path, settings)
 
 
@@ -199,14 +214,18 @@ def file_surface(case: Case) -> SoleSurface:
     return surface if removed is None else worn_surface(surface, removed)
 
 
-def file_sole_map(case: Case, spacing: float) -> SoleMap:
+def file_sole_map(
+    case: Case, spacing: float, *, turn: float = 0.0, direction: float = 0.0
+) -> SoleMap:
     """Return the tilted outsole of the case's file on the solver's grid, trimmed to its reach.
+
+    ``turn`` (rad) adds to the shoe angle, ``direction`` turns the sole over the floor.
 
     Raises:
         InputError: Channels below the grid, a region or unit that doesn't fit, tread deeper than
             the outsole, nothing under the load.
     """
-    surface = file_surface(case)
+    surface = rotated_surface(file_surface(case), direction)
     thickness = case.shoe.sole.outsole_thickness
     deepest = float(np.max(surface.tread_depth))
     if deepest >= thickness:
@@ -218,7 +237,7 @@ def file_sole_map(case: Case, spacing: float) -> SoleMap:
         )
     assert case.shoe.outsole is not None  # file_surface refuses a case without one
     sole = trimmed(
-        surface_map(surface, shoe_angle=case.motion.shoe_angle, spacing=spacing),
+        surface_map(surface, shoe_angle=case.motion.shoe_angle + turn, spacing=spacing),
         case.shoe.outsole.reach,
     )
     check_load(case, sole)
@@ -247,6 +266,7 @@ def trimmed(sole: SoleMap, reach: float, padding: float = 0.004) -> SoleMap:
         tread_depth=sole.tread_depth[part],
         cut=sole.cut and sole.cut.part(part),
         whole=sole,
+        removed=None if sole.removed is None else sole.removed[part],
     )
 
 

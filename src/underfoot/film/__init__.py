@@ -9,6 +9,8 @@ from .operator import Upwinding as Upwinding
 from .operator import divergence as divergence
 from .operator import film_operator as film_operator
 from .operator import upwinding as upwinding
+from .pad_strike import Strike as Strike
+from .pad_strike import touch_time as touch_time
 from .patir_cheng_1978 import patir_cheng_breaches as patir_cheng_breaches
 from .patir_cheng_1978 import patir_cheng_mean_gap as patir_cheng_mean_gap
 from .patir_cheng_1978 import patir_cheng_pressure_factors as patir_cheng_pressure_factors

@@ -4,14 +4,22 @@ Where sole and floor touch under a fluid, friction has a part that a boundary fi
 hysteresis part, and a dry-like part that fades as the fluid is dragged in faster than it can leave
 the spots of contact:
 
-    mu_c = [film + hysteresis + dry exp(-eta V / kappa)] (E / E_60)^-c
+    mu_c = [s film + hysteresis + s dry exp(-eta V / kappa)] (E / E_60)^-c
     kappa = kappa_0 (R / 8.3 um)^n,  R^2 = Rq_sole^2 + Rq_floor^2
     hysteresis = min(0.0125 (loss tangent / 0.2) Rq_floor / um, 0.15)
 
-The form is the film at single asperities (rougher pairs shed it at higher eta V); its constants
-are calibrated on published measurements (``underfoot.calibrate.pair_law``) and are measurements of
-no single pair. A laboratory, its dry-like part and a pair each have an error of their own, learned
-between the sources; they are the largest part of the interval.
+s is the share of adhesion that a surfactant leaves (detergents; else 1). On a dry floor nothing
+fades, and adhesion follows the real contact area of the roughness (Persson 2001),
+
+    mu_dry = [(film + dry) (p_0 / p) erf(p / p_R) / erf(p_0 / p_8.3) + hysteresis] (E / E_60)^-c
+
+with p_R in proportion to R: rough pairs grip less dry and more wet. No dry reading stands behind
+it: adhesion at 8.3 um is taken as what water leaves of it at rest.
+
+The form under a fluid is the film at single asperities (rougher pairs shed it at higher eta V); its
+constants are calibrated on published measurements (``underfoot.calibrate.pair_law``) and are
+measurements of no single pair. A laboratory, its dry-like part and a pair each have an error of
+their own, learned between the sources; they are the largest part of the interval.
 """
 
 from __future__ import annotations
@@ -22,16 +30,17 @@ from dataclasses import dataclass, field
 from functools import cache
 from importlib import resources
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import ndtri
+from scipy.special import erf, ndtri
 
 from underfoot.core import DataError, InputError, Range, SourcedValue
 from underfoot.core.arrays import Array
 from underfoot.core.checks import positive
 
-from .law import FILM_RANGE, UncertainInputs
+from .law import FILM_RANGE, PIN_PRESSURE, UncertainInputs
 from .propagation import named_shares
 
 ROUGHNESS = 8.3e-6
@@ -44,13 +53,20 @@ MOST_HYSTERESIS = 0.15
 GENT_SLOPE = 0.045
 """d ln E / d Shore A near 65 (Gent 1958)."""
 REFERENCE_HARDNESS = 60.0
-MOST = 1.0
-"""COF of the contact under a fluid is taken as at most this one, that of a dry sole (assumed)."""
+FULL_CONTACT = 2.97e6 / ROUGHNESS
+"""p_R over R (Pa/m): E* h' / sqrt(2), with E* of Shore A 60 and the slope h' = 0.105 R / um of the
+waves of ``HYSTERESIS``. Stiffer compounds have less area and more strength; c holds the rest."""
 SOURCE = "law of the pair, calibrated on published measurements (underfoot studies run corpus)"
 RANGES = {
     "sliding speed": Range(0.01, 1.0, "m/s", "speeds of the measurements behind the law"),
     "viscosity": Range(0.5e-3, 0.3, "Pa*s", "fluids of the measurements behind the law"),
 }
+Family = Literal["aqueous", "detergent", "oil", "dry"]
+HIGHEST_WET, HIGHEST_DRY = 1.39, 3.0
+"""Highest COF of a contact: static friction of strips of soft natural rubber under 90 % glycerol on
+steel, the highest read under a fluid (Yamaguchi, Katsurashima, Shibata and Hokkirigawa, design of
+tread blocks; sliding they read 1.18); of clean soft rubber dry (assumed)."""
+UNITS = {"kappa": "Pa*m", "full_contact": "Pa"}
 LABORATORY, DRY_PART = "laboratory", "dry part of the laboratory"
 
 
@@ -59,19 +75,21 @@ class PairConstants:
     """Constants of the law, each of one shape; SI.
 
     ``film`` by family of fluid: what a boundary film leaves; ``dry``: the dry-like part at rest;
-    ``kappa_0`` in Pa m; ``roughness_exponent`` n and ``hardness_exponent`` c.
+    ``kappa_0`` in Pa m; ``surfactant``: share of adhesion left under a detergent;
+    ``roughness_exponent`` n and ``hardness_exponent`` c.
     """
 
     film_aqueous: Array
     film_oil: Array
     dry: Array
     kappa_0: Array
+    surfactant: Array
     roughness_exponent: Array
     hardness_exponent: Array
 
 
 def contact_terms(
-    constants: PairConstants, numbers: Mapping[str, ArrayLike], *, oil: bool
+    constants: PairConstants, numbers: Mapping[str, ArrayLike], *, family: Family
 ) -> tuple[Array, Array, Array, Array]:
     """Return film, hysteresis and dry-like part (at rest) of the contact friction, and kappa.
 
@@ -79,7 +97,7 @@ def contact_terms(
         constants: Numbers or draws that broadcast with ``numbers``.
         numbers: ``sole_rq`` and ``floor_rq`` (m), ``shore_a`` of the compound; where known its
             ``loss_tangent``, or its ``hysteresis`` (COF) in place of the closed form.
-        oil: Whether the fluid is an oil; else water, detergent or an aqueous mixture.
+        family: Of the fluid; "aqueous" are water and its mixtures without a surfactant.
 
     Returns:
         tuple: Three parts of COF (1) and kappa (Pa m).
@@ -94,8 +112,9 @@ def contact_terms(
     )
     loss = np.asarray(numbers.get("loss_tangent", LOSS_TANGENT)) / LOSS_TANGENT
     hysteresis = np.minimum(numbers.get("hysteresis", HYSTERESIS * loss * floor), MOST_HYSTERESIS)
-    film = constants.film_oil if oil else constants.film_aqueous
-    return film * softness, hysteresis * softness, constants.dry * softness, kappa
+    film = constants.film_oil if family == "oil" else constants.film_aqueous
+    adhesion = softness * constants.surfactant if family == "detergent" else softness
+    return film * adhesion, hysteresis * softness, constants.dry * adhesion, kappa
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,20 +219,27 @@ class Pair:
     ``sole_rq`` and ``floor_rq`` (m) are (low, high): equal where measured, else the range over
     which it is drawn, evenly in its logarithm. ``hysteresis`` is the COF that the package's own
     theory gives for the compound's spectrum; None takes the closed form at a loss tangent of 0.2.
+    ``hysteresis_origin`` names where it comes from. ``full_contact`` is p_R (Pa) where a contact
+    table gives it. ``polymer`` names what soles of one compound share, whatever their hardness and
+    roughness. ``shore_a_deviation`` is the standard deviation of the hardness.
     """
 
     shore_a: float
     sole_rq: tuple[float, float]
     floor_rq: tuple[float, float]
-    oil: bool
+    family: Family
     hysteresis: float | None = None
+    hysteresis_origin: str = "given"
+    full_contact: float | None = None
+    polymer: str | None = None
+    shore_a_deviation: float = 0.0
 
     @property
     def compound_and_floor(self) -> str:
         """Name of compound and floor: cases that share it share the error of the pair."""
-        sole, floor = (f"{1e6 * low:.3g} to {1e6 * high:.3g}" for low, high in self._rq)
-        family = "oil" if self.oil else "aqueous"
-        return f"pair: Shore A {self.shore_a:.3g}, Rq {sole} um on {floor} um, {family}"
+        sole, floor = (f"{1e6 * low:.3g} to {1e6 * high:.3g} um" for low, high in self._rq)
+        compound = self.polymer or f"Shore A {self.shore_a:.3g}, Rq {sole}"
+        return f"pair: {compound} on Rq {floor}, {self.family}"
 
     @property
     def _rq(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -221,14 +247,17 @@ class Pair:
 
     def drawn(self, draws: PairDraws, seed: int) -> dict[str, Array]:
         """Return draws (draws,) of the inputs of ``PairContactLaw``, by name."""
-        numbers: dict[str, ArrayLike] = {"shore_a": self.shore_a}
+        apart = ndtri(named_shares(seed, f"hardness {self.polymer}", draws.count))
+        numbers: dict[str, ArrayLike] = {
+            "shore_a": self.shore_a + self.shore_a_deviation * apart,
+        }
         for name, (low, high) in zip(("sole_rq", "floor_rq"), self._rq, strict=True):
             share = named_shares(seed, f"{name} {low:.3g} {high:.3g}", draws.count)
             numbers[name] = low * (high / low) ** share
         if self.hysteresis is not None:
             numbers["hysteresis"] = self.hysteresis
-        film, hysteresis, dry, kappa = contact_terms(draws.constants, numbers, oil=self.oil)
-        return {
+        film, hysteresis, dry, kappa = contact_terms(draws.constants, numbers, family=self.family)
+        drawn = {
             "film": film,
             "hysteresis": np.broadcast_to(hysteresis, film.shape),
             "dry": dry * np.exp(draws.error(DRY_PART, draws.sd_dry_part, seed)),
@@ -236,29 +265,42 @@ class Pair:
             "laboratory": np.exp(draws.error(LABORATORY, draws.sd_laboratory, seed)),
             "pair": np.exp(draws.error(self.compound_and_floor, draws.sd_pair, seed)),
         }
+        if self.family == "dry":
+            rq = np.hypot(numbers["sole_rq"], numbers["floor_rq"])
+            full = self.full_contact or FULL_CONTACT * rq
+            drawn["full_contact"] = np.broadcast_to(full, film.shape)
+        return drawn
 
 
 @dataclass(frozen=True, slots=True, repr=False)
 class PairContactLaw(UncertainInputs):
-    """tau = min(l (film + hysteresis + dry exp(-eta V / kappa)), 1) p_c + eta V / h.
+    """tau = l (film + hysteresis + dry exp(-eta V / kappa)) p_c + eta V / h.
 
-    l is the factor of laboratory and pair, 1 at the median.
+    l is the factor of laboratory and pair, 1 at the median. No COF of the contact is above what was
+    ever read (``HIGHEST_WET``).
 
     Parameters:
         pair: What is known of sole, floor and fluid.
-        viscosity: Pa s.
+        viscosity: Pa s; None on a dry floor.
         draws: Of the constants; the packaged ones by default.
     """
 
     pair: Pair
-    viscosity: float
+    viscosity: float | None
     draws: PairDraws = field(default_factory=packaged_pair_draws)
     medians: Mapping[str, float] = field(default_factory=dict)
     name: str = field(default="pair", init=False)
     spread_basis: str = field(default="of a pair that was not measured", init=False)
 
     def __post_init__(self) -> None:
-        positive(self.viscosity, "viscosity", "Pa s")
+        if self.viscosity is not None:
+            positive(self.viscosity, "viscosity", "Pa s")
+        if (self.viscosity is None) != (self.pair.family == "dry"):
+            raise InputError(
+                f"a viscosity of {self.viscosity} and a fluid of family {self.pair.family}",
+                where="pair",
+                allowed='a viscosity and a fluid, or None and "dry"',
+            )
         for low, high in (self.pair.sole_rq, self.pair.floor_rq):
             if not 0 < low <= high:
                 raise InputError(f"{low:g} to {high:g} m", where="pair", allowed="Rq above 0")
@@ -285,6 +327,11 @@ class PairContactLaw(UncertainInputs):
                 "friction.pair: contact friction of this pair was not measured; a reading of your "
                 "own narrows it (underfoot calibrate pair)."
             )
+        if self.pair.family == "dry":
+            words.append(
+                "friction.pair: no dry reading stands behind the law; dry adhesion is what water "
+                "leaves at rest, with the real contact area of the roughness (Persson 2001)"
+            )
         for part, (low, high) in (("shoe", self.pair.sole_rq), ("floor", self.pair.floor_rq)):
             if high > low:
                 words.append(
@@ -293,6 +340,9 @@ class PairContactLaw(UncertainInputs):
                 )
         if self.pair.hysteresis is None:
             words.append("shoe.material: loss tangent 0.2 for the hysteresis, no spectrum is given")
+        else:
+            given = f"hysteresis COF {self.pair.hysteresis:.3f} from {self.pair.hysteresis_origin}"
+            words.append(f"friction.pair: {given}")
         return tuple(words)
 
     @property
@@ -300,9 +350,7 @@ class PairContactLaw(UncertainInputs):
         """Medians with the standard deviations of the draws, which are joint."""
         drawn = self.pair.drawn(self.draws, 0)
         return {
-            name: SourcedValue(
-                value, "Pa*m" if name == "kappa" else "1", self.source, float(drawn[name].std())
-            )
+            name: SourcedValue(value, UNITS.get(name, "1"), self.source, float(drawn[name].std()))
             for name, value in self.medians.items()
         }
 
@@ -321,11 +369,17 @@ class PairContactLaw(UncertainInputs):
     def contact_shear(self, pressure: Array, velocity: Array) -> tuple[Array, ...]:
         m = self.medians
         factor = m["laboratory"] * m["pair"]
-        left = np.exp(-self.viscosity * velocity / m["kappa"])
-        adhesion = factor * (m["film"] + m["dry"] * left)
-        hysteresis = factor * m["hysteresis"]
-        most = np.minimum(1.0, MOST / (adhesion + hysteresis))
-        return adhesion * most * pressure, hysteresis * most * pressure
+        hysteresis = factor * m["hysteresis"] * pressure
+        if self.viscosity is None:
+            area = erf(pressure / m["full_contact"])
+            area *= PIN_PRESSURE / erf(PIN_PRESSURE / (FULL_CONTACT * ROUGHNESS))
+            adhesion, highest = factor * (m["film"] + m["dry"]) * area, HIGHEST_DRY
+        else:
+            left = np.exp(-self.viscosity * velocity / m["kappa"])
+            adhesion = factor * (m["film"] + m["dry"] * left) * pressure
+            highest = HIGHEST_WET
+        most = np.minimum(1.0, highest * pressure / np.maximum(adhesion + hysteresis, 1e-30))
+        return adhesion * most, hysteresis * most
 
     @property
     def ranges(self) -> Mapping[str, Range]:

@@ -10,25 +10,27 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from underfoot.compute.sole import bottom_surface
 from underfoot.core import InputError, Progress, display, silent, to_si, unknown_name
 from underfoot.core.presentation import Presentable, Table, percent
 from underfoot.core.progress import part
 
-from .outcomes import outcomes
+from .outcomes import Outcome, outcomes
 from .sensitivity import OPEN_INPUTS, OpenInput, open_inputs, variants
 from .wear_limit import Crossing, LimitCrossing, WearPoint, limit_crossing
 
 if TYPE_CHECKING:
     from underfoot.case import Case
+    from underfoot.shoe import SoleSurface
     from underfoot.shoe.worn import WearMeasures
 
-MODES = ("archard", "plane", "patch")
+MODES = ("walk", "archard", "plane", "patch")
 BAND_INPUTS = ("interface.roughness_beyond_cutoff", "shoe.material.shore_a")
 """What the band of the limit is made of: the least known inputs that decide the film."""
 LARGEST_PATCH = 0.8
 """Largest patch of a series as a share of the heel's length and width."""
 BEYOND_TREAD = 1.6
-"""Thickness lost at the end of an Archard series in depths of the tread."""
+"""Thickness lost at the end of a series by walking or Archard's law, in depths of the tread."""
 PARTS = 6
 """Parts of a step in which the wear is measured, to say how worn the sole is at the limit."""
 HEEL_PART = 0.25
@@ -40,6 +42,7 @@ LONGEST_HEEL, WIDTH_OF_HEEL = 0.12, 0.65
 WORN_REGION = (
     "Beschorner et al., worn region size, 57 shoes (abstract; doi 10.5061/dryad.vmcvdncsk)"
 )
+SLIGHT_WEAR = "Hemler et al. 2019, five shoes ground at three angles (abstract, Appl. Ergon. 80:35)"
 REPORT = "final progress report on shoe-floor friction, G.4.3"
 LOADS = {"fluid_load_sensor": "as floor sensors read it", "fluid_load": "under the sole"}
 MEASURES = (
@@ -85,7 +88,8 @@ class WearSeries(Presentable):
 
     ``limit`` is the fluid load (N) that counts as worn out; ``crossings`` has, for the load under
     the sole ("fluid_load") and as the floor sensors read it ("fluid_load_sensor"), the wear at
-    which it is exceeded.
+    which it is exceeded. ``untreaded`` is the last state without any tread; None where the sole
+    comes from a file. ``soles`` are the bottoms of the states in their own frame.
     """
 
     kind: ClassVar[str] = "wear"
@@ -97,6 +101,8 @@ class WearSeries(Presentable):
     crossings: dict[str, LimitCrossing]
     assumptions: tuple[str, ...]
     quick: bool = True
+    untreaded: Outcome | None = None
+    soles: tuple[SoleSurface, ...] = ()
 
     def __repr__(self) -> str:
         return f"<WearSeries of {self.name!r}, {self.mode}: {len(self.points)} states>"
@@ -115,16 +121,17 @@ class WearSeries(Presentable):
         if known.size > 1:
             first, last = cof[known[0]], cof[known[-1]]
             sentences.append(f"COF {first:.3f} new and {last:.3f} at the last state.")
+        if self.untreaded is not None and math.isfinite(self.untreaded.number("cof")):
+            bare = self.untreaded.number("cof")
+            sentences[-1] = f"{sentences[-1][:-1]}; {bare:.3f} if that sole had no tread at all."
         return tuple(sentences)
 
     def cautions(self) -> tuple[str, ...]:
         reasons = []
         cof = self.values("cof")
-        known = cof[np.isfinite(cof)]
-        if known.size > 1 and known[-1] > 1.05 * known[0]:
+        if np.isfinite(cof[-1]) and cof[-1] > 1.05 * np.nanmin(cof) and cof[-1] == np.nanmax(cof):
             reasons.append(
-                "The COF rises with wear, against published trends; where the lugs lie under the "
-                "heel may decide it (underfoot sensitivity)."
+                "The COF still rises at the last state: its fall lies beyond the range (--to)."
             )
         failed = [str(k) for k, p in enumerate(self.points) if not p.outcome.usable]
         if failed:
@@ -178,6 +185,9 @@ class WearSeries(Presentable):
                 }
                 for name, each in self.crossings.items()
             },
+            "untreaded_cof": None
+            if self.untreaded is None
+            else finite(self.untreaded.number("cof")),
             "trends": [asdict(trend) for trend in trends(self)],
             "assumptions": list(self.assumptions),
         }
@@ -241,7 +251,7 @@ class WearSeries(Presentable):
 def wear_series(
     case: Case,
     *,
-    mode: str = "archard",
+    mode: str = "walk",
     steps: int = 6,
     deepest: float | None = None,
     limit: float | None = None,
@@ -256,13 +266,14 @@ def wear_series(
 
     Parameters:
         case: A shoe with tread; its own wear is replaced.
-        mode: "archard": contact pressure times sliding at three angles about ``shoe.wear.angle``
-            (the shoe angle of the case where none is given); "plane": ground at that angle;
-            "patch": a worn patch at the heel that grows, worn down to the channel floor.
+        mode: "walk": cut by the floor at the angles from heel contact to flat; "archard": contact
+            pressure times sliding at three angles about ``shoe.wear.angle`` (the shoe angle of the
+            case where none is given); "plane": ground at that angle; "patch": a worn patch at the
+            heel that grows, worn down to the channel floor.
         steps: Number of worn states.
-        deepest: Thickness lost at the end, m (archard, plane); area of the patch at the end, m^2
-            (patch). By default the depth of the tread (plane), 1.6 times that (archard: a single
-            place is worn through first), and a patch of 0.8 of the heel's length and width.
+        deepest: Thickness lost at the end, m; of a patch its area at the end, m^2. By default the
+            depth of the tread (plane), 1.6 times that (walk, archard: a single place is worn
+            through first), and a patch of 0.8 of the heel's length and width.
         limit: Fluid load, N; by default 5 N, the report's limit of detection (G.4).
         band: Vary the least known inputs at every state: four more runs a state.
         draws, seed: Of the sampling of the band.
@@ -280,7 +291,7 @@ def wear_series(
         raise InputError(
             "wear by pressure and sliding needs a parametric sole",
             where="mode",
-            allowed="plane or patch with an outsole file",
+            allowed="walk, plane or patch with an outsole file",
         )
     if not _extent(case)[0] > 0:
         raise InputError(
@@ -302,12 +313,14 @@ def wear_series(
     plan: list[Case] = []
     for worn in cases:
         plan += [worn, *(end for *_, low, high in variants(worn, inputs) for end in (low, high))]
+    parametric = case.shoe.outsole is None
+    bare = [cases[-1].replace("shoe.tread.pattern", "none")] if parametric else []
     shaped = 0.0
     if mode == "archard":
         shaped = 0.1
         _wear_down(plan, part(progress, 0.0, shaped))
     results = outcomes(
-        plan,
+        [*plan, *bare],
         quick=quick,
         processes=processes,
         progress=part(progress, shaped, 1.0),
@@ -332,13 +345,15 @@ def wear_series(
         },
         assumptions=_assumptions(cases[-1], mode, inputs),
         quick=quick,
+        untreaded=results[-1] if bare else None,
+        soles=tuple(map(bottom_surface, cases)),
     )
 
 
 def wear_mode(mode: str | None, case: Case) -> str:
-    """Return the kind of wear: the given one, or the best that the sole of the case allows."""
+    """Return the kind of wear: the given one, or walking."""
     if mode is None:
-        return "archard" if case.shoe.outsole is None else "plane"
+        return MODES[0]
     if mode not in MODES:
         raise unknown_name("mode", mode, MODES, where="--mode")
     return mode
@@ -385,7 +400,7 @@ def worn_cases(case: Case, mode: str, steps: int, deepest: float | None) -> list
     else:
         thickness = case.shoe.sole.outsole_thickness
         end = depth if deepest is None else deepest
-        if deepest is None and mode == "archard":
+        if deepest is None and mode != "plane":
             end = min(BEYOND_TREAD * depth, (depth + thickness) / 2)
         if not 0 < end < thickness:
             most = display(thickness, "m")
@@ -394,7 +409,9 @@ def worn_cases(case: Case, mode: str, steps: int, deepest: float | None) -> list
                 where="deepest",
                 allowed=f"above 0 mm and below {most} (shoe.sole.outsole_thickness)",
             )
-        states = [{"depth": end * part, "angle": float(angle)} for part in map(float, share)]
+        states = [{"depth": end * part} for part in map(float, share)]
+        if mode != "walk":
+            states = [{**state, "angle": float(angle)} for state in states]
     changes = [{f"shoe.wear.{key}": value for key, value in state.items()} for state in states]
     return [new, *(new.replace({"shoe.wear.mode": mode, **change}) for change in changes)]
 
@@ -472,6 +489,11 @@ def _assumptions(case: Case, mode: str, inputs: list[OpenInput]) -> tuple[str, .
             "sliding, depth proportional to pressure times sliding (Archard); the wear rate sets "
             "the sliding distance only"
         )
+    elif mode == "walk":
+        shape = (
+            "cut by the floor at every angle from heel contact to flat, in proportion to the load "
+            "that ten recorded steps bear there; equal sliding at each"
+        )
     elif mode == "plane":
         shape = f"ground flat at {math.degrees(wear.angle):.0f} deg"
     else:
@@ -487,16 +509,23 @@ def _assumptions(case: Case, mode: str, inputs: list[OpenInput]) -> tuple[str, .
 
 
 def trends(series: WearSeries) -> list[Trend]:
-    """Return published trends with worn shoes beside those of the series."""
+    """Return published trends with worn shoes beside those of the series.
+
+    Those of worn regions are ranked over the states that have one, and the last one without.
+    """
     patch = series.measured("worn_patch_area")
-    peak = series.values("peak_fluid_pressure_sensor")
-    friction = series.values("cof")
+    worn_region = slice(max(int(np.count_nonzero(patch == 0)) - 1, 0), None)
+    patch, peak, friction = (
+        values[worn_region]
+        for values in (patch, series.values("peak_fluid_pressure_sensor"), series.values("cof"))
+    )
     new, worn = series.values("fluid_load_sensor")[[0, -1]]
     half = series.values("fluid_load_sensor")[: max(2, (len(series.points) + 1) // 2)]
     rows = [
         _rank("a larger worn region goes with a higher peak fluid pressure", patch, peak, 1),
         _rank("a higher peak fluid pressure goes with less available friction", peak, friction, -1),
     ]
+    rows.append(Trend("friction first rises, then falls", SLIGHT_WEAR, None, _rises_first(series)))
     late = None
     if np.isfinite([new, worn]).all() and worn > new:
         # the rise over the first half of the wear against that over all of it
@@ -504,6 +533,15 @@ def trends(series: WearSeries) -> list[Trend]:
     finding = "little changes until a threshold of wear, then fluid pressure rises steeply"
     rows.append(Trend(finding, REPORT, None, late))
     return rows
+
+
+def _rises_first(series: WearSeries) -> bool | None:
+    """Return whether the COF is highest in between and only falls from there to the end."""
+    cof = series.values("cof")
+    if not np.isfinite(cof).all():
+        return None
+    highest = int(cof.argmax())
+    return bool(0 < highest < cof.size - 1 and (np.diff(cof[highest:]) < 0).all())
 
 
 def _rank(finding: str, x: np.ndarray, y: np.ndarray, sign: int) -> Trend:

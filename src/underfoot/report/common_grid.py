@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .quantities import Quantity, inside, raw, spacing
+from underfoot.core.fields import Fields
 
-if TYPE_CHECKING:
-    import xarray
+from .quantities import Quantity, inside, raw, spacing
 
 _COVERED = 0.5
 """Least share of a cell that must lie on the sole."""
@@ -28,7 +26,7 @@ class CommonGrid:
     resampled: bool
 
 
-def common_grid(datasets: Sequence[xarray.Dataset]) -> CommonGrid:
+def common_grid(datasets: Sequence[Fields]) -> CommonGrid:
     """Return the grid of all if they share one, else cells of the coarsest over all soles (m)."""
     first = datasets[0]
     if all(_same(first, other) for other in datasets[1:]):
@@ -38,7 +36,7 @@ def common_grid(datasets: Sequence[xarray.Dataset]) -> CommonGrid:
     return CommonGrid(x, y, side, True)
 
 
-def on_grid(dataset: xarray.Dataset, quantity: Quantity, grid: CommonGrid) -> NDArray[np.float64]:
+def on_grid(dataset: Fields, quantity: Quantity, grid: CommonGrid) -> NDArray[np.float64]:
     """Return a quantity in its shown unit on a common grid, (nx, ny), nan where there is no sole.
 
     Each new cell holds the mean over the parts of old cells within it, so that the integral of a
@@ -56,7 +54,7 @@ def on_grid(dataset: xarray.Dataset, quantity: Quantity, grid: CommonGrid) -> ND
     return np.divide(total, there, out=np.full_like(total, np.nan), where=enough)
 
 
-def sole_on_grid(dataset: xarray.Dataset, grid: CommonGrid) -> NDArray[np.bool_]:
+def sole_on_grid(dataset: Fields, grid: CommonGrid) -> NDArray[np.bool_]:
     """Return where at least half of a cell of a common grid lies on the sole, (nx, ny)."""
     there = inside(dataset)
     if not grid.resampled:
@@ -75,9 +73,9 @@ def difference(
     return np.divide(second, first, out=np.full_like(first, np.nan), where=usable)
 
 
-def _same(first: xarray.Dataset, other: xarray.Dataset) -> bool:
+def _same(first: Fields, other: Fields) -> bool:
     return all(
-        first[axis].size == other[axis].size
+        first[axis].values.size == other[axis].values.size
         and np.allclose(first[axis].values, other[axis].values, atol=1e-3 * spacing(first))
         for axis in ("x", "y")
     )
@@ -88,9 +86,7 @@ def _span(centres: Sequence[NDArray[np.float64]], side: float) -> NDArray[np.flo
     return low + side * np.arange(np.ceil((high - low) / side - 1e-6) + 1)
 
 
-def _weights(
-    dataset: xarray.Dataset, grid: CommonGrid
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _weights(dataset: Fields, grid: CommonGrid) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     side = spacing(dataset)
     return (
         _overlap(grid.x, grid.spacing, dataset["x"].values, side),

@@ -26,9 +26,10 @@ FigureMakers = dict[str, "Callable[[], Figure]"]
 _HOMES = {
     "compute": ("results",),
     "case": ("results",),
-    "questions": ("results", "question_figures", "slips"),
+    "questions": ("results", "question_figures", "slips", "wear_page"),
     "film": ("regime_figure",),
-    "report": ("outsole",),
+    "explore": ("design_studies",),
+    "report": ("outsole", "design_studies"),
     **dict.fromkeys(("friction", "rough_contact", "slip", "material"), ("laws",)),
 }
 """Modules of this room that register the types of a room of the package."""
@@ -142,16 +143,21 @@ def written(
     data: dict[str, Writer],
     text: Callable[[dict[str, bytes]], str],
     *,
+    makers: FigureMakers | None = None,
     overwrite: bool,
 ) -> Written:
-    """Write data, figures and the page whose ``text`` is made of the figures as PNG, by name."""
+    """Write data, figures and the page whose ``text`` is made of the figures as PNG, by name.
+
+    ``makers`` are the figures to draw, None for all that the object has.
+    """
     drawn: dict[str, bytes] = {}
+    makers = figures(shown) if makers is None else makers
 
     def draw(name: str, make: Callable[[], Figure], path: Path) -> None:
         drawn[name] = png(make())
         path.write_bytes(drawn[name])
 
-    pictures = {f"{name}.png": partial(draw, name, make) for name, make in figures(shown).items()}
+    pictures = {f"{name}.png": partial(draw, name, make) for name, make in makers.items()}
 
     def write_page(path: Path) -> None:
         path.write_text(text(drawn), encoding="utf-8")

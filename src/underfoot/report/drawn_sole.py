@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .quantities import HEIGHT_NAMES, inside, raw, spacing
+from underfoot.core.fields import Fields
 
-if TYPE_CHECKING:
-    import xarray
+from .quantities import HEIGHT_NAMES, inside, raw, spacing
 
 Floats = NDArray[np.float64]
 
@@ -60,7 +58,7 @@ class DrawnSole:
         return placed
 
 
-def drawn_sole(dataset: xarray.Dataset) -> DrawnSole:
+def drawn_sole(dataset: Fields) -> DrawnSole:
     """Return the sole of a result's fields, cut to the rows and columns where there is sole."""
     mask = inside(dataset)
     name = next((name for name in HEIGHT_NAMES if name in dataset), None)
@@ -103,7 +101,7 @@ def drawn_sole(dataset: xarray.Dataset) -> DrawnSole:
 
 
 def _set_in(
-    dataset: xarray.Dataset, name: str, there: tuple[slice, slice], values: np.ndarray
+    dataset: Fields, name: str, there: tuple[slice, slice], values: np.ndarray
 ) -> np.ndarray:
     """Return a field of the whole sole with the values of the part that was solved."""
     field = np.array(dataset[name].transpose("whole_x", "whole_y"), dtype=float)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core import DataError, InputError, unknown_name
+from underfoot.core.fields import Fields
 from underfoot.core.optional import optional_module
 
 from .drawn_sole import DrawnSole, drawn_sole
@@ -18,8 +19,6 @@ from .quantities import Quantity, drawn, quantities, raw, scale
 from .sole_mesh import SoleMesh, sole_mesh
 
 if TYPE_CHECKING:
-    import xarray
-
     from underfoot.compute.result import Result
 
 RUBBER = (148, 152, 156, 255)
@@ -91,7 +90,7 @@ def export_result(
             where="--to",
             allowed=", ".join(WRITERS),
         )
-    found = quantities([result.fields]) if "x" in result.fields.dims else ()
+    found = quantities([result.data]) if "x" in result.data.sizes else ()
     if not found:
         raise DataError(
             "the result has no fields on the sole",
@@ -105,7 +104,7 @@ def export_result(
 
 
 def _scene(result: Result, found: tuple[Quantity, ...], chosen: Quantity, pressed: bool) -> _Scene:
-    dataset, sole = result.fields, drawn_sole(result.fields)
+    dataset, sole = result.data, drawn_sole(result.data)
     if pressed and sole.pressed is None:
         raise DataError(
             "the result does not hold the shape of the pressed sole",
@@ -125,7 +124,7 @@ def _scene(result: Result, found: tuple[Quantity, ...], chosen: Quantity, presse
 
 
 def _colours(
-    dataset: xarray.Dataset, sole: DrawnSole, mesh: SoleMesh, quantity: Quantity
+    dataset: Fields, sole: DrawnSole, mesh: SoleMesh, quantity: Quantity
 ) -> NDArray[np.uint8]:
     """Return the colour (RGBA) of every corner, as the page shows the quantity."""
     import matplotlib

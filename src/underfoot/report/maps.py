@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from underfoot.core.fields import Fields
 from underfoot.questions.comparison import LETTERS
 
 from .common_grid import common_grid, difference, on_grid, sole_on_grid
@@ -18,7 +19,6 @@ from .html import new_figure
 from .quantities import Quantity, Scale, drawn, inside, quantities, scale
 
 if TYPE_CHECKING:
-    import xarray
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -29,14 +29,14 @@ _REACH = 0.995
 """Quantile of the differences at which their colour scale ends: single cells at edges beyond."""
 
 
-def colour_scale(datasets: Sequence[xarray.Dataset], quantity: Quantity) -> Scale:
+def colour_scale(datasets: Sequence[Fields], quantity: Quantity) -> Scale:
     """Return one colour scale for several results, so that they can be compared by eye."""
     return scale([drawn(dataset, quantity) for dataset in datasets], quantity)
 
 
 def draw_map(
     axes: Axes,
-    dataset: xarray.Dataset,
+    dataset: Fields,
     quantity: Quantity,
     limits: Scale | None = None,
     *,
@@ -93,7 +93,7 @@ def draw_field(
         colour_bar.ax.yaxis.set_minor_formatter(NullFormatter())
 
 
-def draw_shape(axes: Axes, dataset: xarray.Dataset) -> None:
+def draw_shape(axes: Axes, dataset: Fields) -> None:
     """Draw the outline of the sole and of its lugs."""
     x, y = dataset["x"].values * 1e3, dataset["y"].values * 1e3
     if "land" in dataset:
@@ -106,7 +106,7 @@ def draw_shape(axes: Axes, dataset: xarray.Dataset) -> None:
         axes.plot(*rim, color="0.25", linewidth=1.2)
 
 
-def map_figure(dataset: xarray.Dataset, quantity: Quantity) -> Figure:
+def map_figure(dataset: Fields, quantity: Quantity) -> Figure:
     """Return one map as a figure."""
     figure = _sole_figure(1, 1, dataset)
     axes = figure.add_subplot()
@@ -115,7 +115,7 @@ def map_figure(dataset: xarray.Dataset, quantity: Quantity) -> Figure:
     return figure
 
 
-def overview_figure(dataset: xarray.Dataset) -> Figure:
+def overview_figure(dataset: Fields) -> Figure:
     """Return the maps of all quantities, three in a row."""
     found = quantities([dataset])
     columns = min(3, len(found))
@@ -128,7 +128,7 @@ def overview_figure(dataset: xarray.Dataset) -> Figure:
     return figure
 
 
-def comparison_figure(datasets: Sequence[xarray.Dataset], quantity: Quantity) -> Figure:
+def comparison_figure(datasets: Sequence[Fields], quantity: Quantity) -> Figure:
     """Return the maps of several results in one scale, then each less the first.
 
     Where the grids differ, the differences are taken on cells of the coarser one, as means that
@@ -177,7 +177,7 @@ def _difference_style(changes: Sequence[np.ndarray], quantity: Quantity) -> tupl
     return Quantity("difference", "", 1.0, quantity.unit, "RdBu_r"), Scale(-reach, reach, reach)
 
 
-def grid_note(datasets: Sequence[xarray.Dataset]) -> str:
+def grid_note(datasets: Sequence[Fields]) -> str:
     """Return on which grid differences are taken."""
     grid = common_grid(datasets)
     if not grid.resampled:
@@ -188,19 +188,19 @@ def grid_note(datasets: Sequence[xarray.Dataset]) -> str:
     )
 
 
-def _sole_figure(rows: int, columns: int, dataset: xarray.Dataset) -> Figure:
+def _sole_figure(rows: int, columns: int, dataset: Fields) -> Figure:
     height = float(np.clip(3.4 * _tallness(dataset), 3.0, 8.0))
     return new_figure(4.4 * columns, (height + 0.7) * rows)
 
 
-def _tallness(dataset: xarray.Dataset) -> float:
+def _tallness(dataset: Fields) -> float:
     """Return the sole's length, with room for the scale bar, over its width."""
     there = inside(dataset)
     tall = np.ptp(dataset["x"].values[there.any(axis=1)]) + 0.015
     return tall / max(np.ptp(dataset["y"].values[there.any(axis=0)]), 1e-6)
 
 
-def _draw_sensors(axes: Axes, dataset: xarray.Dataset) -> None:
+def _draw_sensors(axes: Axes, dataset: Fields) -> None:
     if "sensor_x" not in dataset or "sensor_y" not in dataset:
         return
     along, across = dataset["sensor_x"].values * 1e3, dataset["sensor_y"].values * 1e3

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from underfoot.core.fields import Fields
 from underfoot.core.units import display_unit
-
-if TYPE_CHECKING:
-    import xarray
 
 HEIGHT_NAMES = ("clearance", "height")
 _NOT_DRAWN = ("pressed_height",)
@@ -72,7 +69,7 @@ class Scale:
         return self.peak > 1.001 * self.high
 
 
-def quantities(datasets: Sequence[xarray.Dataset]) -> tuple[Quantity, ...]:
+def quantities(datasets: Sequence[Fields]) -> tuple[Quantity, ...]:
     """Return what all of the data sets hold on (x, y), the usual four first, heights last.
 
     Titles come from ``long_name``, units from ``units``: a field of a later version is drawn
@@ -84,7 +81,7 @@ def quantities(datasets: Sequence[xarray.Dataset]) -> tuple[Quantity, ...]:
     return tuple(_quantity(name, datasets) for name in common)
 
 
-def drawn(dataset: xarray.Dataset, quantity: Quantity) -> NDArray[np.float64]:
+def drawn(dataset: Fields, quantity: Quantity) -> NDArray[np.float64]:
     """Return a quantity in its shown unit, (nx, ny), nan outside the sole or where there is none.
 
     A stress below 1e-3 of its peak counts as none.
@@ -96,12 +93,12 @@ def drawn(dataset: xarray.Dataset, quantity: Quantity) -> NDArray[np.float64]:
     return values
 
 
-def raw(dataset: xarray.Dataset, name: str) -> NDArray[np.float64]:
+def raw(dataset: Fields, name: str) -> NDArray[np.float64]:
     """Return a field in SI as (nx, ny)."""
     return np.array(dataset[name].transpose("x", "y").values, dtype=float)
 
 
-def carried_load(dataset: xarray.Dataset, quantity: Quantity) -> float | None:
+def carried_load(dataset: Fields, quantity: Quantity) -> float | None:
     """Return the load in N of a pressure that carries one, sum p dA; None for other fields."""
     if quantity.name not in _LOADS:
         return None
@@ -109,7 +106,7 @@ def carried_load(dataset: xarray.Dataset, quantity: Quantity) -> float | None:
     return float(pressure.sum()) * spacing(dataset) ** 2
 
 
-def inside(dataset: xarray.Dataset) -> NDArray[np.bool_]:
+def inside(dataset: Fields) -> NDArray[np.bool_]:
     """Return where the sole is, (nx, ny)."""
     if "inside" in dataset:
         return np.asarray(dataset["inside"].transpose("x", "y").values, dtype=bool)
@@ -119,7 +116,7 @@ def inside(dataset: xarray.Dataset) -> NDArray[np.bool_]:
     return np.isfinite(raw(dataset, height))
 
 
-def spacing(dataset: xarray.Dataset) -> float:
+def spacing(dataset: Fields) -> float:
     """Return the side of a cell in m."""
     return float(np.median(np.diff(dataset["x"].values)))
 
@@ -143,7 +140,7 @@ def scale(fields: Sequence[NDArray[np.float64]], quantity: Quantity) -> Scale:
     return Scale(0.0, max(high, 1e-12), peak)
 
 
-def _names(dataset: xarray.Dataset) -> list[str]:
+def _names(dataset: Fields) -> list[str]:
     return [
         str(name)
         for name, field in dataset.data_vars.items()
@@ -151,7 +148,7 @@ def _names(dataset: xarray.Dataset) -> list[str]:
     ]
 
 
-def _quantity(name: str, datasets: Sequence[xarray.Dataset]) -> Quantity:
+def _quantity(name: str, datasets: Sequence[Fields]) -> Quantity:
     attributes = datasets[0][name].attrs
     largest = 0.0
     lowest = 0.0

@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from underfoot.case import Case
 from underfoot.compute.result import Result
 from underfoot.compute.sole import sole_map
 from underfoot.core import silent
+from underfoot.core.fields import Fields, labelled
 from underfoot.core.presentation import Table
 from underfoot.questions.comparison import Comparison
 from underfoot.questions.risk import RiskAssessment
 
+from .chart import line_chart
 from .dispatch import FigureMakers, figures, files, plot, sections, write_report, written
 from .html import embedded, new_figure
 from .maps import comparison_figure, draw_map, grid_note, map_figure, overview_figure
@@ -32,10 +34,10 @@ SEEN = "Seen through the floor: the heel's back edge is at the bottom, walking d
 @figures.register(Result)
 def _result_figures(result: Result) -> FigureMakers:
     """Return the overview, a map for each quantity on the sole, and the history of the load."""
-    makers: FigureMakers = {"maps": partial(overview_figure, result.fields)}
-    for quantity in quantities([result.fields]):
-        makers[quantity.name] = partial(map_figure, result.fields, quantity)
-    if "time" in result.fields.dims:
+    makers: FigureMakers = {"maps": partial(overview_figure, result.data)}
+    for quantity in quantities([result.data]):
+        makers[quantity.name] = partial(map_figure, result.data, quantity)
+    if "time" in result.data.sizes:
         makers["history"] = partial(history_figure, result)
     return makers
 
@@ -58,7 +60,7 @@ def _result_sections(
     ]
     if advice is not None:
         parts.append(Section(advice.table().title, "Coarse grid.", table=advice.table()))
-    titles = {quantity.name: quantity.title for quantity in quantities([result.fields])}
+    titles = {quantity.name: quantity.title for quantity in quantities([result.data])}
     maps = [
         Picture(f"Map of {titles[name].lower()} on the sole", embedded(data))
         for name, data in pictures.items()
@@ -66,10 +68,8 @@ def _result_sections(
     ]
     if maps:
         parts.append(Section("Maps", SEEN, pictures=maps))
-    if "history" in pictures:
-        caption = "Applied load and load carried by the fluid over time"
-        history = Picture(caption, embedded(pictures["history"]), True)
-        parts.append(Section("Load over time", pictures=[history]))
+    if "time" in result.data.sizes:
+        parts.append(Section("Load over time", html=history_chart(result)))
     provenance = result.provenance
     models = Table("", ("", ""), list(provenance.closures.items()))
     versions = ", ".join(f"{name} {version}" for name, version in provenance.versions.items())
@@ -92,10 +92,12 @@ def _write_result(
     *,
     overwrite: bool = False,
     advice: RiskAssessment | None = None,
+    maps: bool = False,
 ) -> Written:
-    """Write case.toml, result.json, summary.csv, result.nc, the maps and report.html.
+    """Write case.toml, result.json, summary.csv, result.nc and report.html.
 
-    ``advice`` adds risk.json, changes.csv and the most effective changes to the page.
+    ``advice`` adds risk.json, changes.csv and the most effective changes to the page; ``maps`` a
+    PNG of each quantity and of the load over time, beside the page and on it.
     """
 
     def text(drawn: dict[str, bytes]) -> str:
@@ -103,14 +105,15 @@ def _write_result(
         return page(result, parts, script=script)
 
     data = files(result) | ({} if advice is None else data_writers(advice))
-    return written(result, folder, data, text, overwrite=overwrite)
+    drawn = None if maps else {}
+    return written(result, folder, data, text, makers=drawn, overwrite=overwrite)
 
 
 @figures.register(Comparison)
 def _comparison_figures(comparison: Comparison) -> FigureMakers:
     if not comparison.usable:
         return {}
-    datasets = [result.fields for result in comparison.results]
+    datasets = [result.data for result in comparison.results]
     return {q.name: partial(comparison_figure, datasets, q) for q in quantities(datasets)}
 
 
@@ -122,7 +125,7 @@ def _comparison_sections(
     ranking = table_sections(comparison)
     parts = []
     if comparison.usable:
-        datasets = [result.fields for result in results]
+        datasets = [result.data for result in results]
         note, titles = grid_note(datasets), {q.name: q.title for q in quantities(datasets)}
         scale = f"One colour scale for all; red is more than A, blue less. {note} {SEEN}"
         parts = [
@@ -144,14 +147,11 @@ def _comparison_sections(
     return parts, viewer_script() if comparison.usable else ""
 
 
-@plot.register(Case)
-def _plot_case(case: Case) -> Figure:
+def sole_fields(case: Case) -> Fields:
     """Return the height of a case's sole above the floor, on the coarse grid."""
-    import xarray
-
     sole = sole_map(case, case.numerics.quick_grid_spacing, silent)
     labels = {"units": "m", "long_name": "height of the undeformed sole"}
-    fields = xarray.Dataset(
+    return labelled(
         {
             "clearance": (("x", "y"), sole.clearance, labels),
             "inside": (("x", "y"), sole.inside),
@@ -159,8 +159,14 @@ def _plot_case(case: Case) -> Figure:
             "outline_x": ("outline", sole.outline[:, 0]),
             "outline_y": ("outline", sole.outline[:, 1]),
         },
-        coords={"x": sole.x, "y": sole.y},
+        {"x": ("x", sole.x), "y": ("y", sole.y)},
     )
+
+
+@plot.register(Case)
+def _plot_case(case: Case) -> Figure:
+    """Return the height of a case's sole above the floor, on the coarse grid."""
+    fields = sole_fields(case)
     figure = new_figure(9.0, 6.0)
     left, right = figure.subplots(1, 2, width_ratios=[1.0, 1.3])
     draw_map(left, fields, quantities([fields])[0])
@@ -171,19 +177,31 @@ def _plot_case(case: Case) -> Figure:
     return figure
 
 
+_LOADS = (("load_history", "applied load"), ("fluid_load_history", "carried by the fluid"))
+_TIME = "time after first contact with the film (ms)"
+
+
+def history_chart(result: Result) -> str:
+    """Return how the load is shared between fluid and contact over time, as SVG."""
+    data = result.data
+    lines = [(label, data[name].values) for name, label in _LOADS if name in data]
+    return line_chart(data["time"].values * 1e3, lines, _TIME, "load (N)")
+
+
 def history_figure(result: Result) -> Figure:
     """Return how the load is shared between fluid and contact over time."""
-    fields = result.fields
+    fields = result.data
     figure = new_figure(7.5, 2.8)
     axes = figure.add_subplot()
     time = fields["time"].values * 1e3
-    for name, label, colour, line in (
-        ("load_history", "applied load", "0.3", "--"),
-        ("fluid_load_history", "carried by the fluid", "tab:blue", "-"),
-    ):
+    styles: tuple[dict[str, Any], ...] = (
+        {"color": "0.3", "linestyle": "--"},
+        {"color": "tab:blue"},
+    )
+    for (name, label), style in zip(_LOADS, styles, strict=True):
         if name in fields:
-            axes.plot(time, fields[name].values, label=label, color=colour, linestyle=line)
-    axes.set(xlabel="time after first contact with the film (ms)", ylabel="load (N)")
+            axes.plot(time, fields[name].values, label=label, **style)
+    axes.set(xlabel=_TIME, ylabel="load (N)")
     axes.set_ylim(bottom=0)
     axes.legend(frameon=False)
     axes.spines[["top", "right"]].set_visible(False)

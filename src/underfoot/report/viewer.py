@@ -7,11 +7,15 @@ import json
 import zlib
 from collections.abc import Sequence
 from dataclasses import asdict
+from functools import cache
+from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from underfoot.core.fields import Fields
+from underfoot.core.presentation import quantity_text
 from underfoot.questions.comparison import LETTERS
 
 from .drawn_sole import DrawnSole, drawn_sole
@@ -19,8 +23,6 @@ from .html import environment
 from .quantities import Quantity, carried_load, drawn, quantities, scale
 
 if TYPE_CHECKING:
-    import xarray
-
     from underfoot.compute.result import Result
 
 SCRIPTS = ("viewer_data.js", "viewer_draw.js", "viewer_page.js")
@@ -50,10 +52,10 @@ def _per_row(count: int, most: int) -> int:
     return -(-count // -(-count // most))
 
 
-def viewer_script() -> str:
-    """Return the program that draws every viewer of a page."""
+def viewer_script(*further: str) -> str:
+    """Return the program that draws every viewer of a page; ``further`` scripts can start more."""
     templates = environment()
-    parts = [templates.get_template(name).render() for name in SCRIPTS]
+    parts = [templates.get_template(name).render() for name in (*SCRIPTS, *further)]
     return "(() => {\n" + "\n".join(parts) + "\n})();"
 
 
@@ -63,20 +65,20 @@ def viewer_scene(results: Sequence[Result]) -> dict[str, Any]:
     Lengths in m, fields in their shown units. Arrays are (nx, ny) in C order as float16 of value
     over ``scale`` (relative error below 5e-4), high bytes first, deflated, base64.
     """
-    datasets = [result.fields for result in results]
+    datasets = [result.data for result in results]
     found = quantities(datasets)
     fields = {q.name: [drawn(dataset, q) for dataset in datasets] for q in found}
     histories = {q.name: [_history(dataset, q) for dataset in datasets] for q in found}
     panes = []
     for number, result in enumerate(results):
-        sole = drawn_sole(result.fields)
+        sole = drawn_sole(result.data)
         past = [(q.name, histories[q.name][number]) for q in found]
         panes.append(
             pane(
                 result.name,
                 sole,
                 {q.name: sole.placed(fields[q.name][number]) for q in found},
-                outline=_outline(result.fields),
+                outline=_outline(result.data),
                 histories={
                     name: history([f"{shown_time(t)}" for t in times], sole.placed(frames))
                     for name, each in past
@@ -101,7 +103,7 @@ def scene(
     ``steps`` names the slider of the histories; it is time where nothing is said.
     """
     names = {q["colours"] for q in listed} | ({_DIFFERENCES} if len(panes) > 1 else set())
-    colours = {name: _colour_map(name) for name in sorted(names)}
+    colours = {name: colour_tables()[name] for name in sorted(names)}
     return {"panes": panes, "quantities": listed, "colours": colours, "steps": steps}
 
 
@@ -124,7 +126,7 @@ def listed_quantity(
         "log": quantity.logarithmic,
         "stress": quantity.stress,
         "meaning": quantity.meaning,
-        "loads": [f"{load:.3g} N" for load in loads if load is not None],
+        "loads": [quantity_text(load, "N") for load in loads if load is not None],
         **asdict(limits),
         "cut": limits.cut,
     }
@@ -176,7 +178,7 @@ def shown_time(seconds: float) -> str:
     return f"{seconds * 1e3:.3g} ms"
 
 
-def _outline(dataset: xarray.Dataset) -> list[list[float]]:
+def _outline(dataset: Fields) -> list[list[float]]:
     """Return the rim as [x, y] in m, to which the page draws the outermost cells; or nothing."""
     if "outline_x" not in dataset or "outline_y" not in dataset:
         return []
@@ -185,7 +187,7 @@ def _outline(dataset: xarray.Dataset) -> list[list[float]]:
 
 
 def _history(
-    dataset: xarray.Dataset, quantity: Quantity
+    dataset: Fields, quantity: Quantity
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
     """Return (times in s, frames) of ``<name>_history`` on (time, x, y), thinned if long."""
     name = f"{quantity.name}_history"
@@ -195,12 +197,15 @@ def _history(
     instants = [dim for dim in field.dims if dim not in ("x", "y")]
     if len(instants) != 1 or not {"x", "y"} <= set(field.dims):
         return None
-    values = field.transpose(instants[0], "x", "y")
+    values = field.transpose(instants[0], "x", "y").values
     count = values.shape[0]
     most = max(2, _MOST_HISTORY_CELLS // (values.shape[1] * values.shape[2]))
     chosen = np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
     time = np.asarray(dataset[instants[0]].values if instants[0] in dataset else range(count))
-    frames = [drawn(dataset.assign({quantity.name: values[number]}), quantity) for number in chosen]
+    frames = [
+        drawn(dataset.assign({quantity.name: (("x", "y"), values[number], field.attrs)}), quantity)
+        for number in chosen
+    ]
     return time[chosen].astype(float), np.stack(frames)
 
 
@@ -221,8 +226,7 @@ def unpacked(stored: dict[str, Any], shape: tuple[int, int]) -> NDArray[np.float
     return halves.astype(float) * stored["scale"]
 
 
-def _colour_map(name: str) -> str:
-    import matplotlib
-
-    table = matplotlib.colormaps[name](np.arange(256))[:, :3]
-    return base64.b64encode((table * 255.0).round().astype(np.uint8).tobytes()).decode("ascii")
+@cache
+def colour_tables() -> dict[str, str]:
+    """Return the 256 colours (RGB bytes, base64) of each of Matplotlib's maps in use here."""
+    return json.loads(files("underfoot.report").joinpath("templates/colours.json").read_text())

@@ -11,7 +11,6 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import PchipInterpolator
 
 from underfoot import core
 from underfoot.core.arrays import Array
@@ -42,6 +41,9 @@ _TEXTS = ("description", "key", "notes", "out_of_range")
 ROOM = "contact_table-2"
 """Of the cache; raised when the numbers or the form of a part change."""
 _REFINEMENT = 8
+SEALED = 1e-6
+"""Flow factor of a contact without an open path on its grid (assumed): waves below the shortest one
+leak, and a film solver needs a way for every cell."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -267,7 +269,7 @@ class ContactTable(Presentable):
             source=f"{self.description or 'rough contact'}, at {abs(speed):g} m/s",
             gap=gap[order],
             node_pressure=pressure[order],
-            node_flow_factor=np.maximum(flow[order], 0.0),
+            node_flow_factor=np.maximum(flow[order], SEALED),
             speed=abs(float(speed)),
             ranges=self.ranges,
         )
@@ -429,6 +431,8 @@ def _table(
         mean = np.where(usable, array, 0.0).sum(axis=0) / np.maximum(count, 1)
         for row, hole in enumerate(holes):
             if hole.any():
+                from scipy.interpolate import PchipInterpolator
+
                 through = PchipInterpolator(np.log(p[~hole]), mean[row, ~hole])
                 mean[row, hole] = through(np.log(p[hole]))
         square = np.where(usable, (array - mean) ** 2, 0.0).sum(axis=0)

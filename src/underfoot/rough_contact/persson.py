@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.integrate import cumulative_trapezoid
 from scipy.special import erf, exp1
 
 from underfoot.core import InputError, Range, breaches
@@ -145,6 +144,8 @@ def _area_and_friction(
 
 def cumulative(integrand: np.ndarray, q: np.ndarray) -> np.ndarray:
     """Return the running integral over q, trapezoids on log q, 0 at the first wave number."""
+    from scipy.integrate import cumulative_trapezoid
+
     return cumulative_trapezoid(integrand * q, np.log(q), initial=0)
 
 

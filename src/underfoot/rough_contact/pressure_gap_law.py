@@ -1,12 +1,11 @@
 """Pressure-gap laws of a rough interface: exponential, through computed points, from theory."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicHermiteSpline, PPoly
 
 from underfoot.core import Breach, InputError, Range, breaches
 from underfoot.core.arrays import Array
@@ -207,6 +206,8 @@ class TabulatedLaw(_PresentableLaw):
                 where=self.name,
                 allowed="gap rising, pressure falling and positive, flow factor finite and >= 0",
             )
+        from scipy.interpolate import CubicHermiteSpline
+
         logarithm = np.log(pressure)
         slope = pchip_slopes(gap, logarithm)
         # an end slope of zero would let the pressure stop rising: take the secant there
@@ -226,6 +227,20 @@ class TabulatedLaw(_PresentableLaw):
         ):
             values.setflags(write=False)
             object.__setattr__(self, name, values)
+
+    def scaled(self, gap: float, pressure: float) -> "TabulatedLaw":
+        """Return the law of an elastic contact alike, gaps and pressures times factors above 0.
+
+        Heights times a make gaps times a, and pressures times a and the ratio of E / (1 - nu^2);
+        flow factors stay. An elastic contact has no speed.
+        """
+        ranges = {
+            name: replace(limits, low=limits.low * pressure, high=limits.high * pressure)
+            for name, limits in self.ranges.items()
+            if name == "pressure"
+        }
+        nodes = gap * self.gap, pressure * self.node_pressure, self.node_flow_factor
+        return TabulatedLaw(self.name, self.source, *nodes, ranges=ranges)
 
     def pressure(self, gap: ArrayLike) -> Array:
         """Return the asperity pressure (Pa) at mean gap ``gap`` (m), any sign and shape."""
@@ -268,6 +283,8 @@ class TabulatedLaw(_PresentableLaw):
 
     def _cubic(self, coefficients: np.ndarray, gap: ArrayLike, slope: int = 0) -> Array:
         """Return a cubic of the gap or its slope, beyond the nodes that of the outermost node."""
+        from scipy.interpolate import PPoly
+
         inside = np.clip(gap, self.gap[0], self.gap[-1])
         return PPoly.construct_fast(coefficients, self.gap)(inside, slope)
 

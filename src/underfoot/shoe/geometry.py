@@ -79,6 +79,7 @@ class SoleMap(_Areas):
         breaches: What the grid resolves too coarsely to be trusted.
         cut: How the outlines of lugs cut the cells; None: not at all.
         whole: The map that this one is a part of, on the same cells; None where it is all.
+        removed: Thickness of the land that wear has taken, m; None for a new sole.
     """
 
     x: Array
@@ -92,9 +93,10 @@ class SoleMap(_Areas):
     breaches: tuple[Breach, ...] = field(default=())
     cut: CutCells | None = None
     whole: "SoleMap | None" = field(default=None, repr=False, compare=False)
+    removed: Array | None = None
 
     def __post_init__(self) -> None:
-        self._check_shapes("sole", "clearance", "inside", "land", "tread_depth")
+        self._check_shapes("sole", "clearance", "inside", "land", "tread_depth", "removed")
         if not self.inside.any():
             raise InputError(
                 "no cell centre lies within the plan form",
@@ -134,6 +136,7 @@ class SoleSurface(_Areas):
         remarks: Decisions and repairs on the way, a sentence each.
         base: (nx, ny) height in m that the land would have without its channels; None to carry the
             land on across them (linear between the land on both sides).
+        removed: Thickness of the land that wear has taken, m; None for a new sole.
     """
 
     x: Array
@@ -147,10 +150,11 @@ class SoleSurface(_Areas):
     remarks: tuple[str, ...] = field(default=())
     base: Array | None = None
     cut: CutCells | None = None
+    removed: Array | None = None
 
     def __post_init__(self) -> None:
         positive(self.spacing, "surface.spacing")
-        self._check_shapes("surface", "height", "land", "tread_depth", "base")
+        self._check_shapes("surface", "height", "land", "tread_depth", "base", "removed")
         if not self.inside.any():
             raise InputError(
                 "the sole has no height anywhere",

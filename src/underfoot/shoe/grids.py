@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,6 @@ from underfoot.core import Breach, InputError, Range, breaches
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import between, not_negative, positive
 
-from ._kernels.height_buffer import tilted_rows
 from ._kernels.regions import distance_to, local_width, nearest_true
 from .cut_cells import Cells, cut_cells
 from .geometry import CELLS_REFUSED, CELLS_WANTED, SoleMap, SoleSurface, centred
@@ -86,6 +86,9 @@ def heel_map(
         outline=np.column_stack([along(rim[:, 0], rim[:, 1]) - rear, rim[:, 1]]),
         breaches=tuple(breaches_of_grid),
         cut=cut,
+        removed=None
+        if heel.wear is None
+        else heel.land_height(x, y_map) - heel.unworn_height(x, y_map),
     )
 
 
@@ -289,6 +292,8 @@ def surface_map(
     count_y = math.ceil((high - low) / spacing - 1e-9) + 2 * margin
     x = (np.arange(count_x, dtype=np.float64) + 0.5 - margin) * spacing
     y = (low + high) / 2 + centred(count_y, spacing)
+    from ._kernels.height_buffer import tilted_rows  # compiled: numba takes a while to import
+
     clearance, origin = tilted_rows(
         (surface.x, surface.y), base, inside, (x + rear, y), cosine, sine
     )
@@ -321,6 +326,7 @@ def surface_map(
         outline=outline,
         breaches=tuple(resolution_breaches(surface, spacing)),
         cut=cut_cells(level, covered, level_at),
+        removed=None if surface.removed is None else surface.removed[cells],
     )
 
 
@@ -341,6 +347,39 @@ def _signed_distance(surface: SoleSurface) -> Callable[[Array, Array], Array]:
         )
 
     return at
+
+
+def rotated_surface(surface: SoleSurface, angle: float) -> SoleSurface:
+    """Return the surface turned by ``angle`` (rad, anticlockwise seen from above) over the floor.
+
+    About the middle of its plan form; each cell takes the heights of the nearest cell before.
+    """
+    if angle == 0.0:
+        return surface
+    cosine, sine = math.cos(angle), math.sin(angle)
+    middle = (surface.outline.min(axis=0) + surface.outline.max(axis=0)) / 2
+    outline = (surface.outline - middle) @ np.array([[cosine, sine], [-sine, cosine]])
+    shift = outline.min(axis=0)[0]
+    outline[:, 0] -= shift
+    half = np.abs(outline[:, 1]).max()
+    x = (np.arange(math.ceil(outline[:, 0].max() / surface.spacing)) + 0.5) * surface.spacing
+    y = centred(math.ceil(2 * half / surface.spacing), surface.spacing)
+    there_x, there_y = np.meshgrid(x + shift, y, indexing="ij")
+    at_x = middle[0] + there_x * cosine + there_y * sine
+    at_y = middle[1] + there_y * cosine - there_x * sine
+    cells = _cells(surface, at_x, at_y)
+    away = np.hypot(at_x - surface.x[cells[0]], at_y - surface.y[cells[1]])
+    inside = surface.inside[cells] & (away < surface.spacing)
+    return replace(
+        surface,
+        x=x,
+        y=y,
+        height=np.where(inside, surface.height[cells], np.nan),
+        land=inside & surface.land[cells],
+        tread_depth=np.where(inside, surface.tread_depth[cells], 0.0),
+        outline=outline,
+        base=np.where(inside, surface.land_base[cells], np.nan),
+    )
 
 
 def _cells(surface: SoleSurface, x: Array, y: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -3,7 +3,7 @@
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, replace
-from typing import Any, Protocol, Self, cast
+from typing import Any, Protocol, Self, cast, runtime_checkable
 
 import numpy as np
 
@@ -99,6 +99,29 @@ class SoleWear(Protocol):
         ...
 
 
+@runtime_checkable
+class WearOnSole(Protocol):
+    """Wear that a sole decides: where it fits, or how its shape meets the floor."""
+
+    @property
+    def depth(self) -> float:
+        """Largest thickness removed, m."""
+        ...
+
+    def on(self, shape: "SoleShape") -> SoleWear:
+        """Return what is removed from ``shape``."""
+        ...
+
+
+def fitted(wear: SoleWear | WearOnSole, shape: "SoleShape") -> SoleWear:
+    """Return the wear as it is on a sole.
+
+    Raises:
+        InputError: A patch larger than the sole or beside it.
+    """
+    return wear.on(shape) if isinstance(wear, WearOnSole) else wear
+
+
 class SoleShape(ABC):
     """Bottom of a sole given by lengths and angles, x from the rear end, y to the left, z up."""
 
@@ -143,9 +166,10 @@ class SoleShape(ABC):
             height = height + self.edge_radius - np.sqrt(self.edge_radius**2 - into**2)
         return height
 
-    def worn(self, wear: SoleWear | None) -> Self:
+    def worn(self, wear: SoleWear | WearOnSole | None) -> Self:
         """Return the sole with other wear."""
-        return replace(cast("Any", self), wear=wear)
+        new = replace(cast("Any", self), wear=None)
+        return new if wear is None else replace(new, wear=fitted(wear, new))
 
     def centre_line(self) -> tuple[Array, Array]:
         """Return x and the unworn height (m) along y = 0."""

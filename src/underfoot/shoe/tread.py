@@ -15,7 +15,17 @@ from underfoot.core.checks import between, not_negative, positive
 
 from ._kernels import tread_pattern
 
-PATTERNS = "grid transverse longitudinal blocks bars chevrons circles hexagons".split()
+FURTHER_LENGTHS: dict[str, tuple[str, ...]] = {
+    "blocks": ("lug_length",),
+    "chevrons": ("arm_length",),
+    "waves": ("wave_length", "wave_height"),
+    "rings": ("ring_width",),
+    "graded_circles": ("front_lug_width", "graded_length"),
+}
+"""What some patterns need beyond the widths of lug and channel, the depth and the angle."""
+PATTERNS = ["grid", "transverse", "longitudinal", "bars", "circles", "hexagons", *FURTHER_LENGTHS]
+LATTICES = ("circles", "hexagons", "rings", "graded_circles")
+"""Patterns in a triangular lattice, its rows along the shoe."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,10 +82,12 @@ class Tread:
     Parameters:
         pattern: "grid" (square lugs), "blocks" (rectangular lugs), "transverse" (channels across
             the shoe), "longitudinal" (channels along it), "bars" (straight channels, across the
-            shoe at angle 0), "chevrons" (zigzag bars, tips forward), "circles" and "hexagons"
-            (triangular lattices).
+            shoe at angle 0), "chevrons" (zigzag bars, tips forward), "waves" (waving bars, crests
+            forward), "circles", "hexagons", "rings" (round with a closed hollow) and
+            "graded_circles" (larger or smaller along the shoe), all in triangular lattices.
         lug_width, channel_width: m; of bars and chevrons normal to their walls, the diameter of
-            circles, the width across flats of hexagons; the channel where it is narrowest.
+            circles and rings (outer), the width across flats of hexagons, of waves along the shoe;
+            the channel where it is narrowest.
         depth: Height of the lugs, m; 0 is an untreaded sole.
         edge_radius: Rounding of the lower edges of the lugs, m.
         offset: Shift (x, y) of the pattern with its sipes, m. At (0, 0) the first lug begins at the
@@ -84,6 +96,10 @@ class Tread:
             the angle of the arms against the transverse direction instead.
         lug_length: Of "blocks" along the shoe, m.
         arm_length: Of "chevrons": extent of one arm across the shoe, m.
+        wave_length, wave_height: Of "waves": across the shoe, and from trough to crest, m.
+        ring_width: Of "rings": thickness of their wall, m.
+        front_lug_width, graded_length: Of "graded_circles": the diameter at ``graded_length`` (m)
+            from the first lug, and beyond; ``lug_width`` is that of the first.
         sipes: Fine slits in the lugs.
     """
 
@@ -96,6 +112,11 @@ class Tread:
     angle: float = 0.0
     lug_length: float | None = None
     arm_length: float | None = None
+    wave_length: float | None = None
+    wave_height: float | None = None
+    ring_width: float | None = None
+    front_lug_width: float | None = None
+    graded_length: float | None = None
     sipes: Sipes | None = None
 
     def __post_init__(self) -> None:
@@ -105,9 +126,10 @@ class Tread:
         positive(self.channel_width, "tread.channel_width")
         not_negative(self.depth, "tread.depth")
         not_negative(self.edge_radius, "tread.edge_radius")
-        for name, pattern in (("lug_length", "blocks"), ("arm_length", "chevrons")):
+        needed = FURTHER_LENGTHS.get(self.pattern, ())
+        for name in (each for names in FURTHER_LENGTHS.values() for each in names):
             value = getattr(self, name)
-            if (value is None) == (self.pattern == pattern):
+            if (value is None) == (name in needed):
                 raise InputError(
                     f"is {'missing' if value is None else 'not used'} for {self.pattern}",
                     where=f"tread.{name}",
@@ -116,6 +138,12 @@ class Tread:
                 positive(value, f"tread.{name}")
         most = math.radians(75 if self.pattern == "chevrons" else 180)
         between(self.angle, -most, most, "tread.angle", f"at most {math.degrees(most):g} deg")
+        if self.ring_width is not None and self.ring_width >= self.lug_width / 2:
+            raise InputError(
+                f"a wall of {self.ring_width * 1e3:g} mm leaves no hollow",
+                where="tread.ring_width",
+                allowed=f"below {self.lug_width / 2e-3:g} mm (half of tread.lug_width)",
+            )
         rounding = min(self.depth, self.smallest_lug / 2)
         if self.depth > 0 and self.edge_radius > rounding:
             raise InputError(
@@ -128,38 +156,63 @@ class Tread:
 
     @property
     def smallest_lug(self) -> float:
-        """Smaller side of a lug, m."""
-        return min(self.lug_width, self.lug_length or self.lug_width)
+        """Smallest side of a lug, m."""
+        sides = (self.lug_length, self.ring_width, self.front_lug_width)
+        return min([self.lug_width, *(side for side in sides if side is not None)])
+
+    @property
+    def pitch(self) -> float:
+        """Lug and channel together, m; of graded lugs the larger ones."""
+        return max(self.lug_width, self.front_lug_width or 0.0) + self.channel_width
 
     @property
     def land_ratio(self) -> float:
         """Share of an endless tread that is lug, sipes left aside.
 
-        w / (w + c) = s for bars, s^2 for a grid and hexagons, the product of both directions for
-        blocks, pi / (2 sqrt 3) s^2 for circles.
+        w / (w + c) = s for bars and waves, s^2 for a grid and hexagons, the product of both
+        directions for blocks, pi / (2 sqrt 3) s^2 for circles, less the hollow for rings, and with
+        the mean of w^2 over the graded length for graded circles.
         """
         share = self.lug_width / (self.lug_width + self.channel_width)
         if self.pattern == "blocks" and self.lug_length is not None:
             return share * self.lug_length / (self.lug_length + self.channel_width)
+        disc = math.pi / (2 * math.sqrt(3.0)) / self.pitch**2
         if self.pattern == "circles":
-            return math.pi / (2 * math.sqrt(3.0)) * share**2
+            return disc * self.lug_width**2
+        if self.ring_width is not None:
+            return disc * (self.lug_width**2 - (self.lug_width - 2 * self.ring_width) ** 2)
+        if self.front_lug_width is not None:
+            first, last = self.lug_width, self.front_lug_width
+            return disc * (first**2 + first * last + last**2) / 3
         return share**2 if self.pattern in ("grid", "hexagons") else share
 
     @property
     def periods(self) -> Array:
         """Shifts (x, y), one row each, m, that map the endless pattern onto itself."""
-        pitch = self.lug_width + self.channel_width
+        pitch = self.pitch
         if self.pattern == "chevrons" and self.arm_length is not None:
             return np.array([[pitch / math.cos(self.angle), 0.0], [0.0, 2 * self.arm_length]])
-        along, across = (
-            [(self.lug_length or self.lug_width) + self.channel_width, 0.0],
-            [0.0, pitch],
-        )
-        if self.pattern in ("circles", "hexagons"):
+        along = [(self.lug_length or self.lug_width) + self.channel_width, 0.0]
+        across = [0.0, self.wave_length or pitch]
+        if self.pattern in LATTICES:
             across = [pitch / 2, pitch * math.sqrt(3.0) / 2]
-        rows = {"transverse": [along], "bars": [along], "longitudinal": [across]}
+        rows = {
+            "transverse": [along],
+            "bars": [along],
+            "longitudinal": [across],
+            "graded_circles": [[0.0, pitch * math.sqrt(3.0)]],
+        }
         frame = np.array(rows.get(self.pattern, [along, across]))
         return np.column_stack(tread_pattern.rotated(frame[:, 0], frame[:, 1], -self.angle))
+
+    @property
+    def wall_line(self) -> tuple[Array, Array] | None:
+        """(y, x) of half a period of the walls of folded bars, m; None for other patterns."""
+        if self.arm_length is not None:
+            return tread_pattern.zigzag_line(self.arm_length, self.angle)
+        if self.wave_length is not None and self.wave_height is not None:
+            return tread_pattern.wave_line(self.wave_length, self.wave_height)
+        return None
 
     def moved(self, shift: tuple[float, float]) -> Self:
         """Return the pattern shifted by (x, y), m."""
@@ -178,9 +231,20 @@ class Tread:
         """
         lug, channel = self.lug_width, self.channel_width
         x, y = x - self.offset[0], y - self.offset[1]
-        if self.pattern == "chevrons" and self.arm_length is not None:
-            return tread_pattern.chevron_distance(x, y, lug, channel, self.arm_length, self.angle)
+        line = self.wall_line
+        if self.pattern == "chevrons" and line is not None:
+            stretch = 1 / math.cos(self.angle)
+            return tread_pattern.folded_bar_distance(x, y, line, lug * stretch, channel * stretch)
         x, y = tread_pattern.rotated(x, y, self.angle)
+        if line is not None:
+            return tread_pattern.folded_bar_distance(x, y, line, lug, channel)
+        if self.ring_width is not None:
+            wall = self.ring_width
+            return tread_pattern.ring_distance(x - lug / 2, y, lug, channel, wall)
+        if self.front_lug_width is not None and self.graded_length is not None:
+            both = (lug, self.front_lug_width)
+            length = self.graded_length
+            return tread_pattern.graded_circle_distance(x - lug / 2, y, both, channel, length)
         if self.pattern == "blocks" and self.lug_length is not None:
             lugs = (self.lug_length, lug)
             return tread_pattern.block_distance(x, y + lug / 2, lugs, (channel, channel))

@@ -77,12 +77,14 @@ def tread_map(
     inside = np.isfinite(height)
     rolled = rolled_base(height, spacing, ROLLING_RADIUS, STEEPEST_RIM)
     above = height - rolled
-    rounded = _rounded_rim(height, spacing)
-    noise = min(height_noise(height), _MOST_NOISE)
-    for _ in range(2):  # walls count as noise until the land is known
-        level = max(SHALLOWEST_CHANNEL, NOISE_FACTOR * noise)
-        channel = inside & (np.where(inside, above, 0.0) > level) & ~(rounded <= level)
-        noise = height_noise(np.where(channel, np.nan, height), lag)
+    raised = np.where(inside, np.minimum(above, _rounded_rim(height, spacing)), -np.inf)
+    # walls count as noise until the land is known
+    begin = raised > _level(min(height_noise(height), _MOST_NOISE))
+    noise = height_noise(np.where(begin, np.nan, height), lag)
+    begin = raised > _level(noise)
+    noise = height_noise(np.where(begin, np.nan, height), lag)
+    level = _level(noise)
+    channel = inside & (raised > level)
     if channels is not None:
         channel |= inside & channels
     cells = max(1, math.ceil(SMALLEST_PIECE / spacing**2))
@@ -121,6 +123,10 @@ def _rounded_rim(height: Array, spacing: float) -> Array:
     above = height - rolled_base(height, spacing, ROLLING_RADIUS, (_ROUNDED[1], _ROUNDED[1]))
     steep = inside & (slope > _ROUNDED[0]) & (slope < _ROUNDED[1])
     return np.where(steep, above, np.inf)
+
+
+def _level(noise: float) -> float:
+    return max(SHALLOWEST_CHANNEL, NOISE_FACTOR * noise)
 
 
 def _slope(height: Array, spacing: float) -> Array:

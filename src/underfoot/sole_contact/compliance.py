@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from underfoot.core import InputError
-from underfoot.core.arrays import Array
+from underfoot.core.arrays import Array, Mask
 from underfoot.shoe.cut_cells import CutCells
 from underfoot.shoe.geometry import SoleMap
 
@@ -31,6 +31,7 @@ from ._kernels.elastic import (
 )
 
 Symbol = Callable[[Array], Array]
+_Parts = list[tuple[Convolution, Array | float]]
 BOX_THICKNESSES = 16.0  # side of the box on which a layer's influence coefficients are found
 THINNEST = 0.1  # share of the outsole left above the deepest profile
 TREADED_SHARE = 0.5  # of the land that must be lugs for the tread to be modelled as lugs
@@ -61,7 +62,7 @@ class ConvolutionCompliance:
     ) -> None:
         self._symbol = symbol
         centre = (shape[0] - 1, shape[1] - 1)
-        self._parts: list[tuple[Convolution, Array | float]] = []
+        self._parts: _Parts = []
         self._self = np.zeros(shape)
         for influence, given in parts:
             weight = 1.0 if given is None else given
@@ -81,10 +82,49 @@ class ConvolutionCompliance:
 
     def apply(self, pressure: Array) -> Array:
         """Return the deflection (nx, ny) in m of a pressure field (nx, ny) in Pa."""
-        deflection = np.zeros_like(self._self)
-        for convolution, weight in self._parts:
-            deflection += weight * convolution(weight * pressure)
+        return _summed(self._parts, pressure)
+
+    def between(self, mask: Mask) -> Callable[[Array], Array]:
+        """Return the map from pressures to deflections at the cells of a mask, (n,) both.
+
+        It transforms the box around them alone: its cost is that of the wet region.
+        """
+        rows, columns = (np.flatnonzero(mask.any(axis=axis)) for axis in (1, 0))
+        box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+        cells = np.flatnonzero(mask[box])
+        shape = rows[-1] + 1 - rows[0], columns[-1] + 1 - columns[0]
+        field = np.zeros(shape)
+        parts: _Parts = [
+            (each.within(shape), weight[box] if isinstance(weight, np.ndarray) else weight)
+            for each, weight in self._parts
+        ]
+
+        def deflection(pressure: Array) -> Array:
+            field.ravel()[cells] = pressure
+            return _summed(parts, field).ravel()[cells]
+
         return deflection
+
+
+def deflection_between(compliance: Compliance, mask: Mask) -> Callable[[Array], Array]:
+    """Return the map from pressures to deflections at the cells of a mask, (n,) both."""
+    if isinstance(compliance, ConvolutionCompliance):
+        return compliance.between(mask)
+    cells = np.flatnonzero(mask)
+
+    def deflection(pressure: Array) -> Array:
+        field = np.zeros(mask.shape)
+        field.ravel()[cells] = pressure
+        return compliance.apply(field).ravel()[cells]
+
+    return deflection
+
+
+def _summed(parts: _Parts, pressure: Array) -> Array:
+    deflection = np.zeros_like(pressure)
+    for convolution, weight in parts:
+        deflection += weight * convolution(weight * pressure)
+    return deflection
 
 
 def half_space_compliance(

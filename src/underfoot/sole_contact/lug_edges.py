@@ -34,15 +34,20 @@ from underfoot.shoe import SoleMap
 INLET = 1.06
 NARROWEST = 0.1e-3
 """m: a lug edge drawn sharper is moulded with about this radius (assumed)."""
+EXCESS, ROUNDED = 0.36, 0.15e-3
+"""The leading edge of a lug bears 36 % more than its mean (finite elements: friction 0.2, height
+half the length) and wears more by that share of what is removed, until the round is as deep (m) as
+the edge yields when traction turns the lug: 0.06 rad over half of 5 mm at 300 kPa and 3.3 MPa."""
 ON_RUBBER = 0.12
 LIFTING, LIFT = 0.12, 1.9
 """Shift of the pressure, over the length, from which a lug lifts; loss of contact per shift."""
 LACKING = 0.25
 """Share of the gap that lacks fluid behind the edge (0.15 to 0.3 computed)."""
-STEPS, RELAXATION = 200, 0.1
+STEPS, RELAXATION, STILL = 200, 0.1, 1e-6
 IDLE = 20e3
 """Pa: a lug whose contact bears less on the mean hardly touches."""
 GAPS = 400
+FAR_FILM = 1e-3  # m, a film that no wall shear comes from
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,7 +113,8 @@ def lug_edges(sole: SoleMap, edge_radius: float, *, forward: bool = True) -> Lug
 
     Parameters:
         sole: Map; lugs are connected land beside grooves.
-        edge_radius: Of the lugs, m; sharper than 0.1 mm counts as that.
+        edge_radius: Of the new lugs, m; sharper than 0.1 mm counts as that. Wear takes this round
+            off and makes its own.
         forward: Whether the sole slides towards the toe (fluid meets the front of a lug), else to
             the rear.
     """
@@ -127,12 +133,17 @@ def lug_edges(sole: SoleMap, edge_radius: float, *, forward: bool = True) -> Lug
     cells = _sums(numbers, count, area)
     faces = np.maximum(_sums(numbers, count, leading), 1)
     length = cells / faces * sole.spacing
+    removed = 0.0 if sole.removed is None else sole.removed
+    worn = _sums(numbers, count, removed * area) / cells
     return LugEdges(
         numbers,
         length,
         cells * sole.spacing**2 / length,
         _sums(numbers, count, sole.tread_depth * area) / cells,
-        np.full(count, max(edge_radius, NARROWEST)),
+        # the floor cuts the moulded round off, and the edge rounds anew
+        np.maximum.reduce(
+            [edge_radius - worn, np.minimum(EXCESS * worn, ROUNDED), np.full(count, NARROWEST)]
+        ),
         _sums(numbers, count, from_groove) / faces,
     )
 
@@ -187,8 +198,11 @@ def lug_friction(
         emptied *= np.maximum(1 - 4 / 3 * np.sqrt(back * edges.length) / edges.width, 0.0)
         sheared = drag / gap * (lifted - 0.5 * emptied) / p
         now = cof_contact * np.maximum(1 - film + pull, 0.0) + sheared
-        mu += RELAXATION * (now - mu)
-        pull += RELAXATION * (emptied * suction / p - pull)
+        change, drawn = now - mu, emptied * suction / p - pull
+        mu += RELAXATION * change
+        pull += RELAXATION * drawn
+        if max(np.abs(change).max(), np.abs(drawn).max()) < STILL:
+            break
     bears = load / cells > IDLE
     film, pull = (np.where(bears, edges.fed * each, 0.0) for each in (film, pull))
     load = np.where(bears, load, 0.0)
@@ -240,6 +254,12 @@ class EdgedLaw:
             speed=speed,
             suction=self.suction,
         )
+
+    def mean_factor(self, pressure: float, speed: float) -> float:
+        """Return the mean factor on contact friction if every lug bore ``pressure`` (Pa), 1."""
+        borne = np.where(self.edges.label > 0, pressure, 0.0)
+        lugs = self.lugs(borne, speed, np.full_like(borne, FAR_FILM))
+        return float(np.average(lugs.factor, weights=self.edges.length * self.edges.width))
 
     def __call__(
         self, contact_pressure: Array, speed: float, film_thickness: Array

@@ -27,6 +27,7 @@ from underfoot.core import ConvergenceError
 from underfoot.core.arrays import Array, Mask
 from underfoot.film import Pattern
 
+from .compliance import deflection_between
 from .film_balance import FilmBalance, Linearisation
 from .gmres import krylov_solution
 from .preconditioner import PoleFit, Preconditioner
@@ -57,6 +58,7 @@ class Cells:
         self.pattern = Pattern(mask)
         scale = float(np.median(self.pattern.gather(problem.compliance.self_compliance)))
         self.preconditioner = Preconditioner(self.pattern, fit, scale, problem.spacing)
+        self.deflection = deflection_between(problem.compliance, mask)
 
 
 def implicit_step(
@@ -140,9 +142,8 @@ def implicit_step(
                 break
 
         def product(vector: Array, linear=linear) -> Array:
-            field = problem.compliance.apply(pattern.scatter(vector[:-1]))
             out = np.empty_like(vector)
-            out[:-1] = linear.residual(vector[:-1], pattern.gather(field) - vector[-1])
+            out[:-1] = linear.residual(vector[:-1], cells.deflection(vector[:-1]) - vector[-1])
             out[-1] = vector[:-1].mean()
             return out
 

@@ -57,9 +57,9 @@ class Split:
 
 
 def draws_of(split: Split) -> Mapping[str, Any]:
-    """Return the draws of ln COF of the source that is left out."""
+    """Return the draws of ln COF of the source that is left out, and their mean without errors."""
     left = source_left_out(law_named(split.law), readings(), split.source, steps=split.steps)
-    return {"draws": left.draws}
+    return {"draws": left.draws, "expected": left.expected}
 
 
 def readings() -> list[Condition]:
@@ -78,12 +78,12 @@ def compute(options: Options) -> Computed:
     keys = [content_hash(asdict(split), content, options.seed) for split in splits]
     results: dict[tuple[str, str], SourceScore] = {}
     fits = part(options.progress, 0.0, 0.5)
-    work = kept("corpus-1", draws_of, splits, keys, processes=options.processes)
+    work = kept("corpus-2", draws_of, splits, keys, processes=options.processes)
     for number, (split, arrays) in enumerate(work, start=1):
         fits("leaving one source out", number / len(splits))
         own = tuple(c for c in conditions if c.source == split.source)
         results[split.law, split.source] = SourceScore(
-            split.source, own, arrays["draws"], scored(arrays["draws"], own)
+            split.source, own, score=scored(arrays["draws"], own), **arrays
         )
     scores = [corpus_score(name, [results[name, source] for source in sources]) for name in names]
     posterior = fitted(law_named(LAW), conditions, steps=steps, seed=options.seed)
@@ -139,7 +139,7 @@ def whole_cof(case: Case) -> Mapping[str, Any]:
     """Return COF of a case and its draws, or why there is none."""
     try:
         result = run(case, quick=True)
-        return {"cof": result.value("cof"), "draws": result.fields["cof_draws"].values}
+        return {"cof": result.value("cof"), "draws": result.data["cof_draws"].values}
     except UnderfootError as error:
         return {"reason": np.array(" ".join(str(error).split()))}
 
@@ -169,7 +169,7 @@ def _compared(
         if reason:
             return Side(np.nan, np.array([np.nan]), reason)
         cof, draws = (np.mean([v[name] for v in own], axis=0) for name in ("cof", "draws"))
-        return Side(float(cof), draws)
+        return Side(float(cof) * stand.contact_time, draws * stand.contact_time)
 
     return (
         [(one, side(one.over), side(one.under)) for one in sides],

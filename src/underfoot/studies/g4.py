@@ -187,7 +187,7 @@ def reading(condition: Condition, varied: Sensitivity | None, *, quick: bool = F
         for spacing in spacings
     ]
     levels = tuple(zip(spacings, map(Outcome.of, results), strict=True))
-    fields = results[-1].fields
+    fields = results[-1].data
     x, y, pressure = (fields[f"sensor_{name}"].values for name in ("x", "y", "pressure"))
     outline = np.column_stack([fields["outline_x"].values, fields["outline_y"].values])
     draws = {} if varied is None else {name: _draws(name, levels[-1][1], varied) for name in LEAST}

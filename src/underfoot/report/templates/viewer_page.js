@@ -70,7 +70,7 @@ async function startViewer(root) {
   }
 
   function redraw() {
-    if (waiting) return;
+    if (waiting || !drawings.every((drawing) => drawing.quantity)) return;
     waiting = true;
     requestAnimationFrame(() => {
       waiting = false;

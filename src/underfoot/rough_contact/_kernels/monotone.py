@@ -4,13 +4,14 @@ Fritsch and Butland (1984) SIAM J. Sci. Stat. Comput. 5:300.
 """
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline, NdPPoly, PchipInterpolator
 
 from underfoot.core.arrays import Array
 
 
 def pchip_slopes(x: Array, y: Array) -> Array:
     """Return node slopes along axis 0 of ``y`` (n >= 2 nodes) that keep monotone data monotone."""
+    from scipy.interpolate import PchipInterpolator
+
     with np.errstate(over="ignore"):
         # the first slope of a cell is kept as it is; evaluated at the end, a slope of 0 would round
         forward, mirrored = PchipInterpolator(x, y), PchipInterpolator(-x[::-1], y[::-1])
@@ -25,6 +26,8 @@ def interpolated_grid(
     Monotone along both axes where the nodes are; a single column is taken as constant. Places
     beyond the nodes count as the outermost node.
     """
+    from scipy.interpolate import CubicHermiteSpline, NdPPoly, PchipInterpolator
+
     if y.size == 1:
         y, values = np.array([y[0], y[0] + 1.0]), np.repeat(values, 2, axis=1)
     ends = [PchipInterpolator(y, part, axis=1).c for part in (values, pchip_slopes(x, values))]

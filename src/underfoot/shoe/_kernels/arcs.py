@@ -5,49 +5,36 @@ import math
 import numpy as np
 
 from underfoot.core.arrays import Array
-from underfoot.core.optional import njit
 
 STRAIGHT = 1e6  # m: a radius this large is a line
 
 
-@njit(cache=True, error_model="numpy")
 def inward_distance(x: Array, y: Array, arcs: Array) -> Array:
     """Return the distance (m) from a closed anticlockwise curve, positive inside.
 
     ``arcs`` (n, 7): start x, y, end x, y, centre x, y and radius in m; the radius is positive where
     the curve turns left, infinite for a line. x, y are flat arrays of one length.
     """
-    signed = np.empty(x.size)
-    for i in range(x.size):
-        best, inside = np.inf, 1.0
-        for k in range(arcs.shape[0]):
-            x0, y0, x1, y1, cx, cy, radius = arcs[k]
-            if np.isinf(radius):
-                tx, ty = x1 - x0, y1 - y0
-                length = math.sqrt(tx * tx + ty * ty)
-                tx, ty = tx / length, ty / length
-                along = min(max((x[i] - x0) * tx + (y[i] - y0) * ty, 0.0), length)
-                dx, dy = x[i] - x0 - along * tx, y[i] - y0 - along * ty
-                far = math.sqrt(dx * dx + dy * dy)
-                side = tx * (y[i] - y0) - ty * (x[i] - x0)
-            else:
-                dx, dy = x[i] - cx, y[i] - cy
-                turn = 1.0 if radius > 0 else -1.0
-                # within the sector: left of the start's ray and right of the end's (turned)
-                after = turn * ((x0 - cx) * dy - (y0 - cy) * dx)
-                before = turn * (dx * (y1 - cy) - dy * (x1 - cx))
-                distance = math.sqrt(dx * dx + dy * dy)
-                if after >= 0.0 and before >= 0.0:
-                    far = abs(distance - abs(radius))
-                else:
-                    start = (x[i] - x0) ** 2 + (y[i] - y0) ** 2
-                    end = (x[i] - x1) ** 2 + (y[i] - y1) ** 2
-                    far = math.sqrt(min(start, end))
-                side = turn * (abs(radius) - distance)
-            if far < best:
-                best = far
-                inside = 1.0 if side >= 0.0 else -1.0
-        signed[i] = inside * best
+    signed = np.full(x.size, np.inf)
+    for x0, y0, x1, y1, cx, cy, radius in arcs:
+        if math.isinf(radius):
+            length = math.hypot(x1 - x0, y1 - y0)
+            tx, ty = (x1 - x0) / length, (y1 - y0) / length
+            along = np.clip((x - x0) * tx + (y - y0) * ty, 0.0, length)
+            far = np.hypot(x - x0 - along * tx, y - y0 - along * ty)
+            side = tx * (y - y0) - ty * (x - x0)
+        else:
+            dx, dy = x - cx, y - cy
+            turn = 1.0 if radius > 0 else -1.0
+            # within the sector: left of the start's ray and right of the end's (turned)
+            after = turn * ((x0 - cx) * dy - (y0 - cy) * dx)
+            before = turn * (dx * (y1 - cy) - dy * (x1 - cx))
+            distance = np.hypot(dx, dy)
+            ends = np.minimum(np.hypot(x - x0, y - y0), np.hypot(x - x1, y - y1))
+            facing = (after >= 0.0) & (before >= 0.0)
+            far = np.where(facing, np.abs(distance - abs(radius)), ends)
+            side = turn * (abs(radius) - distance)
+        signed = np.where(far < np.abs(signed), np.where(side >= 0.0, far, -far), signed)
     return signed
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from underfoot.core.optional import njit
+from underfoot.core.compiled import njit
 
 from .mesh_edges import mixed
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core.arrays import Array, Mask
-from underfoot.core.optional import njit
+from underfoot.core.compiled import njit
 
 Triangles = NDArray[np.float32]
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core.arrays import Array
-from underfoot.core.optional import njit
+from underfoot.core.compiled import njit
 
 Keys = NDArray[np.uint64]
 Triangles = NDArray[np.float32]

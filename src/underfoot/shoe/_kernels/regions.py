@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core.arrays import Array, Mask
-from underfoot.core.optional import njit
+from underfoot.core.compiled import njit
 
 Labels = NDArray[np.intp]
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from underfoot.core.arrays import Array
-from underfoot.core.optional import njit
+from underfoot.core.compiled import njit
 
 _STEP = 2e-3  # m between the paraboloid's places: it is off by _STEP^2 / (8 radius), 1 um
 

@@ -10,6 +10,8 @@ import numpy as np
 
 from underfoot.core.arrays import Array
 
+WAVE_SEGMENTS = 12
+"""Straight pieces of half a wave, in the map and in the solid: within 0.3 % of its height."""
 _ROUNDING = 1e-12  # m: keeps a cell centre on an edge from falling on either side by rounding
 
 
@@ -51,30 +53,73 @@ def hexagon_distance(x: Array, y: Array, width: float, channel: float) -> Array:
     return _hexagon(np.abs(x - near_x), np.abs(y - near_y), width / 2)
 
 
-def chevron_distance(
-    x: Array, y: Array, lug: float, channel: float, arm: float, angle: float
-) -> Array:
-    """Return the distance for zigzag bars, their tips on y = 0, +-2 arm, ...
+def ring_distance(x: Array, y: Array, diameter: float, channel: float, wall: float) -> Array:
+    """Return the distance for rings of ``wall`` in a triangular lattice, as ``circle_distance``."""
+    near_x, near_y = _nearest_lattice_point(x, y, diameter + channel)
+    radius = np.hypot(x - near_x, y - near_y)
+    return np.maximum(radius - diameter / 2, diameter / 2 - wall - radius)
 
-    The walls run at ``angle`` (rad) to y, back from the tips; ``lug`` and ``channel`` are measured
-    normal to them, ``arm`` is the extent of one arm along y. By mirror symmetry about each tip the
-    nearest wall lies in the same half period, so its distance is that to a segment.
+
+def graded_circle_distance(
+    x: Array, y: Array, diameters: tuple[float, float], channel: float, length: float
+) -> Array:
+    """Return the distance for round lugs whose diameter grows along x, from 0 to ``length``.
+
+    The lattice is that of the larger diameter, so that ``channel`` is the smallest gap. Circles do
+    not overlap: the nearest wall is that of the nearest lattice point or of one of its neighbours.
     """
-    stretch = 1.0 / math.cos(angle)
-    pitch = (lug + channel) * stretch
+    first, last = diameters
+    pitch = max(diameters) + channel
+    near_x, near_y = _nearest_lattice_point(x, y, pitch)
+    best = np.full(x.shape, np.inf)
+    around = [(0.0, 0.0), *((math.cos(a), math.sin(a)) for a in np.arange(6) * math.pi / 3)]
+    for along, across in around:
+        middle = near_x + pitch * along
+        diameter = graded_diameter(middle, first, last, length)
+        away = np.hypot(x - middle, y - near_y - pitch * across)
+        best = np.minimum(best, away - diameter / 2)
+    return best
+
+
+def graded_diameter(middle: Array, first: float, last: float, length: float) -> Array:
+    """Return the diameter (m) of a lug centred at ``middle`` along x."""
+    return first + (last - first) * np.clip(middle / length, 0.0, 1.0)
+
+
+def folded_bar_distance(
+    x: Array, y: Array, half: tuple[Array, Array], lug: float, channel: float
+) -> Array:
+    """Return the distance for bars whose walls follow one line that is folded at its ends.
+
+    ``half`` holds (y, x) of the line over half a period, y from 0 upwards; ``lug`` and ``channel``
+    are measured along x. By mirror symmetry about both ends the nearest wall lies in the same half
+    period, so its distance is that to the segments of the line.
+    """
+    nodes_y, nodes_x = half
+    arm, pitch = float(nodes_y[-1]), lug + channel
     fold = np.abs(np.mod(y + arm, 2 * arm) - arm)
-    slope = math.tan(angle)
-    row = np.mod(x + slope * fold + _ROUNDING, pitch)
-    in_channel = row >= lug * stretch
+    line = np.interp(fold, nodes_y, nodes_x)
+    row = np.mod(x - line + _ROUNDING, pitch)
+    place = row + line  # along x from the wall of this row
     nearest = np.full(x.shape, np.inf)
-    length = math.hypot(arm, arm * slope)
-    tangent = (-arm * slope / length, arm / length)
-    offset_x = row - slope * fold  # of the wall through (0, 0) of this row
-    for wall in (0.0, lug * stretch, pitch):
-        dx = offset_x - wall
-        along = np.clip(dx * tangent[0] + fold * tangent[1], 0.0, length)
-        nearest = np.minimum(nearest, np.hypot(dx - along * tangent[0], fold - along * tangent[1]))
-    return np.where(in_channel, nearest, -nearest)
+    for wall in (0.0, lug, pitch):
+        for k in range(nodes_y.size - 1):
+            dx, dy = nodes_x[k + 1] - nodes_x[k], nodes_y[k + 1] - nodes_y[k]
+            from_x, from_y = place - wall - nodes_x[k], fold - nodes_y[k]
+            share = np.clip((from_x * dx + from_y * dy) / (dx * dx + dy * dy), 0.0, 1.0)
+            nearest = np.minimum(nearest, np.hypot(from_x - share * dx, from_y - share * dy))
+    return np.where(row >= lug, nearest, -nearest)
+
+
+def zigzag_line(arm: float, angle: float) -> tuple[Array, Array]:
+    """Return (y, x) of half a zigzag: back from the tip at ``angle`` (rad) to y over ``arm``."""
+    return np.array([0.0, arm]), np.array([0.0, -arm * math.tan(angle)])
+
+
+def wave_line(length: float, height: float) -> tuple[Array, Array]:
+    """Return (y, x) of half a cosine of wave ``length`` and ``height``, crest to trough."""
+    y = np.linspace(0.0, length / 2, WAVE_SEGMENTS + 1)
+    return y, height / 2 * (np.cos(2 * math.pi * y / length) - 1)
 
 
 def rotated(x: Array, y: Array, angle: float) -> tuple[Array, Array]:

@@ -152,7 +152,7 @@ def _measured(mesh: Mesh) -> _Bodies:
     low, high = (np.where(np.isfinite(low), each, 0.0) for each in (low, high))  # empty bodies
     sides = along[:, 1:] - along[:, :1]
     areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) / 2
-    area = np.bincount(mesh.body, areas, minlength=count)
+    area = np.bincount(mesh.body, areas, minlength=count).astype(np.float64)
     rank = np.empty(count, dtype=int)
     rank[np.argsort(-area)] = np.arange(1, count + 1)
     names = tuple(name or f"body {n}" for name, n in zip(mesh.bodies, rank, strict=True))

@@ -114,7 +114,7 @@ def stated_unit(path: Path, kind: str) -> float | None:
 
 def _iges_field(text: bytes, number: int) -> bytes:
     """Return a field of an IGES section; texts are written as their length, H and characters."""
-    place = 0
+    place = begin = 0
     for _ in range(number + 1):
         written = re.compile(rb"\s*(\d+)H").match(text, place)
         begin = place

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from underfoot.core.arrays import Array, Mask
 
@@ -64,7 +65,7 @@ def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | Non
     )
 
 
-def _plane(triangles: Array, axes: Array) -> tuple[float, float, Array, Array] | None:
+def _plane(triangles: NDArray[np.float32], axes: Array) -> tuple[float, float, Array, Array] | None:
     """Return height, half thickness and extents of the widest level plane, and those of the rest.
 
     None where no plane stands out. All in the file's unit, seen along the third axis.

@@ -10,8 +10,9 @@ import numpy as np
 from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
 
+from .._kernels.tread_pattern import graded_diameter
 from ..shape import SoleShape
-from ..tread import Tread
+from ..tread import LATTICES, Tread
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,15 +62,16 @@ def slit_outlines(
 
 def _in_pattern(tread: Tread, centre: Array, reach: float) -> Iterator[tuple[Outline, float]]:
     """Yield outlines in the frame of the pattern and their half size (0: endless bars)."""
-    lug, pitch = tread.lug_width, tread.lug_width + tread.channel_width
+    lug, pitch = tread.lug_width, tread.pitch
     low, high = centre - reach, centre + reach
-    if tread.pattern in ("circles", "hexagons"):
+    if tread.pattern in LATTICES:
         for row in range(*_range(low[1], high[1], pitch * math.sqrt(3) / 2)):
             shift = lug / 2 + (pitch / 2 if row % 2 else 0.0)
             for column in range(*_range(low[0] - shift, high[0] - shift, pitch)):
                 at = np.array([column * pitch + shift, row * pitch * math.sqrt(3) / 2])
-                if tread.pattern == "circles":
-                    yield Outline(at[None, :], lug / 2), lug / 2
+                if tread.pattern != "hexagons":
+                    radius = _round_lug(tread, at[0] - lug / 2) / 2
+                    yield Outline(at[None, :], radius), radius
                 else:
                     angle = math.pi / 6 + np.arange(6) * math.pi / 3
                     corner = lug / math.sqrt(3) * np.column_stack([np.cos(angle), np.sin(angle)])
@@ -81,8 +83,8 @@ def _in_pattern(tread: Tread, centre: Array, reach: float) -> Iterator[tuple[Out
             for column in range(*_range(low[1], high[1], pitch)):
                 x, y = row * long_pitch, column * pitch - lug / 2
                 yield Outline(_rectangle(x, y, x + length, y + lug)), math.hypot(length, lug) / 2
-    elif tread.pattern == "chevrons" and tread.arm_length is not None:
-        yield from ((Outline(points), 0.0) for points in _zigzags(tread, low, high))
+    elif tread.wall_line is not None:
+        yield from ((Outline(points), 0.0) for points in _folded_bars(tread, low, high))
     elif tread.pattern == "longitudinal":
         for column in range(*_range(low[1], high[1], pitch)):
             y = column * pitch - lug / 2
@@ -92,15 +94,35 @@ def _in_pattern(tread: Tread, centre: Array, reach: float) -> Iterator[tuple[Out
             yield Outline(_rectangle(row * pitch, low[1], row * pitch + lug, high[1])), 0.0
 
 
-def _zigzags(tread: Tread, low: Array, high: Array) -> Iterator[Array]:
-    arm = tread.arm_length
-    assert arm is not None  # of chevrons; the tread checks it
-    slope, stretch = math.tan(tread.angle), 1 / math.cos(tread.angle)
-    lug, pitch = tread.lug_width * stretch, (tread.lug_width + tread.channel_width) * stretch
-    first, last = math.floor(low[1] / arm), math.ceil(high[1] / arm)
-    y = np.arange(first, last + 1) * arm
-    back = -slope * arm * (np.arange(first, last + 1) % 2)
-    spread = abs(slope) * arm
+def _round_lug(tread: Tread, along: float) -> float:
+    """Return the diameter (m) of a round lug centred ``along`` (m) from the first one."""
+    if tread.front_lug_width is None or tread.graded_length is None:
+        return tread.lug_width
+    ends = (tread.lug_width, tread.front_lug_width, tread.graded_length)
+    return float(graded_diameter(np.array(along), *ends))
+
+
+def hollow_outlines(lugs: list[Outline], tread: Tread) -> list[Outline]:
+    """Return the outlines of what is hollow within the lugs: of rings, else nothing."""
+    if tread.ring_width is None:
+        return []
+    return [Outline(lug.points, lug.radius - tread.ring_width) for lug in lugs]
+
+
+def _folded_bars(tread: Tread, low: Array, high: Array) -> Iterator[Array]:
+    assert tread.wall_line is not None  # of chevrons and waves
+    nodes_y, nodes_x = tread.wall_line
+    stretch = 1 / math.cos(tread.angle) if tread.pattern == "chevrons" else 1.0
+    lug, pitch = tread.lug_width * stretch, tread.pitch * stretch
+    # a whole period: the line and its mirror image
+    half = float(nodes_y[-1])
+    period_y = np.concatenate([nodes_y, 2 * half - nodes_y[-2:0:-1]])
+    period_x = np.concatenate([nodes_x, nodes_x[-2:0:-1]])
+    first, last = math.floor(low[1] / (2 * half)), math.ceil(high[1] / (2 * half))
+    y = np.concatenate([period_y + 2 * half * k for k in range(first, last)])
+    y = np.append(y, 2 * half * last)
+    back = np.append(np.tile(period_x, last - first), nodes_x[0])
+    spread = float(np.ptp(nodes_x))
     for row in range(*_range(low[0] - spread, high[0] + spread, pitch)):
         rear = np.column_stack([row * pitch + back, y])
         front = np.column_stack([row * pitch + lug + back, y])

@@ -12,11 +12,12 @@ from underfoot.core import InputError, UnderfootError
 from underfoot.core.optional import optional_module
 
 from ..shape import SoleShape
-from ..tread import ArcChannel
+from ..tread import LATTICES, ArcChannel
 from .modelling import (
     MM,
     Outline,
     arc_edge,
+    hollow_outlines,
     kernel,
     lug_outlines,
     outline_wire,
@@ -69,6 +70,9 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
         lugs = lug_outlines(shape, tread)
         plate = plate_with_holes(lugs, -_BELOW)
         body = body - raised(plate, 0.3) * _layer(lower, tread.depth)
+        hollows = hollow_outlines(lugs, tread)
+        if hollows:
+            body = body - _prisms(hollows) * _layer(lower, tread.depth)
         if tread.edge_radius > 0:
             edges = [(i, edge) for i, edge in enumerate(body.edges) if _on_lug(edge, shape)]
             whole = _free_lugs(lugs, shape)
@@ -191,7 +195,7 @@ def _on_lug(edge: Any, shape: SoleShape) -> bool:
         return False
     middle = np.array([edge.center.x, edge.center.y]) / MM
     off = float(np.abs(tread.channel_distance(middle[:1], middle[1:]))[0])
-    return off < 1e-6 or tread.pattern == "circles"
+    return off < 1e-6 or tread.pattern in LATTICES
 
 
 def _free_lugs(lugs: Sequence[Outline], shape: SoleShape) -> list[Outline]:

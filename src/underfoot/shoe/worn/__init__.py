@@ -8,3 +8,5 @@ from .measures import WearMeasures as WearMeasures
 from .measures import surface_wear_measures as surface_wear_measures
 from .measures import wear_measures as wear_measures
 from .surface import worn_surface as worn_surface
+from .walking import FloorCuts as FloorCuts
+from .walking import WalkingWear as WalkingWear

@@ -103,8 +103,8 @@ class WornPatch:
         share = np.hypot(2 * along / self.length, 2 * across / self.width)
         return np.hypot(along, across) * np.maximum(1 - 1 / np.maximum(share, 1e-9), 0.0)
 
-    def check_within(self, shape: SoleShape) -> None:
-        """Refuse a patch larger than the shoe or with its middle beside it."""
+    def on(self, shape: SoleShape) -> "WornPatch":
+        """Return the patch, unless it is larger than the shoe or has its middle beside it."""
         for name, value, most in (
             ("patch_length", self.length, shape.length),
             ("patch_width", self.width, shape.width),
@@ -122,6 +122,7 @@ class WornPatch:
                 where="wear.patch_position",
                 allowed=f"0 mm to {shape.length * 1e3:g} mm on the centre line",
             )
+        return self
 
 
 @dataclass(frozen=True, slots=True)

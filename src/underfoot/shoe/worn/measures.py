@@ -13,6 +13,7 @@ from ..grids import cut_heel
 from ..shape import SoleShape
 
 MEASURING_CELL = 0.5e-3  # m
+GONE = 1e-5  # m: a lug worn to its last hundredth of a millimetre drains nothing
 SHALLOW = 0.5
 """Share of the median lug height below which a part of a scanned sole is rounded rim, no lug."""
 
@@ -82,6 +83,16 @@ def surface_wear_measures(new: SoleSurface, worn: SoleSurface) -> WearMeasures:
     return _measured(removed, inside, depth, float(raised.sum()) * area, new.spacing)
 
 
+def _worn_share(beyond: Array) -> Array:
+    """Return the share of each cell that is worn down, of how far wear goes beyond the lugs (m).
+
+    The worn height is taken as plane within a cell: a patch smaller than a cell has its own area.
+    """
+    beyond = beyond + GONE
+    steepness = np.abs(np.gradient(beyond, axis=0)) + np.abs(np.gradient(beyond, axis=1))
+    return np.clip(0.5 + beyond / np.maximum(steepness, 1e-12), 0.0, 1.0)
+
+
 def _measured(
     removed: Array, inside: Mask, depth: Array, volume: float, spacing: float
 ) -> WearMeasures:
@@ -93,11 +104,11 @@ def _measured(
     length = width = area = least = mean = 0.0
     if treaded.any():
         least, mean = float(left[treaded].min()), float(left[treaded].mean())
-        # a lug worn to its last hundredth of a millimetre drains nothing
+        share = np.where(treaded, _worn_share((removed - depth)[nearest_true(treaded)]), 0.0)
         patches = np.zeros(treaded.shape, dtype=np.int32)
-        label(treaded & (left < 1e-5), output=patches)
+        label(share > 0, output=patches)
         if patches.any():
-            sizes = np.bincount(patches.ravel())[1:]
+            sizes = np.bincount(patches.ravel(), share.ravel())[1:]
             largest = int(sizes.argmax())
             along, across = find_objects(patches)[largest]
             area = float(sizes[largest]) * spacing**2

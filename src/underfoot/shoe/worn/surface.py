@@ -1,17 +1,17 @@
 """Wear of a sole that is known by its heights."""
 
 from dataclasses import dataclass, replace
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 
 from underfoot.core.arrays import Array
 
 from ..geometry import SoleSurface
-from ..shape import SoleShape, SoleWear
+from ..shape import SoleShape, SoleWear, WearOnSole, fitted
 
 
-def worn_surface(surface: SoleSurface, wear: SoleWear) -> SoleSurface:
+def worn_surface(surface: SoleSurface, wear: SoleWear | WearOnSole) -> SoleSurface:
     """Return the surface with the material that ``wear`` removes taken off.
 
     The land wears to z' = wear(z); a channel keeps its floor until the land has come down to it,
@@ -23,24 +23,22 @@ def worn_surface(surface: SoleSurface, wear: SoleWear) -> SoleSurface:
     base = surface.land_base
     known = np.where(np.isfinite(base), base, 0.0)
     shape = cast(SoleShape, _Extent(surface, known))
-    check: Any = getattr(wear, "check_within", None)
-    if check is not None:
-        check(shape)
     x, y = np.meshgrid(surface.x, surface.y, indexing="ij")
-    worn = wear.worn_height(x, y, known, shape)
+    worn = fitted(wear, shape).worn_height(x, y, known, shape)
     inside = surface.inside
     height = np.where(inside, np.maximum(surface.height, worn), np.nan)
     # what stood over the land (texture, rounded edges) is gone where the wear is deeper
     land = surface.land | (inside & (np.where(inside, surface.height, -np.inf) <= worn))
     lugs = np.where(land, np.maximum(surface.tread_depth - (worn - known), 0.0), 0.0)
-    removed = float(np.max((worn - known)[inside]))
+    removed = np.where(inside, np.maximum(worn - known, 0.0), 0.0)
     return replace(
         surface,
         height=height,
         land=land,
         tread_depth=np.where(surface.land, lugs, 0.0),
         base=np.where(inside, np.maximum(worn, known), np.nan),
-        remarks=(*surface.remarks, f"Worn by up to {removed * 1e3:.3g} mm."),
+        removed=removed,
+        remarks=(*surface.remarks, f"Worn by up to {removed.max() * 1e3:.3g} mm."),
     )
 
 

@@ -15,6 +15,7 @@ from underfoot.friction import FrictionLaw
 from underfoot.rough_contact import PressureGapLaw
 from underfoot.shoe.geometry import SoleMap
 from underfoot.sole_contact.compliance import Compliance
+from underfoot.sole_contact.lug_edges import EdgedLaw
 from underfoot.sole_contact.sole_state import SoleState, SolverSettings
 from underfoot.sole_contact.stepping import SlidingSole, rolled_clearance
 
@@ -30,7 +31,8 @@ LOWEST_SPEED = 1e-3
 class Setting:
     """Everything about shoe, floor and fluid that a slip needs; nothing about the person.
 
-    ``sole`` is the undeformed sole at ``shoe_angle``; ``viscosity`` None is a dry floor.
+    ``sole`` is the undeformed sole at ``shoe_angle``; ``viscosity`` None is a dry floor. ``edged``
+    is ``friction`` with what the edges of lugs do; None without lugs or film.
     """
 
     sole: SoleMap
@@ -41,6 +43,7 @@ class Setting:
     settings: SolverSettings
     shoe_angle: float
     key: str = ""
+    edged: EdgedLaw | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +51,7 @@ class SoleInstant:
     """Contact and film of the whole sole at an instant."""
 
     state: SoleState
-    law: FrictionLaw
+    law: FrictionLaw | EdgedLaw
 
     @property
     def fluid_load(self) -> float:
@@ -63,13 +66,11 @@ class SoleInstant:
     def friction(self, speed: float) -> float:
         """Return the friction force at a sliding speed with pressures and film as they are, N."""
         state = self.state
-        felt = state.wet | (state.contact_pressure > 0)
-        parts = self.law(
-            state.contact_pressure[felt], max(speed, LOWEST_SPEED), state.film_thickness[felt]
-        )
-        solid = parts.adhesion + parts.hysteresis
-        viscous = np.where(state.wet[felt], parts.viscous, 0.0) * (speed / max(speed, LOWEST_SPEED))
-        return float((solid + viscous).sum()) * state.spacing**2
+        slow = max(speed, LOWEST_SPEED)
+        parts = self.law(state.contact_pressure, slow, state.film_thickness)
+        solid = (parts.adhesion + parts.hysteresis)[state.contact_pressure > 0].sum()
+        viscous = parts.viscous[state.wet].sum() * (speed / slow)
+        return float(solid + viscous) * state.spacing**2
 
 
 class SoleFoot:
@@ -78,7 +79,7 @@ class SoleFoot:
     def __init__(self, setting: Setting, shoe_angle: float, load: float = 500.0) -> None:
         rolled = rolled_clearance(setting.sole, shoe_angle - setting.shoe_angle)
         sole = replace(setting.sole, clearance=rolled)
-        self._law = setting.friction
+        self._law = setting.edged or setting.friction
         self._sliding = SlidingSole(
             sole,
             setting.compliance,

@@ -282,6 +282,9 @@ def fitted_reduced(
     area = _area_constants(areas, setting.shoe_angle)
     mean_pressure = 500.0 / area[0]
     speeds, cofs = cof_table(setting.friction, mean_pressure)
+    if (edged := setting.edged) is not None:
+        slow = np.maximum(speeds, LOWEST_SPEED)
+        cofs *= [edged.mean_factor(mean_pressure, float(speed)) for speed in slow]
     blank = ReducedSole(
         np.ones(kernel.COUNT),
         setting.viscosity,

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 from scipy import fft
 
 from underfoot.core.arrays import Array
+from underfoot.core.fourier import fourier_library
+from underfoot.core.fourier import transform as prepared_transform
 from underfoot.core.sparse import factorization
 
 
@@ -193,6 +195,7 @@ class Convolution:
     def __init__(self, influence: Array, shape: tuple[int, int]) -> None:
         nx, ny = shape
         self.shape = shape
+        self.influence = influence
         self.padded = (
             fast_length(2 * nx - 1),
             fast_length(2 * ny - 1),
@@ -202,12 +205,27 @@ class Convolution:
         columns = np.arange(-ny + 1, ny) % self.padded[1]
         wrapped[np.ix_(rows, columns)] = influence
         self.spectrum = fft.rfft2(wrapped)
+        self._planned = None
+        if fourier_library() == "mkl":
+            self._planned = prepared_transform(self.padded, float)
+            self._room = np.zeros(self.padded)
 
     def __call__(self, field: Array) -> Array:
+        nx, ny = self.shape
+        if self._planned is not None:
+            self._room[:nx, :ny] = field
+            return self._planned.backward(self._planned.forward(self._room) * self.spectrum)[
+                :nx, :ny
+            ]
         # lines that are all zeros, or cut off in the end, are not transformed
         lines: Any = fft.rfft(field, n=self.padded[1], axis=1)
         spectrum: Any = fft.fft(lines, n=self.padded[0], axis=0)
         spectrum *= self.spectrum
-        lines = fft.ifft(spectrum, axis=0, overwrite_x=True)[: self.shape[0]]
+        lines = fft.ifft(spectrum, axis=0, overwrite_x=True)[:nx]
         deflection: Any = fft.irfft(lines, n=self.padded[1], axis=1)
-        return deflection[:, : self.shape[1]]
+        return deflection[:, :ny]
+
+    def within(self, shape: tuple[int, int]) -> "Convolution":
+        """Return the same convolution of the fields on a smaller grid."""
+        (nx, ny), (mx, my) = self.shape, shape
+        return Convolution(self.influence[nx - mx : nx + mx - 1, ny - my : ny + my - 1], shape)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from underfoot.core.optional import njit
+from underfoot.core.compiled import njit
 
 # places of the constants in the parameter vector
 AREA, AREA_POWER, AREA_ANGLE = 0, 1, 2

@@ -1,0 +1,76 @@
+"""The page of a wear series: the sole from new to worn on a slider, then figures and tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from underfoot.questions.wear import WearSeries
+
+from .dispatch import sections
+from .drawn_sole import DrawnSole
+from .html import embedded
+from .page import Picture, Section, remark_sections, table_sections
+from .quantities import Quantity
+from .viewer import history, listed_quantity, pane, scene, scene_section, viewer_script
+
+CELL = 1e-3
+"""m: side of the cells of the picture, or what the sole's own come nearest to it."""
+LEAST = 1e-6
+"""m lost below which land is drawn as not worn."""
+LOST = Quantity("lost", "Thickness lost", 1e-3, "mm", "viridis")
+LEFT = Quantity("left", "Tread left", 1e-3, "mm", "cividis")
+
+
+@sections.register(WearSeries)
+def _wear_sections(series: WearSeries, pictures: dict[str, bytes]) -> tuple[Sequence[Section], str]:
+    drawn = [
+        Section("Over the wear", pictures=[Picture(name, embedded(data), True)])
+        for name, data in pictures.items()
+    ]
+    parts = [*drawn, *table_sections(series), *remark_sections(series)]
+    if not series.soles:
+        return parts, ""
+    sole = Section("The sole as it wears", html=scene_section(wear_scene(series)))
+    return [sole, *parts], viewer_script()
+
+
+def wear_scene(series: WearSeries) -> dict[str, Any]:
+    """Return the data of the viewer: one sole whose shape and colours follow the slider."""
+    new = series.soles[0]
+    every = max(1, round(CELL / new.spacing))
+    thinned = (slice(None, None, every), slice(None, None, every))
+    heights = [sole.height[thinned] for sole in series.soles]
+    lands = [sole.land[thinned] for sole in series.soles]
+    nx, ny = heights[0].shape
+    everywhere = (slice(0, nx), slice(0, ny))
+    shape = DrawnSole(
+        new.x[::every], new.y[::every], every * new.spacing, heights[0], None, lands[0],
+        everywhere, everywhere,
+    )  # fmt: skip
+    lost = np.stack(heights) - heights[0]
+    lost = np.where(np.stack(lands) & (lost > LEAST), lost, np.nan) / LOST.factor
+    left = [sole.tread_depth[thinned] for sole in series.soles]
+    left = np.where(np.stack(lands), np.stack(left), np.nan) / LEFT.factor
+    labels = [_state(series, number) for number in range(len(series.points))]
+    shown = pane(
+        series.name,
+        shape,
+        {LOST.name: lost[0], LEFT.name: left[0]},
+        outline=[[float(f"{v:.5g}") for v in point] for point in new.outline],
+        histories={LOST.name: history(labels, lost), LEFT.name: history(labels, left)},
+        heights=heights,
+    )
+    return scene([shown], [listed_quantity(LOST, [lost]), listed_quantity(LEFT, [left])], "Wear")
+
+
+def _state(series: WearSeries, number: int) -> str:
+    """Return what a state is called on the slider."""
+    point = series.points[number]
+    cof = point.outcome.number("cof")
+    friction = "no result" if math.isnan(cof) else f"COF {cof:.3f}"
+    lost = f"{point.measures.removed_depth * 1e3:.2g} mm lost" if number else "new"
+    return f"{lost}, {friction}"
