@@ -15,7 +15,7 @@ _WINDOW = 3e-3  # m: wall, land and floor of a channel lie in it
 _SHALLOWEST = 1.2e-3  # m: of a channel whose walls count
 _RIM = 2e-3  # m from it: side walls of the sole
 _SAMPLE = 400_000
-_FEWEST = 50
+_FEWEST = 8
 
 
 def wall_draft(triangles: NDArray[np.float32], seen: View, height: Array) -> float | None:
