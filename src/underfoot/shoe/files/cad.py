@@ -1,8 +1,10 @@
 """STEP, IGES and BREP: surfaces that OCC reads and Netgen turns into triangles."""
 
 import os
+import pickle
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
@@ -13,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from underfoot.core import Cache, DataError, content_hash
+from underfoot.core import Cache, DataError, InputError, content_hash
 from underfoot.core.files import checksum
 from underfoot.core.optional import optional_module
 
@@ -26,6 +28,8 @@ SHORTEST_SIDE = 0.4
 """Wanted on rounded edges, mm."""
 SIDES_PER_RADIUS = 5.0
 """A chord leaves a circle of radius R by R / 200 at most."""
+LONGEST_MESHING = 300
+"""Of one file, s."""
 _MILLIMETRE = 1e-3
 _LOST_SHARE = 2e-3  # of the area: less is the chords' own
 _PREFIXES = {
@@ -62,7 +66,7 @@ def read_cad(path: Path, kind: str, unit: str = "auto") -> Mesh:
     key = content_hash(checksum(path), settings)
     stored = cache.load(key)
     if stored is None:
-        mesh = _meshed(path, kind, unit)
+        mesh = _meshed_apart(path, kind, unit)
         assert mesh.body is not None
         stored = {
             "triangles": mesh.triangles,
@@ -81,6 +85,46 @@ def read_cad(path: Path, kind: str, unit: str = "auto") -> Mesh:
         tuple(str(name) for name in stored["bodies"]),
         stored["body"],
     )
+
+
+def _meshed_apart(path: Path, kind: str, unit: str) -> Mesh:
+    """Return what ``mesh_into`` finds in a process of its own: OCC dies on some damaged files.
+
+    Raises:
+        InputError, DataError: As ``read_cad``; the process died or took too long.
+    """
+    optional_module("netgen", "cad", f"Reading {kind}")
+    call = "import sys; from underfoot.shoe.files.cad import mesh_into; mesh_into(*sys.argv[1:])"
+    with tempfile.TemporaryDirectory() as folder:
+        answer = Path(folder) / "mesh"
+        arguments = [sys.executable, "-c", call, str(path), kind, unit, str(answer)]
+        try:
+            subprocess.run(arguments, timeout=LONGEST_MESHING, capture_output=True, check=False)
+        except subprocess.TimeoutExpired:
+            what = f"could not be turned into triangles within {LONGEST_MESHING} s"
+        else:
+            if answer.exists():
+                found = pickle.loads(answer.read_bytes())
+                if isinstance(found, Exception):
+                    raise found
+                return found
+            what = "ends the reader of CAD files: it is damaged"
+    raise DataError(
+        f"the {kind} file {what}",
+        where=str(path),
+        remedy="Export the outsole again as STEP AP214 or AP242, or as STL",
+    )
+
+
+def mesh_into(path: str, kind: str, unit: str, answer: str) -> None:
+    """Write the triangles of a CAD file, or the error it raises, pickled to the file ``answer``."""
+    found: Mesh | Exception
+    try:
+        found = _meshed(Path(path), kind, unit)
+    except (InputError, DataError) as error:
+        found = error.with_traceback(None)
+        found.__cause__ = found.__context__ = None
+    Path(answer).write_bytes(pickle.dumps(found))
 
 
 def stated_unit(path: Path, kind: str) -> float | None:
