@@ -23,6 +23,7 @@ from underfoot.core.fields import Fields, labelled
 from underfoot.friction import FrictionLaw, cof, sampled_cof
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
 from underfoot.shoe import SoleMap
+from underfoot.shoe.lug_drainage import lug_drainage
 from underfoot.sole_contact import SensorReading
 from underfoot.sole_contact.cost import refuse_too_large
 from underfoot.sole_contact.edge_peak import peak_pressure
@@ -36,6 +37,7 @@ from .positions import Place, tread_positions
 from .resolve import resolved, turned
 from .result import Result
 from .sole import compression_breaches, outsole_notes, sole_map
+from .summary import FILM_MATTERS
 
 OBJECTS = ("friction", "rough_contact", "compliance", "risk")
 """Slots that take an object of physics in place of an option."""
@@ -129,7 +131,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         )
 
     values, risk, labels = numbers.undetermined(case, contact.status), None, {}
-    positions = None
+    positions = drainage = None
     if contact.status.usable:
         if "compliance" not in own:
             at = (case, on_sole, sole, contact, solved_quick)
@@ -142,8 +144,11 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         if positions:
             values = positions.averaged(values)
         share = (values["fluid_load"].value or 0.0) / contact.normal_force
+        if contact.fluid_load > FILM_MATTERS * contact.normal_force:
+            drainage = lug_drainage(sole, contact.fluid_pressure)
         remarks = {
             "lug_edges": "" if lugs is None else lugs.words(),
+            "drainage": drainage.words() if drainage else "",
             "cof_spread_basis": getattr(law, "spread_basis", ""),
             **(positions.labels() if positions else {}),
             "edge_peak": peak_pressure(sole, contact.total_pressure).remark,
@@ -199,7 +204,9 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
                 pictured_fields(sole, contact, compliance, _map_angle(case)),
             ),
             None if sampled is None else sampled.cof,
-        ).assign(positions.fields() if positions else {}),
+        ).assign(
+            (positions.fields() if positions else {}) | (drainage.fields() if drainage else {})
+        ),
         status=status,
         breaches=_unique(map(str, breaches)),
         assumptions=_unique(
