@@ -28,6 +28,10 @@ def framed_lug(side, height=2e-3):
     return sole(land, height)
 
 
+def drainage(map_, pressure):
+    return lug_drainage(map_, pressure, np.full(pressure.shape, 20e-6))
+
+
 def sole(land, height=2e-3):
     x = (np.arange(SIZE) + 0.5) * CELL
     inside = np.ones_like(land)
@@ -89,20 +93,20 @@ STEPS_TO_SIDE = {step: side for side, step in STEPS.items()}
 @pytest.mark.parametrize("side", SIDES)
 def test_a_lug_whose_channels_back_up_on_three_sides_is_opened_to_the_fourth(side):
     closed = set(SIDES) - {side}
-    found = lug_drainage(framed_lug(side), film(closed))
+    found = drainage(framed_lug(side), film(closed))
     assert SIDES[found.side[0]] == side
     assert found.load[0] == pytest.approx(film(closed)[LUG, LUG].sum() * CELL**2)
     # p = p_0 (1 - (s / L)^2) from the wall across: above 0.99 p_0 in a tenth of the length
     assert found.way[0] == pytest.approx(9.5e-3, abs=CELL)
-    assert found.words().endswith(f"to go to the {side}: open it to the {side}")
+    assert f"to go to the {side}: open it to the {side}, a groove of" in found.words()
 
 
 @pytest.mark.parametrize("side", SIDES)
 def test_a_cut_to_that_side_relieves_the_film_most(side):
     closed = set(SIDES) - {side}
     pressure = film(closed)
-    found = lug_drainage(framed_lug(side), pressure)
-    assert SIDES[found.side[0]] == side
+    found = drainage(framed_lug(side), pressure)
+    assert SIDES[found.groove_side[0]] == side
     n = LUG.stop - LUG.start
     peak = np.array(np.unravel_index(pressure[LUG, LUG].argmax(), (n, n)))
     loads = {}
@@ -119,12 +123,33 @@ def test_a_mirrored_sole_is_opened_on_the_other_side(shift):
     land = framed_lug("left").land
     pressure = np.zeros(land.shape)
     pressure[25:35, 28 + shift : 33 + shift] = 1e5
-    one = lug_drainage(sole(land), pressure)
-    other = lug_drainage(sole(land[:, ::-1]), pressure[:, ::-1])
+    one = drainage(sole(land), pressure)
+    other = drainage(sole(land[:, ::-1]), pressure[:, ::-1])
+    assert other.relief[0] == pytest.approx(one.relief[0], rel=1e-9)
     swapped = {"left": "right", "right": "left", "front": "front", "rear": "rear"}
     assert SIDES[other.side[0]] == swapped[SIDES[one.side[0]]]
     assert other.way[0] == pytest.approx(one.way[0], rel=1e-12)
     assert other.load[0] == one.load[0]
+
+
+def test_a_bar_is_split_along_and_not_notched_across():
+    """Film of a long bar goes with the third power of its width: what is split bears a quarter."""
+    land = np.zeros((SIZE, SIZE), dtype=bool)
+    land[20:41, :] = True
+    offset = np.arange(SIZE)[:, None] - 30.0
+    pressure = np.where(land, np.maximum(1 - (offset / 11) ** 2, 0.0) * 1e5, 0.0)
+    pressure[30, 2] *= 1.02  # the peak lies beside the right end
+    found = drainage(sole(land), pressure)
+    assert SIDES[found.side[0]] == "right"
+    assert found.way[0] == pytest.approx(2.5 * CELL)
+    pressure[30, 2] /= 1.02
+    pressure[30, 30] *= 1.02
+    found = drainage(sole(land), pressure)
+    assert SIDES[found.side[0]] == "front"  # the nearest channel
+    assert SIDES[found.groove_side[0]] == "left"
+    # half of the bar is split; a groove of 2 mm takes its own share of the pressure
+    half = 1 - 2 * ((11 - 2) / 2 / 11) ** 3
+    assert found.relief[0] == pytest.approx(0.5 * half, abs=0.06)
 
 
 def test_channels_without_an_outlet_are_no_way_out():
@@ -132,9 +157,9 @@ def test_channels_without_an_outlet_are_no_way_out():
     pressure = np.zeros(land.shape)
     pressure[LUG, LUG] = 1.0
     pressure[30, 30] = 1e5
-    outlet = lug_drainage(sole(land), pressure)
+    outlet = drainage(sole(land), pressure)
     land[44:, :] = True  # the gap in the frame is filled: the rim is the nearest open place
-    none = lug_drainage(sole(land), pressure)
+    none = drainage(sole(land), pressure)
     assert outlet.way[0] == pytest.approx(9.5 * CELL)
     assert none.way[0] == pytest.approx(29.5 * CELL)
 
@@ -142,11 +167,11 @@ def test_channels_without_an_outlet_are_no_way_out():
 def test_short_ways_and_small_loads_get_no_advice():
     pressure = np.zeros((SIZE, SIZE))
     pressure[LUG, LUG] = 1e5
-    assert "leave it" in lug_drainage(framed_lug("front", height=20e-3), pressure).words()
+    assert "leave it" in drainage(framed_lug("front", height=20e-3), pressure).words()
     pressure[~framed_lug("front").land] = 4e6  # nearly all of the film lies in the channels
-    assert lug_drainage(framed_lug("front"), pressure).words() == ""
-    assert lug_drainage(sole(np.ones((SIZE, SIZE), dtype=bool)), pressure) is None
-    assert lug_drainage(framed_lug("front"), np.zeros((SIZE, SIZE))) is None
+    assert drainage(framed_lug("front"), pressure).words() == ""
+    assert drainage(sole(np.ones((SIZE, SIZE), dtype=bool)), pressure) is None
+    assert drainage(framed_lug("front"), np.zeros((SIZE, SIZE))) is None
 
 
 def test_a_run_names_the_lug_that_drains_worst(tmp_path):
@@ -168,6 +193,10 @@ def test_a_run_names_the_lug_that_drains_worst(tmp_path):
     )
     result = run(case, quick=True)
     fields = result.fields
+    # a bar of 16 mm across the shoe: the groove goes along it. Runs with it cut found 38 % less
+    # film under this lug, 1 % less with one to the front
+    assert SIDES[int(fields.lug_groove_side[0])] in ("left", "right")
+    assert float(fields.lug_relief[0]) == pytest.approx(0.38, abs=0.05)
     assert fields.lug_load.sum() <= result.value("fluid_load") * (1 + 1e-9)
     assert (np.diff(fields.lug_load) <= 0).all()
     assert result.labels["drainage"] in " ".join(result.remarks()["Notes"])

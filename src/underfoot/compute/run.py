@@ -145,7 +145,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             values = positions.averaged(values)
         share = (values["fluid_load"].value or 0.0) / contact.normal_force
         if contact.fluid_load > FILM_MATTERS * contact.normal_force:
-            drainage = lug_drainage(sole, contact.fluid_pressure)
+            drainage = lug_drainage(sole, contact.fluid_pressure, contact.film_thickness)
         remarks = {
             "lug_edges": "" if lugs is None else lugs.words(),
             "drainage": drainage.words() if drainage else "",

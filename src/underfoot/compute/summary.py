@@ -193,19 +193,21 @@ def table(scalars: Mapping[str, SourcedValue], labels: Mapping[str, str]) -> Tab
 
 def drainage_table(fields: Fields) -> Table:
     """Return the lugs that bear most of the film, and the way out for their fluid."""
-    names = ("share", "load", "x", "y", "way", "side", "height")
+    names = ("share", "load", "x", "y", "way", "side", "groove", "groove_side", "relief")
     lugs = zip(*(fields[f"lug_{name}"].values for name in names), strict=True)
     rows = [
         (
             f"{quantity_text(x, 'm')} from the rear, {across_text(y)}",
             f"{quantity_text(load, 'N')}, {percent(share)}",
             f"{quantity_text(way, 'm')} to the {SIDES[int(side)]}",
-            quantity_text(height, "m"),
+            f"{quantity_text(groove, 'm')} to the {SIDES[int(to)]}, {percent(relief)} of it",
         )
-        for share, load, x, y, way, side, height in islice(lugs, LUGS_SHOWN)
+        for share, load, x, y, way, side, groove, to, relief in islice(lugs, LUGS_SHOWN)
         if share >= MATTERS
     ]
-    return Table("Drainage of lugs", ("Lug", "Load on its film", "Way out", "Lug height"), rows)
+    return Table(
+        "Drainage of lugs", ("Lug", "Load on its film", "Way out", "Best groove, relief"), rows
+    )
 
 
 def notes(labels: Mapping[str, str]) -> tuple[str, ...]:
