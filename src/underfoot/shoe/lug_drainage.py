@@ -5,8 +5,8 @@ A groove changes the fluid pressure by d, at the gap h as solved:
     div(h^3 grad d) = 0,  d = -p in the groove,  d = 0 in channels
 
 and relieves the lug by -sum(d) of its film, d no lower than -p. Of straight grooves from the peak
-of the pressure to the four sides the one counts that relieves most per length. Speed, load and
-approach are left as they are.
+of the pressure to the four sides the one counts that relieves most, or the shortest of those that
+relieve nearly as much. Load and approach are left as they are.
 """
 
 from dataclasses import dataclass
@@ -27,8 +27,9 @@ OPEN = 0.1
 """Of the highest fluid pressure: a channel under more is backed up and lets nothing out."""
 MATTERS = 0.05
 """Share of the load on the film from which a lug is named."""
-GROOVE = 2e-3
-"""m: width of the grooves compared; at least one cell."""
+GROOVE, NEARLY = 2e-3, 0.9
+"""Width of the grooves compared (m; an odd number of cells, no wider), and the share of the largest
+relief from which the shorter groove is taken."""
 MIDDLE = 1e-3
 """m: a place nearer to the middle line is said to lie on it."""
 TOP = 0.99
@@ -48,9 +49,8 @@ class LugDrainage:
             and whose own fluid pressure is below a tenth of the highest, or the rim itself.
         side: Number in ``SIDES`` of the side that this way mostly leads to.
         height: Of the lug, 0 where untreaded.
-        groove, groove_side, relief: Length and side of the groove that relieves most per length,
-            and the share of the lug's film that it relieves at this gap; nan and -1 where the lug
-            bears less than 5 % of the film.
+        groove, groove_side, relief: Length and side of the groove that relieves most, and the share
+            of the lug's film that it relieves; nan and -1 where the lug bears less than 5 % of all.
     """
 
     load: Array
@@ -77,7 +77,7 @@ class LugDrainage:
         if way > self.height[0]:
             advice = (
                 f"open it to the {SIDES[self.groove_side[0]]}, a groove of "
-                f"{quantity_text(self.groove[0], 'm')} there relieves most per length"
+                f"{quantity_text(self.groove[0], 'm')} relieves most"
             )
         place = f"{quantity_text(self.x[0], 'm')} from the rear, {across_text(self.y[0])}"
         load = f"{quantity_text(self.load[0], 'N')} of film, {percent(self.share[0])} of all"
@@ -94,7 +94,7 @@ class LugDrainage:
             "way": ("m", "from there to the nearest open channel or rim"),
             "side": ("1", "side of that way: front 0, rear 1, left 2, right 3"),
             "height": ("m", "height of the lug"),
-            "groove": ("m", "length of the groove from the peak that relieves most per length"),
+            "groove": ("m", "length of the groove from the peak that relieves most"),
             "groove_side": ("1", "side of that groove, as in lug_side; -1 not sought"),
             "relief": ("1", "share of the lug's film that it relieves at the gap as solved"),
         }
@@ -184,19 +184,19 @@ def _way_out(offsets: NDArray[np.intp], y: float) -> tuple[float, int]:
 def _best_groove(
     lug: Mask, peak: NDArray[np.intp], open_: Mask, pressure: Array, gap: Array, wide: float
 ) -> tuple[float, int, float]:
-    """Return length (cells), side and relief of the groove that relieves a lug most per length."""
+    """Return length (cells), side and relief of the groove that a lug should have."""
     film = lug & (pressure > 0)
     along, across = np.indices(lug.shape) - peak[:, None, None]
     ahead = ((along, across), (-along, across), (across, along), (-across, along))
-    best, most = (np.nan, -1, np.nan), 0.0
+    found = []
     for side, (forward, aside) in enumerate(ahead):
         goals = forward[open_ & (aside == 0) & (forward > 0)]
         length = int(goals.min()) if goals.size else int(forward.max()) + 1
         groove = lug & (np.abs(aside) < wide / 2) & (forward > -wide / 2) & (forward < length)
         relief = _relief(film & ~groove, groove, pressure, gap**3) / float(pressure[film].sum())
-        if relief / length > most * (1 + 1e-6):
-            best, most = (float(length), side, relief), relief / length
-    return best
+        found.append((float(length), side, relief))
+    most = max(relief for *_, relief in found)
+    return min(each for each in found if each[2] >= NEARLY * most)
 
 
 def _relief(free: Mask, groove: Mask, pressure: Array, conductance: Array) -> float:
