@@ -11,6 +11,7 @@ from functools import partial
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from underfoot.core import InputError
 from underfoot.core.arrays import Array, Mask
@@ -216,7 +217,8 @@ def layered_compliance(
 
     depth = mean_lug_depth(sole)
     land = sole.inside & sole.land
-    plan = land if depth == 0.0 else sole.inside
+    # what is left of a worn tread parts no block: its floors give as the land beside them
+    plan = land | _channel_up_to(sole, THINNEST * thickness) if depth == 0.0 else sole.inside
     give = block_compression(plan, sole.spacing, body, modulus, poisson_ratio)
     footprint = partial(free_sided_symbol, **elastic, uniform=float(give[plan].mean()))
 
@@ -253,6 +255,13 @@ def layered_compliance(
     )
 
 
+def _channel_up_to(sole: SoleMap, depth: float) -> Mask:
+    """Return where there is a channel less deep than ``depth`` (m)."""
+    land = sole.inside & sole.land
+    above = sole.clearance - sole.clearance[_nearest_land(land)]
+    return sole.inside & ~land & (above < depth)
+
+
 def body_thickness(sole: SoleMap, thickness: float, shoe_angle: float) -> Array:
     """Return the outsole (m) above lugs and profile, (nx, ny), of ``thickness`` from its plane.
 
@@ -264,11 +273,16 @@ def body_thickness(sole: SoleMap, thickness: float, shoe_angle: float) -> Array:
     over = np.where(land, (height - height[land].min()) * math.cos(shoe_angle), 0.0)
     above = thickness - over - np.where(land, sole.tread_depth, 0.0)
     above = np.maximum(above, THINNEST * thickness)
+    return above[_nearest_land(land)]
+
+
+def _nearest_land(land: Mask) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the indices of the land cell nearest to each cell."""
     from scipy.ndimage import distance_transform_edt
 
     nearest = distance_transform_edt(~land, return_distances=False, return_indices=True)
     assert isinstance(nearest, np.ndarray)
-    return above[nearest[0], nearest[1]]
+    return nearest[0], nearest[1]
 
 
 def mean_lug_depth(sole: SoleMap) -> float:
