@@ -89,7 +89,9 @@ def scalars(
         "peak_fluid_pressure": computed(float(contact.fluid_pressure.max()), "Pa"),
         "peak_fluid_pressure_sensor": sensor.peak_pressure,
         "contact_area": computed(
-            float(np.count_nonzero(touching)) * contact.spacing**2, "m^2", "apparent, on the grid"
+            float(contact.cut.area[touching].sum()) * contact.spacing**2,
+            "m^2",
+            "apparent, on the grid",
         ),
         "minimum_film_thickness": computed(thinnest, "m")
         if thinnest is not None
@@ -150,7 +152,7 @@ def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
 
 
 def _mean_pressure(contact: SoleContact) -> float:
-    loaded = np.count_nonzero(contact.total_pressure > 0)
+    loaded = float(contact.cut.area[contact.total_pressure > 0].sum())
     return contact.normal_force / max(loaded * contact.spacing**2, contact.spacing**2)
 
 

@@ -40,11 +40,16 @@ class PeakPressure:
 
 
 def peak_pressure(
-    sole: SoleMap, pressure: Array, *, averaging_area: float = AVERAGING_AREA
+    sole: SoleMap,
+    pressure: Array,
+    *,
+    cell_load: Array | None = None,
+    averaging_area: float = AVERAGING_AREA,
 ) -> PeakPressure:
     """Return the highest pressure of a field (nx, ny) in Pa, as a cell and as a mean over a disc.
 
-    The mean is over a disc of ``averaging_area`` (m^2) anywhere under the sole, at least one cell.
+    The mean is over a disc of ``averaging_area`` (m^2) anywhere under the sole, at least one cell,
+    of ``cell_load`` (nx, ny), the load per area of a whole cell, Pa; None: the pressure.
     """
     from scipy.ndimage import binary_erosion
 
@@ -57,7 +62,7 @@ def peak_pressure(
     along = np.arange(-count, count + 1)
     disc = (along[:, None] ** 2 + along[None, :] ** 2 <= reach**2).astype(float)
     mean = np.zeros_like(pressure)
-    padded = np.pad(pressure, count)
+    padded = np.pad(pressure if cell_load is None else cell_load, count)
     for i, j in np.argwhere(disc):
         mean += padded[i : i + pressure.shape[0], j : j + pressure.shape[1]]
     mean /= disc.sum()
