@@ -11,10 +11,24 @@ import numpy as np
 import pytest
 from chromium import opened
 
+from underfoot.core import SourcedValue, Status
 from underfoot.core.fields import from_xarray
 from underfoot.questions.comparison import case_differences, compare
+from underfoot.questions.outcomes import Outcome
+from underfoot.questions.wear import WearSeries
+from underfoot.questions.wear_limit import WearPoint
 from underfoot.report import page_text, write_report
-from underfoot.report.viewer import colour_tables, unpacked, viewer_scene
+from underfoot.report.html import environment
+from underfoot.report.viewer import (
+    colour_tables,
+    scene_section,
+    unpacked,
+    viewer_scene,
+    viewer_script,
+)
+from underfoot.report.wear_page import wear_scene
+from underfoot.shoe import Heel, Tread, WearPlane, heel_surface
+from underfoot.shoe.worn import wear_measures
 
 
 @pytest.fixture(scope="module")
@@ -198,7 +212,7 @@ def whole_result(result, tread=0.01):
         "whole_land": (("whole_x", "whole_y"), np.isfinite(height)),
     }
     fields = fields.assign(more).assign_coords(whole_x=along, whole_y=y)
-    return dataclasses.replace(result, fields=fields)
+    return dataclasses.replace(result, data=from_xarray(fields))
 
 
 def test_a_whole_sole_is_drawn_with_its_computed_part(worn_shoe_result):
@@ -319,6 +333,65 @@ def test_a_history_can_be_walked_through(worn_shoe_result, tmp_path):
         assert tab.complaints == []
 
 
+def worn_series():
+    """A heel in three states of wear, without the friction that a run would give."""
+    heel = Heel(
+        length=0.06, width=0.06, rear_radius=0.028, outsole_thickness=0.02,
+        tread=Tread("grid", 9e-3, 5e-3, 3e-3),
+    )  # fmt: skip
+    depths = (0.0, 1e-3, 2e-3)
+    soles = [heel.worn(WearPlane(depth) if depth else None) for depth in depths]
+    failed = Outcome(
+        "", "", {"cof": SourcedValue(None, "1")}, {}, Status.NOT_CONVERGED, "", (), (), 0.0
+    )
+    points = tuple(WearPoint(wear_measures(sole), failed) for sole in soles)
+    surfaces = tuple(heel_surface(sole, spacing=1e-3) for sole in soles)
+    return WearSeries("heel", "plane", 5.0, points, {}, (), soles=surfaces), depths
+
+
+def test_the_scene_of_wear_holds_what_each_state_has_lost():
+    series, depths = worn_series()
+    pane = wear_scene(series)["panes"][0]
+    shape = (pane["nx"], pane["ny"])
+    frames = [unpacked(each, shape) for each in pane["histories"]["lost"]["frames"]]
+    assert np.isnan(frames[0]).all(), "new"
+    for frame, depth in zip(frames[1:], depths[1:], strict=True):
+        assert np.nanmax(frame) == pytest.approx(depth * 1e3, rel=0.05)
+    first, last = (unpacked(pane["heights"][k], shape) for k in (0, -1))
+    assert np.nanmax(last - first) == pytest.approx(depths[-1], rel=0.05)
+    assert pane["histories"]["lost"]["labels"][0].startswith("new")
+
+
+@pytest.mark.browser
+def test_a_slider_wears_the_sole_down(tmp_path):
+    path = tmp_path / "wear.html"
+    sheets = ("style.css", "viewer.css")
+    styles = "".join(environment().get_template(name).render() for name in sheets)
+    path.write_text(
+        f"<!doctype html><html><head><style>{styles}</style></head><body>"
+        f"{scene_section(wear_scene(worn_series()[0]))}<script>{viewer_script()}</script>",
+        encoding="utf-8",
+    )
+    with opened(path) as tab:
+        centre(tab)
+        tab.settle()
+        new = tab.picture("canvas")[0]
+        assert np.ptp(new) > 0.3, "no sole"
+        assert colourful(new) == 0.0
+        tab.value(
+            "(() => { const s = document.querySelector('[data-part=time]'); s.value = s.max;"
+            "s.dispatchEvent(new Event('input')) })()"
+        )
+        for _ in range(20):  # the last state is unpacked and meshed first
+            tab.settle()
+        assert colourful(tab.picture("canvas")[0]) > 0.005
+        choose(tab, "Tread left")
+        assert changed(new, tab.picture("canvas")[0]) > 0.01
+        label = tab.value("document.querySelector('[data-part=time-value]').textContent")
+        assert label.startswith("2 mm lost")
+        assert tab.complaints == []
+
+
 @pytest.mark.browser
 def test_without_webgl_the_page_says_so(page, tmp_path):
     text = page.read_text().replace('getContext("webgl2"', 'getContext("none"')
@@ -352,7 +425,7 @@ def test_differences_to_the_first_sole(worn_shoe_result, tmp_path):
     doubled = worn_shoe_result.fields.assign(
         fluid_pressure=2 * worn_shoe_result.fields.fluid_pressure
     )
-    other = dataclasses.replace(worn_shoe_result, name="other", fields=doubled)
+    other = dataclasses.replace(worn_shoe_result, name="other", data=from_xarray(doubled))
     path = tmp_path / "compared.html"
     path.write_text(page_text(compare(worn_shoe_result, other), {}), encoding="utf-8")
     with opened(path) as tab:

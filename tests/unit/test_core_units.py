@@ -68,3 +68,20 @@ def test_displayed_text_reads_back(value, unit):
 
 def test_display_says_when_it_is_not_a_number():
     assert display(float("nan"), "Pa") == "not a number"
+
+
+def test_inches_and_pounds_on_request(monkeypatch):
+    from underfoot.core.presentation import quantity_text
+    from underfoot.core.units import UNITS_VARIABLE, tread_unit
+
+    values = ((3e-3, "m"), (25.4e-6, "m"), (6894.757, "Pa"), (444.822, "N"), (6.4516e-4, "m^2"))
+    assert [quantity_text(*each) for each in values][:2] == ["3 mm", "25.4 µm"]
+    monkeypatch.setenv(UNITS_VARIABLE, "us")
+    shown = [quantity_text(*each) for each in values]
+    assert shown == ["0.118 in", "1 mil", "1 psi", "100 lbf", "1 in²"]
+    assert tread_unit("m") == (25.4e-3, "in")
+    # what is read does not change with what is written
+    assert to_si("3 mm", "m", where="x") == 3e-3
+    for value, unit in values:
+        text = display(value, unit, 8).replace("mil", "thou")
+        assert to_si(text, unit, where="x") == pytest.approx(value, rel=1e-6)

@@ -70,7 +70,9 @@ def test_the_headline_has_the_number_first_and_marks_what_is_extrapolated():
         made.status, made.scalars, breaches, ("interface: a = 1 (b)",), "report_g6"
     )
     assert cautions[0].startswith("Slip probability extrapolated: ACOF - RCOF")
-    assert cautions[1] == "Inputs outside the tested range of: stribeck."
+    assert cautions[1] == (
+        "Beyond what was tested: the friction of this sole on this floor (stribeck)."
+    )
     assert "interface roughness" in cautions[2]
     assert summary.cautions(made.status, outcome().scalars, (), ("motion: a = 1",)) == ()
     failed = summary.headline(Status.NOT_CONVERGED, made.scalars, {})
@@ -231,3 +233,16 @@ def test_old_option_names_answer_with_a_note(capsys):
     assert "--wanted is now --target" in done.stderr
     assert CliRunner().invoke(app, ["risk", "--target=3 %"]).stderr == ""
     assert seen.target == "3 %"
+
+
+def test_files_are_compared_by_their_names_and_checksums_only_where_these_are_alike():
+    from underfoot.questions.comparison import _with_short_names
+
+    sums = ("shoe.outsole.sha256", "a" * 64, "b" * 64)
+    apart = [("shoe.outsole.file", "/x/one.stl", "/x/two.stl"), sums]
+    assert _with_short_names(apart) == [("shoe.outsole.file", "one.stl", "two.stl")]
+    alike = [("shoe.outsole.file", "/x/one.stl", "/y/one.stl"), sums]
+    assert _with_short_names(alike)[1] == ("shoe.outsole.sha256", "a" * 8, "b" * 8)
+    assert _with_short_names(alike)[0] == alike[0]
+    changed = [sums]
+    assert _with_short_names(changed) == [("shoe.outsole.sha256", "a" * 8, "b" * 8)]

@@ -1,6 +1,8 @@
 """The commands; each imports what it needs when it runs."""
 
+import os
 from collections.abc import Callable
+from enum import StrEnum
 from typing import Annotated, Any
 
 import typer
@@ -84,6 +86,13 @@ for group in (trials_app, calibrate_app, studies_app, study_app, outsole_app):
     app.add_typer(group)
 
 
+class Units(StrEnum):
+    """Units of output."""
+
+    SI = "si"
+    US = "us"
+
+
 def _version(requested: bool) -> None:
     if requested:
         from underfoot.core.provenance import version
@@ -97,5 +106,13 @@ def options(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
     ] = False,
+    units: Annotated[
+        Units | None,
+        typer.Option(help="Units of output: si, or us (in, psi, lbf).", show_default=False),
+    ] = None,
 ) -> None:
     """Friction between a shoe, a floor and what is spilled on it."""
+    from underfoot.core.units import UNITS_VARIABLE
+
+    if units is not None:
+        os.environ[UNITS_VARIABLE] = units

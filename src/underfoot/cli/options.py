@@ -76,6 +76,22 @@ ShowAll = Annotated[
 ]
 
 
+Workers = Annotated[
+    int | None,
+    typer.Option(
+        "--workers", min=1, help="Processes; by default one a processor.", show_default=False
+    ),
+]
+On = Annotated[
+    str | None,
+    typer.Option(
+        "--on",
+        help='Where: "dask" (a cluster in this process) or "dask:tcp://host:8786".',
+        show_default=False,
+    ),
+]
+
+
 def optional(text: str, *names: str) -> Any:
     """Return an option with its help text, whose default is not shown."""
     return typer.Option(*names, help=text, show_default=False)

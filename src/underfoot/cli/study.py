@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .guard import guarded, say
-from .options import AsJson, Overwrite, ShowAll, optional
+from .options import AsJson, On, Overwrite, ShowAll, Workers, optional
 from .output import finish, print_table
 
 if TYPE_CHECKING:
@@ -25,12 +25,6 @@ StudyPath = Annotated[
 ]
 Folder = Annotated[
     Path | None, optional("Folder of the study; by default out/NAME of the file.", "--out")
-]
-Workers = Annotated[
-    int | None,
-    typer.Option(
-        "--workers", min=1, help="Processes; by default one a processor.", show_default=False
-    ),
 ]
 
 
@@ -50,10 +44,7 @@ def check(study: StudyPath, json: AsJson = False) -> None:
 def run(
     study: StudyPath,
     out: Folder = None,
-    on: Annotated[
-        str | None,
-        optional('Where: "dask" (a cluster in this process) or "dask:tcp://host:8786".', "--on"),
-    ] = None,
+    on: On = None,
     workers: Workers = None,
     json: AsJson = False,
     everything: ShowAll = False,
@@ -66,8 +57,12 @@ def run(
     from underfoot.report.design_studies import write_study_report
 
     chosen = _study(study, out)
-    with bar(chosen.plan.name) as progress:
-        result = chosen.run(on, workers, progress)
+    try:
+        with bar(chosen.plan.name) as progress:
+            result = chosen.run(on, workers, progress)
+    except KeyboardInterrupt:
+        say("stopped: every finished case is kept; the same command goes on from there")
+        raise
     with bar("report") as progress:
         written = write_study_report(chosen, result, progress=progress)
     finish(result, written, json=json, everything=everything)

@@ -218,7 +218,7 @@ def tread_positions(
         return None
     tread = _tread(case)
     lying = file_places(count) if tread is None else places(tread.periods, count)
-    own = _numbers(case, law_on(sole), sole, contact, viscosity)
+    own = place_numbers(case, law_on(sole), sole, contact, viscosity)
     eased = case.replace("numerics.tolerance", max(case.numerics.tolerance, TOLERANCE))
     kept = [(Place(), own)] if quick else []
     coarse = None
@@ -228,7 +228,7 @@ def tread_positions(
         except ConvergenceError:
             continue
         if there[1].status.usable:
-            kept.append((place, _numbers(case, law_on(there[0]), *there, viscosity)))
+            kept.append((place, place_numbers(case, law_on(there[0]), *there, viscosity)))
             coarse = there if k == 0 else coarse
     if not kept or kept[0][0] != Place():  # nowhere to compare the two grids
         kept, coarse = [(Place(), own)], None
@@ -287,7 +287,7 @@ def _stage(progress: Progress, number: int, count: int) -> Progress:
     return report
 
 
-def _numbers(
+def place_numbers(
     case: Case,
     law: FrictionLaw | EdgedLaw,
     sole: SoleMap,

@@ -1,7 +1,7 @@
 """A result in sentences and table rows: number, unit, uncertainty, then the caution."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -39,6 +39,23 @@ LABELS = {
     "sensor": "Caution on the sensor",
     "objects": "Computed with an object in place of the case's option",
 }
+PARTS: Mapping[str, str] = {
+    "exponential": "how closely rough surfaces come together under this pressure",
+    "persson": "how closely rough surfaces come together under this pressure",
+    "greenwood_williamson_1966": "how closely rough surfaces come together under this pressure",
+    "pair": "the friction of this sole on this floor",
+    "stribeck": "the friction of this sole on this floor",
+    "speed_table": "the friction of this sole on this floor",
+    "grid": "the tread, which has few cells of the grid across its details",
+    "compliance": "how far the load presses the sole together",
+    "gent_1958": "the stiffness of a rubber of this hardness",
+    "ruess": "the stiffness of a rubber of this hardness",
+    "bs903_1950": "the stiffness of a rubber of this hardness",
+    "cheng_2008": "the viscosity of the glycerol",
+    "strobel_2012": "how much adhesion this fluid leaves",
+    "patir_cheng_1978": "how roughness slows the fluid",
+}
+"""What each model is for, to who does not know its name."""
 DECISIVE = ("interface", "shoe.heel", "shoe.tread", "shoe.sole", "motion")
 """Sections whose assumed inputs move the film load most, the most sensitive first."""
 
@@ -127,7 +144,7 @@ def cautions(
         reasons.append(f"Slip probability {slip.note}.")
     models = dict.fromkeys(line.partition(":")[0] for line in breaches)
     if others := [name for name in models if name != slip_model]:
-        reasons.append(f"Inputs outside the tested range of: {', '.join(others)}.")
+        reasons.append(beyond_tests(others))
     sections = {line.partition(":")[0] for line in assumptions}
     open_sections = [name for name in DECISIVE[:2] if name in sections]
     if open_sections and friction_limit(scalars).kind == "film":
@@ -138,6 +155,15 @@ def cautions(
             "underfoot sensitivity gives their effect."
         )
     return tuple(reasons)
+
+
+def beyond_tests(models: Iterable[str]) -> str:
+    """Return in plain words which parts of the answer go beyond what their models were tested for.
+
+    The technical name of each model stands in brackets, as the list of ranges has it.
+    """
+    named = [f"{PARTS[name]} ({name})" if name in PARTS else name for name in models]
+    return f"Beyond what was tested: {', '.join(named)}."
 
 
 def table(scalars: Mapping[str, SourcedValue], labels: Mapping[str, str]) -> Table:

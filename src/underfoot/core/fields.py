@@ -38,6 +38,11 @@ class Field:
         """Return the number of axes."""
         return self.values.ndim
 
+    @property
+    def size(self) -> int:
+        """Return the number of values."""
+        return self.values.size
+
     def transpose(self, *dims: str) -> Field:
         """Return the field with its axes in the order given."""
         if dims == self.dims:
@@ -100,7 +105,7 @@ class Fields:
                 values = each.values.astype(np.int8) if truth else each.values
                 options = COMPRESSION if each.ndim else {}
                 stored = file.create_variable(name, each.dims, values.dtype, values, **options)
-                stored.attrs.update(each.attrs | ({"dtype": "bool"} if truth else {}))
+                stored.attrs.update({**each.attrs, **({"dtype": "bool"} if truth else {})})
 
 
 def labelled(

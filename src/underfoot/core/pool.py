@@ -62,14 +62,15 @@ def in_processes(
 
 def answered(
     function: Callable[[Item], Answer],
-    items: Iterable[Item],
+    items: Iterable[Item | None],
     processes: int,
     died: Callable[[Item], Answer],
 ) -> Iterator[Answer]:
     """Yield the answers of ``function`` in the order in which they end.
 
-    An item is taken from ``items`` when a worker is free for it, not before. With one process the
-    work is done here. Otherwise as ``in_processes``.
+    An item is taken from ``items`` when a worker is free for it, not before; None says that there
+    is none until a further answer has been used. With one process the work is done here. Otherwise
+    as ``in_processes``.
     """
     waiting = iter(items)
     if processes > 1:
@@ -84,7 +85,8 @@ def answered(
         waiting = iter([*pool.left_over, *waiting])
     # one process is asked for, or the script has no "if __name__ == '__main__'" to start others
     for item in waiting:
-        yield function(item)
+        if item is not None:
+            yield function(item)
 
 
 class _Numbered(Generic[Item, Answer]):
@@ -181,7 +183,7 @@ class _Pool:
         by_kernel = threading.current_thread() is threading.main_thread()
         arguments = (theirs, self.function, os.getpid(), by_kernel)
         process = context.Process(target=_serve, args=arguments)
-        with _one_thread():
+        with one_thread():
             process.start()
         theirs.close()
         return _Worker(process, ours)
@@ -190,8 +192,8 @@ class _Pool:
         if self.again:
             worker.task = self.again.pop()
         else:
-            item = next(items, self)
-            if item is self:
+            item = next(items, None)
+            if item is None:
                 return
             worker.task = _Task(item)
         with suppress(OSError):  # it died: its pipe says so at the next wait
@@ -214,7 +216,8 @@ class _Pool:
 
 
 @contextmanager
-def _one_thread() -> Iterator[None]:
+def one_thread() -> Iterator[None]:
+    """Let processes that start within have one thread each in numerical libraries."""
     before = {name: os.environ.get(name) for name in _THREADS}
     os.environ.update(dict.fromkeys(_THREADS, "1"))  # a worker reads them as it starts
     try:
@@ -229,7 +232,7 @@ def _one_thread() -> Iterator[None]:
 
 def _serve(pipe: Connection, function: Callable[[Any], Any], parent: int, by_kernel: bool) -> None:
     """Answer items of the parent until it closes the pipe."""
-    _watch_parent(parent, by_kernel)
+    watch_parent(parent, by_kernel)
     pipe.send((True, None))
     while True:
         try:
@@ -246,7 +249,7 @@ def _serve(pipe: Connection, function: Callable[[Any], Any], parent: int, by_ker
             pipe.send((False, UnderfootError(f"{type(message[1]).__name__}: {message[1]}")))
 
 
-def _watch_parent(parent: int, by_kernel: bool) -> None:
+def watch_parent(parent: int, by_kernel: bool) -> None:
     """Make this worker end with its parent; Ctrl-C, which reaches the group, is the parent's."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if sys.platform == "linux" and by_kernel:

@@ -9,7 +9,7 @@ from html import escape
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from .units import display_unit, number_text
+from .units import display_unit, number_text, unit_system
 from .values import SourcedValue
 
 if TYPE_CHECKING:
@@ -146,8 +146,9 @@ def percent(share: float) -> str:
 
 def quantity_text(value: float, unit: str, uncertainty: float | None = None) -> str:
     """Return a number, and its uncertainty, in one unit people read; forces in newtons."""
-    factor, name = (1.0, "N") if unit == "N" else display_unit(value, unit)
-    if unit == "N" and 0.0 < abs(value) < 0.005:
+    newtons = unit == "N" and unit_system() == "si"
+    factor, name = (1.0, "N") if newtons else display_unit(value, unit)
+    if newtons and 0.0 < abs(value) < 0.005:
         return "below 0.01 N"
     text = number_text(value / factor, 3)
     if uncertainty is not None:

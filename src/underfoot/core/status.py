@@ -10,6 +10,7 @@ class Status(StrEnum):
     NOT_CONVERGED = "not converged"
     OUT_OF_RANGE = "converged, outside a tested range"
     CANCELLED = "cancelled"
+    PREVIEW = "preview"
 
     @property
     def usable(self) -> bool:
@@ -27,10 +28,12 @@ class Status(StrEnum):
             ),
             Status.OUT_OF_RANGE: "Read the list of breaches before using the numbers.",
             Status.CANCELLED: "Run it again; finished parts are taken from the cache.",
+            Status.PREVIEW: "Its error is an estimate. Run the case in full for a result.",
         }[self]
 
 
 def worst(*statuses: Status) -> Status:
     """Return the most serious of several statuses."""
-    order = [Status.CONVERGED, Status.OUT_OF_RANGE, Status.NOT_CONVERGED, Status.CANCELLED]
+    order = [Status.CONVERGED, Status.OUT_OF_RANGE, Status.PREVIEW]
+    order += [Status.NOT_CONVERGED, Status.CANCELLED]
     return max(statuses, key=order.index, default=Status.CONVERGED)

@@ -1,6 +1,7 @@
 """Units at the door: text with a unit becomes an SI float; SI floats become readable text."""
 
 import math
+import os
 import re
 from decimal import Decimal
 from functools import cache
@@ -24,6 +25,8 @@ _EXAMPLES = {
     "kg": "70 kg",
     "kg/m^3": "1100 kg/m^3",
     "m^2": "10 mm^2",
+    "m^3": "100 cm^3",
+    "N/m": "200 N/mm",
     "m^3/Pa": "0.3 mm^3/MPa",
     "1/m": "4 1/mm",
     "1": "0.5",
@@ -36,12 +39,29 @@ _SCALES = {
     "Pa*s": ((1e-3, "cP"),),
     "rad": ((math.pi / 180.0, "deg"),),
     "m^2": ((1e-4, "cm^2"), (1e-6, "mm^2")),
+    "m^3": ((1e-6, "cm^3"), (1e-9, "mm^3")),
+    "N/m": ((1e6, "kN/mm"), (1e3, "N/mm"), (1.0, "N/m")),
 }
+_US_SCALES = {
+    "m": ((25.4e-3, "in"), (25.4e-6, "mil")),
+    "Pa": ((6894.757293168, "psi"),),
+    "N": ((4.4482216152605, "lbf"),),
+    "m/s": ((0.3048, "ft/s"),),
+    "m^2": ((6.4516e-4, "in^2"),),
+    "kg": ((0.45359237, "lb"),),
+}
+"""Inch, pound and second: scales that take the place of the metric ones in output."""
+_LEAST = {"in": 0.01}
+"""Size in a unit down to which it is used; 1 elsewhere."""
+UNITS_VARIABLE = "UNDERFOOT_UNITS"
+"""Environment variable that names the units of output, so that worker processes know them."""
+SYSTEMS = ("si", "us")
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
 _ALIASES = {"%": "percent", "deg C": "degC", "mPa s": "mPa*s", "mPas": "mPa*s", "Pa s": "Pa*s"}
 _KNOWN = (
     "m mm um nm cm inch N kN mN kgf lbf Pa kPa MPa GPa psi bar cP mPa*s Pa*s P m/s mm/s cm/s "
-    "s ms us min rad deg degC degF K kg g Hz kHz rad/s mm^2 cm^2 m^2 1/s 1/mm kg/m^3 g/cm^3 "
+    "s ms us min rad deg degC degF K kg g Hz kHz rad/s mm^2 cm^2 m^2 cm^3 N/mm 1/s 1/mm kg/m^3 "
+    "g/cm^3 "
     "percent"
 ).split()
 # Powers of ten of the units people write most: a unit library takes a second to start, and moving
@@ -133,17 +153,32 @@ def number_text(value: float, digits: int) -> str:
     return f"{value:.0f}" if "e" in text and 1e-3 <= abs(value) < 1e6 else text
 
 
+def unit_system() -> str:
+    """Return the units of output: "si", or "us" where inches and pounds were asked for."""
+    return os.environ.get(UNITS_VARIABLE, SYSTEMS[0])
+
+
 def display_unit(value: float, unit: str) -> tuple[float, str]:
     """Return (factor, name) of the unit in which ``value`` has a readable size."""
-    scales = _SCALES.get(unit)
+    scales = (_US_SCALES.get(unit) if unit_system() == "us" else None) or _SCALES.get(unit)
     if scales is None:
         return 1.0, unit
     if value == 0.0:
-        return next((scale for scale in scales if scale[0] == 1.0), scales[-1])
+        return next((scale for scale in scales if scale[0] == 1.0), scales[0])
     for factor, name in scales:
-        if abs(value) >= factor * 0.9995:
+        if abs(value) >= factor * 0.9995 * _LEAST.get(name, 1.0):
             return factor, name
     return scales[-1]
+
+
+def tread_unit(unit: str) -> tuple[float, str]:
+    """Return (factor, name) of the one unit that sizes of a tread are given in.
+
+    Millimetres for "m", square millimetres for "m^2"; inches and square inches where asked for.
+    """
+    if unit_system() == "us":
+        return _US_SCALES[unit][0]
+    return {"m": (1e-3, "mm"), "m^2": (1e-6, "mm^2")}[unit]
 
 
 def si_unit(given: str, *, where: str) -> str:

@@ -78,7 +78,7 @@ def _found(case: Case, result: Result, keep_fields: bool) -> dict[str, Any]:
         ending = Ending.NOT_CONVERGED if result.status is Status.NOT_CONVERGED else Ending.FAILED
         return {"ending": ending, "reason": f"{result.status}. {result.status.remedy}"}
     scalars = {**result.scalars, **measures(case, result)}
-    draws = result.data["cof_draws"].values if "cof_draws" in result.data else np.empty(0)
+    drawn = result.data.get("cof_draws")
     return {
         "ending": Ending.COMPUTED,
         "numbers": {name: _finite(each.value) for name, each in scalars.items()},
@@ -87,9 +87,9 @@ def _found(case: Case, result: Result, keep_fields: bool) -> dict[str, Any]:
         },
         "units": {name: each.unit for name, each in scalars.items()},
         "law": result.provenance.closures["friction"],
-        "draws": draws,
+        "draws": np.empty(0) if drawn is None else drawn.values,
         "breaches": result.breaches,
-        "maps": result.fields if keep_fields else None,
+        "maps": result.data if keep_fields else None,
     }
 
 

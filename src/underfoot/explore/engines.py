@@ -15,7 +15,7 @@ from underfoot.core.pool import TRIES, answered, available_processors
 from .record import Job, Record
 
 Engine = Callable[
-    [Callable[[Job], Record], Iterable[Job], Callable[[Job], Record]], Iterator[Record]
+    [Callable[[Job], Record], Iterable[Job | None], Callable[[Job], Record]], Iterator[Record]
 ]
 DASK = "dask"
 AHEAD = 2
@@ -50,7 +50,7 @@ def engine(on: str | None, workers: int | None) -> tuple[Engine, int]:
 
 def _on_dask(
     function: Callable[[Job], Record],
-    jobs: Iterable[Job],
+    jobs: Iterable[Job | None],
     died: Callable[[Job], Record],
     address: str,
     workers: int,
@@ -100,8 +100,12 @@ def _client(distributed: Any, address: str, workers: int) -> Any:
         ) from error
 
 
-def _next(jobs: Iterator[Job], count: int) -> list[Job]:
-    return [job for _, job in zip(range(count), jobs, strict=False)]
+def _next(jobs: Iterator[Job | None], count: int) -> list[Job]:
+    """Return up to so many jobs, fewer where there are none for now."""
+    found: list[Job] = []
+    while len(found) < count and (job := next(jobs, None)) is not None:
+        found.append(job)
+    return found
 
 
 def _was_killed(distributed: Any, future: Any) -> bool:

@@ -5,16 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
+from pydantic import Field, ValidationError
 from scipy.stats import qmc
 
 from underfoot.case import Case, CaseError
 from underfoot.case import text as toml
-from underfoot.core import InputError, content_hash, unknown_name
+from underfoot.case.errors import translated
+from underfoot.case.quantity import Flag
+from underfoot.case.section import Section
+from underfoot.core import InputError, content_hash, to_si, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.catalogue import Catalogue, catalogue_folders
 from underfoot.shoe.geometry import CELLS_REFUSED
@@ -45,9 +50,9 @@ from .inputs import (
 from .record import Job
 
 FILE_VERSION = 1
-KINDS = ("sweep", "sensitivity", "optimise", "robust")
-GRIDS = ("quick", "standard")
-SECTIONS = "file_version name description base set vary uncertain conditions outputs method".split()
+SECTIONS = (
+    "file_version name description base set vary uncertain conditions outputs method reading"
+).split()
 UNITS = {
     **dict.fromkeys(("cof", "cof_adhesion", "cof_hysteresis", "cof_viscous"), "1"),
     **dict.fromkeys(("fluid_load", "fluid_load_sensor", "normal_force"), "N"),
@@ -64,36 +69,53 @@ ALIASES = {"wear": WEAR}
 MOST_CASES = 1_000_000
 
 
-@dataclass(frozen=True, slots=True)
-class Method:
+Count = Annotated[int, Field(ge=1, le=10**6, strict=True)]
+
+
+class Method(Section):
     """How a study is done.
 
     Attributes:
         kind: sweep, sensitivity, optimise or robust (optimise over draws).
         budget: Full runs at most; None where lists and steps say it all.
-        design: grid, sobol or lhs.
+        design: grid, sobol or lhs; None for a grid where lists and steps make one, else sobol.
         analysis: morris or sobol, of a sensitivity.
         on: runs or surrogate, of a sensitivity.
         active: Share of the runs of a sweep that go where the surrogate is worst.
         draws: Of the uncertain inputs, the same for every design.
         batch: Designs that are proposed together.
-        quick: Grid of the runs; ``front_quick`` that on which a front is run again, None for none.
+        grid: Of the runs; ``front_grid`` that on which a front is run again, None for none.
         fields: Keep maps.
         seed: Of designs and draws.
     """
 
-    kind: str = "sweep"
-    budget: int | None = None
-    design: str = "sobol"
-    analysis: str = "sobol"
-    on: str = "surrogate"
-    active: float = 0.0
-    draws: int = 1
-    batch: int = 8
-    quick: bool = True
-    front_quick: bool | None = None
-    fields: bool = False
-    seed: int = 0
+    kind: Literal["sweep", "sensitivity", "optimise", "robust"] = "sweep"
+    budget: Count | None = None
+    design: Literal["grid", "sobol", "lhs"] | None = None
+    analysis: Literal["morris", "sobol"] = "sobol"
+    on: Literal["runs", "surrogate"] = "surrogate"
+    active: Annotated[float, Field(ge=0, le=0.9)] = 0.0
+    draws: Count = 8
+    batch: Count = 8
+    grid: Literal["quick", "standard"] = "quick"
+    front_grid: Literal["quick", "standard"] | None = None
+    fields: Flag = False
+    seed: Annotated[int, Field(ge=0, le=2**31, strict=True)] = 0
+
+    @property
+    def quick(self) -> bool:
+        """Whether the runs are on the coarse grid."""
+        return self.grid == "quick"
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What was measured in one condition: an output, its value and standard deviation, SI."""
+
+    output: str
+    unit: str
+    value: float
+    sd: float
 
 
 @dataclass(frozen=True)
@@ -108,6 +130,7 @@ class StudyPlan:
         states: Conditions that every design is run in.
         remarks: What reading the file decided, in words.
         text: The study file.
+        readings: Of a calibration: what was measured in each state.
     """
 
     name: str
@@ -123,6 +146,7 @@ class StudyPlan:
     method: Method
     remarks: tuple[str, ...]
     text: str
+    readings: tuple[Reading, ...] = ()
 
     @property
     def dimensions(self) -> tuple[Input | Distribution, ...]:
@@ -244,14 +268,6 @@ def read_plan(
             follow.append(found)
         elif found is not None:
             vary.append(found)
-    if not vary and not reader.errors:
-        reader.fail(
-            InputError(
-                "nothing is varied",
-                where=reader.place("vary"),
-                remedy='Write "shoe.tread.depth" = { from = "1 mm", to = "4 mm" } under [vary]',
-            )
-        )
     for one in follow:
         if one.of not in [each.path for each in vary]:
             paths = [each.path for each in vary]
@@ -266,7 +282,18 @@ def read_plan(
         distribution = reader.attempt(read_distribution, path, given, where, known)
         if distribution is not None:
             uncertain.append(distribution)
-    states = reader.conditions(known)
+    calibrates = "reading" in plain
+    if not vary and not uncertain and not reader.errors:
+        reader.fail(
+            InputError(
+                "nothing is varied",
+                where=reader.place("vary"),
+                remedy='Write "shoe.tread.depth" = { from = "1 mm", to = "4 mm" } under [vary]',
+            )
+        )
+    states, readings = reader.conditions(known), ()
+    if calibrates:
+        states, readings = reader.readings(known)
     taken = [one.path for one in (*vary, *follow, *uncertain)]
     taken += [*(joint.paths if joint else ()), *(states[0].changes if states else ())]
     for path in {path for path in taken if taken.count(path) > 1}:
@@ -278,7 +305,9 @@ def read_plan(
                 remedy="Keep it in one of them",
             )
         )
-    method = reader.method(bool(uncertain or joint), [*vary])
+    method = reader.method(bool(uncertain or joint), vary)
+    if calibrates:
+        method = method.model_copy(update={"kind": "sensitivity"})
     require, maximise, minimise = reader.outputs(case, states)
     if not maximise + minimise and method.kind in ("optimise", "robust") and not reader.errors:
         reader.fail(
@@ -309,6 +338,7 @@ def read_plan(
         method,
         remarks,
         text,
+        readings,
     )
     total = plan.designs * plan.cases_per_design if method.budget else _grid_size(plan)
     if total > MOST_CASES:
@@ -354,7 +384,7 @@ def _on_finer_grid(
     finest, changes = narrowest / CELLS_REFUSED, {}
     for name in ("grid_spacing", "quick_grid_spacing"):
         if getattr(case.numerics, name) > finest * (1 + 1e-9):
-            changes[f"numerics.{name}"] = math.floor(finest * 1e5) / 1e5
+            changes[f"numerics.{name}"] = math.floor(finest * 1e5 + 1e-6) / 1e5
     if not changes:
         return case, ()
     said = ", ".join(f"{path} = {value * 1e3:g} mm" for path, value in changes.items())
@@ -465,6 +495,46 @@ class _Reader:
             for row in product(*choices)
         )
 
+    def readings(self, catalogue: Catalogue) -> tuple[tuple[Condition, ...], tuple[Reading, ...]]:
+        """Return the condition of each reading, and what was measured in it."""
+        states, found, given = [], [], self.plain["reading"]
+        for number, one in enumerate(given if isinstance(given, list) else [given], start=1):
+            where = self.place("reading") + f"[{number}]"
+            if not isinstance(one, Mapping) or not isinstance(one.get("when", {}), Mapping):
+                self.fail(InputError(f"{one!r} is no table", where=where))
+                continue
+            changes = {}
+            for path, value in one.get("when", {}).items():
+                choice = self.attempt(
+                    read_conditions, path, value, f'{where}.when."{path}"', catalogue
+                )
+                if choice is not None:
+                    changes[path] = choice.options[0]
+            outputs = [key for key in one if key not in ("when", "sd", "name")]
+            if len(outputs) != 1 or outputs[0] not in UNITS or "sd" not in one:
+                what = f"{', '.join(outputs) or 'nothing'} was measured"
+                self.fail(
+                    InputError(
+                        what,
+                        where=where,
+                        allowed=f"one of {', '.join(UNITS)}, with its sd",
+                        remedy="Write cof = 0.24, sd = 0.02",
+                    )
+                )
+                continue
+            unit = UNITS[outputs[0]]
+            value, sd = (
+                self.attempt(partial(to_si, where=f"{where}.{key}"), one[key], unit)
+                for key in (outputs[0], "sd")
+            )
+            if value is None or sd is None:
+                continue
+            if sd <= 0:
+                self.fail(InputError(f"{one['sd']}", where=f"{where}.sd", allowed="above 0"))
+            states.append(Condition(str(one.get("name", f"reading {number}")), changes))
+            found.append(Reading(outputs[0], unit, value, sd))
+        return tuple(states), tuple(found)
+
     def outputs(
         self, case: Case, states: Sequence[Condition]
     ) -> tuple[tuple[Requirement, ...], tuple[AnyGoal, ...], tuple[AnyGoal, ...]]:
@@ -510,56 +580,16 @@ class _Reader:
     def method(self, uncertain: bool, vary: Sequence[Input]) -> Method:
         """Return the method with its defaults."""
         table = self.table("method")
+        try:
+            found = Method.model_validate(table)
+        except ValidationError as error:
+            self.errors += translated(error, Method, table, lambda key: self.place("method", key))
+            return Method()
         steps = all(isinstance(one, Choice) or one.steps for one in vary)
-        words = {
-            "kind": KINDS,
-            "design": ("grid", "sobol", "lhs"),
-            "analysis": ("morris", "sobol"),
-            "on": ("runs", "surrogate"),
-            "grid": GRIDS,
-            "front_grid": GRIDS,
-        }
-        numbers = {"budget": (1, 10**6), "draws": (1, 1000), "batch": (1, 1000), "seed": (0, 2**31)}
-        known = (*words, *numbers, "active", "fields")
-        given: dict[str, Any] = {}
-        for key, value in table.items():
-            where = self.place("method", key)
-            if key not in known:
-                self.fail(unknown_name("key", key, known, where=where))
-            elif key in words:
-                if value not in words[key]:
-                    self.fail(unknown_name("choice", str(value), words[key], where=where))
-                else:
-                    given[key] = value
-            elif key == "fields":
-                if not isinstance(value, bool):
-                    self.fail(InputError(f"{value!r}", where=where, allowed="true or false"))
-                given[key] = value
-            elif key == "active":
-                if (
-                    isinstance(value, bool)
-                    or not isinstance(value, int | float)
-                    or not 0 <= value < 1
-                ):
-                    self.fail(InputError(f"{value!r}", where=where, allowed="0 to below 1"))
-                given[key] = value
-            else:
-                low, high = numbers[key]
-                whole = isinstance(value, int) and not isinstance(value, bool)
-                if not whole or not low <= value <= high:
-                    allowed = f"a whole number from {low} to {high}"
-                    self.fail(InputError(f"{value!r}", where=where, allowed=allowed))
-                given[key] = value
-        kind = given.get("kind", "sweep")
-        given["quick"] = given.pop("grid", "quick") == "quick"
-        if "front_grid" in given:
-            given["front_quick"] = given.pop("front_grid") == "quick"
-        if kind == "sweep" and "design" not in given and steps and not given.get("budget"):
-            given["design"] = "grid"
-        if uncertain and "draws" not in given and kind != "sensitivity":
-            given["draws"] = 8
-        grid = given.get("design") == "grid"
-        if grid and not steps:
+        if found.design is None:
+            plain = found.kind == "sweep" and steps and not found.budget
+            found = found.model_copy(update={"design": "grid" if plain else "sobol"})
+        if found.design == "grid" and not steps:
             self.fail(
                 InputError(
                     "a grid needs steps",
@@ -567,7 +597,7 @@ class _Reader:
                     remedy='Write steps = 5 beside from and to, or design = "sobol"',
                 )
             )
-        if not grid and "budget" not in given:
+        if found.design != "grid" and found.budget is None:
             self.fail(
                 InputError(
                     "is missing",
@@ -575,7 +605,15 @@ class _Reader:
                     allowed="full runs at most, as budget = 200",
                 )
             )
-        if kind == "robust" and not uncertain:
+        if not vary and found.kind != "sensitivity" and "reading" not in self.plain:
+            self.fail(
+                InputError(
+                    "nothing is varied",
+                    where=self.place("method", "kind"),
+                    remedy='Add [vary], or write kind = "sensitivity"',
+                )
+            )
+        if found.kind == "robust" and not uncertain:
             self.fail(
                 InputError(
                     "nothing is uncertain",
@@ -583,7 +621,4 @@ class _Reader:
                     remedy='Add [uncertain], or write kind = "optimise"',
                 )
             )
-        try:
-            return Method(**given)
-        except TypeError:
-            return Method()  # an unknown key, which is among the errors
+        return found

@@ -13,6 +13,7 @@ import numpy as np
 
 from underfoot.core import DataError, SourcedValue
 from underfoot.core.arrays import Array
+from underfoot.core.fields import Fields
 
 FORMAT = 1
 """Version of the lines that this package writes; newer ones are refused."""
@@ -96,7 +97,7 @@ class Record:
     program: str = ""
     worker: str = ""
     ended: float = 0.0
-    maps: Any = field(default=None, compare=False)
+    maps: Fields | None = field(default=None, compare=False)
 
     @property
     def usable(self) -> bool:

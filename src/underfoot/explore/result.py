@@ -119,10 +119,9 @@ class StudyResult(Presentable):
         return self._shown(self.all_designs)
 
     def _shown(self, designs: Sequence[Design]) -> list[Design]:
-        front_quick = self.plan.method.front_quick
-        if front_quick is None or front_quick == self.plan.method.quick:
-            return [one for one in designs if one.quick == self.plan.method.quick]
-        return [one for one in designs if one.quick == front_quick]
+        method = self.plan.method
+        quick = (method.front_grid or method.grid) == "quick"
+        return [one for one in designs if one.quick == quick]
 
     def goal_values(self, designs: Sequence[Design]) -> Array:
         """Return (designs, goals) in SI; nan where a design has no numbers."""
@@ -251,7 +250,7 @@ class StudyResult(Presentable):
         lost = sum(self.endings[str(e)] for e in Ending if e is not Ending.COMPUTED)
         if lost:
             reasons.append(f"{lost} cases have no numbers: underfoot study status tells why.")
-        if self.plan.method.quick and self.plan.method.front_quick is not False:
+        if self.plan.method.quick and self.plan.method.front_grid != "standard":
             reasons.append("Coarse grid: use the order of designs; check a chosen one in full.")
         return tuple(reasons)
 

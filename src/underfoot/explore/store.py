@@ -29,6 +29,7 @@ from uuid import uuid4
 
 from underfoot.case import Case
 from underfoot.core import DataError, InputError, MissingExtraError
+from underfoot.core.fields import Fields, from_xarray
 from underfoot.core.files import MARKER, whole_file
 from underfoot.core.optional import optional_module
 
@@ -152,7 +153,7 @@ class Store:
         full = None
         try:
             if record.maps is not None:
-                self._add_maps(record)
+                self._add_maps(record.key, record.maps)
         except OSError as error:
             if error.errno not in NO_SPACE:
                 raise
@@ -174,13 +175,13 @@ class Store:
                 remedy="Free some space and give the same command again: it goes on from there",
             ) from full
 
-    def _add_maps(self, record: Record) -> None:
+    def _add_maps(self, key: str, maps: Fields) -> None:
         optional_module("zarr", "study", "Keeping the maps of a study")
-        place = self.folder / "fields.zarr" / record.key
+        place = self.folder / "fields.zarr" / key
         shutil.rmtree(place, ignore_errors=True)  # half of one, of a process that was killed
-        record.maps.to_zarr(place, mode="w", consolidated=False)
+        maps.to_xarray().to_zarr(place, mode="w", consolidated=False)
 
-    def maps(self, key: str) -> Any:
+    def maps(self, key: str) -> Fields | None:
         """Return the maps of a case, or None where they were not kept."""
         place = self.folder / "fields.zarr" / key
         if not place.is_dir():
@@ -188,7 +189,7 @@ class Store:
         import xarray
 
         with xarray.open_zarr(place, consolidated=False) as dataset:
-            return dataset.load()
+            return from_xarray(dataset.load())
 
     # --- who does what ---
 

@@ -8,7 +8,6 @@ from functools import partial
 from pathlib import Path
 
 from underfoot.core import InputError, Progress, silent
-from underfoot.core.pool import available_processors
 
 from .computing import computed, crashed
 from .engines import Engine, engine
@@ -33,6 +32,7 @@ class Study:
     def __init__(self, plan: StudyPlan, folder: Path | str) -> None:
         self.plan = plan
         self.store = Store(folder)
+        self._total = 0
 
     def __repr__(self) -> str:
         return f"<Study {self.plan.name!r:.80} in {str(self.store.folder)!r:.80}>"
@@ -79,9 +79,7 @@ class Study:
                 )
             self.store.adopt(self.plan)
             compute, count = engine(on, workers)
-            with self.store.working(count):
-                while self._advanced():
-                    self._compute_open(compute, progress)
+            self._compute(compute, count, progress, leads=True)
         return self.result()
 
     def work(self, workers: int | None = 1, progress: Progress = silent) -> int:
@@ -91,69 +89,68 @@ class Study:
         leads: whoever finds nothing open leads for a moment and sets what comes next.
         """
         self.store = Store.made(self.store.folder)
-        compute, done = engine(None, workers)[0], 0
         with self.store.leading() as leads:
             if leads:
                 self.store.adopt(self.plan)
-        with self.store.working(workers or available_processors()):
-            while True:
-                taken = self._compute_open(compute, progress)
-                done += taken
-                if taken:
-                    continue
-                if not self._open():
-                    with self.store.leading() as leads:
-                        if leads and not self._advanced():
-                            return done
-                        if leads:
-                            continue
-                time.sleep(PAUSE)
+        return self._compute(*engine(None, workers), progress, leads=False)
 
     def result(self) -> StudyResult:
         """Return what the folder holds now; views of it are not written."""
         sessions = self.store.sessions() if self.store.exists else []
         return StudyResult(self.plan, self.store.jobs(), dict(self.store.records()), sessions)
 
-    def _advanced(self) -> bool:
-        """Return whether anything is open, after setting the next batch where nothing was."""
-        if self._open():
+    def _compute(self, compute: Engine, workers: int, progress: Progress, *, leads: bool) -> int:
+        """Compute what nobody else does until the study is done; return how many cases."""
+        count, function = 0, partial(computed, self.plan.base)
+        with self.store.working(workers):
+            for record in compute(function, self._claimed(leads), crashed):
+                self.store.add_record(record)
+                count += 1
+                progress(self._stage(), len(self.store.records()) / max(self._total, 1))
+        return count
+
+    def _claimed(self, leads: bool) -> Iterator[Job | None]:
+        """Yield open jobs that nobody else computes; None while the last ones of a batch run."""
+        held: set[str] = set()
+        try:
+            while True:
+                for job in self._open():
+                    if job.key in self.store.records() or not self.store.claim(job.key):
+                        continue
+                    if job.key in self.store.records():  # finished between the look and the claim
+                        self.store.release(job.key)
+                        continue
+                    held.add(job.key)
+                    yield job
+                held -= self.store.records().keys()
+                if held:
+                    yield None
+                elif self._open():
+                    time.sleep(PAUSE)  # others compute them
+                elif not self._advanced(leads):
+                    return
+        finally:
+            for key in held - self.store.records().keys():
+                self.store.release(key)
+
+    def _advanced(self, leads: bool) -> bool:
+        """Return whether the study goes on, after setting its next batch if this process leads."""
+        if not leads:
+            with self.store.leading() as leads:
+                if leads:
+                    return bool(self._open()) or self._advanced(True)
+            time.sleep(PAUSE)
             return True
-        jobs = self.store.jobs()
-        new = next_batch(self.plan, StudyResult(self.plan, jobs, self.store.records()))
+        so_far = StudyResult(self.plan, self.store.jobs(), self.store.records())
+        new = next_batch(self.plan, so_far)
         self.store.add_jobs(new)
         return bool(new)
 
     def _open(self) -> list[Job]:
         records = self.store.records()
-        return list({job.key: job for job in self.store.jobs() if job.key not in records}.values())
-
-    def _compute_open(self, compute: Engine, progress: Progress) -> int:
-        """Compute the open cases that nobody else does; return how many."""
-        jobs, count = self._open(), 0
-        total = len({job.key for job in self.store.jobs()})
-        for record in compute(partial(computed, self.plan.base), self._claimed(jobs), crashed):
-            self.store.add_record(record)
-            count += 1
-            progress(self._stage(), len(self.store.records()) / max(total, 1))
-        if jobs and not count:
-            time.sleep(PAUSE)
-        return count
-
-    def _claimed(self, jobs: list[Job]) -> Iterator[Job]:
-        claimed = []
-        try:
-            for job in jobs:
-                if job.key in self.store.records() or not self.store.claim(job.key):
-                    continue
-                claimed.append(job.key)
-                if job.key in self.store.records():  # finished between the look and the claim
-                    self.store.release(job.key)
-                    continue
-                yield job
-        finally:
-            for key in claimed:
-                if key not in self.store.records():
-                    self.store.release(key)
+        jobs = {job.key: job for job in self.store.jobs()}
+        self._total = len(jobs)
+        return [job for key, job in jobs.items() if key not in records]
 
     def _stage(self) -> str:
         failed = sum(not record.usable for record in self.store.records().values())

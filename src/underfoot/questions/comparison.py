@@ -26,6 +26,7 @@ LETTERS = "ABCDEFGHIJKL"
 DECIDED = 0.75
 """Least probability at which an order is stated."""
 Z95 = 1.96
+_FILE, _CHECKSUM = "shoe.outsole.file", "shoe.outsole.sha256"
 LONGEST_CELL = 34
 """Characters of an input in a table; longer ones (paths, checksums) keep their end."""
 
@@ -131,7 +132,7 @@ class Comparison(Presentable):
                 for rank in self.ranking
             ],
         )
-        rows = [tuple(map(_shortened, row)) for row in self.differences]
+        rows = [tuple(map(_shortened, row)) for row in _with_short_names(self.differences)]
         inputs = Table("Inputs that differ", ("Input", *self.letters), rows)
         return (*((ranking,) if self.ranking else ()), self.table(), inputs)
 
@@ -347,6 +348,23 @@ def _chance(probability: float | None, unknown: str) -> str:
     if probability is None:
         return unknown
     return "above 99 %" if probability > 0.99 else percent(probability)
+
+
+def _with_short_names(rows: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
+    """Return rows with files by their names; a checksum only where the names do not tell.
+
+    Result files keep both in full.
+    """
+    files = next((row[1:] for row in rows if row[0] == _FILE), ())
+    names = [Path(file).name for file in files]
+    told = bool(files) and len(set(names)) == len(set(files))
+    short: list[tuple[str, ...]] = []
+    for path, *values in rows:
+        if path == _FILE and told:
+            short.append((path, *names))
+        elif path != _CHECKSUM or not told:
+            short.append((path, *(v[:8] if path == _CHECKSUM else v for v in values)))
+    return short
 
 
 def _shortened(text: str) -> str:

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from underfoot.compute import summary
 from underfoot.core import InputError, Progress, SourcedValue, display, silent, unknown_name
 from underfoot.core.presentation import Presentable, Table, percent, value_text
 from underfoot.core.progress import part
@@ -129,7 +130,7 @@ class MethodPrediction(Presentable):
             )
         models = dict.fromkeys(line.partition(":")[0] for line in self._breaches())
         if models:
-            reasons.append(f"Inputs outside the tested range of: {', '.join(models)}.")
+            reasons.append(summary.beyond_tests(models))
         return tuple(reasons)
 
     def table(self) -> Table:

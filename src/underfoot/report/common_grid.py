@@ -75,7 +75,7 @@ def difference(
 
 def _same(first: Fields, other: Fields) -> bool:
     return all(
-        first[axis].size == other[axis].size
+        first[axis].values.size == other[axis].values.size
         and np.allclose(first[axis].values, other[axis].values, atol=1e-3 * spacing(first))
         for axis in ("x", "y")
     )

@@ -28,7 +28,8 @@ _HOMES = {
     "case": ("results",),
     "questions": ("results", "question_figures", "slips", "wear_page"),
     "film": ("regime_figure",),
-    "report": ("outsole",),
+    "explore": ("design_studies",),
+    "report": ("outsole", "design_studies"),
     **dict.fromkeys(("friction", "rough_contact", "slip", "material"), ("laws",)),
 }
 """Modules of this room that register the types of a room of the package."""

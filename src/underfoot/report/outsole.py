@@ -14,6 +14,7 @@ import numpy as np
 
 from underfoot.core.files import checksum
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.units import tread_unit, unit_system
 from underfoot.shoe import SoleSurface
 from underfoot.shoe.files import FileOutsole, FileSettings
 from underfoot.shoe.tread_measures import (
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _PATCH, _CLOSED = "#e3c16f", "#9a86b8"
+PLAN = (1e-4, "cm^2")
+"""Unit of a plan form's area."""
 _UNITS = {"area": "_m2", "length": "_m", "width": "_m", "depth": "_m", "circle": "_m"}
 
 
@@ -58,37 +61,37 @@ class OutsoleInspection(Presentable):
     def headline(self) -> tuple[str, ...]:
         m = self.measures
         return (
-            f"{m.length * 1e3:.4g} x {m.width * 1e3:.4g} mm, land {m.land_ratio:.0%} of "
-            f"{m.plan_area * 1e4:.4g} cm², {m.lug_count} lugs.",
+            f"{_lengths(m.length, m.width, digits=4)}, land {m.land_ratio:.0%} of "
+            f"{_area(m.plan_area, PLAN)}, {m.lug_count} lugs.",
         )
 
     def table(self) -> Table:
-        def spread(values: tuple[float, float, float] | None, factor: float, unit: str) -> str:
+        def spread(values: tuple[float, float, float] | None, unit: str) -> str:
             if values is None:
                 return "none"
-            low, middle, high = (value * factor for value in values)
-            return f"{middle:.3g} {unit}  (10 to 90 %: {low:.3g} to {high:.3g})"
+            factor, name = tread_unit(unit)
+            low, middle, high = (f"{value / factor:.3g}" for value in values)
+            return f"{middle} {name.replace('^2', '²')}  (10 to 90 %: {low} to {high})"
 
         m = self.measures
         drained = m.drained_share
-        patch = f"{m.patch_length * 1e3:.3g} x {m.patch_width * 1e3:.3g} mm"
         rows = [
-            ("Length x width", f"{m.length * 1e3:.4g} x {m.width * 1e3:.4g} mm"),
-            ("Plan area", f"{m.plan_area * 1e4:.4g} cm²"),
+            ("Length x width", _lengths(m.length, m.width, digits=4)),
+            ("Plan area", _area(m.plan_area, PLAN)),
             ("Land", f"{m.land_ratio:.0%} of the plan area"),
-            ("Channel depth, median", spread(m.channel_depth, 1e3, "mm")),
-            ("Channel width, median", spread(m.channel_width, 1e3, "mm")),
+            ("Channel depth, median", spread(m.channel_depth, "m")),
+            ("Channel width, median", spread(m.channel_width, "m")),
             ("Channels open to the rim", "none" if drained is None else f"{drained:.0%} of area"),
             ("Lugs", f"{m.lug_count}"),
-            ("Lug area, median", spread(m.lug_area, 1e6, "mm²")),
-            ("Largest untreaded patch", f"{m.patch_area * 1e6:.4g} mm²"),
-            ("  length x width", patch),
-            ("  largest circle in it", f"{m.patch_circle * 1e3:.3g} mm"),
-            ("Largest circle without channel", f"{m.free_circle * 1e3:.3g} mm"),
+            ("Lug area, median", spread(m.lug_area, "m^2")),
+            ("Largest untreaded patch", _area(m.patch_area, tread_unit("m^2"))),
+            ("  length x width", _lengths(m.patch_length, m.patch_width)),
+            ("  largest circle in it", _lengths(m.patch_circle)),
+            ("Largest circle without channel", _lengths(m.free_circle)),
         ]
         thickness = self.outsole.thickness
         if thickness is not None:
-            rows.append(("Thickness over the land, median", f"{thickness * 1e3:.3g} mm"))
+            rows.append(("Thickness over the land, median", _lengths(thickness)))
         return Table("Tread", ("Measure", "Value"), rows)
 
     def remarks(self) -> dict[str, Sequence[str]]:
@@ -132,6 +135,18 @@ class OutsoleInspection(Presentable):
         )
         # np.savetxt compresses by the ending
         np.savetxt(path, surface.height * 1e3, fmt="%.4f", delimiter=",", header=header)
+
+
+def _lengths(*values: float, digits: int = 3) -> str:
+    """Return lengths (m) in the unit of treads, "290 x 100 mm"."""
+    factor, name = tread_unit("m")
+    return f"{' x '.join(f'{value / factor:.{digits}g}' for value in values)} {name}"
+
+
+def _area(area: float, metric: tuple[float, str]) -> str:
+    """Return an area (m^2) in a metric unit (factor, name), or in square inches."""
+    factor, name = metric if unit_system() == "si" else tread_unit("m^2")
+    return f"{area / factor:.4g} {name.replace('^2', '²')}"
 
 
 def inspected(file: Path, settings: FileSettings) -> OutsoleInspection:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from underfoot.case import Case
 from underfoot.compute.result import Result
 from underfoot.compute.sole import sole_map
 from underfoot.core import silent
-from underfoot.core.fields import labelled
+from underfoot.core.fields import Fields, labelled
 from underfoot.core.presentation import Table
 from underfoot.questions.comparison import Comparison
 from underfoot.questions.risk import RiskAssessment
@@ -147,12 +147,11 @@ def _comparison_sections(
     return parts, viewer_script() if comparison.usable else ""
 
 
-@plot.register(Case)
-def _plot_case(case: Case) -> Figure:
+def sole_fields(case: Case) -> Fields:
     """Return the height of a case's sole above the floor, on the coarse grid."""
     sole = sole_map(case, case.numerics.quick_grid_spacing, silent)
     labels = {"units": "m", "long_name": "height of the undeformed sole"}
-    fields = labelled(
+    return labelled(
         {
             "clearance": (("x", "y"), sole.clearance, labels),
             "inside": (("x", "y"), sole.inside),
@@ -162,6 +161,12 @@ def _plot_case(case: Case) -> Figure:
         },
         {"x": ("x", sole.x), "y": ("y", sole.y)},
     )
+
+
+@plot.register(Case)
+def _plot_case(case: Case) -> Figure:
+    """Return the height of a case's sole above the floor, on the coarse grid."""
+    fields = sole_fields(case)
     figure = new_figure(9.0, 6.0)
     left, right = figure.subplots(1, 2, width_ratios=[1.0, 1.3])
     draw_map(left, fields, quantities([fields])[0])
@@ -189,7 +194,10 @@ def history_figure(result: Result) -> Figure:
     figure = new_figure(7.5, 2.8)
     axes = figure.add_subplot()
     time = fields["time"].values * 1e3
-    styles = ({"color": "0.3", "linestyle": "--"}, {"color": "tab:blue"})
+    styles: tuple[dict[str, Any], ...] = (
+        {"color": "0.3", "linestyle": "--"},
+        {"color": "tab:blue"},
+    )
     for (name, label), style in zip(_LOADS, styles, strict=True):
         if name in fields:
             axes.plot(time, fields[name].values, label=label, **style)

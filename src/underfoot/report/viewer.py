@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core.fields import Fields
+from underfoot.core.presentation import quantity_text
 from underfoot.questions.comparison import LETTERS
 
 from .drawn_sole import DrawnSole, drawn_sole
@@ -51,10 +52,10 @@ def _per_row(count: int, most: int) -> int:
     return -(-count // -(-count // most))
 
 
-def viewer_script() -> str:
-    """Return the program that draws every viewer of a page."""
+def viewer_script(*further: str) -> str:
+    """Return the program that draws every viewer of a page; ``further`` scripts can start more."""
     templates = environment()
-    parts = [templates.get_template(name).render() for name in SCRIPTS]
+    parts = [templates.get_template(name).render() for name in (*SCRIPTS, *further)]
     return "(() => {\n" + "\n".join(parts) + "\n})();"
 
 
@@ -125,7 +126,7 @@ def listed_quantity(
         "log": quantity.logarithmic,
         "stress": quantity.stress,
         "meaning": quantity.meaning,
-        "loads": [f"{load:.3g} N" for load in loads if load is not None],
+        "loads": [quantity_text(load, "N") for load in loads if load is not None],
         **asdict(limits),
         "cut": limits.cut,
     }
@@ -228,4 +229,4 @@ def unpacked(stored: dict[str, Any], shape: tuple[int, int]) -> NDArray[np.float
 @cache
 def colour_tables() -> dict[str, str]:
     """Return the 256 colours (RGB bytes, base64) of each of Matplotlib's maps in use here."""
-    return json.loads(files(__package__).joinpath("templates/colours.json").read_text())
+    return json.loads(files("underfoot.report").joinpath("templates/colours.json").read_text())

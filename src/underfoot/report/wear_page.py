@@ -21,8 +21,8 @@ CELL = 1e-3
 """m: side of the cells of the picture, or what the sole's own come nearest to it."""
 LEAST = 1e-6
 """m lost below which land is drawn as not worn."""
-LOST = Quantity("lost", "Thickness lost", 1e-3, "mm", "magma_r")
-LEFT = Quantity("left", "Tread left", 1e-3, "mm", "viridis")
+LOST = Quantity("lost", "Thickness lost", 1e-3, "mm", "viridis")
+LEFT = Quantity("left", "Tread left", 1e-3, "mm", "cividis")
 
 
 @sections.register(WearSeries)

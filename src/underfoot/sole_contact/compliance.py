@@ -92,9 +92,10 @@ class ConvolutionCompliance:
         rows, columns = (np.flatnonzero(mask.any(axis=axis)) for axis in (1, 0))
         box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
         cells = np.flatnonzero(mask[box])
-        field = np.zeros(mask[box].shape)
+        shape = rows[-1] + 1 - rows[0], columns[-1] + 1 - columns[0]
+        field = np.zeros(shape)
         parts: _Parts = [
-            (each.within(field.shape), weight if np.isscalar(weight) else np.asarray(weight)[box])
+            (each.within(shape), weight[box] if isinstance(weight, np.ndarray) else weight)
             for each, weight in self._parts
         ]
 

@@ -237,6 +237,22 @@ class SlidingSole:
         self._angle = mark.shoe_angle
         self.history = self.history.shortened(mark.length)
 
+    def take_over(self, mark: Bookmark, first_step: float) -> None:
+        """Start where another sole on the same grid was; the change comes with the next step.
+
+        ``first_step`` (s) is the length of it. What the sole went through stays the other's.
+        """
+        _, state, film, _ = mark.march
+        march, shape = self._march, self.sole.clearance.shape
+        if state.pressure.shape != shape:
+            raise InputError(
+                f"a state of {state.pressure.shape} cells",
+                where="take_over",
+                allowed=f"{shape}, those of this sole",
+            )
+        march.state, march.film, march.step = state, film, first_step
+        self._load, self._speed = mark.load, mark.speed
+
     def _ramp(
         self, duration: float, normal_force: float, speed: float, shoe_angle: float | None
     ) -> Callable[[float], tuple[float, float, float]]:

@@ -214,12 +214,12 @@ class Convolution:
         nx, ny = self.shape
         if self._planned is not None:
             self._room[:nx, :ny] = field
-            spectrum = self._planned.forward(self._room)
-            spectrum *= self.spectrum
-            return self._planned.backward(spectrum)[:nx, :ny]
+            return self._planned.backward(self._planned.forward(self._room) * self.spectrum)[
+                :nx, :ny
+            ]
         # lines that are all zeros, or cut off in the end, are not transformed
         lines: Any = fft.rfft(field, n=self.padded[1], axis=1)
-        spectrum = fft.fft(lines, n=self.padded[0], axis=0)
+        spectrum: Any = fft.fft(lines, n=self.padded[0], axis=0)
         spectrum *= self.spectrum
         lines = fft.ifft(spectrum, axis=0, overwrite_x=True)[:nx]
         deflection: Any = fft.irfft(lines, n=self.padded[1], axis=1)

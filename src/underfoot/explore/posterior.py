@@ -1,0 +1,224 @@
+"""Parameters of a case from a user's own readings: their joint posterior, with a discrepancy.
+
+    y_i ~ N(m_i(theta), s_i^2 + e_i(theta)^2 + (delta m_i(theta))^2)
+
+y_i a reading with its standard deviation s_i, m_i what the model gives under the conditions of that
+reading, by a surrogate of full runs with the deviation e_i, delta the model's relative discrepancy,
+half-normal (Kennedy and O'Hagan 2001, with a discrepancy that is one number). Sampled by emcee
+(Foreman-Mackey et al. 2013) over the quantiles of the priors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+from scipy.special import ndtri
+
+from underfoot.case import unit_at
+from underfoot.core import DataError, InputError, Progress, display, silent
+from underfoot.core.arrays import Array
+from underfoot.core.files import whole_file
+from underfoot.core.optional import optional_module
+from underfoot.core.presentation import Presentable, Table, quantity_text
+from underfoot.core.progress import part
+
+from .effects import surrogates
+from .goals import Goal
+from .inputs import TAIL
+from .study import Study
+from .surrogate import Surrogate
+
+DISCREPANCY = 0.15
+"""Scale of the half-normal prior of delta: the law of a pair misses its readings by about so much
+(docs/physics/pair_friction.md)."""
+WALKERS, STEPS, BURNT = 32, 1500, 500
+KEPT = 1000
+"""Draws that are written."""
+LONG_ENOUGH = 20
+"""Autocorrelation times that a chain must last."""
+
+
+@dataclass(frozen=True)
+class Posterior(Presentable):
+    """Joint draws of parameters, and what each reading was predicted before and is after.
+
+    Attributes:
+        draws: (draws, parameters) SI. ``prior`` the same before the readings.
+        discrepancy: (draws,) of delta.
+        before, after: (readings, 3) predictions at 2.5, 50 and 97.5 %.
+        lengths: Autocorrelation times that the chain lasted.
+        models: The surrogate of each reading, with its error.
+    """
+
+    kind: ClassVar[str] = "posterior"
+
+    name: str
+    paths: tuple[str, ...]
+    draws: Array
+    prior: Array
+    discrepancy: Array
+    readings: Sequence[tuple[str, float, float, str]]
+    before: Array
+    after: Array
+    lengths: float
+    models: Sequence[Surrogate]
+
+    @property
+    def usable(self) -> bool:
+        """Whether the chain is long enough to be trusted."""
+        return self.lengths >= LONG_ENOUGH
+
+    def headline(self) -> tuple[str, ...]:
+        """Return what the readings taught of each parameter, and the discrepancy."""
+        if not self.usable:
+            return (f"No result: the chain lasts {self.lengths:.0f} autocorrelation times only.",)
+        ratios = self.draws.std(axis=0) / self.prior.std(axis=0)
+        best = int(np.argmin(ratios))
+        return (
+            f"{len(self.readings)} readings narrow {self.paths[best]} most: its standard deviation "
+            f"is {ratios[best]:.0%} of the prior's.",
+            f"Discrepancy of the model {np.median(self.discrepancy):.0%} (median).",
+        )
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return where the surrogate is the weak part, and posteriors at the end of a prior."""
+        weak = [f"{one.name}: {one.words}" for one in self.models if one.q2 < 0.9]
+        edge = [
+            f"The posterior of {path} lies at the end of its prior: widen that."
+            for path, now, then in zip(self.paths, self.draws.T, self.prior.T, strict=True)
+            if not then.min() * 1.0001 < np.median(now) < then.max() * 0.9999
+        ]
+        return (*weak, *edge)
+
+    def table(self) -> Table:
+        """Return each parameter before and after, at 2.5, 50 and 97.5 %."""
+        rows = [
+            (path, _interval(then, unit_at(path)), _interval(now, unit_at(path)))
+            for path, then, now in zip(self.paths, self.prior.T, self.draws.T, strict=True)
+        ]
+        rows.append(("discrepancy", "", _interval(self.discrepancy, "1")))
+        return Table("Parameters (median, 95 %)", ("Parameter", "Before", "After"), rows)
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return parameters and readings."""
+        rows = []
+        for (label, value, sd, unit), before, after in zip(
+            self.readings, self.before, self.after, strict=True
+        ):
+            texts = [
+                f"{quantity_text(row[1], unit)} ({quantity_text(row[0], unit)} to "
+                f"{quantity_text(row[2], unit)})"
+                for row in (before, after)
+            ]
+            rows.append((label, quantity_text(value, unit, sd), *texts))
+        readings = Table("Readings", ("Reading", "Measured", "Predicted before", "After"), rows)
+        return (self.table(), readings)
+
+    def remarks(self) -> Mapping[str, Sequence[str]]:
+        """Return the error of the surrogates."""
+        return {"Surrogates": [f"{one.name}: {one.words}" for one in self.models]}
+
+    def write(self, path: Path) -> None:
+        """Write the draws as CSV, one column a path (SI): ``uncertain.posterior`` of a study."""
+        with whole_file(path) as temporary, temporary.open("w", encoding="utf-8") as stream:
+            stream.write(f"# joint draws of {self.name}; {len(self.readings)} readings\n")
+            stream.write(",".join(self.paths) + "\n")
+            np.savetxt(stream, self.draws, delimiter=",", fmt="%.10g")
+
+
+def posterior(
+    study: Study,
+    *,
+    on: str | None = None,
+    workers: int | None = None,
+    progress: Progress = silent,
+) -> Posterior:
+    """Return the joint posterior of the uncertain inputs of a study with readings.
+
+    Its cases are run first, or taken from its folder.
+
+    Raises:
+        InputError: A study without readings or without uncertain inputs.
+        DataError: Too few usable runs.
+    """
+    plan = study.plan
+    if not plan.readings or not plan.uncertain or plan.vary:
+        raise InputError(
+            "is no calibration",
+            where=str(study.store.folder),
+            allowed="a file with [uncertain] and [[reading]], and without [vary]",
+        )
+    result = study.run(on, workers, part(progress, 0.0, 0.9))
+    goals = [
+        Goal(one.output, one.unit, within=state.parts)
+        for one, state in zip(plan.readings, plan.states, strict=True)
+    ]
+    models = surrogates(result, goals)
+    measured = np.array([one.value for one in plan.readings])
+    deviation = np.array([one.sd for one in plan.readings])
+    size = len(plan.uncertain)
+
+    def log_probability(places: Array) -> Array:
+        inside = ((places > 0) & (places < 1)).all(axis=1)
+        points = np.clip(places, 0.0, 1.0)
+        delta = DISCREPANCY * _half_normal(points[:, -1])
+        found = np.where(inside, 0.0, -np.inf)
+        for model, value, sd in zip(models, measured, deviation, strict=True):
+            mean, error = model.predicted(points[:, :size])
+            variance = sd**2 + error**2 + (delta * mean) ** 2
+            found -= 0.5 * ((value - mean) ** 2 / variance + np.log(variance))
+        return found
+
+    emcee = optional_module("emcee", "study", "A posterior")
+    generator = np.random.default_rng(plan.method.seed)
+    sampler = emcee.EnsembleSampler(WALKERS, size + 1, log_probability, vectorize=True)
+    sampler.random_state = np.random.RandomState(plan.method.seed).get_state()
+    start = generator.uniform(0.05, 0.95, (WALKERS, size + 1))
+    for step, _ in enumerate(sampler.sample(start, iterations=STEPS), start=1):
+        progress("Sampling the posterior", 0.9 + 0.1 * step / STEPS)
+    lengths = STEPS / float(np.max(sampler.get_autocorr_time(quiet=True)))
+    chain = sampler.get_chain(discard=BURNT, flat=True)
+    kept = chain[np.linspace(0, len(chain) - 1, KEPT).round().astype(int)]
+    flat = generator.uniform(0.0, 1.0, (KEPT, size))
+    levels = (0.025, 0.5, 0.975)
+
+    def predicted(points: Array) -> Array:
+        return np.array([np.quantile(model.mean(points), levels) for model in models])
+
+    def in_si(points: Array) -> Array:
+        columns = [
+            [one.value(float(share)) for share in column]
+            for one, column in zip(plan.uncertain, points.T, strict=True)
+        ]
+        return np.array(columns).T
+
+    if not np.isfinite(kept).all():
+        raise DataError("the sampler left the numbers that there are", where=plan.name)
+    return Posterior(
+        plan.name,
+        tuple(one.path for one in plan.uncertain),
+        in_si(kept[:, :size]),
+        in_si(flat),
+        DISCREPANCY * _half_normal(kept[:, -1]),
+        [
+            (state.label, one.value, one.sd, one.unit)
+            for one, state in zip(plan.readings, plan.states, strict=True)
+        ],
+        predicted(flat),
+        predicted(kept[:, :size]),
+        lengths,
+        models,
+    )
+
+
+def _half_normal(share: Array) -> Array:
+    return ndtri(0.5 + 0.5 * (TAIL + (1 - 2 * TAIL) * share))
+
+
+def _interval(draws: Array, unit: str) -> str:
+    low, middle, high = np.quantile(draws, (0.025, 0.5, 0.975))
+    return f"{display(middle, unit)} ({display(low, unit)} to {display(high, unit)})"

@@ -1,0 +1,55 @@
+"""A solved case answers changes of it: against the march of the changed case, with its error."""
+
+import pytest
+
+from underfoot.case import Case
+from underfoot.compute.continuation import Continuation, preview
+from underfoot.core import InputError, Status
+
+CASE = Case.load("examples/work_shoe_full_tread_glycerol.toml")
+
+
+@pytest.fixture(scope="module")
+def solved():
+    return Continuation(CASE)
+
+
+def test_no_change_is_the_march_itself(solved):
+    same = solved.continued({})
+    assert same.status is Status.PREVIEW
+    assert not same.status.usable
+    for name, value in solved.values.items():
+        assert same.values[name] == pytest.approx(value, rel=1e-9), name
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"contaminant.viscosity": "150 cP"}, {"shoe.material.shore_a": 54}],
+)
+def test_a_change_is_within_one_percent_and_its_own_error(solved, change):
+    seen, full = solved.continued(change), Continuation(CASE.replace(change)).values
+    assert seen.values["cof"] == pytest.approx(full["cof"], rel=0.01)
+    assert seen.values["fluid_load"] == pytest.approx(full["fluid_load"], rel=0.05)
+    for name in ("cof", "fluid_load"):
+        assert abs(seen.values[name] - full[name]) <= seen.errors[name]
+    # far nearer than the unchanged case
+    assert abs(seen.values["cof"] - full["cof"]) < 0.1 * abs(full["cof"] - solved.values["cof"])
+    assert seen.total_pressure.sum() * solved.spacing**2 == pytest.approx(500.0, rel=1e-3)
+
+
+def test_the_march_is_kept_for_the_next_preview():
+    first = preview(CASE, {"motion.speed": "0.6 m/s"})
+    second = preview(CASE, {"motion.speed": "0.65 m/s"})
+    assert second.seconds < 1.5 * first.seconds
+    assert first.values["fluid_load"] < second.values["fluid_load"]
+    assert "Run the case in full" in str(first)
+
+
+def test_another_plan_of_the_tread_is_refused(solved):
+    with pytest.raises(InputError, match="plan of the sole"):
+        solved.continued({"shoe.tread.lug_width": "7 mm"})
+
+
+def test_a_motion_with_a_history_is_refused():
+    with pytest.raises(InputError, match="history"):
+        Continuation(CASE.replace("motion", "heel_strike_to_flat"))
