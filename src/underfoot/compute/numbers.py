@@ -1,14 +1,14 @@
 """The named numbers of a result, each with its spread or the reason why there is none."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from underfoot.case import Case
-from underfoot.core import SourcedValue, Status, content_hash, display
+from underfoot.core import Breach, SourcedValue, Status, content_hash, display
 from underfoot.film import SHARE_LIMITS, lubrication_by_load_share
 from underfoot.friction import FrictionCoefficients, SampledCof
 from underfoot.slip import RcofPopulation, SlipModel, SlipRisk, slip_risk
@@ -133,6 +133,15 @@ def regime(share: float) -> dict[str, str]:
         "regime_rule": f"by load share: below {100 * low:g} % boundary, "
         f"above {100 * high:g} % full film",
     }
+
+
+def overload_words(overload: Sequence[Breach]) -> str:
+    """Return what to say where the load rests on what rubber cannot bear, else nothing."""
+    return "".join(
+        f"{one.high:.0%} of the load rests on pressures above the modulus of the rubber, which it "
+        "cannot bear: so does this COF"
+        for one in overload
+    )
 
 
 def spread_origin(sampled: SampledCof | None) -> dict[str, str]:

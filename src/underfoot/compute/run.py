@@ -35,7 +35,7 @@ from .pictured import pictured_fields
 from .positions import Place, tread_positions
 from .resolve import resolved, turned
 from .result import Result
-from .sole import compression_breaches, outsole_notes, sole_map
+from .sole import compression_breaches, outsole_notes, overload_breaches, sole_map
 
 CELL_AREAS = (
     "what a cell stands for of contact and shear, in cells",
@@ -134,6 +134,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             case, there, body, asperities, viscosity=viscosity, progress=progress
         )
 
+    overload = overload_breaches(contact, context.youngs_modulus)
     values, risk, labels = numbers.undetermined(case, contact.status), None, {}
     positions = None
     if contact.status.usable:
@@ -152,6 +153,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             "lug_edges": "" if lugs is None else lugs.words(),
             "cof_spread_basis": getattr(law, "spread_basis", ""),
             **(positions.labels() if positions else {}),
+            "overload": numbers.overload_words(overload),
             "edge_peak": peak_pressure(
                 sole, contact.total_pressure, cell_load=contact.cell_load
             ).remark,
@@ -181,6 +183,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
                 labels["grid_error"] = numbers.grid_words(values, errors, spacing, coarse_spacing)
     breaches = [
         *context.modulus_breaches,
+        *overload,
         *sole.breaches,
         *compression_breaches(case, contact.approach),
         *asperities.breaches(pressure=contact.contact_pressure.max(), speed=speed),

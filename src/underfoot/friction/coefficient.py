@@ -90,7 +90,9 @@ def cof(
         raise InputError(
             f"the normal force is {normal:.3g} N", where="contact_pressure", allowed="above 0"
         )
-    coefficients = {name: float((array * area).sum()) * cell / normal for name, array in shears.items()}
+    coefficients = {
+        name: float((array * area).sum()) * cell / normal for name, array in shears.items()
+    }
     total = sum(coefficients.values())
 
     def value(name: str, number: float) -> SourcedValue:

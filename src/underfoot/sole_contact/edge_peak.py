@@ -1,16 +1,32 @@
-"""Highest pressure under a sole, and whether it is one that a finer grid would change."""
+"""Highest pressure under a sole: whether a finer grid would change it, and rubber could bear it."""
 
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from underfoot.core import InputError
+from underfoot.core import InputError, Range
 from underfoot.core.arrays import Array
 from underfoot.shoe.geometry import SoleMap
 
 AVERAGING_AREA = 10e-6
 """m^2; about the face of half a lug, and of a small pressure sensor (assumed)."""
+
+
+MOST_OVERLOADED = Range(0.0, 0.01, "1", "rubber under its own modulus is strained by about 1")
+"""Share of the load that may lie on cells pressed harder than Young's modulus: sharp edges alone
+(assumed)."""
+
+
+def overloaded_share(pressure: Array, cell_load: Array, modulus: float) -> float:
+    """Return the share of the load (0 to 1) on cells whose pressure exceeds Young's modulus (Pa).
+
+    ``pressure`` is that of contact and fluid together and ``cell_load`` the load per area of a
+    whole cell, (nx, ny), Pa. A punch as wide as a cell sinks in by its width under such a pressure
+    (half-space: w = 1.1 p a / E*, Love 1929): linear elasticity does not hold, rubber gives way.
+    """
+    load = float(cell_load.sum())
+    return float(cell_load[pressure > modulus].sum()) / load if load > 0 else 0.0
 
 
 @dataclass(frozen=True, slots=True)
