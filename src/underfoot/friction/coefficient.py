@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import InputError, SourcedValue
+from underfoot.core.arrays import Array
 
 from .law import FrictionParts
 from .sampled_cof import SampledCof
@@ -37,8 +38,8 @@ def cof(
     *,
     spacing: float,
     wet: ArrayLike | None = None,
-    area: ArrayLike = 1.0,
-    film_area: ArrayLike = 1.0,
+    area: Array | float = 1.0,
+    film_area: Array | float = 1.0,
     sampled: SampledCof | None = None,
     source: str = "",
 ) -> FrictionCoefficients:

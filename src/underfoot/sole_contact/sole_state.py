@@ -1,6 +1,7 @@
 """What is solved at one instant of a sole on a flooded floor, and how it is solved."""
 
 from dataclasses import dataclass
+from typing import Any
 
 from underfoot.core import Status
 from underfoot.core.arrays import Array, Mask
@@ -93,6 +94,6 @@ class SoleState:
         return self.fluid_pressure * self.cut.film_area + self.contact_pressure * self.cut.area
 
     @property
-    def areas(self) -> dict[str, Array]:
+    def areas(self) -> dict[str, Any]:
         """What each cell stands for, as ``friction.cof`` and ``sampled_cof`` take it."""
         return {"area": self.cut.area, "film_area": self.cut.film_area}
