@@ -26,6 +26,7 @@ from underfoot.explore.status import study_status
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 CASES = int(os.environ.get("UNDERFOOT_BENCH_CASES", "1000"))
+SIDE = int(os.environ.get("UNDERFOOT_BENCH_SIDE", "15"))
 QUICK = """
 base = "work_shoe_untreaded_glycerol.toml"
 [set]
@@ -114,7 +115,7 @@ def overhead() -> Iterator[str]:
 
 def scaling() -> Iterator[str]:
     """Yield how much faster two workers are than one."""
-    count, walls = max(CASES // 10, 40), []
+    count, walls = max(CASES // 10, 12), []
     for workers in (1, 2):
         with tempfile.TemporaryDirectory() as folder:
             began = time.monotonic()
@@ -127,7 +128,7 @@ def scaling() -> Iterator[str]:
 
 def dask() -> Iterator[str]:
     """Yield whether a cluster of 4 that loses a worker gives what one process gives."""
-    count = 48
+    count = min(CASES, 48)
     with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as other:
         alone = numbers(study(QUICK % count, one).run(workers=1))
         threading.Thread(target=_kill_a_worker, args=(other,), daemon=True).start()
@@ -148,9 +149,10 @@ def front() -> Iterator[str]:
     import moocore
 
     with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as other:
-        steps = (", steps = 15",) * 2
+        steps = (f", steps = {SIDE}",) * 2
         every = study(FRONT % (*steps, 'design = "grid"'), one).run()
-        found = study(FRONT % ("", "", 'kind = "optimise"\nbudget = 60'), other).run()
+        method = f'kind = "optimise"\nbudget = {4 * SIDE}\nbatch = 6'
+        found = study(FRONT % ("", "", method), other).run()
     brute, front = (r.goal_values(r.front) * r.plan.signs for r in (every, found))
     all_ = every.goal_values(every.designs) * every.plan.signs
     low, high = all_.min(axis=0), all_.max(axis=0)

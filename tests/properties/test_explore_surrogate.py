@@ -1,6 +1,7 @@
 """Surrogates, indices, fronts and the order of designs, on functions whose answers are known."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -105,6 +106,7 @@ def test_shared_draws_decide_an_order_that_wide_intervals_hide():
 
 # --- whole studies of a made-up function ---
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 STUDY = """\
 [vary]
 "shoe.tread.depth" = { from = "1 mm", to = "4 mm" }
@@ -119,7 +121,7 @@ require = ["land > 0.2"]
 
 def played(method, function):
     """Return the result of a study whose cases are numbers of ``function`` (x, y in 0 to 1)."""
-    base = load("examples/work_shoe_full_tread_glycerol.toml")
+    base = load(EXAMPLES / "work_shoe_full_tread_glycerol.toml")
     plan = read_plan(STUDY + method, base=base, folder=".")
     jobs, records = [], {}
     while batch := next_batch(plan, StudyResult(plan, jobs, records)):

@@ -190,7 +190,10 @@ def file_outsole(case: Case) -> "FileOutsole":
     outsole = case.shoe.outsole
     if outsole is None:
         raise InputError("the case has no outsole file", where="shoe.outsole.file")
-    same = ("unit", "down", "forward", "foot", "mirror", "region", "region_length")
+    same = (
+        *("unit", "down", "forward", "foot", "mirror", "region", "region_length"),
+        *("solid", "side", "cut_floor"),
+    )
     given: dict[str, Any] = {name: getattr(outsole, name) for name in same}
     from underfoot.shoe.files import FileSettings
 

@@ -456,7 +456,7 @@ class _Reader:
         def add(prefix: str, table: Mapping[str, Any]) -> None:
             for key, value in table.items():
                 path = f"{prefix}.{key}" if prefix else key
-                marks = {"from", "times", "of", "normal", "lognormal"}
+                marks = {"from", "to", "times", "of", "normal", "sd", "lognormal", "factor"}
                 if isinstance(value, Mapping) and value and not marks & set(value):
                     add(path, value)
                 else:

@@ -5,15 +5,18 @@ than this map, its diagonal and a radial symbol to precondition with, so a finit
 can take the place of the layers below.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from typing import Protocol
 
 import numpy as np
 
 from underfoot.core import InputError
-from underfoot.core.arrays import Array, Mask
+from underfoot.core.arrays import Array
 from underfoot.shoe.cut_cells import CutCells
 from underfoot.shoe.geometry import SoleMap
 
@@ -31,6 +34,7 @@ from ._kernels.elastic import (
 )
 
 Symbol = Callable[[Array], Array]
+Box = tuple[slice, slice]
 _Parts = list[tuple[Convolution, Array | float]]
 BOX_THICKNESSES = 16.0  # side of the box on which a layer's influence coefficients are found
 THINNEST = 0.1  # share of the outsole left above the deepest profile
@@ -86,40 +90,46 @@ class ConvolutionCompliance:
         """Return the deflection (nx, ny) in m of a pressure field (nx, ny) in Pa."""
         return _summed(self._parts, pressure)
 
-    def between(self, mask: Mask) -> Callable[[Array], Array]:
-        """Return the map from pressures to deflections at the cells of a mask, (n,) both.
-
-        It transforms the box around them alone: its cost is that of the wet region.
-        """
-        rows, columns = (np.flatnonzero(mask.any(axis=axis)) for axis in (1, 0))
-        box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-        cells = np.flatnonzero(mask[box])
-        shape = rows[-1] + 1 - rows[0], columns[-1] + 1 - columns[0]
-        field = np.zeros(shape)
-        parts: _Parts = [
+    def within(self, box: Box) -> ConvolutionCompliance:
+        """Return the compliance between the cells of a box: its cost is that of the box."""
+        part = object.__new__(ConvolutionCompliance)
+        part._symbol, part._self = self._symbol, self._self[box]
+        shape = part._self.shape
+        part._parts = [
             (each.within(shape), weight[box] if isinstance(weight, np.ndarray) else weight)
             for each, weight in self._parts
         ]
-
-        def deflection(pressure: Array) -> Array:
-            field.ravel()[cells] = pressure
-            return _summed(parts, field).ravel()[cells]
-
-        return deflection
+        return part
 
 
-def deflection_between(compliance: Compliance, mask: Mask) -> Callable[[Array], Array]:
-    """Return the map from pressures to deflections at the cells of a mask, (n,) both."""
+@dataclass(frozen=True, slots=True)
+class BoxedCompliance:
+    """Any compliance between the cells of a box, with the rest of its grid unloaded."""
+
+    whole: Compliance
+    box: Box
+
+    @property
+    def self_compliance(self) -> Array:
+        """Deflection of a cell under unit pressure on itself alone, (nx, ny), m/Pa."""
+        return self.whole.self_compliance[self.box]
+
+    def symbol(self, wavenumber: Array) -> Array:
+        """Return the approximate deflection over pressure (m/Pa) of a wave."""
+        return self.whole.symbol(wavenumber)
+
+    def apply(self, pressure: Array) -> Array:
+        """Return the deflection (nx, ny) in m of a pressure field (nx, ny) in Pa."""
+        field = np.zeros(self.whole.self_compliance.shape)
+        field[self.box] = pressure
+        return self.whole.apply(field)[self.box]
+
+
+def compliance_within(compliance: Compliance, box: Box) -> Compliance:
+    """Return a compliance between the cells of a box (rows, columns)."""
     if isinstance(compliance, ConvolutionCompliance):
-        return compliance.between(mask)
-    cells = np.flatnonzero(mask)
-
-    def deflection(pressure: Array) -> Array:
-        field = np.zeros(mask.shape)
-        field.ravel()[cells] = pressure
-        return compliance.apply(field).ravel()[cells]
-
-    return deflection
+        return compliance.within(box)
+    return BoxedCompliance(compliance, box)
 
 
 def _summed(parts: _Parts, pressure: Array) -> Array:
