@@ -21,7 +21,7 @@ def test_a_source_left_out_is_predicted_better_than_by_one_constant():
     verdicts = {one.statement.id: str(one.verdict) for one in result.judgements}
     assert verdicts["r2"] == "agrees"
     constants = next(table for table in result.computed.tables if table.name == "constants")
-    # the packaged posterior of 3,000 steps: median 0.105, 95 % 0.071 to 0.151. The median of a
+    # the packaged posterior of 12,000 steps: median 0.105, 95 % 0.071 to 0.151. The median of a
     # quick run is good to a few per cent, its ends to a quarter (0.057 was seen).
     _, film, low, high = next(row for row in constants.rows if row[0] == "film, aqueous")
     assert 0.08 < film < 0.15

@@ -11,7 +11,7 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 SOURCE = REPOSITORY / "src"
-LARGEST = 75_000  # lines of source
+LARGEST = 78_000  # lines of source
 START = 0.15  # s of CPU that `import underfoot` may take
 
 
