@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from underfoot import Case
-from underfoot.questions.wear import trends, wear_series
+from underfoot.questions.wear import MAPS, trends, wear_series
 from underfoot.report.dispatch import files
 
 OUTSOLES = Path(__file__).parents[2] / "examples" / "outsoles"
@@ -45,9 +45,11 @@ def test_every_state_keeps_its_sole_and_the_pressures_on_it(series, tmp_path):
         for number, point in enumerate(series.points):
             state = kept.isel(state=number)
             bare = ~np.isfinite(state.height.values)
-            for name in ("contact_pressure", "fluid_pressure"):
+            # steep land is longer than its place on the floor: some cells are passed over
+            for name in MAPS:
                 assert np.isnan(state[name].values[bare]).all()
-            fluid = float(state.fluid_pressure.sum()) * cell
-            assert fluid == pytest.approx(point.outcome.number("fluid_load"), rel=0.1, abs=5)
-            assert fluid + float(state.contact_pressure.sum()) * cell == pytest.approx(500, rel=0.1)
+                solved = float(point.outcome.maps[name].sum()) * cell
+                assert float(state[name].sum()) * cell == pytest.approx(solved, rel=0.06, abs=1)
+            both = float(state.fluid_pressure.sum() + state.contact_pressure.sum()) * cell
+            assert both == pytest.approx(500, rel=0.1)
             assert float(state.fluid_pressure.max()) < 2e6  # no channel's floor bears like a pillar
