@@ -1,4 +1,4 @@
-"""Whole soles from files under the slip tester: a converged contact, or no number."""
+"""Whole soles from files under the slip tester, on coarse cells and on those of the default."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,6 @@ TREADS = {
     "hexagons": Tread("hexagons", 8 * MM, 3 * MM, 3.5 * MM),
     "herringbone": Tread("chevrons", 5 * MM, 3 * MM, 3 * MM, angle=0.7, arm_length=15 * MM),
     "circles": Tread("circles", 9 * MM, 3 * MM, 3.5 * MM),
-    "sparse": Tread("circles", 10 * MM, 20 * MM, 4 * MM),
 }
 SLOW = [
     pytest.param(*each, marks=pytest.mark.slow)
@@ -30,7 +29,7 @@ def sole_file(folder, tread):
 
 
 @pytest.mark.parametrize(("name", "spacing"), [("hexagons", "1 mm"), *SLOW])
-def test_a_whole_sole_converges_or_gives_no_number(tmp_path, name, spacing):
+def test_a_whole_sole_converges(tmp_path, name, spacing):
     case = Case(
         name=name,
         shoe={
@@ -47,11 +46,7 @@ def test_a_whole_sole_converges_or_gives_no_number(tmp_path, name, spacing):
     data = found.data
     cells = [data[f"cell_{each}"].values for each in ("area", "film_area")]
     assert all(each.min() > 0 for each in cells)
-    if not found.usable:
-        assert name == "sparse"  # few lugs bear it all
-        assert found.scalars["cof"].value is None
-        assert found.headline()[0].startswith("No result: not converged")
-        return
+    assert found.usable, found.headline()
     pressures = [data[f"{each}_pressure"].values for each in ("contact", "fluid")]
     load = sum((p * a).sum() for p, a in zip(pressures, cells, strict=True))
     assert load * float(spacing[:-3]) ** 2 * 1e-6 == pytest.approx(500.0, rel=1e-3)
