@@ -1,4 +1,8 @@
-"""Run benchmarks: ``python -m benchmarks [NAME ...]``; without names, all of them."""
+"""Run benchmarks: ``python -m benchmarks [NAME ...]``.
+
+Without names: one table of all jobs that modules tell of by ``rows()``, kept in history.csv and
+drawn; with names, each module's own tables.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +11,7 @@ import pkgutil
 import sys
 
 import benchmarks
+from benchmarks import _table
 
 
 def main(chosen: list[str]) -> int:
@@ -20,7 +25,14 @@ def main(chosen: list[str]) -> int:
     if unknown:
         print(f"unknown benchmark {', '.join(sorted(unknown))}; there are: {', '.join(found)}")
         return 2
-    for name in chosen or found:
+    if not chosen:
+        modules = (importlib.import_module(f"benchmarks.{name}") for name in found)
+        rows = [row for module in modules if hasattr(module, "rows") for row in module.rows()]
+        print(_table.printed(rows))
+        _table.keep(rows)
+        print(f"kept in {_table.HISTORY.name}, drawn in {_table.draw()}")
+        print(f"more: python -m benchmarks {' '.join(found)}")
+    for name in chosen:
         print(f"\n== {name}", flush=True)
         importlib.import_module(f"benchmarks.{name}").main()
     return 0

@@ -44,8 +44,14 @@ def test_rounded_rim_takes_what_a_fillet_takes():
         Tread("chevrons", 5e-3, 2.4e-3, 2.5e-3, angle=math.radians(30), arm_length=12e-3),
         Tread("bars", 9e-3, 3e-3, 2e-3, angle=0.5, sipes=Sipes(1e-3, 1e-3, 6e-3, angle=0.5)),
         Tread("circles", 12e-3, 3e-3, 2.5e-3),
+        pytest.param(
+            Tread("waves", 8e-3, 4e-3, 2.5e-3, wave_length=20e-3, wave_height=6e-3),
+            marks=pytest.mark.slow,
+        ),
+        Tread("rings", 14e-3, 4e-3, 2.5e-3, ring_width=3e-3),
+        Tread("graded_circles", 12e-3, 3e-3, 2e-3, front_lug_width=6e-3, graded_length=50e-3),
     ],
-    ids=["chevrons", "bars and sipes", "circles"],
+    ids=["chevrons", "bars and sipes", "circles", "waves", "rings", "graded circles"],
 )
 def test_solid_and_map_are_one_description(tread):
     heel = Heel(**KIND, tread=tread)

@@ -34,7 +34,7 @@ COUPLED = {
 
 def one_lug(length=0.01, width=1.0, height=0.005, edge=1e-4, fed=1.0):
     arrays = (np.array([value]) for value in (length, width, height, edge, fed))
-    return LugEdges(np.array([[1]]), *arrays)
+    return LugEdges(np.array([[1]]), np.ones((1, 1)), *arrays)
 
 
 def friction(edges=None, pressure=1e5, cof=0.3, drag=0.01, suction=1e5, rq=2e-6, modulus=3e6):

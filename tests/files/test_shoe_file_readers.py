@@ -92,7 +92,7 @@ def test_inches_are_found_and_can_be_overruled(sole):
 
 
 def test_length_of_no_sole_in_any_unit_is_refused(sole):
-    with pytest.raises(InputError, match=r"no unit makes it a sole.*150 to 350 mm"):
+    with pytest.raises(InputError, match=r"no unit makes it a sole.*110 to 350 mm"):
         read(sole * 7.0)
 
 

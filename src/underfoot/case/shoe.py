@@ -114,7 +114,8 @@ class OutsoleFile(Section):
     uncounted: ClassVar[tuple[str, ...]] = ("file",)  # the checksum tells which outsole it is
 
     file: str = Field(
-        description="STEP, STL, OBJ or PLY; the path counts from the case file's folder"
+        description="STEP, IGES, BREP, 3DM, STL, OBJ, PLY, OFF, GLB, GLTF or 3MF; the path counts "
+        "from the case file's folder"
     )
     sha256: str | None = optional("checksum of the file that is meant; another file is refused")
     unit: Literal["auto", "mm", "cm", "m", "inch"] = default("auto", "auto", _READ)
@@ -128,6 +129,11 @@ class OutsoleFile(Section):
     region_length: Length | None = optional(
         "of the region; default: rear 30 %, front 45 % of a whole sole"
     )
+    solid: str | None = optional("name of the body that is the outsole; default: found")
+    side: Literal["auto", "left", "right"] = default(
+        "auto", "auto", "of a pair in one file; auto refuses a pair"
+    )
+    cut_floor: Flag = default(False, False, "a plane that hardly reaches beyond the sole is kept")
     map_spacing: Annotated[float, Quantity("m", 2e-5, 0.002)] = default(
         0.25 * _mm, "0.25 mm", "of the height map, finer than the grid of the solver"
     )

@@ -12,7 +12,7 @@ from .outsole_make import make
 
 outsole_app = typer.Typer(
     name="outsole",
-    help="Inspect outsole files (STEP, STL, OBJ, PLY) and make parametric ones.",
+    help="Inspect outsole files (CAD, meshes, scans) and make parametric ones.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
@@ -23,11 +23,16 @@ Direction = Annotated[
 
 @outsole_app.callback()
 def outsole() -> None:
-    """Inspect outsole files (STEP, STL, OBJ, PLY) and make parametric ones."""
+    """Inspect outsole files (CAD, meshes, scans) and make parametric ones."""
 
 
 def inspect(
-    file: Annotated[Path, typer.Argument(help="STEP, STL, OBJ or PLY.", show_default=False)],
+    file: Annotated[
+        Path,
+        typer.Argument(
+            help="STEP, IGES, BREP, 3DM, STL, OBJ, PLY, OFF, GLB or 3MF.", show_default=False
+        ),
+    ],
     unit: Annotated[str, typer.Option(help="auto, mm, cm, m or inch.")] = "auto",
     down: Direction = "auto",
     forward: Direction = "auto",
@@ -38,6 +43,11 @@ def inspect(
         str | None, typer.Option(help='Of the region, as "80 mm".', show_default=False)
     ] = None,
     spacing: Annotated[str, typer.Option(help="Of the height map.")] = "0.25 mm",
+    solid: Annotated[
+        str | None, typer.Option(help="Name of the body that is the outsole.", show_default=False)
+    ] = None,
+    side: Annotated[str, typer.Option(help="Of a pair in one file: left or right.")] = "auto",
+    cut_floor: Annotated[bool, typer.Option("--cut-floor", help="Cut a floor plane.")] = False,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for picture, tables and a case file.", show_default=False),
@@ -65,6 +75,9 @@ def inspect(
         region=region,
         region_length=length,
         spacing=to_si(spacing, "m", where="--spacing"),
+        solid=solid,
+        side=side,
+        cut_floor=cut_floor,
     )
     answer(
         file.name,

@@ -57,8 +57,12 @@ def run(
     from underfoot.report.design_studies import write_study_report
 
     chosen = _study(study, out)
-    with bar(chosen.plan.name) as progress:
-        result = chosen.run(on, workers, progress)
+    try:
+        with bar(chosen.plan.name) as progress:
+            result = chosen.run(on, workers, progress)
+    except KeyboardInterrupt:
+        say("stopped: every finished case is kept; the same command goes on from there")
+        raise
     with bar("report") as progress:
         written = write_study_report(chosen, result, progress=progress)
     finish(result, written, json=json, everything=everything)

@@ -129,7 +129,7 @@ class Recorder:
         speed = max(abs(state.speed), SLOWEST)
         shear = self.law(state.contact_pressure, speed, state.film_thickness)
         pressures = state.contact_pressure, state.fluid_pressure
-        friction = cof(shear, *pressures, spacing=state.spacing, wet=state.wet)
+        friction = cof(shear, *pressures, spacing=state.spacing, wet=state.wet, **state.areas)
         for name in COF_WORDS:
             value = getattr(friction, name).value
             self.cof.setdefault(name, []).append(math.nan if value is None else value)

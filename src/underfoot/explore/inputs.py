@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,8 @@ from underfoot.core.catalogue import Catalogue
 
 TAIL = 1e-3
 """Share of a distribution beyond either end that a study leaves out."""
+OUTSIDE = 0.025
+"""Share of a distribution that may lie beyond the physical range, where it is held."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,21 +84,27 @@ class Follow:
 
 @dataclass(frozen=True, slots=True)
 class Distribution:
-    """A value that nobody chooses: normal (mean, sd), log-normal (median, factor) or even."""
+    """A value that nobody chooses: normal (mean, sd), log-normal (median, factor) or even.
+
+    Draws beyond ``low`` and ``high``, the physical range, are held there.
+    """
 
     path: str
     kind: str
     centre: float
     spread: float
+    low: float = -math.inf
+    high: float = math.inf
 
     def value(self, share: float) -> float:
         """Return the quantile at a share, the outermost ``TAIL`` at either end left out."""
-        if self.kind == "uniform":
-            return self.centre + self.spread * share
         z = float(ndtri(TAIL + (1 - 2 * TAIL) * share))
-        if self.kind == "normal":
-            return self.centre + self.spread * z
-        return self.centre * self.spread**z
+        drawn = {
+            "uniform": self.centre + self.spread * share,
+            "normal": self.centre + self.spread * z,
+            "lognormal": self.centre * self.spread**z,
+        }[self.kind]
+        return min(max(drawn, self.low), self.high)
 
 
 Input = Range | Choice
@@ -181,17 +189,20 @@ def read_distribution(path: str, given: Any, where: str, catalogue: Catalogue) -
         if spread <= 0:
             raise RangeError(f"{given[forms[kind]]}", where=other, allowed="above 0, from < to")
         found = Distribution(path, "normal" if kind == "normal" else "uniform", centre, spread)
-    quantity = quantity_of(field_at(path))  # type: ignore[arg-type]  # a number has a field
-    for share in (0.0, 1.0):
+    field = field_at(path)
+    quantity = None if field is None else quantity_of(field)
+    if quantity is None:
+        return found
+    for share in (OUTSIDE, 1 - OUTSIDE):
         value = found.value(share)
-        if quantity is not None and not quantity.low <= value <= quantity.high:
+        if not quantity.low <= value <= quantity.high:
             raise RangeError(
-                f"reaches {display(value, unit)} at {TAIL if share == 0 else 1 - TAIL:.1%} of it",
+                f"reaches {display(value, unit)} at {share:.1%} of it",
                 where=where,
                 allowed=quantity.allowed(),
                 remedy="Narrow it, or take lognormal for what is positive",
             )
-    return found
+    return replace(found, low=quantity.low, high=quantity.high)
 
 
 def value_at(path: str, given: Any, where: str, catalogue: Catalogue) -> Any:

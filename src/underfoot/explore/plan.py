@@ -268,15 +268,6 @@ def read_plan(
             follow.append(found)
         elif found is not None:
             vary.append(found)
-    calibrates = "reading" in plain
-    if not vary and not calibrates and not reader.errors:
-        reader.fail(
-            InputError(
-                "nothing is varied",
-                where=reader.place("vary"),
-                remedy='Write "shoe.tread.depth" = { from = "1 mm", to = "4 mm" } under [vary]',
-            )
-        )
     for one in follow:
         if one.of not in [each.path for each in vary]:
             paths = [each.path for each in vary]
@@ -291,6 +282,15 @@ def read_plan(
         distribution = reader.attempt(read_distribution, path, given, where, known)
         if distribution is not None:
             uncertain.append(distribution)
+    calibrates = "reading" in plain
+    if not vary and not uncertain and not reader.errors:
+        reader.fail(
+            InputError(
+                "nothing is varied",
+                where=reader.place("vary"),
+                remedy='Write "shoe.tread.depth" = { from = "1 mm", to = "4 mm" } under [vary]',
+            )
+        )
     states, readings = reader.conditions(known), ()
     if calibrates:
         states, readings = reader.readings(known)
@@ -384,7 +384,7 @@ def _on_finer_grid(
     finest, changes = narrowest / CELLS_REFUSED, {}
     for name in ("grid_spacing", "quick_grid_spacing"):
         if getattr(case.numerics, name) > finest * (1 + 1e-9):
-            changes[f"numerics.{name}"] = math.floor(finest * 1e5) / 1e5
+            changes[f"numerics.{name}"] = math.floor(finest * 1e5 + 1e-6) / 1e5
     if not changes:
         return case, ()
     said = ", ".join(f"{path} = {value * 1e3:g} mm" for path, value in changes.items())
@@ -456,7 +456,7 @@ class _Reader:
         def add(prefix: str, table: Mapping[str, Any]) -> None:
             for key, value in table.items():
                 path = f"{prefix}.{key}" if prefix else key
-                marks = {"from", "times", "of", "normal", "lognormal"}
+                marks = {"from", "to", "times", "of", "normal", "sd", "lognormal", "factor"}
                 if isinstance(value, Mapping) and value and not marks & set(value):
                     add(path, value)
                 else:
@@ -603,6 +603,14 @@ class _Reader:
                     "is missing",
                     where=self.place("method", "budget"),
                     allowed="full runs at most, as budget = 200",
+                )
+            )
+        if not vary and found.kind != "sensitivity" and "reading" not in self.plain:
+            self.fail(
+                InputError(
+                    "nothing is varied",
+                    where=self.place("method", "kind"),
+                    remedy='Add [vary], or write kind = "sensitivity"',
                 )
             )
         if found.kind == "robust" and not uncertain:

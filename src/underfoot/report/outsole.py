@@ -74,14 +74,16 @@ class OutsoleInspection(Presentable):
             return f"{middle} {name.replace('^2', '²')}  (10 to 90 %: {low} to {high})"
 
         m = self.measures
-        drained = m.drained_share
+        drained, draft = m.drained_share, self.outsole.draft
         rows = [
             ("Length x width", _lengths(m.length, m.width, digits=4)),
             ("Plan area", _area(m.plan_area, PLAN)),
             ("Land", f"{m.land_ratio:.0%} of the plan area"),
             ("Channel depth, median", spread(m.channel_depth, "m")),
             ("Channel width, median", spread(m.channel_width, "m")),
+            ("Draft of the walls", "none" if draft is None else f"{np.degrees(draft):.1f}°"),
             ("Channels open to the rim", "none" if drained is None else f"{drained:.0%} of area"),
+            ("Sipes", f"{m.sipe_count}, {_lengths(m.sipe_length)} in all"),
             ("Lugs", f"{m.lug_count}"),
             ("Lug area, median", spread(m.lug_area, "m^2")),
             ("Largest untreaded patch", _area(m.patch_area, tread_unit("m^2"))),
@@ -109,6 +111,7 @@ class OutsoleInspection(Presentable):
             "foot": outsole.foot or None,
             "whole_length": outsole.whole_length,
             "thickness": outsole.thickness,
+            "draft": outsole.draft,
             "mesh": asdict(outsole.soundness),
             "measures": asdict(self.measures),
             "remarks": list(outsole.surface.remarks),
@@ -285,8 +288,13 @@ def case_text(inspection: OutsoleInspection, out: Path) -> str:
         value = getattr(settings, name)
         mark = "" if value != getattr(plain, name) else "# "
         lines.append(f'{mark}{name} = "{value}"')
-    if settings.mirror:
-        lines.append("mirror = true")
+    for name in ("mirror", "cut_floor"):
+        if getattr(settings, name):
+            lines.append(f"{name} = true")
+    if settings.solid is not None:
+        lines.append(f"solid = {json.dumps(settings.solid, ensure_ascii=False)}")
+    if settings.side != plain.side:
+        lines.append(f'side = "{settings.side}"')
     if settings.region_length is not None:
         lines.append(f'region_length = "{settings.region_length * 1e3:g} mm"')
     if settings.spacing != plain.spacing:

@@ -9,6 +9,7 @@ from underfoot.core.arrays import Array, Mask
 
 from ._kernels.regions import (
     carried_on,
+    covering_value,
     distance_to,
     distance_within,
     local_width,
@@ -17,14 +18,28 @@ from ._kernels.regions import (
     rim,
     without_specks,
 )
+from ._kernels.rolling import rolled_base
 from .geometry import SoleSurface
 
-WIDEST_CHANNEL = 16e-3
-"""A hollow wider than this is shape of the sole, not tread, m."""
+ROLLING_RADIUS = 0.5
+"""Of the paraboloid that tells land: hollows of a larger radius are the sole's shape, m."""
+STEEPEST_RIM = (0.5, 0.3)
+"""Slopes along and across up to which a rim that rises is land: toe spring, bevels."""
 SHALLOWEST_CHANNEL = 0.3e-3
 """A hollow shallower than this is texture, not tread, m."""
-NOISE_FACTOR = 5.0
-"""A channel is at least this many standard deviations of the scan's noise deep."""
+NOISE_FACTOR = 6.0
+"""A channel is this many standard deviations of the noise deep: the base lies 3 below the land."""
+WIDEST_CHANNEL = 50e-3
+"""A hollow wider than this is an arch: no land, but no channel with depth and width, m."""
+_ROUNDED = (0.25, 3.0)  # slope of a rounded edge: no floor of a channel, no wall
+_SLOPE_REACH = 0.5e-3  # m
+_GRAZED = (2e-3, 0.12)  # m from the rim, slope of the floor there
+_FINE = 0.4e-3  # m
+_MOST_NOISE = 0.1e-3  # m: to begin with
+WIDEST_SIPE = 1.2e-3
+"""A channel narrower than this is a slit, m."""
+SHORTEST_SIPE = 3e-3
+"""Of a slit that counts, m."""
 SMALLEST_PIECE = 1e-6
 """A channel or lug of less area is a speck, m^2."""
 LUG_REACH = 10e-3
@@ -43,64 +58,96 @@ class TreadMap:
 
 
 def tread_map(
-    height: Array,
-    spacing: float,
-    *,
-    widest: float = WIDEST_CHANNEL,
-    channels: Mask | None = None,
+    height: Array, spacing: float, *, channels: Mask | None = None, lag: int = 1
 ) -> TreadMap:
     """Return which parts of a sole are land and how high its lugs stand.
 
-    The base is the grey opening of the height (z up, so channels are peaks) by a square of side
-    ``widest``: it takes away every channel narrower than that and leaves slopes, rounded rims and
-    toe spring as they are. A cell is channel where it stands more than max(0.3 mm, 5 sigma) over
-    the base, sigma the noise of the heights. Lug height: the depth of the nearest channel, 0 on
-    land more than 10 mm away from all channels.
+    The base is what a paraboloid of radius 0.5 m rolled under the sole reaches (``rolled_base``):
+    slopes, rounded rims and toe spring stay as they are, a gap of any width is left out unless it
+    is shallower than its width^2 / (8 x 0.5 m). A cell is land where it stands no more than
+    max(0.3 mm, 6 sigma) over the base, sigma the noise of the heights; all else is channel. Lug
+    height: the depth of the nearest channel, 0 on land more than 10 mm away from all channels.
 
     Parameters:
         height: (nx, ny) m in the untilted frame, z up into the shoe, nan outside the plan form.
         spacing: Side of a cell, m.
-        widest: Of a channel, m.
         channels: Cells that are known to be channel beside those found.
+        lag: Cells between heights that don't share noise: the scan's distance of points.
     """
-    from scipy.ndimage import maximum_filter, minimum_filter
-
     inside = np.isfinite(height)
-    side = 2 * math.ceil(widest / spacing / 2) + 1
-    # windows may hang over the rim, so that a rim that rises stays what it is
-    padded = np.pad(np.where(inside, height, np.inf), side, constant_values=np.inf)
-    low = minimum_filter(padded, side)
-    opened = maximum_filter(np.where(np.isfinite(low), low, -np.inf), side)[side:-side, side:-side]
-    noise = height_noise(height)
-    level = max(SHALLOWEST_CHANNEL, NOISE_FACTOR * noise)
-    channel = inside & (np.where(inside, height, 0.0) - np.where(inside, opened, 0.0) > level)
+    rolled = rolled_base(height, spacing, ROLLING_RADIUS, STEEPEST_RIM)
+    above = height - rolled
+    raised = np.where(inside, np.minimum(above, _rounded_rim(height, spacing)), -np.inf)
+    # walls count as noise until the land is known
+    begin = raised > _level(min(height_noise(height), _MOST_NOISE))
+    noise = height_noise(np.where(begin, np.nan, height), lag)
+    begin = raised > _level(noise)
+    noise = height_noise(np.where(begin, np.nan, height), lag)
+    level = _level(noise)
+    channel = inside & (raised > level)
     if channels is not None:
         channel |= inside & channels
     cells = max(1, math.ceil(SMALLEST_PIECE / spacing**2))
     channel = without_specks(channel, cells)
     channel |= inside & ~channel & ~without_specks(inside & ~channel, cells)
     land = inside & ~channel
+    # what only a tilted floor grazes, along the rim, is no land
+    numbers, _ = pieces(land)
+    deeper = numbers[land & ~rim(inside, max(1, round(_GRAZED[0] / spacing)))]
+    steep = _slope(rolled, spacing) > _GRAZED[1]
+    steepness = np.bincount(numbers.ravel(), steep.ravel()) / np.maximum(
+        np.bincount(numbers.ravel()), 1
+    )
+    land &= np.isin(numbers, deeper) | (steepness[numbers] < 0.5)
+    channel = inside & ~land
     if not land.any():
         land, channel = inside.copy(), np.zeros_like(inside)
     base = carried_on(height, land)
     if not channel.any():
         return TreadMap(land, np.zeros_like(height), base, level, noise)
     depth = np.where(channel, np.maximum(height - base, 0.0), 0.0)
-    full = maximum_filter(depth, 2 * max(1, round(1.5e-3 / spacing)) + 1)
     far = distance_to(channel) * spacing > LUG_REACH
-    lugs = np.where(land & ~far, full[nearest_true(channel)], 0.0)
+    floor = floor_depth(depth, channel)
+    lugs = np.where(land & ~far, floor[nearest_true(channel)], 0.0)
     return TreadMap(land, lugs, base, level, noise)
 
 
-def height_noise(height: Array) -> float:
-    """Return the noise of a height map, m: 1.4826 median |second difference| / sqrt(6), along x.
+def _rounded_rim(height: Array, spacing: float) -> Array:
+    """Return the height over what a paraboloid that follows steep rims reaches; inf elsewhere.
 
-    On a smooth sole the second difference of neighbours holds nothing else: sharp walls are few
-    enough not to move the median.
+    Steep and no wall: a slope of 0.25 to 3. A rounded edge is shape of the sole, the level floor
+    of a channel that opens at the rim is not.
     """
-    second = height[2:] - 2 * height[1:-1] + height[:-2]
-    second = second[np.isfinite(second)]
-    return 0.0 if second.size == 0 else float(1.4826 * np.median(np.abs(second)) / math.sqrt(6))
+    inside = np.isfinite(height)
+    slope = _slope(height, spacing)
+    above = height - rolled_base(height, spacing, ROLLING_RADIUS, (_ROUNDED[1], _ROUNDED[1]))
+    steep = inside & (slope > _ROUNDED[0]) & (slope < _ROUNDED[1])
+    return np.where(steep, above, np.inf)
+
+
+def _level(noise: float) -> float:
+    return max(SHALLOWEST_CHANNEL, NOISE_FACTOR * noise)
+
+
+def _slope(height: Array, spacing: float) -> Array:
+    """Return the slope over 1 mm, carried on beyond the plan form."""
+    steps = max(1, round(_SLOPE_REACH / spacing))
+    filled = np.pad(height[nearest_true(np.isfinite(height))], steps, mode="edge")
+    along = filled[2 * steps :, steps:-steps] - filled[: -2 * steps, steps:-steps]
+    across = filled[steps:-steps, 2 * steps :] - filled[steps:-steps, : -2 * steps]
+    return np.hypot(along, across) / (2 * steps * spacing)
+
+
+def height_noise(height: Array, lag: int = 1) -> float:
+    """Return the noise of a height map, m: 1.4826 median |third difference| / sqrt(20), along x.
+
+    Of heights ``lag`` cells apart, which don't share noise: on a sole of even curvature the
+    difference holds nothing else; sharp walls are few enough not to move the median.
+    """
+    a, b, c, d = (height[n * lag : max(0, height.shape[0] - (3 - n) * lag)] for n in range(4))
+    third = d - 3 * c + 3 * b - a
+    third = third[np.isfinite(third)]
+    return 0.0 if third.size == 0 else float(1.4826 * np.median(np.abs(third)) / math.sqrt(20))
 
 
 SHARES = (10, 50, 90)
@@ -114,10 +161,13 @@ class TreadMeasures:
     Parameters:
         length, width, plan_area: Of the plan form.
         land_ratio: Land area / plan area.
-        channel_depth: 10, 50 and 90 % by channel area of the depth below the land around.
+        channel_depth: 10, 50 and 90 % by channel area of the depth of the channel's floor below
+            the land around; arches (hollows wider than 50 mm) left out, as in the width.
         channel_width: The same of the local width: the largest disc in the channel that covers a
             place.
         drained_share: Of the channel area: connected through channels to the rim of the plan form.
+        sipe_count, sipe_length: Slits narrower than 1.2 mm and longer than 3 mm (parts of them
+            between wider channels count each); their length in all.
         lug_count: Pieces of land of 1 mm^2 and more, not connected by an edge of a cell.
         lug_area: 10, 50 and 90 % of the area of these pieces (each counts once).
         patch_area, patch_length, patch_width, patch_circle: Of the largest piece of land: its area,
@@ -132,6 +182,8 @@ class TreadMeasures:
     channel_depth: tuple[float, float, float] | None
     channel_width: tuple[float, float, float] | None
     drained_share: float | None
+    sipe_count: int
+    sipe_length: float
     lug_count: int
     lug_area: tuple[float, float, float]
     patch_area: float
@@ -146,9 +198,18 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
     inside, land, spacing = surface.inside, surface.land, surface.spacing
     channel = inside & ~land
     depth = width = drained = None
+    sipe_count, sipe_length = 0, 0.0
     if channel.any():
-        depth = _shares(channel_depth(surface)[channel])
-        width = _shares(local_width(channel, spacing)[channel])
+        # a coarse map is halved: in cells across, widths come in steps of one
+        finer = 2 if spacing > _FINE else 1
+        cells = np.repeat(np.repeat(channel, finer, axis=0), finer, axis=1)
+        widths = local_width(cells, spacing / finer)[::finer, ::finer]
+        counted = channel & (widths <= WIDEST_CHANNEL)
+        counted = counted if counted.any() else channel
+        floor = floor_depth(channel_depth(surface), channel)
+        depth = _shares(floor[counted])
+        sipe_count, sipe_length = _sipes(channel, widths, spacing)
+        width = _shares(widths[counted])
         drained = float(np.count_nonzero(draining(surface)) / np.count_nonzero(channel))
     areas = np.bincount(pieces(land)[0].ravel())[1:].astype(np.float64) * spacing**2
     lugs = areas[areas >= SMALLEST_PIECE * (1 - 1e-9)]
@@ -168,6 +229,8 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
         channel_depth=depth,
         channel_width=width,
         drained_share=drained,
+        sipe_count=sipe_count,
+        sipe_length=sipe_length,
         lug_count=int(lugs.size),
         lug_area=_shares(lugs),
         patch_area=float(areas.max()),
@@ -176,6 +239,23 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
         patch_circle=circle(patch),
         free_circle=circle(land),
     )
+
+
+def _sipes(channel: Mask, widths: Array, spacing: float) -> tuple[int, float]:
+    """Return how many slits there are and their length in all, m."""
+    from scipy.ndimage import find_objects, sum_labels
+
+    numbers, count = pieces(channel & (widths < WIDEST_SIPE), diagonal=True)
+    if count == 0:
+        return 0, 0.0
+    extent = np.array(
+        [math.hypot(*(s.stop - s.start for s in box)) for box in find_objects(numbers)]
+    )
+    own = extent * spacing >= SHORTEST_SIPE
+    # area over width: a slit may be bent
+    inverse = np.where(numbers > 0, spacing**2 / np.maximum(widths, spacing), 0.0)
+    lengths = np.asarray(sum_labels(inverse, numbers, np.arange(1, count + 1)))
+    return int(np.count_nonzero(own)), float(lengths[own].sum())
 
 
 def largest_patch(surface: SoleSurface) -> Mask:
@@ -189,6 +269,24 @@ def channel_depth(surface: SoleSurface) -> Array:
     channel = surface.inside & ~surface.land
     below = np.where(channel, np.maximum(surface.height - surface.land_base, 0.0), 0.0)
     return np.where(surface.inside, below, np.nan)
+
+
+def floor_depth(depth: Array, channel: Mask) -> Array:
+    """Return, per cell of the channels, the depth (m) at the middle of the channel over the cell.
+
+    That of the middle of the largest disc in the channel that covers the cell: drafted walls and
+    fillets take the depth of the floor beside them.
+    """
+    return np.where(channel, covering_value(channel, np.where(channel, depth, 0.0)), depth)
+
+
+def arch_area(tread: TreadMap, inside: Mask, spacing: float) -> float:
+    """Return the area of the hollows wider than 50 mm, m^2."""
+    channel = inside & ~tread.land
+    if not channel.any():
+        return 0.0
+    wide = local_width(channel, spacing) > WIDEST_CHANNEL
+    return float(np.count_nonzero(wide & channel)) * spacing**2
 
 
 def draining(surface: SoleSurface) -> Mask:

@@ -5,15 +5,18 @@ than this map, its diagonal and a radial symbol to precondition with, so a finit
 can take the place of the layers below.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from typing import Protocol
 
 import numpy as np
 
 from underfoot.core import InputError
-from underfoot.core.arrays import Array, Mask
+from underfoot.core.arrays import Array
 from underfoot.shoe.cut_cells import CutCells
 from underfoot.shoe.geometry import SoleMap
 
@@ -31,9 +34,12 @@ from ._kernels.elastic import (
 )
 
 Symbol = Callable[[Array], Array]
+Box = tuple[slice, slice]
 _Parts = list[tuple[Convolution, Array | float]]
 BOX_THICKNESSES = 16.0  # side of the box on which a layer's influence coefficients are found
 THINNEST = 0.1  # share of the outsole left above the deepest profile
+REACHED = 1e-3
+"""m: a channel deeper than this neither touches the floor nor holds a film (pools: 0.6 mm)."""
 TREADED_SHARE = 0.5  # of the land that must be lugs for the tread to be modelled as lugs
 
 
@@ -84,40 +90,46 @@ class ConvolutionCompliance:
         """Return the deflection (nx, ny) in m of a pressure field (nx, ny) in Pa."""
         return _summed(self._parts, pressure)
 
-    def between(self, mask: Mask) -> Callable[[Array], Array]:
-        """Return the map from pressures to deflections at the cells of a mask, (n,) both.
-
-        It transforms the box around them alone: its cost is that of the wet region.
-        """
-        rows, columns = (np.flatnonzero(mask.any(axis=axis)) for axis in (1, 0))
-        box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-        cells = np.flatnonzero(mask[box])
-        shape = rows[-1] + 1 - rows[0], columns[-1] + 1 - columns[0]
-        field = np.zeros(shape)
-        parts: _Parts = [
+    def within(self, box: Box) -> ConvolutionCompliance:
+        """Return the compliance between the cells of a box: its cost is that of the box."""
+        part = object.__new__(ConvolutionCompliance)
+        part._symbol, part._self = self._symbol, self._self[box]
+        shape = part._self.shape
+        part._parts = [
             (each.within(shape), weight[box] if isinstance(weight, np.ndarray) else weight)
             for each, weight in self._parts
         ]
-
-        def deflection(pressure: Array) -> Array:
-            field.ravel()[cells] = pressure
-            return _summed(parts, field).ravel()[cells]
-
-        return deflection
+        return part
 
 
-def deflection_between(compliance: Compliance, mask: Mask) -> Callable[[Array], Array]:
-    """Return the map from pressures to deflections at the cells of a mask, (n,) both."""
+@dataclass(frozen=True, slots=True)
+class BoxedCompliance:
+    """Any compliance between the cells of a box, with the rest of its grid unloaded."""
+
+    whole: Compliance
+    box: Box
+
+    @property
+    def self_compliance(self) -> Array:
+        """Deflection of a cell under unit pressure on itself alone, (nx, ny), m/Pa."""
+        return self.whole.self_compliance[self.box]
+
+    def symbol(self, wavenumber: Array) -> Array:
+        """Return the approximate deflection over pressure (m/Pa) of a wave."""
+        return self.whole.symbol(wavenumber)
+
+    def apply(self, pressure: Array) -> Array:
+        """Return the deflection (nx, ny) in m of a pressure field (nx, ny) in Pa."""
+        field = np.zeros(self.whole.self_compliance.shape)
+        field[self.box] = pressure
+        return self.whole.apply(field)[self.box]
+
+
+def compliance_within(compliance: Compliance, box: Box) -> Compliance:
+    """Return a compliance between the cells of a box (rows, columns)."""
     if isinstance(compliance, ConvolutionCompliance):
-        return compliance.between(mask)
-    cells = np.flatnonzero(mask)
-
-    def deflection(pressure: Array) -> Array:
-        field = np.zeros(mask.shape)
-        field.ravel()[cells] = pressure
-        return compliance.apply(field).ravel()[cells]
-
-    return deflection
+        return compliance.within(box)
+    return BoxedCompliance(compliance, box)
 
 
 def _summed(parts: _Parts, pressure: Array) -> Array:
@@ -177,7 +189,8 @@ def layered_compliance(
     the plan form or a lug has with free sides is split off, 1 / (1 / f + E* k / 2), and balanced on
     its mask so that a uniform pressure compresses it as ``block_compression`` says: by its own
     height at each place, more near a free side than in the middle. Lugs stand in series on the
-    layer.
+    layer, which feels what of a wave of pressure gets through their mean height; where lugs are
+    worn down to less of it, and in channels worn nearly through, it feels short waves too.
     """
     _check_elastic(modulus, poisson_ratio)
     _check_positive(thickness, "thickness")
@@ -216,7 +229,7 @@ def layered_compliance(
 
     depth = mean_lug_depth(sole)
     land = sole.inside & sole.land
-    plan = land if depth == 0.0 else sole.inside
+    plan = sole.inside  # channels worn nearly through press on the block too
     give = block_compression(plan, sole.spacing, body, modulus, poisson_ratio)
     footprint = partial(free_sided_symbol, **elastic, uniform=float(give[plan].mean()))
 
@@ -241,15 +254,20 @@ def layered_compliance(
     uniform = float(np.average(lug_give[land], weights=cut.area[land]))
     lug = partial(free_sided_symbol, **elastic, uniform=uniform)
     smooth = partial(attenuation, depth=depth)
+    parts: list[tuple[Array, Array | None]] = [
+        (influence(lambda q: rest(q) * smooth(q)), None),
+        (influence(lambda q: footprint(q) * smooth(q)), plan_weight),
+    ]
     lugs = influence(lug)
+    parts.append((lugs, balanced_weights(lugs, land, lug_give, cut.area)))
+    # short waves meet the layer itself under what is left of low lugs and in channels beside them
+    low = bool((sole.tread_depth[land] < REACHED).any())
+    bare = np.where(land, np.clip(1 - sole.tread_depth / depth, 0.0, 1.0), sole.inside & low)
+    if bare.any():
+        short = influence(lambda q: (rest(q) + footprint(q)) * (1 - smooth(q)))
+        parts.append((short, np.sqrt(bare)))
     return ConvolutionCompliance(
-        shape,
-        [
-            (influence(lambda q: rest(q) * smooth(q)), None),
-            (influence(lambda q: footprint(q) * smooth(q)), plan_weight),
-            (lugs, balanced_weights(lugs, land, lug_give, cut.area)),
-        ],
-        lambda q: (rest(q) + footprint(q)) * smooth(q) + lug(q),
+        shape, parts, lambda q: (rest(q) + footprint(q)) * smooth(q) + lug(q)
     )
 
 

@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from underfoot.core.arrays import Array
+from underfoot.core.arrays import Array, Mask
 from underfoot.friction import FrictionLaw, FrictionParts
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
 from underfoot.shoe import SoleMap
@@ -54,11 +54,14 @@ FAR_FILM = 1e-3  # m, a film that no wall shear comes from
 class LugEdges:
     """Lugs of a sole; arrays (lugs,) in m. ``label`` (nx, ny) is 0 outside lugs, else 1, 2, ...
 
+    ``area`` (nx, ny) is what each cell stands for, in cells.
+
     ``length`` along the sliding, ``width`` across, ``height`` of the groove; ``edge`` radius;
     ``fed`` is the share of the leading face that borders on a groove.
     """
 
     label: NDArray[np.intp]
+    area: Array
     length: Array
     width: Array
     height: Array
@@ -74,7 +77,7 @@ class LugEdges:
 class LugFriction:
     """What the edges do to each lug, (lugs,).
 
-    ``load`` on its contact (sum of pressures of cells, Pa; 0 of a lug that hardly bears, which is
+    ``load`` on its contact (pressure times cells, Pa; 0 of a lug that hardly bears, which is
     left as it is), the shares of it on film and of suction, the share of its face in contact, and
     the factor on its contact friction.
     """
@@ -92,7 +95,7 @@ class LugFriction:
 
     def suction_share(self, parts: FrictionParts) -> float:
         """Return the share of the contact friction, factor included, that suction makes."""
-        solid = parts.adhesion + parts.hysteresis
+        solid = (parts.adhesion + parts.hysteresis) * self.edges.area
         ratio = self.edges.map(self.suction / np.maximum(self.factor, 1e-9), 0.0)
         return float((solid * ratio).sum() / max(solid.sum(), 1e-30))
 
@@ -137,6 +140,7 @@ def lug_edges(sole: SoleMap, edge_radius: float, *, forward: bool = True) -> Lug
     worn = _sums(numbers, count, removed * area) / cells
     return LugEdges(
         numbers,
+        area,
         length,
         cells * sole.spacing**2 / length,
         _sums(numbers, count, sole.tread_depth * area) / cells,
@@ -209,9 +213,9 @@ def lug_friction(
     return LugFriction(edges, load, film, pull, lifted, np.maximum(1 - film + pull, 0.0))
 
 
-def sum_by_lug(edges: LugEdges, values: ArrayLike) -> Array:
-    """Return the sum of a map (nx, ny) over each lug, (lugs,)."""
-    return _sums(edges.label, edges.length.size, values)
+def sum_by_lug(edges: LugEdges, values: Array | Mask) -> Array:
+    """Return the sum of a map (nx, ny) over the cells of each lug, cut ones in part, (lugs,)."""
+    return _sums(edges.label, edges.length.size, values * edges.area)
 
 
 def _sums(label: NDArray[np.intp], count: int, values: ArrayLike) -> Array:

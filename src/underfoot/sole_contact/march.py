@@ -107,21 +107,23 @@ class March:
             film = _film_mask(problem, gap, self._pool_depth, self.film)
             self._cells = _cells(problem, self._fit, self._cells, film)
             self.counts.cells = max(self.counts.cells, self._cells.pattern.size)
+            cells = self._cells
             attempt = implicit_step(
-                problem,
-                self._cells,
-                self.state,
+                cells.problem(problem),
+                cells,
+                cells.state(self.state),
                 load=demand.load,
                 duration=duration,
-                film=film,
-                content=self._content(),
+                film=film[cells.box],
+                content=self._content()[cells.box],
                 tick=tick,
             )
             self.counts.newton += attempt.newton
             self.counts.krylov += attempt.krylov
             self.residuals = attempt.residuals
-            if attempt.state is not None and not _escaped(problem, self._cells, attempt.state.gap):
-                self.problem, self.state, self.film = problem, attempt.state, film
+            state = attempt.state and cells.on_whole(attempt.state, problem)
+            if state is not None and not _escaped(problem, cells, state.gap):
+                self.problem, self.state, self.film = problem, state, film
                 self.counts.time_steps += 1
                 grown = duration * GROWTH if attempt.newton < EASY else duration
                 # a step cut short by the end of a stage says nothing against longer ones

@@ -19,15 +19,17 @@ enters the film at the film's own gap (theta = 1), and a cell that comes into th
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from underfoot.core import ConvergenceError
 from underfoot.core.arrays import Array, Mask
 from underfoot.film import Pattern
 
-from .compliance import deflection_between
+from .compliance import compliance_within
 from .film_balance import FilmBalance, Linearisation
 from .gmres import krylov_solution
 from .preconditioner import PoleFit, Preconditioner
@@ -37,6 +39,7 @@ STALL = 12  # Newton steps without halving the residual after which a shorter ti
 STALE = 10  # GMRES iterations above which the next Newton step gets a new factorization
 NEAR = 0.3  # share to which the last Newton step must have brought the residual for that
 FORCING = 0.3  # share of the residual to which GMRES solves, once the residual is small
+RIM = 2  # cells beside the wet ones that the upwinding of their faces looks at
 THIN = 2e-4  # m; steps are limited where the film is thinner
 
 
@@ -51,14 +54,55 @@ class Attempt:
 
 
 class Cells:
-    """The wet region: its cells, sparsity and preconditioner layout."""
+    """The wet region: the box of the grid around it, its cells, sparsity and preconditioner.
+
+    A step is solved on the box alone: its cost is that of what is wet, not of the sole.
+    """
 
     def __init__(self, mask: Mask, problem: Problem, fit: PoleFit) -> None:
         self.mask = mask
-        self.pattern = Pattern(mask)
-        scale = float(np.median(self.pattern.gather(problem.compliance.self_compliance)))
+        rows, columns = (np.flatnonzero(mask.any(axis=axis)) for axis in (1, 0))
+        self.box = (
+            slice(max(int(rows[0]) - RIM, 0), int(rows[-1]) + RIM + 1),
+            slice(max(int(columns[0]) - RIM, 0), int(columns[-1]) + RIM + 1),
+        )
+        self.pattern = Pattern(mask[self.box])
+        self._compliance = compliance_within(problem.compliance, self.box)
+        scale = float(np.median(self.pattern.gather(self._compliance.self_compliance)))
         self.preconditioner = Preconditioner(self.pattern, fit, scale, problem.spacing)
-        self.deflection = deflection_between(problem.compliance, mask)
+
+    def problem(self, whole: Problem) -> Problem:
+        """Return the problem on the box."""
+        return replace(
+            whole,
+            clearance=whole.clearance[self.box],
+            compliance=self._compliance,
+            cut=whole.cut.part(self.box),
+        )
+
+    def state(self, whole: State) -> State:
+        """Return the state on the box."""
+        names = ("pressure", "gap", "fluid", "contact", "cavitated", "fraction")
+        return replace(whole, **{name: getattr(whole, name)[self.box] for name in names})
+
+    def on_whole(self, state: State, problem: Problem) -> State:
+        """Return a state on the box as one on the whole grid, unloaded beside it."""
+
+        def placed(values: NDArray[Any], beside: float = 0.0) -> NDArray[Any]:
+            field = np.full(self.mask.shape, beside, dtype=values.dtype)
+            field[self.box] = values
+            return field
+
+        pressure = placed(state.pressure)
+        return State(
+            pressure,
+            state.approach,
+            problem.gap(pressure, state.approach),
+            placed(state.fluid),
+            placed(state.contact),
+            placed(state.cavitated),
+            placed(state.fraction, 1.0),
+        )
 
 
 def implicit_step(
@@ -74,8 +118,8 @@ def implicit_step(
 ) -> Attempt:
     """Return the state after ``duration`` under ``load``, if Newton finds it.
 
-    ``film`` marks the cells that the pool reaches, ``content`` (m) is the liquid that they hold at
-    the start; ``tick`` receives the residual of each step.
+    All are on the box of the cells. ``film`` marks the cells that the pool reaches, ``content`` (m)
+    is the liquid that they hold at the start; ``tick`` receives the residual of each step.
     """
     pattern = cells.pattern
     area = problem.spacing**2
@@ -89,7 +133,7 @@ def implicit_step(
     if problem.viscosity is not None:
         full = wet & ~pattern.gather(start.cavitated)
         balance = FilmBalance(problem, pattern, film, start.gap, content, duration)
-    pressure = np.where(cells.mask, start.pressure, 0.0)
+    pressure = np.where(pattern.mask, start.pressure, 0.0)
     approach = start.approach
     gap = start.gap
     # a sole that rolls changes its clearance: Newton brings it in, or the guess cuts the floor
@@ -142,8 +186,9 @@ def implicit_step(
                 break
 
         def product(vector: Array, linear=linear) -> Array:
+            field = problem.compliance.apply(pattern.scatter(vector[:-1]))
             out = np.empty_like(vector)
-            out[:-1] = linear.residual(vector[:-1], cells.deflection(vector[:-1]) - vector[-1])
+            out[:-1] = linear.residual(vector[:-1], pattern.gather(field) - vector[-1])
             out[-1] = vector[:-1].mean()
             return out
 

@@ -157,7 +157,7 @@ async function startViewer(root) {
     find("bar-note").textContent = [
       q.meaning && `${q.meaning[0].toUpperCase()}${q.meaning.slice(1)}, ${q.loads.map((load, k) => letter(k) + load).join(", ")} in all.`,
       none && (state.difference ? "Plain rubber: none in either." : "Plain rubber: none."),
-      scene.panes.some((pane) => pane.computed) && "Pale: outside the part that was computed.",
+      scene.panes.some((pane) => pane.computed) && "Faint: outside the part that was computed.",
       q.cut && `A few cells are above the scale, up to ${shortNumber(q.peak)}${unit}.`,
     ].filter(Boolean).join(" ");
     drawings.forEach((d) => d.canvas.setAttribute("aria-label", `Sole of ${d.pane.name} from below, coloured by ${q.title}. Arrow keys turn it, Enter shows the values at its centre.`));

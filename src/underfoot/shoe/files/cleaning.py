@@ -4,7 +4,8 @@ import numpy as np
 
 from underfoot.core.arrays import Array, Mask
 
-from .._kernels.regions import carried_on, grown, pieces, rim, without_holes
+from .._kernels.regions import carried_on, grown, local_width, pieces, rim, without_holes
+from ..tread_measures import TreadMap
 
 LARGEST_HOLE = 1e-4
 """A hole of more area is an opening of the sole, not a gap of the scan, m^2."""
@@ -16,6 +17,7 @@ _SPIKE_CELLS = 3
 _WALL = 2.0  # rise over run: steeper is a wall
 _FAR_SIDE = 1.5e-3  # m above the next two cells
 _LEDGE = 1e-3  # m above what lies beside it
+_WIDEST_LEDGE = 12e-3  # m
 _BESIDE = 2e-3  # m from its edge
 _MOST_LEDGE = 0.4  # of the plan form: more is no ledge
 
@@ -103,18 +105,19 @@ def _without_spikes(height: Array) -> tuple[Array, list[str]]:
 
 
 def without_ledges(
-    height: Array, land: Mask, spacing: float, channel_depth: float
+    height: Array, tread: TreadMap, spacing: float, channel_depth: float
 ) -> tuple[Array, Mask, list[str]]:
     """Return the height map without ledges along the rim, which of them are channels, and remarks.
 
     A ledge is land at the rim that stands more than 1 mm over what lies beside it: it never meets
     the floor. At the depth of the channels (``channel_depth``, m; 20 % more at most) it is a
     channel that the rim cuts open; higher it is a side wall, a welt or a midsole that overhangs,
-    which counted as plan form would spoil land ratio and widths.
+    which counted as plan form would spoil land ratio and widths. So is what lies deeper than the
+    channels, along the rim and narrower than 12 mm.
     """
     from scipy.ndimage import find_objects, maximum_filter, minimum_filter
 
-    inside = np.isfinite(height)
+    inside, land = np.isfinite(height), tread.land
     # over the last cells of the rim a body may show nothing but its far side
     sliver = np.zeros_like(inside)
     for part, step in ((land, _FAR_SIDE), (inside, max(_FAR_SIDE, 1.2 * channel_depth))):
@@ -144,6 +147,11 @@ def without_ledges(
         if own - other > _LEDGE:
             into = cut_open if own - other <= 1.2 * channel_depth else gone
             into[around] |= piece | (beside & (heights > (own + other) / 2))
+    with np.errstate(invalid="ignore"):
+        high_up = inside & ~land & (height - tread.base > 1.2 * channel_depth + _LEDGE)
+    high_up &= local_width(high_up, spacing) < _WIDEST_LEDGE
+    numbers, _ = pieces(high_up)
+    gone |= np.isin(numbers, np.setdiff1d(numbers[rim(inside, 3)], [0]))
     share = np.count_nonzero(gone) / np.count_nonzero(inside)
     cut_open &= land & ~gone
     if share == 0 or share > _MOST_LEDGE:

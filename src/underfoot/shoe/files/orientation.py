@@ -8,11 +8,13 @@ from numpy.typing import NDArray
 
 from underfoot.core.arrays import Array, Mask
 
-from .._kernels.regions import shrunk, without_specks
-from ..tread_measures import tread_map
+from .._kernels.regions import local_width, shrunk, without_specks
+from .._kernels.rolling import rolled_base
+from ..tread_measures import ROLLING_RADIUS, STEEPEST_RIM, WIDEST_CHANNEL, tread_map
 from .settings import DIRECTIONS, FileSettings
-from .view import View
+from .view import View, extents, view
 
+_COARSE = 300  # cells along a body that is looked at from four sides
 _SAMPLE = 200_000  # triangles: more change the axes by less than the snapping
 _SNAP = math.cos(math.radians(20))
 _NEARLY = 1.10  # a box along the file's axes may be this much larger than the smallest one
@@ -20,9 +22,12 @@ _TREAD_SHARE = 0.03  # of the plan form: fewer channels decide nothing
 _TREAD_RATIO = 1.5  # channels on the ground's side against the other
 _RIM_RISE = 0.5e-3  # m by which a ground side's rim must turn up more than the other's
 _SHEET = 0.05e-3  # m between both sides: a scan of one side
-_OFF_CENTRE = 0.005  # of the length: less decides nothing
+OFF_CENTRE = 0.005
+"""Of the length: a centroid less off the middle decides nothing."""
 _BEND = 0.006  # of the length
 _BLOCK = 3e-3  # m: one low point a block, so that noise and single spikes don't carry the sole
+_NEAR_FLOOR = 2e-3  # m
+_STANDS = 1.3  # share on the floor against the next side's
 _LOW = 5.0  # percentile of the heights in a block that counts as its low point
 
 
@@ -41,18 +46,25 @@ def named_direction(vector: Array) -> str:
     return "(" + ", ".join(f"{value:.2f}" for value in vector) + ")"
 
 
-def box_axes(triangles: NDArray[np.float32], settings: FileSettings) -> Array:
+def box_axes(
+    triangles: NDArray[np.float32], settings: FileSettings, down: Array | None = None
+) -> Array:
     """Return rows (long, across, thin), a right-handed frame; signs still mean nothing.
 
-    Thin: the direction in which the area spreads least (second moments of the triangles), taken
+    Thin: the direction in which the area spreads least (second moments of the triangles, A / 12
+    (sum of the corners' squares + 9 times their mean's)), taken
     as the file's axis when within 20 degrees of it. Long and across: the smallest rectangle around
-    the plan form, or the file's axes when that rectangle is less than 10 % larger.
+    the plan form, or the file's axes when that rectangle is less than 10 % larger. ``down``, where
+    the file's bodies tell it, is thin as it stands.
     """
-    centres, weights = _sample(triangles)
+    corners, weights = _sample(triangles)
     if settings.down in DIRECTIONS:
         thin = unit_vector(settings.down)
+    elif down is not None:
+        thin = down
     else:
-        moments = np.cov(centres.T, aweights=weights)
+        points = np.concatenate([corners, 3 * corners.mean(axis=1, keepdims=True)], axis=1)
+        moments = np.einsum("n,nki,nkj->ij", weights, points, points)
         _, vectors = np.linalg.eigh(moments)
         thin = _snapped(np.asarray(vectors[:, 0], dtype=np.float64))
         if settings.forward in DIRECTIONS:
@@ -64,17 +76,18 @@ def box_axes(triangles: NDArray[np.float32], settings: FileSettings) -> Array:
         along = along - (along @ thin) * thin
         along /= np.linalg.norm(along)
         return np.stack([along, np.cross(thin, along), thin])
-    along = _long_axis(centres, thin)
+    along = _long_axis(corners.reshape(-1, 3), thin)
     return np.stack([along, np.cross(thin, along), thin])
 
 
 def _sample(triangles: NDArray[np.float32]) -> tuple[Array, Array]:
+    """Return corners (n, 3, 3) about the centroid, and areas."""
     chosen = triangles[:: max(1, triangles.shape[0] // _SAMPLE)].astype(np.float64)
     chosen = chosen[np.isfinite(chosen).all(axis=(1, 2))]
     sides = chosen[:, 1:] - chosen[:, :1]
-    weights = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
-    centres = chosen.mean(axis=1)
-    return centres - np.average(centres, axis=0, weights=np.maximum(weights, 1e-30)), weights
+    areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    centre = np.average(chosen.mean(axis=1), axis=0, weights=np.maximum(areas, 1e-30))
+    return chosen - centre, areas
 
 
 def _snapped(vector: Array) -> Array:
@@ -86,16 +99,19 @@ def _snapped(vector: Array) -> Array:
     return axis_vector
 
 
-def _long_axis(centres: Array, thin: Array) -> Array:
+def _long_axis(corners: Array, thin: Array) -> Array:
     """Return the longer side of the smallest rectangle around the points seen along ``thin``."""
-    from scipy.spatial import ConvexHull
+    from scipy.spatial import ConvexHull, QhullError
 
     start = np.eye(3)[int(np.argmin(np.abs(thin)))]
     u = start - (start @ thin) * thin
     u /= np.linalg.norm(u)
     v = np.cross(thin, u)
-    points = np.asarray(np.column_stack([centres @ u, centres @ v]), dtype=np.float64)
-    hull = points[ConvexHull(points).vertices]
+    points = np.asarray(np.column_stack([corners @ u, corners @ v]), dtype=np.float64)
+    try:
+        hull = points[ConvexHull(points).vertices]
+    except (QhullError, ValueError):  # on a line, or too few: any frame will do for a refusal
+        return u
     edges = np.roll(hull, -1, axis=0) - hull
     angles = np.unique(np.mod(np.arctan2(edges[:, 1], edges[:, 0]), math.pi / 2).round(3))
     best = min(angles, key=lambda angle: math.prod(_extents(hull, angle)))
@@ -130,7 +146,7 @@ class Choice:
 def ground_side(seen: View, settings: FileSettings) -> Choice:
     """Return whether the ground is below the view (1) or above it (-1).
 
-    In turn: the side the user names; the side with more channels (by area, narrower than 16 mm, 0.3
+    In turn: the side the user names; the side with more channels (by area, narrower than 50 mm, 0.3
     to 12 mm deep); the side whose rim turns away (rounded edges, toe spring, side walls); for a
     surface without thickness the side its normals point to; else the file's own lower side.
     """
@@ -149,7 +165,7 @@ def _ground_side(seen: View) -> Choice:
     turned = float(np.count_nonzero(seen.facing > 0)) / max(1, np.count_nonzero(covered))
     rise = _rim_rise(below) - _rim_rise(above)
     if not thin:
-        shares = [channel_share(height, seen.spacing) for height in (below, above)]
+        shares = [tread_share(height, seen.spacing) for height in (below, above)]
         most, least = max(shares), min(shares)
         if most > _TREAD_SHARE and most > _TREAD_RATIO * least:
             sign = 1 if shares[0] > shares[1] else -1
@@ -176,14 +192,16 @@ def _file_side(seen: View) -> bool:
     return bool(up[int(np.argmax(np.abs(up)))] > 0)
 
 
-def channel_share(height: Array, spacing: float) -> float:
-    """Return the share of the plan form that is channel: narrower than 16 mm, 0.3 to 12 mm deep."""
-    filled = np.where(np.isfinite(height), height, np.nan)
-    tread = tread_map(filled, spacing)
-    depth = np.where(np.isfinite(filled), filled - tread.base, 0.0)
-    inside = np.isfinite(filled)
+def tread_share(height: Array, spacing: float) -> float:
+    """Return the share of the plan form that is channel: narrower than 50 mm, 0.3 to 12 mm deep."""
+    inside = np.isfinite(height)
+    if not inside.any():
+        return 0.0
+    tread = tread_map(height, spacing)
+    depth = np.where(inside, height - tread.base, 0.0)
     channel = inside & ~tread.land & (depth < 12e-3)
-    return float(np.count_nonzero(channel)) / max(1, np.count_nonzero(inside))
+    channel &= local_width(inside & ~tread.land, spacing) < WIDEST_CHANNEL
+    return float(np.count_nonzero(channel)) / np.count_nonzero(inside)
 
 
 def _rim_rise(height: Array) -> float:
@@ -208,7 +226,7 @@ def toe_end(plan: Mask, settings: FileSettings) -> Choice:
     offset = off_centre(plan, 0)
     if settings.forward == "flip":
         return Choice(-1 if offset > 0 else 1, "Heel end: swapped by the option forward = flip.")
-    if abs(offset) < _OFF_CENTRE:
+    if abs(offset) < OFF_CENTRE:
         return Choice(1, "Assumed: which end is the heel; both look alike.")
     return Choice(
         1 if offset > 0 else -1,
@@ -244,6 +262,45 @@ def foot_of(plan: Mask, spacing: float, settings: FileSettings) -> tuple[str, st
         return "", "The foot is not determined: the plan form is nearly symmetric."
     foot = "right" if bend > 0 else "left"
     return foot, f"Foot: {foot}, from the bend of the plan form."
+
+
+def standing_share(height: Array, spacing: float) -> float:
+    """Return the share of the plan form within 2 mm of the resting plane, gaps bridged."""
+    inside = np.isfinite(height)
+    if not inside.any():
+        return 0.0
+    a, b, c = resting_plane(height, spacing)
+    x, y = (np.arange(count) * spacing for count in height.shape)
+    base = rolled_base(height, spacing, ROLLING_RADIUS, STEEPEST_RIM)
+    above = base - (a * x[:, None] + b * y[None] + c)
+    return float(np.count_nonzero(inside & (above < _NEAR_FLOOR)) / np.count_nonzero(inside))
+
+
+def standing_axes(triangles: NDArray[np.float32], axes: Array, unit: float) -> tuple[Array, Choice]:
+    """Return the frame in which a body too tall for a sole stands best, the ground below it.
+
+    A shoe with its upper or last in one piece: of the four sides along the shoe the one with most
+    of its plan form on the floor.
+    """
+    frames = [
+        axes,
+        axes * [[1], [-1], [-1]],
+        axes[[0, 2, 1]] * [[1], [-1], [1]],
+        axes[[0, 2, 1]] * [[1], [1], [-1]],
+    ]
+    shares = []
+    for frame in frames:
+        low, high = extents(triangles, frame * unit)
+        spacing = float(max(high[:2] - low[:2])) / _COARSE
+        seen = view(triangles, frame * unit, spacing)
+        shares.append(standing_share(seen.lowest, spacing))
+    order = np.argsort(shares)[::-1]
+    best = frames[int(order[0])]
+    if shares[order[0]] > _STANDS * shares[order[1]]:
+        return best, Choice(
+            1, f"Ground side: the side that stands flat, {shares[order[0]]:.0%} of it on the floor."
+        )
+    return best, Choice(1, "Assumed: the ground side is the one that stands flattest.")
 
 
 def resting_plane(height: Array, spacing: float) -> tuple[float, float, float]:

@@ -6,15 +6,19 @@ from pathlib import Path
 
 import numpy as np
 
-from underfoot.core import InputError
+from underfoot.core import DataError, InputError
 from underfoot.core.arrays import Array
 
 from .._kernels.mesh_edges import overlap_lines
 from ..geometry import SoleSurface, centred
-from ..tread_measures import tread_map
+from ..tread_measures import WIDEST_CHANNEL, arch_area, height_noise, tread_map
 from . import orientation
+from .bodies import found_outsole
 from .cleaning import cleaned, plan_outline, without_ledges
-from .read import Mesh, read_mesh
+from .draft import wall_draft
+from .mesh import Mesh
+from .no_sole import TALL, Shape, check_sole, check_surface
+from .read import read_mesh
 from .settings import DIRECTIONS, HEEL, SHARES, FileSettings, length_unit
 from .view import Soundness, View, extents, soundness, view
 
@@ -24,6 +28,10 @@ _LEVEL = math.radians(0.05)  # a tilt below it is that of noise and roundings
 _MOST_TURN = math.radians(12)  # beyond it the sole stands on a stud or on its side
 _OVERLAP_PITCH = 2e-3  # m between the lines on which crossing material is looked for
 _SHEET = 0.05e-3
+_PLAINLY_OFF = 2.0  # off centre across over that along: a piece is broader than long
+_LONGEST_LAG = 1.5e-3  # m: walls stand farther apart
+_POINTS_NOISE = math.sqrt(2.0)  # a height within a face weighs three points: mean sum w^2 = 1/2
+_ARCH = 0.02  # of the plan form: smaller ones are not told
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +47,7 @@ class FileOutsole:
         thickness: Median distance of both sides of the file's body over the land, m; None for a
             surface without thickness.
         whole_length: Of the sole before the region was cut, m.
+        draft: Median angle of the channels' walls from upright, rad; None without walls.
     """
 
     surface: SoleSurface
@@ -51,16 +60,18 @@ class FileOutsole:
     soundness: Soundness
     thickness: float | None
     whole_length: float
+    draft: float | None
 
 
 def outsole_from_file(path: Path | str, settings: FileSettings | None = None) -> FileOutsole:
-    """Return the outsole in a STEP, STL, OBJ or PLY file.
+    """Return the outsole in a file.
 
     Raises:
         InputError, DataError: See ``read_mesh`` and ``outsole_from_mesh``.
     """
     path = Path(path)
-    return outsole_from_mesh(read_mesh(path), settings, name=path.name, where=str(path))
+    unit = settings.unit if settings else "auto"
+    return outsole_from_mesh(read_mesh(path, unit), settings, name=path.name, where=str(path))
 
 
 def outsole_from_mesh(
@@ -68,42 +79,73 @@ def outsole_from_mesh(
 ) -> FileOutsole:
     """Return the outsole that triangles describe.
 
-    Unit, ground side, heel end, foot, resting plane, region and tread are determined in this
-    order; each decision and each repair is a sentence of ``surface.remarks``, guesses begin with
-    "Assumed".
+    Bodies, unit, ground side, heel end, foot, resting plane, region and tread are determined in
+    this order; each decision and each repair is a sentence of ``surface.remarks``, guesses begin
+    with "Assumed".
 
     Raises:
         InputError: No unit makes it a sole; a region it doesn't have; a grid too fine or too
-            coarse.
-        DataError: No face with an area.
+            coarse; no body of the name asked for.
+        DataError: No face with an area; a pair; a shape that is no sole.
     """
     chosen = settings or FileSettings()
     mesh = replace(mesh, triangles=np.ascontiguousarray(mesh.triangles, dtype=np.float32))
-    remarks = list(mesh.remarks)
     sound = soundness(mesh, where)
-    axes = orientation.box_axes(mesh.triangles, chosen)
+    check_surface(sound, where)
+    found = found_outsole(mesh, chosen, where)
+    remarks = [*mesh.remarks, *found.remarks]
+    if len(found.meshes) == 1:
+        return _outsole(found.meshes[0], sound, found.down, remarks, chosen, name, where)
+    shoes = [_outsole(one, sound, found.down, remarks, chosen, name, where) for one in found.meshes]
+    matching = [shoe for shoe in shoes if shoe.foot == chosen.side]
+    if len(matching) != 1:
+        feet = " and ".join(shoe.foot or "not determined" for shoe in shoes)
+        raise DataError(
+            f"the {chosen.side} shoe of the pair can't be told: the feet are {feet}",
+            where=where,
+            remedy="Export one shoe alone",
+        )
+    return matching[0]
+
+
+def _outsole(
+    mesh: Mesh,
+    sound: Soundness,
+    down: Array | None,
+    remarks: list[str],
+    chosen: FileSettings,
+    name: str,
+    where: str,
+) -> FileOutsole:
+    """Return the outsole that the triangles of one sole describe."""
+    remarks = list(remarks)
+    axes = orientation.box_axes(mesh.triangles, chosen, down)
     low, high = extents(mesh.triangles, axes)
     size = high - low
-    unit, unit_remark = length_unit(
+    stated = None if chosen.unit != "auto" else mesh.unit
+    unit, _ = length_unit(
         float(max(size[:2])),
         float(min(size[:2])),
         chosen=chosen.unit,
-        in_file=mesh.unit,
+        in_file=stated,
         where=where,
     )
-    remarks.append(unit_remark)
-    axes, side_remarks = _sides(mesh, axes, unit, chosen)
-    remarks += side_remarks
+    axes, side_remarks = _sides(mesh, axes, unit, chosen, down)
     seen, axes, level_remarks = _level_view(mesh, axes, chosen.spacing)
-    remarks += level_remarks
-    remarks += sound.remarks() + _view_remarks(seen, sound, mesh)
     height, repaired = cleaned(seen.lowest, seen.spacing)
-    remarks += repaired
+    draft = wall_draft(mesh.triangles, seen, height)
     rows, columns = (np.nonzero(np.isfinite(height).any(axis=n))[0] for n in (1, 0))
     part = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
     height = height[part]
     thickness = (seen.highest - seen.lowest)[part]
-    whole_length = rows.size * seen.spacing
+    whole_length, width = rows.size * seen.spacing, height.shape[1] * seen.spacing
+    _, unit_remark = length_unit(
+        whole_length / unit, width / unit, chosen=chosen.unit, in_file=stated or unit, where=where
+    )
+    if stated is None and chosen.unit == "auto":
+        _, unit_remark = length_unit(whole_length / unit, width / unit, where=where)
+    remarks += [unit_remark, *side_remarks, *level_remarks, *sound.remarks()]
+    remarks += [*_view_remarks(seen, sound, mesh), *repaired]
     foot, foot_remark = "", ""
     if whole_length > HEEL[1] or chosen.foot != "auto":
         foot, foot_remark = orientation.foot_of(np.isfinite(height), seen.spacing, chosen)
@@ -112,10 +154,23 @@ def outsole_from_mesh(
         height, thickness = height[:, ::-1], thickness[:, ::-1]
         foot = {"left": "right", "right": "left", "": ""}[foot]
         remarks.append("Mirrored: the other shoe of the pair.")
+    lag = _lag(mesh, unit, chosen.spacing)
+    low, high = extents(mesh.triangles, axes)
+    check_sole(
+        Shape(
+            height=height,
+            spacing=seen.spacing,
+            thickness=float(np.median(thickness[np.isfinite(height)])),
+            tallness=float(high[2] - low[2]),
+            standing=orientation.standing_share(height, seen.spacing),
+            noise=height_noise(height),
+        ),
+        where,
+    )
     height, part, region_remarks = _region(height, seen.spacing, chosen, where)
     thickness = thickness[part]
     remarks += region_remarks
-    surface, tread_remarks = _surface(height, seen.spacing, name)
+    surface, tread_remarks = _surface(height, seen.spacing, name, lag)
     remarks += tread_remarks
     body = float(np.median(thickness[surface.land]))
     return FileOutsole(
@@ -129,15 +184,34 @@ def outsole_from_mesh(
         soundness=sound,
         thickness=body if body > _SHEET else None,
         whole_length=whole_length,
+        draft=draft,
     )
 
 
-def _sides(mesh: Mesh, axes: Array, unit: float, chosen: FileSettings) -> tuple[Array, list[str]]:
-    """Return the axes forward, left, up (rows, m per unit of the file) and how they were tread."""
+def _lag(mesh: Mesh, unit: float, spacing: float) -> int:
+    """Return how many cells apart heights come from different corners of the mesh."""
+    sample = mesh.triangles[:: max(1, mesh.triangles.shape[0] // 20_000)]
+    edges = np.linalg.norm(sample[:, 1] - sample[:, 0], axis=1)
+    edges = edges[np.isfinite(edges)]
+    apart = float(np.median(edges)) * unit if edges.size else 0.0
+    return max(1, math.ceil(min(apart, _LONGEST_LAG) / spacing))
+
+
+def _sides(
+    mesh: Mesh, axes: Array, unit: float, chosen: FileSettings, down: Array | None
+) -> tuple[Array, list[str]]:
+    """Return the axes forward, left, up (rows, m per unit of the file) and how they were found."""
     low, high = extents(mesh.triangles, axes * unit)
+    ground = None
+    if down is not None:
+        ground = orientation.Choice(-1, "Ground side: away from the rest of the file.")
+    elif chosen.down == "auto" and high[2] - low[2] > TALL * (high[1] - low[1]):
+        axes, ground = orientation.standing_axes(mesh.triangles, axes, unit)
+        low, high = extents(mesh.triangles, axes * unit)
     coarse = max(float(max(high[:2] - low[:2])) / _COARSE, chosen.spacing)
     seen = view(mesh.triangles, axes * unit, coarse)
-    ground = orientation.ground_side(seen, chosen)
+    if ground is None:
+        ground = orientation.ground_side(seen, chosen)
     plan = seen.covered
     along, across, thin = axes
     if ground.sign < 0:
@@ -145,7 +219,8 @@ def _sides(mesh: Mesh, axes: Array, unit: float, chosen: FileSettings) -> tuple[
     size = [float(high[n] - low[n]) for n in range(2)]
     square = max(size) < _NEARLY_SQUARE * min(size)
     free = chosen.forward not in DIRECTIONS and square
-    if free and abs(orientation.off_centre(plan, 1)) > abs(orientation.off_centre(plan, 0)):
+    offsets = [abs(orientation.off_centre(plan, axis)) for axis in (0, 1)]
+    if free and offsets[1] > _PLAINLY_OFF * max(offsets[0], orientation.OFF_CENTRE):
         along, across, plan = across, -along, plan.T[:, ::-1]
     toe = orientation.toe_end(plan, chosen)
     if toe.sign < 0:
@@ -188,8 +263,8 @@ def _level_view(mesh: Mesh, axes: Array, spacing: float) -> tuple[View, Array, l
     a, b, c = orientation.resting_plane(height, spacing)
     centre = [(n - 1) / 2 * spacing for n in height.shape]
     level = a * centre[0] + b * centre[1] + c
-    lifted = View(
-        seen.axes, seen.first, spacing, seen.lowest - level, seen.highest - level, seen.facing
+    lifted = replace(
+        seen, lowest=seen.lowest - level, highest=seen.highest - level, level=float(level)
     )
     return lifted, axes, remarks
 
@@ -264,22 +339,30 @@ def _region(
     return height[block], block, remarks
 
 
-def _surface(height: Array, spacing: float, name: str) -> tuple[SoleSurface, list[str]]:
-    tread = tread_map(height, spacing)
+def _surface(height: Array, spacing: float, name: str, lag: int) -> tuple[SoleSurface, list[str]]:
+    tread = tread_map(height, spacing, lag=lag)
     lugs = tread.tread_depth[tread.tread_depth > 0]
-    deep = float(np.percentile(lugs, 90)) if lugs.size else 0.0
-    height, cut_open, remarks = without_ledges(height, tread.land, spacing, deep)
+    deep = float(np.median(lugs)) if lugs.size else 0.0
+    height, cut_open, remarks = without_ledges(height, tread, spacing, deep)
     if remarks or cut_open.any() or not np.isfinite(height[tread.land]).all():
-        tread = tread_map(height, spacing, channels=cut_open)
+        tread = tread_map(height, spacing, channels=cut_open, lag=lag)
     inside = np.isfinite(height)
     x = (np.arange(height.shape[0], dtype=np.float64) + 0.5) * spacing
     y = centred(height.shape[1], spacing)
     remarks.append(
-        f"Channels are hollows of {tread.level * 1e3:.2g} mm and more, narrower than 16 mm."
+        f"Land is what stands within {tread.level * 1e3:.2g} mm of the floor side; channels are "
+        "deeper."
     )
     if tread.noise > 10e-6:
+        points = _POINTS_NOISE * tread.noise
         remarks.append(
-            f"The heights carry noise of {tread.noise * 1e6:.0f} um (standard deviation)."
+            f"The points of the scan carry noise of {points * 1e6:.0f} um (standard deviation)."
+        )
+    arch = arch_area(tread, inside, spacing)
+    if arch > _ARCH * np.count_nonzero(inside) * spacing**2:
+        remarks.append(
+            f"Hollows wider than {WIDEST_CHANNEL * 1e3:.0f} mm ({arch * 1e4:.3g} cm², an arch) are "
+            "no land; they don't count in depth and width of the channels."
         )
     surface = SoleSurface(
         x=x,

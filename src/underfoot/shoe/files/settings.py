@@ -29,6 +29,9 @@ class FileSettings:
         region: "whole", "heel" (rear 30 % of a whole sole) or "forepart" (front 45 %).
         region_length: Length of the region, m; None for these shares.
         spacing: Of the height map, m.
+        solid: Name of the body that is the outsole; None to find it.
+        side: Which shoe of a pair in one file, "left" or "right"; "auto" refuses a pair.
+        cut_floor: Cut a plane of floor that reaches hardly beyond the sole.
     """
 
     unit: str = "auto"
@@ -39,6 +42,9 @@ class FileSettings:
     region: str = "whole"
     region_length: float | None = None
     spacing: float = 0.25e-3
+    solid: str | None = None
+    side: str = "auto"
+    cut_floor: bool = False
 
     def __post_init__(self) -> None:
         allowed = {
@@ -47,6 +53,7 @@ class FileSettings:
             "forward": ("auto", "flip", *DIRECTIONS),
             "foot": ("auto", *FEET),
             "region": REGIONS,
+            "side": ("auto", *FEET),
         }
         for name, known in allowed.items():
             if getattr(self, name) not in known:
@@ -75,13 +82,21 @@ SOLE = (0.150, 0.350)
 """Length of a whole sole, m."""
 HEEL = (0.040, 0.110)
 """Length of a heel piece, m."""
+PIECE = (0.110, 0.150)
+"""Length of a forepart or of a small child's sole, m."""
 SLENDER = 1.7
 """A whole sole is longer than this many widths, a heel piece shorter."""
-_POSSIBLE = (0.020, 0.500)  # m: beyond it a unit chosen by hand is refused
+_SHORTEST = 0.020  # m: below it a unit chosen by hand is refused
 
 
 def length_unit(
-    length: float, width: float, *, chosen: str = "auto", in_file: float | None = None, where: str
+    length: float,
+    width: float,
+    *,
+    chosen: str = "auto",
+    in_file: float | None = None,
+    where: str,
+    longest: float = 0.5,
 ) -> tuple[float, str]:
     """Return the file's unit in m and a remark on how it was determined.
 
@@ -89,6 +104,7 @@ def length_unit(
         length, width: Longest extent and the one across, in the file's unit.
         chosen: Unit the user names, or "auto".
         in_file: Unit stated in the file (STEP), m.
+        longest: Length beyond which a unit that is stated or chosen is refused, m.
 
     Raises:
         InputError: No unit makes it as long as a sole, or the chosen unit makes it absurd.
@@ -97,11 +113,11 @@ def length_unit(
     if chosen != "auto":
         unit, by, origin = UNITS[chosen], f"in {chosen}", f"{chosen} (chosen)"
     if unit is not None:
-        if not _POSSIBLE[0] <= length * unit <= _POSSIBLE[1]:
+        if not _SHORTEST <= length * unit <= longest:
             raise InputError(
                 f"{by} the sole is {_length(length * unit)} long",
                 where=where,
-                allowed="20 mm to 500 mm",
+                allowed=f"20 mm to {_length(longest)}",
                 remedy=_suggestion(length, width),
             )
         return unit, f"Unit: {origin}; length {_length(length * unit)}."
@@ -111,13 +127,21 @@ def length_unit(
         raise InputError(
             f"no unit makes it a sole: its length of {length:.4g} would be {lengths}",
             where=where,
-            allowed="150 to 350 mm for a sole, 40 to 110 mm for a heel piece",
+            allowed="110 to 350 mm for a sole or forepart, 40 to 110 mm for a heel piece",
             remedy="State the unit if the length is right, or check that the file holds one "
             "outsole alone",
         )
     name = likely[0]
     metres = length * UNITS[name]
-    kind = "sole" if metres >= SOLE[0] else "heel piece"
+    kind = next(
+        name
+        for name, (_, high) in (
+            ("heel piece", HEEL),
+            ("forepart or small sole", PIECE),
+            ("sole", SOLE),
+        )
+        if metres <= high
+    )
     remark = (
         f"Assumed: unit {name} (the file states none); length {_length(metres)}, that of a {kind}."
     )
@@ -127,7 +151,7 @@ def length_unit(
 
 
 def _likely(length: float, width: float) -> list[str]:
-    ranges = (SOLE, HEEL) if length > SLENDER * width else (HEEL, SOLE)
+    ranges = (SOLE, PIECE, HEEL) if length > SLENDER * width else (HEEL, PIECE, SOLE)
     return [
         name
         for low, high in ranges
@@ -136,9 +160,18 @@ def _likely(length: float, width: float) -> list[str]:
     ]
 
 
+def likely_unit(length: float, width: float) -> float:
+    """Return the unit (m) that makes it as long as a sole, else one that makes it 280 mm."""
+    likely = _likely(length, width)
+    return UNITS[likely[0]] if likely else 0.28 / length
+
+
 def _suggestion(length: float, width: float) -> str | None:
     likely = _likely(length, width)
-    return f"It would be {_length(length * UNITS[likely[0]])} in {likely[0]}" if likely else None
+    if not likely:
+        return None
+    name = likely[0]
+    return f"It would be {_length(length * UNITS[name])} in {name}: choose it with --unit {name}"
 
 
 def _length(metres: float) -> str:

@@ -12,7 +12,7 @@ from underfoot.core.arrays import Array, Mask
 from .._kernels.height_buffer import extents as _extents
 from .._kernels.height_buffer import height_buffer
 from .._kernels.mesh_edges import shared_edges, soup_keys
-from .read import Mesh
+from .mesh import Mesh
 
 _MOST_CELLS = 60_000_000
 
@@ -20,6 +20,8 @@ _MOST_CELLS = 60_000_000
 @dataclass(frozen=True, slots=True)
 class View:
     """Lowest and highest surface over cells of a plane, in the frame ``axes`` (rows, m per unit).
+
+    Heights count from ``level`` (m) of that frame.
 
     ``facing`` is -1 where the lowest surface has its normal down, 1 up, 0 where there is none.
     """
@@ -30,6 +32,7 @@ class View:
     lowest: Array
     highest: Array
     facing: NDArray[np.int8]
+    level: float = 0.0
 
     @property
     def covered(self) -> Mask:

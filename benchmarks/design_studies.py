@@ -1,0 +1,194 @@
+"""Design studies: worker start, overhead a case, scaling, a killed Dask worker, surrogate, front.
+
+Ratios within one run. The whole takes about 20 minutes of two quiet cores; parts by name:
+``python -m benchmarks design_studies`` with UNDERFOOT_BENCH="overhead scaling".
+"""
+
+from __future__ import annotations
+
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import psutil
+
+from underfoot.compute.run import run
+from underfoot.explore import Study, StudyResult
+from underfoot.explore.effects import surrogates
+from underfoot.explore.plan import read_plan
+from underfoot.explore.status import study_status
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+CASES = int(os.environ.get("UNDERFOOT_BENCH_CASES", "1000"))
+SIDE = int(os.environ.get("UNDERFOOT_BENCH_SIDE", "15"))
+QUICK = """
+base = "work_shoe_untreaded_glycerol.toml"
+[set]
+"numerics.quick_grid_spacing" = "2 mm"
+"numerics.grid_spacing" = "2 mm"
+[vary]
+"motion.speed" = { from = "0.3 m/s", to = "0.7 m/s" }
+"shoe.material.shore_a" = { from = 50, to = 70 }
+[method]
+budget = %d
+"""
+FIVE = """
+base = "work_shoe_full_tread_glycerol.toml"
+[vary]
+"shoe.tread.depth" = { from = "0.5 mm", to = "4 mm" }
+"shoe.tread.lug_width" = { from = "3 mm", to = "8 mm" }
+"shoe.tread.channel_width" = { from = "2.05 mm", to = "4 mm" }
+"contaminant.viscosity" = { from = "50 cP", to = "300 cP" }
+"shoe.material.shore_a" = { from = 50, to = 70 }
+[outputs]
+maximise = ["cof"]
+minimise = ["fluid_load"]
+[method]
+kind = "sensitivity"
+budget = 100
+"""
+FRONT = """
+base = "work_shoe_full_tread_glycerol.toml"
+[set]
+"numerics.quick_grid_spacing" = "1.25 mm"
+"numerics.grid_spacing" = "1.25 mm"
+"numerics.tread_positions" = 2
+[vary]
+"shoe.tread.depth" = { from = "1 mm", to = "4 mm"%s }
+"shoe.tread.channel_width" = { from = "2.5 mm", to = "5 mm"%s }
+[outputs]
+maximise = ["cof"]
+minimise = ["rubber_volume"]
+[method]
+%s
+"""
+
+
+def study(text: str, folder: str) -> Study:
+    """Return a study of the examples in a folder."""
+    return Study(read_plan(text, EXAMPLES), folder)
+
+
+def numbers(result: StudyResult) -> dict[str, tuple[object, ...]]:
+    """Return everything that a study computed, by key of the case."""
+    return {
+        key: (record.numbers, record.spreads, record.draws.tolist())
+        for key, record in result.records.items()
+    }
+
+
+def ready() -> Iterator[str]:
+    """Yield the CPU time until a worker is ready for its first case."""
+    code = "import time, underfoot.explore.computing; print(time.process_time())"
+    runs = [
+        float(subprocess.run([sys.executable, "-c", code], capture_output=True, check=True).stdout)
+        for _ in range(3)
+    ]
+    yield f"worker ready after {min(runs):.2f} s of CPU"
+
+
+def overhead() -> Iterator[str]:
+    """Yield CPU and time that a case costs beyond its bare solve, and how busy workers are."""
+    plan = read_plan(QUICK % CASES, EXAMPLES)
+    cases = [plan.base.replace(plan.design_changes(p)) for p in plan.sampled_points(24)]
+    run(cases[0], quick=True)
+    began = time.process_time()
+    for case in cases:
+        run(case, quick=True)
+    bare = (time.process_time() - began) / len(cases)
+    with tempfile.TemporaryDirectory() as folder:
+        before = _cpu()
+        began = time.monotonic()
+        done = study(QUICK % CASES, folder)
+        done.run(workers=2)
+        spent, wall = (_cpu() - before) / CASES, time.monotonic() - began
+        status = study_status(done)
+    yield f"{CASES} cases on 2 workers: {wall:.0f} s, workers {status.busy:.1%} busy"
+    yield f"CPU a case {spent:.3f} s, bare solve {bare:.3f} s: {spent / bare - 1:+.1%}"
+
+
+def scaling() -> Iterator[str]:
+    """Yield how much faster two workers are than one."""
+    count, walls = max(CASES // 10, 12), []
+    for workers in (1, 2):
+        with tempfile.TemporaryDirectory() as folder:
+            began = time.monotonic()
+            # one worker as a process too: as `study work` on a machine of its own
+            study(QUICK % count, folder).run(workers=workers)
+            walls.append(time.monotonic() - began)
+    one, two = walls
+    yield f"{count} cases: {one:.1f} s on 1 core, {two:.1f} s on 2, {one / two:.2f} times as fast"
+
+
+def dask() -> Iterator[str]:
+    """Yield whether a cluster of 4 that loses a worker gives what one process gives."""
+    count = min(CASES, 48)
+    with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as other:
+        alone = numbers(study(QUICK % count, one).run(workers=1))
+        threading.Thread(target=_kill_a_worker, args=(other,), daemon=True).start()
+        cluster = numbers(study(QUICK % count, other).run(on="dask", workers=4))
+    yield f"Dask, 4 workers, one killed: {len(cluster)} of {count}, equal {alone == cluster}"
+
+
+def surrogate() -> Iterator[str]:
+    """Yield the error of surrogates over five inputs."""
+    with tempfile.TemporaryDirectory() as folder:
+        result = study(FIVE, folder).run()
+    for one in surrogates(result, result.plan.goals):
+        yield f"{one.name}: {one.words}"
+
+
+def front() -> Iterator[str]:
+    """Yield the share of a brute-force grid's hypervolume that an optimisation finds."""
+    import moocore
+
+    with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as other:
+        steps = (f", steps = {SIDE}",) * 2
+        every = study(FRONT % (*steps, 'design = "grid"'), one).run()
+        method = f'kind = "optimise"\nbudget = {4 * SIDE}\nbatch = 6'
+        found = study(FRONT % ("", "", method), other).run()
+    brute, front = (r.goal_values(r.front) * r.plan.signs for r in (every, found))
+    all_ = every.goal_values(every.designs) * every.plan.signs
+    low, high = all_.min(axis=0), all_.max(axis=0)
+    volumes = [
+        moocore.hypervolume((each - low) / (high - low), ref=[1.1, 1.1]) for each in (brute, front)
+    ]
+    yield (
+        f"front by {len(found.designs)} runs: {volumes[1] / volumes[0]:.1%} of the hypervolume of "
+        f"a grid of {len(every.designs)}"
+    )
+
+
+def _cpu() -> float:
+    own, children = (
+        resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+    )
+    return own.ru_utime + own.ru_stime + children.ru_utime + children.ru_stime
+
+
+def _kill_a_worker(folder: str) -> None:
+    """Kill one worker of the cluster once some cases are finished."""
+    while len(list(Path(folder).glob("cases-*.jsonl"))) == 0:
+        time.sleep(0.2)
+    workers = [
+        process
+        for process in psutil.Process().children(recursive=True)
+        if "spawn_main" in " ".join(process.cmdline())
+    ]
+    workers[0].kill()
+
+
+PARTS = {each.__name__: each for each in (ready, overhead, scaling, dask, surrogate, front)}
+
+
+def main() -> None:
+    """Print every part."""
+    for name in os.environ.get("UNDERFOOT_BENCH", " ".join(PARTS)).split():
+        for line in PARTS[name]():
+            print(line, flush=True)

@@ -1,0 +1,220 @@
+"""What people wait for: runs of a treaded shoe, previews, positions of a tread, a whole sole.
+
+    python -m benchmarks sole_jobs
+
+The fully treaded work shoe in 90 % glycerol. Errors are of the load on the film; reference of a
+march is one of four times the time steps and a quarter of the tolerance.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from benchmarks._table import Row, printed
+
+CASE = "examples/work_shoe_full_tread_glycerol.toml"
+THREADS = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
+WHOLE = {
+    "shoe.heel.length": "300 mm",
+    "shoe.heel.width": "100 mm",
+    "shoe.heel.rear_radius": "40 mm",
+    "motion.shoe_angle": "13 deg",
+    "motion.normal_force": "400 N",
+}
+CHANGES: tuple[Mapping[str, Any], ...] = (
+    {"contaminant.viscosity": "150 cP"},
+    {"motion.speed": "0.5 m/s"},
+    {"motion.normal_force": "600 N"},
+    {"shoe.tread.depth": "2 mm"},
+    {"shoe.material.shore_a": 54},
+    {"motion.shoe_angle": "9 deg"},
+)
+PHASES = 8
+
+
+def march(spacing: float, changes: Mapping[str, Any], finer: int = 1) -> dict[str, float]:
+    """Return what one march took, in this process."""
+    from underfoot.case import Case
+    from underfoot.compute.contact import solver_settings
+    from underfoot.compute.resolve import resolved
+    from underfoot.compute.sole import sole_map
+    from underfoot.sole_contact.compliance import compliance_within
+    from underfoot.sole_contact.solver import solve_sliding
+
+    case = Case.load(CASE).replace(changes)
+    began = time.process_time()
+    context, sole = resolved(case), sole_map(case, spacing)
+    body = case.compliance.build(context, sole)
+    settings = solver_settings(case)
+    settings = replace(
+        settings,
+        tolerance=settings.tolerance / finer,
+        time_resolution=settings.time_resolution * finer,
+    )
+    solved = solve_sliding(
+        sole,
+        body,
+        case.rough_contact.build(context),
+        viscosity=case.film.build(context),
+        speed=case.motion.speed,
+        normal_force=case.motion.normal_force,
+        settings=settings,
+    )
+    cpu, counts = time.process_time() - began, solved.counts
+    # the transforms: one product a GMRES iteration and a Newton step on the box of the wet cells,
+    # one a time step on the whole grid
+    pressure = solved.total_pressure
+    rows, columns = (np.flatnonzero(solved.wet.any(axis=axis)) for axis in (1, 0))
+    box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+    of_box = _seconds(compliance_within(body, box).apply, pressure[box])
+    of_grid = _seconds(body.apply, pressure)
+    return {
+        "cpu": cpu,
+        "limit": (counts.krylov + counts.newton) * of_box + counts.time_steps * of_grid,
+        "memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
+        "cells": float(sole.clearance.size),
+        "newton": float(counts.newton),
+        "fluid_load": solved.fluid_load,
+    }
+
+
+def warm() -> dict[str, float]:
+    """Return what a second quick run takes in one process, and phases over one march."""
+    from underfoot.case import Case
+    from underfoot.compute.run import run
+
+    case = Case.load(CASE)
+    run(case, quick=True)
+
+    def taken(positions: int) -> float:
+        began = time.process_time()
+        run(case.replace("numerics.tread_positions", positions), quick=True)
+        return time.process_time() - began
+
+    return {"quick": taken(4), "one": taken(1), "phases": taken(2 * PHASES)}
+
+
+def previews() -> dict[str, float]:
+    """Return the mean cost of a preview, and the worst errors against marches, in percent."""
+    from underfoot.case import Case
+    from underfoot.compute.continuation import Continuation
+
+    case = Case.load(CASE)
+    solved = Continuation(case)
+    solved.continued({})
+    seconds, cof, load = [], 0.0, 0.0
+    for change in CHANGES:
+        seen, full = solved.continued(change), Continuation(case.replace(change)).values
+        seconds.append(seen.seconds)
+        cof = max(cof, 100 * (seen.values["cof"] / full["cof"] - 1), key=abs)
+        load = max(load, 100 * (seen.values["fluid_load"] / full["fluid_load"] - 1), key=abs)
+    return {"cpu": sum(seconds) / len(seconds), "worst": max(seconds), "cof": cof, "load": load}
+
+
+def command(*options: str) -> tuple[float, float]:
+    """Return processor time and peak memory (MB) of ``underfoot run`` as a process."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run(
+            [
+                sys.executable,
+                "-c",
+                "from underfoot.cli import main; main()",
+                "run",
+                CASE,
+                "--out",
+                f"{folder}/out",
+                *options,
+            ],
+            env=os.environ | THREADS,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            check=True,
+        )
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime - before.ru_utime, after.ru_maxrss / 1024
+
+
+def separate(function: str, *given: object) -> dict[str, float]:
+    """Return what a function of this module returns in a process of its own."""
+    code = (
+        f"import json; from benchmarks.sole_jobs import {function}; "
+        f"print(json.dumps({function}(*{given!r})))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        env=os.environ | THREADS,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def rows() -> list[Row]:
+    """Return the jobs of the sole solver."""
+    # the smaller process first: a peak of children is that of the largest so far
+    quick_run, run = command("--quick"), command("--no-advice")
+    found = [Row("run, quick, cold process", *quick_run), Row("run, cold process", *run)]
+    within = separate("warm")
+    found.append(Row("run, quick, warm process", within["quick"]))
+    seen = separate("previews")
+    found.append(
+        Row("preview of a change", seen["cpu"], error=seen["load"], reference="its march, worst")
+    )
+    found.append(
+        Row(
+            f"{PHASES} positions of the tread, quick",
+            within["phases"],
+            limit=None,
+        )
+    )
+    found.append(Row("one position of the tread, quick", within["one"]))
+    marches = {side: separate("march", side, {}) for side in (1e-3, 0.6e-3)}
+    coarse, fine = marches.values()
+    growth = math.log(fine["cpu"] / coarse["cpu"]) / math.log(fine["cells"] / coarse["cells"])
+    for side, one in marches.items():
+        finer = separate("march", side, {}, 4)
+        found.append(
+            Row(
+                f"march at {side * 1e3:g} mm",
+                one["cpu"],
+                one["memory"],
+                one["limit"],
+                growth if one is fine else None,
+                100 * (one["fluid_load"] / finer["fluid_load"] - 1),
+                "time and tolerance 4 times finer",
+            )
+        )
+    whole = separate("march", 0.6e-3, WHOLE)
+    found.append(Row("march of a 300 mm sole at 0.6 mm", *_cost(whole)))
+    return found
+
+
+def main() -> None:
+    """Print the table of these jobs."""
+    print(printed(rows()))
+
+
+def _cost(one: Mapping[str, float]) -> tuple[float, float, float]:
+    return one["cpu"], one["memory"], one["limit"]
+
+
+def _seconds(function: Any, argument: Any, times: int = 20) -> float:
+    function(argument)
+    began = time.process_time()
+    for _ in range(times):
+        function(argument)
+    return (time.process_time() - began) / times

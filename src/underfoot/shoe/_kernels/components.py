@@ -1,0 +1,71 @@
+"""Bodies of a triangle soup: triangles that share corners, directly or through others."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core.compiled import njit
+
+from .mesh_edges import mixed
+
+MOST_FACES = 2_000_000
+"""Bodies of a larger mesh are not looked for: scans are one surface."""
+
+
+def components(triangles: NDArray[np.float32]) -> tuple[NDArray[np.int32], int]:
+    """Return the number of the body of each triangle and how many there are.
+
+    Corners are the same when their coordinates are.
+    """
+    bits = (triangles + np.float32(0.0)).view(np.uint32)  # a negative zero has other bits
+    roots = _roots(bits.reshape(-1, 3))
+    _, numbers = np.unique(roots, return_inverse=True)
+    return np.asarray(numbers, dtype=np.int32).ravel(), int(numbers.max(initial=-1)) + 1
+
+
+@njit(cache=True)
+def _roots(corners: NDArray[np.uint32]) -> NDArray[np.int32]:
+    """Return, per triangle, the corner that stands for its body: a forest over hashed corners."""
+    count = corners.shape[0]
+    size = 1
+    while size < 2 * count:
+        size *= 2
+    table = np.full(size, -1, dtype=np.int32)
+    parent = np.empty(count, dtype=np.int32)
+    for n in range(count):
+        key = np.uint64(corners[n, 0]) | (np.uint64(corners[n, 1]) << np.uint64(32))
+        key = mixed(key + np.uint64(0x9E3779B97F4A7C15))
+        key = mixed(key ^ (np.uint64(corners[n, 2]) + np.uint64(0x632BE59BD9B4E019)))
+        place = np.int64(key & np.uint64(size - 1))
+        while True:
+            k = table[place]
+            if k < 0:
+                table[place] = n
+                parent[n] = n
+                break
+            if (
+                corners[k, 0] == corners[n, 0]
+                and corners[k, 1] == corners[n, 1]
+                and corners[k, 2] == corners[n, 2]
+            ):
+                parent[n] = k
+                break
+            place = (place + 1) & (size - 1)
+    for n in range(0, count, 3):
+        for k in range(1, 3):
+            a, b = _root(parent, n), _root(parent, n + k)
+            if a < b:
+                parent[b] = a
+            elif b < a:
+                parent[a] = b
+    roots = np.empty(count // 3, dtype=np.int32)
+    for n in range(count // 3):
+        roots[n] = _root(parent, 3 * n)
+    return roots
+
+
+@njit(cache=True, inline="always")
+def _root(parent: NDArray[np.int32], n: int) -> int:
+    while parent[n] != n:
+        parent[n] = parent[parent[n]]
+        n = parent[n]
+    return n

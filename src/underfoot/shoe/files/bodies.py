@@ -1,0 +1,337 @@
+"""Which bodies of a file are the outsole: by name, by place, by what carries the tread."""
+
+import re
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from underfoot.core import DataError, unknown_name
+from underfoot.core.arrays import Array, Mask
+
+from .._kernels.components import MOST_FACES, components
+from .floor import without_floor
+from .mesh import Mesh
+from .orientation import box_axes, tread_share
+from .settings import FileSettings, likely_unit
+from .view import view
+
+OUTSOLE_NAMES = re.compile(
+    r"out.?sole|tread|rubber|lauf.?sohle|semelle|suela|suola|solado|bottom|^sole", re.IGNORECASE
+)
+OTHER_NAMES = re.compile(
+    r"mid.?sole|in.?sole|sock.?liner|upper|shaft|leisten|\blast\b|horma|strobel|floor|ground|"
+    r"boden|\beva\b|foam|lace|tongue|zwischen.?sohle|brand.?sohle|einlege",
+    re.IGNORECASE,
+)
+_PLAINLY = re.compile(r"out.?sole|lauf.?sohle", re.IGNORECASE)
+_STRAY_REACH = 3.0  # sizes of the box around nearly all corners
+_STRAY_SHARE = 1e-3  # of the corners
+_BIG = (0.5, 0.4)  # of the longest body's extent along and across
+_SLENDER = 3.0  # height over width: a support, no lug
+_SAME = 0.03  # relative difference of the sizes of a pair
+_PARTED = 0.3  # of two bodies' heights that don't overlap: less is bodies that cross
+_SHEET = 1e-3  # of the length: a body thinner than it is a surface
+_CLEAR, _CLEARER = 0.03, 1.5  # share of channels that tells the ground's side, and its ratio
+_COARSE = 300  # cells along a body
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """The triangles of the outsole, and what told them.
+
+    Parameters:
+        meshes: One, or both shoes of a pair.
+        down: Direction of the ground in the file's axes, None if the bodies don't tell.
+        remarks: Sentences.
+    """
+
+    meshes: tuple[Mesh, ...]
+    down: Array | None
+    remarks: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Bodies:
+    """Extents (m, 3) of the bodies along ``axes``, their names and areas."""
+
+    axes: Array
+    names: tuple[str, ...]
+    low: Array
+    high: Array
+    area: Array
+
+    def part(self, keep: Mask) -> "_Bodies":
+        names = tuple(name for name, kept in zip(self.names, keep, strict=True) if kept)
+        return _Bodies(self.axes, names, self.low[keep], self.high[keep], self.area[keep])
+
+    @property
+    def size(self) -> Array:
+        return self.high - self.low
+
+
+def found_outsole(mesh: Mesh, settings: FileSettings, where: str) -> Found:
+    """Return the triangles of the outsole among the bodies of a file.
+
+    In turn: corners far off all others are left out; a floor plane is cut; the bodies that the
+    user or their names tell; slender bodies (print supports) are left out; a pair is refused or
+    given as both; of bodies stacked one on the other (outsole, midsole, last) the one at the end
+    of the stack whose outer side carries the tread, with the small ones on it.
+
+    Raises:
+        InputError: No body of the name asked for.
+        DataError: A pair without a choice.
+    """
+    mesh, remarks = _without_strays(mesh)
+    mesh, away, floor_remarks = without_floor(mesh, settings)
+    remarks += floor_remarks
+    if mesh.body is None and mesh.triangles.shape[0] <= MOST_FACES:
+        body, count = components(mesh.triangles)
+        mesh = replace(mesh, body=body, bodies=("",) * count)
+    if mesh.body is None or np.ptp(mesh.body) == 0:
+        _refuse_unknown(mesh, settings, where)
+        return Found((mesh,), away, tuple(remarks))
+    bodies = _measured(mesh)
+    keep, told = _named(bodies, settings, where)
+    remarks += told
+    others = ~keep
+    keep, told = _without_supports(bodies, keep)
+    remarks += told
+    down = None
+    if settings.solid is None:
+        pair = _pair(bodies, keep)
+        if pair is not None:
+            return _of_pair(mesh, pair, settings, where, remarks)
+        keep, down, told = _without_stack(mesh, bodies, keep, settings)
+        remarks += told
+    if down is None and others.any() and keep.any():
+        down = _away(bodies, keep, others)
+    return Found((_part(mesh, keep),), away if down is None else down, tuple(remarks))
+
+
+def _part(mesh: Mesh, keep: Mask) -> Mesh:
+    assert mesh.body is not None
+    if keep.all():
+        return mesh
+    chosen = keep[mesh.body]
+    return replace(mesh, triangles=mesh.triangles[chosen], body=mesh.body[chosen])
+
+
+def _without_strays(mesh: Mesh) -> tuple[Mesh, list[str]]:
+    corners = mesh.triangles.reshape(-1, 3)
+    sample = corners[:: max(1, corners.shape[0] // 100_000)]
+    sample = sample[np.isfinite(sample).all(axis=1)]
+    if sample.shape[0] < 1000:
+        return mesh, []
+    low, high = np.percentile(sample, (1, 99), axis=0)
+    reach = _STRAY_REACH * float((high - low).max())
+    off = ((corners < low - reach) | (corners > high + reach)).any(axis=1)
+    count = int(np.count_nonzero(off))
+    if count == 0 or count > _STRAY_SHARE * corners.shape[0]:
+        return mesh, []
+    faces = off.reshape(-1, 3).any(axis=1)
+    places = np.unique(corners[off], axis=0)
+    place = ", ".join(f"{value:.6g}" for value in places[0])
+    remark = (
+        f"{places.shape[0]} stray corner{'s' if places.shape[0] > 1 else ''} far off all others, "
+        f"{'the first ' if places.shape[0] > 1 else ''}at ({place}) in the file, left out with "
+        f"{np.count_nonzero(faces)} faces."
+    )
+    body = None if mesh.body is None else mesh.body[~faces]
+    return replace(mesh, triangles=mesh.triangles[~faces], body=body), [remark]
+
+
+def _measured(mesh: Mesh) -> _Bodies:
+    """Return extents and areas; unnamed bodies are named by their rank in area."""
+    assert mesh.body is not None
+    axes = box_axes(mesh.triangles, FileSettings())
+    count = len(mesh.bodies)
+    along = mesh.triangles @ axes.T.astype(np.float32)
+    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+    np.minimum.at(low, mesh.body, along.min(axis=1))
+    np.maximum.at(high, mesh.body, along.max(axis=1))
+    low, high = (np.where(np.isfinite(low), each, 0.0) for each in (low, high))  # empty bodies
+    sides = along[:, 1:] - along[:, :1]
+    areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) / 2
+    area = np.bincount(mesh.body, areas, minlength=count).astype(np.float64)
+    rank = np.empty(count, dtype=int)
+    rank[np.argsort(-area)] = np.arange(1, count + 1)
+    names = tuple(name or f"body {n}" for name, n in zip(mesh.bodies, rank, strict=True))
+    return _Bodies(axes, names, low, high, area)
+
+
+def _refuse_unknown(mesh: Mesh, settings: FileSettings, where: str) -> None:
+    names = [name or "body 1" for name in mesh.bodies[:1]]
+    if settings.solid is not None and not _matching(tuple(names), settings.solid).any():
+        raise unknown_name("body", settings.solid, names, where=where)
+
+
+def _matching(names: tuple[str, ...], wanted: str) -> Mask:
+    folded = [name.casefold() for name in names]
+    wanted = wanted.casefold()
+    exact = np.array([wanted in (name, name.rsplit("/", 1)[-1]) for name in folded])
+    return exact if exact.any() else np.array([wanted in name for name in folded])
+
+
+def _named(bodies: _Bodies, settings: FileSettings, where: str) -> tuple[Mask, list[str]]:
+    """Return the bodies that the user or their names tell to be outsole; all if none are told."""
+    there = bodies.area > 0
+    if settings.solid is not None:
+        keep = _matching(bodies.names, settings.solid) & there
+        if not keep.any():
+            named = {name for name, is_there in zip(bodies.names, there, strict=True) if is_there}
+            raise unknown_name("body", settings.solid, named, where=where)
+        return keep, [_taken(bodies, keep, there, "as chosen")]
+    plainly = np.array([bool(_PLAINLY.search(name)) for name in bodies.names])
+    other = np.array([bool(OTHER_NAMES.search(name)) for name in bodies.names]) & ~plainly
+    own = np.array([bool(OUTSOLE_NAMES.search(name)) for name in bodies.names]) & ~other
+    if (own & there).any():
+        if (there & ~own).any():
+            return own & there, [_taken(bodies, own & there, there, "by name")]
+        return there, []
+    if (other & there).any() and (there & ~other).any():
+        return there & ~other, [_taken(bodies, there & ~other, there, "by the others' names")]
+    return there, []
+
+
+def _taken(bodies: _Bodies, keep: Mask, there: Mask, how: str) -> str:
+    left = _listed([n for n, k, t in zip(bodies.names, keep, there, strict=True) if t and not k])
+    taken = _listed([n for n, k in zip(bodies.names, keep, strict=True) if k])
+    return f"Outsole {how}: {taken}" + (f"; left out: {left}." if left else ".")
+
+
+def _listed(names: list[str]) -> str:
+    quoted = [f'"{name}"' for name in dict.fromkeys(names)]
+    more = f" and {len(quoted) - 4} more" if len(quoted) > 4 else ""
+    return ", ".join(quoted[:4]) + more
+
+
+def _without_supports(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[str]]:
+    """Return the bodies without slender ones that stand out upright, and where those stand."""
+    size = bodies.size
+    slender = keep & (size[:, 2] > _SLENDER * size[:, :2].max(axis=1))
+    slender &= size[:, 0] < 0.1 * size[keep, 0].max()
+    rest = keep & ~slender
+    if not slender.any() or not rest.any():
+        return keep, []
+    beyond = np.maximum(
+        bodies.low[rest, 2].min() - bodies.low[:, 2], bodies.high[:, 2] - bodies.high[rest, 2].max()
+    )
+    slender &= beyond > size[:, :2].max(axis=1)
+    if not slender.any():
+        return keep, []
+    first = int(np.flatnonzero(slender)[0])
+    middle = (bodies.low[first] + bodies.high[first]) / 2 @ bodies.axes
+    place = ", ".join(f"{value:.4g}" for value in middle)
+    count = int(slender.sum())
+    return keep & ~slender, [
+        f"{count} slender bod{'ies' if count > 1 else 'y'} (print supports), up to "
+        f"{size[slender, :2].max():.3g} thick, {'the first ' if count > 1 else ''}at ({place}) in "
+        "the file, left out."
+    ]
+
+
+def _pair(bodies: _Bodies, keep: Mask) -> tuple[Mask, Mask] | None:
+    """Return the bodies of both shoes where a gap parts two groups of the same size."""
+    number = np.flatnonzero(keep)
+    for axis in (1, 0, 2):
+        order = number[np.argsort(bodies.low[number, axis])]
+        reached = np.maximum.accumulate(bodies.high[order, axis])
+        for cut in np.flatnonzero(bodies.low[order[1:], axis] > reached[:-1]) + 1:
+            groups = np.zeros_like(keep), np.zeros_like(keep)
+            groups[0][order[:cut]], groups[1][order[cut:]] = True, True
+            sizes = [bodies.high[g].max(axis=0) - bodies.low[g].min(axis=0) for g in groups]
+            areas = [float(bodies.area[g].sum()) for g in groups]
+            same = np.abs(sizes[0] - sizes[1]) <= _SAME * np.maximum(*sizes)
+            if same[:2].all() and abs(areas[0] - areas[1]) <= 0.1 * max(areas):
+                return groups
+    return None
+
+
+def _of_pair(
+    mesh: Mesh, pair: tuple[Mask, Mask], settings: FileSettings, where: str, remarks: list[str]
+) -> Found:
+    if settings.side == "auto":
+        raise DataError(
+            "the file holds a pair: two soles of the same size beside each other",
+            where=where,
+            allowed="one sole",
+            remedy='Choose one with --side left or --side right (in a case: side = "left"), or '
+            "export one alone",
+        )
+    told = f"Of the pair in the file the {settings.side} shoe was taken, as chosen."
+    return Found(tuple(_part(mesh, one) for one in pair), None, (*remarks, told))
+
+
+def _without_stack(
+    mesh: Mesh, bodies: _Bodies, keep: Mask, settings: FileSettings
+) -> tuple[Mask, Array | None, list[str]]:
+    """Return the bodies of the outsole of a stack, where the ground is, and how it was told."""
+    sorted_size = np.sort(bodies.size, axis=1)[:, ::-1]
+    longest = float(sorted_size[keep, 0].max())
+    big = keep & (sorted_size[:, 0] > _BIG[0] * longest)
+    big &= sorted_size[:, 1] > _BIG[1] * sorted_size[big, 1].max()
+    big &= sorted_size[:, 2] > _SHEET * longest
+    if big.sum() < 2:
+        return keep, None, []
+    part = {axis: _parting(bodies.low[big, axis], bodies.high[big, axis]) for axis in (1, 2)}
+    axis = max(part, key=lambda name: part[name])
+    if part[axis] < _PARTED:
+        return keep, None, []
+    middle = (bodies.low + bodies.high)[:, axis] / 2
+    number = np.flatnonzero(big)
+    low_end, high_end = number[np.argmin(middle[number])], number[np.argmax(middle[number])]
+    groups = (
+        keep & ~big & (middle <= bodies.high[low_end, axis]),
+        keep & ~big & (middle >= bodies.low[high_end, axis]),
+    )
+    groups[0][low_end] = groups[1][high_end] = True
+    unit = mesh.unit or likely_unit(longest, float(sorted_size[big, 1].max()))
+    frame = bodies.axes if axis == 2 else bodies.axes[[0, 2, 1]] * [[1], [-1], [1]]
+    seen = [view(_part(mesh, one).triangles, frame * unit, longest * unit / _COARSE)
+            for one in groups]  # fmt: skip
+    shares = [
+        tread_share(seen[0].lowest, seen[0].spacing),
+        tread_share(-seen[1].highest, seen[1].spacing),
+    ]
+    most, least = max(shares), min(shares)
+    sure = most > _CLEAR and most > _CLEARER * least
+    up = bodies.axes[axis]
+    upward = bool(up[int(np.argmax(np.abs(up)))] > 0)
+    below = shares[0] == most if sure else upward
+    kept = groups[0] if below else groups[1]
+    down = None if settings.down != "auto" else -up if below else up
+    how = (
+        f"determined as the end of the stack that carries the tread (channels over {most:.0%} of "
+        f"it, {least:.0%} at the other end)"
+        if sure
+        else "the lower one of the file; no tread tells"
+    )
+    taken = _taken(bodies, kept, keep, "of a stack of bodies")
+    begin = "" if sure else "Assumed: "
+    return kept, down, [f"{begin}{taken[:-1]}. It is {how}."]
+
+
+def _parting(low: Array, high: Array) -> float:
+    """Return how far bodies lie apart along an axis: 1 minus the mean overlap of neighbours."""
+    order = np.argsort(low + high)
+    low, high = low[order], high[order]
+    overlap = np.minimum(high[:-1], high[1:]) - np.maximum(low[:-1], low[1:])
+    shortest = np.minimum(high - low, np.inf)
+    shortest = np.minimum(shortest[:-1], shortest[1:])
+    return float(np.mean(1 - np.clip(overlap / shortest, 0, 1)))
+
+
+def _away(bodies: _Bodies, keep: Mask, others: Mask) -> Array | None:
+    """Return the direction from the other bodies to the outsole where they lie on one side."""
+    own = bodies.low[keep].min(axis=0), bodies.high[keep].max(axis=0)
+    big = others & (bodies.size[:, 0] > _BIG[0] * (own[1] - own[0])[0])
+    if not big.any():
+        return None
+    rest = bodies.low[big].min(axis=0), bodies.high[big].max(axis=0)
+    offset = (own[0] + own[1] - rest[0] - rest[1]) / 2
+    parted = [_parting(np.stack([own[0], rest[0]])[:, n], np.stack([own[1], rest[1]])[:, n])
+              for n in (1, 2)]  # fmt: skip
+    axis = 1 + int(np.argmax(parted))
+    if parted[axis - 1] < 0.5:
+        return None
+    return np.sign(offset[axis]) * bodies.axes[axis]

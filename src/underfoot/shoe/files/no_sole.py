@@ -1,0 +1,119 @@
+"""Shapes that are no sole, and why."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from underfoot.core import DataError
+from underfoot.core.arrays import Array
+
+from .._kernels.regions import without_holes
+from .view import Soundness
+
+NARROWEST, WIDEST = 0.020, 0.150
+"""Width of a sole or a piece of one, m."""
+MOST_SLENDER = 7.0
+"""Length over width."""
+LEAST_SLENDER = 1.5
+"""Length over width of what is longer than 200 mm."""
+TALL = 0.75
+"""Height over width beyond which a body must stand flat to be a shoe."""
+STANDING = 0.35
+"""Share of the plan form that is level with the floor under a shoe with its upper."""
+TOUCHING = 0.08
+"""The same under anything."""
+MOST_OPEN = 0.15
+"""Share of holes in the plan form."""
+ROUGHEST = 0.5e-3
+"""Noise from cell to cell beyond which there is no surface, m."""
+_FLAT = 0.02e-3  # m: a plane
+_LONG = 0.200
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """What the plausibility of a sole is judged by; lengths in m, shares 0 to 1.
+
+    Parameters:
+        height: (nx, ny) of the lower side, nan outside.
+        spacing: Of its cells.
+        thickness: Median of the body's thickness.
+        tallness: Extent of the body upward.
+        standing: Share of the plan form within 2 mm of the floor, gaps bridged.
+        noise: Of the heights.
+    """
+
+    height: Array
+    spacing: float
+    thickness: float
+    tallness: float
+    standing: float
+    noise: float
+
+
+def check_sole(shape: Shape, where: str) -> None:
+    """Refuse what can't be a sole or a piece of one.
+
+    Raises:
+        DataError: "this is no sole", with the first reason found.
+    """
+    reason = _reason(shape)
+    if reason:
+        raise _no_sole(reason, where)
+
+
+def check_surface(sound: Soundness, where: str) -> None:
+    """Refuse loose triangles.
+
+    Raises:
+        DataError: No two faces share an edge.
+    """
+    if sound.open_edges == 3 * (sound.faces - sound.degenerate - sound.not_finite):
+        several = "no two of its faces share an edge, they make no surface"
+        raise _no_sole(several if sound.faces > 1 else "it is one triangle", where)
+
+
+def _no_sole(reason: str, where: str) -> DataError:
+    return DataError(
+        f"this is no sole: {reason}",
+        where=where,
+        allowed=f"a sole or a piece of one, {NARROWEST * 1e3:.0f} to {WIDEST * 1e3:.0f} mm wide, "
+        "that stands on a floor",
+        remedy="Check that the file holds the outsole, its unit and where the ground is (--unit, "
+        "--down)",
+    )
+
+
+def _reason(shape: Shape) -> str | None:
+    inside = np.isfinite(shape.height)
+    length, width = (
+        float(np.ptp(np.nonzero(inside.any(axis=n))[0]) + 1) * shape.spacing for n in (1, 0)
+    )
+    size = f"{length * 1e3:.4g} x {width * 1e3:.4g} mm"
+    heights = shape.height[inside]
+    if shape.thickness < _FLAT and float(np.ptp(heights)) < _FLAT:
+        return "it is one flat face without thickness and without tread"
+    if shape.noise > ROUGHEST:
+        return (
+            f"its heights jump by {shape.noise * 1e3:.2g} mm from place to place, the faces make "
+            "no surface"
+        )
+    if not NARROWEST <= width <= WIDEST:
+        return f"it is {size}, {'narrower' if width < NARROWEST else 'wider'} than any"
+    slender = length / width
+    if slender > MOST_SLENDER or (length > _LONG and slender < LEAST_SLENDER):
+        return f"it is {size}, {slender:.2g} times as long as wide"
+    holes = without_holes(inside) & ~inside
+    open_share = np.count_nonzero(holes) / np.count_nonzero(inside | holes)
+    if open_share > MOST_OPEN:
+        return f"holes take {open_share:.0%} of its plan form"
+    tall = shape.tallness > TALL * width
+    if shape.standing < (STANDING if tall else TOUCHING):
+        high = f"it is {shape.tallness * 1e3:.3g} mm high, {width * 1e3:.3g} mm wide, and "
+        return (
+            f"{high if tall else ''}only {shape.standing:.0%} of its plan form lies within 2 mm of "
+            "a floor"
+        )
+    if tall and length < _LONG:
+        return f"it is {shape.tallness * 1e3:.3g} mm high and only {size}"
+    return None

@@ -1,0 +1,209 @@
+"""``underfoot study`` as a person meets it: run, stopped in every way, gone on with, helped."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+from underfoot.explore import Study
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+COMMAND = [sys.executable, "-c", "from underfoot.cli import main; main()"]
+STUDY = f"""\
+base = "{(EXAMPLES / "work_shoe_untreaded_glycerol.toml").as_posix()}"
+[set]
+"numerics.quick_grid_spacing" = "3 mm"
+"numerics.grid_spacing" = "3 mm"
+[vary]
+"shoe.heel.profile.angle" = {{ from = "6 deg", to = "14 deg", steps = STEPS }}
+"shoe.material.shore_a" = {{ from = 50, to = 70, steps = 2 }}
+[outputs]
+maximise = ["cof"]
+minimise = ["stiffness"]
+[method]
+fields = true
+"""
+
+
+def underfoot(*arguments, folder, check=True):
+    return subprocess.run(
+        [*COMMAND, *map(str, arguments)],
+        cwd=folder, capture_output=True, text=True, timeout=300, check=check,
+    )  # fmt: skip
+
+
+def numbers(folder):
+    """Return what each case gave, and make sure that no case was done twice."""
+    found = {}
+    for path in Path(folder).glob("cases-*.jsonl"):
+        for line in path.read_text().splitlines():
+            plain = json.loads(line)
+            assert plain["key"] not in found
+            found[plain["key"]] = [
+                plain[name] for name in ("ending", "numbers", "spreads", "draws")
+            ]
+    return found
+
+
+def until(condition, seconds=90):
+    limit = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < limit, f"not within {seconds} s"
+        time.sleep(0.05)
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """Return the folder of a study that ran without a break, in one process."""
+    folder = tmp_path_factory.mktemp("study")
+    (folder / "heel.toml").write_text(STUDY.replace("STEPS", "3"))
+    done = underfoot("study", "run", "heel.toml", "--workers", "1", folder=folder)
+    return folder, done
+
+
+def test_a_study_leaves_tables_and_a_page_and_says_what_came_of_it(finished):
+    folder, done = finished
+    assert "6 of 6 cases of 6 designs ended: 6 computed." in done.stdout
+    assert "The front has" in done.stdout
+    names = {path.name for path in (folder / "out" / "heel").iterdir()}
+    assert {"results.csv", "results.parquet", "report.html", "study.toml"} <= names
+    assert not list((folder / "out" / "heel" / "claims").iterdir())
+    page = (folder / "out" / "heel" / "report.html").read_text()
+    assert page.count("<template data-sole=") >= 1
+    assert "http://" not in page.replace("http://www.w3.org", "")
+
+
+def test_check_status_best_and_export(finished):
+    folder, _ = finished
+    plain = json.loads(underfoot("study", "check", "heel.toml", "--json", folder=folder).stdout)
+    assert (plain["cases"], plain["infeasible"]) == (6, {})
+    plain = json.loads(underfoot("study", "status", "out/heel", "--json", folder=folder).stdout)
+    assert plain["endings"] == {"computed": 6}
+    assert 0.3 < plain["busy"] <= 1.0
+    best = json.loads(underfoot("study", "best", "out/heel", "--json", folder=folder).stdout)
+    assert all(one["front"] for one in best)
+    underfoot("study", "export", "out/heel", "given", "--count", "1", "--no-step", folder=folder)
+    (case,) = (folder / "given").glob("design_*.toml")
+    assert "profile" in case.read_text()
+    assert (folder / "given" / "results.csv").stat().st_size > 500
+    maps = Study.load(folder / "out" / "heel").store.maps(next(iter(numbers(folder / "out/heel"))))
+    assert maps is not None
+    assert "contact_pressure" in maps
+
+
+def test_killed_at_any_time_it_goes_on_and_gives_the_same(finished, tmp_path):
+    folder, _ = finished
+    (tmp_path / "heel.toml").write_text((folder / "heel.toml").read_text())
+    run = [*COMMAND, "study", "run", "heel.toml", "--workers", "2"]
+    with (tmp_path / "log").open("w") as log:
+        master = subprocess.Popen(run, cwd=tmp_path, stdout=log, stderr=log)
+        store = tmp_path / "out" / "heel"
+        until(lambda: len(numbers(store)) >= 1)
+        worker = next(
+            one
+            for one in psutil.Process(master.pid).children()
+            if "spawn_main" in " ".join(one.cmdline())
+        )
+        worker.kill()  # a worker first: it is replaced
+        until(lambda: len(numbers(store)) >= 3 or master.poll() is not None)
+        os.kill(master.pid, signal.SIGKILL)
+        master.wait()
+    before = numbers(store)
+    study = Study.load(store)
+    began = time.process_time()
+    opened = len(study._open())
+    assert time.process_time() - began < 5.0
+    assert opened == 6 - len(before)
+    underfoot("study", "run", "heel.toml", folder=tmp_path)
+    assert numbers(store) == numbers(folder / "out" / "heel")
+
+
+@pytest.mark.slow
+def test_two_that_share_a_folder_without_a_master_give_the_same(finished, tmp_path):
+    folder, _ = finished
+    (tmp_path / "heel.toml").write_text((folder / "heel.toml").read_text())
+    work = [*COMMAND, "study", "work", "heel.toml"]
+    both = [
+        subprocess.Popen(work, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        for _ in range(2)
+    ]
+    texts = [one.communicate(timeout=200)[0].decode() for one in both]
+    assert all("is done" in text for text in texts)
+    assert numbers(tmp_path / "out" / "heel") == numbers(folder / "out" / "heel")
+    assert len(list((tmp_path / "out" / "heel").glob("cases-*.jsonl"))) == 2
+
+
+@pytest.mark.slow
+def test_a_case_that_kills_its_workers_is_on_record_and_the_others_go_on(tmp_path):
+    """A friction option that ends the process at one hardness: twice, then it is 'crashed'."""
+    (tmp_path / "deadly.py").write_text(
+        "import os\nfrom underfoot.case.friction import ConstantOption\n\n\n"
+        "class Deadly(ConstantOption):\n    name = 'deadly'\n\n"
+        "    def build(self, context):\n"
+        "        if abs(self.cof - 0.5) < 1e-9:\n            os.kill(os.getpid(), 9)\n"
+        "        return super().build(context)\n"
+    )
+    text = STUDY.split("[vary]")[0].replace("[set]", '[set]\n"friction.model" = "deadly:Deadly"')
+    text += '[vary]\n"friction.cof" = [0.4, 0.5, 0.6]\n'
+    (tmp_path / "deadly.toml").write_text(text.replace("[set]", '[set]\n"friction.cof" = 0.4'))
+    environment = {**os.environ, "PYTHONPATH": f"{tmp_path}:{os.environ.get('PYTHONPATH', '')}"}
+    run = [*COMMAND, "study", "run", "deadly.toml", "--workers", "2"]
+    done = subprocess.run(
+        run, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=200, check=False
+    )
+    assert "2 computed" in done.stdout, done.stdout + done.stderr
+    assert "1 crashed" in done.stdout
+    assert "twice: killed, or out of" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[vary]\n", ["base", "is missing"]),
+        ("base = [", ["no TOML file"]),
+        ('base = "nowhere.toml"', ["there is no file"]),
+        ("\x00\x01", ["TOML"]),
+    ],
+)
+def test_hostile_study_files_get_sentences(tmp_path, text, words):
+    (tmp_path / "bad.toml").write_text(text)
+    done = underfoot("study", "check", "bad.toml", folder=tmp_path, check=False)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    for word in words:
+        assert word in done.stderr
+
+
+def test_a_scheduler_that_is_not_there_is_named(finished, tmp_path):
+    pytest.importorskip("distributed")
+    folder, _ = finished
+    address = "dask:tcp://127.0.0.1:9"
+    run = ("study", "run", folder / "heel.toml", "--out", "x", "--on", address)
+    done = underfoot(*run, folder=tmp_path, check=False)
+    assert done.returncode == 2
+    assert "no Dask scheduler answers at tcp://127.0.0.1:9" in done.stderr
+
+
+@pytest.mark.slow
+def test_a_dask_cluster_that_loses_a_worker_gives_the_same(finished, tmp_path):
+    pytest.importorskip("distributed")
+    folder, _ = finished
+    run = [*COMMAND, "study", "run", folder / "heel.toml", "--out", "x"]
+    run += ["--on", "dask", "--workers", "4"]
+    with (tmp_path / "log").open("w") as log:
+        master = subprocess.Popen(run, cwd=tmp_path, stdout=log, stderr=log)
+        until(lambda: len(numbers(tmp_path / "x")) >= 1)
+        workers = [
+            one
+            for one in psutil.Process(master.pid).children(recursive=True)
+            if "spawn_main" in " ".join(one.cmdline())
+        ]
+        workers[-1].kill()
+        assert master.wait(timeout=240) == 0, (tmp_path / "log").read_text()
+    assert numbers(tmp_path / "x") == numbers(folder / "out" / "heel")

@@ -1,0 +1,312 @@
+"""Outsole files as designers have them: read right without an option, or refused in words."""
+
+import os
+import zipfile
+
+import numpy as np
+import pytest
+import trimesh
+
+import trial_soles as made
+from outsole_bodies import heel_body, sole_body, triangles
+from underfoot.core import DataError, InputError
+from underfoot.shoe.files import FileSettings, Mesh, outsole_from_file, outsole_from_mesh
+from underfoot.shoe.files.cad import stated_unit
+from underfoot.shoe.files.read import read_mesh
+from underfoot.shoe.tread_measures import tread_measures
+
+HALF = FileSettings(spacing=0.5e-3)
+TRIALS = {trial.name: trial for trial in made.trials()}
+REFUSED = {"pair, STL": "--side left", "pair, STEP": "--side left"}
+LONG = ("scan", "underside", "assembly")
+
+
+def read(corners, settings=HALF, **parts):
+    mesh = Mesh(np.ascontiguousarray(corners, dtype=np.float32), "made here", **parts)
+    return outsole_from_mesh(mesh, settings)
+
+
+def said(outsole):
+    return " ".join(outsole.surface.remarks)
+
+
+def slow_where_long(name):
+    marks = [pytest.mark.slow] if any(word in name for word in LONG) else []
+    return pytest.param(name, marks=marks)
+
+
+@pytest.mark.parametrize("name", [slow_where_long(n) for n in TRIALS if n not in REFUSED])
+def test_files_are_read_right_without_an_option(tmp_path, name):
+    trial = TRIALS[name]
+    found = outsole_from_file(trial.write(tmp_path), HALF)
+    measures, truth = tread_measures(found.surface), trial.truth
+    assert measures.land_ratio == pytest.approx(truth.land, abs=0.02)
+    assert measures.length * 1e3 == pytest.approx(truth.length, abs=2)
+    if truth.depth:
+        assert measures.channel_depth[1] * 1e3 == pytest.approx(truth.depth, rel=0.05)
+    if truth.width:  # known within half a cell of the map
+        assert measures.channel_width[1] * 1e3 == pytest.approx(truth.width, rel=0.08, abs=0.26)
+    assert truth.foot in (None, found.foot)
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_pairs_are_refused_with_the_remedy_and_parted_when_asked(tmp_path, name):
+    path = TRIALS[name].write(tmp_path)
+    with pytest.raises(DataError, match="holds a pair") as caught:
+        outsole_from_file(path, HALF)
+    assert REFUSED[name] in str(caught.value)
+
+
+@pytest.mark.slow
+def test_either_shoe_of_a_pair_can_be_chosen(tmp_path):
+    path = TRIALS["pair, STL"].write(tmp_path)
+    truth = TRIALS["pair, STL"].truth
+    for side in ("left", "right"):
+        found = outsole_from_file(path, FileSettings(spacing=5e-4, side=side))
+        assert found.foot == side
+        assert found.surface.land_ratio == pytest.approx(truth.land, abs=0.02)
+    straight = triangles(sole_body(step=3e-3))
+    straight[..., 1] *= 0.0  # no width
+    with pytest.raises((DataError, InputError)):
+        read(straight)
+
+
+def test_draft_is_that_of_the_walls(tmp_path):
+    for name, degrees in (("draft of 8 degrees", 8.0), ("drafted piece 70 x 66", 8.0),
+                          ("hexagons, flat", 0.0)):  # fmt: skip
+        found = outsole_from_file(TRIALS[name].write(tmp_path), HALF)
+        assert np.degrees(found.draft) == pytest.approx(degrees, abs=0.2)
+
+
+def test_sipes_are_counted(tmp_path):
+    def slit(x, y):
+        return 3e-3 * ((np.mod(x, 10e-3) > 9.5e-3) & (np.abs(y) < 15e-3))
+
+    found = read(triangles(heel_body(slit, step=0.25e-3)), FileSettings(spacing=0.25e-3))
+    measures = tread_measures(found.surface)
+    assert measures.sipe_count == 6  # the last one is cut by the front end
+    assert measures.sipe_length == pytest.approx(6 * 30e-3, rel=0.15)
+
+
+@pytest.mark.slow
+def test_noise_of_a_scan_is_that_of_its_points():
+    body = sole_body(lambda x, y: np.zeros_like(x), length=0.28, step=0.7e-3)
+    vertices, faces = body
+    rng = np.random.default_rng(5)
+    for noise in (0.02, 0.08):
+        points = vertices * 1e3
+        points[:, 2] += rng.normal(0, noise, len(points))
+        told = said(read(points[faces], FileSettings(spacing=0.25e-3, down="-z")))
+        value = float(told.split("noise of ")[1].split(" um")[0])
+        assert value == pytest.approx(noise * 1e3, rel=0.12)
+
+
+SOLID = {
+    "one triangle": lambda: trimesh.Trimesh([[0, 0, 0], [280, 0, 0], [0, 90, 0]], [[0, 1, 2]]),
+    "plane": lambda: trimesh.Trimesh(
+        [[0, 0, 0], [280, 0, 0], [280, 95, 0], [0, 95, 0]], [[0, 1, 2], [0, 2, 3]]
+    ),
+    "cube": lambda: trimesh.creation.box((90, 90, 90)),
+    "large cube": lambda: trimesh.creation.box((280, 280, 280)),
+    "needle": lambda: trimesh.creation.box((300, 1, 1)),
+    "strip": lambda: trimesh.creation.box((300, 25, 5)),
+    "sphere": lambda: trimesh.creation.icosphere(radius=50, subdivisions=4),
+    "torus": lambda: trimesh.creation.torus(38, 12),
+    "large torus": lambda: trimesh.creation.torus(110, 30),
+    "cylinder": lambda: trimesh.creation.cylinder(radius=40, height=280),
+    "disc": lambda: trimesh.creation.cylinder(radius=140, height=10),
+    "line": lambda: trimesh.Trimesh([[0, 0, 0], [280, 0, 0], [140, 0, 0]], [[0, 1, 2]]),
+}
+
+
+@pytest.mark.parametrize("name", SOLID)
+def test_shapes_that_are_no_sole_are_refused_with_the_reason(name):
+    with pytest.raises((DataError, InputError), match=r"this is no sole|no unit makes|has an area"):
+        read(SOLID[name]().triangles)
+
+
+def test_loose_triangles_are_no_sole():
+    corners = np.random.default_rng(2).uniform((0, 0, 0), (290, 95, 30), (20_000, 3, 3))
+    with pytest.raises(DataError, match="no two of its faces share an edge"):
+        read(corners)
+
+
+def test_stray_corner_is_named_with_its_place():
+    sole = triangles(sole_body(step=2e-3))
+    stray = sole[:1].copy()
+    stray[0, 0] = (1e6, 0, 0)
+    found = read(np.concatenate([sole, stray]))
+    assert "1 stray corner far off all others, at (1e+06, 0, 0)" in said(found)
+    assert found.surface.length == pytest.approx(0.28, abs=1e-3)
+
+
+def test_print_supports_are_named_and_carry_nothing():
+    sole = triangles(sole_body(step=2e-3))
+    pillars = [
+        trimesh.creation.cylinder(radius=0.8, segment=[(x, y, -12), (x, y, 1)]).triangles
+        for x, y in ((60, 5), (150, -10), (220, 12))
+    ]
+    found = read(np.concatenate([sole, *pillars]))
+    assert "3 slender bodies (print supports)" in said(found)
+    land = read(sole).surface.land_ratio
+    assert found.surface.land_ratio == pytest.approx(land, abs=0.005)
+
+
+def test_plane_that_is_hardly_larger_is_hinted_at_and_cut_when_asked():
+    sole = triangles(sole_body(step=2e-3))
+    plane = trimesh.creation.box((292, 100, 0.001)).triangles + np.array([140, 0, -0.5])
+    both = np.concatenate([sole, plane])
+    hinted = read(both, FileSettings(spacing=5e-4, down="-z"))
+    assert "cut it with --cut-floor" in said(hinted)
+    found = read(both, FileSettings(spacing=5e-4, cut_floor=True))
+    assert "was cut as floor" in said(found)
+    assert found.surface.land_ratio == pytest.approx(read(sole).surface.land_ratio, abs=0.01)
+
+
+def test_arch_of_a_raised_heel_is_no_land():
+    def arched(x, y):
+        return 9e-3 * ((x > 0.08) & (x < 0.16))
+
+    found = read(triangles(sole_body(arched, step=1e-3)))
+    assert "an arch" in said(found)
+    x = found.surface.x
+    middle = (x > 0.09) & (x < 0.15)
+    assert not found.surface.land[middle].any()
+    assert found.surface.land[(x < 0.07)].any()
+
+
+def test_body_is_chosen_by_name(tmp_path):
+    path = TRIALS["OBJ with the last above"].write(tmp_path)
+    found = outsole_from_file(path, FileSettings(spacing=5e-4, solid="A"))
+    assert 'Outsole as chosen: "a"; left out: "b".' in said(found)
+    with pytest.raises(InputError, match=r'unknown body "soul".*a, b'):
+        outsole_from_file(path, FileSettings(solid="soul"))
+
+
+def test_unit_line_of_a_step_that_makes_it_no_shoe_is_refused_before_meshing(tmp_path):
+    occ = pytest.importorskip("netgen.occ")
+    path = tmp_path / "sole.step"
+    occ.Compound([made.step_bars(occ)]).WriteStep(str(path))
+    made.restate_unit(path, *made._METRE)
+    begin = sum(os.times()[:4])  # with the process that looks at it
+    with pytest.raises(InputError, match=r"240 m long.*240 mm in mm: choose it with --unit mm"):
+        read_mesh(path)
+    assert sum(os.times()[:4]) - begin < 2
+    chosen = outsole_from_file(path, FileSettings(unit="mm", spacing=5e-4))
+    assert chosen.surface.length == pytest.approx(0.24, abs=1e-3)
+    assert stated_unit(path, "STEP") == 1.0
+    occ.Compound([made.step_bars(occ, 1 / 25.4)]).WriteStep(str(path))
+    made.restate_unit(path, *made._INCH)
+    assert stated_unit(path, "STEP") == pytest.approx(0.0254)
+
+
+def test_content_decides_in_every_direction(tmp_path):
+    occ = pytest.importorskip("netgen.occ")
+    step = tmp_path / "a.step"
+    occ.Box((0, 0, 0), (64, 60, 15)).WriteStep(str(step))
+    step.rename(tmp_path / "a.stl")
+    mesh = read_mesh(tmp_path / "a.stl")
+    assert mesh.format == "STEP"
+    assert "named .stl but holds STEP" in mesh.remarks[0]
+    heel = triangles(heel_body())
+    for kind in ("obj", "ply", "off", "glb", "3mf"):
+        path = made.by_trimesh(kind, heel)(tmp_path)
+        other = path.rename(tmp_path / f"{kind}.step")
+        assert read_mesh(other).format == kind.upper()
+    with zipfile.ZipFile(tmp_path / "zip.stl", "w") as archive:
+        archive.writestr("sole.step", "x")
+    with pytest.raises(DataError, match=r"ZIP archive that holds sole.step.*Unpack"):
+        read_mesh(tmp_path / "zip.stl")
+    (tmp_path / "drawing.stl").write_bytes(b"AC1027" + bytes(500))
+    with pytest.raises(DataError, match="this is a DWG file"):
+        read_mesh(tmp_path / "drawing.stl")
+
+
+def test_cad_file_that_kills_its_reader_is_refused(tmp_path, monkeypatch):
+    pytest.importorskip("netgen.occ")
+    from underfoot.shoe.files import cad
+
+    path = TRIALS["STEP mm"].write(tmp_path)
+    monkeypatch.setattr(cad.sys, "executable", "false")  # a program that only fails
+    with pytest.raises(DataError, match="ends the reader of CAD files"):
+        read_mesh(path)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names on this system")
+def test_pipe_is_refused(tmp_path):
+    os.mkfifo(tmp_path / "sole.stl")
+    with pytest.raises(InputError, match="no regular file"):
+        read_mesh(tmp_path / "sole.stl")
+
+
+def test_text_stl_without_an_end_is_refused(tmp_path):
+    one = "facet normal 0 0 1\nouter loop\n" + "vertex 0 0 0\n" * 3 + "endloop\nendfacet\n"
+    (tmp_path / "half.stl").write_text("solid x\n" + one * 5)
+    with pytest.raises(DataError, match="after 5 facets without the end mark"):
+        read_mesh(tmp_path / "half.stl")
+
+
+def test_rhino_file_tells_bodies_by_layer_and_object(tmp_path):
+    rhino = pytest.importorskip("rhino3dm")
+    model = rhino.File3dm()
+    model.Settings.ModelUnitSystem = rhino.UnitSystem.Centimeters
+    sole = triangles(sole_body(step=3e-3)) / 10
+    last = trimesh.creation.box((28, 9, 8)).triangles + np.array([14, 0, 5.6])
+    hidden = trimesh.creation.box((40, 40, 40)).triangles
+    for name, body, visible in (
+        ("Outsole", sole, True),
+        ("Leisten", last, True),
+        ("Old", hidden, False),
+    ):
+        layer = rhino.Layer()
+        layer.Name, layer.Visible = name, visible
+        attributes = rhino.ObjectAttributes()
+        attributes.LayerIndex, attributes.Name = model.Layers.Add(layer), "part"
+        mesh = rhino.Mesh()
+        for corner in np.asarray(body, dtype=float).reshape(-1, 3):
+            mesh.Vertices.Add(*map(float, corner))
+        for n in range(0, 3 * len(body), 3):
+            mesh.Faces.AddFace(n, n + 1, n + 2)
+        model.Objects.AddMesh(mesh, attributes)
+    path = tmp_path / "shoe.3dm"
+    assert model.Write(str(path), 7)
+    found = outsole_from_file(path, HALF)
+    assert found.unit == 0.01
+    assert 'Outsole by name: "Outsole/part"; left out: "Leisten/part".' in said(found)
+    assert "1 hidden objects" in said(found)
+    assert found.surface.length == pytest.approx(0.28, abs=1e-3)
+    path.write_bytes(path.read_bytes()[:2000])
+    with pytest.raises(DataError, match="3DM"):
+        read_mesh(path)
+
+
+def test_iges_is_read_in_its_unit(tmp_path):
+    pytest.importorskip("netgen.occ")
+    path = tmp_path / "sole.igs"
+    path.write_text(made.iges_block((0, 0, 0), (6.4, 6.0, 1.5), unit=10))
+    mesh = read_mesh(path)
+    assert mesh.format == "IGES"
+    assert mesh.unit == 1e-3
+    low, high = mesh.triangles.min(axis=(0, 1)), mesh.triangles.max(axis=(0, 1))
+    assert high - low == pytest.approx([64, 60, 15], abs=1e-3)
+
+
+def test_layers_of_an_assembly_tell_where_the_ground_is(tmp_path):
+    bodies = {"midsole": trimesh.creation.box((280, 95, 25)).triangles + np.array([140, 0, 27.0])}
+    sole = triangles(sole_body(lambda x, y: np.zeros_like(x), toe=0.0, step=3e-3))
+    path = made.obj_groups({"outsole": sole * [1, 1, 0.9], **bodies})(tmp_path)
+    found = outsole_from_file(path, HALF)
+    assert found.down == "-z"
+    assert "Ground side: away from the rest of the file" in said(found)
+    assert "Assumed: the ground side" not in said(found)
+
+
+def test_outsole_of_a_file_keeps_its_options_in_the_case(tmp_path):
+    from underfoot.report.outsole import case_text, inspected
+
+    path = TRIALS["OBJ with the last above"].write(tmp_path)
+    inspection = inspected(path, FileSettings(spacing=5e-4, solid="a", cut_floor=True))
+    text = case_text(inspection, tmp_path)
+    assert 'solid = "a"' in text
+    assert "cut_floor = true" in text
+    assert "side" not in text

@@ -1,0 +1,184 @@
+"""Study files: what they mean, and what a person is told who wrote one that can't be."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from underfoot.case import Case, CaseError
+from underfoot.explore.goals import Condition, Goal, read_goal, read_requirement
+from underfoot.explore.plan import UNITS, load_plan, read_plan
+from underfoot.explore.proposals import next_batch
+from underfoot.explore.record import Ending, Record
+from underfoot.explore.result import StudyResult
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+GOOD = """\
+file_version = 1
+base = "work_shoe_full_tread_glycerol.toml"
+[vary]
+"shoe.tread.depth" = { from = "1 mm", to = "4 mm" }
+shoe.tread.channel_width = { from = "2.5 mm", to = "4 mm" }
+"shoe.tread.lug_width" = { times = 1.5, of = "shoe.tread.channel_width" }
+"shoe.tread.pattern" = ["grid", "hexagons"]
+[uncertain]
+"interface.roughness_beyond_cutoff" = { lognormal = 2.0, factor = 1.3 }
+[conditions]
+contaminant = ["glycerol_90pct", "canola_oil"]
+wear = ["0 mm", "0.5 mm"]
+[outputs]
+maximise = ["quantile(cof, 0.1) over conditions", "wear_life(cof > 0.1)"]
+minimise = ["rubber_volume"]
+require = ["cof > 0.05 in canola_oil", "rubber_volume < 200 cm^3"]
+[method]
+kind = "robust"
+budget = 160
+draws = 2
+"""
+
+
+def plan(text=GOOD):
+    return read_plan(text, EXAMPLES, "study.toml")
+
+
+def test_a_study_file_is_read_as_it_says():
+    made = plan()
+    assert [one.path for one in made.vary] == [
+        "shoe.tread.depth",
+        "shoe.tread.channel_width",
+        "shoe.tread.pattern",
+    ]
+    assert (len(made.states), len(made.draws), made.cases_per_design) == (4, 2, 8)
+    assert made.designs == 20
+    assert made.states[1].parts == ("glycerol_90pct", "0.5 mm")
+    changes = made.design_changes((0.5, 1.0, 0.9))
+    assert changes["shoe.tread.depth"] == pytest.approx(2.5e-3)
+    assert changes["shoe.tread.lug_width"] == pytest.approx(6e-3)
+    assert changes["shoe.tread.pattern"] == "hexagons"
+    jobs = list(made.jobs(0, (0.5, 0.5, 0.2), 0))
+    assert len({job.key for job in jobs}) == 8
+    assert made.require[1].bound == pytest.approx(200e-6)
+
+
+def test_draws_are_common_to_all_designs():
+    made = plan()
+    rough = "interface.roughness_beyond_cutoff"
+    one, other = (
+        [job.changes[rough] for job in made.jobs(k, point, 0)]
+        for k, point in enumerate([(0.1, 0.1, 0.1), (0.9, 0.9, 0.9)])
+    )
+    assert one == other
+    assert len(set(one)) == 2
+
+
+def test_jobs_are_the_same_whenever_the_file_is_read():
+    first, second = (next_batch(p, StudyResult(p, [], {})) for p in (plan(), plan()))
+    assert first == second
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('"shoe.tread.depth"', '"shoe.tread.dept"', ["line 4", 'Did you mean "shoe.tread.depth"']),
+        ('from = "1 mm", to = "4 mm"', 'from = "4 mm", to = "1 mm"', ["line 4", "from < to"]),
+        ('to = "4 mm" }\nshoe', 'to = "4 m" }\nshoe', ["line 4", "outside the physical range"]),
+        ('"1 mm", to = "4 mm"', '1, to = "4 mm"', ["line 4", "unit"]),
+        ('"hexagons"]', '"hexagon"]', ["line 7", 'Did you mean "hexagons"']),
+        ('"canola_oil"]', '"canola"]', ["line 11", "canola_oil"]),
+        ("quantile(cof, 0.1) over", "quantile(friction, 0.1) over", ["line 14", "cof"]),
+        ("quantile(cof, 0.1)", "quantile(cof, 7)", ["line 14", "between 0 and 1"]),
+        ("over conditions", "over oils", ["line 14", "draws"]),
+        ("in canola_oil", "in milk", ["line 16", "glycerol_90pct"]),
+        ('"rubber_volume <', '"rubber_volume > 300 cm^3", "rubber_volume <', ["both hold"]),
+        ('minimise = ["rubber_volume"]', 'minimise = ["mass"]', ["density", "rubber_volume"]),
+        ("draws = 2", "draw = 2", ["line 20", 'Did you mean "draws"']),
+        ("budget = 160", "budget = 3", ["less than one design", "from 8"]),
+        ('kind = "robust"', 'kind = "robots"', ["line 18", 'Did you mean "robust"']),
+        ("file_version = 1", "file_version = 9", ["line 1", "Update underfoot"]),
+        ("[uncertain]", "[uncertian]", ['Did you mean "uncertain"']),
+        ("factor = 1.3", "factor = 0.3", ["line 9", "above 1"]),
+        ("lognormal = 2.0, factor = 1.3", "normal = 2.0, sd = 1.5", ["line 9", "Narrow it"]),
+        ('of = "shoe.tread.channel_width"', 'of = "shoe.heel.width"', ["line 6", "channel_width"]),
+        ('{ from = "1 mm", to', '{ form = "1 mm", to', ["line 4", "is no range"]),
+        ("wear = [", '"shoe.tread.depth" = ["1 mm"]\nwear = [', ["set twice"]),
+        ("work_shoe_full_tread_glycerol", "work_shoe_full_tread_glycerine", ["Did you mean"]),
+    ],
+)
+def test_what_is_wrong_is_said_with_its_place_and_the_remedy(old, new, words):
+    assert old in GOOD
+    with pytest.raises(Exception, match=r".") as caught:
+        plan(GOOD.replace(old, new, 1))
+    text = str(caught.value)
+    for word in words:
+        assert word in text, text
+
+
+def test_all_errors_come_at_once():
+    with pytest.raises(CaseError) as caught:
+        plan(GOOD.replace("hexagons", "hexagon").replace("in canola_oil", "in milk"))
+    assert len(caught.value.errors) == 2
+
+
+def test_a_narrow_channel_refines_the_grid_of_every_design_and_says_so():
+    made = plan(GOOD.replace('from = "2.5 mm"', 'from = "1.2 mm"'))
+    assert made.base.numerics.quick_grid_spacing == pytest.approx(0.6e-3)
+    assert "finer grid" in made.remarks[0]
+
+
+@pytest.mark.parametrize(
+    "path", sorted((EXAMPLES / "studies").glob("*.toml")), ids=lambda p: p.stem
+)
+def test_every_example_is_read_and_its_first_designs_can_be_built(path):
+    made = load_plan(path)
+    for job in next_batch(made, StudyResult(made, [], {}))[:6]:
+        assert isinstance(made.base.replace(job.changes), Case)
+
+
+# --- goals on records ---
+
+STATES = (
+    Condition("oil", {"shoe.wear.depth": 0.0}),
+    Condition("oil, 2 mm", {"shoe.wear.depth": 2e-3}),
+)
+
+
+def records(*values, draws=None):
+    return {
+        (k, 0): Record(
+            str(k), Ending.COMPUTED, numbers={"cof": v}, draws=np.array(draws or [v - 0.1, v + 0.1])
+        )
+        for k, v in enumerate(values)
+    }
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("cof", 0.25),
+        ("cof in 2 mm", 0.2),
+        ("min(cof) over conditions", 0.2),
+        ("min(cof)", 0.1),  # the law's draws count
+        ("max(cof) over draws", 0.35),
+        ("quantile(cof, 0.5) over conditions", 0.25),
+        ("sd(cof) over conditions", 0.05),
+        ("wear_life(cof > 0.25)", 1e-3),
+        ("wear_life(cof > 0.4)", 0.0),
+        ("wear_life(cof > 0.1)", 2e-3),  # to the last wear: a lower bound
+    ],
+)
+def test_goals_are_statistics_over_conditions_and_draws(text, value):
+    goal = read_goal(text, "outputs", UNITS, STATES)
+    assert goal.value(records(0.3, 0.2), STATES) == pytest.approx(value)
+
+
+def test_a_goal_of_a_design_with_a_failed_case_is_nan():
+    failed = records(0.3, 0.2) | {(1, 0): Record("1", Ending.CRASHED, "killed")}
+    assert np.isnan(Goal("cof", "1").value(failed, STATES))
+    assert np.isnan(Goal("cof", "1", "min", over="conditions").value(failed, STATES))
+
+
+def test_a_requirement_holds_on_the_right_side():
+    low = read_requirement("cof > 0.2", "outputs", UNITS, STATES)
+    high = read_requirement("fluid_load < 90 N", "outputs", UNITS, STATES)
+    assert low.margin(0.25) == pytest.approx(0.05)
+    assert high.margin(100.0) == pytest.approx(-10.0)
