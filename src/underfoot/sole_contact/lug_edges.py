@@ -34,10 +34,9 @@ from underfoot.shoe import SoleMap
 INLET = 1.06
 NARROWEST = 0.1e-3
 """m: a lug edge drawn sharper is moulded with about this radius (assumed)."""
-EXCESS, ROUNDED = 0.36, 0.15e-3
+EXCESS = 0.36
 """The leading edge of a lug bears 36 % more than its mean (finite elements: friction 0.2, height
-half the length) and wears more by that share of what is removed, until the round is as deep (m) as
-the edge yields when traction turns the lug: 0.06 rad over half of 5 mm at 300 kPa and 3.3 MPa."""
+half the length) and wears more by that share of what is removed."""
 ON_RUBBER = 0.12
 LIFTING, LIFT = 0.12, 1.9
 """Shift of the pressure, over the length, from which a lug lifts; loss of contact per shift."""
@@ -111,13 +110,16 @@ class LugFriction:
         )
 
 
-def lug_edges(sole: SoleMap, edge_radius: float, *, forward: bool = True) -> LugEdges | None:
+def lug_edges(
+    sole: SoleMap, edge_radius: float, *, worn_edge_radius: float, forward: bool = True
+) -> LugEdges | None:
     """Return the lugs of a sole; None where it has no tread.
 
     Parameters:
         sole: Map; lugs are connected land beside grooves.
         edge_radius: Of the new lugs, m; sharper than 0.1 mm counts as that. Wear takes this round
             off and makes its own.
+        worn_edge_radius: Largest that wear makes, m.
         forward: Whether the sole slides towards the toe (fluid meets the front of a lug), else to
             the rear.
     """
@@ -146,7 +148,11 @@ def lug_edges(sole: SoleMap, edge_radius: float, *, forward: bool = True) -> Lug
         _sums(numbers, count, sole.tread_depth * area) / cells,
         # the floor cuts the moulded round off, and the edge rounds anew
         np.maximum.reduce(
-            [edge_radius - worn, np.minimum(EXCESS * worn, ROUNDED), np.full(count, NARROWEST)]
+            [
+                edge_radius - worn,
+                np.minimum(EXCESS * worn, worn_edge_radius),
+                np.full(count, NARROWEST),
+            ]
         ),
         _sums(numbers, count, from_groove) / faces,
     )
