@@ -159,6 +159,14 @@ def test_channels_without_an_outlet_are_no_way_out():
     assert none.way[0] == pytest.approx(29.5 * CELL)
 
 
+def test_a_lug_of_one_cell_is_all_groove():
+    land = np.zeros((SIZE, SIZE), dtype=bool)
+    land[30, 30] = True
+    found = drainage(sole(land), np.where(land, 1e5, 0.0))
+    assert found.relief[0] == pytest.approx(1.0)
+    assert found.way[0] == pytest.approx(0.5 * CELL)
+
+
 def test_short_ways_and_small_loads_get_no_advice():
     pressure = np.zeros((SIZE, SIZE))
     pressure[LUG, LUG] = 1e5

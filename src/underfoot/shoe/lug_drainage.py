@@ -127,7 +127,8 @@ def lug_drainage(sole: SoleMap, fluid_pressure: Array, film_thickness: Array) ->
     if sole.land.sum() == sole.inside.sum() or not pressure.any():
         return None
     numbers, count = pieces(sole.land)
-    sums = np.bincount(numbers.ravel(), pressure.ravel(), count + 1).astype(np.float64)
+    area = np.ones(pressure.shape) if sole.cut is None else sole.cut.film_area
+    sums = np.bincount(numbers.ravel(), (pressure * area).ravel(), count + 1).astype(np.float64)
     order = np.argsort(-sums, kind="stable")
     order = order[sums[order] > 0]
     highest = np.zeros(count + 1)
@@ -140,9 +141,10 @@ def lug_drainage(sole: SoleMap, fluid_pressure: Array, film_thickness: Array) ->
     goals = np.argwhere(np.pad(~sole.inside | clear, 1, constant_values=True)) - 1
     ways = [_way_out(goals - peak, float(sole.y[peak[1]])) for peak in peaks]
     i, j = peaks.T
-    share = sums[order] / float(fluid_pressure.sum())
+    share = sums[order] / float((fluid_pressure * area).sum())
+    film = pressure, film_thickness, area
     grooves = [
-        _best_groove(numbers == number, peak, ~sole.inside | clear, pressure, film_thickness, wide)
+        _best_groove(numbers == number, peak, ~sole.inside | clear, film, wide)
         for number, peak in zip(order[share >= MATTERS], peaks, strict=False)
     ]
     grooves += [(np.nan, -1, np.nan)] * (len(order) - len(grooves))
@@ -182,10 +184,16 @@ def _way_out(offsets: NDArray[np.intp], y: float) -> tuple[float, int]:
 
 
 def _best_groove(
-    lug: Mask, peak: NDArray[np.intp], open_: Mask, pressure: Array, gap: Array, wide: float
+    lug: Mask,
+    peak: NDArray[np.intp],
+    open_: Mask,
+    film: tuple[Array, Array, Array],
+    wide: float,
 ) -> tuple[float, int, float]:
     """Return length (cells), side and relief of the groove that a lug should have."""
-    film = lug & (pressure > 0)
+    pressure, gap, area = film
+    full = lug & (pressure > 0)
+    load = float((pressure * area)[full].sum())
     along, across = np.indices(lug.shape) - peak[:, None, None]
     ahead = ((along, across), (-along, across), (across, along), (-across, along))
     found = []
@@ -193,20 +201,24 @@ def _best_groove(
         goals = forward[open_ & (aside == 0) & (forward > 0)]
         length = int(goals.min()) if goals.size else int(forward.max()) + 1
         groove = lug & (np.abs(aside) < wide / 2) & (forward > -wide / 2) & (forward < length)
-        relief = _relief(film & ~groove, groove, pressure, gap**3) / float(pressure[film].sum())
+        fallen = _fallen(full & ~groove, groove, pressure, gap**3)
+        relief = float((fallen * area).sum()) / load
         found.append((float(length), side, relief))
     most = max(relief for *_, relief in found)
     return min(each for each in found if each[2] >= NEARLY * most)
 
 
-def _relief(free: Mask, groove: Mask, pressure: Array, conductance: Array) -> float:
-    """Return -sum(d) over lug and groove; d = 0 beyond both."""
+def _fallen(free: Mask, groove: Mask, pressure: Array, conductance: Array) -> Array:
+    """Return -d (nx, ny), 0 beyond the free cells and the groove."""
     from scipy.sparse import csr_matrix
 
+    drops = np.where(groove, pressure, 0.0)
+    if not free.any():
+        return drops
     cells = np.argwhere(free)
     number = np.full(np.array(free.shape) + 2, -1)
     number[1:-1, 1:-1][free] = np.arange(len(cells))
-    flows, drop = np.pad(conductance, 1, mode="edge"), np.pad(np.where(groove, pressure, 0.0), 1)
+    flows, drop = np.pad(conductance, 1, mode="edge"), np.pad(drops, 1)
     scale = float(conductance[free].mean())
     diagonal, right = np.zeros(len(cells)), np.zeros(len(cells))
     rows, columns, values = [], [], []
@@ -226,4 +238,5 @@ def _relief(free: Mask, groove: Mask, pressure: Array, conductance: Array) -> fl
     matrix = csr_matrix(entries, shape=(len(cells), len(cells)))
     matrix.sort_indices()
     fallen = factorization(matrix, kind="positive definite", where="grooves").solve(right)
-    return float(np.minimum(fallen, pressure[free]).sum()) + float(pressure[groove].sum())
+    drops[free] = np.minimum(fallen, pressure[free])
+    return drops
