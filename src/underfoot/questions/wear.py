@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from underfoot.case.wear import USUAL_WEAR_RATE
 from underfoot.compute.sole import bottom_surface
 from underfoot.core import InputError, Progress, display, silent, to_si, unknown_name
 from underfoot.core.presentation import Presentable, Table, percent
@@ -17,6 +18,7 @@ from underfoot.core.progress import part
 
 from .outcomes import Outcome, outcomes
 from .sensitivity import OPEN_INPUTS, OpenInput, open_inputs, variants
+from .walked import SOURCES, Walked, Walker, WornPair
 from .wear_limit import Crossing, LimitCrossing, WearPoint, limit_crossing
 
 if TYPE_CHECKING:
@@ -89,7 +91,8 @@ class WearSeries(Presentable):
     ``limit`` is the fluid load (N) that counts as worn out; ``crossings`` has, for the load under
     the sole ("fluid_load") and as the floor sensors read it ("fluid_load_sensor"), the wear at
     which it is exceeded. ``untreaded`` is the last state without any tread; None where the sole
-    comes from a file. ``soles`` are the bottoms of the states in their own frame.
+    comes from a file. ``soles`` are the bottoms of the states in their own frame; ``walker`` turns
+    the volume lost into a distance.
     """
 
     kind: ClassVar[str] = "wear"
@@ -103,6 +106,7 @@ class WearSeries(Presentable):
     quick: bool = True
     untreaded: Outcome | None = None
     soles: tuple[SoleSurface, ...] = ()
+    walker: Walker | None = None
 
     def __repr__(self) -> str:
         return f"<WearSeries of {self.name!r}, {self.mode}: {len(self.points)} states>"
@@ -124,7 +128,21 @@ class WearSeries(Presentable):
         if self.untreaded is not None and math.isfinite(self.untreaded.number("cof")):
             bare = self.untreaded.number("cof")
             sentences[-1] = f"{sentences[-1][:-1]}; {bare:.3f} if that sole had no tread at all."
+        walks = self.walked()
+        if walks:
+            bound = "" if self.walker and self.walker.pair else "at least "
+            volume = _short(float(self.measured("removed_volume")[-1]) * 1e9)
+            sentences.append(f"The last state has lost {volume} mm³: {bound}{walks[-1]} walked.")
         return tuple(sentences)
+
+    def walked(self) -> list[Walked]:
+        """Return how far one walks to each state; empty without a walker."""
+        if self.walker is None:
+            return []
+        volumes, lost = (
+            self.measured(name).tolist() for name in ("removed_volume", "removed_depth")
+        )
+        return [self.walker.walked(volume, volumes, lost) for volume in volumes]
 
     def cautions(self) -> tuple[str, ...]:
         reasons = []
@@ -136,6 +154,8 @@ class WearSeries(Presentable):
         failed = [str(k) for k, p in enumerate(self.points) if not p.outcome.usable]
         if failed:
             reasons.append(f"No result for state {', '.join(failed)} (0 is new).")
+        if self.walker is not None:
+            reasons.append(self.walker.caution[0].upper() + self.walker.caution[1:] + ".")
         if self.quick:
             reasons.append("Coarse grid (--full for the fine one).")
         return tuple(reasons)
@@ -149,6 +169,10 @@ class WearSeries(Presentable):
             values += [point.outcome.number(name) * scale for name, _, scale, _ in numbers]
             rows.append(["not determined" if math.isnan(v) else _short(v) for v in values])
         heads = tuple(label for *_, label in (*measures, *numbers))
+        walks = self.walked()
+        if walks:
+            heads = (*heads, "Walked")
+            rows = [[*row, str(walk)] for row, walk in zip(rows, walks, strict=True)]
         return Table("States of wear, new to worn", heads, rows)
 
     def tables(self) -> tuple[Table, ...]:
@@ -171,8 +195,9 @@ class WearSeries(Presentable):
                     **asdict(point.measures),
                     **{name: finite(point.outcome.number(name)) for name, *_ in NUMBERS},
                     "status": str(point.outcome.status),
+                    **walk,
                 }
-                for point in self.points
+                for point, walk in zip(self.points, self._walks(), strict=True)
             ],
             "crossings": {
                 name: {
@@ -198,12 +223,19 @@ class WearSeries(Presentable):
             heads += [f"{name}_{unit}", f"{name}_low", f"{name}_high"]
         ends = {name: self.ends(name) for name, *_ in NUMBERS}
         rows = []
+        walks = self._walks()
         for k, point in enumerate(self.points):
             row = [getattr(point.measures, name) for name, *_ in MEASURES]
             for name, *_ in NUMBERS:
                 row += [point.outcome.number(name), *(float(end[k]) for end in ends[name])]
-            rows.append((*row, str(point.outcome.status)))
-        return {"wear": Table("", (*heads, "status"), rows)}
+            rows.append((*row, str(point.outcome.status), *walks[k].values()))
+        return {"wear": Table("", (*heads, "status", *walks[0]), rows)}
+
+    def _walks(self) -> list[dict[str, float]]:
+        """Return the distance (m) and months to each state by name; nothing without a walker."""
+        names = ("walked_low_m", "walked_high_m", "months_low", "months_high")
+        ends = [(*walk.distance, *walk.months) for walk in self.walked()]
+        return [dict(zip(names, each, strict=True)) for each in ends] or [{} for _ in self.points]
 
     def values(self, name: str) -> np.ndarray:
         """Return a number of all points in SI, nan where it was not determined."""
@@ -258,6 +290,7 @@ def wear_series(
     band: bool = True,
     draws: int = 4000,
     seed: int = 0,
+    pair: WornPair | None = None,
     quick: bool = True,
     processes: int | None = 1,
     progress: Progress = silent,
@@ -277,6 +310,8 @@ def wear_series(
         limit: Fluid load, N; by default 5 N, the report's limit of detection (G.4).
         band: Vary the least known inputs at every state: four more runs a state.
         draws, seed: Of the sampling of the band.
+        pair: A measured pair that the distance walked is taken from; else the wear rate of the
+            case (``shoe.wear`` of mode "archard"), or its default.
         quick, processes, progress: As for ``outcomes``; every finished state is kept on disk, so
             that a stopped series goes on.
 
@@ -347,6 +382,7 @@ def wear_series(
         quick=quick,
         untreaded=results[-1] if bare else None,
         soles=tuple(map(bottom_surface, cases)),
+        walker=Walker(case.value("shoe.wear.wear_rate") or USUAL_WEAR_RATE, pair),
     )
 
 
@@ -504,6 +540,7 @@ def _assumptions(case: Case, mode: str, inputs: list[OpenInput]) -> tuple[str, .
     return (
         shape,
         "the worn surface is as rough as the new one",
+        SOURCES,
         *(f"interval: {each.path}, {each.reason}" for each in inputs),
     )
 
