@@ -13,7 +13,7 @@ from underfoot.core.arrays import Array
 
 WAVE_SEGMENTS = 12
 """Straight pieces of half a wave, in the map and in the solid: within 0.3 % of its height."""
-_NEAR = 6  # pieces of walls whose distance is compared
+_NEAR = 8  # pieces of walls whose distance is compared
 _ROUNDING = 1e-12  # m: keeps a cell centre on an edge from falling on either side by rounding
 
 
@@ -127,8 +127,8 @@ def wave_line(length: float, height: float) -> tuple[Array, Array]:
 def outline_distance(x: Array, y: Array, segments: Array, corner: Array, pitch: Array) -> Array:
     """Return the distance for closed outlines that repeat along x and y.
 
-    The walls are split into pieces of a hundredth of the period; of those with the nearest middles
-    the distance to the nearest is taken: exact near a wall, within h^2 / (8 d) at d from one.
+    The walls are split into pieces of at most 1/400 of the period; of the pieces with the nearest
+    middles the distance to the nearest is taken, which is exact within half a piece.
 
     Args:
         segments: (n, 4) walls as x0, y0, x1, y1 within one period, holes included, m.
@@ -137,7 +137,7 @@ def outline_distance(x: Array, y: Array, segments: Array, corner: Array, pitch: 
     """
     place = corner + np.mod(np.column_stack([x.ravel(), y.ravel()]) - corner, pitch)
     begin, way = segments[:, :2], segments[:, 2:] - segments[:, :2]
-    count = np.ceil(np.hypot(*way.T) / (pitch.max() / 100)).astype(int)
+    count = np.ceil(np.hypot(*way.T) / (pitch.max() / 400)).astype(int)
     which = np.repeat(np.arange(count.size), count)
     part = np.arange(which.size) - np.repeat(np.cumsum(count) - count, count)
     step = (way / count[:, None])[which]

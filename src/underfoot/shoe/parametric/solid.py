@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import InputError, UnderfootError
+from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
 
 from ..shape import SoleShape
@@ -271,13 +272,27 @@ def write_sole(shape: SoleShape, path: Path | str, *, solid: SoleSolid | None = 
             allowed=", ".join(KINDS),
         )
     made = solid or sole_solid(shape)
-    if kind in (".step", ".stp"):
-        made.body.WriteStep(str(path))
-        volume, triangles, tolerance = float(kernel().OCCGeometry(str(path)).shape.mass), 0, 1e-6
+    draft = path.with_name(f"{path.stem}.draft{kind}")
+    try:
+        volume, triangles = _written(made, draft, path)
+        draft.replace(path)
+    finally:
+        draft.unlink(missing_ok=True)
+    return SoleFile(path, made.volume, volume, triangles, made.lugs, made.remarks)
+
+
+def _written(made: SoleSolid, draft: Path, path: Path) -> tuple[float, int]:
+    """Write ``draft`` and return the volume (m^3) and triangles read back from it.
+
+    Raises:
+        UnderfootError: What was read back is not the solid, which ``path`` then never holds.
+    """
+    if draft.suffix in (".step", ".stp"):
+        made.body.WriteStep(str(draft))
+        volume, triangles, tolerance = float(kernel().OCCGeometry(str(draft)).shape.mass), 0, 1e-6
     else:
-        surface = sole_mesh(made)
-        surface.export(str(path))
-        back = _read(path)
+        sole_mesh(made).export(str(draft))
+        back = _read(draft)
         if not back.is_watertight:
             raise UnderfootError(
                 "the mesh of the sole is not watertight",
@@ -291,7 +306,7 @@ def write_sole(shape: SoleShape, path: Path | str, *, solid: SoleSolid | None = 
             f"the file holds {volume * 1e6:.3f} cm3, the solid {made.volume * 1e6:.3f} cm3",
             where=str(path),
         )
-    return SoleFile(path, made.volume, volume, triangles, made.lugs, made.remarks)
+    return volume, triangles
 
 
 def sole_mesh(made: SoleSolid) -> Any:
@@ -307,10 +322,19 @@ def sole_mesh(made: SoleSolid) -> Any:
         joined, index = np.unique(np.round(corners, decimals), axis=0, return_inverse=True)
         faces = np.asarray(index).reshape(-1, 3)
         proper = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
-        candidate = trimesh.Trimesh(joined, faces[proper], process=False)
-        if candidate.is_watertight:
+        candidate = trimesh.Trimesh(joined, _without_pairs(faces[proper]), process=False)
+        # of a sliver between two walls the kernel may draw nothing
+        if candidate.is_watertight or trimesh.repair.fill_holes(candidate, use_fan=True):
             return candidate
     return _meshed(made)
+
+
+def _without_pairs(faces: Array) -> Array:
+    """Return triangles (n, 3) without those that lie back to back: they enclose nothing."""
+    _, index, count = np.unique(
+        np.sort(faces, axis=1), axis=0, return_inverse=True, return_counts=True
+    )
+    return faces[count[index.ravel()] == 1]
 
 
 def _meshed(made: SoleSolid) -> Any:
