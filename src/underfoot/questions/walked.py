@@ -78,10 +78,10 @@ class Walker:
             own = _volume_at(self.pair.lost, volumes, lost)
             length = volume / own * self.pair.walked
             distance = (length, length)
-            steps = tuple(length / step for step in reversed(STEP))
+            steps = [length / step for step in reversed(STEP)]
         else:
             landings = [volume / (self.wear_rate * LANDING_LOAD * s) for s in reversed(SLIDING)]
-            steps = tuple(2 * each for each in landings)
+            steps = [2 * each for each in landings]
             distance = (steps[0] * STEP[0], steps[1] * STEP[1])
         low, high = (n / a / DAYS_A_MONTH for n, a in zip(steps, STEPS_A_DAY[::-1], strict=True))
         return Walked(distance, (low, high))

@@ -7,7 +7,7 @@ nearest wall is exact on both sides, so that edges can be rounded and fillets ag
 import math
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from underfoot.core.arrays import Array
 
@@ -127,7 +127,7 @@ def wave_line(length: float, height: float) -> tuple[Array, Array]:
 def outline_distance(x: Array, y: Array, segments: Array, corner: Array, pitch: Array) -> Array:
     """Return the distance for closed outlines that repeat along x and y.
 
-    The walls are split into pieces of at most 1/400 of the period; of the pieces with the nearest
+    The walls are split into pieces of at most 1/200 of the period; of the pieces with the nearest
     middles the distance to the nearest is taken, which is exact within half a piece.
 
     Args:
@@ -137,7 +137,7 @@ def outline_distance(x: Array, y: Array, segments: Array, corner: Array, pitch: 
     """
     place = corner + np.mod(np.column_stack([x.ravel(), y.ravel()]) - corner, pitch)
     begin, way = segments[:, :2], segments[:, 2:] - segments[:, :2]
-    count = np.ceil(np.hypot(*way.T) / (pitch.max() / 400)).astype(int)
+    count = np.ceil(np.hypot(*way.T) / (pitch.max() / 200)).astype(int)
     which = np.repeat(np.arange(count.size), count)
     part = np.arange(which.size) - np.repeat(np.cumsum(count) - count, count)
     step = (way / count[:, None])[which]
@@ -145,7 +145,7 @@ def outline_distance(x: Array, y: Array, segments: Array, corner: Array, pitch: 
     around = [pitch * (i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
     pieces = np.concatenate([pieces + shift for shift in around])
     step = np.tile(step, (len(around), 1))
-    _, near = cKDTree(pieces + step / 2).query(place, k=_NEAR)
+    _, near = KDTree(pieces + step / 2).query(place, k=_NEAR)
     from_piece, along = place[:, None] - pieces[near], step[near]
     share = (from_piece * along).sum(axis=2) / (along * along).sum(axis=2)
     beside = from_piece - np.clip(share, 0.0, 1.0)[..., None] * along

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from underfoot.core import InputError, UnderfootError
-from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
 
 from ..shape import SoleShape
@@ -329,7 +329,7 @@ def sole_mesh(made: SoleSolid) -> Any:
     return _meshed(made)
 
 
-def _without_pairs(faces: Array) -> Array:
+def _without_pairs(faces: NDArray[np.intp]) -> NDArray[np.intp]:
     """Return triangles (n, 3) without those that lie back to back: they enclose nothing."""
     _, index, count = np.unique(
         np.sort(faces, axis=1), axis=0, return_inverse=True, return_counts=True
