@@ -45,8 +45,8 @@ class Walked:
     months: tuple[float, float]
 
     def __str__(self) -> str:
-        km = tuple(each / 1e3 for each in self.distance)
-        return f"{_range(km)} km, {_range(self.months)} months"
+        low, high = self.distance
+        return f"{_range((low / 1e3, high / 1e3))} km, {_range(self.months)} months"
 
 
 @dataclass(frozen=True, slots=True)
