@@ -251,6 +251,9 @@ class Lugs(TreadPattern):
     offset_along: Shift = default(0.0, "0 mm", "the first lug begins at the rear end")
     offset_across: Shift = default(0.0, "0 mm", "a lug is centred on the centre line")
     edge_radius: Rounding = default(0.0, "0 mm", "sharp lug edges", assumed=True)
+    edge_chamfer: Rounding = default(
+        0.0, "0 mm", "no chamfer; 45 deg, width on the land; its film is that of a sharp edge"
+    )
     sipes: SipeCuts | None = None
 
     def letters(self) -> Lettering | None:
@@ -272,6 +275,7 @@ class Lugs(TreadPattern):
             self.angle,
             **{name: getattr(self, name) for name in FURTHER_LENGTHS.get(self.name, ())},
             letters=self.letters(),
+            edge_chamfer=self.edge_chamfer,
             sipes=cuts and Sipes(cuts.width, cuts.depth, cuts.spacing, cuts.angle),
         )
 
@@ -290,11 +294,16 @@ class Lugs(TreadPattern):
                 yield from _resolved(case, f"{where}.{name}", getattr(self, name))
         smallest = min([self.lug_width, *(getattr(self, name, math.inf) for name in _LUG_SIDES)])
         rounding = min(self.depth or math.inf, smallest / 2)
-        if self.edge_radius > rounding:
-            yield RangeError(
-                f"{display(self.edge_radius, 'm')} does not fit on the lug",
-                where=f"{where}.edge_radius",
-                allowed=f"at most {display(rounding, 'm')} (the depth and half the lug width)",
+        for name in ("edge_radius", "edge_chamfer"):
+            if getattr(self, name) > rounding:
+                yield RangeError(
+                    f"{display(getattr(self, name), 'm')} does not fit on the lug",
+                    where=f"{where}.{name}",
+                    allowed=f"at most {display(rounding, 'm')} (the depth and half the lug width)",
+                )
+        if self.edge_radius > 0 and self.edge_chamfer > 0:
+            yield InputError(
+                "edges of lugs have a radius or a chamfer, not both", where=f"{where}.edge_chamfer"
             )
         if self.sipes is not None:
             yield from self._sipe_problems(self.sipes, f"{where}.sipes")

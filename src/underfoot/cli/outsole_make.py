@@ -28,6 +28,7 @@ LENGTHS = {
     "angle": "tread.angle",
     "edge": "tread.edge_radius",
     "text": "tread.text",
+    "chamfer": "tread.edge_chamfer",
 }
 
 
@@ -71,6 +72,7 @@ def make(
     graded_length: Annotated[str | None, _given("Over which they change.")] = None,
     angle: Annotated[str | None, _given("Of the pattern.")] = None,
     edge: Annotated[str | None, _given("Radius of the lugs' edges.")] = None,
+    chamfer: Annotated[str | None, _given("Width of a 45 degree chamfer instead.")] = None,
     text: Annotated[str | None, _given('Of lettering, as "GRIP"; --lug is its height.')] = None,
     sipes: Annotated[str | None, _given('Width, depth and spacing: "0.5 mm, 2 mm, 4 mm".')] = None,
     whole: Annotated[
@@ -90,7 +92,7 @@ def make(
     from underfoot.shoe.parametric import write_sole
 
     waves, round_lugs = (wave_length, wave_height), (ring, front_lug, graded_length)
-    sizes = (lug, channel, depth, lug_length, arm, *waves, *round_lugs, angle, edge, text)
+    sizes = (lug, channel, depth, lug_length, arm, *waves, *round_lugs, angle, edge, text, chamfer)
     given = dict(zip(LENGTHS, sizes, strict=True))
     if (spec is None) == (pattern is None):
         raise InputError(

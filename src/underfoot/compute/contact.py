@@ -99,7 +99,8 @@ def edged_law(
     viscosity, film = context.viscosity_value, case.film
     if viscosity is None or not getattr(film, "lug_edges", False):
         return None
-    edges = lug_edges(sole, getattr(case.shoe.tread, "edge_radius", 0.0))
+    moulded, worn = getattr(case.shoe.tread, "edge_radius", 0.0), case.shoe.wear.edge_radius
+    edges = lug_edges(sole, moulded, worn_edge_radius=worn)
     if edges is None:
         return None
     suction = case.value("film.suction")
@@ -129,7 +130,7 @@ class Recorder:
         speed = max(abs(state.speed), SLOWEST)
         shear = self.law(state.contact_pressure, speed, state.film_thickness)
         pressures = state.contact_pressure, state.fluid_pressure
-        friction = cof(shear, *pressures, spacing=state.spacing, wet=state.wet)
+        friction = cof(shear, *pressures, spacing=state.spacing, wet=state.wet, **state.areas)
         for name in COF_WORDS:
             value = getattr(friction, name).value
             self.cof.setdefault(name, []).append(math.nan if value is None else value)

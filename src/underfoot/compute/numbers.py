@@ -1,14 +1,14 @@
 """The named numbers of a result, each with its spread or the reason why there is none."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from underfoot.case import Case
-from underfoot.core import SourcedValue, Status, content_hash, display
+from underfoot.core import Breach, SourcedValue, Status, content_hash, display
 from underfoot.film import SHARE_LIMITS, lubrication_by_load_share
 from underfoot.friction import FrictionCoefficients, SampledCof
 from underfoot.slip import RcofPopulation, SlipModel, SlipRisk, slip_risk
@@ -89,7 +89,9 @@ def scalars(
         "peak_fluid_pressure": computed(float(contact.fluid_pressure.max()), "Pa"),
         "peak_fluid_pressure_sensor": sensor.peak_pressure,
         "contact_area": computed(
-            float(np.count_nonzero(touching)) * contact.spacing**2, "m^2", "apparent, on the grid"
+            float(contact.cut.area[touching].sum()) * contact.spacing**2,
+            "m^2",
+            "apparent, on the grid",
         ),
         "minimum_film_thickness": computed(thinnest, "m")
         if thinnest is not None
@@ -133,6 +135,15 @@ def regime(share: float) -> dict[str, str]:
     }
 
 
+def overload_words(overload: Sequence[Breach]) -> str:
+    """Return what to say where the load rests on what rubber cannot bear, else nothing."""
+    return "".join(
+        f"{one.high:.0%} of the load rests on pressures above the modulus of the rubber, which it "
+        "cannot bear: so does this COF"
+        for one in overload
+    )
+
+
 def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
     """Return in words which inputs the spread of COF comes from, and how it was sampled."""
     if sampled is None:
@@ -150,7 +161,7 @@ def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
 
 
 def _mean_pressure(contact: SoleContact) -> float:
-    loaded = np.count_nonzero(contact.total_pressure > 0)
+    loaded = float(contact.cut.area[contact.total_pressure > 0].sum())
     return contact.normal_force / max(loaded * contact.spacing**2, contact.spacing**2)
 
 

@@ -38,6 +38,8 @@ from underfoot.core import (
 from underfoot.shoe import SoleMap, SoleSurface, heel_map, rotated_surface, surface_map
 from underfoot.shoe.shape import SoleShape
 from underfoot.shoe.worn import ArchardStep, WornMap, archard_wear, worn_surface
+from underfoot.sole_contact.edge_peak import MOST_OVERLOADED, overloaded_share
+from underfoot.sole_contact.sole_state import SoleState
 from underfoot.sole_contact.solver import SolverSettings, solve_sliding
 
 from .resolve import resolved, youngs_modulus
@@ -307,6 +309,13 @@ def compression_breaches(case: Case, approach: float) -> list[Breach]:
     name = "compression of the sole (approach / thickness)"
     strain = max(approach, 0.0) / case.shoe.sole.thickness
     return breaches("compliance", {name: LINEAR_STRAIN}, {name: strain})
+
+
+def overload_breaches(contact: SoleState, modulus: float) -> list[Breach]:
+    """Return whether more of the load than sharp edges take rests on what rubber cannot bear."""
+    name = "share of the load under pressures above the modulus"
+    share = overloaded_share(contact.total_pressure, contact.cell_load, modulus)
+    return breaches("compliance", {name: MOST_OVERLOADED}, {name: share})
 
 
 def outsole_notes(case: Case) -> list[str]:

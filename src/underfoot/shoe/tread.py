@@ -101,6 +101,7 @@ class Tread:
             of lettering the height of its capitals; the channel where it is narrowest.
         depth: Height of the lugs, m; 0 is an untreaded sole.
         edge_radius: Rounding of the lower edges of the lugs, m.
+        edge_chamfer: Width of a chamfer of 45 degrees there instead, m.
         offset: Shift (x, y) of the pattern with its sipes, m. At (0, 0) the first lug begins at the
             rear end of the sole and a lug is centred on the centre line.
         angle: Turns the pattern as a whole, rad, anticlockwise seen from above; for chevrons it is
@@ -130,6 +131,7 @@ class Tread:
     front_lug_width: float | None = None
     graded_length: float | None = None
     letters: Lettering | None = None
+    edge_chamfer: float = 0.0
     sipes: Sipes | None = None
 
     def __post_init__(self) -> None:
@@ -162,13 +164,18 @@ class Tread:
                 where="tread.ring_width",
                 allowed=f"below {self.lug_width / 2e-3:g} mm (half of tread.lug_width)",
             )
+        not_negative(self.edge_chamfer, "tread.edge_chamfer")
+        if self.edge_radius > 0 and self.edge_chamfer > 0:
+            raise InputError("both a radius and a chamfer", where="tread.edge_chamfer")
         rounding = min(self.depth, self.smallest_lug / 2)
-        if self.depth > 0 and self.edge_radius > rounding:
-            raise InputError(
-                f"edge radius {self.edge_radius * 1e3:g} mm doesn't fit on the lug",
-                where="tread.edge_radius",
-                allowed=f"at most {rounding * 1e3:g} mm (the depth and half the lug width)",
-            )
+        for name in ("edge_radius", "edge_chamfer"):
+            size = getattr(self, name)
+            if self.depth > 0 and size > rounding:
+                raise InputError(
+                    f"{name.replace('_', ' ')} {size * 1e3:g} mm doesn't fit on the lug",
+                    where=f"tread.{name}",
+                    allowed=f"at most {rounding * 1e3:g} mm (the depth and half the lug width)",
+                )
         if self.sipes is not None and self.depth > 0:
             self.sipes.check_within(self.depth)
 

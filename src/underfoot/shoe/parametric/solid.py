@@ -74,12 +74,14 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
         hollows = hollow_outlines(lugs, tread)
         if hollows:
             body = body - _prisms(hollows) * _layer(lower, tread.depth)
-        if tread.edge_radius > 0:
+        edge = tread.edge_radius or tread.edge_chamfer
+        if edge > 0:
             edges = [(i, edge) for i, edge in enumerate(body.edges) if _on_lug(edge, shape)]
             whole = _free_lugs(lugs, shape)
             free = [i for i, edge in edges if _belongs(edge, whole)]
             if free:
-                body = _rounded(body, free, tread.edge_radius, "the lugs' edges", remarks)
+                flat = tread.edge_chamfer > 0
+                body = _rounded(body, free, edge, "the lugs' edges", remarks, chamfer=flat)
             if len(free) < len(edges):
                 remarks.append(
                     f"{len(edges) - len(free)} of {len(edges)} edges of lugs stay sharp: "
@@ -158,11 +160,19 @@ def _half_ring(channel: ArcChannel) -> Any:
     return raised(closed(outer), 0.3) - raised(closed(inner), 0.3)
 
 
-def _rounded(body: Any, edges: list[int], radius: float, name: str, remarks: list[str]) -> Any:
+def _rounded(
+    body: Any,
+    edges: list[int],
+    radius: float,
+    name: str,
+    remarks: list[str],
+    *,
+    chamfer: bool = False,
+) -> Any:
     """Return the body with fillets; where the kernel cannot make them the edges stay sharp."""
     from .rounding import rounded  # also run as a program of its own
 
-    filleted = rounded(body, edges, radius)
+    filleted = rounded(body, edges, radius, chamfer=chamfer)
     if filleted is None:
         remarks.append(f"left sharp: {name}, {radius * 1e3:g} mm cannot be rolled along all of it")
         return body
@@ -205,7 +215,7 @@ def _free_lugs(lugs: Sequence[Outline], shape: SoleShape) -> list[Outline]:
     The kernel cannot roll a fillet over those.
     """
     assert shape.tread is not None
-    clear = shape.edge_radius + 2 * shape.tread.edge_radius
+    clear = shape.edge_radius + 2 * (shape.tread.edge_radius or shape.tread.edge_chamfer)
     kinks = np.array(break_points(shape)[1:-1])
     fitting = []
     for lug in lugs:
