@@ -1,16 +1,20 @@
 """Solids of soles: volumes in closed form and against the height map, files read back."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from underfoot.case import Case
+from underfoot.compute.contact import chamfer_words
 from underfoot.core import InputError
 from underfoot.shoe import Facet, Heel, Sipes, Tread, heel_surface
 from underfoot.shoe.grids import cut_heel
 from underfoot.shoe.parametric import sole_solid, write_sole
 from underfoot.shoe.parametric.modelling import lug_outlines
 
+OUTSOLES = Path(__file__).parents[2] / "examples" / "outsoles"
 KIND = {"length": 0.06, "width": 0.06, "rear_radius": 0.028, "outsole_thickness": 0.025}
 
 
@@ -135,3 +139,10 @@ def test_soles_that_can_not_be_made(heel, words):
 def test_unknown_kind_of_file(tmp_path):
     with pytest.raises(InputError, match=r"\.step"):
         write_sole(Heel(**KIND), tmp_path / "sole.doc")
+
+
+def test_a_chamfer_says_what_its_film_counts_as():
+    case = Case.load(OUTSOLES / "heel_hexagons_glycerol.toml")
+    assert chamfer_words(case) == ""
+    assert "sharp" in chamfer_words(case.replace("shoe.tread.edge_chamfer", "0.3 mm"))
+    assert chamfer_words(case.replace("shoe.tread.pattern", "none")) == ""

@@ -1,11 +1,15 @@
 """Distance and months walked until a volume of sole is lost."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from underfoot.case import Case
 from underfoot.core import InputError
 from underfoot.questions.walked import DAYS_A_MONTH, Walked, Walker, WornPair, worn_pair
 
+OUTSOLES = Path(__file__).parents[2] / "examples" / "outsoles"
 VOLUMES, LOST = [0.0, 100e-9, 400e-9], [0.0, 1e-3, 2e-3]
 
 
@@ -47,3 +51,11 @@ def test_a_pair_is_read_from_text():
     for text in ("1.2 mm", "300 km after 1 mm", "0 mm after 300 km", "old"):
         with pytest.raises(InputError, match="worn-pair"):
             worn_pair(text)
+
+
+def test_a_wear_rate_of_the_case_is_taken():
+    case = Case.load(OUTSOLES / "heel_hexagons_glycerol.toml")
+    assert not case.value("shoe.wear.wear_rate")
+    changes = {"mode": "archard", "angle": "10 deg", "abrasion": "DIN 250 mm3"}
+    worn = case.replace({f"shoe.wear.{name}": value for name, value in changes.items()})
+    assert worn.value("shoe.wear.wear_rate") == pytest.approx(0.625e-9)

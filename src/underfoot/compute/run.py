@@ -30,7 +30,16 @@ from underfoot.sole_contact.lug_edges import EdgedLaw
 from underfoot.sole_contact.solver import SoleContact
 
 from . import numbers
-from .contact import Recorder, blind_sensor, cost, edged_law, history_fields, scanned, solved_motion
+from .contact import (
+    Recorder,
+    blind_sensor,
+    chamfer_words,
+    cost,
+    edged_law,
+    history_fields,
+    scanned,
+    solved_motion,
+)
 from .pictured import pictured_fields
 from .positions import Place, tread_positions
 from .resolve import resolved, turned
@@ -150,7 +159,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             values = positions.averaged(values)
         share = (values["fluid_load"].value or 0.0) / contact.normal_force
         remarks = {
-            "lug_edges": "" if lugs is None else lugs.words(),
+            "lug_edges": "" if lugs is None else lugs.words() + chamfer_words(case),
             "cof_spread_basis": getattr(law, "spread_basis", ""),
             **(positions.labels() if positions else {}),
             "overload": numbers.overload_words(overload),
