@@ -136,9 +136,10 @@ class WearSeries(Presentable):
             sentences[-1] = f"{sentences[-1][:-1]}; {bare:.3f} if that sole had no tread at all."
         walks = self.walked()
         if walks:
-            bound = "" if self.walker and self.walker.pair else "at least "
+            measured = self.walker is not None and self.walker.pair is not None
+            bound = "" if measured else "life not estimated; walked on an abrasive sheet "
             volume = _short(float(self.measured("removed_volume")[-1]) * 1e9)
-            sentences.append(f"The last state has lost {volume} mm³: {bound}{walks[-1]} walked.")
+            sentences.append(f"The last state has lost {volume} mm³: {bound}{walks[-1]}.")
         return tuple(sentences)
 
     def walked(self) -> list[Walked]:
@@ -177,7 +178,7 @@ class WearSeries(Presentable):
         heads = tuple(label for *_, label in (*measures, *numbers))
         walks = self.walked()
         if walks:
-            heads = (*heads, "Walked")
+            heads = (*heads, "Walked" if self.walker and self.walker.pair else "On abrasive sheet")
             rows = [[*row, str(walk)] for row, walk in zip(rows, walks, strict=True)]
         return Table("States of wear, new to worn", heads, rows)
 
