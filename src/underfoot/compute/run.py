@@ -31,7 +31,16 @@ from underfoot.sole_contact.lug_edges import EdgedLaw
 from underfoot.sole_contact.solver import SoleContact
 
 from . import numbers
-from .contact import Recorder, blind_sensor, cost, edged_law, history_fields, scanned, solved_motion
+from .contact import (
+    Recorder,
+    blind_sensor,
+    chamfer_words,
+    cost,
+    edged_law,
+    history_fields,
+    scanned,
+    solved_motion,
+)
 from .pictured import pictured_fields
 from .positions import Place, tread_positions
 from .resolve import resolved, turned
@@ -154,7 +163,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         if contact.fluid_load > FILM_MATTERS * contact.normal_force:
             drainage = lug_drainage(sole, contact.fluid_pressure, contact.film_thickness)
         remarks = {
-            "lug_edges": "" if lugs is None else lugs.words(),
+            "lug_edges": "" if lugs is None else lugs.words() + chamfer_words(case),
             "drainage": drainage.words() if drainage else "",
             "cof_spread_basis": getattr(law, "spread_basis", ""),
             **(positions.labels() if positions else {}),
