@@ -35,7 +35,7 @@ from .pictured import pictured_fields
 from .positions import Place, tread_positions
 from .resolve import resolved, turned
 from .result import Result
-from .sole import compression_breaches, outsole_notes, sole_map
+from .sole import compression_breaches, forefoot_breaches, outsole_notes, sole_map
 
 OBJECTS = ("friction", "rough_contact", "compliance", "risk")
 """Slots that take an object of physics in place of an option."""
@@ -175,6 +175,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         *context.modulus_breaches,
         *sole.breaches,
         *compression_breaches(case, contact.approach),
+        *forefoot_breaches(case),
         *asperities.breaches(pressure=contact.contact_pressure.max(), speed=speed),
         *law.breaches(**local),
         *(risk.breaches if risk else ()),

@@ -47,6 +47,7 @@ PARTS: Mapping[str, str] = {
     "stribeck": "the friction of this sole on this floor",
     "speed_table": "the friction of this sole on this floor",
     "grid": "the tread, which has few cells of the grid across its details",
+    "forefoot": "push-off: the forefoot of a shoe bends where this sole stays straight",
     "compliance": "how far the load presses the sole together",
     "gent_1958": "the stiffness of a rubber of this hardness",
     "ruess": "the stiffness of a rubber of this hardness",
