@@ -235,7 +235,8 @@ def by_method(
         str,
         typer.Option(
             "--method",
-            help="iso13287, astmf2913, report-slip-tester, report-whole-shoe or a set-up of the "
+            help="iso13287 or astmf2913 (the heel; with -forepart or -flat the rest of a whole sole), "
+            "slip-prediction-13-deg, report-slip-tester, report-whole-shoe or a set-up of the "
             "catalogue.",
         ),
     ] = "iso13287",

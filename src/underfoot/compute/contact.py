@@ -100,7 +100,8 @@ def edged_law(
     viscosity, film = context.viscosity_value, case.film
     if viscosity is None or not getattr(film, "lug_edges", False):
         return None
-    edges = lug_edges(sole, getattr(case.shoe.tread, "edge_radius", 0.0))
+    radius = getattr(case.shoe.tread, "edge_radius", 0.0)
+    edges = lug_edges(sole, radius, forward=case.motion.forward)
     if edges is None:
         return None
     suction = case.value("film.suction")
