@@ -38,8 +38,8 @@ from underfoot.core import (
 from underfoot.shoe import SoleMap, SoleSurface, heel_map, rotated_surface, surface_map
 from underfoot.shoe.shape import SoleShape
 from underfoot.shoe.worn import ArchardStep, WornMap, archard_wear, worn_surface
-from underfoot.sole_contact.stepping import rolled_clearance
 from underfoot.sole_contact.solver import SolverSettings, solve_sliding
+from underfoot.sole_contact.stepping import rolled_clearance
 
 from .resolve import resolved, youngs_modulus
 
@@ -335,9 +335,11 @@ def compression_breaches(case: Case, approach: float) -> list[Breach]:
 
 
 def forefoot_breaches(case: Case) -> list[Breach]:
-    """Return whether the motion raises the heel beyond what a sole that does not bend stands for."""
+    """Return whether the motion raises the heel beyond what a rigid forefoot stands for."""
     name = "shoe angle of a sole whose forefoot does not bend"
-    return breaches("forefoot", {name: FOREFOOT_RIGID}, {name: rolls(case) + case.motion.shoe_angle})
+    return breaches(
+        "forefoot", {name: FOREFOOT_RIGID}, {name: rolls(case) + case.motion.shoe_angle}
+    )
 
 
 def outsole_notes(case: Case) -> list[str]:
