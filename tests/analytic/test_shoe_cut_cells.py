@@ -2,20 +2,25 @@
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.ndimage import label
 
 from underfoot.film import Conductance, film_operator
+from underfoot.friction import FrictionParts, cof
 from underfoot.rough_contact import ExponentialLaw
 from underfoot.shoe import Flat, Heel, Tread, heel_map, heel_surface, surface_map
 from underfoot.shoe.cut_cells import LEAST_AREA
+from underfoot.sole_contact import floor_sensor_reading
 from underfoot.sole_contact.compliance import layered_compliance
 from underfoot.sole_contact.solver import solve_sliding
 
 MM = 1e-3
+LOAD, VISCOSITY, SPEED = 60.0, 0.2, 0.1
 
 
 def heel(tread=None, **changes):
@@ -35,24 +40,31 @@ def test_cells_share_out_their_area_and_lugs_get_theirs(pattern, lug, shift):
     for area in (coarse.cut.area, coarse.cut.film_area):
         assert area.sum() == pytest.approx(area.size, rel=1e-12)
         assert (area > 0.1).all()  # no lug here is a sliver
-    # the rim itself is not cut: a lug that ends just there may count half a cell too much
-    assert coarse.land_ratio == pytest.approx(fine.land_ratio, abs=0.012)
+    # the rim itself is not cut: a lug that ends just there may count half a cell too much, and
+    # lugs take up three quarters of four sides at most
+    assert coarse.land_ratio == pytest.approx(fine.land_ratio, abs=3 * 0.5 / 60)
     places = np.concatenate([coarse.cut.along.ravel(), coarse.cut.across.ravel()])
     assert ((places >= 0) & (places <= 1)).all()
 
 
-def test_the_area_of_lugs_is_smooth_in_their_width():
-    """Per 0.1 mm of width it grows evenly; counted cells jump by whole rows."""
-    widths = np.arange(5.0, 6.51, 0.1)
-    cut, counted = [], []
-    for width in widths:
-        tread = Tread("hexagons", width * MM, 3 * MM, 3 * MM, offset=(3.3 * MM, 0.2 * MM))
-        sole = heel_map(heel(tread), shoe_angle=0.1, spacing=1 * MM)
-        cut.append(sole.land_area)
-        counted.append(np.count_nonzero(sole.land) * sole.spacing**2)
-    smooth, jumps = (np.abs(np.diff(each, 2)).max() / each[0] for each in (cut, counted))
-    assert smooth < 0.015  # the rim of the plan form is not cut
-    assert smooth < 0.35 * jumps
+@pytest.mark.parametrize("shift", [(0.0, 0.0), (3.3, 0.2), (0.4, 5.7)])
+def test_a_hexagon_has_its_area_on_any_cells(shift):
+    """Each cut cell is known within half of one of its 16 samples, evenly either way."""
+    for width in np.arange(5.0, 6.51, 0.1):
+        tread = Tread("hexagons", width * MM, 3 * MM, 3 * MM, offset=(shift[0] * MM, shift[1] * MM))
+        sole = heel_map(heel(tread), shoe_angle=0.0, spacing=1 * MM)
+        lugs, _ = label(sole.land)
+        middle = lugs == lugs[np.unravel_index(_far_inside(sole.land).argmax(), lugs.shape)]
+        cut_cells = math.sqrt(12) * width  # its perimeter over the side of a cell
+        exact = math.sqrt(3) / 2 * width**2
+        assert sole.cut.area[middle].sum() == pytest.approx(exact, abs=3 * cut_cells**0.5 / 32)
+
+
+def _far_inside(land):
+    """Return the land far from the rim of the map, nearest to its middle highest."""
+    i, j = np.indices(land.shape)
+    away = np.hypot(i - land.shape[0] / 2, j - land.shape[1] / 2)
+    return np.where(land, -away, -np.inf)
 
 
 def test_a_sole_without_lugs_is_not_cut():
@@ -106,31 +118,70 @@ def test_flow_through_a_step_is_exact_wherever_it_lies(place):
     assert flow / length == pytest.approx((drop + dragged) / resistance, rel=1e-12)
 
 
-@pytest.fixture(scope="module")
-def squeezed():
-    """Load on the film under one bar against its width, 1 mm cells, and cells counted whole."""
+@cache
+def squeezed(width, spacing=1.0, cut=True):
+    """Contact and film under one bar of a width (mm) on cells of a spacing (mm)."""
+    tread = Tread("transverse", width * MM, 30 * MM, 3 * MM, offset=(4 * MM, 0.0))
+    shape = heel(tread, length=24 * MM, width=24 * MM)
+    sole = heel_map(shape, shoe_angle=0.0, spacing=spacing * MM)
+    if not cut:
+        sole = replace(sole, cut=None)
+    body = layered_compliance(sole, modulus=4e6, poisson_ratio=0.49, thickness=25 * MM)
+    law = ExponentialLaw(4e6, 0.5, 15e-6)
+    solved = solve_sliding(sole, body, law, viscosity=VISCOSITY, speed=SPEED, normal_force=LOAD)
+    assert solved.status.usable
+    assert solved.fluid_load + solved.contact_load == pytest.approx(LOAD, rel=1e-3)
+    return sole, solved
 
-    def load(width, cut):
-        tread = Tread("transverse", width * MM, 30 * MM, 3 * MM)
-        shape = heel(tread, length=24 * MM, width=24 * MM)
-        sole = heel_map(shape, shoe_angle=0.0, spacing=1 * MM)
-        if not cut:
-            sole = replace(sole, cut=None)
-        body = layered_compliance(sole, modulus=4e6, poisson_ratio=0.49, thickness=25 * MM)
-        law = ExponentialLaw(4e6, 0.5, 15e-6)
-        solved = solve_sliding(sole, body, law, viscosity=0.2, speed=0.1, normal_force=60.0)
-        assert solved.status.usable
-        assert solved.fluid_load + solved.contact_load == pytest.approx(60.0, rel=1e-3)
-        return solved.fluid_load
 
-    widths = np.arange(6.6, 8.61, 0.25)  # one cell crossed on each side
-    return [np.array([load(w, cut) for w in widths]) for cut in (True, False)]
+WIDTHS = np.arange(6.6, 8.61, 0.25)  # the edge crosses two cells
+ROW = 1 / 7.6
+"""What a row of cells more or less changes, of the whole."""
 
 
 @pytest.mark.slow
-def test_film_load_is_smooth_in_the_width_of_a_lug(squeezed):
-    cut, counted = (np.abs(np.diff(each, 2)).max() / each.mean() for each in squeezed)
-    assert cut < 0.3 * counted
+def test_film_load_is_smooth_in_the_width_of_a_lug():
+    cut, counted = (
+        np.array([squeezed(width, cut=cut)[1].fluid_load for width in WIDTHS])
+        for cut in (True, False)
+    )
+    unevenness = [np.abs(np.diff(each, 2)).max() / each.mean() for each in (cut, counted)]
+    assert unevenness[0] < ROW / 2
+    assert unevenness[1] > ROW / 2
+
+
+def bar_numbers(width, spacing=1.0):
+    """Highest pressure of the film, as a sensor reads it, mean pressure, and shear force."""
+    sole, solved = squeezed(width, spacing)
+    read = floor_sensor_reading(
+        solved.x, solved.y, solved.fluid_pressure, solved.film_thickness, inlet_diameter=4 * MM
+    )
+    under = solved.cut.area[sole.land]
+    mean = solved.cell_load.sum() / under.sum()
+    assert mean == pytest.approx(LOAD / (width * 24 * MM**2), rel=0.01)  # the rim is a cell's edge
+    parts = FrictionParts(*np.zeros((2, *sole.land.shape)), viscous=drag(solved, sole.land))
+    pressures = solved.contact_pressure, solved.fluid_pressure
+    sheared = cof(parts, *pressures, spacing=solved.spacing, wet=solved.wet, **solved.areas)
+    assert sheared.normal_force == pytest.approx(solved.fluid_load + solved.contact_load, rel=1e-12)
+    return solved.fluid_pressure.max(), read.peaks.mean(), mean, sheared.friction_force
+
+
+def drag(solved, land):
+    return np.where(land, VISCOSITY * SPEED / np.maximum(solved.film_thickness, 1e-7), 0.0)
+
+
+def test_what_is_read_under_a_lug_is_continuous_as_its_edge_moves_through_a_cell():
+    """Loads of cut cells are not pressures: an edge through a cell would double or halve them."""
+    series = np.array([bar_numbers(width) for width in WIDTHS])
+    uneven = np.abs(np.diff(series, 2, axis=0)).max(axis=0) / series.mean(axis=0)
+    assert (uneven < ROW / 3).all()  # of a whole row that came or went
+
+
+def test_what_is_read_under_a_lug_is_that_of_a_fine_grid():
+    for width in (6.6, 7.6, 8.6):
+        coarse, fine = np.array(bar_numbers(width)), np.array(bar_numbers(width, 0.4))
+        # first order in the share that one row of cells has of the bar
+        assert np.abs(coarse / fine - 1).max() < 1 / width + 0.05
 
 
 def test_tilt_stretches_cells_not_lugs():

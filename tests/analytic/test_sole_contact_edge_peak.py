@@ -1,12 +1,18 @@
 """Highest pressure at an edge and away from it."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from underfoot.case import Case
+from underfoot.compute.numbers import overload_words
+from underfoot.compute.run import run
+from underfoot.compute.sole import overload_breaches
+from underfoot.compute.summary import headline
 from underfoot.shoe import Heel, Tread, heel_map
-from underfoot.sole_contact.edge_peak import peak_pressure
+from underfoot.sole_contact.edge_peak import overloaded_share, peak_pressure
 
 
 def test_a_peak_at_a_lug_edge_is_marked_and_its_mean_stays():
@@ -35,3 +41,29 @@ def test_a_peak_in_the_middle_is_not_marked():
     assert not peak.at_edge
     assert peak.remark == ""
     assert peak.mean == pytest.approx(peak.highest, rel=0.03)
+
+
+def test_load_on_what_rubber_cannot_bear_is_counted_with_what_cells_stand_for():
+    pressure, area = np.array([[1e6, 9e6]]), np.array([[1.5, 0.5]])
+    assert overloaded_share(pressure, pressure * area, 5e6) == pytest.approx(4.5 / 6.0)
+    assert overloaded_share(pressure, pressure * area, 10e6) == 0.0
+
+
+def test_a_sole_worn_nearly_through_has_no_rigid_points():
+    """Remains of channels and of lugs, a tenth of a millimetre high, on the body of the sole."""
+    case = Case.load("examples/work_shoe_full_tread_glycerol.toml")
+    case = case.replace("shoe.wear.mode", "walk").replace("numerics.tread_positions", 1)
+    loads = []
+    for depth in ("3.8 mm", "4.4 mm"):
+        found = run(case.replace("shoe.wear.depth", depth), quick=True)
+        data = found.data
+        highest = (data["fluid_pressure"].values + data["contact_pressure"].values).max()
+        assert highest < 3 * 500 / (75e-3 * 70e-3 / 4)  # thrice the mean over a quarter of the heel
+        assert "overload" not in found.labels
+        loads.append(found.scalars["fluid_load"].value)
+    assert loads == sorted(loads)
+    # more of the load than edges take on pressures above the modulus is said beside COF
+    heavy = SimpleNamespace(total_pressure=np.array([1e5, 2e7]), cell_load=np.array([1e6, 1e6]))
+    words = overload_words(overload_breaches(heavy, 5e6))
+    said = headline(found.status, found.scalars, {**found.labels, "overload": words})
+    assert said[1].startswith("50% of the load rests on pressures above the modulus")

@@ -34,7 +34,7 @@ COUPLED = {
 
 def one_lug(length=0.01, width=1.0, height=0.005, edge=1e-4, fed=1.0):
     arrays = (np.array([value]) for value in (length, width, height, edge, fed))
-    return LugEdges(np.array([[1]]), *arrays)
+    return LugEdges(np.array([[1]]), np.ones((1, 1)), *arrays)
 
 
 def friction(edges=None, pressure=1e5, cof=0.3, drag=0.01, suction=1e5, rq=2e-6, modulus=3e6):
@@ -95,21 +95,26 @@ def tread(pattern, **more):
     )
 
 
+WORN = 0.15e-3
 SIZES = {"depth": "3 mm", "lug_width": "5 mm", "channel_width": "2.5 mm"}
 
 
 @pytest.mark.parametrize("forward", [True, False])
 def test_lugs_of_a_sole(forward):
-    edges = lug_edges(sole_map(tread("grid", **SIZES), 5e-4), 0.0, forward=forward)
+    edges = lug_edges(
+        sole_map(tread("grid", **SIZES), 5e-4), 0.0, worn_edge_radius=WORN, forward=forward
+    )
     whole = edges.length * edges.width > 22e-6
     assert np.count_nonzero(whole) > 40
     np.testing.assert_allclose(edges.length[whole], 5e-3, rtol=0.12)
     np.testing.assert_allclose(edges.width[whole], 5e-3, rtol=0.12)
     np.testing.assert_allclose(edges.height[whole], 3e-3, rtol=1e-6)
     assert np.mean(edges.fed[whole]) > 0.8
-    along = lug_edges(sole_map(tread("longitudinal", **SIZES), 5e-4), 0.0, forward=forward)
+    along = lug_edges(
+        sole_map(tread("longitudinal", **SIZES), 5e-4), 0.0, worn_edge_radius=WORN, forward=forward
+    )
     assert np.max(along.fed) < 0.2  # ribs along the sliding have no leading face
-    assert lug_edges(sole_map(tread("none"), 5e-4), 0.0) is None
+    assert lug_edges(sole_map(tread("none"), 5e-4), 0.0, worn_edge_radius=WORN) is None
 
 
 def test_a_run_says_what_the_edges_do():
@@ -134,11 +139,11 @@ def test_wear_makes_the_edges_of_the_lugs_that_it_meets():
     )
     wear = {"mode": "walk", "depth": "1 mm"}
     new, worn = (sole_map(each, 1e-3) for each in (case, case.replace({"shoe.wear": wear})))
-    before, after = lug_edges(new, 0.0), lug_edges(worn, 0.0)
+    before, after = (lug_edges(each, 0.0, worn_edge_radius=WORN) for each in (new, worn))
     assert (before.edge == 0.1e-3).all()
-    assert after.edge.max() == pytest.approx(0.15e-3)
+    assert after.edge.max() == pytest.approx(WORN)
     assert np.count_nonzero(after.edge == 0.1e-3) > 5  # in front nothing wears
-    moulded = lug_edges(worn, 0.4e-3).edge
+    moulded = lug_edges(worn, 0.4e-3, worn_edge_radius=WORN).edge
     assert moulded.min() < 0.2e-3  # wear takes a moulded round off
     assert moulded.max() == 0.4e-3
     lifted = [

@@ -11,7 +11,7 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 SOURCE = REPOSITORY / "src"
-LARGEST = 78_000  # lines of source
+LARGEST = 80_000  # lines of source: 70,000 without design studies, exports and file formats
 START = 0.15  # s of CPU that `import underfoot` may take
 
 

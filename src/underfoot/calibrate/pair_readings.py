@@ -251,6 +251,8 @@ def _whole_cof(
         fields["fluid_pressure"].values,
         fields["film_thickness"].values,
         wet=fields["wet"].values,
+        area=fields["cell_area"].values,
+        film_area=fields["cell_film_area"].values,
         speed=case.motion.speed,
         film_error=FILM_ERROR,
         sole=sole_name(case),

@@ -14,6 +14,8 @@ def assumptions(case: Case) -> list[str]:
     groups: dict[tuple[str, str], list[str]] = {}
     for path, origin in case.origins.items():
         leaf = origin.leaf
+        if path.startswith("shoe.wear.") and case.shoe.wear.depth == 0:
+            continue
         if path.startswith(_NOT_PHYSICAL) or path in case.idle_paths or path == "friction.pair":
             continue
         if leaf.verified and not leaf.assumed:

@@ -13,7 +13,7 @@ from pydantic import Field
 
 from underfoot.core import InputError, RangeError, display
 
-from .quantity import Angle, Depth, Force, Length, Quantity, default, optional
+from .quantity import Angle, Depth, Force, Length, Quantity, Rounding, default, optional
 from .section import GIVEN, CaseView, Option, Origin, leaf_of, refused_at
 from .sole import through_outsole
 
@@ -39,6 +39,13 @@ class Wear(Option):
     usual: ClassVar[str | None] = "plane"
 
     depth: Depth = default(0.0, "0 mm", "unworn beyond the heel shape given")
+    edge_radius: Rounding = default(
+        0.15e-3,
+        "0.15 mm",
+        "largest round that wear gives lug edges: as deep as the edge yields under traction; "
+        "nobody measured it, 0.1 to 0.5 mm are plausible",
+        assumed=True,
+    )
 
     @abstractmethod
     def build(self) -> SoleWear | WearOnSole | None:

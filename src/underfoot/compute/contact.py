@@ -24,7 +24,7 @@ from underfoot.sole_contact.sensor_array import ArrayReading, SensorArray, array
 from underfoot.sole_contact.sole_state import SoleState, SolverSettings
 from underfoot.sole_contact.solver import SoleContact, solve_sliding
 
-from .numbers import touching_cells
+from .numbers import contact_area
 from .sole import file_sole_map
 
 READ_STEPS = 24
@@ -100,8 +100,8 @@ def edged_law(
     viscosity, film = context.viscosity_value, case.film
     if viscosity is None or not getattr(film, "lug_edges", False):
         return None
-    radius = getattr(case.shoe.tread, "edge_radius", 0.0)
-    edges = lug_edges(sole, radius, forward=case.motion.forward)
+    moulded, worn = getattr(case.shoe.tread, "edge_radius", 0.0), case.shoe.wear.edge_radius
+    edges = lug_edges(sole, moulded, worn_edge_radius=worn, forward=case.motion.forward)
     if edges is None:
         return None
     suction = case.value("film.suction")
@@ -133,7 +133,7 @@ class Recorder:
         speed = max(abs(state.speed), SLOWEST)
         shear = self.law(state.contact_pressure, speed, state.film_thickness)
         pressures = state.contact_pressure, state.fluid_pressure
-        friction = cof(shear, *pressures, spacing=state.spacing, wet=state.wet)
+        friction = cof(shear, *pressures, spacing=state.spacing, wet=state.wet, **state.areas)
         for name in COF_WORDS:
             value = getattr(friction, name).value
             self.cof.setdefault(name, []).append(math.nan if value is None else value)
@@ -141,8 +141,8 @@ class Recorder:
         place = self.places[-1] if self.places else 0.0
         self.times.append(state.time)
         self.places.append(place + (state.time - before) * state.speed)
-        self.contact_area.append(np.count_nonzero(touching_cells(state)) * state.spacing**2)
-        along = state.total_pressure.sum(axis=1)
+        self.contact_area.append(contact_area(state))
+        along = state.cell_load.sum(axis=1)
         self.centre_of_pressure.append(float(along @ state.x / along.sum()))
         self._read(state)
         self._picture(state)

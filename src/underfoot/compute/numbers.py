@@ -1,7 +1,7 @@
 """The named numbers of a result, each with its spread or the reason why there is none."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.case import Case
-from underfoot.core import SourcedValue, Status, content_hash, display
+from underfoot.core import Breach, SourcedValue, Status, content_hash, display
 from underfoot.film import SHARE_LIMITS, lubrication_by_load_share
 from underfoot.friction import FrictionCoefficients, SampledCof
 from underfoot.slip import RcofPopulation, SlipModel, SlipRisk, slip_risk
@@ -75,8 +75,7 @@ def scalars(
             value, unit, source="coupled contact and film", reason=_NOT_ESTIMATED, note=note
         )
 
-    touching = touching_cells(contact)
-    under_load = touching | (contact.fluid_pressure > 0)
+    under_load = touching_cells(contact) | (contact.fluid_pressure > 0)
     thinnest = None
     if under_load.any() and case.contaminant is not None:
         thinnest = float(contact.film_thickness[under_load].min())
@@ -90,9 +89,7 @@ def scalars(
         "fluid_load_sensor": sensor.load,
         "peak_fluid_pressure": computed(float(contact.fluid_pressure.max()), "Pa"),
         "peak_fluid_pressure_sensor": sensor.peak_pressure,
-        "contact_area": computed(
-            float(np.count_nonzero(touching)) * contact.spacing**2, "m^2", "apparent, on the grid"
-        ),
+        "contact_area": computed(contact_area(contact), "m^2", "apparent, on the grid"),
         "minimum_film_thickness": computed(thinnest, "m")
         if thinnest is not None
         else SourcedValue(None, "m", reason="dry floor: no film"),
@@ -135,6 +132,15 @@ def regime(share: float) -> dict[str, str]:
     }
 
 
+def overload_words(overload: Sequence[Breach]) -> str:
+    """Return what to say where the load rests on what rubber cannot bear, else nothing."""
+    return "".join(
+        f"{one.high:.0%} of the load rests on pressures above the modulus of the rubber, which it "
+        "cannot bear: so does this COF"
+        for one in overload
+    )
+
+
 def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
     """Return in words which inputs the spread of COF comes from, and how it was sampled."""
     if sampled is None:
@@ -153,9 +159,14 @@ def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
 
 def touching_cells(state: SoleState) -> NDArray[np.bool_]:
     """Return where the rough surfaces touch: contact pressure above 1e-3 of the mean pressure."""
-    loaded = np.count_nonzero(state.total_pressure > 0)
+    loaded = float(state.cut.area[state.total_pressure > 0].sum())
     mean = state.normal_force / max(loaded * state.spacing**2, state.spacing**2)
     return state.contact_pressure > CONTACT_SHARE * mean
+
+
+def contact_area(state: SoleState) -> float:
+    """Return the apparent area on which the rough surfaces touch, m^2."""
+    return float(state.cut.area[touching_cells(state)].sum()) * state.spacing**2
 
 
 def sole_name(case: Case) -> str:

@@ -33,7 +33,7 @@ def pictured_fields(
     def height(there: SoleMap) -> Array:
         return np.where(there.inside, _rolled(there, roll) - lowest - contact.approach, np.nan)
 
-    pressed = height(sole) + compliance.apply(contact.total_pressure)
+    pressed = height(sole) + compliance.apply(contact.cell_load)
     variables: dict[str, Variable] = {
         "pressed_height": (
             ("x", "y"),

@@ -297,7 +297,7 @@ def place_numbers(
     """Return the numbers of a result that depend on where the tread lies."""
     shear = law(contact.contact_pressure, case.motion.speed, contact.film_thickness)
     pressures = contact.contact_pressure, contact.fluid_pressure
-    friction = cof(shear, *pressures, spacing=sole.spacing, wet=contact.wet)
+    friction = cof(shear, *pressures, spacing=sole.spacing, wet=contact.wet, **contact.areas)
     numbers, _ = scalars(case, contact, friction, scanned(case, sole, contact, viscosity=viscosity))
     fixed = ("normal_force", "slip_probability")
     return {

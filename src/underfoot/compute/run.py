@@ -16,6 +16,7 @@ from underfoot.core import (
     Provenance,
     Status,
     content_hash,
+    display,
     silent,
     unknown_name,
 )
@@ -35,8 +36,18 @@ from .pictured import pictured_fields
 from .positions import Place, tread_positions
 from .resolve import resolved, turned
 from .result import Result
-from .sole import compression_breaches, forefoot_breaches, outsole_notes, sole_map
+from .sole import (
+    compression_breaches,
+    forefoot_breaches,
+    outsole_notes,
+    overload_breaches,
+    sole_map,
+)
 
+CELL_AREAS = (
+    "what a cell stands for of contact and shear, in cells",
+    "what a cell stands for of the fluid's pressure, in cells",
+)
 OBJECTS = ("friction", "rough_contact", "compliance", "risk")
 """Slots that take an object of physics in place of an option."""
 
@@ -103,6 +114,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         contact.film_thickness,
         speed=speed,
         wet=contact.wet,
+        **contact.areas,
         fluid_inputs={} if context.viscosity is None else {"viscosity": context.viscosity},
         film_error=numbers.FILM_ERROR,
         sole=numbers.sole_name(case),
@@ -115,6 +127,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         *pressures,
         spacing=sole.spacing,
         wet=contact.wet,
+        **contact.areas,
         sampled=sampled,
         source=f"{law.name} law: {law.source}",
     )
@@ -128,6 +141,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             case, there, body, asperities, viscosity=viscosity, progress=progress
         )
 
+    overload = overload_breaches(contact, context.youngs_modulus)
     values, risk, labels = numbers.undetermined(case, contact.status), None, {}
     positions = None
     if contact.status.usable:
@@ -146,7 +160,11 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             "lug_edges": "" if lugs is None else lugs.words(),
             "cof_spread_basis": getattr(law, "spread_basis", ""),
             **(positions.labels() if positions else {}),
-            "edge_peak": peak_pressure(sole, contact.total_pressure).remark,
+            "overload": numbers.overload_words(overload),
+            "instant": _last_instant(case),
+            "edge_peak": peak_pressure(
+                sole, contact.total_pressure, cell_load=contact.cell_load
+            ).remark,
             "sensor": blind_sensor(case, sensor, contact),
         }
         labels = numbers.regime(share) | numbers.spread_origin(sampled)
@@ -173,6 +191,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
                 labels["grid_error"] = numbers.grid_words(values, errors, spacing, coarse_spacing)
     breaches = [
         *context.modulus_breaches,
+        *overload,
         *sole.breaches,
         *compression_breaches(case, contact.approach),
         *forefoot_breaches(case),
@@ -272,6 +291,15 @@ def _map_angle(case: Case) -> float:
     return 0.0 if case.motion.build() is None else case.motion.shoe_angle
 
 
+def _last_instant(case: Case) -> str:
+    """Return when and at which angle a motion that turns ends; empty where the angle is held."""
+    history = case.motion.build()
+    if history is None or not np.ptp(history.shoe_angle):
+        return ""
+    time, angle = display(history.time[-1], "s"), display(history.shoe_angle[-1], "rad")
+    return f"at the end of the motion ({time}, shoe angle {angle})"
+
+
 def _identity(item: Any) -> str:
     """Return a text that stands for an object in a hash: its class and what its repr says."""
     cls = f"{type(item).__module__}.{type(item).__qualname__}"
@@ -311,6 +339,10 @@ def _fields(
             "inside": on_sole(sole.inside, "1", "within the plan form"),
             "land": on_sole(sole.land, "1", "can touch the floor"),
             "wet": on_sole(contact.wet, "1", "within the film"),
+            **{
+                f"cell_{name}": on_sole(share, "1", words)
+                for (name, share), words in zip(contact.areas.items(), CELL_AREAS, strict=True)
+            },
             "sensor_pressure": (
                 ("sensor_x", "sensor_y"),
                 sensor.pressure,

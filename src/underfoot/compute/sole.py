@@ -38,6 +38,8 @@ from underfoot.core import (
 from underfoot.shoe import SoleMap, SoleSurface, heel_map, rotated_surface, surface_map
 from underfoot.shoe.shape import SoleShape
 from underfoot.shoe.worn import ArchardStep, WornMap, archard_wear, worn_surface
+from underfoot.sole_contact.edge_peak import MOST_OVERLOADED, overloaded_share
+from underfoot.sole_contact.sole_state import SoleState
 from underfoot.sole_contact.solver import SolverSettings, solve_sliding
 from underfoot.sole_contact.stepping import rolled_clearance
 
@@ -340,6 +342,13 @@ def forefoot_breaches(case: Case) -> list[Breach]:
     return breaches(
         "forefoot", {name: FOREFOOT_RIGID}, {name: rolls(case) + case.motion.shoe_angle}
     )
+
+
+def overload_breaches(contact: SoleState, modulus: float) -> list[Breach]:
+    """Return whether more of the load than sharp edges take rests on what rubber cannot bear."""
+    name = "share of the load under pressures above the modulus"
+    share = overloaded_share(contact.total_pressure, contact.cell_load, modulus)
+    return breaches("compliance", {name: MOST_OVERLOADED}, {name: share})
 
 
 def outsole_notes(case: Case) -> list[str]:

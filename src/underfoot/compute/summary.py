@@ -48,7 +48,7 @@ PARTS: Mapping[str, str] = {
     "speed_table": "the friction of this sole on this floor",
     "grid": "the tread, which has few cells of the grid across its details",
     "forefoot": "push-off: the forefoot of a shoe bends where this sole stays straight",
-    "compliance": "how far the load presses the sole together",
+    "compliance": "how the rubber gives way under the load",
     "gent_1958": "the stiffness of a rubber of this hardness",
     "ruess": "the stiffness of a rubber of this hardness",
     "bs903_1950": "the stiffness of a rubber of this hardness",
@@ -107,7 +107,7 @@ def friction_limit(scalars: Mapping[str, SourcedValue]) -> FrictionLimit:
 def headline(
     status: Status, scalars: Mapping[str, SourcedValue], labels: Mapping[str, str]
 ) -> tuple[str, ...]:
-    """Return the answer in up to three sentences: COF, film, slip probability."""
+    """Return the answer in a few sentences: COF and what spoils it, film, slip probability."""
     if not status.usable:
         return (f"No result: {status}. {status.remedy}",)
     cof = scalars["cof"]
@@ -117,7 +117,11 @@ def headline(
         text += f", {measure} {labels.get('cof_spread_basis', 'of friction law and film load')}"
     if "cof_tread_position" in scalars:
         text += ", mean over positions of the tread"
+    if "instant" in labels:
+        text += f", {labels['instant']}"
     sentences = [f"Available COF {text}."]
+    if "overload" in labels:
+        sentences.append(f"{labels['overload'][0].upper()}{labels['overload'][1:]}.")
     regime = f" ({labels['regime']})" if "regime" in labels else ""
     limit = str(friction_limit(scalars))
     sentences.append(limit.replace(" of the load", f" of the load{regime}", 1))

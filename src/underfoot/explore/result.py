@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from underfoot.case import unit_at
-from underfoot.core import display
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.presentation import Presentable, Table, percent, quantity_text
 from underfoot.core.provenance import program_hash
@@ -345,7 +344,7 @@ class StudyResult(Presentable):
 def value_text(path: str, value: Any) -> str:
     """Return an input as people read it."""
     if isinstance(value, float):
-        return display(value, unit_at(path))
+        return quantity_text(value, unit_at(path))
     return "" if value is None else str(value)
 
 

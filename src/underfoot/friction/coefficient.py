@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import InputError, SourcedValue
+from underfoot.core.arrays import Array
 
 from .law import FrictionParts
 from .sampled_cof import SampledCof
@@ -37,6 +38,8 @@ def cof(
     *,
     spacing: float,
     wet: ArrayLike | None = None,
+    area: Array | float = 1.0,
+    film_area: Array | float = 1.0,
     sampled: SampledCof | None = None,
     source: str = "",
 ) -> FrictionCoefficients:
@@ -51,6 +54,8 @@ def cof(
         contact_pressure, fluid_pressure: Pa, of the same shape; 0 outside contact and film.
         spacing: Side of a cell, m.
         wet: Where a film is: the viscous part counts only there. None counts it everywhere.
+        area, film_area: What each cell stands for in cells, (nx, ny): of contact and shear, and of
+            the fluid's pressure. Cells that the edge of a lug cuts are not 1.
         sampled: Draws of the same law (``sampled_cof``): they give standard deviations and
             intervals; None leaves these out, with the reason.
         source: Name and origin of the law, for the result.
@@ -79,14 +84,16 @@ def cof(
     for name, array in {**shears, "contact_pressure": contact, "fluid_pressure": fluid}.items():
         if not np.isfinite(array).all():
             raise InputError("a value is not finite", where=name)
-    area = spacing**2
-    fluid_load = float(fluid.sum()) * area
-    normal = float(contact.sum()) * area + fluid_load
+    cell = spacing**2
+    fluid_load = float((fluid * film_area).sum()) * cell
+    normal = float((contact * area).sum()) * cell + fluid_load
     if not normal > 0:
         raise InputError(
             f"the normal force is {normal:.3g} N", where="contact_pressure", allowed="above 0"
         )
-    coefficients = {name: float(array.sum()) * area / normal for name, array in shears.items()}
+    coefficients = {
+        name: float((array * area).sum()) * cell / normal for name, array in shears.items()
+    }
     total = sum(coefficients.values())
 
     def value(name: str, number: float) -> SourcedValue:

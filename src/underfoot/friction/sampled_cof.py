@@ -65,6 +65,8 @@ def sampled_cof(
     *,
     speed: float,
     wet: ArrayLike | None = None,
+    area: Array | float = 1.0,
+    film_area: Array | float = 1.0,
     fluid_inputs: Mapping[str, SourcedValue] | None = None,
     film_error: float = 0.0,
     sole: str = "",
@@ -84,8 +86,8 @@ def sampled_cof(
     made up for by a factor.
 
     Parameters:
-        contact_pressure, fluid_pressure, film_thickness, wet: (nx, ny) Pa, Pa, m and where the film
-            is, as ``cof`` takes them.
+        contact_pressure, fluid_pressure, film_thickness, wet, area, film_area: (nx, ny) Pa, Pa, m,
+            where the film is and what cells stand for, as ``cof`` takes them.
         speed: m/s.
         fluid_inputs: "viscosity" (Pa s) with its standard deviation; where it has none it counts as
             exact.
@@ -111,15 +113,17 @@ def sampled_cof(
     contact = np.asarray(contact_pressure, dtype=float)
     film = np.broadcast_to(np.asarray(film_thickness, dtype=float), contact.shape)
     mask = np.ones(contact.shape, bool) if wet is None else np.asarray(wet, dtype=bool)
-    load = float(contact.sum() + np.sum(fluid_pressure))
-    carried = float(contact.sum()) / load
-    pressure, gap, counts, wet_counts = _classes(contact, film, mask)
+    cells = np.broadcast_to(np.asarray(area, dtype=float), contact.shape)
+    solid_load = float((contact * cells).sum())
+    load = solid_load + float((np.asarray(fluid_pressure) * film_area).sum())
+    carried = solid_load / load
+    pressure, gap, counts, wet_counts = _classes(contact, film, mask, cells)
 
     def sums(shear: FrictionParts, solid: Any, fluid: Any) -> Array:
         weighted = ((shear.adhesion, solid), (shear.hysteresis, solid), (shear.viscous, fluid))
         return np.array([float(np.sum(part * weight)) for part, weight in weighted]) / load
 
-    exact = sums(law(contact, speed, film), contact_factor, mask)
+    exact = sums(law(contact, speed, film), contact_factor * cells, mask * cells)
     coarse = sums(law(pressure, speed, gap), counts, wet_counts)
     factor = np.where(coarse > 0, exact / np.where(coarse > 0, coarse, 1.0), 1.0)
 
@@ -212,21 +216,20 @@ def _shares(spread: Propagated) -> dict[str, float]:
     return {name: square / total for name, square in squares.items()} if total > 0 else {}
 
 
-def _classes(contact: Array, film: Array, wet: Mask) -> tuple[Array, ...]:
-    """Return pressure, film, number of cells and of wet cells of each class.
+def _classes(contact: Array, film: Array, wet: Mask, cells: Array) -> tuple[Array, ...]:
+    """Return pressure, film, cells (as many as ``cells`` says) and wet cells of each class.
 
     Pressure is the mean of a class; the film is such that eta V / h has the class's mean over its
     wet cells.
     """
     order = np.lexsort((film.ravel(), contact.ravel()))
     groups = np.array_split(order, min(CLASSES, order.size))
-    counts = np.array([group.size for group in groups], dtype=float)
-    starts = np.concatenate([[0], np.cumsum(counts[:-1])]).astype(int)
+    starts = np.cumsum([0, *(group.size for group in groups[:-1])])
 
-    def per_class(values: Array) -> Array:
-        return np.add.reduceat(values.ravel()[order], starts)
+    def per_class(values: Array | float) -> Array:
+        return np.add.reduceat((values * cells).ravel()[order], starts)
 
-    wet_counts = per_class(wet.astype(float))
+    counts, wet_counts = per_class(1.0), per_class(wet.astype(float))
     thin = per_class(np.where(wet, 1.0 / np.maximum(film, SMALLEST_FILM), 0.0))
     gap = np.where(thin > 0, wet_counts / np.where(thin > 0, thin, 1.0), 1.0)
     return per_class(contact) / counts, gap, counts, wet_counts

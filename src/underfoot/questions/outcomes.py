@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -13,6 +13,7 @@ import numpy as np
 from underfoot.compute.run import run
 from underfoot.compute.summary import ranked_assumptions
 from underfoot.core import Progress, SourcedValue, Status, content_hash, silent
+from underfoot.core.arrays import Array
 from underfoot.core.cache import Cache
 from underfoot.core.pool import available_processors, in_processes
 from underfoot.core.progress import part
@@ -25,7 +26,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Numbers of one computed case, without its maps; as those of ``compute.result.Result``."""
+    """Numbers of one computed case, as those of ``compute.result.Result``.
+
+    ``maps`` holds those of its fields that were asked for, with ``x`` and ``y``, SI.
+    """
 
     name: str
     case_hash: str
@@ -36,6 +40,7 @@ class Outcome:
     breaches: tuple[str, ...]
     assumptions: tuple[str, ...]
     seconds: float
+    maps: dict[str, Array] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def usable(self) -> bool:
@@ -60,8 +65,9 @@ class Outcome:
         }
 
     @classmethod
-    def of(cls, result: Result) -> Outcome:
-        """Return the numbers of a result."""
+    def of(cls, result: Result, maps: Sequence[str] = ()) -> Outcome:
+        """Return the numbers of a result and its fields of the names ``maps``."""
+        axes = ("x", "y") if maps else ()
         return cls(
             result.name,
             result.provenance.case_hash,
@@ -72,11 +78,14 @@ class Outcome:
             result.breaches,
             result.assumptions,
             float(sum(result.provenance.timings.values())),
+            {name: np.asarray(result.data[name]) for name in (*axes, *maps)},
         )
 
     def as_text(self) -> str:
-        """Return the outcome as JSON."""
-        return json.dumps(asdict(self))
+        """Return the outcome as JSON, without its maps."""
+        plain = asdict(replace(self, maps={}))
+        del plain["maps"]
+        return json.dumps(plain)
 
     @classmethod
     def from_text(cls, text: str) -> Outcome:
@@ -93,6 +102,7 @@ def outcomes(
     cases: Sequence[Case],
     *,
     quick: bool = False,
+    maps: Sequence[str] = (),
     processes: int | None = 1,
     cached: bool = True,
     progress: Progress = silent,
@@ -102,6 +112,7 @@ def outcomes(
 
     Parameters:
         quick: Use the coarse grid of the cases.
+        maps: Names of the fields on (x, y) that each outcome keeps.
         processes: Cases computed at the same time, each on one thread; None takes the cores, at
             most 4. With more than one, a script needs ``if __name__ == "__main__":`` around its
             work.
@@ -115,31 +126,34 @@ def outcomes(
             all.
     """
     store = Cache("outcomes-1")
-    keys = [_key(case, quick) for case in cases]
+    keys = [_key(case, quick, maps) for case in cases]
     found: dict[str, Outcome] = {}
     waiting: dict[str, Case] = {}
     for key, case in zip(keys, cases, strict=True):
         stored = store.load(key) if cached and key not in found else None
         if stored is not None:
-            found[key] = Outcome.from_text(str(stored["outcome"]))
+            outcome = Outcome.from_text(str(stored.pop("outcome")))
+            found[key] = replace(outcome, maps=stored)
         elif key not in found:
             waiting[key] = case
     ready = len(found) / max(len(set(keys)), 1)
     progress(stage, ready)
-    compute = partial(_computed_alone, quick=quick)
+    compute = partial(_computed_alone, quick=quick, maps=maps)
     workers = min(available_processors(), 4) if processes is None else processes
     names, items, rest = list(waiting), list(waiting.values()), part(progress, ready, 1.0)
     for index, outcome in in_processes(compute, items, workers, progress=rest, stage=stage):
         key = names[index]
         found[key] = outcome
         if cached and outcome.usable:
-            store.store(key, {"outcome": np.array(outcome.as_text())})
+            store.store(key, {"outcome": np.array(outcome.as_text()), **outcome.maps})
     return [found[key] for key in keys]
 
 
-def _computed_alone(case: Case, *, quick: bool) -> Outcome:
-    return Outcome.of(run(case, quick=quick))
+def _computed_alone(case: Case, *, quick: bool, maps: Sequence[str]) -> Outcome:
+    return Outcome.of(run(case, quick=quick), maps)
 
 
-def _key(case: Case, quick: bool) -> str:
-    return content_hash(case.hash, quick, program_hash(), files_hash(case.catalogue.folders))
+def _key(case: Case, quick: bool, maps: Sequence[str]) -> str:
+    return content_hash(
+        case.hash, quick, list(maps), program_hash(), files_hash(case.catalogue.folders)
+    )

@@ -12,6 +12,7 @@ import numpy as np
 
 from underfoot.compute.sole import bottom_surface
 from underfoot.core import InputError, Progress, display, silent, to_si, unknown_name
+from underfoot.core.fields import Fields, labelled
 from underfoot.core.presentation import Presentable, Table, percent
 from underfoot.core.progress import part
 
@@ -29,8 +30,11 @@ BAND_INPUTS = ("interface.roughness_beyond_cutoff", "shoe.material.shore_a")
 """What the band of the limit is made of: the least known inputs that decide the film."""
 LARGEST_PATCH = 0.8
 """Largest patch of a series as a share of the heel's length and width."""
-BEYOND_TREAD = 1.6
-"""Thickness lost at the end of a series by walking or Archard's law, in depths of the tread."""
+BEYOND_TREAD = {"walk": 2.4, "archard": 1.6}
+"""Thickness lost at the end of a series, in depths of the tread: where a single place is worn
+through, the rest is not."""
+MAPS = {"contact_pressure": "contact pressure", "fluid_pressure": "fluid pressure"}
+"""Fields that a series keeps of every state."""
 PARTS = 6
 """Parts of a step in which the wear is measured, to say how worn the sole is at the limit."""
 HEEL_PART = 0.25
@@ -89,7 +93,8 @@ class WearSeries(Presentable):
     ``limit`` is the fluid load (N) that counts as worn out; ``crossings`` has, for the load under
     the sole ("fluid_load") and as the floor sensors read it ("fluid_load_sensor"), the wear at
     which it is exceeded. ``untreaded`` is the last state without any tread; None where the sole
-    comes from a file. ``soles`` are the bottoms of the states in their own frame.
+    comes from a file. ``soles`` are the bottoms of the states in their own frame, ``maps`` the
+    pressures (Pa) on their cells by name, those of the case's own position of the tread.
     """
 
     kind: ClassVar[str] = "wear"
@@ -103,6 +108,7 @@ class WearSeries(Presentable):
     quick: bool = True
     untreaded: Outcome | None = None
     soles: tuple[SoleSurface, ...] = ()
+    maps: tuple[dict[str, np.ndarray], ...] = ()
 
     def __repr__(self) -> str:
         return f"<WearSeries of {self.name!r}, {self.mode}: {len(self.points)} states>"
@@ -224,6 +230,35 @@ class WearSeries(Presentable):
         low, high = np.array(ends).T
         return low, high
 
+    def fields(self) -> Fields:
+        """Return soles and pressures of all states on (state, x, y) in their own frame, SI."""
+        axes, first = ("state", "x", "y"), self.soles[0]
+        shapes = {
+            "height": ("m", "height of the sole over its plane"),
+            "land": ("1", "can touch the floor"),
+            "tread_depth": ("m", "height of the lugs"),
+        }
+        variables: dict[str, tuple[Any, ...]] = {
+            name: (
+                axes,
+                np.stack([getattr(sole, name) for sole in self.soles]),
+                {"units": unit, "long_name": words},
+            )
+            for name, (unit, words) in shapes.items()
+        }
+        for name in self.maps[0] if self.maps else ():
+            values = np.stack([each[name] for each in self.maps]).astype(np.float32)
+            variables[name] = (axes, values, {"units": "Pa", "long_name": MAPS[name]})
+        lost = {"units": "m", "long_name": "thickness lost at the most worn place"}
+        return labelled(
+            variables,
+            {
+                "state": ("state", self.measured("removed_depth"), lost),
+                "x": ("x", first.x, {"units": "m", "long_name": "from the rear end"}),
+                "y": ("y", first.y, {"units": "m", "long_name": "across"}),
+            },
+        )
+
     def _crossing(self, name: str) -> str:
         crossing = self.crossings[name]
         subject = f"The fluid load {LOADS[name]}"
@@ -272,8 +307,8 @@ def wear_series(
             heel that grows, worn down to the channel floor.
         steps: Number of worn states.
         deepest: Thickness lost at the end, m; of a patch its area at the end, m^2. By default the
-            depth of the tread (plane), 1.6 times that (walk, archard: a single place is worn
-            through first), and a patch of 0.8 of the heel's length and width.
+            depth of the tread (plane), 2.4 or 1.6 times that (walk, archard: a single place is
+            worn through first), and a patch of 0.8 of the heel's length and width.
         limit: Fluid load, N; by default 5 N, the report's limit of detection (G.4).
         band: Vary the least known inputs at every state: four more runs a state.
         draws, seed: Of the sampling of the band.
@@ -322,6 +357,7 @@ def wear_series(
     results = outcomes(
         [*plan, *bare],
         quick=quick,
+        maps=tuple(MAPS),
         processes=processes,
         progress=part(progress, shaped, 1.0),
         stage="Simulating the worn soles",
@@ -334,6 +370,8 @@ def wear_series(
         varied = tuple((each.path, low, high) for each, low, high in pairs)
         points.append(WearPoint(_measures(worn), own, varied))
     between = measures_between(case, cases, mode, deepest)
+    soles = tuple(map(bottom_surface, cases))
+    angle = case.motion.shoe_angle
     return WearSeries(
         name=case.name,
         mode=mode,
@@ -346,8 +384,33 @@ def wear_series(
         assumptions=_assumptions(cases[-1], mode, inputs),
         quick=quick,
         untreaded=results[-1] if bare else None,
-        soles=tuple(map(bottom_surface, cases)),
+        soles=soles,
+        maps=tuple(
+            maps_on_sole(sole, point.outcome, angle)
+            for sole, point in zip(soles, points, strict=True)
+        ),
     )
+
+
+def maps_on_sole(sole: SoleSurface, outcome: Outcome, shoe_angle: float) -> dict[str, np.ndarray]:
+    """Return the maps of an outcome on the cells of its sole in the sole's own frame, (nx, ny).
+
+    Each cell has the value of the nearest one over the floor: nan outside the sole, beside the part
+    that was solved, and where there is no result.
+    """
+    from underfoot.shoe import place_on_floor
+
+    along, across = outcome.maps["x"], outcome.maps["y"]
+    side = along[1] - along[0]
+    i = np.rint((place_on_floor(sole, shoe_angle) - along[0]) / side).astype(int)
+    j = np.broadcast_to(np.rint((sole.y - across[0]) / side).astype(int), i.shape)
+    there = sole.inside & (i >= 0) & (i < along.size) & (j >= 0) & (j < across.size)
+    there &= outcome.usable
+    found = {}
+    for name in MAPS:
+        found[name] = np.full(i.shape, np.nan)
+        found[name][there] = outcome.maps[name][i[there], j[there]]
+    return found
 
 
 def wear_mode(mode: str | None, case: Case) -> str:
@@ -400,8 +463,8 @@ def worn_cases(case: Case, mode: str, steps: int, deepest: float | None) -> list
     else:
         thickness = case.shoe.sole.outsole_thickness
         end = depth if deepest is None else deepest
-        if deepest is None and mode != "plane":
-            end = min(BEYOND_TREAD * depth, (depth + thickness) / 2)
+        if deepest is None and mode in BEYOND_TREAD:
+            end = min(BEYOND_TREAD[mode] * depth, (depth + thickness) / 2)
         if not 0 < end < thickness:
             most = display(thickness, "m")
             raise InputError(
@@ -504,6 +567,8 @@ def _assumptions(case: Case, mode: str, inputs: list[OpenInput]) -> tuple[str, .
     return (
         shape,
         "the worn surface is as rough as the new one",
+        f"wear rounds the edges of lugs by up to {display(wear.edge_radius, 'm')} "
+        "(shoe.wear.edge_radius; nobody measured it, 0.1 to 0.5 mm are plausible)",
         *(f"interval: {each.path}, {each.reason}" for each in inputs),
     )
 

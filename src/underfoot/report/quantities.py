@@ -12,8 +12,8 @@ from underfoot.core.fields import Fields
 from underfoot.core.units import display_unit
 
 HEIGHT_NAMES = ("clearance", "height")
-_NOT_DRAWN = ("pressed_height",)
-"""Fields that shape the picture instead of colouring it."""
+_NOT_DRAWN = ("pressed_height", "cell_area", "cell_film_area")
+"""Fields that shape the picture or weigh cells instead of colouring it."""
 _FIRST = ("contact_pressure", "fluid_pressure", "film_thickness", "shear_stress")
 _TITLES = {
     "contact_pressure": "Contact pressure",
@@ -32,6 +32,7 @@ _LOADS = {
     "fluid_pressure": "the load per area that the fluid carries",
 }
 """Pressures whose integral over the sole is a load, and what they say to a designer."""
+_AREAS = {"contact_pressure": "cell_area", "fluid_pressure": "cell_film_area"}
 _UNLOADED = 1e-3
 """Stress below this share of its peak is drawn as none."""
 _PEAK_RATIO = 1.5
@@ -103,7 +104,9 @@ def carried_load(dataset: Fields, quantity: Quantity) -> float | None:
     if quantity.name not in _LOADS:
         return None
     pressure = np.where(inside(dataset), raw(dataset, quantity.name), 0.0)
-    return float(pressure.sum()) * spacing(dataset) ** 2
+    area = _AREAS[quantity.name]
+    cells = raw(dataset, area) if area in dataset else 1.0  # older results count whole cells
+    return float((pressure * cells).sum()) * spacing(dataset) ** 2
 
 
 def inside(dataset: Fields) -> NDArray[np.bool_]:

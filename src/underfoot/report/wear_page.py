@@ -10,12 +10,13 @@ import numpy as np
 
 from underfoot.questions.wear import WearSeries
 
-from .dispatch import sections
+from .dispatch import files, sections
 from .drawn_sole import DrawnSole
 from .html import embedded
 from .page import Picture, Section, remark_sections, table_sections
 from .quantities import Quantity
 from .viewer import history, listed_quantity, pane, scene, scene_section, viewer_script
+from .writing import Writer, data_writers
 
 CELL = 1e-3
 """m: side of the cells of the picture, or what the sole's own come nearest to it."""
@@ -23,6 +24,12 @@ LEAST = 1e-6
 """m lost below which land is drawn as not worn."""
 LOST = Quantity("lost", "Thickness lost", 1e-3, "mm", "viridis")
 LEFT = Quantity("left", "Tread left", 1e-3, "mm", "cividis")
+PRESSURES = (
+    Quantity("contact_pressure", "Contact pressure", 1e3, "kPa", stress=True),
+    Quantity("fluid_pressure", "Fluid pressure", 1e3, "kPa", stress=True),
+)
+NONE = 0.1
+"""kPa below which no pressure is drawn."""
 
 
 @sections.register(WearSeries)
@@ -55,16 +62,27 @@ def wear_scene(series: WearSeries) -> dict[str, Any]:
     lost = np.where(np.stack(lands) & (lost > LEAST), lost, np.nan) / LOST.factor
     left = [sole.tread_depth[thinned] for sole in series.soles]
     left = np.where(np.stack(lands), np.stack(left), np.nan) / LEFT.factor
+    coloured = {LOST: lost, LEFT: left}
+    for pressure in PRESSURES if series.maps else ():
+        frames = np.stack([each[pressure.name][thinned] for each in series.maps]) / pressure.factor
+        coloured[pressure] = np.where(frames > NONE, frames, np.nan)
     labels = [_state(series, number) for number in range(len(series.points))]
     shown = pane(
         series.name,
         shape,
-        {LOST.name: lost[0], LEFT.name: left[0]},
+        {quantity.name: frames[0] for quantity, frames in coloured.items()},
         outline=[[float(f"{v:.5g}") for v in point] for point in new.outline],
-        histories={LOST.name: history(labels, lost), LEFT.name: history(labels, left)},
+        histories={quantity.name: history(labels, each) for quantity, each in coloured.items()},
         heights=heights,
     )
-    return scene([shown], [listed_quantity(LOST, [lost]), listed_quantity(LEFT, [left])], "Wear")
+    listed = [listed_quantity(quantity, [frames]) for quantity, frames in coloured.items()]
+    return scene([shown], listed, "Wear")
+
+
+@files.register(WearSeries)
+def _wear_files(series: WearSeries) -> dict[str, Writer]:
+    fields = {"wear.nc": lambda path: series.fields().to_netcdf(path)} if series.soles else {}
+    return {**data_writers(series), **fields}
 
 
 def _state(series: WearSeries, number: int) -> str:

@@ -4,6 +4,7 @@ from .geometry import SoleMap as SoleMap
 from .geometry import SoleSurface as SoleSurface
 from .grids import heel_map as heel_map
 from .grids import heel_surface as heel_surface
+from .grids import place_on_floor as place_on_floor
 from .grids import rotated_surface as rotated_surface
 from .grids import surface_map as surface_map
 from .shape import Facet as Facet

@@ -20,7 +20,8 @@ steps, for 0.5 % of the load on the film."""
 SAMPLES = 4
 """Samples along each side of a cell; between them the outline is a straight ramp."""
 LEAST_AREA = 0.1
-"""Cells: what a cell stands for at least, where a sliver of a height map leaves it nothing."""
+"""Cells: what a cell stands for at least, where a sliver of a height map leaves it less. The cells
+around it give it, so that all areas together stay that of the map."""
 _SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
 _CORNERS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
 Cells = NDArray[np.intp]
@@ -93,21 +94,37 @@ def cut_cells(
             covered[at] * (np.clip(depth[at] / centre[:, None], 0.0, 1.0) if fluid else 1.0)
             for at in (at_own, at_other)
         )
-        results.append(_areas(own, other, within.mean(axis=1), beyond.mean(axis=1), level.shape))
+        results.append(_areas(own, other, within.mean(axis=1), beyond.mean(axis=1), land))
     return replace(cut, area=results[0], film_area=results[1])
 
 
-def _areas(own: Cells, other: Cells, within: Array, beyond: Array, shape: tuple[int, ...]) -> Array:
+def _areas(own: Cells, other: Cells, within: Array, beyond: Array, land: Mask) -> Array:
     """Return the area of each cell from what land covers of its own cell and of its neighbours."""
-    size = shape[0] * shape[1]
 
     def total(at: Cells, values: Array) -> Array:
-        return np.bincount(at, values, size).astype(np.float64)
+        return np.bincount(at, values, land.size).astype(np.float64)
 
     pairs = np.maximum(total(own, np.ones(own.size)) + total(other, np.ones(own.size)), 1.0)
     taken, left = beyond / pairs[other], (1 - within) / pairs[own]
     area = 1.0 + total(own, taken) - total(own, left) - total(other, taken) + total(other, left)
-    return np.maximum(area, LEAST_AREA).reshape(shape)
+    return _with_least(area.reshape(land.shape), land)
+
+
+def _with_least(area: Array, land: Mask) -> Array:
+    """Return areas of at least LEAST_AREA and of the same sum: the cells around a sliver give."""
+    for i, j in np.argwhere(area < LEAST_AREA):
+        reach = 0
+        while area[i, j] < LEAST_AREA:
+            reach += 1
+            near = tuple(slice(max(at - reach, 0), at + reach + 1) for at in (i, j))
+            for alike in (True, False):  # lugs keep their area where a neighbour is one
+                spare = np.maximum(area[near] - LEAST_AREA, 0.0)
+                spare *= (land[near] == land[i, j]) == alike
+                given = min(LEAST_AREA - area[i, j], spare.sum())
+                if given > 0:
+                    area[near] -= spare * (given / spare.sum())
+                    area[i, j] += given
+    return area
 
 
 def _pairs(land: Mask, channel: Mask) -> tuple[Cells, Cells]:

@@ -279,13 +279,8 @@ def surface_map(
     """
     _check_grid(surface, shoe_angle, spacing, padding)
     cosine, sine = math.cos(shoe_angle), math.sin(shoe_angle)
-    inside, base = surface.inside, surface.land_base
-    base = base[nearest_true(np.isfinite(base))]
-    outline = surface.outline.copy()
-    rim = _cells(surface, outline[:, 0], outline[:, 1])
-    outline[:, 0] = outline[:, 0] * cosine - base[rim] * sine
-    rear = float(outline[:, 0].min())
-    outline[:, 0] -= rear
+    inside, base = surface.inside, _land_everywhere(surface)
+    outline, rear = _outline_on_floor(surface, base, shoe_angle)
     margin = max(1, math.ceil(padding / spacing - 1e-9))
     count_x = math.ceil(float(outline[:, 0].max()) / spacing - 1e-9) + 2 * margin
     low, high = float(outline[:, 1].min()), float(outline[:, 1].max())
@@ -420,3 +415,30 @@ def resolution_breaches(surface: SoleSurface, spacing: float) -> list[Breach]:
         cells = (narrow + surface.spacing / 2) / spacing
         unresolved += _few_cells(f"cells across the narrowest tenth of the {name}s", cells)
     return unresolved
+
+
+def place_on_floor(surface: SoleSurface, shoe_angle: float) -> Array:
+    """Return where along the floor each cell of a surface lies in its tilted map, (nx, ny), m.
+
+    That of ``surface_map``; in the map that ``heel_map`` makes of the same sole within the size of
+    a cell. Channels lie straight above the land that they cut.
+    """
+    base = _land_everywhere(surface)
+    _, rear = _outline_on_floor(surface, base, shoe_angle)
+    return surface.x[:, None] * math.cos(shoe_angle) - base * math.sin(shoe_angle) - rear
+
+
+def _land_everywhere(surface: SoleSurface) -> Array:
+    """Return the height of the land (m), that of the nearest cell where there is none."""
+    base = surface.land_base
+    return base[nearest_true(np.isfinite(base))]
+
+
+def _outline_on_floor(surface: SoleSurface, base: Array, shoe_angle: float) -> tuple[Array, float]:
+    """Return the tilted outline (n, 2) from its rear end on, and where that end lay, m."""
+    outline = surface.outline.copy()
+    rim = _cells(surface, outline[:, 0], outline[:, 1])
+    outline[:, 0] = outline[:, 0] * math.cos(shoe_angle) - base[rim] * math.sin(shoe_angle)
+    rear = float(outline[:, 0].min())
+    outline[:, 0] -= rear
+    return outline, rear

@@ -38,6 +38,8 @@ Box = tuple[slice, slice]
 _Parts = list[tuple[Convolution, Array | float]]
 BOX_THICKNESSES = 16.0  # side of the box on which a layer's influence coefficients are found
 THINNEST = 0.1  # share of the outsole left above the deepest profile
+REACHED = 1e-3
+"""m: a channel deeper than this neither touches the floor nor holds a film (pools: 0.6 mm)."""
 TREADED_SHARE = 0.5  # of the land that must be lugs for the tread to be modelled as lugs
 
 
@@ -187,7 +189,8 @@ def layered_compliance(
     the plan form or a lug has with free sides is split off, 1 / (1 / f + E* k / 2), and balanced on
     its mask so that a uniform pressure compresses it as ``block_compression`` says: by its own
     height at each place, more near a free side than in the middle. Lugs stand in series on the
-    layer.
+    layer, which feels what of a wave of pressure gets through their mean height; where lugs are
+    worn down to less of it, and in channels worn nearly through, it feels short waves too.
     """
     _check_elastic(modulus, poisson_ratio)
     _check_positive(thickness, "thickness")
@@ -226,7 +229,7 @@ def layered_compliance(
 
     depth = mean_lug_depth(sole)
     land = sole.inside & sole.land
-    plan = land if depth == 0.0 else sole.inside
+    plan = sole.inside  # channels worn nearly through press on the block too
     give = block_compression(plan, sole.spacing, body, modulus, poisson_ratio)
     footprint = partial(free_sided_symbol, **elastic, uniform=float(give[plan].mean()))
 
@@ -251,15 +254,20 @@ def layered_compliance(
     uniform = float(np.average(lug_give[land], weights=cut.area[land]))
     lug = partial(free_sided_symbol, **elastic, uniform=uniform)
     smooth = partial(attenuation, depth=depth)
+    parts: list[tuple[Array, Array | None]] = [
+        (influence(lambda q: rest(q) * smooth(q)), None),
+        (influence(lambda q: footprint(q) * smooth(q)), plan_weight),
+    ]
     lugs = influence(lug)
+    parts.append((lugs, balanced_weights(lugs, land, lug_give, cut.area)))
+    # short waves meet the layer itself under what is left of low lugs and in channels beside them
+    low = bool((sole.tread_depth[land] < REACHED).any())
+    bare = np.where(land, np.clip(1 - sole.tread_depth / depth, 0.0, 1.0), sole.inside & low)
+    if bare.any():
+        short = influence(lambda q: (rest(q) + footprint(q)) * (1 - smooth(q)))
+        parts.append((short, np.sqrt(bare)))
     return ConvolutionCompliance(
-        shape,
-        [
-            (influence(lambda q: rest(q) * smooth(q)), None),
-            (influence(lambda q: footprint(q) * smooth(q)), plan_weight),
-            (lugs, balanced_weights(lugs, land, lug_give, cut.area)),
-        ],
-        lambda q: (rest(q) + footprint(q)) * smooth(q) + lug(q),
+        shape, parts, lambda q: (rest(q) + footprint(q)) * smooth(q) + lug(q)
     )
 
 

@@ -1,16 +1,32 @@
-"""Highest pressure under a sole, and whether it is one that a finer grid would change."""
+"""Highest pressure under a sole: whether a finer grid would change it, and rubber could bear it."""
 
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from underfoot.core import InputError
+from underfoot.core import InputError, Range
 from underfoot.core.arrays import Array
 from underfoot.shoe.geometry import SoleMap
 
 AVERAGING_AREA = 10e-6
 """m^2; about the face of half a lug, and of a small pressure sensor (assumed)."""
+
+
+MOST_OVERLOADED = Range(0.0, 0.01, "1", "rubber under its own modulus is strained by about 1")
+"""Share of the load that may lie on cells pressed harder than Young's modulus: sharp edges alone
+(assumed)."""
+
+
+def overloaded_share(pressure: Array, cell_load: Array, modulus: float) -> float:
+    """Return the share of the load (0 to 1) on cells whose pressure exceeds Young's modulus (Pa).
+
+    ``pressure`` is that of contact and fluid together and ``cell_load`` the load per area of a
+    whole cell, (nx, ny), Pa. A punch as wide as a cell sinks in by its width under such a pressure
+    (half-space: w = 1.1 p a / E*, Love 1929): linear elasticity does not hold, rubber gives way.
+    """
+    load = float(cell_load.sum())
+    return float(cell_load[pressure > modulus].sum()) / load if load > 0 else 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,11 +56,16 @@ class PeakPressure:
 
 
 def peak_pressure(
-    sole: SoleMap, pressure: Array, *, averaging_area: float = AVERAGING_AREA
+    sole: SoleMap,
+    pressure: Array,
+    *,
+    cell_load: Array | None = None,
+    averaging_area: float = AVERAGING_AREA,
 ) -> PeakPressure:
     """Return the highest pressure of a field (nx, ny) in Pa, as a cell and as a mean over a disc.
 
-    The mean is over a disc of ``averaging_area`` (m^2) anywhere under the sole, at least one cell.
+    The mean is over a disc of ``averaging_area`` (m^2) anywhere under the sole, at least one cell,
+    of ``cell_load`` (nx, ny), the load per area of a whole cell, Pa; None: the pressure.
     """
     from scipy.ndimage import binary_erosion
 
@@ -57,7 +78,7 @@ def peak_pressure(
     along = np.arange(-count, count + 1)
     disc = (along[:, None] ** 2 + along[None, :] ** 2 <= reach**2).astype(float)
     mean = np.zeros_like(pressure)
-    padded = np.pad(pressure, count)
+    padded = np.pad(pressure if cell_load is None else cell_load, count)
     for i, j in np.argwhere(disc):
         mean += padded[i : i + pressure.shape[0], j : j + pressure.shape[1]]
     mean /= disc.sum()

@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from underfoot.core.arrays import Array
+from underfoot.core.arrays import Array, Mask
 from underfoot.friction import FrictionLaw, FrictionParts
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
 from underfoot.shoe import SoleMap
@@ -34,10 +34,9 @@ from underfoot.shoe import SoleMap
 INLET = 1.06
 NARROWEST = 0.1e-3
 """m: a lug edge drawn sharper is moulded with about this radius (assumed)."""
-EXCESS, ROUNDED = 0.36, 0.15e-3
+EXCESS = 0.36
 """The leading edge of a lug bears 36 % more than its mean (finite elements: friction 0.2, height
-half the length) and wears more by that share of what is removed, until the round is as deep (m) as
-the edge yields when traction turns the lug: 0.06 rad over half of 5 mm at 300 kPa and 3.3 MPa."""
+half the length) and wears more by that share of what is removed."""
 ON_RUBBER = 0.12
 LIFTING, LIFT = 0.12, 1.9
 """Shift of the pressure, over the length, from which a lug lifts; loss of contact per shift."""
@@ -54,11 +53,14 @@ FAR_FILM = 1e-3  # m, a film that no wall shear comes from
 class LugEdges:
     """Lugs of a sole; arrays (lugs,) in m. ``label`` (nx, ny) is 0 outside lugs, else 1, 2, ...
 
+    ``area`` (nx, ny) is what each cell stands for, in cells.
+
     ``length`` along the sliding, ``width`` across, ``height`` of the groove; ``edge`` radius;
     ``fed`` is the share of the leading face that borders on a groove.
     """
 
     label: NDArray[np.intp]
+    area: Array
     length: Array
     width: Array
     height: Array
@@ -74,7 +76,7 @@ class LugEdges:
 class LugFriction:
     """What the edges do to each lug, (lugs,).
 
-    ``load`` on its contact (sum of pressures of cells, Pa; 0 of a lug that hardly bears, which is
+    ``load`` on its contact (pressure times cells, Pa; 0 of a lug that hardly bears, which is
     left as it is), the shares of it on film and of suction, the share of its face in contact, and
     the factor on its contact friction.
     """
@@ -92,7 +94,7 @@ class LugFriction:
 
     def suction_share(self, parts: FrictionParts) -> float:
         """Return the share of the contact friction, factor included, that suction makes."""
-        solid = parts.adhesion + parts.hysteresis
+        solid = (parts.adhesion + parts.hysteresis) * self.edges.area
         ratio = self.edges.map(self.suction / np.maximum(self.factor, 1e-9), 0.0)
         return float((solid * ratio).sum() / max(solid.sum(), 1e-30))
 
@@ -108,13 +110,16 @@ class LugFriction:
         )
 
 
-def lug_edges(sole: SoleMap, edge_radius: float, *, forward: bool = True) -> LugEdges | None:
+def lug_edges(
+    sole: SoleMap, edge_radius: float, *, worn_edge_radius: float, forward: bool = True
+) -> LugEdges | None:
     """Return the lugs of a sole; None where it has no tread.
 
     Parameters:
         sole: Map; lugs are connected land beside grooves.
         edge_radius: Of the new lugs, m; sharper than 0.1 mm counts as that. Wear takes this round
             off and makes its own.
+        worn_edge_radius: Largest that wear makes, m.
         forward: Whether the sole slides towards the toe (fluid meets the front of a lug), else to
             the rear.
     """
@@ -137,12 +142,17 @@ def lug_edges(sole: SoleMap, edge_radius: float, *, forward: bool = True) -> Lug
     worn = _sums(numbers, count, removed * area) / cells
     return LugEdges(
         numbers,
+        area,
         length,
         cells * sole.spacing**2 / length,
         _sums(numbers, count, sole.tread_depth * area) / cells,
         # the floor cuts the moulded round off, and the edge rounds anew
         np.maximum.reduce(
-            [edge_radius - worn, np.minimum(EXCESS * worn, ROUNDED), np.full(count, NARROWEST)]
+            [
+                edge_radius - worn,
+                np.minimum(EXCESS * worn, worn_edge_radius),
+                np.full(count, NARROWEST),
+            ]
         ),
         _sums(numbers, count, from_groove) / faces,
     )
@@ -209,9 +219,9 @@ def lug_friction(
     return LugFriction(edges, load, film, pull, lifted, np.maximum(1 - film + pull, 0.0))
 
 
-def sum_by_lug(edges: LugEdges, values: ArrayLike) -> Array:
-    """Return the sum of a map (nx, ny) over each lug, (lugs,)."""
-    return _sums(edges.label, edges.length.size, values)
+def sum_by_lug(edges: LugEdges, values: Array | Mask) -> Array:
+    """Return the sum of a map (nx, ny) over the cells of each lug, cut ones in part, (lugs,)."""
+    return _sums(edges.label, edges.length.size, values * edges.area)
 
 
 def _sums(label: NDArray[np.intp], count: int, values: ArrayLike) -> Array:

@@ -15,8 +15,9 @@ from .sole_state import SolverSettings
 class Problem:
     """What does not change during a run; SI, arrays (nx, ny).
 
-    Pressures of cells are loads per area of a whole cell: where an outline cuts the cell, that of
-    the contact is ``cut.area`` times the pressure there, that of the fluid ``cut.film_area`` times.
+    Pressures here and in ``State`` are loads of cells per area of a whole one: where an outline
+    cuts the cell, that of the contact is ``cut.area`` times the pressure at its centre, that of the
+    fluid ``cut.film_area`` times. ``SoleState`` has the pressures.
     """
 
     clearance: Array
@@ -44,7 +45,7 @@ class Problem:
 
 @dataclass(slots=True)
 class State:
-    """A solved instant."""
+    """A solved instant; loads of cells as ``Problem`` says."""
 
     pressure: Array  # total, Pa
     approach: float  # m

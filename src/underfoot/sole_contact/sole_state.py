@@ -1,9 +1,11 @@
 """What is solved at one instant of a sole on a flooded floor, and how it is solved."""
 
 from dataclasses import dataclass
+from typing import Any
 
 from underfoot.core import Status
 from underfoot.core.arrays import Array, Mask
+from underfoot.shoe.cut_cells import CutCells
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +45,8 @@ class SolverSettings:
 class SoleState:
     """Pressures and film under the sole at one instant; arrays (nx, ny), SI.
 
+    Pressures are those at the centres of cells. Of the area of a cell that an outline cuts, the
+    contact presses on ``cut.area`` and the fluid on ``cut.film_area``: loads are sums over these.
     ``film_thickness`` is the mean gap, at most the pool depth; ``liquid_fraction`` the share of it
     that holds liquid, below 1 where the film has ruptured. ``wet`` marks the film (cavitated cells
     included, see ``cavitated``). ``approach`` is how far the rigid foot has come down since
@@ -59,6 +63,7 @@ class SoleState:
     liquid_fraction: Array
     wet: Mask
     cavitated: Mask
+    cut: CutCells
     approach: float
     normal_force: float
     speed: float
@@ -71,14 +76,24 @@ class SoleState:
     @property
     def fluid_load(self) -> float:
         """Load carried by the fluid, N."""
-        return float(self.fluid_pressure.sum()) * self.spacing**2
+        return float((self.fluid_pressure * self.cut.film_area).sum()) * self.spacing**2
 
     @property
     def contact_load(self) -> float:
         """Load carried by asperities, N."""
-        return float(self.contact_pressure.sum()) * self.spacing**2
+        return float((self.contact_pressure * self.cut.area).sum()) * self.spacing**2
 
     @property
     def total_pressure(self) -> Array:
         """Fluid and contact pressure together, Pa."""
         return self.fluid_pressure + self.contact_pressure
+
+    @property
+    def cell_load(self) -> Array:
+        """Load on each cell per area of a whole cell, Pa: what a ``Compliance`` takes."""
+        return self.fluid_pressure * self.cut.film_area + self.contact_pressure * self.cut.area
+
+    @property
+    def areas(self) -> dict[str, Any]:
+        """What each cell stands for, as ``friction.cof`` and ``sampled_cof`` take it."""
+        return {"area": self.cut.area, "film_area": self.cut.film_area}

@@ -355,18 +355,19 @@ class SlidingSole:
             )
         status = Status.CONVERGED if done else Status.NOT_CONVERGED
         march, sole = self._march, self.sole
-        state = march.state
+        state, cut = march.state, march.problem.cut
         return SoleState(
             x=sole.x,
             y=sole.y,
             spacing=sole.spacing,
-            # negative only by what the tolerance leaves
-            contact_pressure=np.maximum(state.contact, 0.0),
-            fluid_pressure=np.maximum(state.fluid, self.settings.cavity_pressure),
+            # the solver's loads of cells; negative only by what the tolerance leaves
+            contact_pressure=np.maximum(state.contact, 0.0) / cut.area,
+            fluid_pressure=np.maximum(state.fluid / cut.film_area, self.settings.cavity_pressure),
             film_thickness=np.clip(state.gap, 0.0, self.settings.pool_depth),
             liquid_fraction=state.fraction,
             wet=march.film & sole.inside,
             cavitated=state.cavitated & march.film,
+            cut=cut,
             approach=state.approach,
             normal_force=self._load,
             speed=self._speed or 0.0,

@@ -68,8 +68,9 @@ class SoleInstant:
         state = self.state
         slow = max(speed, LOWEST_SPEED)
         parts = self.law(state.contact_pressure, slow, state.film_thickness)
-        solid = (parts.adhesion + parts.hysteresis)[state.contact_pressure > 0].sum()
-        viscous = parts.viscous[state.wet].sum() * (speed / slow)
+        area, touching = state.cut.area, state.contact_pressure > 0
+        solid = ((parts.adhesion + parts.hysteresis) * area)[touching].sum()
+        viscous = (parts.viscous * area)[state.wet].sum() * (speed / slow)
         return float(solid + viscous) * state.spacing**2
 
 
@@ -104,7 +105,7 @@ class SoleFoot:
         return SoleInstant(self._sliding.settle(normal_force=normal_force, speed=speed), self._law)
 
 
-ROOM = "slip-5"
+ROOM = "slip-6"
 
 
 @dataclass(frozen=True, slots=True)
@@ -205,9 +206,9 @@ def _computed(
         assert isinstance(instant, SoleInstant)
         state = instant.state
         maps.append(sensor_map(state, inlet).astype(np.float32))
-        total = state.total_pressure
-        square = float((total**2).sum())
-        areas.append(float(total.sum()) ** 2 / square * state.spacing**2 if square > 0 else 0.0)
+        load = state.cell_load
+        square = float((load * state.total_pressure).sum())
+        areas.append(float(load.sum()) ** 2 / square * state.spacing**2 if square > 0 else 0.0)
         peaks.append(float(state.fluid_pressure.max()))
         profiles.append(state.film_thickness[:, line].astype(np.float32))
         extremes[0] = max(extremes[0], float(state.contact_pressure.max()))
