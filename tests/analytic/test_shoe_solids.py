@@ -1,15 +1,20 @@
 """Solids of soles: volumes in closed form and against the height map, files read back."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from underfoot.case import Case
+from underfoot.compute.contact import chamfer_words
 from underfoot.core import InputError
 from underfoot.shoe import Facet, Heel, Sipes, Tread, heel_surface
+from underfoot.shoe.grids import cut_heel
 from underfoot.shoe.parametric import sole_solid, write_sole
 from underfoot.shoe.parametric.modelling import lug_outlines
 
+OUTSOLES = Path(__file__).parents[2] / "examples" / "outsoles"
 KIND = {"length": 0.06, "width": 0.06, "rear_radius": 0.028, "outsole_thickness": 0.025}
 
 
@@ -91,6 +96,30 @@ def test_lugs_with_rounded_edges_lose_what_a_fillet_takes():
     assert any("stay sharp" in remark for remark in made.remarks)
 
 
+def test_chamfered_lugs_lose_a_prism_along_each_edge_in_solid_and_map():
+    width = 0.5e-3
+    lugs = {"pattern": "blocks", "lug_width": 12e-3, "channel_width": 4e-3, "depth": 3e-3}
+    flat = Heel(**KIND, tread=Tread(**lugs, lug_length=8e-3, edge_chamfer=width))
+    sharp = Heel(**KIND, tread=Tread(**lugs, lug_length=8e-3))
+    # a prism c^2 / 2 along each edge, mitred at the corners
+    one = width**2 / 2 * 2 * (12e-3 + 8e-3) - 4 / 3 * width**3
+    corners = [lug.points for lug in lug_outlines(flat, flat.tread)]
+    whole = sum(flat.inward_distance(*points.T).min() > 2 * width for points in corners)
+    assert whole > 5
+    lost = sole_solid(sharp).volume - sole_solid(flat).volume
+    assert lost == pytest.approx(whole * one, rel=1e-4)
+    spacing = 2.5e-5
+    rows = np.arange(0, 8e-3, spacing) + spacing / 2
+    columns = np.arange(-6e-3, 6e-3, spacing) + spacing / 2
+    x, y = np.meshgrid(rows, columns, indexing="ij")
+    rise = cut_heel(flat, x, y)[0] - cut_heel(sharp, x, y)[0]
+    assert rise.sum() * spacing**2 == pytest.approx(one, rel=1e-3)
+    with pytest.raises(InputError, match="chamfer"):
+        Tread(**lugs, lug_length=8e-3, edge_radius=1e-4, edge_chamfer=1e-4)
+    with pytest.raises(InputError, match="edge_chamfer"):
+        Tread(**lugs, lug_length=8e-3, edge_chamfer=5e-3)
+
+
 @pytest.mark.parametrize(
     ("heel", "words"),
     [
@@ -110,3 +139,10 @@ def test_soles_that_can_not_be_made(heel, words):
 def test_unknown_kind_of_file(tmp_path):
     with pytest.raises(InputError, match=r"\.step"):
         write_sole(Heel(**KIND), tmp_path / "sole.doc")
+
+
+def test_a_chamfer_says_what_its_film_counts_as():
+    case = Case.load(OUTSOLES / "heel_hexagons_glycerol.toml")
+    assert chamfer_words(case) == ""
+    assert "sharp" in chamfer_words(case.replace("shoe.tread.edge_chamfer", "0.3 mm"))
+    assert chamfer_words(case.replace("shoe.tread.pattern", "none")) == ""

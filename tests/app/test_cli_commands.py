@@ -155,7 +155,7 @@ def test_compare_refuses_what_is_no_result_before_anything_is_computed(
         ((EXAMPLE, "emty"), 'Did you mean "empty"?'),
         ((EXAMPLE, "empty"), "holds no result"),
         ((EXAMPLE,), "1 result to compare"),
-        ((EXAMPLE,) * 9, "9 results to compare"),
+        ((EXAMPLE,) * 13, "13 results to compare"),
     ):
         found = underfoot("compare", *arguments)
         assert found.exit_code == 2, found.stderr

@@ -29,6 +29,13 @@ from underfoot.shoe.tread import PATTERNS
 
 MM = 1e-3
 PITCH = 10.0
+FURTHER = {
+    "blocks": {"lug_length": 9 * MM},
+    "chevrons": {"arm_length": 11 * MM},
+    "waves": {"wave_length": 13 * MM, "wave_height": 5 * MM},
+    "rings": {"ring_width": 1.5 * MM},
+    "graded_circles": {"front_lug_width": 5 * MM, "graded_length": 60 * MM},
+}
 POINTS = np.meshgrid(np.linspace(-0.04, 0.08, 41), np.linspace(-0.04, 0.04, 37))
 
 
@@ -53,8 +60,7 @@ def test_a_pattern_repeats_after_each_period(pattern, angle, offset):
         3 * MM,
         offset=offset,
         angle=angle,
-        lug_length=9 * MM if pattern == "blocks" else None,
-        arm_length=11 * MM if pattern == "chevrons" else None,
+        **FURTHER.get(pattern, {}),
     )
     at = tread.channel_distance(*POINTS)
     for period in tread.periods:

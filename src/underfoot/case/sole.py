@@ -11,11 +11,13 @@ from pydantic import Field
 
 from underfoot.core import InputError, RangeError, display
 
+from .lettering import check_text, text_rings
 from .quantity import Angle, Depth, LargeRadius, Length, Quantity, Rounding, default, optional
 from .section import CaseView, Option, Section
 
 if TYPE_CHECKING:
     from underfoot.shoe import Profile, Tread
+    from underfoot.shoe.lettering import Lettering
     from underfoot.shoe.shape import SoleShape
 
 _ASSUMED = "assumption"
@@ -249,7 +251,14 @@ class Lugs(TreadPattern):
     offset_along: Shift = default(0.0, "0 mm", "the first lug begins at the rear end")
     offset_across: Shift = default(0.0, "0 mm", "a lug is centred on the centre line")
     edge_radius: Rounding = default(0.0, "0 mm", "sharp lug edges", assumed=True)
+    edge_chamfer: Rounding = default(
+        0.0, "0 mm", "no chamfer; 45 deg, width on the land; its film is that of a sharp edge"
+    )
     sipes: SipeCuts | None = None
+
+    def letters(self) -> Lettering | None:
+        """Return the letters of lettering; None of other patterns."""
+        return None
 
     def build(self) -> Tread | None:
         from underfoot.shoe import Sipes, Tread
@@ -265,6 +274,8 @@ class Lugs(TreadPattern):
             (self.offset_along, self.offset_across),
             self.angle,
             **{name: getattr(self, name) for name in FURTHER_LENGTHS.get(self.name, ())},
+            letters=self.letters(),
+            edge_chamfer=self.edge_chamfer,
             sipes=cuts and Sipes(cuts.width, cuts.depth, cuts.spacing, cuts.angle),
         )
 
@@ -283,11 +294,16 @@ class Lugs(TreadPattern):
                 yield from _resolved(case, f"{where}.{name}", getattr(self, name))
         smallest = min([self.lug_width, *(getattr(self, name, math.inf) for name in _LUG_SIDES)])
         rounding = min(self.depth or math.inf, smallest / 2)
-        if self.edge_radius > rounding:
-            yield RangeError(
-                f"{display(self.edge_radius, 'm')} does not fit on the lug",
-                where=f"{where}.edge_radius",
-                allowed=f"at most {display(rounding, 'm')} (the depth and half the lug width)",
+        for name in ("edge_radius", "edge_chamfer"):
+            if getattr(self, name) > rounding:
+                yield RangeError(
+                    f"{display(getattr(self, name), 'm')} does not fit on the lug",
+                    where=f"{where}.{name}",
+                    allowed=f"at most {display(rounding, 'm')} (the depth and half the lug width)",
+                )
+        if self.edge_radius > 0 and self.edge_chamfer > 0:
+            yield InputError(
+                "edges of lugs have a radius or a chamfer, not both", where=f"{where}.edge_chamfer"
             )
         if self.sipes is not None:
             yield from self._sipe_problems(self.sipes, f"{where}.sipes")
@@ -406,6 +422,44 @@ class GradedCircleTread(Lugs):
 
     front_lug_width: Length = Field(description="diameter at graded_length and beyond")
     graded_length: Length = Field(description="from the first stud, along the shoe")
+
+
+class LetteringTread(Lugs):
+    """Letters of one line of text, repeated along and across the shoe.
+
+    It reads from heel to toe seen from below; ``lug_width`` is the height of its capitals,
+    ``channel_width`` the gap between letters and between lines.
+    """
+
+    name: ClassVar[str] = "lettering"
+
+    text: str = Field(description='as "GRIP", in DejaVu Sans Bold')
+
+    def letters(self) -> Lettering:
+        from underfoot.shoe.lettering import Lettering
+
+        shells, holes = text_rings(self.text, self.lug_width, self.channel_width)
+        return Lettering(_points(shells), _points(holes), self.channel_width)
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        try:
+            check_text(self.text, f"{where}.text")
+        except InputError as error:
+            yield error
+            return
+        yield from super().problems(case, where)
+        stroke = self.letters().stroke
+        yield from _resolved(case, f"{where}.lug_width", stroke)
+        if self.edge_radius > min(self.depth, stroke / 2):
+            yield RangeError(
+                f"{display(self.edge_radius, 'm')} does not fit on the letters' strokes",
+                where=f"{where}.edge_radius",
+                allowed=f"at most {display(min(self.depth, stroke / 2), 'm')} (half a stroke)",
+            )
+
+
+def _points(rings: tuple[Any, ...]) -> tuple[tuple[tuple[float, float], ...], ...]:
+    return tuple(tuple((float(x), float(y)) for x, y in ring) for ring in rings)
 
 
 def through_outsole(case: CaseView, depth: float, where: str) -> Iterator[InputError]:

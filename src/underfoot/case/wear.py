@@ -25,6 +25,8 @@ Place = Annotated[float, Quantity("m", -0.2, 0.2)]
 Taper = Annotated[float, Quantity("rad", math.radians(0.5), math.radians(60))]
 DIN_FORCE, DIN_WAY = 10.0, 40.0
 """N and m: load and way of the abrasion test, ISO 4649 (DIN 53516)."""
+USUAL_WEAR_RATE = 3.7500000000000005e-10
+"""m^2/N: "0.375 mm^3/(N*m)" to the last digit."""
 _ABRASION = re.compile(
     r"\s*(?:(?:DIN|ISO)(?:\s*(?:53516|4649))?\s+)?(?P<volume>\d+(?:\.\d+)?)\s*mm(?:\^?3|³)\s*"
 )
@@ -139,7 +141,7 @@ class ArchardWear(Wear):
     normal_force: Force | None = optional("while wearing; default motion.normal_force")
     abrasion: str | None = optional('volume lost in ISO 4649, as "DIN 150 mm3": sets wear_rate')
     wear_rate: WearRate = default(
-        3.7500000000000005e-10,  # as the text gives it, to the last digit
+        USUAL_WEAR_RATE,
         "0.375 mm^3/(N*m)",
         "150 mm^3 lost on the abrasive sheet of ISO 4649 (10 N, 40 m), the limit for good soles; "
         "floors are far gentler, and only the sliding distance depends on it",

@@ -205,12 +205,21 @@ def wear(
     band: Annotated[
         bool, typer.Option("--band/--no-band", help="Vary the least known inputs (4 runs a state).")
     ] = True,
+    pair: Annotated[
+        str | None,
+        typer.Option(
+            "--worn-pair",
+            help='A pair you measured, "1.2 mm after 300 km": gives the distance walked.',
+            show_default=False,
+        ),
+    ] = None,
     seed: Annotated[int, typer.Option("--seed", help="Seed of the interval's draws.", min=0)] = 0,
 ) -> None:
     """Wear the sole of a case step by step: friction, film, and when it is worn out.
 
     Every state is kept on disk: a stopped series continues.
     """
+    from underfoot.questions.walked import worn_pair
     from underfoot.questions.wear import deepest_wear, limit_load, wear_mode, wear_series
 
     given = shared.case(case)
@@ -224,6 +233,7 @@ def wear(
         limit=limit_load(limit, given.motion.normal_force),
         band=band,
         seed=seed,
+        pair=worn_pair(pair),
     )
 
 

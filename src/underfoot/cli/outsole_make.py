@@ -27,6 +27,8 @@ LENGTHS = {
     "graded_length": "tread.graded_length",
     "angle": "tread.angle",
     "edge": "tread.edge_radius",
+    "text": "tread.text",
+    "chamfer": "tread.edge_chamfer",
 }
 
 
@@ -42,11 +44,12 @@ FURTHER = {
     "waves": {"wave_length": "20 mm", "wave_height": "6 mm"},
     "rings": {"lug": "12 mm", "ring": "3 mm"},
     "graded_circles": {"front_lug": "4 mm", "graded_length": "60 mm"},
+    "lettering": {"lug": "16 mm", "channel": "3 mm", "text": "GRIP"},
 }
 """What some patterns need beyond that (assumed)."""
 PATTERNS = (
     "none, grid, blocks, transverse, longitudinal, bars, chevrons (zigzag), waves, circles, "
-    "graded_circles, hexagons, rings."
+    "graded_circles, hexagons, rings, lettering."
 )
 
 
@@ -69,6 +72,8 @@ def make(
     graded_length: Annotated[str | None, _given("Over which they change.")] = None,
     angle: Annotated[str | None, _given("Of the pattern.")] = None,
     edge: Annotated[str | None, _given("Radius of the lugs' edges.")] = None,
+    chamfer: Annotated[str | None, _given("Width of a 45 degree chamfer instead.")] = None,
+    text: Annotated[str | None, _given('Of lettering, as "GRIP"; --lug is its height.')] = None,
     sipes: Annotated[str | None, _given('Width, depth and spacing: "0.5 mm, 2 mm, 4 mm".')] = None,
     whole: Annotated[
         bool, typer.Option("--whole", help="A whole sole of common widths, not a heel.")
@@ -87,7 +92,7 @@ def make(
     from underfoot.shoe.parametric import write_sole
 
     waves, round_lugs = (wave_length, wave_height), (ring, front_lug, graded_length)
-    sizes = (lug, channel, depth, lug_length, arm, *waves, *round_lugs, angle, edge)
+    sizes = (lug, channel, depth, lug_length, arm, *waves, *round_lugs, angle, edge, text, chamfer)
     given = dict(zip(LENGTHS, sizes, strict=True))
     if (spec is None) == (pattern is None):
         raise InputError(

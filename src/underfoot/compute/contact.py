@@ -108,6 +108,13 @@ def edged_law(
     return EdgedLaw(law, edges, asperities, context.youngs_modulus, viscosity, suction)
 
 
+def chamfer_words(case: Case) -> str:
+    """Return what the chamfer of lugs counts as for the film at their edges; "" without one."""
+    if not case.value("shoe.tread.edge_chamfer"):
+        return ""
+    return "; chamfered edges count as sharp ones, 0.1 mm round (assumed: no source for their film)"
+
+
 @dataclass
 class Recorder:
     """Takes down, at every step, the parts of COF and (at some) what the sensors read."""

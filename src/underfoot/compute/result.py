@@ -85,7 +85,10 @@ class Result(Presentable):
 
     def tables(self) -> tuple[Table, ...]:
         """Return the table of a usable result; numbers that are no result are not printed."""
-        return (self.table(),) if self.usable else ()
+        if not self.usable:
+            return ()
+        drainage = (summary.drainage_table(self.data),) if "drainage" in self.labels else ()
+        return (self.table(), *drainage)
 
     def remarks(self) -> dict[str, Sequence[str]]:
         """Return notes, tested ranges that were left, and assumptions, the decisive ones first."""

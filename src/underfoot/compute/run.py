@@ -24,6 +24,7 @@ from underfoot.core.fields import Fields, labelled
 from underfoot.friction import FrictionLaw, cof, sampled_cof
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
 from underfoot.shoe import SoleMap
+from underfoot.shoe.lug_drainage import lug_drainage
 from underfoot.sole_contact import SensorReading
 from underfoot.sole_contact.cost import refuse_too_large
 from underfoot.sole_contact.edge_peak import peak_pressure
@@ -31,7 +32,16 @@ from underfoot.sole_contact.lug_edges import EdgedLaw
 from underfoot.sole_contact.solver import SoleContact
 
 from . import numbers
-from .contact import Recorder, blind_sensor, cost, edged_law, history_fields, scanned, solved_motion
+from .contact import (
+    Recorder,
+    blind_sensor,
+    chamfer_words,
+    cost,
+    edged_law,
+    history_fields,
+    scanned,
+    solved_motion,
+)
 from .pictured import pictured_fields
 from .positions import Place, tread_positions
 from .resolve import resolved, turned
@@ -43,6 +53,7 @@ from .sole import (
     overload_breaches,
     sole_map,
 )
+from .summary import FILM_MATTERS
 
 CELL_AREAS = (
     "what a cell stands for of contact and shear, in cells",
@@ -143,7 +154,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
 
     overload = overload_breaches(contact, context.youngs_modulus)
     values, risk, labels = numbers.undetermined(case, contact.status), None, {}
-    positions = None
+    positions = drainage = None
     if contact.status.usable:
         if "compliance" not in own:
             at = (case, on_sole, sole, contact, solved_quick)
@@ -156,8 +167,11 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         if positions:
             values = positions.averaged(values)
         share = (values["fluid_load"].value or 0.0) / contact.normal_force
+        if contact.fluid_load > FILM_MATTERS * contact.normal_force:
+            drainage = lug_drainage(sole, contact.fluid_pressure, contact.film_thickness)
         remarks = {
-            "lug_edges": "" if lugs is None else lugs.words(),
+            "lug_edges": "" if lugs is None else lugs.words() + chamfer_words(case),
+            "drainage": drainage.words() if drainage else "",
             "cof_spread_basis": getattr(law, "spread_basis", ""),
             **(positions.labels() if positions else {}),
             "overload": numbers.overload_words(overload),
@@ -219,7 +233,9 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
                 pictured_fields(sole, contact, compliance, _map_angle(case)),
             ),
             None if sampled is None else sampled.cof,
-        ).assign(positions.fields() if positions else {}),
+        ).assign(
+            (positions.fields() if positions else {}) | (drainage.fields() if drainage else {})
+        ),
         status=status,
         breaches=_unique(map(str, breaches)),
         assumptions=_unique(

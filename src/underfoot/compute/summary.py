@@ -3,10 +3,13 @@
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import Literal
 
 from underfoot.core import SourcedValue, Status
-from underfoot.core.presentation import Table, interval_text, percent, value_text
+from underfoot.core.fields import Fields
+from underfoot.core.presentation import Table, interval_text, percent, quantity_text, value_text
+from underfoot.shoe.lug_drainage import MATTERS, SIDES, across_text
 
 FILM_MATTERS = 0.05
 """Share of the load carried by the film above which drainage can raise the friction."""
@@ -30,11 +33,14 @@ QUANTITIES: Mapping[str, tuple[str, str]] = {
     "slip_probability": ("Slip probability", "walkers as described in the case"),
 }
 """Label and remark of each quantity, in the order of the summary; parts are indented."""
+LUGS_SHOWN = 6
+"""Most lugs in the table of their drainage."""
 LABELS = {
     "cof_spread_from": "Uncertainty of the COF",
     "tread_position": "Tread position",
     "grid_error": "Discretisation error",
     "edge_peak": "Caution on pressures",
+    "drainage": "Drainage",
     "lug_edges": "Edges of the lugs",
     "sensor": "Caution on the sensor",
     "objects": "Computed with an object in place of the case's option",
@@ -188,6 +194,25 @@ def table(scalars: Mapping[str, SourcedValue], labels: Mapping[str, str]) -> Tab
         if name == "cof_viscous" and "regime" in labels:
             rows.append(("Lubrication regime", labels["regime"], labels.get("regime_rule", "")))
     return Table("Results", ("Quantity", "Value", "Remark"), rows)
+
+
+def drainage_table(fields: Fields) -> Table:
+    """Return the lugs that bear most of the film, and the way out for their fluid."""
+    names = ("share", "load", "x", "y", "way", "side", "groove", "groove_side", "relief")
+    lugs = zip(*(fields[f"lug_{name}"].values for name in names), strict=True)
+    rows = [
+        (
+            f"{quantity_text(x, 'm')} from the rear, {across_text(y)}",
+            f"{quantity_text(load, 'N')}, {percent(share)}",
+            f"{quantity_text(way, 'm')} to the {SIDES[int(side)]}",
+            f"{quantity_text(groove, 'm')} to the {SIDES[int(to)]}, {percent(relief)} of it",
+        )
+        for share, load, x, y, way, side, groove, to, relief in islice(lugs, LUGS_SHOWN)
+        if share >= MATTERS
+    ]
+    return Table(
+        "Drainage of lugs", ("Lug", "Load on its film", "Way out", "Best groove, relief"), rows
+    )
 
 
 def notes(labels: Mapping[str, str]) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from underfoot.case.wear import USUAL_WEAR_RATE
 from underfoot.compute.sole import bottom_surface
 from underfoot.core import InputError, Progress, display, silent, to_si, unknown_name
 from underfoot.core.fields import Fields, labelled
@@ -18,6 +19,7 @@ from underfoot.core.progress import part
 
 from .outcomes import Outcome, outcomes
 from .sensitivity import OPEN_INPUTS, OpenInput, open_inputs, variants
+from .walked import SOURCES, Walked, Walker, WornPair
 from .wear_limit import Crossing, LimitCrossing, WearPoint, limit_crossing
 
 if TYPE_CHECKING:
@@ -95,6 +97,7 @@ class WearSeries(Presentable):
     which it is exceeded. ``untreaded`` is the last state without any tread; None where the sole
     comes from a file. ``soles`` are the bottoms of the states in their own frame, ``maps`` the
     pressures (Pa) on their cells by name, those of the case's own position of the tread.
+    ``walker`` turns the volume lost into a distance.
     """
 
     kind: ClassVar[str] = "wear"
@@ -109,6 +112,7 @@ class WearSeries(Presentable):
     untreaded: Outcome | None = None
     soles: tuple[SoleSurface, ...] = ()
     maps: tuple[dict[str, np.ndarray], ...] = ()
+    walker: Walker | None = None
 
     def __repr__(self) -> str:
         return f"<WearSeries of {self.name!r}, {self.mode}: {len(self.points)} states>"
@@ -130,7 +134,22 @@ class WearSeries(Presentable):
         if self.untreaded is not None and math.isfinite(self.untreaded.number("cof")):
             bare = self.untreaded.number("cof")
             sentences[-1] = f"{sentences[-1][:-1]}; {bare:.3f} if that sole had no tread at all."
+        walks = self.walked()
+        if walks:
+            measured = self.walker is not None and self.walker.pair is not None
+            bound = "" if measured else "life not estimated; walked on an abrasive sheet "
+            volume = _short(float(self.measured("removed_volume")[-1]) * 1e9)
+            sentences.append(f"The last state has lost {volume} mm³: {bound}{walks[-1]}.")
         return tuple(sentences)
+
+    def walked(self) -> list[Walked]:
+        """Return how far one walks to each state; empty without a walker."""
+        if self.walker is None:
+            return []
+        volumes, lost = (
+            self.measured(name).tolist() for name in ("removed_volume", "removed_depth")
+        )
+        return [self.walker.walked(volume, volumes, lost) for volume in volumes]
 
     def cautions(self) -> tuple[str, ...]:
         reasons = []
@@ -142,6 +161,8 @@ class WearSeries(Presentable):
         failed = [str(k) for k, p in enumerate(self.points) if not p.outcome.usable]
         if failed:
             reasons.append(f"No result for state {', '.join(failed)} (0 is new).")
+        if self.walker is not None:
+            reasons.append(self.walker.caution[0].upper() + self.walker.caution[1:] + ".")
         if self.quick:
             reasons.append("Coarse grid (--full for the fine one).")
         return tuple(reasons)
@@ -155,6 +176,10 @@ class WearSeries(Presentable):
             values += [point.outcome.number(name) * scale for name, _, scale, _ in numbers]
             rows.append(["not determined" if math.isnan(v) else _short(v) for v in values])
         heads = tuple(label for *_, label in (*measures, *numbers))
+        walks = self.walked()
+        if walks:
+            heads = (*heads, "Walked" if self.walker and self.walker.pair else "On abrasive sheet")
+            rows = [[*row, str(walk)] for row, walk in zip(rows, walks, strict=True)]
         return Table("States of wear, new to worn", heads, rows)
 
     def tables(self) -> tuple[Table, ...]:
@@ -177,8 +202,9 @@ class WearSeries(Presentable):
                     **asdict(point.measures),
                     **{name: finite(point.outcome.number(name)) for name, *_ in NUMBERS},
                     "status": str(point.outcome.status),
+                    **walk,
                 }
-                for point in self.points
+                for point, walk in zip(self.points, self._walks(), strict=True)
             ],
             "crossings": {
                 name: {
@@ -204,12 +230,19 @@ class WearSeries(Presentable):
             heads += [f"{name}_{unit}", f"{name}_low", f"{name}_high"]
         ends = {name: self.ends(name) for name, *_ in NUMBERS}
         rows = []
+        walks = self._walks()
         for k, point in enumerate(self.points):
             row = [getattr(point.measures, name) for name, *_ in MEASURES]
             for name, *_ in NUMBERS:
                 row += [point.outcome.number(name), *(float(end[k]) for end in ends[name])]
-            rows.append((*row, str(point.outcome.status)))
-        return {"wear": Table("", (*heads, "status"), rows)}
+            rows.append((*row, str(point.outcome.status), *walks[k].values()))
+        return {"wear": Table("", (*heads, "status", *walks[0]), rows)}
+
+    def _walks(self) -> list[dict[str, float]]:
+        """Return the distance (m) and months to each state by name; nothing without a walker."""
+        names = ("walked_low_m", "walked_high_m", "months_low", "months_high")
+        ends = [(*walk.distance, *walk.months) for walk in self.walked()]
+        return [dict(zip(names, each, strict=True)) for each in ends] or [{} for _ in self.points]
 
     def values(self, name: str) -> np.ndarray:
         """Return a number of all points in SI, nan where it was not determined."""
@@ -293,6 +326,7 @@ def wear_series(
     band: bool = True,
     draws: int = 4000,
     seed: int = 0,
+    pair: WornPair | None = None,
     quick: bool = True,
     processes: int | None = 1,
     progress: Progress = silent,
@@ -312,6 +346,8 @@ def wear_series(
         limit: Fluid load, N; by default 5 N, the report's limit of detection (G.4).
         band: Vary the least known inputs at every state: four more runs a state.
         draws, seed: Of the sampling of the band.
+        pair: A measured pair that the distance walked is taken from; else the wear rate of the
+            case (``shoe.wear`` of mode "archard"), or its default.
         quick, processes, progress: As for ``outcomes``; every finished state is kept on disk, so
             that a stopped series goes on.
 
@@ -343,6 +379,12 @@ def wear_series(
             allowed=f"above 0 N and below {force:g} N (motion.normal_force)",
         )
     cases = worn_cases(case, mode, steps, deepest)
+    if pair is not None and pair.lost > (end := cases[-1].shoe.wear.depth) * (1 + 1e-9):
+        raise InputError(
+            f"the pair has lost {display(pair.lost, 'm')}, the series ends at {display(end, 'm')}",
+            where="pair",
+            remedy="Let the series go on (--to).",
+        )
     inputs = open_inputs(case, [each for each in OPEN_INPUTS if each.path in BAND_INPUTS])
     inputs = inputs if band else []
     plan: list[Case] = []
@@ -384,6 +426,7 @@ def wear_series(
         assumptions=_assumptions(cases[-1], mode, inputs),
         quick=quick,
         untreaded=results[-1] if bare else None,
+        walker=Walker(case.value("shoe.wear.wear_rate") or USUAL_WEAR_RATE, pair),
         soles=soles,
         maps=tuple(
             maps_on_sole(sole, point.outcome, angle)
@@ -567,6 +610,7 @@ def _assumptions(case: Case, mode: str, inputs: list[OpenInput]) -> tuple[str, .
     return (
         shape,
         "the worn surface is as rough as the new one",
+        SOURCES,
         f"wear rounds the edges of lugs by up to {display(wear.edge_radius, 'm')} "
         "(shoe.wear.edge_radius; nobody measured it, 0.1 to 0.5 mm are plausible)",
         *(f"interval: {each.path}, {each.reason}" for each in inputs),

@@ -144,6 +144,9 @@ def cut_heel(
             edge = np.clip(tread.edge_radius + into, 0.0, tread.edge_radius)
             rounding = tread.edge_radius - np.sqrt(tread.edge_radius**2 - edge**2)
             height = np.maximum(unworn + rounding, base)
+        if tread.edge_chamfer > 0:
+            rise = np.clip(tread.edge_chamfer + into, 0.0, tread.edge_chamfer)
+            height = np.maximum(unworn + rise, base)
         lug = np.maximum(tread.depth - (base - unworn), 0.0)
         channel = into > 0
         height, land = _cut(height, land, channel, unworn + tread.depth, base)

@@ -14,6 +14,7 @@ from underfoot.core.arrays import Array
 from underfoot.core.checks import between, not_negative, positive
 
 from ._kernels import tread_pattern
+from .lettering import Lettering
 
 FURTHER_LENGTHS: dict[str, tuple[str, ...]] = {
     "blocks": ("lug_length",),
@@ -23,7 +24,16 @@ FURTHER_LENGTHS: dict[str, tuple[str, ...]] = {
     "graded_circles": ("front_lug_width", "graded_length"),
 }
 """What some patterns need beyond the widths of lug and channel, the depth and the angle."""
-PATTERNS = ["grid", "transverse", "longitudinal", "bars", "circles", "hexagons", *FURTHER_LENGTHS]
+PATTERNS = [
+    "grid",
+    "transverse",
+    "longitudinal",
+    "bars",
+    "circles",
+    "hexagons",
+    *FURTHER_LENGTHS,
+    "lettering",
+]
 LATTICES = ("circles", "hexagons", "rings", "graded_circles")
 """Patterns in a triangular lattice, its rows along the shoe."""
 
@@ -84,12 +94,14 @@ class Tread:
             the shoe), "longitudinal" (channels along it), "bars" (straight channels, across the
             shoe at angle 0), "chevrons" (zigzag bars, tips forward), "waves" (waving bars, crests
             forward), "circles", "hexagons", "rings" (round with a closed hollow) and
-            "graded_circles" (larger or smaller along the shoe), all in triangular lattices.
+            "graded_circles" (larger or smaller along the shoe), all in triangular lattices;
+            "lettering" (the letters of one line of text, repeated).
         lug_width, channel_width: m; of bars and chevrons normal to their walls, the diameter of
             circles and rings (outer), the width across flats of hexagons, of waves along the shoe;
-            the channel where it is narrowest.
+            of lettering the height of its capitals; the channel where it is narrowest.
         depth: Height of the lugs, m; 0 is an untreaded sole.
         edge_radius: Rounding of the lower edges of the lugs, m.
+        edge_chamfer: Width of a chamfer of 45 degrees there instead, m.
         offset: Shift (x, y) of the pattern with its sipes, m. At (0, 0) the first lug begins at the
             rear end of the sole and a lug is centred on the centre line.
         angle: Turns the pattern as a whole, rad, anticlockwise seen from above; for chevrons it is
@@ -100,6 +112,7 @@ class Tread:
         ring_width: Of "rings": thickness of their wall, m.
         front_lug_width, graded_length: Of "graded_circles": the diameter at ``graded_length`` (m)
             from the first lug, and beyond; ``lug_width`` is that of the first.
+        letters: Of "lettering".
         sipes: Fine slits in the lugs.
     """
 
@@ -117,6 +130,8 @@ class Tread:
     ring_width: float | None = None
     front_lug_width: float | None = None
     graded_length: float | None = None
+    letters: Lettering | None = None
+    edge_chamfer: float = 0.0
     sipes: Sipes | None = None
 
     def __post_init__(self) -> None:
@@ -136,6 +151,11 @@ class Tread:
                 )
             if value is not None:
                 positive(value, f"tread.{name}")
+        if (self.letters is None) == (self.pattern == "lettering"):
+            raise InputError(
+                f"is {'missing' if self.letters is None else 'not used'} for {self.pattern}",
+                where="tread.letters",
+            )
         most = math.radians(75 if self.pattern == "chevrons" else 180)
         between(self.angle, -most, most, "tread.angle", f"at most {math.degrees(most):g} deg")
         if self.ring_width is not None and self.ring_width >= self.lug_width / 2:
@@ -144,19 +164,26 @@ class Tread:
                 where="tread.ring_width",
                 allowed=f"below {self.lug_width / 2e-3:g} mm (half of tread.lug_width)",
             )
+        not_negative(self.edge_chamfer, "tread.edge_chamfer")
+        if self.edge_radius > 0 and self.edge_chamfer > 0:
+            raise InputError("both a radius and a chamfer", where="tread.edge_chamfer")
         rounding = min(self.depth, self.smallest_lug / 2)
-        if self.depth > 0 and self.edge_radius > rounding:
-            raise InputError(
-                f"edge radius {self.edge_radius * 1e3:g} mm doesn't fit on the lug",
-                where="tread.edge_radius",
-                allowed=f"at most {rounding * 1e3:g} mm (the depth and half the lug width)",
-            )
+        for name in ("edge_radius", "edge_chamfer"):
+            size = getattr(self, name)
+            if self.depth > 0 and size > rounding:
+                raise InputError(
+                    f"{name.replace('_', ' ')} {size * 1e3:g} mm doesn't fit on the lug",
+                    where=f"tread.{name}",
+                    allowed=f"at most {rounding * 1e3:g} mm (the depth and half the lug width)",
+                )
         if self.sipes is not None and self.depth > 0:
             self.sipes.check_within(self.depth)
 
     @property
     def smallest_lug(self) -> float:
-        """Smallest side of a lug, m."""
+        """Smallest side of a lug, m; of letters the stroke of the thinnest."""
+        if self.letters is not None:
+            return self.letters.stroke
         sides = (self.lug_length, self.ring_width, self.front_lug_width)
         return min([self.lug_width, *(side for side in sides if side is not None)])
 
@@ -171,8 +198,11 @@ class Tread:
 
         w / (w + c) = s for bars and waves, s^2 for a grid and hexagons, the product of both
         directions for blocks, pi / (2 sqrt 3) s^2 for circles, less the hollow for rings, and with
-        the mean of w^2 over the graded length for graded circles.
+        the mean of w^2 over the graded length for graded circles; of lettering the area of its
+        outlines in that of a period.
         """
+        if self.letters is not None:
+            return self.letters.area / float(np.prod(self.letters.pitch))
         share = self.lug_width / (self.lug_width + self.channel_width)
         if self.pattern == "blocks" and self.lug_length is not None:
             return share * self.lug_length / (self.lug_length + self.channel_width)
@@ -192,6 +222,9 @@ class Tread:
         pitch = self.pitch
         if self.pattern == "chevrons" and self.arm_length is not None:
             return np.array([[pitch / math.cos(self.angle), 0.0], [0.0, 2 * self.arm_length]])
+        if self.letters is not None:
+            frame = np.diag(self.letters.pitch)
+            return np.column_stack(tread_pattern.rotated(frame[:, 0], frame[:, 1], -self.angle))
         along = [(self.lug_length or self.lug_width) + self.channel_width, 0.0]
         across = [0.0, self.wave_length or pitch]
         if self.pattern in LATTICES:
@@ -238,6 +271,8 @@ class Tread:
         x, y = tread_pattern.rotated(x, y, self.angle)
         if line is not None:
             return tread_pattern.folded_bar_distance(x, y, line, lug, channel)
+        if self.letters is not None:
+            return self.letters.channel_distance(x, y)
         if self.ring_width is not None:
             wall = self.ring_width
             return tread_pattern.ring_distance(x - lug / 2, y, lug, channel, wall)

@@ -19,7 +19,7 @@ from ._kernels.regions import (
     without_specks,
 )
 from ._kernels.rolling import rolled_base
-from .geometry import SoleSurface
+from .geometry import SoleMap, SoleSurface
 
 ROLLING_RADIUS = 0.5
 """Of the paraboloid that tells land: hollows of a larger radius are the sole's shape, m."""
@@ -289,7 +289,7 @@ def arch_area(tread: TreadMap, inside: Mask, spacing: float) -> float:
     return float(np.count_nonzero(wide & channel)) * spacing**2
 
 
-def draining(surface: SoleSurface) -> Mask:
+def draining(surface: SoleSurface | SoleMap) -> Mask:
     """Return which cells of the channels are connected to the rim through channels."""
     numbers, _ = pieces(surface.inside & ~surface.land)
     return np.isin(numbers, np.setdiff1d(numbers[rim(surface.inside)], [0]))

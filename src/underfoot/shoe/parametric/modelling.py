@@ -11,16 +11,21 @@ from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
 
 from .._kernels.tread_pattern import graded_diameter
+from ..lettering import Lettering
 from ..shape import SoleShape
 from ..tread import LATTICES, Tread
 
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """One lug from below: a polygon (n, 2) anticlockwise, or a circle about its only point; m."""
+    """One lug from below: a polygon (n, 2) anticlockwise, or a circle about its only point; m.
+
+    ``holes`` are polygons within it.
+    """
 
     points: Array
     radius: float = 0.0
+    holes: tuple[Array, ...] = ()
 
 
 def lug_outlines(shape: SoleShape, tread: Tread) -> list[Outline]:
@@ -37,7 +42,8 @@ def lug_outlines(shape: SoleShape, tread: Tread) -> list[Outline]:
             middle = points.mean(axis=0)
             if float(shape.inward_distance(middle[:1], middle[1:])[0]) <= -size:
                 continue
-        outlines.append(Outline(points, outline.radius))
+        holes = tuple(hole @ back.T + np.array(tread.offset) for hole in outline.holes)
+        outlines.append(Outline(points, outline.radius, holes))
     return outlines
 
 
@@ -64,7 +70,9 @@ def _in_pattern(tread: Tread, centre: Array, reach: float) -> Iterator[tuple[Out
     """Yield outlines in the frame of the pattern and their half size (0: endless bars)."""
     lug, pitch = tread.lug_width, tread.pitch
     low, high = centre - reach, centre + reach
-    if tread.pattern in LATTICES:
+    if tread.letters is not None:
+        yield from _letters(tread.letters, low, high)
+    elif tread.pattern in LATTICES:
         for row in range(*_range(low[1], high[1], pitch * math.sqrt(3) / 2)):
             shift = lug / 2 + (pitch / 2 if row % 2 else 0.0)
             for column in range(*_range(low[0] - shift, high[0] - shift, pitch)):
@@ -102,8 +110,29 @@ def _round_lug(tread: Tread, along: float) -> float:
     return float(graded_diameter(np.array(along), *ends))
 
 
+def _letters(letters: Lettering, low: Array, high: Array) -> Iterator[tuple[Outline, float]]:
+    """Yield the outer walls of all letters between two corners, their inner walls as holes."""
+    for shell in map(np.array, letters.shells):
+        first, last = shell.min(axis=0), shell.max(axis=0)
+        inner = [np.array(hole) for hole in letters.holes]
+        inner = [hole for hole in inner if (first < hole[0]).all() and (hole[0] < last).all()]
+        for i in range(*_range(low[0] - first[0], high[0] - first[0], letters.pitch[0])):
+            for j in range(*_range(low[1] - first[1], high[1] - first[1], letters.pitch[1])):
+                shift = letters.pitch * (i, j)
+                holes = tuple(_anticlockwise(hole + shift) for hole in inner)
+                size = float(np.hypot(*(last - first)))
+                yield Outline(_anticlockwise(shell + shift), holes=holes), size
+
+
+def _anticlockwise(ring: Array) -> Array:
+    x, y = ring.T
+    return ring if np.dot(x, np.roll(y, -1)) > np.dot(y, np.roll(x, -1)) else ring[::-1]
+
+
 def hollow_outlines(lugs: list[Outline], tread: Tread) -> list[Outline]:
-    """Return the outlines of what is hollow within the lugs: of rings, else nothing."""
+    """Return the outlines of what is hollow within the lugs: of rings and letters, else nothing."""
+    if tread.letters is not None:
+        return [Outline(hole) for lug in lugs for hole in lug.holes]
     if tread.ring_width is None:
         return []
     return [Outline(lug.points, lug.radius - tread.ring_width) for lug in lugs]

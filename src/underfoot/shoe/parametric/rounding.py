@@ -1,6 +1,6 @@
 """Fillets in a process of their own: where the kernel fails it may end the volume program.
 
-Run as ``python -m underfoot.shoe.parametric.rounding IN OUT RADIUS_MM EDGE ...`` with BREP
+Run as ``python -m underfoot.shoe.parametric.rounding IN OUT fillet|chamfer MM EDGE ...`` with BREP
 files and the indices of edges in the order of the shape.
 """
 
@@ -17,15 +17,18 @@ LONGEST = 120.0
 """s, after which the attempt is given up."""
 
 
-def rounded(body: Any, edges: Sequence[int], radius: float) -> Any | None:
+def rounded(body: Any, edges: Sequence[int], radius: float, *, chamfer: bool = False) -> Any | None:
     """Return the body with fillets of ``radius`` (m) on the edges of these indices.
+
+    ``chamfer``: flat at 45 degrees instead, of that width.
 
     None where the kernel cannot make them: they don't fit, or it does not end.
     """
     with tempfile.TemporaryDirectory() as folder:
         before, after = Path(folder) / "before.brep", Path(folder) / "after.brep"
         body.WriteBrep(str(before), withTriangles=False, withNormals=False)
-        command = [sys.executable, "-m", __name__, str(before), str(after), repr(radius * MM)]
+        kind = "chamfer" if chamfer else "fillet"
+        command = [sys.executable, "-m", __name__, str(before), str(after), kind, repr(radius * MM)]
         try:
             subprocess.run(
                 [*command, *(str(index) for index in edges)],
@@ -42,10 +45,11 @@ def rounded(body: Any, edges: Sequence[int], radius: float) -> Any | None:
 
 def main(arguments: Sequence[str]) -> None:
     """Read, round, write."""
-    before, after, radius, *indices = arguments
+    before, after, kind, radius, *indices = arguments
     body = kernel().OCCGeometry(before).shape
     edges = list(body.edges)
-    rounded_body = body.MakeFillet([edges[int(index)] for index in indices], float(radius))
+    make = body.MakeChamfer if kind == "chamfer" else body.MakeFillet
+    rounded_body = make([edges[int(index)] for index in indices], float(radius))
     rounded_body.WriteBrep(after, withTriangles=False, withNormals=False)
 
 

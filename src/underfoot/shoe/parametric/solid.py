@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from underfoot.core import InputError, UnderfootError
 from underfoot.core.optional import optional_module
@@ -73,12 +74,14 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
         hollows = hollow_outlines(lugs, tread)
         if hollows:
             body = body - _prisms(hollows) * _layer(lower, tread.depth)
-        if tread.edge_radius > 0:
+        edge = tread.edge_radius or tread.edge_chamfer
+        if edge > 0:
             edges = [(i, edge) for i, edge in enumerate(body.edges) if _on_lug(edge, shape)]
             whole = _free_lugs(lugs, shape)
             free = [i for i, edge in edges if _belongs(edge, whole)]
             if free:
-                body = _rounded(body, free, tread.edge_radius, "the lugs' edges", remarks)
+                flat = tread.edge_chamfer > 0
+                body = _rounded(body, free, edge, "the lugs' edges", remarks, chamfer=flat)
             if len(free) < len(edges):
                 remarks.append(
                     f"{len(edges) - len(free)} of {len(edges)} edges of lugs stay sharp: "
@@ -157,11 +160,19 @@ def _half_ring(channel: ArcChannel) -> Any:
     return raised(closed(outer), 0.3) - raised(closed(inner), 0.3)
 
 
-def _rounded(body: Any, edges: list[int], radius: float, name: str, remarks: list[str]) -> Any:
+def _rounded(
+    body: Any,
+    edges: list[int],
+    radius: float,
+    name: str,
+    remarks: list[str],
+    *,
+    chamfer: bool = False,
+) -> Any:
     """Return the body with fillets; where the kernel cannot make them the edges stay sharp."""
     from .rounding import rounded  # also run as a program of its own
 
-    filleted = rounded(body, edges, radius)
+    filleted = rounded(body, edges, radius, chamfer=chamfer)
     if filleted is None:
         remarks.append(f"left sharp: {name}, {radius * 1e3:g} mm cannot be rolled along all of it")
         return body
@@ -204,7 +215,7 @@ def _free_lugs(lugs: Sequence[Outline], shape: SoleShape) -> list[Outline]:
     The kernel cannot roll a fillet over those.
     """
     assert shape.tread is not None
-    clear = shape.edge_radius + 2 * shape.tread.edge_radius
+    clear = shape.edge_radius + 2 * (shape.tread.edge_radius or shape.tread.edge_chamfer)
     kinks = np.array(break_points(shape)[1:-1])
     fitting = []
     for lug in lugs:
@@ -271,13 +282,27 @@ def write_sole(shape: SoleShape, path: Path | str, *, solid: SoleSolid | None = 
             allowed=", ".join(KINDS),
         )
     made = solid or sole_solid(shape)
-    if kind in (".step", ".stp"):
-        made.body.WriteStep(str(path))
-        volume, triangles, tolerance = float(kernel().OCCGeometry(str(path)).shape.mass), 0, 1e-6
+    draft = path.with_name(f"{path.stem}.draft{kind}")
+    try:
+        volume, triangles = _written(made, draft, path)
+        draft.replace(path)
+    finally:
+        draft.unlink(missing_ok=True)
+    return SoleFile(path, made.volume, volume, triangles, made.lugs, made.remarks)
+
+
+def _written(made: SoleSolid, draft: Path, path: Path) -> tuple[float, int]:
+    """Write ``draft`` and return the volume (m^3) and triangles read back from it.
+
+    Raises:
+        UnderfootError: What was read back is not the solid, which ``path`` then never holds.
+    """
+    if draft.suffix in (".step", ".stp"):
+        made.body.WriteStep(str(draft))
+        volume, triangles, tolerance = float(kernel().OCCGeometry(str(draft)).shape.mass), 0, 1e-6
     else:
-        surface = sole_mesh(made)
-        surface.export(str(path))
-        back = _read(path)
+        sole_mesh(made).export(str(draft))
+        back = _read(draft)
         if not back.is_watertight:
             raise UnderfootError(
                 "the mesh of the sole is not watertight",
@@ -291,7 +316,7 @@ def write_sole(shape: SoleShape, path: Path | str, *, solid: SoleSolid | None = 
             f"the file holds {volume * 1e6:.3f} cm3, the solid {made.volume * 1e6:.3f} cm3",
             where=str(path),
         )
-    return SoleFile(path, made.volume, volume, triangles, made.lugs, made.remarks)
+    return volume, triangles
 
 
 def sole_mesh(made: SoleSolid) -> Any:
@@ -307,10 +332,19 @@ def sole_mesh(made: SoleSolid) -> Any:
         joined, index = np.unique(np.round(corners, decimals), axis=0, return_inverse=True)
         faces = np.asarray(index).reshape(-1, 3)
         proper = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
-        candidate = trimesh.Trimesh(joined, faces[proper], process=False)
-        if candidate.is_watertight:
+        candidate = trimesh.Trimesh(joined, _without_pairs(faces[proper]), process=False)
+        # of a sliver between two walls the kernel may draw nothing
+        if candidate.is_watertight or trimesh.repair.fill_holes(candidate, use_fan=True):
             return candidate
     return _meshed(made)
+
+
+def _without_pairs(faces: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Return triangles (n, 3) without those that lie back to back: they enclose nothing."""
+    _, index, count = np.unique(
+        np.sort(faces, axis=1), axis=0, return_inverse=True, return_counts=True
+    )
+    return faces[count[index.ravel()] == 1]
 
 
 def _meshed(made: SoleSolid) -> Any:

@@ -111,7 +111,7 @@ def _run(jobs: list[tuple[Any, ...]], processes: int, progress: Progress) -> lis
     count = processes if len(jobs) >= 4 else 1  # a process takes longer to start than a file
     stage = "analysing files"
     answers = in_processes(_job, jobs, count, progress=progress, stage=stage, died=_died)
-    return [results for _, results in answers]
+    return [results for _, results in sorted(answers, key=lambda answer: answer[0])]
 
 
 def _died(job: tuple[Any, ...]) -> list[FileResult]:

@@ -1,0 +1,137 @@
+"""How far and how long a person walks until a sole has lost a volume."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from underfoot.core import InputError, to_si
+
+LANDING_LOAD = 180.0
+"""N on a shoe that slides at heel contact (Iraqi et al. 2018, doi 10.1016/j.jbiomech.2018.04.018,
+39 slips at their start: 179 N)."""
+SLIDING = (2.2e-3, 12.6e-3)
+"""m a heel slides forward at contact: means of two groups of 494 walks over dry and contaminated
+floors (McGorry et al. 2008, Appl. Ergon. 39:678, abstract)."""
+STEP = (0.5, 0.75)
+"""m: 0.30 to 0.43 of body height (samples in table 2 of PMC2943048) at 1.7 m, rounded."""
+STEPS_A_DAY = (4000.0, 18000.0)
+"""Of healthy adults, both feet (Tudor-Locke et al. 2011, doi 10.1186/1479-5868-8-79)."""
+DAYS_A_MONTH = 365.25 / 12
+SOURCES = (
+    "walked: V / (k F s) landings of one shoe, k the wear rate of the case, F 180 N (Iraqi et al. "
+    "2018), s 2 to 13 mm (McGorry et al. 2008), steps of 0.5 to 0.75 m (30 to 43 % of 1.7 m), "
+    "4,000 to 18,000 steps a day, every day in these shoes (Tudor-Locke et al. 2011)"
+)
+_PAIR = re.compile(r"\s*(?P<lost>\S+\s*\S*m)\s+(?:after|in)\s+(?P<walked>\S+\s*km)\s*")
+
+
+@dataclass(frozen=True, slots=True)
+class WornPair:
+    """A pair of the same make that was measured: thickness lost and distance walked, m."""
+
+    lost: float
+    walked: float
+
+
+@dataclass(frozen=True, slots=True)
+class Walked:
+    """Distance (m) and time (months) until a volume is lost, least and most."""
+
+    distance: tuple[float, float]
+    months: tuple[float, float]
+
+    def __str__(self) -> str:
+        low, high = self.distance
+        return f"{_range((low / 1e3, high / 1e3))} km, {_range(self.months)} months"
+
+
+@dataclass(frozen=True, slots=True)
+class Walker:
+    """What turns a volume lost into a distance.
+
+    Parameters:
+        wear_rate: k, m^2/N; on the sheet of an abrasion test it is larger than on floors.
+        pair: A measured pair; it replaces the wear rate, load and sliding.
+    """
+
+    wear_rate: float
+    pair: WornPair | None = None
+
+    def walked(self, volume: float, volumes: Sequence[float], lost: Sequence[float]) -> Walked:
+        """Return the walk until ``volume`` (m^3) is lost.
+
+        Without a pair L = 2 l V / (k F s), two steps l to each landing of one shoe. With one,
+        L = V L_pair / V_pair, its volume read from the series at its thickness lost.
+
+        Args:
+            volume: Lost, m^3.
+            volumes, lost: Of all states of the series, m^3 and m.
+
+        Raises:
+            InputError: The pair has lost more than the last state.
+        """
+        if self.pair is not None:
+            own = _volume_at(self.pair.lost, volumes, lost)
+            length = volume / own * self.pair.walked
+            distance = (length, length)
+            steps = [length / step for step in reversed(STEP)]
+        else:
+            landings = [volume / (self.wear_rate * LANDING_LOAD * s) for s in reversed(SLIDING)]
+            steps = [2 * each for each in landings]
+            distance = (steps[0] * STEP[0], steps[1] * STEP[1])
+        low, high = (n / a / DAYS_A_MONTH for n, a in zip(steps, STEPS_A_DAY[::-1], strict=True))
+        return Walked(distance, (low, high))
+
+    @property
+    def caution(self) -> str:
+        """What the distance is worth."""
+        if self.pair is not None:
+            return "distance walked: from the measured pair, for its wearer and floors"
+        return (
+            "distance walked: a lower bound, k is that of an abrasive sheet and floors are "
+            "far gentler by a factor that no source here gives; --worn-pair calibrates it"
+        )
+
+
+def worn_pair(text: str | None) -> WornPair | None:
+    """Return a measured pair from text, as "1.2 mm after 300 km"."""
+    if text is None:
+        return None
+    words = _PAIR.fullmatch(text)
+    if words is None:
+        raise InputError(
+            f'"{text}"', where="--worn-pair", allowed='loss and distance: "1.2 mm after 300 km"'
+        )
+    lost, walked = (to_si(words[name], "m", where="--worn-pair") for name in ("lost", "walked"))
+    if not (lost > 0 and walked > 0):
+        raise InputError(f'"{text}"', where="--worn-pair", allowed="both above 0")
+    return WornPair(lost, walked)
+
+
+def _volume_at(depth: float, volumes: Sequence[float], lost: Sequence[float]) -> float:
+    """Return the volume (m^3) at a thickness lost, linear between the states."""
+    for (d0, v0), (d1, v1) in pairwise(zip(lost, volumes, strict=True)):
+        if d0 < depth <= d1 * (1 + 1e-9):
+            return v0 + (v1 - v0) * (depth - d0) / (d1 - d0)
+    raise InputError(
+        f"the pair has lost {depth * 1e3:g} mm, the series does not pass that",
+        where="--worn-pair",
+        allowed=f"at most {max(lost) * 1e3:.3g} mm (--to)",
+    )
+
+
+def _range(ends: tuple[float, float]) -> str:
+    """Return a range with one figure at each end, once where both are the same."""
+    low, high = (_one_figure(end) for end in ends)
+    return low if low == high else f"{low} to {high}"
+
+
+def _one_figure(value: float) -> str:
+    if value <= 0:
+        return "0"
+    digits = -math.floor(math.log10(value))
+    return f"{round(value, digits):.{max(digits, 0)}f}"

@@ -1,0 +1,76 @@
+"""Letters as lugs: closed outlines that repeat along and across the shoe."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from underfoot.core.arrays import Array
+
+from ._kernels.tread_pattern import outline_distance
+
+Ring = tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
+class Lettering:
+    """Outlines of one line of text in the frame of the pattern, m.
+
+    Parameters:
+        shells, holes: Corners of the letters' outer and inner walls; no ring closes on itself.
+        gap: Between the lines, and between the end of the text and its next beginning, m.
+    """
+
+    shells: tuple[Ring, ...]
+    holes: tuple[Ring, ...]
+    gap: float
+
+    @cached_property
+    def corner(self) -> Array:
+        """Lowest (x, y) of the text, m."""
+        return np.concatenate([np.array(ring) for ring in self.shells]).min(axis=0)
+
+    @cached_property
+    def pitch(self) -> Array:
+        """Period along and across, m: the text's extent and the gap."""
+        points = np.concatenate([np.array(ring) for ring in self.shells])
+        return np.ptp(points, axis=0) + self.gap
+
+    @property
+    def area(self) -> float:
+        """Area of the letters, m^2: shells without their holes (shoelace formula)."""
+        return sum(map(_area, self.shells)) - sum(map(_area, self.holes))
+
+    @property
+    def stroke(self) -> float:
+        """Mean width of the thinnest letter's stroke, m: 2 area / perimeter of all its walls."""
+        widths = []
+        for shell in self.shells:
+            low, high = np.min(shell, axis=0), np.max(shell, axis=0)
+            inner = [h for h in self.holes if (low < h[0]).all() and (h[0] < high).all()]
+            area = _area(shell) - sum(map(_area, inner))
+            widths.append(2 * area / sum(map(_perimeter, (shell, *inner))))
+        return min(widths)
+
+    @cached_property
+    def segments(self) -> Array:
+        """Walls of one period, (n, 4) as x0, y0, x1, y1, m."""
+        rows = []
+        for ring in (*self.shells, *self.holes):
+            points = np.array(ring)
+            rows.append(np.hstack([points, np.roll(points, -1, axis=0)]))
+        return np.concatenate(rows)
+
+    def channel_distance(self, x: Array, y: Array) -> Array:
+        """Return the distance (m) into the channels: positive there, negative on a letter."""
+        return outline_distance(x, y, self.segments, self.corner - self.gap / 2, self.pitch)
+
+
+def _area(ring: Ring) -> float:
+    x, y = np.array(ring).T
+    return float(abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2)
+
+
+def _perimeter(ring: Ring) -> float:
+    return sum(math.dist(a, b) for a, b in zip(ring, (*ring[1:], ring[0]), strict=True))

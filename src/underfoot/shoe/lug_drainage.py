@@ -1,0 +1,242 @@
+"""How the fluid gets out from under each lug, and to which side a groove in it helps most.
+
+A groove changes the fluid pressure by d, at the gap h as solved:
+
+    div(h^3 grad d) = 0,  d = -p in the groove,  d = 0 in channels
+
+and relieves the lug by -sum(d) of its film, d no lower than -p. Of straight grooves from the peak
+of the pressure to the four sides the one counts that relieves most, or the shortest of those that
+relieve nearly as much. Load and approach are left as they are.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core.arrays import Array, Mask
+from underfoot.core.presentation import percent, quantity_text
+from underfoot.core.sparse import factorization
+
+from ._kernels.regions import pieces
+from .geometry import SoleMap
+from .tread_measures import draining
+
+OPEN = 0.1
+"""Of the highest fluid pressure: a channel under more is backed up and lets nothing out."""
+MATTERS = 0.05
+"""Share of the load on the film from which a lug is named."""
+GROOVE, NEARLY = 2e-3, 0.9
+"""Width of the grooves compared (m; an odd number of cells, no wider), and the share of the largest
+relief from which the shorter groove is taken."""
+MIDDLE = 1e-3
+"""m: a place nearer to the middle line is said to lie on it."""
+TOP = 0.99
+"""Of a lug's highest fluid pressure: it peaks in the middle of what bears more."""
+SIDES = ("front", "rear", "left", "right")
+"""Left and right as seen from above, looking forward."""
+
+
+@dataclass(frozen=True, slots=True)
+class LugDrainage:
+    """Film on the lugs of a sole, the most loaded first; arrays (lugs,), m and N.
+
+    Attributes:
+        load, share: On the film under the lug, and of that under the whole sole.
+        x, y: Where the fluid pressure under it peaks: from the rear end, and to the left.
+        way: From there straight to the nearest open place: a channel that channels join to the rim
+            and whose own fluid pressure is below a tenth of the highest, or the rim itself.
+        side: Number in ``SIDES`` of the side that this way mostly leads to.
+        height: Of the lug, 0 where untreaded.
+        groove, groove_side, relief: Length and side of the groove that relieves most, and the share
+            of the lug's film that it relieves; nan and -1 where the lug bears less than 5 % of all.
+    """
+
+    load: Array
+    share: Array
+    x: Array
+    y: Array
+    way: Array
+    side: NDArray[np.intp]
+    height: Array
+    groove: Array
+    groove_side: NDArray[np.intp]
+    relief: Array
+
+    def words(self) -> str:
+        """Return which lug drains worst and to which side to open it; empty where all bear little.
+
+        Parts more slender than high bend over: where the way is no longer than the lug is high, no
+        cut is advised.
+        """
+        if self.share[0] < MATTERS:
+            return ""
+        way = self.way[0]
+        advice = "no longer than the lug is high, leave it"
+        if way > self.height[0]:
+            advice = (
+                f"open it to the {SIDES[self.groove_side[0]]}, a groove of "
+                f"{quantity_text(self.groove[0], 'm')} relieves most"
+            )
+        place = f"{quantity_text(self.x[0], 'm')} from the rear, {across_text(self.y[0])}"
+        load = f"{quantity_text(self.load[0], 'N')} of film, {percent(self.share[0])} of all"
+        way_out = f"{quantity_text(way, 'm')} to go to the {SIDES[self.side[0]]}"
+        return f"the lug {place}, carries {load}; its fluid has {way_out}: {advice}"
+
+    def fields(self) -> dict[str, tuple[str, Any, dict[str, str]]]:
+        """Return the variables of a data set."""
+        words = {
+            "load": ("N", "load on the film under the lug"),
+            "share": ("1", "share of the load on the film"),
+            "x": ("m", "peak of the fluid pressure under the lug, from the rear end"),
+            "y": ("m", "peak of the fluid pressure under the lug, to the left"),
+            "way": ("m", "from there to the nearest open channel or rim"),
+            "side": ("1", "side of that way: front 0, rear 1, left 2, right 3"),
+            "height": ("m", "height of the lug"),
+            "groove": ("m", "length of the groove from the peak that relieves most"),
+            "groove_side": ("1", "side of that groove, as in lug_side; -1 not sought"),
+            "relief": ("1", "share of the lug's film that it relieves at the gap as solved"),
+        }
+        return {
+            f"lug_{name}": ("lug", getattr(self, name), {"units": unit, "long_name": text})
+            for name, (unit, text) in words.items()
+        }
+
+
+def across_text(y: float) -> str:
+    """Return how far to the left (y, m) a place lies."""
+    if abs(y) < MIDDLE:
+        return "in the middle"
+    return f"{quantity_text(abs(y), 'm')} to the {'left' if y >= 0 else 'right'}"
+
+
+def lug_drainage(sole: SoleMap, fluid_pressure: Array, film_thickness: Array) -> LugDrainage | None:
+    """Return how the lugs of a sole drain; None without channels or without a film on land.
+
+    A lug is a connected piece of land; untreaded land counts as one where the sole has channels.
+
+    Args:
+        sole: Map; its rim is open.
+        fluid_pressure: (nx, ny) as solved, Pa, 0 or more.
+        film_thickness: (nx, ny) as solved, m.
+    """
+    from scipy.ndimage import maximum
+
+    pressure = np.where(sole.land, fluid_pressure, 0.0)
+    if sole.land.sum() == sole.inside.sum() or not pressure.any():
+        return None
+    numbers, count = pieces(sole.land)
+    area = np.ones(pressure.shape) if sole.cut is None else sole.cut.film_area
+    sums = np.bincount(numbers.ravel(), (pressure * area).ravel(), count + 1).astype(np.float64)
+    order = np.argsort(-sums, kind="stable")
+    order = order[sums[order] > 0]
+    highest = np.zeros(count + 1)
+    highest[order] = maximum(pressure, numbers, order)
+    top = (pressure > 0) & (pressure >= TOP * highest[numbers])
+    peaks = np.array([_middle(np.argwhere(top & (numbers == number))) for number in order])
+    clear = draining(sole) & (fluid_pressure < OPEN * pressure.max())
+    wide = max(GROOVE / sole.spacing, 1.0)
+    # beyond the array lies the rim, too
+    goals = np.argwhere(np.pad(~sole.inside | clear, 1, constant_values=True)) - 1
+    ways = [_way_out(goals - peak, float(sole.y[peak[1]])) for peak in peaks]
+    i, j = peaks.T
+    share = sums[order] / float((fluid_pressure * area).sum())
+    film = pressure, film_thickness, area
+    grooves = [
+        _best_groove(numbers == number, peak, ~sole.inside | clear, film, wide)
+        for number, peak in zip(order[share >= MATTERS], peaks, strict=False)
+    ]
+    grooves += [(np.nan, -1, np.nan)] * (len(order) - len(grooves))
+    return LugDrainage(
+        load=sums[order] * sole.spacing**2,
+        share=share,
+        x=sole.x[i],
+        y=sole.y[j],
+        # to the edge between the last closed centre and the first open one
+        way=np.array([(cells - 0.5) * sole.spacing for cells, _ in ways]),
+        side=np.array([side for _, side in ways]),
+        height=np.asarray(maximum(sole.tread_depth, numbers, order)),
+        groove=np.array([(cells - 0.5) * sole.spacing for cells, _, _ in grooves]),
+        groove_side=np.array([side for _, side, _ in grooves]),
+        relief=np.array([relief for _, _, relief in grooves]),
+    )
+
+
+def _middle(cells: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Return that of the cells (n, 2) which is next to the centre of all."""
+    return cells[np.argmin(np.hypot(*(cells - cells.mean(axis=0)).T))]
+
+
+def _way_out(offsets: NDArray[np.intp], y: float) -> tuple[float, int]:
+    """Return length (cells) and side of the shortest of the ways to ``offsets`` (n, 2), cells.
+
+    Of ways equal within half a cell: one along the shoe, to the front, away from the middle line.
+    """
+    length = np.hypot(*offsets.T)
+    shortest = float(length.min())
+    along, across = offsets[length <= shortest + 0.5].T
+    lengthwise = np.abs(along) >= np.abs(across)
+    if lengthwise.any():
+        return shortest, 0 if (along[lengthwise] > 0).any() else 1
+    to_left = across > 0
+    return shortest, 2 if to_left.all() or (to_left.any() and y >= 0) else 3
+
+
+def _best_groove(
+    lug: Mask,
+    peak: NDArray[np.intp],
+    open_: Mask,
+    film: tuple[Array, Array, Array],
+    wide: float,
+) -> tuple[float, int, float]:
+    """Return length (cells), side and relief of the groove that a lug should have."""
+    pressure, gap, area = film
+    full = lug & (pressure > 0)
+    load = float((pressure * area)[full].sum())
+    along, across = np.indices(lug.shape) - peak[:, None, None]
+    ahead = ((along, across), (-along, across), (across, along), (-across, along))
+    found = []
+    for side, (forward, aside) in enumerate(ahead):
+        goals = forward[open_ & (aside == 0) & (forward > 0)]
+        length = int(goals.min()) if goals.size else int(forward.max()) + 1
+        groove = lug & (np.abs(aside) < wide / 2) & (forward > -wide / 2) & (forward < length)
+        fallen = _fallen(full & ~groove, groove, pressure, gap**3)
+        relief = float((fallen * area).sum()) / load
+        found.append((float(length), side, relief))
+    most = max(relief for *_, relief in found)
+    return min(each for each in found if each[2] >= NEARLY * most)
+
+
+def _fallen(free: Mask, groove: Mask, pressure: Array, conductance: Array) -> Array:
+    """Return -d (nx, ny), 0 beyond the free cells and the groove."""
+    from scipy.sparse import csr_matrix
+
+    drops = np.where(groove, pressure, 0.0)
+    if not free.any():
+        return drops
+    cells = np.argwhere(free)
+    number = np.full(np.array(free.shape) + 2, -1)
+    number[1:-1, 1:-1][free] = np.arange(len(cells))
+    flows, drop = np.pad(conductance, 1, mode="edge"), np.pad(drops, 1)
+    scale = float(conductance[free].mean())
+    diagonal, right = np.zeros(len(cells)), np.zeros(len(cells))
+    rows, columns, values = [], [], []
+    for step in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+        here, there = tuple((cells + 1).T), tuple((cells + 1 + step).T)
+        flow = 0.5 * (flows[here] + flows[there]) / scale
+        beside = number[there] >= 0
+        diagonal += flow
+        right += flow * drop[there]
+        rows.append(np.flatnonzero(beside))
+        columns.append(number[there][beside])
+        values.append(-flow[beside])
+    rows.append(np.arange(len(cells)))
+    columns.append(np.arange(len(cells)))
+    values.append(diagonal)
+    entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
+    matrix = csr_matrix(entries, shape=(len(cells), len(cells)))
+    matrix.sort_indices()
+    fallen = factorization(matrix, kind="positive definite", where="grooves").solve(right)
+    drops[free] = np.minimum(fallen, pressure[free])
+    return drops
