@@ -58,6 +58,11 @@ class Motion(Option):
         return False
 
     @property
+    def forward(self) -> bool:
+        """Whether the shoe slides towards its toe when the result is taken."""
+        return True
+
+    @property
     def end_time(self) -> float:
         """When the result is taken, s."""
         return max(self.duration, self.force_rise_time)
@@ -72,10 +77,30 @@ class HeldMotion(Motion):
     name: ClassVar[str] = "held"
 
     steady: Flag = default(False, False, "the result is taken at the end of the duration")
+    backward: Flag = default(False, False, "the shoe slides heel first, as in push-off")
 
     @property
     def to_steady_state(self) -> bool:
         return self.steady
+
+    @property
+    def forward(self) -> bool:
+        return not self.backward
+
+    def build(self) -> MotionHistory | None:
+        if not self.backward:
+            return None
+        from underfoot.sole_contact.motion_history import MotionHistory
+
+        times = sorted({0.0, self.force_rise_time, self.end_time})
+        risen = [min(time / self.force_rise_time, 1.0) for time in times]
+        same = np.ones(len(times))
+        return MotionHistory(
+            np.array(times),
+            self.normal_force * np.array(risen),
+            -self.speed * same,
+            self.shoe_angle * same,
+        )
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         if self.duration < self.force_rise_time:
@@ -84,6 +109,12 @@ class HeldMotion(Motion):
                 where=f"{where}.duration",
                 allowed=f"at least {display(self.force_rise_time, 's')} (motion.force_rise_time)",
                 remedy=f'Write motion.duration = "{self.force_rise_time * 1e3 + 90:.0f} ms"',
+            )
+        if self.steady and self.backward:
+            yield InputError(
+                "no steady state is computed of a shoe that slides backward",
+                where=f"{where}.steady",
+                allowed="false with motion.backward = true",
             )
 
 
@@ -110,6 +141,10 @@ class MotionFromHistory(Motion):
     history_points: tuple[MotionPoint, ...] = Field(
         description="the same points written in the case"
     )
+
+    @property
+    def forward(self) -> bool:
+        return self.history_points[-1].speed >= 0
 
     @classmethod
     def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:

@@ -245,7 +245,8 @@ def by_method(
         str,
         typer.Option(
             "--method",
-            help="iso13287, astmf2913, report-slip-tester, report-whole-shoe or a set-up of the "
+            help="iso13287 or astmf2913 (heel; iso13287-forepart, iso13287-flat: whole soles), "
+            "slip-prediction-13-deg, report-slip-tester, report-whole-shoe or a set-up of the "
             "catalogue.",
         ),
     ] = "iso13287",

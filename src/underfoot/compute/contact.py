@@ -24,6 +24,7 @@ from underfoot.sole_contact.sensor_array import ArrayReading, SensorArray, array
 from underfoot.sole_contact.sole_state import SoleState, SolverSettings
 from underfoot.sole_contact.solver import SoleContact, solve_sliding
 
+from .numbers import contact_area
 from .sole import file_sole_map
 
 READ_STEPS = 24
@@ -100,7 +101,7 @@ def edged_law(
     if viscosity is None or not getattr(film, "lug_edges", False):
         return None
     moulded, worn = getattr(case.shoe.tread, "edge_radius", 0.0), case.shoe.wear.edge_radius
-    edges = lug_edges(sole, moulded, worn_edge_radius=worn)
+    edges = lug_edges(sole, moulded, worn_edge_radius=worn, forward=case.motion.forward)
     if edges is None:
         return None
     suction = case.value("film.suction")
@@ -127,6 +128,8 @@ class Recorder:
     sensor_peak: list[float] = field(default_factory=list)
     times: list[float] = field(default_factory=list)
     places: list[float] = field(default_factory=list)
+    contact_area: list[float] = field(default_factory=list)
+    centre_of_pressure: list[float] = field(default_factory=list)
     array_frames: list[tuple[np.ndarray, ...]] = field(default_factory=list)
     pictures: list[tuple[float, dict[str, np.ndarray]]] = field(default_factory=list)
     _last_read: float = -math.inf
@@ -145,6 +148,9 @@ class Recorder:
         place = self.places[-1] if self.places else 0.0
         self.times.append(state.time)
         self.places.append(place + (state.time - before) * state.speed)
+        self.contact_area.append(contact_area(state))
+        along = state.cell_load.sum(axis=1)
+        self.centre_of_pressure.append(float(along @ state.x / along.sum()))
         self._read(state)
         self._picture(state)
 
@@ -251,6 +257,12 @@ def history_fields(
         "approach_history": in_time(history.approach, "m", "approach of the foot"),
         "speed_history": in_time(history.speed, "m/s", "sliding speed of the shoe"),
         "shoe_angle_history": in_time(history.shoe_angle, "rad", "shoe angle, toe up positive"),
+        "contact_area_history": in_time(
+            recorder.contact_area, "m^2", "contact area, apparent, on the grid"
+        ),
+        "centre_of_pressure_history": in_time(
+            recorder.centre_of_pressure, "m", "centre of pressure ahead of the rear end of the sole"
+        ),
         "sensor_load_history": in_time(
             recorder.sensor_load, "N", "fluid load as the scans read it, nan where not read"
         ),

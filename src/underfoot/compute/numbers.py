@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from underfoot.case import Case
 from underfoot.core import Breach, SourcedValue, Status, content_hash, display
@@ -13,6 +14,7 @@ from underfoot.film import SHARE_LIMITS, lubrication_by_load_share
 from underfoot.friction import FrictionCoefficients, SampledCof
 from underfoot.slip import RcofPopulation, SlipModel, SlipRisk, slip_risk
 from underfoot.sole_contact import SensorReading
+from underfoot.sole_contact.sole_state import SoleState
 from underfoot.sole_contact.solver import SoleContact
 
 _NOT_ESTIMATED = "heel shape and interface roughness dominate; their spread is not propagated yet"
@@ -73,8 +75,7 @@ def scalars(
             value, unit, source="coupled contact and film", reason=_NOT_ESTIMATED, note=note
         )
 
-    touching = contact.contact_pressure > CONTACT_SHARE * _mean_pressure(contact)
-    under_load = touching | (contact.fluid_pressure > 0)
+    under_load = touching_cells(contact) | (contact.fluid_pressure > 0)
     thinnest = None
     if under_load.any() and case.contaminant is not None:
         thinnest = float(contact.film_thickness[under_load].min())
@@ -88,11 +89,7 @@ def scalars(
         "fluid_load_sensor": sensor.load,
         "peak_fluid_pressure": computed(float(contact.fluid_pressure.max()), "Pa"),
         "peak_fluid_pressure_sensor": sensor.peak_pressure,
-        "contact_area": computed(
-            float(contact.cut.area[touching].sum()) * contact.spacing**2,
-            "m^2",
-            "apparent, on the grid",
-        ),
+        "contact_area": computed(contact_area(contact), "m^2", "apparent, on the grid"),
         "minimum_film_thickness": computed(thinnest, "m")
         if thinnest is not None
         else SourcedValue(None, "m", reason="dry floor: no film"),
@@ -160,9 +157,16 @@ def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
     return {"cof_spread_from": ", ".join(parts), "cof_spread_how": drawn}
 
 
-def _mean_pressure(contact: SoleContact) -> float:
-    loaded = float(contact.cut.area[contact.total_pressure > 0].sum())
-    return contact.normal_force / max(loaded * contact.spacing**2, contact.spacing**2)
+def touching_cells(state: SoleState) -> NDArray[np.bool_]:
+    """Return where the rough surfaces touch: contact pressure above 1e-3 of the mean pressure."""
+    loaded = float(state.cut.area[state.total_pressure > 0].sum())
+    mean = state.normal_force / max(loaded * state.spacing**2, state.spacing**2)
+    return state.contact_pressure > CONTACT_SHARE * mean
+
+
+def contact_area(state: SoleState) -> float:
+    """Return the apparent area on which the rough surfaces touch, m^2."""
+    return float(state.cut.area[touching_cells(state)].sum()) * state.spacing**2
 
 
 def sole_name(case: Case) -> str:

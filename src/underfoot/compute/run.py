@@ -16,6 +16,7 @@ from underfoot.core import (
     Provenance,
     Status,
     content_hash,
+    display,
     silent,
     unknown_name,
 )
@@ -45,7 +46,13 @@ from .pictured import pictured_fields
 from .positions import Place, tread_positions
 from .resolve import resolved, turned
 from .result import Result
-from .sole import compression_breaches, outsole_notes, overload_breaches, sole_map
+from .sole import (
+    compression_breaches,
+    forefoot_breaches,
+    outsole_notes,
+    overload_breaches,
+    sole_map,
+)
 from .summary import FILM_MATTERS
 
 CELL_AREAS = (
@@ -168,6 +175,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             "cof_spread_basis": getattr(law, "spread_basis", ""),
             **(positions.labels() if positions else {}),
             "overload": numbers.overload_words(overload),
+            "instant": _last_instant(case),
             "edge_peak": peak_pressure(
                 sole, contact.total_pressure, cell_load=contact.cell_load
             ).remark,
@@ -200,6 +208,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         *overload,
         *sole.breaches,
         *compression_breaches(case, contact.approach),
+        *forefoot_breaches(case),
         *asperities.breaches(pressure=contact.contact_pressure.max(), speed=speed),
         *law.breaches(**local),
         *(risk.breaches if risk else ()),
@@ -296,6 +305,15 @@ def _with_objects(case: Case, objects: Mapping[str, Any]) -> tuple[Case, dict[st
 def _map_angle(case: Case) -> float:
     """Return the angle from which the sole rolls: a steady motion is solved on the map as it is."""
     return 0.0 if case.motion.build() is None else case.motion.shoe_angle
+
+
+def _last_instant(case: Case) -> str:
+    """Return when and at which angle a motion that turns ends; empty where the angle is held."""
+    history = case.motion.build()
+    if history is None or not np.ptp(history.shoe_angle):
+        return ""
+    time, angle = display(history.time[-1], "s"), display(history.shoe_angle[-1], "rad")
+    return f"at the end of the motion ({time}, shoe angle {angle})"
 
 
 def _identity(item: Any) -> str:

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, ValidationError
 
 from underfoot import shoe
@@ -41,6 +41,7 @@ from underfoot.shoe.worn import ArchardStep, WornMap, archard_wear, worn_surface
 from underfoot.sole_contact.edge_peak import MOST_OVERLOADED, overloaded_share
 from underfoot.sole_contact.sole_state import SoleState
 from underfoot.sole_contact.solver import SolverSettings, solve_sliding
+from underfoot.sole_contact.stepping import rolled_clearance
 
 from .resolve import resolved, youngs_modulus
 
@@ -50,6 +51,15 @@ if TYPE_CHECKING:
 BOTTOMED = 0.5
 """Share of the outsole's thickness beyond which the load bottoms it out: refused."""
 LINEAR_STRAIN = Range(0.0, 0.25, "1", "linear elasticity of rubber in compression")
+FOREFOOT_RIGID = Range(
+    math.radians(-7.5),
+    math.radians(60.0),
+    "rad",
+    "a forefoot bends once the heel rises; slip-resistance tests tilt it by 7 deg at most",
+)
+"""Shoe angles at which a sole without a joint at the ball stands for a shoe."""
+ROLL_STEP = math.radians(1.0)
+"""Between the angles at which the sole is held against the floor to find what comes near it."""
 WEAR_STEP = 0.25e-3
 """Thickness that Archard wear removes between two contacts, m."""
 
@@ -86,7 +96,17 @@ def sole_map(
         shape = cast("SoleShape", replace(cast("Any", shape), tread=shape.tread.moved(shift)))
     sole = shoe.heel_map(shape, shoe_angle=case.motion.shoe_angle + turn, spacing=spacing)
     plan = case.shoe.heel
-    return trimmed(sole, plan.reach) if isinstance(plan, WholePlan) else sole
+    return trimmed(sole, plan.reach, rolls(case)) if isinstance(plan, WholePlan) else sole
+
+
+def rolls(case: Case) -> NDArray[np.float64]:
+    """Return by how much (rad) the motion rolls the sole from ``motion.shoe_angle``, in steps."""
+    history = case.motion.build()
+    if history is None:
+        return np.zeros(1)
+    low, high = float(history.shoe_angle.min()), float(history.shoe_angle.max())
+    count = math.ceil((high - low) / ROLL_STEP) + 1
+    return np.linspace(low, high, count) - case.motion.shoe_angle
 
 
 def new_sole(case: Case) -> SoleShape:
@@ -241,17 +261,22 @@ def file_sole_map(
     sole = trimmed(
         surface_map(surface, shoe_angle=case.motion.shoe_angle + turn, spacing=spacing),
         case.shoe.outsole.reach,
+        rolls(case),
     )
     check_load(case, sole)
     return sole
 
 
-def trimmed(sole: SoleMap, reach: float, padding: float = 0.004) -> SoleMap:
-    """Return the map without rows and columns that lie more than ``reach`` (m) above the floor.
+def trimmed(
+    sole: SoleMap, reach: float, rolled_by: ArrayLike = 0.0, padding: float = 0.004
+) -> SoleMap:
+    """Return the map without rows and columns that stay more than ``reach`` (m) above the floor.
 
-    The result keeps the whole map for pictures (``SoleMap.whole``).
+    A sole that rolls keeps what comes within reach at any of the angles ``rolled_by`` (rad, from
+    the map's). The result keeps the whole map for pictures (``SoleMap.whole``).
     """
-    near = sole.clearance <= reach
+    angles = np.atleast_1d(np.asarray(rolled_by, dtype=float))
+    near = np.any([rolled_clearance(sole, angle) <= reach for angle in angles], axis=0)
     margin = max(1, math.ceil(padding / sole.spacing))
     keep = []
     for axis in (0, 1):
@@ -309,6 +334,14 @@ def compression_breaches(case: Case, approach: float) -> list[Breach]:
     name = "compression of the sole (approach / thickness)"
     strain = max(approach, 0.0) / case.shoe.sole.thickness
     return breaches("compliance", {name: LINEAR_STRAIN}, {name: strain})
+
+
+def forefoot_breaches(case: Case) -> list[Breach]:
+    """Return whether the motion raises the heel beyond what a rigid forefoot stands for."""
+    name = "shoe angle of a sole whose forefoot does not bend"
+    return breaches(
+        "forefoot", {name: FOREFOOT_RIGID}, {name: rolls(case) + case.motion.shoe_angle}
+    )
 
 
 def overload_breaches(contact: SoleState, modulus: float) -> list[Breach]:

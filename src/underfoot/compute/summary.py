@@ -53,6 +53,7 @@ PARTS: Mapping[str, str] = {
     "stribeck": "the friction of this sole on this floor",
     "speed_table": "the friction of this sole on this floor",
     "grid": "the tread, which has few cells of the grid across its details",
+    "forefoot": "push-off: the forefoot of a shoe bends where this sole stays straight",
     "compliance": "how the rubber gives way under the load",
     "gent_1958": "the stiffness of a rubber of this hardness",
     "ruess": "the stiffness of a rubber of this hardness",
@@ -122,6 +123,8 @@ def headline(
         text += f", {measure} {labels.get('cof_spread_basis', 'of friction law and film load')}"
     if "cof_tread_position" in scalars:
         text += ", mean over positions of the tread"
+    if "instant" in labels:
+        text += f", {labels['instant']}"
     sentences = [f"Available COF {text}."]
     if "overload" in labels:
         sentences.append(f"{labels['overload'][0].upper()}{labels['overload'][1:]}.")

@@ -23,12 +23,15 @@ if TYPE_CHECKING:
 
 _Z95 = 1.959963984540054
 AS_IN_CASE = "as in the case"
+METHODS = (("iso13287", "en_iso_13287"), ("astmf2913", "astm_f2913"))
+PARTS = ("forepart", "flat")
 NICKNAMES = {
     "iso13287": "en_iso_13287",
     "iso_13287": "en_iso_13287",
     "en13287": "en_iso_13287",
     "f2913": "astm_f2913",
     "astmf2913": "astm_f2913",
+    **{f"{short}_{part}": f"{name}_{part}" for short, name in METHODS for part in PARTS},
     "report_slip_tester": "slip_tester_g4",
     "report_whole_shoe": "whole_shoe_g6",
 }
@@ -356,6 +359,13 @@ def _prepared(
         else:
             changes[section] = str(leaf.given)
             settings.append(_required(section, str(leaf.given), "as required", leaf))
+    if "method.sole" in entry.values and not has_whole_sole(case):
+        raise InputError(
+            "the sole is a heel piece",
+            where="shoe.outsole.region" if case.shoe.heel is None else "shoe.heel.plan",
+            allowed=f"a whole sole: {entry.title} loads more than the heel",
+            remedy='Write plan = "sole" under [shoe.heel], or give the file of a whole sole',
+        )
     changed = case.replace(changes)
     units = {"shoe_angle": "rad", "normal_force": "N", "speed": "m/s"}
     kept = {
@@ -375,6 +385,13 @@ def _prepared(
         else:
             settings.append(_required(label, required, "as required", leaf))
     return changed, settings
+
+
+def has_whole_sole(case: Case) -> bool:
+    """Return whether the case holds more of a sole than its heel."""
+    if case.shoe.outsole is not None:
+        return case.shoe.outsole.region != "heel"
+    return case.shoe.heel is not None and case.shoe.heel.name == "sole"
 
 
 def _present(case: Case, section: str) -> str:

@@ -69,7 +69,7 @@ def _result_sections(
     if maps:
         parts.append(Section("Maps", SEEN, pictures=maps))
     if "time" in result.data.sizes:
-        parts.append(Section("Load over time", html=history_chart(result)))
+        parts.append(Section("Over time", html=history_chart(result)))
     provenance = result.provenance
     models = Table("", ("", ""), list(provenance.closures.items()))
     versions = ", ".join(f"{name} {version}" for name, version in provenance.versions.items())
@@ -178,14 +178,27 @@ def _plot_case(case: Case) -> Figure:
 
 
 _LOADS = (("load_history", "applied load"), ("fluid_load_history", "carried by the fluid"))
+_THROUGH_A_MOTION = {
+    "cof_history": ("coefficient of friction", 1.0),
+    "contact_area_history": ("contact area (cm²)", 1e4),
+    "centre_of_pressure_history": ("centre of pressure from the rear end (mm)", 1e3),
+}
 _TIME = "time after first contact with the film (ms)"
 
 
 def history_chart(result: Result) -> str:
-    """Return how the load is shared between fluid and contact over time, as SVG."""
+    """Return load and its share on the film over time, of a history friction and place too, SVG."""
     data = result.data
     lines = [(label, data[name].values) for name, label in _LOADS if name in data]
-    return line_chart(data["time"].values * 1e3, lines, _TIME, "load (N)")
+    time = data["time"].values * 1e3
+    charts = [line_chart(time, lines, _TIME, "load (N)")]
+    if "picture_time" in data.sizes:
+        charts += [
+            line_chart(time, [(label, factor * data[name].values)], _TIME, label)
+            for name, (label, factor) in _THROUGH_A_MOTION.items()
+            if name in data
+        ]
+    return "".join(charts)
 
 
 def history_figure(result: Result) -> Figure:
