@@ -229,7 +229,8 @@ def layered_compliance(
 
     depth = mean_lug_depth(sole)
     land = sole.inside & sole.land
-    plan = sole.inside  # channels worn nearly through press on the block too
+    lugs_left = bool((sole.tread_depth[land] > 0).any())
+    plan = sole.inside if lugs_left else land  # channels worn nearly through press on the block too
     give = block_compression(plan, sole.spacing, body, modulus, poisson_ratio)
     footprint = partial(free_sided_symbol, **elastic, uniform=float(give[plan].mean()))
 
