@@ -29,6 +29,7 @@ html_css_files = ["pages.css"]
 templates_path: list[str] = []
 
 napoleon_google_docstring = True
+napoleon_use_ivar = True  # attributes as a list: as objects they would be described twice
 napoleon_custom_sections = [("Errors", "Raises"), "Source"]
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"

@@ -13,7 +13,9 @@ FLOORS = [name for name in BOOK.names("floor") if not name.startswith("ceramic")
 SETUPS = [
     n
     for n in BOOK.names("setup")
-    if (motion := BOOK.entry("setup", n).under("motion")) and "history_points" not in motion
+    if (motion := BOOK.entry("setup", n).under("motion"))
+    and "history_points" not in motion
+    and "backward" not in motion  # refused with the steady motion of the changes
 ]
 
 

@@ -393,8 +393,10 @@ def corpus_score(law: str, sources: Sequence[SourceScore]) -> CorpusScore:
         rows = np.flatnonzero([not c.reading.is_censored for c in one.conditions])
         if rows.size >= 4:
             values = [one.conditions[row].reading.low for row in rows]
-            rank: Any = spearmanr(values, one.expected[rows].round(6))
-            ranks.append(np.nan_to_num(rank.statistic))
+            expected = one.expected[rows].round(6)
+            # equal predictions order nothing
+            rank: Any = spearmanr(values, expected).statistic if np.ptp(expected) > 0 else 0.0
+            ranks.append(rank)
     each = [one.score for one in sources]
     return CorpusScore(
         law=law,
