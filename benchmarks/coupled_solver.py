@@ -10,21 +10,19 @@ that the solver is held to: 15 s at 0.5 mm, 60 s at 0.25 mm, 2 GB.
 
 from __future__ import annotations
 
-import json
 import math
-import os
-import subprocess
-import sys
 import time
 from pathlib import Path
 
+from benchmarks._separate import separate
+
+HERE = "benchmarks.coupled_solver"
 SPACINGS = (1.0e-3, 0.7e-3, 0.5e-3, 0.35e-3)
 LIMITS = {0.5e-3: 15.0, 0.25e-3: 60.0}
 """Spacing, m: CPU seconds that a condition may take."""
 MEMORY_LIMIT = 2000.0
 """MB."""
 FINE = ("work_shoe_untreaded_glycerol", "work_shoe_half_tread_glycerol")
-THREADS = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
 
 
 def measured(spacing: float, treaded: bool, backend: str | None) -> dict[str, float]:
@@ -99,22 +97,6 @@ def condition(name: str, spacing: float) -> dict[str, float]:
     }
 
 
-def separate(function: str, *given: object) -> dict[str, float]:
-    """Return what one run took, in a process of its own."""
-    code = (
-        f"import json; from benchmarks.coupled_solver import {function}; "
-        f"print(json.dumps({function}(*{given!r})))"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        env=os.environ | THREADS,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return json.loads(done.stdout.splitlines()[-1])
-
-
 def limits(head: str) -> None:
     """Print the report's conditions against the limits of time and memory."""
     names = sorted(
@@ -126,7 +108,7 @@ def limits(head: str) -> None:
         print(f"report's conditions, limit {limit:g} s and {MEMORY_LIMIT:g} MB\n{head}")
         rows = []
         for name in names if spacing == max(LIMITS) else FINE:
-            row = separate("condition", name, spacing)
+            row = separate(HERE, "condition", name, spacing)
             rows.append(row)
             print(f"{_line(spacing, row)}  {name}", flush=True)
         slowest = max(row["cpu"] for row in rows)
@@ -143,7 +125,7 @@ def main() -> None:
         print(f"{label}\n{head}")
         rows = []
         for spacing in SPACINGS:
-            row = separate("measured", spacing, treaded, None)
+            row = separate(HERE, "measured", spacing, treaded, None)
             rows.append(row)
             print(_line(spacing, row), flush=True)
         first, last = rows[0], rows[-1]
@@ -153,7 +135,13 @@ def main() -> None:
         print(f"CPU per Newton step grows as cells^{order:.2f} (N log N: about 1.1)")
     print(f"plain heel, SuperLU instead of PARDISO\n{head}")
     for spacing in SPACINGS[:3]:
-        print(_line(spacing, separate("measured", spacing, False, "superlu")), flush=True)
+        print(
+            _line(
+                spacing,
+                separate(HERE, "measured", spacing, False, "superlu"),
+            ),
+            flush=True,
+        )
     limits(head)
 
 

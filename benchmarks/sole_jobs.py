@@ -8,7 +8,6 @@ march is one of four times the time steps and a quarter of the tolerance.
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import resource
@@ -22,10 +21,11 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks._separate import THREADS, separate
 from benchmarks._table import Row, printed
 
+HERE = "benchmarks.sole_jobs"
 CASE = "examples/work_shoe_full_tread_glycerol.toml"
-THREADS = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
 WHOLE = {
     "shoe.heel.length": "300 mm",
     "shoe.heel.width": "100 mm",
@@ -147,30 +147,14 @@ def command(*options: str) -> tuple[float, float]:
     return after.ru_utime - before.ru_utime, after.ru_maxrss / 1024
 
 
-def separate(function: str, *given: object) -> dict[str, float]:
-    """Return what a function of this module returns in a process of its own."""
-    code = (
-        f"import json; from benchmarks.sole_jobs import {function}; "
-        f"print(json.dumps({function}(*{given!r})))"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        env=os.environ | THREADS,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return json.loads(done.stdout.splitlines()[-1])
-
-
 def rows() -> list[Row]:
     """Return the jobs of the sole solver."""
     # the smaller process first: a peak of children is that of the largest so far
     quick_run, run = command("--quick"), command("--no-advice")
     found = [Row("run, quick, cold process", *quick_run), Row("run, cold process", *run)]
-    within = separate("warm")
+    within = separate(HERE, "warm")
     found.append(Row("run, quick, warm process", within["quick"]))
-    seen = separate("previews")
+    seen = separate(HERE, "previews")
     found.append(
         Row("preview of a change", seen["cpu"], error=seen["load"], reference="its march, worst")
     )
@@ -182,11 +166,11 @@ def rows() -> list[Row]:
         )
     )
     found.append(Row("one position of the tread, quick", within["one"]))
-    marches = {side: separate("march", side, {}) for side in (1e-3, 0.6e-3)}
+    marches = {side: separate(HERE, "march", side, {}) for side in (1e-3, 0.6e-3)}
     coarse, fine = marches.values()
     growth = math.log(fine["cpu"] / coarse["cpu"]) / math.log(fine["cells"] / coarse["cells"])
     for side, one in marches.items():
-        finer = separate("march", side, {}, 4)
+        finer = separate(HERE, "march", side, {}, 4)
         found.append(
             Row(
                 f"march at {side * 1e3:g} mm",
@@ -198,7 +182,7 @@ def rows() -> list[Row]:
                 "time and tolerance 4 times finer",
             )
         )
-    whole = separate("march", 0.6e-3, WHOLE)
+    whole = separate(HERE, "march", 0.6e-3, WHOLE)
     found.append(Row("march of a 300 mm sole at 0.6 mm", *_cost(whole)))
     return found
 

@@ -21,6 +21,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 def pytest_runtest_setup(item):
     """Tests in a browser fail in CI where there is none; on a desk they are skipped, and say so."""
     if item.get_closest_marker("browser") and not any(map(shutil.which, CHROMIUM)):
+        # a desk without a browser can run all other tests; CI installs one (make chromium)
         (pytest.fail if os.environ.get("CI") == "true" else pytest.skip)(NO_BROWSER)
 
 

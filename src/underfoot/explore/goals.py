@@ -12,6 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -35,7 +36,7 @@ class Condition:
     """A state that every design is run in: its label, and the changes that make it."""
 
     label: str
-    changes: Mapping[str, object]
+    changes: Mapping[str, Any]
 
     @property
     def parts(self) -> tuple[str, ...]:
@@ -123,7 +124,7 @@ class WearLife:
         goal = self.requirement.goal
         for number in _chosen(states, goal.within):
             rest = {k: v for k, v in states[number].changes.items() if k != WEAR}
-            wear = float(states[number].changes[WEAR])  # type: ignore[arg-type]
+            wear = float(states[number].changes[WEAR])
             here = {(0, draw): r for (state, draw), r in records.items() if state == number}
             alone = Goal(goal.output, goal.unit, goal.statistic, goal.share)
             margin = self.requirement.margin(alone.value(here, [Condition("", {})]))

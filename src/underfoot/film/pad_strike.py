@@ -87,6 +87,7 @@ def touch_time(strike: Strike, contact_pressure: Callable[[ArrayLike], Any]) -> 
     def touched(_: float, state: Any) -> float:
         return float(contact(max(state[0], THINNEST))) - 0.5 * strike.load
 
+    # SciPy ends the solution where an event with this attribute is met; functions declare none
     touched.terminal = True  # type: ignore[attr-defined]
     start = [strike.pool, strike.speed]
     solved = solve_ivp(
