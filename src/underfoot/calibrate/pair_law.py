@@ -395,8 +395,7 @@ def corpus_score(law: str, sources: Sequence[SourceScore]) -> CorpusScore:
             values = [one.conditions[row].reading.low for row in rows]
             expected = one.expected[rows].round(6)
             # equal predictions order nothing
-            rank: Any = spearmanr(values, expected).statistic if np.ptp(expected) > 0 else 0.0
-            ranks.append(rank)
+            ranks.append(spearmanr(values, expected)[0] if np.ptp(expected) > 0 else 0.0)
     each = [one.score for one in sources]
     return CorpusScore(
         law=law,
