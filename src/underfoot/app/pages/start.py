@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from nicegui import ui
 
+from ..components import title
 from ..session import Session
 
 
@@ -16,7 +17,7 @@ def build(session: Session) -> None:
         for door in doors:
             pages = [page for page in session.pages if page.door == door]
             with ui.element("section").classes("door"):
-                ui.element("h2").props(f'innerHTML="{text(f"doors.{door}")}"')
+                title(text(f"doors.{door}"), 2)
                 ui.label(text(f"doors.{door}_lead")).classes("soft")
                 for page in pages:
                     ui.link(text(page.title), page.route)
