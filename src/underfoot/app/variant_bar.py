@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from nicegui import ui
 
@@ -66,14 +67,13 @@ def variant_bar(session: Session, route: str, name: str, changed: Callable[[], N
                 ui.menu_item(text("variant.remove"), remove)
                 for gone in project.removed():
                     ui.menu_item(
-                        text("variant.restore", name=gone),
-                        lambda gone=gone: _back(gone, go, session),
+                        text("variant.restore", name=gone), partial(_back, session, gone, route)
                     )
 
 
-def _back(name: str, go: Callable[[str], None], session: Session) -> None:
+def _back(session: Session, name: str, route: str) -> None:
     session.project.restore(name)
-    go(name)
+    session.go(route, variant=name)
 
 
 def _rename(session: Session, route: str, name: str) -> None:
@@ -83,7 +83,7 @@ def _rename(session: Session, route: str, name: str) -> None:
 
         def done() -> None:
             dialog.close()
-            session.go(route, variant=session.project.rename(name, field.value.strip()))
+            session.go(route, variant=session.project.rename(name, (field.value or "").strip()))
 
         field.on("keydown.enter", done)
         with ui.element("div").classes("row"):

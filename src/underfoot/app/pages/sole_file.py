@@ -69,7 +69,7 @@ class _Inspection:
                 for key, options in CHOICES.items():
                     self._choice(key, options)
                 solid = ui.input(self.text("sole_file.solid")).props("dense outlined")
-                solid.on("change", lambda: self._set("solid", solid.value.strip() or None))
+                solid.on("change", lambda: self._set("solid", (solid.value or "").strip() or None))
             self.found = ui.element("div").props('aria-live="polite"')
         self._read()
 
