@@ -20,6 +20,7 @@ GROWTH = 1.5
 CUT = 2.5
 SHORTEST = 1e-4  # of the first step, below which the march gives up
 LETS_GO = 1.05  # times the pool depth; without it a cell at the brink flips at every step
+DEEP = 1.2e-3
 ROOM = 1.3  # times the cells needed now, beyond which they are chosen anew
 MARGIN = 3  # cells around the pool that may come into contact within a step
 
@@ -105,7 +106,7 @@ class March:
             if demand.clearance is not self.problem.clearance:
                 gap = gap + (demand.clearance - self.problem.clearance)
             film = _film_mask(problem, gap, self._pool_depth, self.film)
-            self._cells = _cells(problem, self._fit, self._cells, film)
+            self._cells = _cells(problem, self._fit, self._cells, film, gap)
             self.counts.cells = max(self.counts.cells, self._cells.pattern.size)
             cells = self._cells
             attempt = implicit_step(
@@ -154,11 +155,9 @@ def _film_mask(problem: Problem, gap: Array, pool_depth: float, before: Mask | N
     return film
 
 
-def _cells(problem: Problem, fit: PoleFit, cells: Cells | None, film: Mask) -> Cells:
+def _cells(problem: Problem, fit: PoleFit, cells: Cells | None, film: Mask, gap) -> Cells:
     """Return cells that hold the film with room to spare, the present ones if they do."""
-    mask = np.asarray(binary_dilation(film, iterations=MARGIN), dtype=bool) & (
-        problem.clearance < 0.5
-    )
+    mask = np.asarray(binary_dilation(film, iterations=MARGIN), dtype=bool) & (gap < DEEP)
     if (
         cells is not None
         and not (film & ~cells.mask).any()
