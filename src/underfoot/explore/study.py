@@ -11,11 +11,12 @@ from underfoot.core import InputError, Progress, silent
 
 from .computing import computed, crashed
 from .engines import Engine, engine
-from .plan import StudyPlan, load_plan
+from .plan import StudyPlan
 from .proposals import next_batch
 from .record import Job
 from .result import StudyResult
 from .store import Store
+from .study_file import load_plan
 
 PAUSE = 1.0
 """s between two looks for work while others work."""
