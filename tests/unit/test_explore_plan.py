@@ -90,6 +90,8 @@ def test_jobs_are_the_same_whenever_the_file_is_read():
         ("over conditions", "over oils", ["line 14", "draws"]),
         ("in canola_oil", "in milk", ["line 16", "glycerol_90pct"]),
         ('"rubber_volume <', '"rubber_volume > 300 cm^3", "rubber_volume <', ["both hold"]),
+        ('"rubber_volume <', '"min(cof) > 0.4", "max(cof) < 0.3", "rubber_volume <', ["both hold"]),
+        ('from = "2.5 mm"', 'from = "0.05 mm"', ["line 5", "needs a finer grid", "low end"]),
         ('minimise = ["rubber_volume"]', 'minimise = ["mass"]', ["density", "rubber_volume"]),
         ("draws = 2", "draw = 2", ["line 20", 'Did you mean "draws"']),
         ("budget = 160", "budget = 3", ["less than one design", "from 8"]),

@@ -12,7 +12,8 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -241,11 +242,17 @@ def read_requirement(
 
 
 def check_agreement(require: Sequence[Requirement]) -> None:
-    """Refuse requirements that no design can meet."""
-    for one in require:
-        for other in require:
-            if one.goal == other.goal and one.sense > 0 > other.sense and one.bound >= other.bound:
-                raise InputError(f'"{one}" and "{other}" can\'t both hold', remedy="Drop one")
+    """Refuse requirements that no design can meet: the least above, or the greatest below, others'.
+
+    Of one output over the same; between different statistics only what holds of all numbers.
+    """
+    for low, high in product(require, require):
+        one, other = low.goal, high.goal
+        same = replace(one, statistic=other.statistic, share=other.share) == other
+        ordered = one == other or one.statistic == "min" or other.statistic == "max"
+        numbers = "sd" not in (one.statistic, other.statistic) or one == other
+        if same and ordered and numbers and low.sense > 0 > high.sense and low.bound >= high.bound:
+            raise InputError(f'"{low}" and "{high}" can\'t both hold', remedy="Drop one")
 
 
 def _life(requirement: Requirement, states: Sequence[Condition]) -> WearLife:

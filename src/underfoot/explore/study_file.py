@@ -95,30 +95,37 @@ def read_plan(
     uncertain, joint = reader.uncertain(known, folder)
     calibrates = "reading" in reader.plain
     states, readings = reader.readings(known) if calibrates else (reader.conditions(known), ())
+    method, (require, maximise, minimise) = reader.method(vary), reader.outputs(case, states)
+    reader.end()
     taken = [one.path for one in (*vary, *follow, *uncertain)]
     taken += [*(joint.paths if joint else ()), *(states[0].changes if states else ())]
-    reader.refuse_if(
-        not taken,
-        "vary",
-        "nothing is varied",
-        remedy='Write "shoe.tread.depth" = { from = "1 mm", to = "4 mm" } under [vary]',
-    )
     for path in {path for path in taken if taken.count(path) > 1}:
         reader.refuse_if(
             True, path, "is set twice", allowed="one of [vary], [uncertain], [conditions]"
         )
-    method = reader.method(bool(uncertain or joint), vary)
     if calibrates:
         method = method.model_copy(update={"kind": "sensitivity"})
-    require, maximise, minimise = reader.outputs(case, states)
     reader.refuse_if(
-        not maximise + minimise and method.kind in ("optimise", "robust"),
+        not (vary or (method.kind == "sensitivity" and (uncertain or joint))),
+        "vary",
+        "nothing is varied",
+        remedy='Write "shoe.tread.depth" = { from = "1 mm", to = "4 mm" } under [vary], or '
+        'kind = "sensitivity" for what is uncertain',
+    )
+    reader.refuse_if(
+        method.kind == "robust" and not (uncertain or joint),
+        "method.kind",
+        "nothing is uncertain",
+        remedy='Add [uncertain], or write kind = "optimise"',
+    )
+    reader.refuse_if(
+        method.kind in ("optimise", "robust") and not maximise + minimise,
         "outputs",
         "there is no goal",
         remedy='Write maximise = ["quantile(cof, 0.1)"] or minimise = ["rubber_volume"]',
     )
     reader.end()
-    case, remarks = _on_finer_grid(case, vary, follow)
+    case, remarks = reader.attempt("vary", _on_finer_grid, case, vary, follow) or (case, ())
     draws: tuple[Mapping[str, Any], ...] = ({},)
     if method.kind != "sensitivity" and (uncertain or joint):
         draws = tuple(_common_draws(uncertain, joint, method))
@@ -167,16 +174,22 @@ def _on_finer_grid(
         if isinstance(one.value(0.0), float)
     }
     lows |= {one.path: one.times * lows[one.of] for one in follow if one.of in lows}
-    narrowest = min((low for path, low in lows.items() if path in WIDTHS), default=math.inf)
+    narrowest, path = min(
+        ((low, path) for path, low in lows.items() if path in WIDTHS), default=(math.inf, "")
+    )
     finest, changes = narrowest / CELLS_REFUSED, {}
     for name in ("grid_spacing", "quick_grid_spacing"):
         if getattr(case.numerics, name) > finest * (1 + 1e-9):
             changes[f"numerics.{name}"] = math.floor(finest * 1e5 + 1e-6) / 1e5
     if not changes:
         return case, ()
-    said = ", ".join(f"{path} = {value * 1e3:g} mm" for path, value in changes.items())
-    words = f"The narrowest lug or channel ({narrowest * 1e3:g} mm) needs a finer grid: {said}."
-    return case.replace(changes), (words,)
+    said = ", ".join(f"{name} = {value * 1e3:g} mm" for name, value in changes.items())
+    words = f"The narrowest lug or channel ({narrowest * 1e3:g} mm) needs a finer grid: {said}"
+    try:
+        return case.replace(changes), (f"{words}.",)
+    except InputError as error:
+        remedy = "Raise the low end of its range"
+        raise InputError(words, where=f".{path}", allowed=error.allowed, remedy=remedy) from error
 
 
 def _common_draws(
@@ -367,7 +380,7 @@ class _Reader:
         )
         return require, maximise, minimise
 
-    def method(self, uncertain: bool, vary: Sequence[Input]) -> Method:
+    def method(self, vary: Sequence[Input]) -> Method:
         """Return the method with its defaults."""
         table = self.table("method")
         try:
@@ -391,17 +404,5 @@ class _Reader:
             "method.budget",
             "is missing",
             allowed="full runs at most, as budget = 200",
-        )
-        self.refuse_if(
-            not vary and found.kind != "sensitivity" and "reading" not in self.plain,
-            "method.kind",
-            "nothing is varied",
-            remedy='Add [vary], or write kind = "sensitivity"',
-        )
-        self.refuse_if(
-            found.kind == "robust" and not uncertain,
-            "method.kind",
-            "nothing is uncertain",
-            remedy='Add [uncertain], or write kind = "optimise"',
         )
         return found
