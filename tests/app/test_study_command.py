@@ -11,6 +11,7 @@ from pathlib import Path
 import psutil
 import pytest
 
+from underfoot.case import load
 from underfoot.explore import Study
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -143,6 +144,20 @@ def test_stopped_it_says_what_is_kept_and_leaves_no_claim(finished, tmp_path, nu
     assert list((store / "claims").iterdir()) == []
     finished_before = numbers(store)
     assert len(Study.load(store)._open()) == 6 - len(finished_before)
+
+
+@pytest.mark.slow
+def test_the_best_designs_leave_as_solids(finished, tmp_path):
+    pytest.importorskip("netgen")
+    folder, _ = finished
+    study = Study.load(folder / "out" / "heel")
+    underfoot("study", "export", study.store.folder, "given", "--count", "2", folder=tmp_path)
+    for one in study.result().best(2):
+        case = load(tmp_path / "given" / f"design_{one.number}.toml")
+        assert case.shoe.heel.profile.angle == one.changes["shoe.heel.profile.angle"]
+        text = (tmp_path / "given" / f"design_{one.number}.step").read_text()
+        assert text.startswith("ISO-10303-21")
+        assert "MANIFOLD_SOLID_BREP" in text
 
 
 @pytest.mark.slow

@@ -239,7 +239,8 @@ class StudyResult(Presentable):
             )
         lost = self.endings.total() - self.endings[Ending.COMPUTED] - self.endings[Ending.OPEN]
         if lost:
-            reasons.append(f"{lost} cases have no numbers: underfoot study status tells why.")
+            have = "1 case has" if lost == 1 else f"{lost} cases have"
+            reasons.append(f"{have} no numbers: underfoot study status tells why.")
         if self.plan.method.quick and self.plan.method.front_grid != "standard":
             reasons.append("Coarse grid: use the order of designs; check a chosen one in full.")
         return tuple(reasons)
