@@ -107,7 +107,8 @@ def test_the_answer_then_previews_then_the_full_run(app):
         assert cof == pytest.approx(json.loads(result.read_text())["cof"]["value"], abs=6e-4)
         switches = page.evaluate(
             """async () => {
-              const took = [], frame = () => new Promise((d) => requestAnimationFrame(() => requestAnimationFrame(d)));
+              const took = [], next = (d) => requestAnimationFrame(() => requestAnimationFrame(d));
+              const frame = () => new Promise(next);
               for (const label of document.querySelectorAll(".choice label")) {
                 const began = performance.now();
                 label.click();
@@ -270,7 +271,7 @@ def test_keyboard_names_and_small_windows(app, tmp_path):
         assert wide <= 390
         nameless = page.evaluate(
             """() => [...document.querySelectorAll("button, a, input:not([type=hidden]), canvas")]
-              .filter((e) => e.offsetParent && !(e.getAttribute("aria-label") || e.textContent.trim()
+              .filter((e) => e.offsetParent && !(e.ariaLabel || e.textContent.trim()
                 || e.labels?.length || e.title)).map((e) => e.outerHTML.slice(0, 120))"""
         )
         assert nameless == []

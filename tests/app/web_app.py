@@ -11,6 +11,7 @@ from pathlib import Path
 
 from chromium import browser
 
+COMMAND = "from underfoot.cli import main; main()"
 SOURCE = Path(__file__).resolve().parents[2] / "src"
 
 
@@ -25,7 +26,7 @@ class Served:
         }  # fmt: skip
         self.folder = Path(folder)
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "underfoot", "app", str(folder), "--no-browser", *options],
+            [sys.executable, "-c", COMMAND, "app", str(folder), "--no-browser", *options],
             env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
         )  # fmt: skip
         self.said = ""
@@ -40,6 +41,7 @@ class Served:
         """End the server as a power cut does."""
         self.process.send_signal(signal.SIGKILL)
         self.process.wait()
+        self.process.stdout.close()
 
     def memory(self):
         """Return the resident memory of the server in MB."""
@@ -59,10 +61,9 @@ def served(folder, home, *options):
         yield app
     finally:
         app.process.terminate()
-        try:
+        with contextlib.suppress(subprocess.TimeoutExpired):
             app.process.wait(10)
-        except subprocess.TimeoutExpired:
-            app.kill()
+        app.kill()
 
 
 @contextlib.contextmanager
