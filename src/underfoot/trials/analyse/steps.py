@@ -152,12 +152,31 @@ def rcof_definition(protocol: Protocol) -> RcofDefinition:
     return replace(base, **changes)
 
 
+def slip_definition(protocol: Protocol) -> SlipDefinition:
+    """Return the definition of a slip that a protocol sets: ``slip_threshold``, ``marker_cutoff``.
+
+    What it does not say is the standard definition's.
+    """
+    standard = SlipDefinition()
+    return SlipDefinition(
+        threshold=protocol.number("slip_threshold", "m/s", standard.threshold),
+        filter=LowPass(cutoff=protocol.number("marker_cutoff", "Hz", standard.filter.cutoff)),
+    )
+
+
 def protocol_ramp(protocol: Protocol) -> Ramp:
     """Return the slope of the walkway that a protocol sets (``ramp``, ``plate_frame``).
 
     No angle, and a slope without the axes of its plates, are an `InputError`.
     """
     return Ramp(protocol.number("ramp", "rad", 0.0), protocol.text("plate_frame"))
+
+
+def walk_axes(trial: Trial, protocol: Protocol, profile: Profile) -> Axes:
+    """Return the axes in which a walk is analysed: profile, then recording; the protocol's ramp."""
+    return axes_of(
+        trial, vertical=profile.vertical, walking=profile.walking, ramp=protocol_ramp(protocol)
+    )
 
 
 def check_ramp(protocol: Protocol) -> None:
@@ -179,9 +198,7 @@ def analysed_steps(trial: Trial, draft: Draft, protocol: Protocol, profile: Prof
     applied an `EditError`.
     """
     analysis = {"gait": _gait, "human_slip": _human_slip}[protocol.kind]
-    axes = axes_of(
-        trial, vertical=profile.vertical, walking=profile.walking, ramp=protocol_ramp(protocol)
-    )
+    axes = walk_axes(trial, protocol, profile)
     analysis(_Walk(trial, draft, protocol, profile, axes))
     if trial.edits:
         before = Draft(draft.file, draft.conditions)
@@ -216,10 +233,7 @@ def _human_slip(walk: _Walk) -> None:
     if not on_plate:
         raise DataError(f"no contact with the slippery plate ({name})", where=walk.trial.name)
     _required(walk, [s for s in walk.found if s not in on_plate])
-    definition = SlipDefinition(
-        threshold=protocol.number("slip_threshold", "m/s", 0.2),
-        filter=LowPass(cutoff=protocol.number("marker_cutoff", "Hz", 10.0)),
-    )
+    definition = slip_definition(protocol)
     standard = OutcomeLimits()
     limits = OutcomeLimits(
         protocol.number("no_slip_distance", "m", standard.no_slip),
