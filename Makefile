@@ -10,10 +10,13 @@ export OMP_NUM_THREADS ?= 1
 export MKL_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: run check test test-slow test-install chromium bench validate docs clean help
+.PHONY: run app check test test-slow test-install chromium bench validate docs clean help
 
 run: $(READY)  ## the main job: a worn work shoe on a floor with glycerol
 	$(BIN)/underfoot run examples/work_shoe_untreaded_glycerol.toml --out out/work_shoe_untreaded_glycerol --overwrite
+
+app: $(READY)  ## the local web app, in your browser
+	$(BIN)/underfoot app
 
 check: $(READY)  ## ruff, pyright, import-linter (a minute)
 	$(BIN)/ruff format --check .

@@ -164,7 +164,7 @@ def test_compare_refuses_what_is_no_result_before_anything_is_computed(
 
 
 def test_trouble_with_files_is_told_in_words():
-    from underfoot.cli.guard import file_trouble
+    from underfoot.core.errors import file_trouble
 
     assert file_trouble(IsADirectoryError(21, "Is a directory", "/tmp")) == (
         "/tmp is a folder; a file is needed."

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from slip_floors import Floor, dry_sole, slippery_sole
+from underfoot.case import Case
+from underfoot.compute.slips import slips
 from underfoot.core import InputError
 from underfoot.slip.dynamics import (
     FloorSensors,
@@ -24,6 +27,7 @@ from underfoot.slip.dynamics import (
 )
 from underfoot.slip.dynamics.study import _wilson
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 HISTORIES = packaged_histories()
 people = st.builds(
     Walker,
@@ -218,3 +222,22 @@ def test_sensors_lie_to_the_right_of_a_heel_that_lands_to_their_left():
     )
     assert x == pytest.approx([0.01, 0.04, 0.07])
     assert y == pytest.approx([0.025, -0.005, -0.035])
+
+
+def test_the_share_who_slip_holds_the_spread_of_the_contact_friction():
+    case = Case.load(EXAMPLES / "work_shoe_full_tread_dry.toml")
+    case = case.replace({"friction.model": "pair", "risk.rcof_mean": 0.5})
+    study = slips(case, subjects=60)
+    assert study.by_friction is not None
+    same = study.at_contact_friction(1.0)
+    assert same.of("peak_speed") == pytest.approx(study.of("peak_speed"))
+    shares = [level.of("slipped").mean() for level in study.by_friction.levels]
+    assert (np.diff(shares) <= 0).all()
+    assert shares[0] > shares[-1]
+    _, low, high = study.slipped()
+    _, narrow_low, narrow_high = replace(study, by_friction=None).slipped()
+    assert high - low > narrow_high - narrow_low
+    # levels stand 15 to the draws' range: the drawn share is that of the levels weighted
+    weights = np.bincount(study.by_friction.nearest, minlength=len(shares)) / 1000
+    drawn = study.by_friction.means("slipped", 60)
+    assert drawn.mean() == pytest.approx(weights @ shares, abs=0.01)

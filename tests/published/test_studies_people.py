@@ -7,6 +7,7 @@ import pytest
 
 from underfoot.compute.resolve import resolved
 from underfoot.slip import ReportG6
+from underfoot.slip.dynamics import FrictionDraws
 from underfoot.studies import g5, g6, judge, study
 from underfoot.studies.g6 import PRINTED_ACOF, PRINTED_RISK
 from underfoot.studies.verdict import Quantity
@@ -119,7 +120,13 @@ def made_up(count, generator):
         )
         for v in speed
     ]  # fmt: skip
-    return SimpleNamespace(subjects=subjects), speed
+    columns = {"slipped": (speed > 1.5).astype(float), "peak_speed": speed}
+    level = SimpleNamespace(of=lambda name: columns.get(name, np.ones(count)))
+
+    def drawn(draws, seed):
+        return FrictionDraws((level,), np.zeros(draws), np.ones(draws), seed)
+
+    return SimpleNamespace(subjects=subjects, at_friction_draws=drawn), speed
 
 
 def test_draws_of_studies_as_small_as_the_reports(monkeypatch):

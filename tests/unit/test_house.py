@@ -11,7 +11,7 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 SOURCE = REPOSITORY / "src"
-LARGEST = 80_000  # lines of source: 70,000 without design studies, exports and file formats
+LARGEST = 84_000  # lines of source: 80,000 without the app
 START = 0.15  # s of CPU that `import underfoot` may take
 
 

@@ -19,6 +19,7 @@ from .stribeck import stribeck
 from .studies import studies_app
 from .study import study_app
 from .trials import trials_app
+from .web_app import app as web_app
 
 RENAMED = {
     "risk": {"--wanted": "--target"},
@@ -82,6 +83,7 @@ COMMANDS: tuple[Callable[..., None], ...] = (
 for command in COMMANDS:
     app.command(cls=Command)(guarded(command))
 app.command("test", cls=Command)(guarded(cases.by_method))
+app.command("app", cls=Command)(guarded(web_app))
 for group in (trials_app, calibrate_app, studies_app, study_app, outsole_app):
     app.add_typer(group)
 

@@ -1,6 +1,5 @@
 """Errors as plain sentences and exit codes; a traceback only on request."""
 
-import errno
 import functools
 import os
 import signal
@@ -13,17 +12,6 @@ import typer
 
 INTERRUPTED, TERMINATED, INTERNAL = 130, 143, 70
 """Exit codes after Ctrl-C, after SIGTERM and after an error of the program itself."""
-_FILE_ERRORS = {
-    errno.ENOENT: "{} does not exist",
-    errno.EISDIR: "{} is a folder; a file is needed",
-    errno.ENOTDIR: "a part of {} is a file, not a folder",
-    errno.EACCES: "no permission to use {}",
-    errno.EPERM: "no permission to use {}",
-    errno.EROFS: "{} can't be written: the disk is read-only",
-    errno.ENOSPC: "no space left on the disk for {}",
-    errno.EEXIST: "{} exists already",
-    errno.ENAMETOOLONG: "the name {} is too long",
-}
 
 
 class Terminated(KeyboardInterrupt):
@@ -35,7 +23,7 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
 
     @functools.wraps(command)
     def run(*args: Any, **kwargs: Any) -> None:
-        from underfoot.core.errors import Cancelled, UnderfootError
+        from underfoot.core.errors import Cancelled, UnderfootError, error_text
 
         if os.environ.get("UNDERFOOT_DEBUG") == "1":
             return command(*args, **kwargs)
@@ -47,19 +35,16 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
             text, code = "terminated; no partial output was left behind", TERMINATED
         except (KeyboardInterrupt, Cancelled):
             text, code = "stopped; no partial output was left behind", INTERRUPTED
-        except UnderfootError as error:
-            text, code = f"error: {error}", error.exit_code
+        except (UnderfootError, MemoryError) as error:
+            text, code = f"error: {error_text(error)}", getattr(error, "exit_code", 1)
         except BrokenPipeError:
             # the reader of a pipe (head, less) closed it: not an error
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             raise typer.Exit(0) from None
         except OSError as error:
-            text, code = f"error: {file_trouble(error)}", 1
-        except MemoryError:
-            text, code = "error: not enough memory. Choose a coarser numerics.grid_spacing.", 1
+            text, code = f"error: {error_text(error)}", 1
         except Exception as error:
-            text, code = f"internal error: {type(error).__name__}: {error}\n", INTERNAL
-            text += "Please report it with the case file; UNDERFOOT_DEBUG=1 shows the traceback."
+            text, code = f"{error_text(error)}; UNDERFOOT_DEBUG=1 shows the traceback.", INTERNAL
         say(text)
         raise typer.Exit(code)
 
@@ -74,15 +59,6 @@ def end_cleanly_on_sigterm() -> None:
 
     if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
         signal.signal(signal.SIGTERM, end)
-
-
-def file_trouble(error: OSError) -> str:
-    """Return what went wrong with a file, with its name."""
-    name = str(error.filename or "")
-    text = _FILE_ERRORS.get(error.errno or 0)
-    if text is None:
-        return f"{error.strerror or error}: {name}".rstrip(": ") + "."
-    return text.format(name or "the file") + "."
 
 
 def say(text: str) -> None:

@@ -1,6 +1,7 @@
 """The error family: where, what, what is allowed, the nearest match, the remedy."""
 
 import difflib
+import errno
 from collections.abc import Iterable, Sequence
 
 
@@ -94,6 +95,39 @@ class Cancelled(UnderfootError):
     """The user stopped the work."""
 
     exit_code = 130
+
+
+_FILE_ERRORS = {
+    errno.ENOENT: "{} does not exist",
+    errno.EISDIR: "{} is a folder; a file is needed",
+    errno.ENOTDIR: "a part of {} is a file, not a folder",
+    errno.EACCES: "no permission to use {}",
+    errno.EPERM: "no permission to use {}",
+    errno.EROFS: "{} can't be written: the disk is read-only",
+    errno.ENOSPC: "no space left on the disk for {}",
+    errno.EEXIST: "{} exists already",
+    errno.ENAMETOOLONG: "the name {} is too long",
+}
+
+
+def error_text(error: BaseException) -> str:
+    """Return what went wrong in words for people; of an error of the program itself its type."""
+    if isinstance(error, UnderfootError):
+        return str(error)
+    if isinstance(error, OSError):
+        return file_trouble(error)
+    if isinstance(error, MemoryError):
+        return "not enough memory. Choose a coarser numerics.grid_spacing."
+    return f"internal error: {type(error).__name__}: {error}\nPlease report it with the case file"
+
+
+def file_trouble(error: OSError) -> str:
+    """Return what went wrong with a file, with its name."""
+    name = str(error.filename or "")
+    text = _FILE_ERRORS.get(error.errno or 0)
+    if text is None:
+        return f"{error.strerror or error}: {name}".rstrip(": ") + "."
+    return text.format(name or "the file") + "."
 
 
 def nearest_match(given: str, known: Iterable[str]) -> str | None:

@@ -19,9 +19,6 @@ from typing import Any
 from .errors import Cancelled, UnderfootError
 from .pool import one_thread, watch_parent
 
-GRACE = 1.0
-"""s that a cancelled job has to end by itself before its process is killed."""
-
 
 @dataclass
 class Job:
@@ -55,12 +52,14 @@ class Worker:
 
     Parameters:
         preload: Modules to import before the first job.
+        grace: s that a cancelled job has to end by itself before its process is killed.
 
     Not for several threads at once. Use it as a context manager, or ``close`` it.
     """
 
-    def __init__(self, preload: Sequence[str] = ()) -> None:
+    def __init__(self, preload: Sequence[str] = (), grace: float = 1.0) -> None:
         self._preload = tuple(preload)
+        self._grace = grace
         self._count = 0
         self._job: Job | None = None
         self._start()
@@ -125,7 +124,7 @@ class Worker:
         if self._job is None:
             return None
         self._cancelled.set()
-        ended = self.poll(GRACE)
+        ended = self.poll(self._grace)
         while ended is None and self._job is not None and self._pipe.poll(0.0):
             ended = self.poll()
         if ended is None:

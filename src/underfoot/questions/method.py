@@ -250,30 +250,20 @@ def method_prediction(
 ) -> MethodPrediction:
     """Return the COF that a test method would measure on the shoe of a case.
 
-    Parameters
-    ----------
-    case
-        Shoe and models; floor, fluid and motion as far as the method leaves them open.
-    method
-        Name of a set-up in the catalogue, see ``method_name``.
-    keep
-        Parts of the case to keep against the method: any of ``KEEPABLE``; each is listed as a
-        departure from it.
-    with_band
-        Vary the open inputs too (two quick runs each); without it the spread is that of the
-        friction law alone.
-    quick
-        The coarse grid for the prediction itself.
+    Parameters:
+        case: Shoe and models; floor, fluid and motion as far as the method leaves them open.
+        method: Name of a set-up in the catalogue, see ``method_name``.
+        keep: Parts of the case to keep against the method: any of ``KEEPABLE``; each is listed as a
+            departure from it.
+        with_band: Vary the open inputs too (two quick runs each); without it the spread is that of
+            the friction law alone.
+        quick: The coarse grid for the prediction itself.
 
-    Notes
-    -----
     The mean over the averaging window is Simpson's rule on its beginning, middle and end. The
     probability of passing takes ln COF as normally distributed.
 
-    Raises
-    ------
-    InputError
-        An unknown method, a case without what the method leaves open.
+    Raises:
+        InputError: An unknown method, a case without what the method leaves open.
     """
     for name in keep:
         if name not in KEEPABLE:

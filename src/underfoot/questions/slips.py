@@ -100,6 +100,10 @@ class SlipPopulation(Presentable):
                 f"Inlets of {1e3 * study.array.inlet_diameter:.3g} mm read at most {percent(seen)} "
                 "of the film's highest pressure: a low reading does not show that there is no film."
             )
+        if study.by_friction is None and len(study.subjects) > 1:
+            reasons.append(
+                "The interval holds the number of walkers alone, not the spread of the friction."
+            )
         if study.failed:
             reasons.append(f"{study.failed} slips could not be solved and are left out.")
         return tuple(reasons)

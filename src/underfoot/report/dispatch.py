@@ -55,18 +55,14 @@ def figures(shown: object) -> FigureMakers:
 def plot(shown: object, *args: Any, **options: Any) -> Figure:
     """Return a figure of an object.
 
-    Parameters
-    ----------
-    shown
-        A result (name of a field on the sole, or nothing for all of them), a comparison (name of
-        a field), a sensitivity, a wear series, slips, a case, a contact table, a trial ...
-    *args, **options
-        What to draw of it; by default the first of its ``figures``.
+    Parameters:
+        shown: A result (name of a field on the sole, or nothing for all of them), a comparison
+            (name of a field), a sensitivity, a wear series, slips, a case, a contact table, a trial
+            ...
+        *args, **options: What to draw of it; by default the first of its ``figures``.
 
-    Raises
-    ------
-    InputError
-        A type without a figure, or a name that the object has no figure of.
+    Raises:
+        InputError: A type without a figure, or a name that the object has no figure of.
     """
     chosen = _registered(plot, shown)
     if chosen is not None:
@@ -118,15 +114,11 @@ def write_report(
 
     ``further`` are more data files by name, each with the function that writes it.
 
-    Returns
-    -------
-    Written
-        The folder, the page and one line for each file that could not be written.
+    Returns:
+        Written: The folder, the page and one line for each file that could not be written.
 
-    Raises
-    ------
-    InputError
-        A type without a page; a folder that holds something else.
+    Raises:
+        InputError: A type without a page; a folder that holds something else.
     """
     chosen = _registered(write_report, shown)
     if chosen is not None:

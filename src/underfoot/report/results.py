@@ -147,9 +147,9 @@ def _comparison_sections(
     return parts, viewer_script() if comparison.usable else ""
 
 
-def sole_fields(case: Case) -> Fields:
-    """Return the height of a case's sole above the floor, on the coarse grid."""
-    sole = sole_map(case, case.numerics.quick_grid_spacing, silent)
+def sole_fields(case: Case, spacing: float | None = None) -> Fields:
+    """Return the height of a case's sole above the floor, on the coarse grid or one of its own."""
+    sole = sole_map(case, spacing or case.numerics.quick_grid_spacing, silent)
     labels = {"units": "m", "long_name": "height of the undeformed sole"}
     return labelled(
         {

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from functools import cache
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,16 +22,27 @@ from .drawn_sole import DrawnSole, drawn_sole
 from .html import environment
 from .quantities import Quantity, carried_load, drawn, quantities, scale
 
-if TYPE_CHECKING:
-    from underfoot.compute.result import Result
-
 SCRIPTS = ("viewer_data.js", "viewer_draw.js", "viewer_page.js")
 _DIFFERENCES = "RdBu_r"
 _MOST_HISTORY_CELLS = 1_500_000
 """Cells of all instants of one history; more is thinned in time so that a page stays small."""
 
 
-def viewer_section(results: Sequence[Result]) -> str:
+class OnSole(Protocol):
+    """A name and the fields on a sole: a result, or what is shown before there is one."""
+
+    @property
+    def name(self) -> str:
+        """What stands above the sole."""
+        ...
+
+    @property
+    def data(self) -> Fields:
+        """Heights and fields on (x, y)."""
+        ...
+
+
+def viewer_section(results: Sequence[OnSole]) -> str:
     """Return the viewer of one result, or of several side by side, as a part of a page.
 
     The page needs ``viewer_script`` once, after its sections, and the style sheets of this room.
@@ -59,7 +70,7 @@ def viewer_script(*further: str) -> str:
     return "(() => {\n" + "\n".join(parts) + "\n})();"
 
 
-def viewer_scene(results: Sequence[Result]) -> dict[str, Any]:
+def viewer_scene(results: Sequence[OnSole]) -> dict[str, Any]:
     """Return plain data for the viewer: one pane a result, one colour scale a quantity.
 
     Lengths in m, fields in their shown units. Arrays are (nx, ny) in C order as float16 of value

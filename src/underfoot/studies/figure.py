@@ -21,17 +21,13 @@ Mark = Literal[
 class Layer:
     """One series of a panel.
 
-    Parameters
-    ----------
-    mark
-        "line", "points", "bars", "across" (bars from the left), "band" (low to high), "level" and
-        "limit" (a line at y or x), "span" (from low to high, the whole width), "stack" (on those
-        before it), "map" (z over x and y), "outline" (of a map).
-    x, y, z, low, high
-        Numbers in the panel's units, array_like, kept as lists; low and high are the ends of a
-        band or of error bars.
-    width
-        Of bars.
+    Parameters:
+        mark: "line", "points", "bars", "across" (bars from the left), "band" (low to high), "level"
+            and "limit" (a line at y or x), "span" (from low to high, the whole width), "stack" (on
+            those before it), "map" (z over x and y), "outline" (of a map).
+        x, y, z, low, high: Numbers in the panel's units, array_like, kept as lists; low and high
+            are the ends of a band or of error bars.
+        width: Of bars.
     """
 
     mark: Mark

@@ -60,26 +60,16 @@ QUANTITIES = {
 class Settings:
     """How the matrix is run.
 
-    Parameters
-    ----------
-    series
-        "report", "broad" or both.
-    solver
-        "condensed" or "explicit".
-    control
-        "displacement" (the report's: height kept while sliding) or "load".
-    bulk_modulus
-        "corrected" (from Poisson's ratio 0.499) or "printed" (Table 2).
-    shoe_wavelength, floor_wavelength
-        m.
-    speeds
-        m/s.
-    slide_distance
-        m; the floor is 2.125 mm long, which leaves 1.3 mm.
-    steps_per_wavelength
-        Of the condensed solver.
-    elements
-        Of the block.
+    Parameters:
+        series: "report", "broad" or both.
+        solver: "condensed" or "explicit".
+        control: "displacement" (the report's: height kept while sliding) or "load".
+        bulk_modulus: "corrected" (from Poisson's ratio 0.499) or "printed" (Table 2).
+        shoe_wavelength, floor_wavelength: m.
+        speeds: m/s.
+        slide_distance: m; the floor is 2.125 mm long, which leaves 1.3 mm.
+        steps_per_wavelength: Of the condensed solver.
+        elements: Of the block.
     """
 
     series: tuple[str, ...] = ("report", "broad")

@@ -12,15 +12,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from underfoot.calibrate.pair_readings import PairReading, calibrated_pair
 from underfoot.case import Case
 from underfoot.compute.slips import slips
 from underfoot.core import content_hash
 from underfoot.core.catalogue import Catalogue
 from underfoot.core.provenance import program_hash
+from underfoot.friction import FrictionLaw, PairContactLaw
 from underfoot.slip.dynamics import ReducedSole, SlipStudy
 from underfoot.trials.statistics.linear import all_subsets
 
 from .figure import GREY, OURS, PRINTED, SECOND, Figure, Panel, line, points
+from .g6 import PRINTED_ACOF, SOLES, sole_case
 from .runner import Computed, Options, Table, kept, named, part
 from .verdict import Quantity
 
@@ -84,14 +87,15 @@ def compute(options: Options) -> Computed:
     }
     draws = {shoe: population_draws(fine[shoe], COUNTS[shoe], seed=options.seed) for shoe in COUNTS}
     bare = fine["untreaded"]
+    friction, words = by_friction(fine["treaded"], law_as_g6_leaves_it(fine["treaded"]))
     passages = bare.sensor_passages()
     population = bare.population
     rcof, speed = population.rcof, population.heel_speed
     return Computed(
         quantities(levels, draws),
-        tables(fine, levels, draws),
+        (*tables(fine, levels, draws), friction),
         figures(fine, passages),
-        conclusions(fine, passages),
+        (*conclusions(fine, passages), words),
         assumptions=(
             f"{population.effective_mass:.3g} of the body moves with the heel (not printed, not "
             "measured).",
@@ -153,12 +157,13 @@ def population_draws(
 ) -> dict[str, Array]:
     """Return what studies of ``count`` crossing persons would find, (draws,) each.
 
-    Persons are drawn from the simulated population with replacement; shares from all of it.
+    Persons are drawn from the simulated population with replacement; shares from all of it. Shares
+    and speeds hold the spread of the contact's friction too.
     """
     generator = np.random.default_rng(seed)
-    everybody = np.array([one.seen.slipped for one in study.subjects], float)
-    drawn_all = generator.integers(everybody.size, size=(draws, count))
-    found: dict[str, Array] = {"slipped": everybody[drawn_all].mean(axis=1)}
+    by_friction = study.at_friction_draws(draws=draws, seed=seed)
+    assert by_friction is not None  # the law of the pair has a spread
+    found = {"slipped": by_friction.means("slipped", count)}
     persons = crossing(study)
     if len(persons) < 2:
         return found
@@ -168,6 +173,7 @@ def population_draws(
         known = np.isfinite(values)
         with np.errstate(invalid="ignore"):
             found[name] = np.where(known, values, 0.0).sum(axis=1) / known.sum(axis=1)
+    found["peak_speed"] = by_friction.means("peak_speed", count, crossed=True)
     found["correlation"] = correlations(columns["peak_speed"], columns["peak_pressure"])
     rows = np.array([one.seen.row_peaks for one in persons if one.seen.row_peaks])
     if len(rows) == len(persons):
@@ -188,6 +194,49 @@ def correlations(x: Array, y: Array) -> Array:
     b = y - y.mean(axis=1, keepdims=True)
     with np.errstate(divide="ignore", invalid="ignore"):
         return (a * b).sum(axis=1) / np.sqrt((a * a).sum(axis=1) * (b * b).sum(axis=1))
+
+
+def law_as_g6_leaves_it(study: SlipStudy) -> FrictionLaw:
+    """Return the contact friction of a study, calibrated to G.6's two outsoles.
+
+    Same laboratory, other sole and fluid: the error of the laboratory carries over, that of the
+    pair does not. The packaged draws know these readings among 55 others.
+    """
+    law = study.setting.friction
+    assert isinstance(law, PairContactLaw)
+    readings = [
+        PairReading(sole_case(SOLES[sole], "pair"), PRINTED_ACOF[sole]) for sole in ("hard", "soft")
+    ]
+    return replace(law, draws=calibrated_pair(readings).draws, medians={})
+
+
+def by_friction(study: SlipStudy, calibrated: FrictionLaw) -> tuple[Table, str]:
+    """Return who slips on the treaded shoe over the spread of its contact friction, and in words.
+
+    By the law of the pair, and by that law ``calibrated`` to readings of the laboratory.
+    """
+    rows, count = [], COUNTS["treaded"]
+    for name, law in (("pair", None), ("pair, calibrated to G.6", calibrated)):
+        drawn = study.at_friction_draws(law)
+        assert drawn is not None
+        each = {
+            "contact COF": drawn.cof,
+            f"share of {count} who slip": drawn.means("slipped", count),
+            "peak speed over the sensors m/s": drawn.means("peak_speed", count, crossed=True),
+        }
+        row: dict[str, Any] = {"law": name}
+        for label, values in each.items():
+            low, row[label], high = np.nanquantile(values, [0.025, 0.5, 0.975])
+            row[f"{label}, 95 %"] = f"{low:.2g} to {high:.2g}"
+        most_stand = np.mean(each[f"share of {count} who slip"] <= 0.5)
+        row["probability that at least half do not slip"] = float(most_stand)
+        rows.append(row)
+    title = "Treaded shoe over the spread of its contact friction: median and 95 %"
+    words = (
+        "Treaded, with the contact friction that G.6's readings leave (same laboratory): at least "
+        f"half of {count} persons do not slip in {100 * most_stand:.0f} % of the draws."
+    )
+    return Table.of("friction", title, rows), words
 
 
 def quantities(

@@ -303,18 +303,12 @@ def slips(
 ) -> Slips:
     """Return computed steps of one population on three outsoles.
 
-    Parameters
-    ----------
-    acof
-        Friction of each outsole under the tester.
-    own_speed
-        Friction falls with the slipping speed as on the pin (Eq. 17), scaled to ``acof`` at the
-        tester's 0.3 m/s; otherwise it is ``acof`` at every speed.
-    subjects
-        Persons, each on all three outsoles.
+    Parameters:
+        acof: Friction of each outsole under the tester.
+        own_speed: Friction falls with the slipping speed as on the pin (Eq. 17), scaled to ``acof``
+            at the tester's 0.3 m/s; otherwise it is ``acof`` at every speed.
+        subjects: Persons, each on all three outsoles.
 
-    Notes
-    -----
     The film is left out (under the tester it carries about 2 % of the load, see the table):
     friction then depends on speed alone and the fast model has no error of its own.
     """

@@ -169,10 +169,8 @@ class StudyResult(Presentable):
 def run_study(chosen: Study, options: Options) -> StudyResult:
     """Return the result of a study; a finished one of the same program is taken from the cache.
 
-    Raises
-    ------
-    InputError
-        Settings for a study that has none.
+    Raises:
+        InputError: Settings for a study that has none.
     """
     module = import_module(f"underfoot.studies.{chosen.name}")
     if options.settings is not None and not hasattr(module, "Settings"):
@@ -201,10 +199,8 @@ def run_all(
 ) -> Iterator[StudyResult]:
     """Yield every study's result; one that fails says why and does not stop the others.
 
-    Raises
-    ------
-    Cancelled
-        The receiver of progress raised it.
+    Raises:
+        Cancelled: The receiver of progress raised it.
     """
     options = options or Options()
     for number, name in enumerate(names):
@@ -239,16 +235,12 @@ def kept(
 ) -> Iterator[tuple[Any, dict[str, np.ndarray]]]:
     """Yield (item, arrays) in the order in which they end; a stopped run goes on from there.
 
-    Parameters
-    ----------
-    room
-        Of the cache.
-    function
-        Item -> arrays by name; on the top level of a module, since other processes call it.
-    items, keys
-        What is computed, and under which content key each is kept.
-    processes
-        Items at the same time.
+    Parameters:
+        room: Of the cache.
+        function: Item -> arrays by name; on the top level of a module, since other processes call
+            it.
+        items, keys: What is computed, and under which content key each is kept.
+        processes: Items at the same time.
     """
     store = Cache(room)
     waiting: dict[str, Any] = {}

@@ -81,32 +81,20 @@ class Claim(StrEnum):
 class Statement:
     """One printed statement.
 
-    Parameters
-    ----------
-    study, id
-        Together its name, as "g4.load_athletic".
-    text, place
-        What it is about, and where it is printed (section, figure, table).
-    claim, printed
-        Its form, and what a reader sees.
-    names
-        Of an order: highest first.
-    unit, factor, si_unit
-        As printed; SI = printed x factor.
-    accepted
-        Interval that agrees (SI), from printed value and tolerance; sign and bounds are half-lines.
-    tolerance, tolerance_reason
-        Half width (SI; 0 of a bound) and where it comes from.
-    effect
-        +1 or -1 where the number is a change of which zero means no effect; 0 elsewhere.
-    quantity
-        Name of ours in the study's result.
-    kind, of
-        What it is worth; the statement that it restates or is an alternative of.
-    not_comparable
-        Why nothing of ours can stand beside it; "" where something does.
-    remark
-        What a reader should know about the cause.
+    Parameters:
+        study, id: Together its name, as "g4.load_athletic".
+        text, place: What it is about, and where it is printed (section, figure, table).
+        claim, printed: Its form, and what a reader sees.
+        names: Of an order: highest first.
+        unit, factor, si_unit: As printed; SI = printed x factor.
+        accepted: Interval that agrees (SI), from printed value and tolerance; sign and bounds are
+            half-lines.
+        tolerance, tolerance_reason: Half width (SI; 0 of a bound) and where it comes from.
+        effect: +1 or -1 where the number is a change of which zero means no effect; 0 elsewhere.
+        quantity: Name of ours in the study's result.
+        kind, of: What it is worth; the statement that it restates or is an alternative of.
+        not_comparable: Why nothing of ours can stand beside it; "" where something does.
+        remark: What a reader should know about the cause.
     """
 
     study: str
@@ -166,11 +154,9 @@ def study(name: str) -> Study:
 def read_study(name: str, content: Mapping[str, Any]) -> Study:
     """Return a study from the content of its file.
 
-    Raises
-    ------
-    InputError
-        A statement without tolerance or reason, an unknown kind or claim, a reference to a
-        statement that is not there, two independent statements on one quantity.
+    Raises:
+        InputError: A statement without tolerance or reason, an unknown kind or claim, a reference
+            to a statement that is not there, two independent statements on one quantity.
     """
     statements = []
     for table in content.get("statement", ()):

@@ -56,22 +56,15 @@ class Verdict(StrEnum):
 class Quantity:
     """A computed quantity, SI.
 
-    Parameters
-    ----------
-    values
-        One number, or one for each condition that the printed range runs over.
-    unit
-        SI unit.
-    quantiles
-        Of its distribution at ``QUANTILES``; empty where none is known.
-    levels
-        (spacing in m, values) of the same numbers on grids from coarse to fine.
-    on_grid
-        True for a solver's number: without two grids it can't be judged.
-    names, chance
-        Of the values, for an order, and the probability of the printed order where it is known.
-    missing
-        Why there is no number; ``unconverged`` where the solver did not end.
+    Parameters:
+        values: One number, or one for each condition that the printed range runs over.
+        unit: SI unit.
+        quantiles: Of its distribution at ``QUANTILES``; empty where none is known.
+        levels: (spacing in m, values) of the same numbers on grids from coarse to fine.
+        on_grid: True for a solver's number: without two grids it can't be judged.
+        names, chance: Of the values, for an order, and the probability of the printed order where
+            it is known.
+        missing: Why there is no number; ``unconverged`` where the solver did not end.
     """
 
     values: tuple[float, ...]
@@ -215,10 +208,8 @@ def grid_value(levels: Sequence[tuple[float, float]], tolerance: float) -> GridV
 def judge(statement: Statement, quantities: Mapping[str, Quantity]) -> Judgement:
     """Return the verdict on one statement.
 
-    Raises
-    ------
-    InputError
-        A quantity that the study does not compute, or one of another unit.
+    Raises:
+        InputError: A quantity that the study does not compute, or one of another unit.
     """
     if statement.not_comparable:
         return _judgement(statement, Verdict.NOT_COMPARABLE, statement.not_comparable)

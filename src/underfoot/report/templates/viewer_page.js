@@ -2,19 +2,22 @@
 
 const LETTERS = "ABCDEFGHIJKL";
 
+// Turn the stored arrays of a pane into numbers.
+async function unpackPane(pane) {
+  const count = pane.nx * pane.ny;
+  pane.height = await unpack(pane.height, count);
+  pane.land = await unpack(pane.land, count);
+  if (pane.pressed) pane.pressed = await unpack(pane.pressed, count);
+  pane.ready = {};
+  for (const [name, stored] of Object.entries(pane.fields)) pane.ready[name] = await unpack(stored, count);
+}
+
 async function startViewer(root) {
   const scene = JSON.parse(root.querySelector("script[type='application/json']").textContent);
   const find = (name) => root.querySelector(`[data-part="${name}"]`);
   const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   const colours = Object.fromEntries(Object.entries(scene.colours).map(([k, v]) => [k, bytes(v)]));
-  for (const pane of scene.panes) {
-    const count = pane.nx * pane.ny;
-    pane.height = await unpack(pane.height, count);
-    pane.land = await unpack(pane.land, count);
-    if (pane.pressed) pane.pressed = await unpack(pane.pressed, count);
-    pane.ready = {};
-    for (const [name, stored] of Object.entries(pane.fields)) pane.ready[name] = await unpack(stored, count);
-  }
+  await Promise.all(scene.panes.map(unpackPane));
   const stages = [...root.querySelectorAll(".stage")];
   const drawings = stages.map((stage, k) => new Drawing(stage.querySelector("canvas"), scene.panes[k], colours));
   const state = { quantity: scene.quantities[0], frame: scene.steps ? 0 : -1, cell: -1, pane: 0, difference: false };
@@ -378,10 +381,36 @@ async function startViewer(root) {
   look("oblique");
   await choose(state.quantity);
   root.dataset.ready = "yes";
+  return {
+    view,
+    get quantity() { return state.quantity.name; },
+    // Colour by a quantity, where there is one of this name.
+    colour(name) {
+      const at = scene.quantities.findIndex((q) => q.name === name);
+      if (at > 0) { root.querySelectorAll("input[name=quantity]")[at].checked = true; choose(scene.quantities[at]); }
+    },
+    // Take other values and shapes on the same soles and quantities; false where they are not the same.
+    async update(fresh) {
+      const same = fresh.panes.length === scene.panes.length && fresh.quantities.length === scene.quantities.length
+        && fresh.quantities.every((q, k) => q.name === scene.quantities[k].name);
+      if (!same) return false;
+      await Promise.all(fresh.panes.map(unpackPane));
+      const chosen = scene.quantities.indexOf(state.quantity);
+      scene.panes.forEach((pane, k) => {
+        Object.assign(pane, fresh.panes[k]);
+        drawings[k].shape();
+      });
+      scene.quantities = fresh.quantities;
+      state.cell = -1;
+      await choose(scene.quantities[chosen]);
+      return true;
+    },
+  };
 }
 
-for (const root of document.querySelectorAll(".viewer")) {
-  startViewer(root).catch((problem) => {
+// Start a viewer, or say in words why there is none.
+function openViewer(root) {
+  return startViewer(root).catch((problem) => {
     const note = root.querySelector('[data-part="loading"]');
     note.textContent = `The 3-D picture can't be shown here (${problem.message}). The maps of the page show the same fields.`;
     note.hidden = false;
@@ -389,3 +418,5 @@ for (const root of document.querySelectorAll(".viewer")) {
     root.dataset.ready = "no";
   });
 }
+
+for (const root of document.querySelectorAll(".viewer")) openViewer(root);

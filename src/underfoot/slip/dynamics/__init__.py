@@ -30,6 +30,7 @@ from .sensors import FloorSensors as FloorSensors
 from .sensors import PressureShape as PressureShape
 from .sensors import array_pressures as array_pressures
 from .sensors import pressure_shape as pressure_shape
+from .study import FrictionDraws as FrictionDraws
 from .study import SlipStudy as SlipStudy
 from .study import SubjectSlip as SubjectSlip
 from .study import slip_study as slip_study

@@ -30,33 +30,22 @@ GATE = 0.15  # of body weight (100 N of 70 kg): RCOF counts above it, as in the 
 class GaitHistory:
     """One step of dry walking from heel contact on.
 
-    Parameters
-    ----------
-    name
-        Of the recording and step.
-    time
-        (n,), s, from 0, rising.
-    normal
-        (n,), normal force over body weight, 1, not negative.
-    ratio
-        (n,), shear over normal force, 1; positive pushes the floor forward (braking), which is
-        what slides the foot forward when friction fails. Size: resultant; sign: along the walk.
-    foot_angle
-        (n,), rad, toe up positive, 0 with the foot flat; None when not recorded.
-    walking_speed
-        m/s; None when not recorded.
-    heel_speed
-        Horizontal speed of the heel marker at contact, m/s; None when not recorded.
-    heel_velocity
-        (n,), m/s, of the heel over the floor along the walk; None when not recorded.
-    source
-        Recording, licence and how body weight was found.
+    Parameters:
+        name: Of the recording and step.
+        time: (n,), s, from 0, rising.
+        normal: (n,), normal force over body weight, 1, not negative.
+        ratio: (n,), shear over normal force, 1; positive pushes the floor forward (braking), which
+            is what slides the foot forward when friction fails. Size: resultant; sign: along the
+            walk.
+        foot_angle: (n,), rad, toe up positive, 0 with the foot flat; None when not recorded.
+        walking_speed: m/s; None when not recorded.
+        heel_speed: Horizontal speed of the heel marker at contact, m/s; None when not recorded.
+        heel_velocity: (n,), m/s, of the heel over the floor along the walk; None when not recorded.
+        source: Recording, licence and how body weight was found.
 
-    Raises
-    ------
-    InputError
-        Arrays that don't match, times that don't rise, values that are not finite, a negative
-        load, a ratio outside -1.5 to 1.5.
+    Raises:
+        InputError: Arrays that don't match, times that don't rise, values that are not finite, a
+            negative load, a ratio outside -1.5 to 1.5.
     """
 
     name: str

@@ -138,21 +138,14 @@ def slip_motion(
     greatest value at the lowest speed. A foot is not pushed backward. It ends when the foot rests
     and braking is over, or with the history.
 
-    Parameters
-    ----------
-    walker
-        Who steps.
-    contact
-        Fresh, unloaded.
-    step
-        Longest step, s.
-    observe
-        Called with the time and the contact after every step.
+    Parameters:
+        walker: Who steps.
+        contact: Fresh, unloaded.
+        step: Longest step, s.
+        observe: Called with the time and the contact after every step.
 
-    Raises
-    ------
-    InputError
-        A step that is not positive or longer than a tenth of the history.
+    Raises:
+        InputError: A step that is not positive or longer than a tenth of the history.
     """
     history = walker.step
     end = history.duration

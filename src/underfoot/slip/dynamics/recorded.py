@@ -30,18 +30,13 @@ _TOE = re.compile(r"toe$|mt2$|mt1$", re.IGNORECASE)
 def recorded_histories(path: Path | str, *, mass: float | None = None) -> list[GaitHistory]:
     """Return a history for every accepted step of a recording (any file ``trials`` reads).
 
-    Parameters
-    ----------
-    path
-        C3D, MOT or table with force plates.
-    mass
-        Of the person, kg; None takes the file's, else body weight is estimated as mean normal
-        force of the stance x 2 x 0.62 (two stances of 62 % of a stride carry it together).
+    Parameters:
+        path: C3D, MOT or table with force plates.
+        mass: Of the person, kg; None takes the file's, else body weight is estimated as mean normal
+            force of the stance x 2 x 0.62 (two stances of 62 % of a stride carry it together).
 
-    Raises
-    ------
-    InputError
-        No accepted step; the reasons are listed.
+    Raises:
+        InputError: No accepted step; the reasons are listed.
     """
     trial = read_trial(Path(path))
     steps = required_frictions(trial)

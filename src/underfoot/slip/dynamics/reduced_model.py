@@ -255,25 +255,18 @@ def fitted_reduced(
 ) -> ReducedFit:
     """Return the reduced model that follows full runs best.
 
-    Parameters
-    ----------
-    setting
-        Shoe, floor and fluid of the runs.
-    runs, held_out
-        Full motions to fit to, and others to test on.
-    areas
-        (load, shoe angle, (sum p)^2 / sum p^2 dA) of the full runs' instants: the loaded area.
+    Parameters:
+        setting: Shoe, floor and fluid of the runs.
+        runs, held_out: Full motions to fit to, and others to test on.
+        areas: (load, shoe angle, (sum p)^2 / sum p^2 dA) of the full runs' instants: the loaded
+            area.
 
-    Notes
-    -----
     Area constants by regression on ``areas``. The others by least squares on the film's share of
     the load (full speed imposed) and on the speed in time (foot set free), over 0.2 m/s, from
     four starts.
 
-    Raises
-    ------
-    InputError
-        Fewer than three runs or areas.
+    Raises:
+        InputError: Fewer than three runs or areas.
     """
     from scipy.optimize import least_squares
 

@@ -1,23 +1,48 @@
 """A population on one floor: who slips, how fast, how far, and what sensors see."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from underfoot.core import Cache, ConvergenceError, Progress, SourcedValue, Status, silent
+from underfoot.core import (
+    Cache,
+    ConvergenceError,
+    InputError,
+    Progress,
+    SourcedValue,
+    Status,
+    silent,
+)
 from underfoot.core.arrays import Array
 from underfoot.core.progress import part
+from underfoot.friction import FrictionLaw, sampled_points
 
 from .full_model import ROOM, FullRun, Setting, full_runs
 from .motion import COLUMNS, STEP, SlipMotion
 from .observation import ObservedSlip, Outcome, OutcomeLimits, observed
-from .reduced_model import NAMES, ReducedFit, ReducedSole, cof_table, design, fitted_reduced
+from .reduced_model import (
+    NAMES,
+    SPEED_SCALE,
+    ReducedFit,
+    ReducedSole,
+    cof_table,
+    design,
+    fitted_reduced,
+)
 from .sensors import FloorSensors, PressureShape, array_pressures, pressure_shape
 from .walker import Population, Walker
 
 Z95 = 1.959963984540054
+DRAWS = 1000
+LEVELS = 15
+"""Friction levels at which everybody slips again; a draw of the friction takes the nearest."""
+MEAN_PRESSURE = 2.5e5
+"""Pa, contact pressure at which the spread of a contact's friction is taken: 500 N on 20 cm2."""
 FIT_RUNS, HELD_OUT = 12, 4
 
 
@@ -32,11 +57,45 @@ class SubjectSlip:
 
 
 @dataclass(frozen=True, slots=True)
+class FrictionDraws:
+    """A study at levels of its contact friction; ``nearest`` (draws,) is the level of each draw.
+
+    ``cof`` (draws,) is the drawn COF of the contact, flat land without edges of lugs.
+    """
+
+    levels: tuple[SlipStudy, ...]
+    nearest: Array
+    cof: Array
+    seed: int = 0
+
+    def means(self, name: str, count: int, *, crossed: bool = False) -> Array:
+        """Return the mean of a number over ``count`` walkers, (draws,); nan where none has it.
+
+        The walkers are drawn from those at the friction of the draw; ``crossed`` takes only those
+        whose heel passed over the sensors.
+        """
+        generator = np.random.default_rng(self.seed)
+        found = np.full(self.nearest.size, math.nan)
+        for level, study in enumerate(self.levels):
+            values = study.of(name)
+            if crossed:
+                values = values[study.of("crossed") > 0]
+            rows = np.flatnonzero(self.nearest == level)
+            if values.size:
+                found[rows] = values[generator.integers(values.size, size=(rows.size, count))].mean(
+                    axis=1
+                )
+        return found
+
+
+@dataclass(frozen=True, slots=True)
 class SlipStudy:
     """A population's slips; ``full`` says that everybody went through the full model.
 
     ``fit`` and ``pressure_error`` (relative error of the peak reading on held-out full runs) are
     None on a dry floor; ``representative`` is a full run of the person closest to the median.
+    ``by_friction`` is the study over the spread of its contact friction: None without a reduced
+    model, or where an input of the law has no standard deviation.
     """
 
     setting: Setting
@@ -51,6 +110,7 @@ class SlipStudy:
     breaches: tuple[str, ...] = ()
     failed: int = 0
     sole: ReducedSole | None = None
+    by_friction: FrictionDraws | None = None
 
     def shares(self) -> dict[Outcome, tuple[float, float, float]]:
         """Return share, lower and upper 95 % bound (Wilson) of each class of distance slipped.
@@ -62,13 +122,61 @@ class SlipStudy:
         return {name: (n / count, *_wilson(n, count)) for name, n in hits.items()}
 
     def slipped(self) -> tuple[float, float, float]:
-        """Return the share of steps that slip, and its 95 % bounds (Wilson).
+        """Return the share of steps that slip, and its 95 % bounds.
 
         A step slips when the heel's peak speed after its first minimum exceeds 0.2 m/s (G.6.1,
-        ``trials.SlipDefinition``): the one definition of a slip in the package.
+        ``trials.SlipDefinition``): the one definition of a slip in the package. The bounds hold
+        the number of walkers and, where the law of friction has a spread, that; else they are
+        Wilson's of the walkers alone.
         """
         hits = sum(s.seen.slipped for s in self.subjects)
-        return (hits / len(self.subjects), *_wilson(hits, len(self.subjects)))
+        count = len(self.subjects)
+        if self.by_friction is None or count < 2:
+            return (hits / count, *_wilson(hits, count))
+        low, high = np.quantile(self.by_friction.means("slipped", count), [0.025, 0.975])
+        return hits / count, float(low), float(high)
+
+    def at_contact_friction(self, factor: float) -> SlipStudy:
+        """Return the same walkers if the contact rubbed ``factor`` times as much.
+
+        By the reduced model; without pressures at the sensors.
+
+        Raises:
+            InputError: A study without a reduced model (``full``).
+        """
+        if self.sole is None:
+            raise InputError("the study has no reduced model", where="study", allowed="full=False")
+        sole = replace(self.sole, cofs=factor * self.sole.cofs)
+        walkers = [s.walker for s in self.subjects]
+        subjects = _reduced_subjects(sole, None, walkers, self.array, None)
+        return replace(self, subjects=tuple(subjects), sole=sole, by_friction=None)
+
+    def at_friction_draws(
+        self, law: FrictionLaw | None = None, *, draws: int = DRAWS, seed: int = 0
+    ) -> FrictionDraws | None:
+        """Return the study over the spread of its contact friction, or that of another ``law``.
+
+        None without a reduced model, or where an input of the law has no standard deviation.
+        """
+        if self.sole is None:
+            return None
+        own = self.setting.friction
+        place: dict[str, Any] = {
+            "contact_pressure": MEAN_PRESSURE,
+            "speed": SPEED_SCALE,
+            "film_thickness": 1e-3,
+        }
+        spread = sampled_points(law or own, samples=draws, seed=seed, **place)
+        if spread is None:
+            return None
+        cof = np.ravel(spread.draws)
+        parts = own(MEAN_PRESSURE, SPEED_SCALE, 1e-3)
+        factors = cof * MEAN_PRESSURE / float(parts.adhesion + parts.hysteresis)
+        low, high = np.maximum(np.quantile(factors, [0.005, 0.995]), 0.01)
+        levels = np.geomspace(low, high, LEVELS)
+        apart = np.log(np.maximum(factors, 0.01))[:, None] - np.log(levels)
+        studies = [self.at_contact_friction(float(level)) for level in levels]
+        return FrictionDraws(tuple(studies), np.abs(apart).argmin(axis=1), cof, seed)
 
     def of(self, name: str) -> Array:
         """Return a number of every subject (n,), nan where there is none."""
@@ -246,7 +354,7 @@ def slip_study(
     subjects = _reduced_subjects(fit.sole, shape, walkers, array, limits)
     chosen = walkers[_middle(subjects)]
     middle_run = full_runs(setting, [chosen], progress=part(progress, 0.95, 1.0), **options)
-    return SlipStudy(
+    study = SlipStudy(
         setting,
         population,
         array,
@@ -260,6 +368,7 @@ def slip_study(
         len(runs) - len(good),
         fit.sole,
     )
+    return replace(study, by_friction=study.at_friction_draws())
 
 
 _REMEDY = "Use a finer grid, a thicker start film, or a narrower population"
@@ -293,7 +402,8 @@ def _dry_study(
     constants[[1, 2]] = 0.0
     sole = ReducedSole(constants, None, 1e-3, setting.shoe_angle, speeds, cofs)
     subjects = _reduced_subjects(sole, None, walkers, array, limits)
-    return SlipStudy(setting, population, array, tuple(subjects), False, sole=sole)
+    study = SlipStudy(setting, population, array, tuple(subjects), False, sole=sole)
+    return replace(study, by_friction=study.at_friction_draws())
 
 
 def _subject(

@@ -1,0 +1,109 @@
+"""Parts that several pages show: soles in 3-D, tables, a place for files, a progress line."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from typing import Any
+
+from nicegui import ui
+from nicegui.events import GenericEventArguments
+
+from .jobs import Task
+from .session import Session, as_json
+from .uploads import MOST_BYTES
+
+
+class SoleView(ui.element):
+    """The 3-D viewer of the reports on a page; it keeps its place while the data change."""
+
+    def __init__(self, session: Session) -> None:
+        super().__init__("div")
+        self._session = session
+        self.classes("sole-view")
+
+    def show(self, html: str) -> None:
+        """Show what ``scene_section`` returned, from the answer of a computing process."""
+        self.fetch(self._session.keep(html))
+
+    def fetch(self, address: str) -> None:
+        """Show the viewer at an address, where the view and the colour stay if they can."""
+        ui.run_javascript(f"showSole({self.html_id!r}, {address!r})")
+
+
+def table(shown: Mapping[str, Any]) -> ui.element:
+    """Return a table of text: ``title``, ``columns``, ``rows``."""
+    with ui.element("div").classes("wide") as made, ui.element("table"):
+        if shown["title"]:
+            with ui.element("caption"):
+                ui.label(shown["title"])
+        if any(shown["columns"]):
+            with ui.element("thead"), ui.element("tr"):
+                for name in shown["columns"]:
+                    with ui.element("th").props('scope="col"'):
+                        ui.label(name)
+        with ui.element("tbody"):
+            for row in shown["rows"]:
+                with ui.element("tr"):
+                    for number, cell in enumerate(row):
+                        with ui.element("td" if number else "th") as place:
+                            ui.label(cell.strip())
+                        if not number:
+                            place.props('scope="row"').classes("part" * cell.startswith("  "))
+    return made
+
+
+def sentences(lines: Sequence[str], kind: str = "") -> None:
+    """Show sentences, a paragraph each."""
+    for line in lines:
+        ui.label(line).classes(kind)
+
+
+def drop_zone(
+    session: Session,
+    folder: str,
+    on_files: Callable[[list[str]], Awaitable[None]],
+    *,
+    label: str,
+    accept: str = "",
+    multiple: bool = False,
+) -> ui.element:
+    """Return a place that takes files by drop or choice into ``folder`` of the project.
+
+    ``on_files`` gets their paths in the project when all are there.
+    """
+    settings = {"folder": folder, "most": MOST_BYTES, "multiple": multiple, "accept": accept}
+    zone = ui.element("div").classes("drop")
+    zone.props(f'role="button" tabindex="0" aria-label="{label}"')
+    with zone:
+        ui.label(label)
+        ui.label("").classes("soft drop-state").props('aria-live="polite"')
+
+    async def arrived(event: GenericEventArguments) -> None:
+        await on_files(list(event.args["detail"]["paths"]))
+
+    zone.on("files", arrived, args=["detail"])
+    words = {key: session.text(f"files.{key}") for key in ("sending", "too_large", "failed")}
+    ui.run_javascript(f"takeFiles({zone.html_id!r}, {as_json(settings)}, {as_json(words)})")
+    return zone
+
+
+def task_line(session: Session, task: Task, done: Callable[[Task], Awaitable[None]]) -> ui.element:
+    """Return a line with the progress of a task and a button to stop it; ``done`` when it ended."""
+    text = session.text
+    with ui.element("div").classes("task").props('role="status"') as line:
+        label = ui.label(task.title)
+        bar = ui.linear_progress(0.0, show_value=False).props(f'aria-label="{task.title}"')
+        stop = ui.button(text("jobs.stop"), on_click=lambda: session.jobs.cancel(task))
+        stop.props("flat dense no-caps")
+
+    async def look() -> None:
+        state = task.stage if task.state == "running" else text(f"jobs.{task.state}")
+        label.text = f"{task.title}: {state}"
+        bar.value = task.fraction
+        if not task.open:
+            timer.deactivate()
+            line.delete()
+            await done(task)
+
+    timer = ui.timer(0.1, look)
+    return line

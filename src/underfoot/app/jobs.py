@@ -1,0 +1,255 @@
+"""What is computed: a queue of long jobs, and a process kept warm for quick questions.
+
+Both compute in a process of their own (``core.worker``), so the server answers meanwhile and a
+solver that dies takes nothing along. The queue is a file, ``jobs.jsonl``: after a kill of the
+server it shows what had finished and what was interrupted.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, fields
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from underfoot.core.errors import Cancelled, error_text
+from underfoot.core.worker import Job, Worker
+
+from .project import append_line, lines
+
+TICK = 0.01
+"""s between two looks at a process that computes."""
+GRACE = 0.25
+"""s that a cancelled job has to end by itself before its process is killed."""
+WAITING, RUNNING, DONE = "waiting", "running", "done"
+STOPPED, FAILED, INTERRUPTED = "stopped", "failed", "interrupted"
+SHOWN = 50
+"""Jobs that are kept in mind, the newest."""
+
+
+class Lane:
+    """One process that computes one thing after the other; safe for many who ask.
+
+    Parameters:
+        preload: Modules that the process imports when it starts.
+    """
+
+    def __init__(self, preload: Sequence[str] = ()) -> None:
+        self._preload = preload
+        self._worker: Worker | None = None
+        self._turn = asyncio.Lock()
+        self._stop = False
+
+    def start(self) -> None:
+        """Start the process, so that the first question finds it warm."""
+        if self._worker is None:
+            self._worker = Worker(self._preload, grace=GRACE)
+
+    async def ask(
+        self,
+        function: str,
+        *args: Any,
+        heard: Callable[[Job], None] | None = None,
+        **options: Any,
+    ) -> Any:
+        """Return ``function(*args, progress=..., **options)``, computed in the process.
+
+        The function is named "module:name", so that this process need not import it. ``heard`` is
+        told the job whenever it may have got on. Errors of the function pass through.
+        """
+        work = asyncio.ensure_future(self._asked(function, args, options, heard))
+        return await asyncio.shield(work)  # who asked may leave; the process is not left busy
+
+    async def _asked(
+        self,
+        function: str,
+        args: tuple[Any, ...],
+        options: dict[str, Any],
+        heard: Callable[[Job], None] | None,
+    ) -> Any:
+        async with self._turn:
+            self.start()
+            worker = self._worker
+            assert worker is not None
+            self._stop = False
+            job = worker.submit(named, function, *args, **options)
+            while not job.done:
+                if self._stop:
+                    await asyncio.to_thread(worker.cancel)
+                    break
+                worker.poll()
+                if heard is not None:
+                    heard(job)
+                if not job.done:
+                    await asyncio.sleep(TICK)
+            return job.result()
+
+    def stop(self) -> None:
+        """Stop what is computed now; who asked gets ``Cancelled``."""
+        self._stop = True
+
+    def close(self) -> None:
+        """End the process."""
+        if self._worker is not None:
+            self._worker.close()
+            self._worker = None
+
+
+@dataclass
+class Task:
+    """A job of the queue.
+
+    Attributes:
+        about: What it computes, such as the name of a variant.
+        state: waiting, running, done, stopped, failed, or interrupted by the end of the server.
+        problem: What went wrong, as the error says it.
+        answer: What the function returned, while the server runs.
+    """
+
+    number: int
+    title: str
+    about: str = ""
+    state: str = WAITING
+    stage: str = ""
+    fraction: float = 0.0
+    problem: str = ""
+    began: float = 0.0
+    ended: float = 0.0
+    answer: Any = field(default=None, repr=False)
+    work: tuple[str, tuple[Any, ...], dict[str, Any]] | None = field(default=None, repr=False)
+
+    @property
+    def open(self) -> bool:
+        """Whether it waits or runs."""
+        return self.state in (WAITING, RUNNING)
+
+
+KEPT = tuple(each.name for each in fields(Task) if each.name not in ("answer", "work"))
+"""What of a task is written to ``jobs.jsonl``."""
+
+
+class Jobs:
+    """The queue of long jobs of a project and the warm process for quick questions.
+
+    Parameters:
+        folder: The project's folder, for ``jobs.jsonl``.
+        preload: Modules that both processes import when they start.
+
+    Attributes:
+        live: For questions that are answered while a person waits.
+        tasks: Jobs by number, the oldest first.
+    """
+
+    def __init__(self, folder: Path, preload: Sequence[str] = ()) -> None:
+        self.live = Lane(preload)
+        self._full = Lane(preload)
+        self._file = folder / "jobs.jsonl"
+        self.tasks: dict[int, Task] = {}
+        self._waiting: deque[Task] = deque()
+        self._arrived = asyncio.Event()
+        self._read()
+
+    def submit(
+        self, title: str, function: str, *args: Any, about: str = "", **options: Any
+    ) -> Task:
+        """Queue ``function(*args, progress=..., **options)`` ("module:name"), return its task.
+
+        The function writes what is to last into the project's folder.
+        """
+        number = max(self.tasks, default=0) + 1
+        task = Task(number, title, about, work=(function, args, options))
+        self.tasks[number] = task
+        self._waiting.append(task)
+        self._changed(task)
+        self._arrived.set()
+        return task
+
+    def cancel(self, task: Task) -> None:
+        """Stop a task that waits or runs."""
+        if task.state == WAITING:
+            self._waiting.remove(task)
+            self._end(task, STOPPED)
+        elif task.state == RUNNING:
+            self._full.stop()
+
+    def again(self, task: Task) -> Task | None:
+        """Queue a task of this server's life once more."""
+        if task.work is None:
+            return None
+        function, args, options = task.work
+        return self.submit(task.title, function, *args, about=task.about, **options)
+
+    def latest(self, about: str, title: str | None = None) -> Task | None:
+        """Return the newest task about something, None where there is none."""
+        found = [t for t in self.tasks.values() if t.about == about and title in (None, t.title)]
+        return found[-1] if found else None
+
+    async def run(self) -> None:
+        """Compute what is queued, for ever."""
+        while True:
+            while not self._waiting:
+                self._arrived.clear()
+                await self._arrived.wait()
+            task = self._waiting.popleft()
+            await self._compute(task)
+
+    async def finished(self, task: Task) -> Task:
+        """Return a task when it has ended."""
+        while task.open:
+            await asyncio.sleep(5 * TICK)
+        return task
+
+    def close(self) -> None:
+        """End both processes."""
+        self.live.close()
+        self._full.close()
+
+    async def _compute(self, task: Task) -> None:
+        assert task.work is not None
+        function, args, options = task.work
+        task.state, task.began = RUNNING, time.time()
+        self._changed(task)
+
+        def heard(job: Job) -> None:
+            task.stage, task.fraction = job.stage, job.fraction
+
+        try:
+            task.answer = await self._full.ask(function, *args, heard=heard, **options)
+            self._end(task, DONE)
+        except Cancelled:
+            self._end(task, STOPPED)
+        except Exception as error:
+            task.problem = error_text(error)
+            self._end(task, FAILED)
+
+    def _end(self, task: Task, state: str) -> None:
+        task.state, task.ended = state, time.time()
+        task.fraction = 1.0 if state == DONE else task.fraction
+        self._changed(task)
+
+    def _changed(self, task: Task) -> None:
+        kept = {name: getattr(task, name) for name in KEPT if getattr(task, name)}
+        append_line(self._file, kept)
+        for number in list(self.tasks)[:-SHOWN]:
+            if not self.tasks[number].open:
+                del self.tasks[number]
+
+    def _read(self) -> None:
+        for line in lines(self._file):
+            if "number" in line:
+                kept = {name: value for name, value in line.items() if name in KEPT}
+                self.tasks[line["number"]] = Task(**{"title": "", **kept})
+        for task in self.tasks.values():
+            if task.open:
+                self._end(task, INTERRUPTED)
+        self.tasks = dict(list(self.tasks.items())[-SHOWN:])
+
+
+def named(function: str, *args: Any, progress: Any, **options: Any) -> Any:
+    """Return what a function ("module:name") answers."""
+    module, _, name = function.partition(":")
+    return getattr(import_module(module), name)(*args, progress=progress, **options)

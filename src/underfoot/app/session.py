@@ -1,0 +1,153 @@
+"""What a page is given: the project, what computes, the words, and ways to talk to the browser."""
+
+from __future__ import annotations
+
+import json
+import secrets
+from collections import OrderedDict
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+from urllib.parse import urlencode
+
+from nicegui import ui
+
+from underfoot.core.errors import Cancelled, UnderfootError, error_text
+
+from .jobs import Jobs
+from .project import Project
+from .text import Text
+
+Handler = Callable[[dict[str, Any]], Awaitable[Any]]
+MOST_KEPT = 64
+"""Pieces of data that the server keeps for its pages, the newest."""
+
+
+@dataclass
+class Exchange:
+    """Data that pages fetch, and questions that their scripts ask, by a key in the address."""
+
+    content: OrderedDict[str, tuple[str, str]] = field(default_factory=OrderedDict)
+    handlers: dict[str, Handler] = field(default_factory=dict)
+
+    def keep(self, text: str, media: str) -> str:
+        """Keep a text for a page and return its address."""
+        key = secrets.token_urlsafe(9)
+        self.content[key] = (text, media)
+        while len(self.content) > MOST_KEPT:
+            self.content.popitem(last=False)
+        return f"/api/content/{key}"
+
+
+@dataclass(frozen=True, slots=True)
+class Page:
+    """One page of the app.
+
+    Attributes:
+        door: Whose page it is; "" stands in no door.
+        route: Its address.
+        title: Key of its name in the text files.
+        icon: Name of a Material icon.
+        build: Puts the page's elements below the frame.
+        example: Opens a worked example of its door; the first one of a door stands on its card.
+    """
+
+    door: str
+    route: str
+    title: str
+    icon: str
+    build: Callable[[Session], None]
+    example: Callable[[Session], None] | None = None
+
+
+@dataclass
+class Session:
+    """One open page.
+
+    Attributes:
+        project: The folder that is worked on.
+        jobs: Long jobs (``jobs.submit``) and the warm process (``ask``).
+        text: The words: ``text("design.title")``.
+        query: What stands behind the ``?`` of the address.
+        pages: All pages of the app.
+        theme: "light", "dark", or "" for what the system has.
+        problems: Where errors are told; made by the frame.
+    """
+
+    project: Project
+    jobs: Jobs
+    text: Text
+    query: Mapping[str, str]
+    exchange: Exchange
+    pages: Sequence[Page]
+    theme: str = ""
+    problems: ui.element | None = None
+
+    @property
+    def variant(self) -> str | None:
+        """Return the variant of the address, else the one changed last, None without any."""
+        names = self.project.variants()
+        wanted = self.query.get("variant", "")
+        return wanted if wanted in names else next(iter(names), None)
+
+    def go(self, route: str, **query: str) -> None:
+        """Open another page."""
+        ui.navigate.to(address(route, **query))
+
+    async def ask(self, function: str, *args: Any, **options: Any) -> Any:
+        """Return what a function ("module:name") answers, computed in the warm process.
+
+        Its errors pass through; raised in a handler of a page they are told there.
+        """
+        return await self.jobs.live.ask(function, *args, **options)
+
+    def keep(self, text: str, media: str = "text/html; charset=utf-8") -> str:
+        """Keep a text for a script of the page and return the address to fetch it from."""
+        return self.exchange.keep(text, media)
+
+    def answers(self, handler: Handler) -> str:
+        """Return an address whose questions ``handler`` answers while the page is open.
+
+        The script of the page posts JSON; the handler gets it as a dictionary and returns data for
+        JSON. Its errors go back as ``{"problem": words}``.
+        """
+        key = secrets.token_urlsafe(9)
+        handlers = self.exchange.handlers
+        handlers[key] = handler
+        ui.context.client.on_delete(lambda: handlers.pop(key, None))
+        return f"/api/ask/{key}"
+
+    def tell(self, error: BaseException) -> None:
+        """Show an error on the page as it is written: where, what, what is allowed, the remedy."""
+        if isinstance(error, Cancelled) or self.problems is None:
+            return
+        with self.problems, ui.element("div").classes("problem") as box:
+            box.props('role="alert"')
+            for kind, words in problem_parts(error):
+                ui.label(words).classes(f"problem-{kind}")
+            close = ui.button(icon="close", on_click=box.delete).props("flat round dense")
+            close.props(f'aria-label="{self.text("frame.close")}"')
+
+
+def address(route: str, **query: str) -> str:
+    """Return the address of a page."""
+    return route + (f"?{urlencode(query)}" if query else "")
+
+
+def problem_parts(error: BaseException) -> list[tuple[str, str]]:
+    """Return what an error says as (kind, words): where, what, then what helps; of several, all."""
+    if not isinstance(error, UnderfootError):
+        return [("what", error_text(error))]
+    titles = {"allowed": "Allowed: {}", "nearest": 'Did you mean "{}"?'}
+    found: list[tuple[str, str]] = []
+    for each in getattr(error, "errors", (error,)):
+        parts = {"where": each.where, "what": each.what, **each.parts}
+        found += [
+            (kind, titles.get(kind, "{}").format(word)) for kind, word in parts.items() if word
+        ]
+    return found
+
+
+def as_json(content: Any) -> str:
+    """Return data as JSON that may stand in a page."""
+    return json.dumps(content, ensure_ascii=False).replace("<", "\\u003c")

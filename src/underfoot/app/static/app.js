@@ -1,0 +1,91 @@
+// The page's own scripts: soles that are fetched, sliders that ask, files that are dropped.
+
+// Show the viewer at an address; where it is of the same kind as the one there, view and colour stay.
+async function showSole(id, address) {
+  const place = document.getElementById(id), response = place && await fetch(address);
+  if (!response || !response.ok) return;
+  await putSole(place, await response.text());
+}
+
+async function putSole(place, html) {
+  const fresh = document.createElement("div");
+  fresh.innerHTML = html;
+  const scene = () => JSON.parse(fresh.querySelector("script[type='application/json']").textContent);
+  if (place.sole && await place.sole.update(scene())) return;
+  const before = place.sole;
+  for (const canvas of place.querySelectorAll("canvas")) canvas.getContext("webgl2")?.getExtension("WEBGL_lose_context")?.loseContext();
+  place.replaceChildren(...fresh.childNodes);
+  place.sole = await openViewer(place.querySelector(".viewer"));
+  if (before && place.sole) place.sole.colour(before.quantity);
+}
+
+// Send files one after the other into a folder of the project; "files" says where they are.
+function takeFiles(id, { folder, most, multiple, accept }, words) {
+  const zone = document.getElementById(id), state = zone.querySelector(".drop-state");
+  const input = Object.assign(document.createElement("input"), { type: "file", multiple, accept, hidden: true });
+  zone.append(input);
+  const say = (text, ...values) => { state.textContent = values.reduce((t, v, k) => t.replace(`%${k + 1}`, v), text); };
+  async function send(files) {
+    const paths = [];
+    for (const file of files) {
+      if (file.size > most) { say(words.too_large, file.name, Math.round(file.size / 1e6), Math.round(most / 1e6)); return; }
+      say(words.sending, file.name, (file.size / 1e6).toFixed(1));
+      const name = (file.webkitRelativePath || file.name).split("/").map(encodeURIComponent).join("/");
+      try {
+        const response = await fetch(`/api/files/${folder}/${name}`, { method: "POST", body: file });
+        const answer = response.ok ? await response.json() : { problem: (await response.text()).replace(/<[^>]*>/g, "") };
+        if (answer.problem) { say("%1", answer.problem); return; }
+        paths.push(answer.path);
+      } catch (problem) { say(words.failed, file.name, problem.message); return; }
+    }
+    say("");
+    input.value = "";
+    zone.dispatchEvent(new CustomEvent("files", { detail: { paths } }));
+  }
+  input.addEventListener("change", () => send([...input.files]));
+  zone.addEventListener("click", (e) => { if (e.target !== input) input.click(); });
+  zone.addEventListener("keydown", (e) => { if (e.key === "Enter" || e.key === " ") { e.preventDefault(); input.click(); } });
+  for (const kind of ["dragenter", "dragover"]) zone.addEventListener(kind, (e) => { e.preventDefault(); zone.classList.add("over"); });
+  for (const kind of ["dragleave", "drop"]) zone.addEventListener(kind, () => zone.classList.remove("over"));
+  zone.addEventListener("drop", (e) => { e.preventDefault(); send([...e.dataTransfer.files].slice(0, multiple ? undefined : 1)); });
+}
+
+// Sliders that ask: the next question goes out only when the last answer is drawn, and it carries
+// the newest values. An answer sets texts by name and the sole; "problem" says why there is none.
+function askLive(id, address, soleId) {
+  const root = document.getElementById(id), inputs = [...root.querySelectorAll("input[type=range]")];
+  let wanted = false, busy = false;
+  const show = (input) => {
+    const out = root.querySelector(`output[for="${input.id}"]`), value = Number(input.value) * Number(input.dataset.factor || 1);
+    const shown = input.dataset.log ? 10 ** value : value;
+    out.textContent = `${Number(shown.toPrecision(3))} ${input.dataset.unit}`.trim();
+    input.setAttribute("aria-valuetext", out.textContent);
+  };
+  const values = () => Object.fromEntries(inputs.filter((i) => i.value !== i.defaultValue).map((i) => [i.name, i.dataset.log ? 10 ** Number(i.value) : Number(i.value)]));
+  async function ask(last) {
+    if (busy) { wanted = last ? "last" : wanted || "more"; return; }
+    busy = true;
+    const began = performance.now();
+    try {
+      const body = JSON.stringify({ values: values(), last: Boolean(last) });
+      const response = await fetch(address, { method: "POST", body, headers: { "content-type": "application/json" } });
+      const answer = response.ok ? await response.json() : { problem: response.statusText };
+      const note = root.querySelector("[data-part=problem]");
+      if (note) note.textContent = answer.problem || "";
+      for (const [name, text] of Object.entries(answer.texts || {})) {
+        for (const part of document.querySelectorAll(`[data-live="${name}"]`)) part.textContent = text;
+      }
+      const place = document.getElementById(soleId);
+      if (answer.html && place) await putSole(place, answer.html);
+      await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+      root.dataset.asked = String(Number(root.dataset.asked || 0) + 1);
+      root.dataset.took = String(performance.now() - began);
+    } finally { busy = false; }
+    if (wanted) { const next = wanted; wanted = false; ask(next === "last"); }
+  }
+  for (const input of inputs) {
+    show(input);
+    input.addEventListener("input", () => { show(input); ask(false); });
+    input.addEventListener("change", () => ask(true));
+  }
+}
