@@ -46,7 +46,7 @@ def _by_command(asked, tmp_path):
     tables = {}
     for name in ("steps_wide", "edits", "measurements"):
         path = out / "tables" / f"{name}.csv"
-        tables[name] = list(csv.DictReader(path.open())) if path.is_file() else []
+        tables[name] = list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
     return tables
 
 
@@ -214,7 +214,7 @@ def test_bad_files_stand_beside_the_good_ones(walks):
     for name in ("text.c3d", "cut.c3d", hostile):
         assert cards[name]["verdict"] == "refused"
         assert cards[name]["reasons"][0]
-        assert "<" not in cards[name]["svg"].removeprefix("<svg").replace("</svg>", "")[40:]
+        assert cards[name]["svg"] == '<svg viewBox="0 0 160 70" aria-hidden="true"></svg>'
         one = work_trials.trial_view(asked, name)
         assert (one["plot"], one["steps"], one["reasons"]) == (None, [], cards[name]["reasons"])
     assert "<polyline" in cards[WALK]["svg"]

@@ -164,7 +164,8 @@ def edit_log(
         quantity = "peak slipping speed" if "peak_slipping_speed" in old else "rcof"
         key = quantity.replace(" ", "_")
         events = _event(edit.what, old), _event(edit.what, new)
-        row = (old["item"], edit.what, *events, quantity, old[key], new[key], edit.why)
+        # a contact that was excluded is no slip any more and has no speed
+        row = (old["item"], edit.what, *events, quantity, old[key], new.get(key), edit.why)
         rows.append(dict(zip(EDIT_COLUMNS, row, strict=True)))
     return rows
 
