@@ -21,8 +21,8 @@ import psutil
 from underfoot.compute.run import run
 from underfoot.explore import Study, StudyResult
 from underfoot.explore.effects import surrogates
-from underfoot.explore.plan import read_plan
 from underfoot.explore.status import study_status
+from underfoot.explore.study_file import read_plan
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 CASES = int(os.environ.get("UNDERFOOT_BENCH_CASES", "1000"))

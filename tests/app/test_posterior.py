@@ -7,9 +7,9 @@ import pytest
 
 from underfoot.core import InputError
 from underfoot.explore import Study, posterior
-from underfoot.explore.plan import read_plan
 from underfoot.explore.record import Ending, Record
 from underfoot.explore.store import Store
+from underfoot.explore.study_file import read_plan
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TEXT = """\

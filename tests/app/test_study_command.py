@@ -11,6 +11,7 @@ from pathlib import Path
 import psutil
 import pytest
 
+from underfoot.case import load
 from underfoot.explore import Study
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -124,6 +125,41 @@ def test_killed_at_any_time_it_goes_on_and_gives_the_same(finished, tmp_path):
     assert numbers(store) == numbers(folder / "out" / "heel")
 
 
+@pytest.mark.parametrize(
+    ("number", "word", "code"),
+    [(signal.SIGINT, "stopped", 130), (signal.SIGTERM, "terminated", 143)],
+)
+def test_stopped_it_says_what_is_kept_and_leaves_no_claim(finished, tmp_path, number, word, code):
+    folder, _ = finished
+    run = [*COMMAND, "study", "run", folder / "heel.toml", "--out", "x", "--workers", "2"]
+    store = tmp_path / "x"
+    with subprocess.Popen(run, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as master:
+        until(lambda: len(numbers(store)) >= 1)
+        master.send_signal(number)
+        began = time.monotonic()
+        _, said = master.communicate(timeout=60)
+    assert time.monotonic() - began < 5.0
+    assert master.returncode == code
+    assert f"{word}; every finished case is kept; the same command goes on" in said
+    assert list((store / "claims").iterdir()) == []
+    finished_before = numbers(store)
+    assert len(Study.load(store)._open()) == 6 - len(finished_before)
+
+
+@pytest.mark.slow
+def test_the_best_designs_leave_as_solids(finished, tmp_path):
+    pytest.importorskip("netgen")
+    folder, _ = finished
+    study = Study.load(folder / "out" / "heel")
+    underfoot("study", "export", study.store.folder, "given", "--count", "2", folder=tmp_path)
+    for one in study.result().best(2):
+        case = load(tmp_path / "given" / f"design_{one.number}.toml")
+        assert case.shoe.heel.profile.angle == one.changes["shoe.heel.profile.angle"]
+        text = (tmp_path / "given" / f"design_{one.number}.step").read_text()
+        assert text.startswith("ISO-10303-21")
+        assert "MANIFOLD_SOLID_BREP" in text
+
+
 @pytest.mark.slow
 def test_two_that_share_a_folder_without_a_master_give_the_same(finished, tmp_path):
     folder, _ = finished
@@ -188,6 +224,42 @@ def test_a_scheduler_that_is_not_there_is_named(finished, tmp_path):
     done = underfoot(*run, folder=tmp_path, check=False)
     assert done.returncode == 2
     assert "no Dask scheduler answers at tcp://127.0.0.1:9" in done.stderr
+
+
+@pytest.mark.slow
+def test_a_dask_cluster_that_loses_a_worker_and_then_its_scheduler(finished, tmp_path):
+    """Scheduler and workers are processes of their own, as on several machines."""
+    pytest.importorskip("distributed")
+    folder, _ = finished
+    dask = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--no-dashboard"]
+    address = "tcp://127.0.0.1:8797"
+    work = [sys.executable, "-m", "distributed.cli.dask_worker", address]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    run = [*COMMAND, "study", "run", folder / "heel.toml", "--out", "x", "--on", f"dask:{address}"]
+    store = tmp_path / "x"
+    scheduler = subprocess.Popen([*dask, "--port", "8797"], cwd=tmp_path, **quiet)
+    workers = [
+        subprocess.Popen([*work, "--nthreads", "1", "--no-dashboard"], cwd=tmp_path, **quiet)
+        for _ in range(2)
+    ]
+    try:
+        with subprocess.Popen(run, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as master:
+            until(lambda: len(numbers(store)) >= 1)
+            for process in psutil.Process(workers[0].pid).children():
+                process.kill()  # the nanny starts another
+            until(lambda: len(numbers(store)) >= 2)
+            scheduler.kill()
+            _, said = master.communicate(timeout=120)
+        assert master.returncode == 1
+        assert "the Dask scheduler tcp://127.0.0.1:8797 went away" in said
+        assert "Finished cases are kept" in said
+        assert "Traceback" not in said
+    finally:
+        for process in (scheduler, *workers):
+            process.kill()
+            process.wait()
+    underfoot("study", "run", folder / "heel.toml", "--out", "x", folder=tmp_path)
+    assert numbers(store) == numbers(folder / "out" / "heel")
 
 
 @pytest.mark.slow

@@ -8,8 +8,8 @@ import pytest
 
 from underfoot.explore import Study
 from underfoot.explore.effects import effects
-from underfoot.explore.plan import read_plan
 from underfoot.explore.posterior import posterior
+from underfoot.explore.study_file import read_plan
 
 STUDIES = Path(__file__).parents[2] / "examples" / "studies"
 

@@ -8,10 +8,10 @@ from chromium import opened
 
 from underfoot.case import load
 from underfoot.explore import Study
-from underfoot.explore.plan import read_plan
 from underfoot.explore.proposals import next_batch
 from underfoot.explore.record import Ending, Record
 from underfoot.explore.store import Store
+from underfoot.explore.study_file import read_plan
 from underfoot.report.design_studies import write_study_report
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -13,10 +13,10 @@ from underfoot.case import load
 from underfoot.core import DataError, RangeError
 from underfoot.explore.effects import effects
 from underfoot.explore.inputs import Choice, Distribution, Range
-from underfoot.explore.plan import read_plan
 from underfoot.explore.proposals import next_batch
 from underfoot.explore.record import Ending, Record
 from underfoot.explore.result import StudyResult
+from underfoot.explore.study_file import read_plan
 from underfoot.explore.surrogate import Surrogate, fitted
 from underfoot.friction.propagation import probability_higher
 
@@ -33,14 +33,6 @@ def bend(x):
 def model():
     points = qmc.Sobol(3, rng=1).random(64)
     return fitted("cof", "1", (DEPTH, SPEED, PATTERN), points, bend(points))
-
-
-@settings(deadline=None)
-@given(st.floats(0, 1))
-def test_values_and_shares_are_inverse(share):
-    for one in (DEPTH, SPEED):
-        assert one.share(one.value(share)) == pytest.approx(share, abs=1e-12)
-    assert PATTERN.value(PATTERN.share(PATTERN.value(share))) == PATTERN.value(share)
 
 
 @settings(max_examples=30, deadline=None)
@@ -83,14 +75,11 @@ def test_data_bring_the_same_surrogate_back(model):
 
 
 def test_a_surrogate_refuses_what_lies_outside_its_box_and_too_few_runs(model):
-    inside = {"shoe.tread.depth": 2e-3, "motion.speed": 0.5, "shoe.tread.pattern": "grid"}
-    mean, deviation = model.at(inside)
-    assert deviation < 0.3
-    assert math.isfinite(mean)
+    mean, deviation = model.predicted(np.array([[1 / 3, 0.4, 0.1]]))
+    assert deviation[0] < 0.3
+    assert math.isfinite(mean[0])
     with pytest.raises(RangeError, match=r"shoe.tread.depth.*ends before 5 mm.*1 mm to 4 mm"):
-        model.at({**inside, "shoe.tread.depth": 5e-3})
-    with pytest.raises(Exception, match="unknown option"):
-        model.at({**inside, "shoe.tread.pattern": "bars"})
+        model.mean(np.array([[4 / 3, 0.4, 0.1]]))
     with pytest.raises(DataError, match="too few"):
         fitted("cof", "1", model.dimensions, model.points[:9], model.values[:9])
 

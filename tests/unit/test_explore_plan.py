@@ -7,10 +7,10 @@ import pytest
 
 from underfoot.case import Case, CaseError
 from underfoot.explore.goals import Condition, Goal, read_goal, read_requirement
-from underfoot.explore.plan import UNITS, load_plan, read_plan
 from underfoot.explore.proposals import next_batch
 from underfoot.explore.record import Ending, Record
 from underfoot.explore.result import StudyResult
+from underfoot.explore.study_file import UNITS, load_plan, read_plan
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 GOOD = """\
@@ -90,6 +90,8 @@ def test_jobs_are_the_same_whenever_the_file_is_read():
         ("over conditions", "over oils", ["line 14", "draws"]),
         ("in canola_oil", "in milk", ["line 16", "glycerol_90pct"]),
         ('"rubber_volume <', '"rubber_volume > 300 cm^3", "rubber_volume <', ["both hold"]),
+        ('"rubber_volume <', '"min(cof) > 0.4", "max(cof) < 0.3", "rubber_volume <', ["both hold"]),
+        ('from = "2.5 mm"', 'from = "0.05 mm"', ["line 5", "needs a finer grid", "low end"]),
         ('minimise = ["rubber_volume"]', 'minimise = ["mass"]', ["density", "rubber_volume"]),
         ("draws = 2", "draw = 2", ["line 20", 'Did you mean "draws"']),
         ("budget = 160", "budget = 3", ["less than one design", "from 8"]),
@@ -167,7 +169,7 @@ def records(*values, draws=None):
     ],
 )
 def test_goals_are_statistics_over_conditions_and_draws(text, value):
-    goal = read_goal(text, "outputs", UNITS, STATES)
+    goal = read_goal(text, UNITS, STATES)
     assert goal.value(records(0.3, 0.2), STATES) == pytest.approx(value)
 
 
@@ -178,7 +180,7 @@ def test_a_goal_of_a_design_with_a_failed_case_is_nan():
 
 
 def test_a_requirement_holds_on_the_right_side():
-    low = read_requirement("cof > 0.2", "outputs", UNITS, STATES)
-    high = read_requirement("fluid_load < 90 N", "outputs", UNITS, STATES)
+    low = read_requirement("cof > 0.2", UNITS, STATES)
+    high = read_requirement("fluid_load < 90 N", UNITS, STATES)
     assert low.margin(0.25) == pytest.approx(0.05)
     assert high.margin(100.0) == pytest.approx(-10.0)

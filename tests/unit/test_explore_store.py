@@ -15,10 +15,11 @@ from hypothesis import strategies as st
 
 from underfoot.core import DataError, InputError
 from underfoot.explore import store as store_module
-from underfoot.explore.plan import read_plan
 from underfoot.explore.record import Ending, Job, Record
+from underfoot.explore.result import StudyResult
 from underfoot.explore.store import Store
 from underfoot.explore.study import Study
+from underfoot.explore.study_file import read_plan
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TEXT = """\
@@ -149,7 +150,7 @@ def test_views_hold_every_case(store):
     jobs = [job for k, p in enumerate(plan.grid_points()) for job in plan.jobs(k, p, 0)]
     store.add_record(record(jobs[0].key, 0.125))
     store.add_record(Record(jobs[1].key, Ending.INFEASIBLE, 'too "narrow", by far'))
-    assert store.write_views(jobs) == []
+    assert store.write_views(StudyResult(plan, jobs, store.records()).cases()) == []
     place = store.folder / "results.parquet"
     rows = duckdb.sql(f"SELECT ending, cof, reason FROM read_parquet('{place}')").fetchall()
     assert rows[0][:2] == ("computed", 0.125)

@@ -177,7 +177,8 @@ class Places:
             return path
         if any(path == other or path.startswith(other + ".") for other in self.changed):
             return f"{path} (set for this run)"
-        parts = self.moved.get(path, path).split(".")
+        # an item of a list stands on the line of its list
+        parts = self.moved.get(path, path).replace("[", ".").split(".")
         while parts:
             line = self.lines.get(tuple(parts))
             if line is not None:

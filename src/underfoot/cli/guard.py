@@ -12,6 +12,8 @@ import typer
 
 INTERRUPTED, TERMINATED, INTERNAL = 130, 143, 70
 """Exit codes after Ctrl-C, after SIGTERM and after an error of the program itself."""
+KEPT = "no partial output was left behind"
+"""What is said of a stopped command that says nothing else."""
 
 
 class Terminated(KeyboardInterrupt):
@@ -31,10 +33,12 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
             return command(*args, **kwargs)
         except typer.Exit:
             raise
-        except Terminated:
-            text, code = "terminated; no partial output was left behind", TERMINATED
-        except (KeyboardInterrupt, Cancelled):
-            text, code = "stopped; no partial output was left behind", INTERRUPTED
+        except Terminated as stop:
+            text, code = f"terminated; {stop or KEPT}", TERMINATED
+        except KeyboardInterrupt as stop:
+            text, code = f"stopped; {stop or KEPT}", INTERRUPTED
+        except Cancelled:
+            text, code = f"stopped; {KEPT}", INTERRUPTED
         except (UnderfootError, MemoryError) as error:
             text, code = f"error: {error_text(error)}", getattr(error, "exit_code", 1)
         except BrokenPipeError:

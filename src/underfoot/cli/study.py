@@ -57,12 +57,8 @@ def run(
     from underfoot.report.design_studies import write_study_report
 
     chosen = _study(study, out)
-    try:
-        with bar(chosen.plan.name) as progress:
-            result = chosen.run(on, workers, progress)
-    except KeyboardInterrupt:
-        say("stopped: every finished case is kept; the same command goes on from there")
-        raise
+    with bar(chosen.plan.name) as progress:
+        result = chosen.run(on, workers, progress)
     with bar("report") as progress:
         written = write_study_report(chosen, result, progress=progress)
     finish(result, written, json=json, everything=everything)

@@ -6,16 +6,17 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .plan import StudyPlan, load_plan
+    from .plan import StudyPlan
     from .result import StudyResult
     from .study import Study
+    from .study_file import load_plan
     from .sweeps import optimise, sweep
 
 _HOMES = {
     "Study": "study",
     "StudyPlan": "plan",
     "StudyResult": "result",
-    "load_plan": "plan",
+    "load_plan": "study_file",
     "optimise": "sweeps",
     "sweep": "sweeps",
 }

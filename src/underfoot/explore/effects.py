@@ -8,8 +8,10 @@ interactions, ST (Saltelli et al. 2010). Computed by SALib; intervals by its boo
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
+from importlib import import_module
 from typing import Any, ClassVar
 
 import numpy as np
@@ -24,10 +26,11 @@ from .plan import StudyPlan
 from .result import StudyResult
 from .surrogate import Surrogate, fitted
 
-ON_SURROGATE = 1024
-"""Base sample of Sobol's indices on a surrogate; runs x (inputs + 2)."""
-LEVELS = 4
-"""Levels of Morris' trajectories."""
+ON_SURROGATE = {"sobol": 1024, "morris": 200}
+"""Base sample or trajectories on a surrogate."""
+OPTIONS = {"sobol": {"calc_second_order": False}, "morris": {"num_levels": 4}}
+KEYS = {"sobol": ("S1", "ST"), "morris": ("sigma", "mu_star")}
+"""Indices as SALib calls them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,26 +92,18 @@ def sampled_effect_points(plan: StudyPlan) -> list[tuple[float, ...]]:
     """Return the designs that indices on runs need, within the budget.
 
     Raises:
-        DataError: The budget does not reach for one trajectory or base sample.
+        DataError: The budget does not reach for two trajectories or a base sample of 8.
     """
     size, morris = len(plan.dimensions), plan.method.analysis == "morris"
-    each = size + 1 if morris else size + 2
+    each, least = (size + 1, 2) if morris else (size + 2, 8)
     count = plan.designs // each
-    if count < (2 if morris else 8):
+    if count < least:
         raise DataError(
             f"{plan.method.budget} runs are too few for {plan.method.analysis} on runs",
-            allowed=f"at least {(2 if morris else 8) * each * plan.cases_per_design}",
+            allowed=f"at least {least * each * plan.cases_per_design}",
             remedy='Raise it, or write on = "surrogate"',
         )
-    problem = _problem(plan)
-    if morris:
-        sample = optional_module("SALib.sample.morris", "study", "Morris' method").sample
-        rows = sample(problem, count, num_levels=LEVELS, seed=plan.method.seed)
-    else:
-        sample = optional_module("SALib.sample.sobol", "study", "Sobol's indices").sample
-        rows = sample(
-            problem, 2 ** int(np.log2(count)), calc_second_order=False, seed=plan.method.seed
-        )
+    rows = _salib(plan, "sample")(count if morris else 2 ** int(np.log2(count)))
     return [tuple(map(float, row)) for row in rows]
 
 
@@ -118,20 +113,31 @@ def effects(result: StudyResult, goal: AnyGoal) -> Effects:
     Raises:
         DataError: Too few usable runs; a run of the sample that has no number.
     """
-    plan = result.plan
-    values = goal_column(result, goal)
-    points = np.array([one.point for one in result.designs])
-    if plan.method.on == "runs":
-        if not np.isfinite(values).all():
-            lost = int(np.count_nonzero(~np.isfinite(values)))
+    plan, method = result.plan, result.plan.method
+    if method.on == "runs":
+        points = np.array([one.point for one in result.designs])
+        values = result.values(result.designs, [goal])[:, 0]
+        basis = f"{len(values)} designs run in full"
+        if lost := np.count_nonzero(~np.isfinite(values)):
             raise DataError(
                 f"{lost} of {len(values)} runs have no {goal}: indices on runs need all of them",
                 remedy='Write on = "surrogate", which takes those that there are',
             )
-        return _indices(plan, goal, points, values, f"{len(values)} designs run in full")
-    surrogate = fitted(str(goal), goal.unit, plan.dimensions, points, values)
-    rows = _dense_points(plan)
-    return _indices(plan, goal, rows, surrogate.mean(rows), surrogate.words)
+    else:
+        (surrogate,) = surrogates(result, [goal])
+        points = _salib(plan, "sample")(ON_SURROGATE[method.analysis])
+        values, basis = surrogate.mean(points), surrogate.words
+    given = (points, values) if method.analysis == "morris" else (values,)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # indices of an output that does not vary
+        found = _salib(plan, "analyze")(*given)
+    columns = [
+        np.nan_to_num(np.array(found.get(part, np.zeros(len(plan.dimensions))), float))
+        for name in KEYS[method.analysis]
+        for part in (name, f"{name}_conf")
+    ]
+    paths = tuple(one.path for one in plan.dimensions)
+    return Effects(str(goal), goal.unit, method.analysis, paths, *columns, basis=basis)
 
 
 def surrogates(result: StudyResult, goals: Sequence[AnyGoal]) -> list[Surrogate]:
@@ -141,54 +147,17 @@ def surrogates(result: StudyResult, goals: Sequence[AnyGoal]) -> list[Surrogate]
         DataError: Too few usable runs.
     """
     points = np.array([one.point for one in result.designs])
-    dimensions = result.plan.dimensions
+    columns = result.values(result.designs, goals).T
     return [
-        fitted(str(goal), goal.unit, dimensions, points, goal_column(result, goal))
-        for goal in goals
+        fitted(str(goal), goal.unit, result.plan.dimensions, points, values)
+        for goal, values in zip(goals, columns, strict=True)
     ]
 
 
-def goal_column(result: StudyResult, goal: AnyGoal) -> Array:
-    """Return (designs,) a goal's values on the study's grid, nan where there is none."""
-    return np.array(
-        [
-            goal.value(one.records, result.plan.states) if one.usable else np.nan
-            for one in result.designs
-        ]
-    )
-
-
-def _dense_points(plan: StudyPlan) -> Array:
-    if plan.method.analysis == "morris":
-        sample = optional_module("SALib.sample.morris", "study", "Morris' method").sample
-        return sample(_problem(plan), 200, num_levels=LEVELS, seed=plan.method.seed)
-    sample = optional_module("SALib.sample.sobol", "study", "Sobol's indices").sample
-    return sample(_problem(plan), ON_SURROGATE, calc_second_order=False, seed=plan.method.seed)
-
-
-def _indices(plan: StudyPlan, goal: AnyGoal, points: Array, values: Array, basis: str) -> Effects:
-    problem, seed = _problem(plan), plan.method.seed
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # indices of an output that does not vary
-        if plan.method.analysis == "morris":
-            analyze = optional_module("SALib.analyze.morris", "study", "Morris' method").analyze
-            found = analyze(problem, points, values, num_levels=LEVELS, seed=seed)
-            names = ("sigma", None, "mu_star", "mu_star_conf")
-        else:
-            analyze = optional_module("SALib.analyze.sobol", "study", "Sobol's indices").analyze
-            found = analyze(problem, values, calc_second_order=False, seed=seed)
-            names = ("S1", "S1_conf", "ST", "ST_conf")
-    columns = [
-        np.zeros(len(plan.dimensions))
-        if name is None
-        else np.nan_to_num(np.array(found[name], float))
-        for name in names
-    ]
-    paths = tuple(one.path for one in plan.dimensions)
-    return Effects(str(goal), goal.unit, plan.method.analysis, paths, *columns, basis=basis)
-
-
-def _problem(plan: StudyPlan) -> dict[str, Any]:
-    size = len(plan.dimensions)
-    names = [one.path for one in plan.dimensions]
-    return {"num_vars": size, "names": names, "bounds": [[0.0, 1.0]] * size}
+def _salib(plan: StudyPlan, step: str) -> Callable[..., Any]:
+    """Return SALib's function ``sample`` or ``analyze`` for the inputs and method of a plan."""
+    name, paths = plan.method.analysis, [one.path for one in plan.dimensions]
+    problem = {"num_vars": len(paths), "names": paths, "bounds": [[0.0, 1.0]] * len(paths)}
+    optional_module("SALib", "study", "A sensitivity")
+    function = getattr(import_module(f"SALib.{step}.{name}"), step)
+    return partial(function, problem, seed=plan.method.seed, **OPTIONS[name])

@@ -5,6 +5,7 @@ A third engine needs no code: any number of ``underfoot study work`` share the s
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
@@ -41,9 +42,10 @@ def engine(on: str | None, workers: int | None) -> tuple[Engine, int]:
     kind, _, address = on.partition(":")
     if kind != DASK:
         raise InputError(
-            f'"{on}"',
+            f'"{on}" is no engine',
             where="--on",
             allowed='"dask", "dask:tcp://host:8786", or nothing for processes of this machine',
+            remedy="In an array job (Slurm, PBS) use underfoot study work in each task",
         )
     return lambda function, jobs, died: _on_dask(function, jobs, died, address, count), count
 
@@ -59,6 +61,8 @@ def _on_dask(
     distributed = optional_module("distributed", "dask", "--on dask")
     configured = optional_module("dask.config", "dask", "--on dask").set
     settings = {"distributed.scheduler.allowed-failures": TRIES - 1}
+    # a scheduler that goes away is told in a sentence below, not in its client's traceback
+    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
     with configured(settings), _client(distributed, address, workers) as client:
         waiting, sent = iter(jobs), {}
         ended = distributed.as_completed()

@@ -11,7 +11,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -179,98 +181,92 @@ def _chosen(states: Sequence[Condition], within: Sequence[str]) -> list[int]:
 
 def read_goal(
     text: object,
-    where: str,
     units: Mapping[str, str],
     states: Sequence[Condition],
     require: Sequence[Requirement] = (),
 ) -> AnyGoal:
     """Return the goal of a text; ``units`` are those of the outputs that there are."""
-    body, clauses = _clauses(text, where)
+    body, clauses = _clauses(text)
     if body == LIFE:
         if not require:
             raise InputError(
-                f"{LIFE} of what", where=where, remedy=f"Write {LIFE}(cof > 0.16), or a requirement"
+                f"{LIFE} of what", remedy=f"Write {LIFE}(cof > 0.16), or a requirement"
             )
-        return _life(require[0], where, states)
+        return _life(require[0], states)
     if body.startswith(f"{LIFE}(") and body.endswith(")"):
         inner = body[len(LIFE) + 1 : -1] + "".join(f" {k} {v}" for k, v in clauses.items())
-        return _life(read_requirement(inner, where, units, states), where, states)
+        return _life(read_requirement(inner, units, states), states)
     match = _STATISTIC.fullmatch(body)
     if match is None:
         raise InputError(
             f'"{text}" is no goal',
-            where=where,
             allowed='an output, or "quantile(cof, 0.1) in canola_oil over conditions"',
         )
     statistic, output = (match[1] or "mean"), (match[2] or match[4])
     if statistic not in STATISTICS:
-        raise unknown_name("statistic", statistic, STATISTICS, where=where)
+        raise unknown_name("statistic", statistic, STATISTICS)
     if output not in units:
-        raise unknown_name("output", output, [*units, LIFE], where=where)
+        raise unknown_name("output", output, [*units, LIFE])
     share = float(match[3]) if match[3] else 0.5
     if (statistic == "quantile") != bool(match[3]) or not 0 < share < 1:
-        raise InputError(
-            f'"{text}"', where=where, allowed="quantile(output, share), share between 0 and 1"
-        )
+        raise InputError(f'"{text}"', allowed="quantile(output, share), share between 0 and 1")
     over = clauses.get("over", OVER[2])
     if over not in OVER:
-        raise unknown_name("word after over", over, OVER, where=where)
+        raise unknown_name("word after over", over, OVER)
     within = tuple(part.strip() for part in clauses.get("in", "").split(",") if part.strip())
     words = sorted({part for state in states for part in state.parts})
     for word in within:
         if word not in words:
-            raise unknown_name("condition", word, words, where=where)
+            raise unknown_name("condition", word, words)
     if not _chosen(states, within):
-        raise InputError(f"no condition is {' and '.join(within)}", where=where)
+        raise InputError(f"no condition is {' and '.join(within)}")
     return Goal(output, units[output], statistic, share, over, within)
 
 
 def read_requirement(
-    text: object, where: str, units: Mapping[str, str], states: Sequence[Condition]
+    text: object, units: Mapping[str, str], states: Sequence[Condition]
 ) -> Requirement:
     """Return the requirement of a text."""
-    body, clauses = _clauses(text, where)
+    body, clauses = _clauses(text)
     match = _BOUND.fullmatch(body)
     if match is None:
-        raise InputError(
-            f'"{text}" is no requirement', where=where, allowed='as "cof > 0.16 in canola_oil"'
-        )
+        raise InputError(f'"{text}" is no requirement', allowed='as "cof > 0.16 in canola_oil"')
     whole = match[1] + "".join(f" {word} {rest}" for word, rest in clauses.items())
-    goal = read_goal(whole, where, units, states)
+    goal = read_goal(whole, units, states)
     if not isinstance(goal, Goal):
-        raise InputError(f"{goal} can't be required", where=where, allowed="an output")
+        raise InputError(f"{goal} can't be required", allowed="an output")
     given: object = match[3]
-    if goal.unit == "1":
-        try:
-            given = float(match[3])
-        except ValueError:
-            given = match[3]
-    return Requirement(goal, 1 if ">" in match[2] else -1, to_si(given, goal.unit, where=where))
+    with suppress(ValueError):
+        given = float(match[3]) if goal.unit == "1" else given
+    return Requirement(goal, 1 if ">" in match[2] else -1, to_si(given, goal.unit, where=""))
 
 
-def check_agreement(require: Sequence[Requirement], where: str) -> None:
-    """Refuse requirements that no design can meet."""
-    for one in require:
-        for other in require:
-            if one.goal == other.goal and one.sense > 0 > other.sense and one.bound >= other.bound:
-                raise InputError(
-                    f'"{one}" and "{other}" can\'t both hold', where=where, remedy="Drop one"
-                )
+def check_agreement(require: Sequence[Requirement]) -> None:
+    """Refuse requirements that no design can meet: the least above, or the greatest below, others'.
+
+    Of one output over the same; between different statistics only what holds of all numbers.
+    """
+    for low, high in product(require, require):
+        one, other = low.goal, high.goal
+        same = replace(one, statistic=other.statistic, share=other.share) == other
+        ordered = one == other or one.statistic == "min" or other.statistic == "max"
+        numbers = "sd" not in (one.statistic, other.statistic) or one == other
+        if same and ordered and numbers and low.sense > 0 > high.sense and low.bound >= high.bound:
+            raise InputError(f'"{low}" and "{high}" can\'t both hold', remedy="Drop one")
 
 
-def _life(requirement: Requirement, where: str, states: Sequence[Condition]) -> WearLife:
+def _life(requirement: Requirement, states: Sequence[Condition]) -> WearLife:
     wears = {state.changes.get(WEAR) for state in states}
     if None in wears or len(wears) < 2:
         raise InputError(
             f"{LIFE} needs at least two states of wear",
-            where=where,
             remedy='Write wear = ["0 mm", "1 mm", "2 mm"] under [conditions]',
         )
     return WearLife(requirement)
 
 
-def _clauses(text: object, where: str) -> tuple[str, dict[str, str]]:
+def _clauses(text: object) -> tuple[str, dict[str, str]]:
     if not isinstance(text, str):
-        raise InputError(f"{text!r}", where=where, allowed="text, as quantile(cof, 0.1)")
+        raise InputError(f"{text!r}", allowed="text, as quantile(cof, 0.1)")
     clauses = {match[1]: match[2].strip() for match in _CLAUSE.finditer(text)}
     return _CLAUSE.sub("", text).strip(), clauses

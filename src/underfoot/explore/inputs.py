@@ -40,12 +40,6 @@ class Range:
             return float(self.low * (self.high / self.low) ** share)
         return float(self.low + share * (self.high - self.low))
 
-    def share(self, value: float) -> float:
-        """Return the share of the way at which a value lies; beyond 0 and 1 outside."""
-        if self.logarithmic:
-            return math.log(value / self.low) / math.log(self.high / self.low)
-        return (value - self.low) / (self.high - self.low)
-
     def shares(self) -> list[float]:
         """Return the places of the steps of a grid."""
         return np.linspace(0.0, 1.0, self.steps or 0).tolist()
@@ -61,12 +55,6 @@ class Choice:
     def value(self, share: float) -> Any:
         """Return the option in whose equal part of 0 to 1 the share lies."""
         return self.options[min(int(share * len(self.options)), len(self.options) - 1)]
-
-    def share(self, value: Any) -> float:
-        """Return the middle of an option's part."""
-        if value not in self.options:
-            raise unknown_name("option", str(value), map(str, self.options), where=self.path)
-        return (self.options.index(value) + 0.5) / len(self.options)
 
     def shares(self) -> list[float]:
         """Return the middle of each part."""
@@ -116,7 +104,6 @@ class JointDraws:
 
     paths: tuple[str, ...]
     values: Array
-    source: str
 
     def rows(self, count: int) -> list[dict[str, float]]:
         """Return ``count`` rows, evenly taken, as path and value."""
@@ -124,71 +111,68 @@ class JointDraws:
         return [dict(zip(self.paths, map(float, self.values[k]), strict=True)) for k in chosen]
 
 
-def read_input(path: str, given: Any, where: str, catalogue: Catalogue) -> Input | Follow:
+def read_input(path: str, given: Any, known: Catalogue) -> Input | Follow:
     """Return what ``[vary]`` says of one path."""
-    _check_path(path, where)
+    path_kind(path)  # refuses a path that no case has
     if isinstance(given, list | tuple):
-        return _choice(path, given, where, catalogue)
+        return read_choice(path, given, known)
     if isinstance(given, Mapping) and set(given) <= {"times", "of"} and given:
         if not isinstance(given.get("of"), str):
-            raise InputError("is missing", where=f"{where}.of", allowed="a path of [vary]")
-        return Follow(path, given["of"], _number(given.get("times", 1.0), f"{where}.times", 0.0))
+            raise InputError("is missing", where=".of", allowed="a path of [vary]")
+        return Follow(path, given["of"], _number(given.get("times", 1.0), ".times", 0.0))
     form = '{ from = "1 mm", to = "4 mm" }, a list, or { times = 1.5, of = "path" }'
     if not isinstance(given, Mapping) or not {"from", "to"} <= set(given):
-        raise InputError(f"{given!r} is no range", where=where, allowed=form)
-    _check_keys(given, ("from", "to", "log", "steps"), where)
-    low, high = (value_at(path, given[end], f"{where}.{end}", catalogue) for end in ("from", "to"))
+        raise InputError(f"{given!r} is no range", allowed=form)
+    allowed = ("from", "to", "log", "steps")
+    for key in set(given) - set(allowed):
+        raise unknown_name("key", key, allowed)
+    low, high = (value_at(path, given[end], known, f".{end}") for end in ("from", "to"))
     if not isinstance(low, float) or not isinstance(high, float):
-        raise InputError("is no number", where=where, allowed="a list of names")
+        raise InputError("is no number", allowed="a list of names")
     if not low < high:
-        raise RangeError(
-            f"from {given['from']} to {given['to']} is no range", where=where, allowed="from < to"
-        )
+        raise RangeError(f"from {given['from']} to {given['to']} is no range", allowed="from < to")
     logarithmic, steps = given.get("log", False), given.get("steps")
     if not isinstance(logarithmic, bool):
-        raise InputError(f"{logarithmic!r}", where=f"{where}.log", allowed="true or false")
+        raise InputError(f"{logarithmic!r}", where=".log", allowed="true or false")
     if logarithmic and low <= 0:
-        raise RangeError(f"{given['from']}", where=f"{where}.from", allowed="above 0 with log")
+        raise RangeError(f"{given['from']}", where=".from", allowed="above 0 with log")
     if steps is not None and (isinstance(steps, bool) or not isinstance(steps, int) or steps < 2):
-        raise InputError(f"{steps!r}", where=f"{where}.steps", allowed="a whole number from 2")
+        raise InputError(f"{steps!r}", where=".steps", allowed="a whole number from 2")
     return Range(path, low, high, logarithmic, steps)
 
 
-def read_conditions(path: str, given: Any, where: str, catalogue: Catalogue) -> Choice:
-    """Return the list of values that ``[conditions]`` gives for one path."""
-    _check_path(path, where)
-    if not isinstance(given, list | tuple):
-        given = [given]
-    return _choice(path, given, where, catalogue)
+def read_choice(path: str, given: Sequence[Any], known: Catalogue) -> Choice:
+    """Return the values or names of a list."""
+    options = tuple(value_at(path, item, known, f"[{k}]") for k, item in enumerate(given))
+    if not options or len(set(map(str, options))) < len(options):
+        raise InputError(f"{list(given)!r}", allowed="different values, at least one")
+    return Choice(path, options)
 
 
-def read_distribution(path: str, given: Any, where: str, catalogue: Catalogue) -> Distribution:
+def read_distribution(path: str, given: Any, known: Catalogue) -> Distribution:
     """Return what ``[uncertain]`` says of one path."""
-    _check_path(path, where)
+    path_kind(path)
     forms = {"normal": "sd", "lognormal": "factor", "from": "to"}
     kind = next((name for name in forms if isinstance(given, Mapping) and name in given), None)
     if kind is None or set(given) != {kind, forms[kind]}:
         raise InputError(
             f"{given!r} is no distribution",
-            where=where,
             allowed='{ normal = "60 cP", sd = "5 cP" }, { lognormal = 2.0, factor = 1.3 } or '
             '{ from = "1 mm", to = "2 mm" } (even)',
         )
-    centre = value_at(path, given[kind], f"{where}.{kind}", catalogue)
+    centre = value_at(path, given[kind], known, f".{kind}")
     if not isinstance(centre, float):
-        raise InputError("is no number", where=where, allowed="the path of a number")
-    unit, other = unit_at(path), f"{where}.{forms[kind]}"
+        raise InputError("is no number", where=f".{kind}", allowed="the path of a number")
+    unit, second, place = unit_at(path), given[forms[kind]], f".{forms[kind]}"
     if kind == "lognormal":
-        factor = _number(given["factor"], other, 1.0)
+        spread = _number(second, place, 1.0)
         if centre <= 0:
-            raise RangeError(f"{given[kind]}", where=f"{where}.{kind}", allowed="above 0")
-        found = Distribution(path, kind, centre, factor)
+            raise RangeError(f"{given[kind]}", where=f".{kind}", allowed="above 0")
     else:
-        second = to_si(given[forms[kind]], unit, where=other)
-        spread = second if kind == "normal" else second - centre
+        spread = to_si(second, unit, where=place) - (centre if kind == "from" else 0.0)
         if spread <= 0:
-            raise RangeError(f"{given[forms[kind]]}", where=other, allowed="above 0, from < to")
-        found = Distribution(path, "normal" if kind == "normal" else "uniform", centre, spread)
+            raise RangeError(f"{second}", where=place, allowed="above 0, from < to")
+    found = Distribution(path, "uniform" if kind == "from" else kind, centre, spread)
     field = field_at(path)
     quantity = None if field is None else quantity_of(field)
     if quantity is None:
@@ -198,15 +182,15 @@ def read_distribution(path: str, given: Any, where: str, catalogue: Catalogue) -
         if not quantity.low <= value <= quantity.high:
             raise RangeError(
                 f"reaches {display(value, unit)} at {share:.1%} of it",
-                where=where,
                 allowed=quantity.allowed(),
                 remedy="Narrow it, or take lognormal for what is positive",
             )
     return replace(found, low=quantity.low, high=quantity.high)
 
 
-def value_at(path: str, given: Any, where: str, catalogue: Catalogue) -> Any:
-    """Return a given value in SI, or a name that is known at its path."""
+def value_at(path: str, given: Any, known: Catalogue, where: str = "") -> Any:
+    """Return a given value in SI, or a name that is known at its path; ``where`` is for errors."""
+    path_kind(path)
     field = field_at(path)
     if path in keys():
         options = keys()[path].options()
@@ -219,7 +203,7 @@ def value_at(path: str, given: Any, where: str, catalogue: Catalogue) -> Any:
             raise InputError(
                 f"{given!r} can't be used here", where=where, allowed="the name of an entry"
             )
-        names = [*catalogue.names(kind), *(["none"] if kind == "fluid" else [])]
+        names = [*known.names(kind), *(["none"] if kind == "fluid" else [])]
         if given not in names:
             raise unknown_name(kind, given, names, where=where)
         return given
@@ -234,46 +218,22 @@ def value_at(path: str, given: Any, where: str, catalogue: Catalogue) -> Any:
     return value
 
 
-def read_joint_draws(path: Path, where: str) -> JointDraws:
+def read_joint_draws(path: Path) -> JointDraws:
     """Return the draws of a posterior file: CSV, one column a path (SI), ``#`` lines before it."""
     import pandas
 
     try:
-        with path.open(encoding="utf-8") as stream:
-            remarks = [line[1:].strip() for line in stream if line.startswith("#")]
         table = pandas.read_csv(path, comment="#")
         values = table.to_numpy(dtype=float)
     except FileNotFoundError:
-        raise InputError(f"there is no file {path}", where=where) from None
+        raise InputError(f"there is no file {path}") from None
     except (OSError, ValueError) as error:
-        raise InputError(f"{path} can't be read ({error})", where=where) from error
+        raise InputError(f"{path} can't be read ({error})") from error
     if len(values) < 2 or not np.isfinite(values).all():
-        raise InputError(f"{path} holds no table of finite draws", where=where)
+        raise InputError(f"{path} holds no table of finite draws")
     for name in table.columns:
-        _check_path(str(name), f"{where} ({path.name})")
-    return JointDraws(tuple(map(str, table.columns)), values, remarks[0] if remarks else path.name)
-
-
-def _choice(path: str, given: Sequence[Any], where: str, catalogue: Catalogue) -> Choice:
-    options = tuple(
-        value_at(path, item, f"{where}[{k}]", catalogue) for k, item in enumerate(given)
-    )
-    if not options or len(set(map(str, options))) < len(options):
-        raise InputError(f"{list(given)!r}", where=where, allowed="different values, at least one")
-    return Choice(path, options)
-
-
-def _check_path(path: str, where: str) -> None:
-    try:
-        path_kind(path)
-    except InputError as error:
-        raise InputError(error.what, where=where, **error.parts) from None
-
-
-def _check_keys(given: Mapping[str, Any], known: Sequence[str], where: str) -> None:
-    for key in given:
-        if key not in known:
-            raise unknown_name("key", key, known, where=where)
+        path_kind(str(name))
+    return JointDraws(tuple(map(str, table.columns)), values)
 
 
 def _number(given: Any, where: str, above: float) -> float:

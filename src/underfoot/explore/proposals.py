@@ -25,7 +25,7 @@ from .goals import Goal
 from .plan import StudyPlan
 from .record import Job
 from .result import StudyResult
-from .surrogate import FEWEST, Surrogate
+from .surrogate import FEWEST, Surrogate, featured
 
 FIRST = 0.4
 """Share of an optimisation's designs that are spread evenly first."""
@@ -33,7 +33,11 @@ POPULATION, GENERATIONS = 60, 50
 SAMPLES = 64
 """Draws of the goals at a candidate, by which its growth of the hypervolume is averaged."""
 CANDIDATES = 80
-"""Designs of a batch are chosen among so many of the surrogates' front."""
+"""Designs of a batch are chosen among so many of the surrogates' front ..."""
+SPREAD = 32
+"""... and so many spread evenly, where the front is a point or the surrogates know little."""
+SAME = 1e-3
+"""Designs that lie nearer than this share of every range are one."""
 BEYOND = 0.1
 """The hypervolume's reference lies this share of the goals' range beyond the worst of them."""
 
@@ -112,11 +116,12 @@ def _promising(so_far: StudyResult, count: int) -> list[tuple[float, ...]]:
     measure = optional_module("moocore", "study", "An optimisation").Hypervolume(
         ref=[1.0 + BEYOND] * len(signs)
     )
-    taken = {tuple(np.round(one.point, 6)) for one in so_far.designs}
     generator = np.random.default_rng([plan.method.seed, len(so_far.designs)])
-    found = _surrogate_front(plan, goals, bounds, len(taken))
-    found = [point for point in found if tuple(np.round(point, 6)) not in taken]
-    candidates = np.array(found[:CANDIDATES]).reshape(-1, len(plan.dimensions))
+    spread = qmc.Sobol(len(plan.dimensions), rng=generator).random(SPREAD)
+    found = _surrogate_front(plan, goals, bounds, len(so_far.designs))[:CANDIDATES]
+    candidates = np.vstack([found, spread])
+    for one in so_far.designs:
+        candidates = _apart(plan, candidates, one.point)
     chosen: list[tuple[float, ...]] = []
     while len(chosen) < count and len(candidates):
         holds = _probability_met(plan, bounds, candidates)
@@ -136,8 +141,14 @@ def _promising(so_far: StudyResult, count: int) -> list[tuple[float, ...]]:
         chosen.append(tuple(map(float, candidates[best])))
         goals = [one.with_point(candidates[best]) for one in goals]
         front = np.vstack([front, (mean[best] - low) / span])
-        candidates = np.delete(candidates, best, axis=0)
+        candidates = _apart(plan, candidates, chosen[-1])
     return chosen
+
+
+def _apart(plan: StudyPlan, points: Array, taken: Sequence[float]) -> Array:
+    """Return the places that make another design than one that is taken."""
+    own = featured(plan.dimensions, np.array([taken]))
+    return points[np.abs(featured(plan.dimensions, points) - own).max(axis=1) > SAME]
 
 
 def _probability_met(plan: StudyPlan, bounds: Sequence[Surrogate], points: Array) -> Array:

@@ -20,8 +20,9 @@ FORMAT = 1
 
 
 class Ending(StrEnum):
-    """How a case of a study ended. All but COMPUTED have a reason and no numbers."""
+    """How a case of a study ended. All but COMPUTED have no numbers, but a reason."""
 
+    OPEN = "open"
     COMPUTED = "computed"
     NOT_CONVERGED = "not converged"
     INFEASIBLE = "infeasible"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -17,43 +17,39 @@ from underfoot.core.presentation import Presentable, Table, percent, quantity_te
 from underfoot.core.provenance import program_hash
 from underfoot.friction.propagation import probability_higher
 
-from .goals import Goal, output_array
+from .goals import AnyGoal, Goal, output_array
 from .plan import StudyPlan
 from .record import Ending, Job, Record
 
 if TYPE_CHECKING:
     import xarray
+    from pandas import DataFrame
 
+PLACE = ("design", "condition", "draw", "grid", "ending")
 MOST_ROWS = 12
 """Designs of a table on the terminal."""
 
 
 @dataclass(frozen=True, slots=True)
 class Design:
-    """One design: what it changes, and its records by (condition, draw)."""
+    """One design: what it changes, and its records by (condition, draw), open ones too."""
 
     number: int
     point: tuple[float, ...]
     changes: Mapping[str, Any]
     quick: bool
-    cases: int
-    records: Mapping[tuple[int, int], Record] = field(default_factory=dict)
-
-    @property
-    def complete(self) -> bool:
-        """Whether every case of it has ended."""
-        return len(self.records) == self.cases
+    records: Mapping[tuple[int, int], Record]
 
     @property
     def usable(self) -> bool:
         """Whether every case of it has numbers."""
-        return self.complete and all(record.usable for record in self.records.values())
+        return all(record.usable for record in self.records.values())
 
     @property
     def ending(self) -> str:
         """How it ended: computed, or what kept the first of its cases from it."""
-        bad = [record.ending for record in self.records.values() if not record.usable]
-        return str(bad[0]) if bad else str(Ending.COMPUTED) if self.complete else "open"
+        bad = (record.ending for record in self.records.values() if not record.usable)
+        return str(next(bad, Ending.COMPUTED))
 
     @property
     def reason(self) -> str:
@@ -93,6 +89,10 @@ class StudyResult(Presentable):
         """Return the name of the study."""
         return self.plan.name
 
+    def record(self, job: Job) -> Record:
+        """Return what came of a job; where nothing did yet, that it is open."""
+        return self.records.get(job.key) or Record(job.key, Ending.OPEN)
+
     @cached_property
     def all_designs(self) -> list[Design]:
         """Every design on every grid, in the order in which they were set."""
@@ -101,10 +101,9 @@ class StudyResult(Presentable):
             found.setdefault((job.design, job.quick), {})[job.condition, job.draw] = job
         designs = []
         for (number, quick), jobs in sorted(found.items(), key=lambda one: (one[0][0], one[0][1])):
-            first = next(iter(jobs.values()))
-            records = {at: self.records[j.key] for at, j in jobs.items() if j.key in self.records}
-            own = self.plan.design_changes(first.point)
-            designs.append(Design(number, first.point, own, quick, len(jobs), records))
+            point = next(iter(jobs.values())).point
+            records = {at: self.record(job) for at, job in jobs.items()}
+            designs.append(Design(number, point, self.plan.design_changes(point), quick, records))
         return designs
 
     @cached_property
@@ -115,36 +114,31 @@ class StudyResult(Presentable):
     @cached_property
     def shown(self) -> list[Design]:
         """The designs that the front is made of: those on the front's grid, where it has one."""
-        return self._shown(self.all_designs)
+        quick = (self.plan.method.front_grid or self.plan.method.grid) == "quick"
+        return [one for one in self.all_designs if one.quick == quick]
 
-    def _shown(self, designs: Sequence[Design]) -> list[Design]:
-        method = self.plan.method
-        quick = (method.front_grid or method.grid) == "quick"
-        return [one for one in designs if one.quick == quick]
-
-    def goal_values(self, designs: Sequence[Design]) -> Array:
+    def values(self, designs: Sequence[Design], goals: Sequence[AnyGoal]) -> Array:
         """Return (designs, goals) in SI; nan where a design has no numbers."""
         rows = [
             [
                 goal.value(one.records, self.plan.states) if one.usable else math.nan
-                for goal in self.plan.goals
+                for goal in goals
             ]
             for one in designs
         ]
-        return np.array(rows, dtype=float).reshape(len(designs), len(self.plan.goals))
+        return np.array(rows, dtype=float).reshape(len(designs), len(goals))
+
+    def goal_values(self, designs: Sequence[Design]) -> Array:
+        """Return (designs, goals) of the plan's goals, as ``values``."""
+        return self.values(designs, self.plan.goals)
 
     def margins(self, designs: Sequence[Design]) -> Array:
         """Return (designs, requirements): by how much each is met, SI; negative where not."""
-        rows = [
-            [
-                each.margin(each.goal.value(one.records, self.plan.states))
-                if one.usable
-                else math.nan
-                for each in self.plan.require
-            ]
-            for one in designs
+        found = self.values(designs, [each.goal for each in self.plan.require])
+        columns = [
+            each.margin(column) for each, column in zip(self.plan.require, found.T, strict=True)
         ]
-        return np.array(rows, dtype=float).reshape(len(designs), len(self.plan.require))
+        return np.array(columns, dtype=float).reshape(found.shape[::-1]).T
 
     def allowed(self, designs: Sequence[Design]) -> Mask:
         """Return which designs have numbers and meet every requirement."""
@@ -205,17 +199,14 @@ class StudyResult(Presentable):
     @cached_property
     def endings(self) -> Counter[str]:
         """How many cases ended in each way, open ones too."""
-        keys = {job.key for job in self.jobs}
-        found = Counter(str(self.records[key].ending) for key in keys if key in self.records)
-        if left := len(keys) - found.total():
-            found["open"] = left
-        return found
+        jobs = {job.key: job for job in self.jobs}.values()
+        return Counter(str(self.record(job).ending) for job in jobs)
 
     def headline(self) -> tuple[str, ...]:
         """Return how far it is, and the best design."""
         total = self.endings.total()
-        done = f"{total - self.endings['open']} of {total} cases"
-        parts = [f"{count} {name}" for name, count in self.endings.items() if name != "open"]
+        done = f"{total - self.endings[Ending.OPEN]} of {total} cases"
+        parts = [f"{count} {name}" for name, count in self.endings.items() if name != Ending.OPEN]
         sentences = [
             f"{done} of {len(self.all_designs)} designs ended: {', '.join(parts) or 'none'}."
         ]
@@ -246,9 +237,10 @@ class StudyResult(Presentable):
                 f"Cases of {len(programs)} versions of the program are mixed: run the study in a "
                 "new folder to compare them."
             )
-        lost = sum(self.endings[str(e)] for e in Ending if e is not Ending.COMPUTED)
+        lost = self.endings.total() - self.endings[Ending.COMPUTED] - self.endings[Ending.OPEN]
         if lost:
-            reasons.append(f"{lost} cases have no numbers: underfoot study status tells why.")
+            have = "1 case has" if lost == 1 else f"{lost} cases have"
+            reasons.append(f"{have} no numbers: underfoot study status tells why.")
         if self.plan.method.quick and self.plan.method.front_grid != "standard":
             reasons.append("Coarse grid: use the order of designs; check a chosen one in full.")
         return tuple(reasons)
@@ -267,15 +259,11 @@ class StudyResult(Presentable):
             for path in paths
         ]
         rows = []
-        for one in designs:
+        for one, found in zip(designs, self.values(designs, goals), strict=True):
             inputs = [value_text(path, one.changes.get(path)) for path in paths]
-            values = [
-                quantity_text(goal.value(one.records, self.plan.states), goal.unit)
-                if one.usable
-                else one.ending
-                for goal in goals
-            ]
-            rows.append([str(one.number), *inputs, *values])
+            units = [goal.unit for goal in goals]
+            texts = map(quantity_text, found, units) if one.usable else [one.ending] * len(goals)
+            rows.append([str(one.number), *inputs, *texts])
         return Table(title, ("Design", *short, *map(str, goals)), rows)
 
     def remarks(self) -> Mapping[str, Sequence[str]]:
@@ -305,35 +293,41 @@ class StudyResult(Presentable):
             ],
         }
 
+    def cases(self) -> DataFrame:
+        """Return a row a case: its place in the study, inputs and outputs in SI, how it ended."""
+        import pandas
+
+        rows: list[dict[str, Any]] = []
+        inputs: dict[str, None] = {}
+        outputs: dict[str, None] = {}
+        for job in self.jobs:
+            record, grid = self.record(job), "quick" if job.quick else "standard"
+            row = {name: getattr(job, name) for name in ("design", "condition", "draw")}
+            row |= {"grid": grid, "ending": str(record.ending), **job.changes}
+            for name, value in record.numbers.items():
+                row |= {name: value, f"{name} sd": record.spreads.get(name)}
+                outputs |= dict.fromkeys((name, f"{name} sd"))
+            inputs |= dict.fromkeys(job.changes)
+            rows.append(row | {"seconds": record.seconds, "reason": record.reason, "key": job.key})
+        columns = (*PLACE, *inputs, *outputs, "seconds", "reason", "key")
+        return pandas.DataFrame(rows, columns=list(columns))
+
     def to_xarray(self) -> xarray.Dataset:
         """Return every output over (design, condition, draw), with the inputs of each design."""
-        import xarray
-
-        designs, plan = self.designs, self.plan
-        records = [r for one in designs for r in one.records.values()]
-        names = list(dict.fromkeys(name for r in records for name in r.numbers))
-        shape = len(designs), len(plan.states), len(plan.draws)
-        values = {name: np.full(shape, np.nan) for name in names}
-        endings = np.full(shape, "open", dtype=object)
-        for k, one in enumerate(designs):
-            for (state, draw), record in one.records.items():
-                endings[k, state, draw] = str(record.ending)
-                for name in names:
-                    values[name][k, state, draw] = record.number(name)
-        units = {name: unit for r in records for name, unit in r.units.items()}
-        dims = ("design", "condition", "draw")
-        data: dict[str, Any] = {
-            name: (dims, array, {"units": units.get(name, "1")}) for name, array in values.items()
-        }
-        data["ending"] = (dims, endings.astype(str))
-        paths = list(dict.fromkeys(path for one in designs for path in one.changes))
-        coordinates: dict[str, Any] = {
-            path: ("design", [one.changes.get(path) for one in designs], {"units": unit_at(path)})
+        frame, plan = self.cases(), self.plan
+        units = {name: r.units.get(name, "1") for r in self.records.values() for name in r.numbers}
+        own = frame[frame["grid"] == plan.method.grid].set_index(list(PLACE[:3]))
+        found = own[[*units, "ending"]].astype(dict.fromkeys(units, float)).to_xarray()
+        for name, unit in units.items():
+            found[name].attrs["units"] = unit
+        paths = dict.fromkeys(path for one in self.designs for path in one.changes)
+        inputs = {
+            path: ("design", [one.changes[path] for one in self.designs], {"units": unit_at(path)})
             for path in paths
         }
-        coordinates |= {"design": [one.number for one in designs]}
-        coordinates |= {"condition": [state.label for state in plan.states]}
-        return xarray.Dataset(data, coordinates, {"title": plan.name})
+        labels = [plan.states[k].label for k in found["condition"].values]
+        found = found.assign_coords({"condition": labels, **inputs})
+        return found.assign(ending=found["ending"].astype(str)).assign_attrs(title=plan.name)
 
     def _goals_text(self, one: Design) -> str:
         values = self.goal_values([one])[0]

@@ -3,70 +3,84 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar
 
-from underfoot.core.presentation import Presentable, Table
+from underfoot.core.presentation import Table
 
+from .record import Ending
 from .result import StudyResult
 from .study import Study
 
 
-@dataclass(frozen=True, slots=True)
-class StudyStatus(Presentable):
-    """Progress, throughput and failures of a study.
-
-    Attributes:
-        working: Workers of the processes that are alive.
-        case_seconds: Sum over the finished cases of the seconds each took.
-        worker_seconds: Time that workers had, all processes together, to now.
-        per_minute: Cases that ended in a minute, over the processes that are alive, or were.
-        seconds_left: At that rate, of the cases set so far; None while nothing is known.
-    """
+@dataclass(frozen=True)
+class StudyStatus(StudyResult):
+    """A study's result with its progress, throughput and time left at a moment (s since 1970)."""
 
     kind: ClassVar[str] = "study_status"
 
-    result: StudyResult
-    working: int
-    case_seconds: float
-    worker_seconds: float
-    per_minute: float
-    seconds_left: float | None
+    now: float = 0.0
 
-    def heading(self) -> str:
-        """Return the name of the study."""
-        return self.result.plan.name
+    @cached_property
+    def _alive(self) -> list[Any]:
+        return [one for one in self.sessions if one["ended"] is None]
+
+    @property
+    def working(self) -> int:
+        """Workers of the processes that are alive."""
+        return sum(one["workers"] for one in self._alive)
+
+    @cached_property
+    def case_seconds(self) -> float:
+        """Sum over the finished cases of the seconds each took."""
+        return sum(record.seconds for record in self.records.values())
+
+    @cached_property
+    def worker_seconds(self) -> float:
+        """Time that workers had, all processes together, to now."""
+        ends = [(one, one["ended"] or self.now) for one in self.sessions]
+        return sum(one["workers"] * (end - one["began"]) for one, end in ends)
 
     @property
     def busy(self) -> float:
         """Share of the workers' time that went into cases."""
         return self.case_seconds / self.worker_seconds if self.worker_seconds else 0.0
 
+    @cached_property
+    def per_minute(self) -> float:
+        """Cases that end in a minute, over the processes that are alive, or were."""
+        counted = self._alive or self.sessions
+        if not counted:
+            return 0.0
+        began = min(one["began"] for one in counted)
+        elapsed = max(one["ended"] or self.now for one in counted) - began
+        ended = sum(record.ended >= began for record in self.records.values())
+        return 60 * ended / max(elapsed, 1e-9)
+
+    @property
+    def seconds_left(self) -> float | None:
+        """Time left of the cases set so far, at that rate; None while nothing is known."""
+        known = self._alive and self.per_minute
+        return 60 * self.endings[Ending.OPEN] / self.per_minute if known else None
+
     def headline(self) -> tuple[str, ...]:
         """Return how far it is, how fast, and when it ends."""
-        at_work = f"{self.working} workers at work" if self.working else "nobody works on it"
+        at_work = f"{self.working} workers at work" if self.working else "Nobody works on it"
         rate = f"{at_work}; {self.per_minute:.3g} cases a minute, workers {self.busy:.0%} busy"
-        left = "" if self.seconds_left is None else f", about {_time(self.seconds_left)} left"
-        return (self.result.headline()[0], f"{rate[0].upper()}{rate[1:]}{left}.")
-
-    def cautions(self) -> tuple[str, ...]:
-        """Return those of the result."""
-        return self.result.cautions()
+        seconds = self.seconds_left
+        left = "" if seconds is None else f", about {_time(seconds)} left"
+        return (super().headline()[0], f"{rate}{left}.")
 
     def table(self) -> Table:
         """Return how many cases ended in each way."""
-        rows = [(name, str(count)) for name, count in sorted(self.result.endings.items())]
+        rows = [(name, str(count)) for name, count in sorted(self.endings.items())]
         return Table("Cases", ("Ended as", "Number"), rows)
-
-    def remarks(self) -> Mapping[str, Sequence[str]]:
-        """Return why cases have no numbers."""
-        return self.result.remarks()
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data."""
         return {
-            "endings": dict(self.result.endings),
+            "endings": dict(self.endings),
             "working": self.working,
             "busy": self.busy,
             "cases_per_minute": self.per_minute,
@@ -78,23 +92,8 @@ class StudyStatus(Presentable):
 
 def study_status(study: Study) -> StudyStatus:
     """Return how far a study in its folder is."""
-    result, now = study.result(), time.time()
-    alive = [one for one in result.sessions if one["ended"] is None]
-    seconds = sum(record.seconds for record in result.records.values())
-    had = sum(one["workers"] * ((one["ended"] or now) - one["began"]) for one in result.sessions)
-    counted = alive or result.sessions
-    elapsed = max(
-        (max(one["ended"] or now for one in counted) - min(one["began"] for one in counted))
-        if counted
-        else 0.0,
-        1e-9,
-    )
-    began = min((one["began"] for one in counted), default=now)
-    ended = sum(record.ended >= began for record in result.records.values())
-    rate = ended / elapsed if counted else 0.0
-    left = result.endings["open"] / rate if alive and rate else None
-    working = sum(one["workers"] for one in alive)
-    return StudyStatus(result, working, seconds, had, 60 * rate, left)
+    found = study.result()
+    return StudyStatus(found.plan, found.jobs, found.records, found.sessions, time.time())
 
 
 def _time(seconds: float) -> str:

@@ -13,7 +13,6 @@ time leaves at most one torn line, which is not read. All of it works on a netwo
 
 from __future__ import annotations
 
-import csv
 import errno
 import json
 import os
@@ -21,10 +20,10 @@ import platform
 import shutil
 import threading
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
 from underfoot.case import Case
@@ -33,8 +32,12 @@ from underfoot.core.fields import Fields, from_xarray
 from underfoot.core.files import MARKER, whole_file
 from underfoot.core.optional import optional_module
 
-from .plan import StudyPlan, read_plan
+from .plan import StudyPlan
 from .record import Job, NewerFormat, Record
+from .study_file import read_plan
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 BEAT, SILENT = 20.0, 120.0
 """s: a working process touches its file this often, and counts as dead after this long."""
@@ -303,52 +306,18 @@ class Store:
 
     # --- views ---
 
-    def write_views(self, jobs: Sequence[Job]) -> list[str]:
+    def write_views(self, cases: DataFrame) -> list[str]:
         """Write results.csv and, where DuckDB is installed, results.parquet; return remarks."""
-        columns, rows = table(jobs, self.records())
-        with (
-            whole_file(self.folder / "results.csv") as part,
-            part.open("w", newline="", encoding="utf-8") as stream,
-        ):
-            writer = csv.writer(stream)
-            writer.writerow(columns)
-            writer.writerows(["" if cell is None else cell for cell in row] for row in rows)
+        table = self.folder / "results.csv"
+        with whole_file(table) as part:
+            cases.to_csv(part, index=False)
         try:
             duckdb = optional_module("duckdb", "study", "results.parquet")
         except MissingExtraError as error:
             return [str(error)]
-        with whole_file(self.folder / "results.parquet") as part, duckdb.connect() as database:
-            source = str(self.folder / "results.csv").replace("'", "''")
-            target = str(part).replace("'", "''")
-            database.execute(
-                f"COPY (SELECT * FROM read_csv('{source}', sample_size=-1)) "
-                f"TO '{target}' (FORMAT parquet)"
-            )
+        with whole_file(table.with_suffix(".parquet")) as part, duckdb.connect() as database:
+            database.read_csv(str(table), sample_size=-1).write_parquet(str(part))
         return []
-
-
-def table(jobs: Sequence[Job], records: dict[str, Record]) -> tuple[list[str], list[list[Any]]]:
-    """Return columns and rows of all cases: inputs and outputs in SI, how each ended."""
-    paths = list(dict.fromkeys(path for job in jobs for path in job.changes))
-    names = list(
-        dict.fromkeys(
-            name for job in jobs if job.key in records for name in records[job.key].numbers
-        )
-    )
-    columns = ["design", "condition", "draw", "grid", "ending", *paths]
-    columns += [part for name in names for part in (name, f"{name} sd")]
-    columns += ["seconds", "reason", "key"]
-    rows = []
-    for job in jobs:
-        record = records.get(job.key)
-        row: list[Any] = [job.design, job.condition, job.draw]
-        row += ["quick" if job.quick else "standard", record.ending if record else "open"]
-        row += [job.changes.get(path) for path in paths]
-        for name in names:
-            row += [record.numbers.get(name), record.spreads.get(name)] if record else [None] * 2
-        row += [record.seconds, record.reason, job.key] if record else [None, "", job.key]
-        rows.append(row)
-    return columns, rows
 
 
 def _append(path: Path, text: str) -> None:

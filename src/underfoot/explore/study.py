@@ -7,15 +7,16 @@ from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
-from underfoot.core import InputError, Progress, silent
+from underfoot.core import InputError, Progress, nearest_match, silent
 
 from .computing import computed, crashed
 from .engines import Engine, engine
-from .plan import StudyPlan, load_plan
+from .plan import StudyPlan
 from .proposals import next_batch
 from .record import Job
 from .result import StudyResult
 from .store import Store
+from .study_file import load_plan
 
 PAUSE = 1.0
 """s between two looks for work while others work."""
@@ -51,6 +52,13 @@ class Study:
         path = Path(path)
         if path.is_dir():
             return cls(Store(path).plan(), path)
+        if not path.exists():
+            raise InputError(
+                f"there is no study {path}",
+                where="STUDY",
+                allowed="a study file, or the folder that underfoot study run made of it",
+                nearest=nearest_match(path.name, [one.name for one in path.parent.glob("*")]),
+            )
         return cls(load_plan(path), folder or Path("out") / path.stem)
 
     def run(
@@ -103,10 +111,14 @@ class Study:
         """Compute what nobody else does until the study is done; return how many cases."""
         count, function = 0, partial(computed, self.plan.base)
         with self.store.working(workers):
-            for record in compute(function, self._claimed(leads), crashed):
-                self.store.add_record(record)
-                count += 1
-                progress(self._stage(), len(self.store.records()) / max(self._total, 1))
+            try:
+                for record in compute(function, self._claimed(leads), crashed):
+                    self.store.add_record(record)
+                    count += 1
+                    progress(self._stage(), len(self.store.records()) / max(self._total, 1))
+            except KeyboardInterrupt as stop:
+                kept = "every finished case is kept; the same command goes on from there"
+                raise type(stop)(kept) from None
         return count
 
     def _claimed(self, leads: bool) -> Iterator[Job | None]:

@@ -24,7 +24,7 @@ from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
 from underfoot.core.presentation import quantity_text
 
-from .inputs import Choice, Distribution, Input, Range
+from .inputs import Choice, Distribution, Input
 
 FEWEST = 5
 """Runs for each input below which no surrogate is made."""
@@ -95,25 +95,12 @@ class Surrogate:
             row, column = outside[0]
             one, share = self.dimensions[column], float(points[row, column])
             raise RangeError(
-                f"the surrogate of {self.name} ends before {_value_text(one, share)}",
+                f"the surrogate of {self.name} ends before {_text(one, share)}",
                 where=one.path,
-                allowed=" to ".join(_value_text(one, end) for end in (0.0, 1.0)),
+                allowed=" to ".join(_text(one, end) for end in (0.0, 1.0)),
                 remedy="Widen the range of the study and run it again, or run the case itself",
             )
         return featured(self.dimensions, points)
-
-    def at(self, inputs: Mapping[str, Any]) -> tuple[float, float]:
-        """Return mean and standard deviation at inputs by path, SI; refuse what lies outside."""
-        missing = [one.path for one in self.dimensions if one.path not in inputs]
-        if missing:
-            raise DataError(f"the surrogate of {self.name} needs {', '.join(missing)}")
-        point = []
-        for one in self.dimensions:
-            if isinstance(one, Distribution):
-                raise DataError(f"{one.path} is uncertain: take a place in the unit cube")
-            point.append(one.share(inputs[one.path]))
-        mean, deviation = self.predicted(np.array([point]))
-        return float(mean[0]), float(deviation[0])
 
     def with_point(self, point: Array) -> Surrogate:
         """Return the process that believes its own prediction at a further place."""
@@ -222,7 +209,6 @@ def featured(dimensions: Sequence[Dimension], points: Array) -> Array:
     return np.column_stack(columns)
 
 
-def _value_text(one: Dimension, share: float) -> str:
-    if isinstance(one, Range):
-        return display(one.value(share), unit_at(one.path))
-    return str(one.value(min(max(share, 0.0), 1.0)))
+def _text(one: Dimension, share: float) -> str:
+    value = one.value(min(max(share, 0.0), 1.0) if isinstance(one, Choice) else share)
+    return display(value, unit_at(one.path)) if isinstance(value, float) else str(value)

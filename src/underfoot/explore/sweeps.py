@@ -12,9 +12,9 @@ from underfoot.case import text as toml
 from underfoot.case.section import plain_text
 from underfoot.core import Progress, silent
 
-from .plan import read_plan
 from .result import StudyResult
 from .study import Study
+from .study_file import read_plan
 
 if TYPE_CHECKING:
     import xarray

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import pairwise
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -52,14 +53,6 @@ class ShownStudy(StudyResult):
     missing: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class _Sole:
-    """What the viewer takes of a result."""
-
-    name: str
-    data: Fields
-
-
 def shown(study: Study, result: StudyResult, progress: Progress = silent) -> ShownStudy:
     """Return a result with the soles of its best designs, surrogates and indices."""
     plan, soles = study.plan, {}
@@ -93,7 +86,7 @@ def write_study_report(
     study: Study, result: StudyResult, *, progress: Progress = silent
 ) -> Written:
     """Write results.csv, results.parquet, surrogate.json and report.html into a study's folder."""
-    failures = study.store.write_views(result.jobs)
+    failures = study.store.write_views(result.cases())
     ready = shown(study, result, progress)
     if ready.models:
         models = [one.to_dict() for one in ready.models]
@@ -186,10 +179,7 @@ def _explorer(result: StudyResult, designs: Sequence[Design]) -> str:
     for path in paths:
         values = [one.changes.get(path) for one in designs]
         add(path.split(".", 1)[-1], unit_at(path), values, False)
-    for goal in goals:
-        values = [
-            goal.value(one.records, plan.states) if one.usable else float("nan") for one in designs
-        ]
+    for goal, values in zip(goals, result.values(designs, goals).T.tolist(), strict=True):
         add(str(goal), goal.unit, values, goal in plan.goals)
     listed = [
         {
@@ -205,7 +195,7 @@ def _explorer(result: StudyResult, designs: Sequence[Design]) -> str:
     soles = {}
     if isinstance(result, ShownStudy):
         for number, fields in result.soles.items():
-            sole: Any = _Sole(f"design {number}", fields)
+            sole: Any = SimpleNamespace(name=f"design {number}", data=fields)
             soles[number] = viewer_section([sole])
     template = environment().get_template("design_study.html")
     return template.render(data=data.replace("<", "\\u003c"), soles=soles)
