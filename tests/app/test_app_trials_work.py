@@ -202,7 +202,7 @@ def test_a_run_without_steps_is_excluded_and_taken_in_again(tmp_path):
 
 
 def test_bad_files_stand_beside_the_good_ones(walks):
-    """Text called .c3d, a file cut short, a name that is a script: each with words, all on cards."""
+    """Text called .c3d, a file cut short, a name that is a script: words for each, all on cards."""
     (walks / "text.c3d").write_text("this is text\n")
     (walks / "cut.c3d").write_bytes((walks / WALK).read_bytes()[:9000])
     hostile = "<img src=x onerror=alert(1)>; 'drop.csv"

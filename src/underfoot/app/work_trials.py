@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from underfoot.core import InputError, Progress, silent
+from underfoot.core.files import whole_folder
 from underfoot.core.progress import part
 from underfoot.report.trials_figures import Tile, sheets
 from underfoot.report.trials_report import (
@@ -37,6 +38,7 @@ from underfoot.trials.analyse.folder import recording_trials
 from underfoot.trials.analyse.record_signals import record_signals
 from underfoot.trials.analyse.tables import heading, scaled
 from underfoot.trials.protocols import Protocol, protocol, protocol_names
+from underfoot.trials.simulate import simulated_folder
 from underfoot.trials.trial import Edit
 
 from .trials_plots import record_plot, run_plot, step_plot, tile_svg
@@ -98,6 +100,12 @@ class Change:
 def protocols(*, progress: Progress = silent) -> dict[str, str]:
     """Return the protocols as name and title."""
     return protocol_names()
+
+
+def example(folder: str, *, progress: Progress = silent) -> None:
+    """Make a folder of made-up slips with known truth."""
+    with whole_folder(Path(folder)) as made:
+        simulated_folder("slips", made, count=6, progress=progress)
 
 
 def folder_view(asked: Mapping[str, Any], *, progress: Progress = silent) -> dict[str, Any]:

@@ -34,9 +34,12 @@ write the module and its line in ``PAGES``; nothing else names it.
 from __future__ import annotations
 
 from ..session import Page
-from . import start
+from . import start, trials
 
 DESIGN, SAFETY, SCIENCE = "design", "safety", "science"
 """The doors: who comes in. Their words are ``doors.NAME`` in the text files."""
 
-PAGES = (Page("", "/", "start.title", "home", start.build),)
+PAGES = (
+    Page("", "/", "start.title", "home", start.build),
+    Page(SAFETY, trials.ROUTE, "trials.title", "directions_walk", trials.build, trials.example),
+)

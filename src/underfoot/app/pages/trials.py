@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlencode
 
 from nicegui import ui
 from nicegui.events import GenericEventArguments
@@ -29,6 +30,12 @@ SHOWN = 60
 """Cards that are shown at once; more on demand."""
 ARRIVING = "arriving "
 """Start of the name of a folder whose files are still on their way."""
+PLOT_WORDS = (
+    "plot", "step", "time", "force", "ratio", "speed", "cof", "contact", "toe off", "gate", "rcof",
+    "slip start", "slip end", "slip peak", "begin", "end", "normal", "shear", "left", "right",
+    "unknown",
+)  # fmt: skip
+"""What a plot names: itself, its panels, lines and events."""
 STANDARD = {"protocol": "level_walking", "names": "", "merge_spelling": False}
 
 
@@ -46,9 +53,7 @@ class TrialPlot(ui.element, component=STATIC / "trial.js"):
 
     def __init__(self, session: Session, *, choosing: bool = False, panel: int = 150) -> None:
         super().__init__()
-        text = session.text
-        keys = [key for key in text.keys("trials.plot.")]
-        words = {key.rpartition(".")[2].replace("_", " "): text(key) for key in keys}
+        words = {id: session.text(f"trials.plot.{id.replace(' ', '_')}") for id in PLOT_WORDS}
         self._props.update(words=words, choosing=choosing, panel=panel, revision=0)
 
     def show(self, plot: Mapping[str, Any], chosen: int | None) -> None:
@@ -64,17 +69,15 @@ def build(session: Session) -> None:
     wanted = session.query.get("study", "")
     if wanted in page.studies():
         page.open(wanted, session.query.get("trial", ""))
-    else:
-        page.choose()
+        return
+    page.choose()
+    if "example" in session.query:
+        ui.timer(0.01, page.make_example, once=True)
 
 
-async def example(session: Session) -> None:
+def example(session: Session) -> None:
     """Open a folder of made-up slips."""
-    name = _free_name(session, session.text("trials.example"))
-    folder = session.project.inside("trials", name)
-    await session.ask(f"{WORK}:example", str(folder))
-    _keep_settings(session, name, {**STANDARD, "protocol": "report_g6"})
-    session.go(ROUTE, study=name)
+    session.go(ROUTE, example="slips")
 
 
 class _Trials:
@@ -121,7 +124,7 @@ class _Trials:
             _heading("h1", text("trials.title"))
             ui.label(text("trials.lead")).classes("lead")
             FolderDrop(session, arriving).on("arrived", arrived)
-            made = ui.button(text("trials.try"), on_click=lambda: example(session))
+            made = ui.button(text("trials.try"), on_click=self.make_example)
             made.props("flat no-caps")
             if self.studies():
                 _heading("h2", text("trials.folders"))
@@ -130,6 +133,13 @@ class _Trials:
                     with ui.element("li"):
                         link = ui.button(name, icon="folder", on_click=lambda n=name: self.open(n))
                         link.props("flat no-caps align=left")
+
+    async def make_example(self) -> None:
+        """Make a folder of made-up slips and open it."""
+        name = _free_name(self.session, self.text("trials.example"))
+        await self.session.ask(f"{WORK}:example", str(self.session.project.inside("trials", name)))
+        _keep_settings(self.session, name, {**STANDARD, "protocol": "report_g6"})
+        self.open(name)
 
     def _settled(self, arriving: str) -> str:
         """Give a folder that has arrived its name; a folder in it alone is the folder meant."""
@@ -389,7 +399,9 @@ class _Trials:
             for step in sorted(view["steps"], key=lambda each: each["number"]):
                 number = "–" if step["rcof"] is None else f"{step['rcof']:.3f}"
                 words = f"{step['number']} {text('trials.side_' + step['side'])}: {number}"
-                chip = ui.button(words).classes(f"chip {step['verdict']}").props("flat no-caps dense")
+                chip = (
+                    ui.button(words).classes(f"chip {step['verdict']}").props("flat no-caps dense")
+                )
                 chip.on_click(lambda n=step["number"]: self.choose_step(n))
                 chip.props(f'aria-pressed="{str(step["number"] == view["chosen"]).lower()}"')
 
@@ -397,7 +409,7 @@ class _Trials:
         return next((s for s in self.view["steps"] if s["number"] == self.view["chosen"]), None)
 
     def _edit_bar(self) -> None:
-        """Show the chosen step and what may be done with it, or the edit that waits for a reason."""
+        """Show the chosen step and what may be done with it, or the edit that lacks a reason."""
         text, step = self.text, self._chosen()
         if self.pending is not None:
             self._reason()
@@ -433,7 +445,9 @@ class _Trials:
     def _reason(self) -> None:
         """Show what the edit would do and ask for its reason."""
         text, entry = self.text, self.view["edits"][-1]
-        ui.label(f"{entry['step']}: {_edit_words(entry)}").classes("step-words").props('role="status"')
+        ui.label(f"{entry['step']}: {_edit_words(entry)}").classes("step-words").props(
+            'role="status"'
+        )
         why = ui.input(text("trials.why"), validation={text("trials.why_missing"): bool})
         why.without_auto_validation()
         past = dict.fromkeys(each["why"] for each in self.view["edits"][:-1])
@@ -463,23 +477,21 @@ class _Trials:
 
     async def _moved(self, event: GenericEventArguments) -> None:
         value = f"{event.args['time']:.4f} s"
-        await self.tried(
-            {"step": self.view["chosen"], "what": event.args["id"], "value": value}
-        )
+        await self.tried({"step": self.view["chosen"], "what": event.args["id"], "value": value})
 
     async def tried(self, change: dict[str, Any]) -> None:
         """Show what an edit would do; it is not written."""
-        if await self._asked(change, keep=False):
+        if await self._answered(change, keep=False):
             self.pending = change
             self._fill(self.view)
 
     async def _kept(self, change: dict[str, Any]) -> None:
-        if await self._asked(change, keep=True):
+        if await self._answered(change, keep=True):
             self.done.append((self.view["before"], self.view["after"]))
             self.pending, self.undone = None, []
             self._fill(self.view)
 
-    async def _asked(self, change: dict[str, Any], *, keep: bool) -> bool:
+    async def _answered(self, change: dict[str, Any], *, keep: bool) -> bool:
         arguments = self.asked(), self.file, self.view["chosen"]
         options = {"change": change, "keep": keep}
         try:
@@ -509,8 +521,6 @@ class _Trials:
         await self._discard()
 
     def _address(self, **query: str) -> None:
-        from urllib.parse import urlencode
-
         ui.run_javascript(f"history.replaceState(null, '', {json.dumps('?' + urlencode(query))})")
 
 
@@ -523,7 +533,9 @@ def _study_table(shown: Mapping[str, Any]) -> None:
     """Show a table of the statistics with what stands below its rows, its notes and cautions."""
     below = shown["below"] if any(shown["below"]) else []
     rows = [[*row, *below[i : i + 1]] for i, row in enumerate(shown["rows"])]
-    table({"title": shown["title"], "columns": [*shown["columns"], *[""] * bool(below)], "rows": rows})
+    table(
+        {"title": shown["title"], "columns": [*shown["columns"], *[""] * bool(below)], "rows": rows}
+    )
     sentences([*shown.get("cautions", ()), *shown["notes"]], "soft")
 
 
