@@ -52,8 +52,6 @@ def tile_svg(tiles: Sequence[Tile], sheet: Sheet) -> str:
     for tile in tiles:
         inside = np.isfinite(tile.y) & (tile.x >= left) & (tile.x <= right)
         x, y = tile.x[inside], tile.y[inside]
-        if not len(x):
-            continue
         every = max(1, len(x) // TILE_POINTS)
         parts.append(
             f'<polyline class="{tile.verdict}" points="{points(x[::every], y[::every])}"/>'

@@ -36,7 +36,7 @@ from underfoot.trials.analyse.edit_table import (
 )
 from underfoot.trials.analyse.folder import recording_trials
 from underfoot.trials.analyse.record_signals import record_signals
-from underfoot.trials.analyse.tables import heading, scaled
+from underfoot.trials.analyse.tables import quantity_name, scaled, shown_unit
 from underfoot.trials.protocols import Protocol, protocol, protocol_names
 from underfoot.trials.simulate import simulated_folder
 from underfoot.trials.trial import Edit
@@ -144,7 +144,7 @@ def trial_view(
     keep: bool = False,
     progress: Progress = silent,
 ) -> dict[str, Any]:
-    """Return a trial with its steps, edit log and plots; ``step`` (or the first good one) is shown.
+    """Return a trial with its steps, edit log and plots; ``step`` (or a slip, or the first good one) is shown.
 
     ``change``: what a ``Change`` holds; the trial is shown as it would be with this edit. ``keep``
     writes it to the folder's ``edits.csv``; that file's text before and after is then told as
@@ -247,17 +247,21 @@ def _number(edit: Edit, one: FileResult) -> int:
 
 def _cards(analysis: FolderAnalysis) -> list[dict[str, Any]]:
     """Return a card a file: verdict, numbers, conditions, reasons, edits and a small plot."""
-    drawn = {sheet.kind: sheet for sheet in sheets(analysis.files)}
-    sheet = drawn.get("heel") or next(iter(drawn.values()), None)
-    tiles: dict[str, list[Tile]] = {}
-    for file, tile in sheet.tiles if sheet else ():
-        tiles.setdefault(file, []).append(tile)
+    plots: dict[str, str] = {}
+    # A trial is drawn once: as a slip where it is one, else by its steps or its run.
+    for sheet in sorted(sheets(analysis.files), key=lambda each: each.kind != "heel"):
+        tiles: dict[str, list[Tile]] = {}
+        for file, tile in sheet.tiles:
+            if len(tile.x):
+                tiles.setdefault(file, []).append(tile)
+        for file, own in tiles.items():
+            plots.setdefault(file, tile_svg(own, sheet))
     return [
         {
             **_summary(one),
             "edits": len(one.edits),
-            "steps": [each["verdict"] for each in one.steps],
-            "svg": tile_svg(tiles.get(one.file, []), sheet) if sheet else "",
+            "noted": ", ".join(v for v in one.conditions.values() if isinstance(v, str)),
+            "svg": plots.get(one.file, ""),
         }
         for one in analysis.files
     ]
@@ -268,19 +272,22 @@ def _summary(one: FileResult) -> dict[str, Any]:
         "file": one.file,
         "verdict": one.verdict,
         "numbers": _numbers(one),
-        "conditions": {name: str(value) for name, value in one.conditions.items()},
+        "conditions": {
+            name: f"{value:g}" if isinstance(value, float) else str(value)
+            for name, value in one.conditions.items()
+        },
         "reasons": list(one.reasons),
     }
 
 
-def _numbers(one: FileResult) -> list[tuple[str, str]]:
-    """Return the main numbers of a file as heading with unit and text."""
+def _numbers(one: FileResult) -> list[str]:
+    """Return the main numbers of a file in words, with units."""
     texts = []
     for name, value in one.main.items():
-        text = f"{scaled(name, value):.3g}"
+        text = f"{scaled(name, value):.3g} {shown_unit(name)}".strip()
         if name in ("slip", "crossed_array"):
             text = "yes" if value else "no"
-        texts.append((heading(name), text))
+        texts.append(f"{quantity_name(name)} {text}")
     return texts
 
 
@@ -292,8 +299,9 @@ def _plots(study: Study, recording: Recording, one: FileResult, step: int | None
     trials, *_ = recording_trials(recording.paths, profile)
     trial = trials[_run_number(recording.name, one.file) - 1]
     signals = record_signals(trial, study.protocol, profile)
-    good = [each for each in one.steps if each["verdict"] != "rejected"] or one.steps
-    entry = next((each for each in one.steps if each["number"] == step), good[0])
+    order = {"accepted": 1, "caution": 1}
+    first = min(one.steps, key=lambda s: 0 if "slip_start" in s else order.get(s["verdict"], 2))
+    entry = next((each for each in one.steps if each["number"] == step), first)
     return {
         "whole": record_plot(one, signals),
         "chosen": entry["number"],

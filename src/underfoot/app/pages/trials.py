@@ -51,7 +51,7 @@ class FolderDrop(ui.element, component=STATIC / "folder_drop.js"):
 class TrialPlot(ui.element, component=STATIC / "trial.js"):
     """Signals with events that may be moved (``moved``) and steps that may be chosen."""
 
-    def __init__(self, session: Session, *, choosing: bool = False, panel: int = 150) -> None:
+    def __init__(self, session: Session, *, choosing: bool = False, panel: int = 104) -> None:
         super().__init__()
         words = {id: session.text(f"trials.plot.{id.replace(' ', '_')}") for id in PLOT_WORDS}
         self._props.update(words=words, choosing=choosing, panel=panel, revision=0)
@@ -267,7 +267,7 @@ class _Trials:
             self._sheet()
 
         words = self.text(f"trials.{verdict or 'every'}")
-        chip = ui.button(f"{count} {words}", on_click=choose).classes(f"chip {verdict}")
+        chip = ui.button(f"{count} {words}", on_click=choose, color=None).classes(f"chip {verdict}")
         chip.props("flat no-caps dense")
 
     def _sheet(self) -> None:
@@ -293,9 +293,10 @@ class _Trials:
 
         with ui.element("button").classes(f"trial-card {card['verdict']}").on("click", show):
             ui.label(card["file"]).classes("name")
-            ui.html(card["svg"], sanitize=False)
-            ui.label(" · ".join(f"{n} {v}" for n, v in card["numbers"][:2])).classes("number")
-            ui.label(", ".join(card["conditions"].values())).classes("soft")
+            if card["svg"]:
+                ui.html(card["svg"], sanitize=False)
+            ui.label(" · ".join(card["numbers"][:2])).classes("number")
+            ui.label(card["noted"]).classes("soft")
             words = [self.text("trials.edited", count=card["edits"])] if card["edits"] else []
             if card["verdict"] != "accepted":
                 words += card["reasons"][:1]
@@ -340,8 +341,7 @@ class _Trials:
                 self.redo = self._tool("redo", "trials.redo", self._redo)
             self.head = ui.element("div")
             if view["whole"]:
-                ui.label(text("trials.record")).classes("soft")
-                self.whole = TrialPlot(self.session, choosing=True, panel=70)
+                self.whole = TrialPlot(self.session, choosing=True, panel=46)
                 self.whole.on("chosen", lambda e: self.choose_step(e.args))
             self.bar = ui.element("div").classes("edit-bar").props('aria-live="polite"')
             if view["plot"]:
@@ -391,18 +391,21 @@ class _Trials:
         view, text = self.view, self.text
         with ui.element("div").classes("trial-summary"):
             ui.label(text(f"trials.{view['verdict']}")).classes(f"tag {view['verdict']}")
-            for name, value in view["numbers"]:
-                ui.label(f"{name} {value}").classes("number")
+            for words in view["numbers"]:
+                ui.label(words).classes("number")
             ui.label(", ".join(f"{n}: {v}" for n, v in view["conditions"].items())).classes("soft")
+            self._step_chips()
         sentences(view["reasons"], "reason")
+
+    def _step_chips(self) -> None:
+        view, text = self.view, self.text
         with ui.element("div").classes("chips"):
             for step in sorted(view["steps"], key=lambda each: each["number"]):
                 number = "–" if step["rcof"] is None else f"{step['rcof']:.3f}"
                 words = f"{step['number']} {text('trials.side_' + step['side'])}: {number}"
-                chip = (
-                    ui.button(words).classes(f"chip {step['verdict']}").props("flat no-caps dense")
-                )
+                chip = ui.button(words, color=None).classes(f"chip {step['verdict']}")
                 chip.on_click(lambda n=step["number"]: self.choose_step(n))
+                chip.props("flat no-caps dense")
                 chip.props(f'aria-pressed="{str(step["number"] == view["chosen"]).lower()}"')
 
     def _chosen(self) -> dict[str, Any] | None:
@@ -452,7 +455,7 @@ class _Trials:
         why.without_auto_validation()
         past = dict.fromkeys(each["why"] for each in self.view["edits"][:-1])
         why.set_autocomplete(list(past))
-        why.props("autofocus").classes("why")
+        why.props("autofocus dense hide-bottom-space").classes("why")
 
         async def keep() -> None:
             if why.validate():

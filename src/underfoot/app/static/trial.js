@@ -2,7 +2,7 @@
 const LEFT = 58, RIGHT = 14, TOP = 30, GAP = 14, AXIS = 34;
 
 function ticks(low, high, most) {
-  const raw = (high - low) / most, size = 10 ** Math.floor(Math.log10(raw));
+  const raw = (high - low) / Math.max(1, most), size = 10 ** Math.floor(Math.log10(raw));
   const step = [1, 2, 5, 10].map((f) => f * size).find((s) => s >= raw);
   const all = [];
   for (let v = Math.ceil(low / step - 1e-9) * step; v <= high + 1e-9 * step; v += step) all.push(+v.toPrecision(12));
@@ -21,7 +21,7 @@ export default {
   <g v-for="(p, i) in panels" :key="p.id">
    <g v-for="v in p.ticks" :key="v"><line class="grid" :x1="LEFT" :x2="width - RIGHT" :y1="p.y(v)" :y2="p.y(v)"/>
     <text class="tick up" :x="LEFT - 6" :y="p.y(v) + 4">{{ v }}</text></g>
-   <text class="label" :transform="'translate(13 ' + (p.top + p.high / 2) + ') rotate(-90)'">{{ words[p.id] || p.id }}</text>
+   <text v-if="panel > 60" class="label" :transform="'translate(13 ' + (p.top + p.high / 2) + ') rotate(-90)'">{{ words[p.id] || p.id }}</text>
    <path v-for="(d, k) in p.paths" :key="k" class="curve" :class="'c' + k" :d="d"/>
    <text v-if="p.lines.length > 1" v-for="(l, k) in p.lines" :key="'l' + k" class="key" :class="'c' + k"
      :x="width - RIGHT - 4" :y="p.top + 12 + 14 * k">{{ words[l.name] || l.name }}</text>
@@ -60,7 +60,7 @@ export default {
         const top = TOP + i * (this.panel + GAP), reach = 1.06 * (p.high - p.low);
         const y = (v) => top + this.panel * (1 - (v - p.low) / reach);
         const paths = p.lines.map((l) => this.path(l, y));
-        return { ...p, top, y, paths, height: this.panel, high: this.panel, ticks: ticks(p.low, p.high, 4) };
+        return { ...p, top, y, paths, height: this.panel, high: this.panel, ticks: ticks(p.low, p.high, Math.max(2, this.panel / 30)) };
       });
     },
     times() { return ticks(this.plot.begin, this.plot.end, Math.max(3, this.width / 110)); },
