@@ -25,6 +25,8 @@ TILE = (160, 70)
 TILE_POINTS = 80
 BEFORE, AFTER = 0.25, 0.15
 """s shown before the contact and after the toe off of a step."""
+RATIOS = ("steps", "rejected", "slipping")
+"""Curves of a file that hold a ratio of forces over a contact."""
 LOADED = 50.0
 """N above which a ratio of forces is drawn, as in the contact sheets of the report."""
 RUNS: dict[str, dict[str, tuple[str, ...]]] = {
@@ -89,9 +91,8 @@ def step_plot(one: FileResult, entry: Mapping[str, Any], signals: RecordSignals)
         {"id": "toe off", "time": toe_off, "least": contact + least, "most": plate.end},
     ]
     label = f"step {entry['number']} on {entry['plate']}"
-    for curve in (*one.curves.get("steps", ()), *one.curves.get("rejected", ())):
-        if curve["step"] != label:
-            continue
+    curves = (each for kind in RATIOS for each in one.curves.get(kind, ()))
+    for curve in (each for each in curves if each["step"] == label):
         loaded = [
             ratio if load is not None and load > LOADED else None
             for ratio, load in zip(curve["ratio"], curve["normal"], strict=True)

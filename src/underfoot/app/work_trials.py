@@ -144,8 +144,9 @@ def trial_view(
     keep: bool = False,
     progress: Progress = silent,
 ) -> dict[str, Any]:
-    """Return a trial with its steps, edit log and plots; ``step`` (or a slip, or the first good one) is shown.
+    """Return a trial with its steps, edit log and plots of one step.
 
+    ``step``: the number of that step; without it a slip, else the first accepted one.
     ``change``: what a ``Change`` holds; the trial is shown as it would be with this edit. ``keep``
     writes it to the folder's ``edits.csv``; that file's text before and after is then told as
     ``before`` and ``after``.

@@ -6,6 +6,7 @@ import json
 import secrets
 import shutil
 from collections.abc import Mapping
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -131,7 +132,7 @@ class _Trials:
             with ui.element("ul").classes("folders"):
                 for name in self.studies():
                     with ui.element("li"):
-                        link = ui.button(name, icon="folder", on_click=lambda n=name: self.open(n))
+                        link = ui.button(name, icon="folder", on_click=partial(self.open, name))
                         link.props("flat no-caps align=left")
 
     async def make_example(self) -> None:
@@ -194,12 +195,13 @@ class _Trials:
         with ui.element("div").classes("trial-settings"):
             self.protocol = ui.select([self.settings["protocol"]], label=text("trials.protocol"))
             self.protocol.value = self.settings["protocol"]
-            names = ui.input(text("trials.names"), value=self.settings["names"])
-            names.props(f'hint="{text("trials.names_hint")}"').classes("names")
+            with ui.element("div").classes("names"):
+                names = ui.input(text("trials.names"), value=self.settings["names"])
+                ui.label(text("trials.names_hint")).classes("soft")
             merge = ui.checkbox(text("trials.merge"), value=self.settings["merge_spelling"])
 
         async def changed() -> None:
-            new = {"protocol": self.protocol.value, "names": names.value.strip()}
+            new = {"protocol": self.protocol.value, "names": (names.value or "").strip()}
             new["merge_spelling"] = merge.value
             if new != self.settings:
                 self.settings = new
@@ -404,7 +406,7 @@ class _Trials:
                 number = "–" if step["rcof"] is None else f"{step['rcof']:.3f}"
                 words = f"{step['number']} {text('trials.side_' + step['side'])}: {number}"
                 chip = ui.button(words, color=None).classes(f"chip {step['verdict']}")
-                chip.on_click(lambda n=step["number"]: self.choose_step(n))
+                chip.on_click(partial(self.choose_step, step["number"]))
                 chip.props("flat no-caps dense")
                 chip.props(f'aria-pressed="{str(step["number"] == view["chosen"]).lower()}"')
 
@@ -459,7 +461,7 @@ class _Trials:
 
         async def keep() -> None:
             if why.validate():
-                await self._kept({**(self.pending or {}), "why": why.value.strip()})
+                await self._kept({**(self.pending or {}), "why": (why.value or "").strip()})
 
         why.on("keydown.enter", keep)
         why.on("keydown.escape", self._discard)
@@ -475,7 +477,7 @@ class _Trials:
             with ui.element("div").classes("edit"):
                 ui.label(f"{entry['step']}: {_edit_words(entry)}. {entry['why']}")
                 take = ui.button(text("trials.take_back"))
-                take.on_click(lambda n=number: self._kept({"step": n, "what": "take back"}))
+                take.on_click(partial(self._kept, {"step": number, "what": "take back"}))
                 take.props("flat no-caps dense")
 
     async def _moved(self, event: GenericEventArguments) -> None:

@@ -41,7 +41,7 @@ export default {
    <line :x1="x(at(e))" :x2="x(at(e))" :y1="TOP - 4" :y2="height - AXIS"/>
    <rect class="grip" :x="x(at(e)) - 14" :y="TOP - 4" width="28" :height="height - TOP - AXIS + 4"/>
    <path class="knob" :d="'M' + (x(at(e)) - 7) + ' ' + (TOP - 16) + 'h14v8l-7 8l-7 -8z'"/>
-   <text :x="x(at(e)) + (late(e) ? -11 : 11)" :y="TOP - 8" :text-anchor="late(e) ? 'end' : 'start'">{{ text(e) }}</text>
+   <text :x="x(at(e)) + (late(e) ? -11 : 11)" :y="TOP - 8" :text-anchor="late(e) ? 'end' : 'start'">{{ width < 560 ? at(e).toFixed(3) + ' s' : text(e) }}</text>
   </g>
  </svg>
 </div>`,

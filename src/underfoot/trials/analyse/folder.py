@@ -25,7 +25,7 @@ from .steps import STEP_KINDS, analysed_trial, check_ramp
 from .study import Study, study_of
 from .tables import Table, curve_table, edit_table, file_table, measurement_table, step_tables
 
-_CODE = "2"  # raised when the numbers of a file change, so that stored results are made again
+_CODE = "3"  # raised when what a file gives changes, so that stored results are made again
 _DIED = "the process that analysed it ended without an answer"
 
 

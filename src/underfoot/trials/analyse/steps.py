@@ -256,6 +256,7 @@ def _human_slip(walk: _Walk) -> None:
         walk.trial, stance, axes=walk.axes, definition=definition, limits=limits, heels=heels
     )
     _slip_numbers(walk, stance, one, limits)
+    _ratio_curve(walk, stance, "slipping")
     if one.motion is not None:
         motion = one.motion
         near = (motion.time > one.contact - 0.15) & (motion.time < one.contact + 0.9)
@@ -356,7 +357,7 @@ def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
         draft.add(stance.label, own)
         draft.steps.append(_step_entry(walk, stance, step))
         if own.value is None:
-            _rejected_curve(walk, stance)
+            _ratio_curve(walk, stance, "rejected")
             continue
         values.append(own)
         assert stance.walking is not None  # an RCOF has one
@@ -378,8 +379,8 @@ def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
     return values
 
 
-def _rejected_curve(walk: _Walk, stance: Stance) -> None:
-    """Keep the ratio of a rejected contact: contact sheets show it with the reason."""
+def _ratio_curve(walk: _Walk, stance: Stance, kind: str) -> None:
+    """Keep the plain ratio of a contact without a required friction: rejected, or slipping."""
     plate, axes = plate_named(walk.trial, stance.plate), walk.axes
     force = plate.force[stance.start : stance.stop]
     up = axes.up if stance.walking is None else axes.ramp.surface(axes.up, stance.walking)[0]
@@ -387,7 +388,7 @@ def _rejected_curve(walk: _Walk, stance: Stance) -> None:
     shear = np.linalg.norm(force - np.outer(normal, up), axis=1)
     time, ratio = np.arange(len(force)) / plate.rate, shear / np.maximum(normal, 1.0)
     words = {"step": stance.label, "reason": stance.reason}
-    walk.draft.curve("rejected", time=time, normal=normal, ratio=ratio, **words)
+    walk.draft.curve(kind, time=time, normal=normal, ratio=ratio, **words)
 
 
 def _step_entry(
