@@ -188,7 +188,7 @@ class _Trials:
                 stop = ui.button(text("jobs.stop"), on_click=self.session.jobs.live.stop)
                 stop.props("flat dense no-caps")
             self.body = ui.element("div")
-        ui.timer(0.01, self.refresh, once=True)
+            ui.timer(0.01, self.refresh, once=True)
 
     def _settings_row(self) -> None:
         text = self.text
