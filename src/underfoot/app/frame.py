@@ -43,7 +43,7 @@ def framed(session: Session, page: Page) -> None:
     ui.add_head_html(HEAD)
     ui.on_exception(session.tell)
     ui.colors(primary="#0b6fa4")
-    with ui.header().classes("app-bar"):
+    with ui.header(fixed=False).classes("app-bar"):
         home = ui.link("Underfoot", "/").classes("brand")
         home.props(f'aria-label="{text("start.title")}"')
         with ui.element("nav").props(f'aria-label="{text("frame.pages")}"'):
@@ -122,3 +122,6 @@ def _job_row(session: Session, task: Task) -> None:
         if task.open:
             stop = ui.button(text("jobs.stop"), on_click=lambda: session.jobs.cancel(task))
             stop.props("flat dense no-caps")
+        elif task.state != "done":
+            again = ui.button(text("jobs.again"), on_click=lambda: session.jobs.again(task))
+            again.props("flat dense no-caps")
