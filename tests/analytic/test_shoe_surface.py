@@ -8,7 +8,7 @@ import pytest
 from underfoot.core import InputError
 from underfoot.shoe import Facet, Heel, SoleSurface, Tread, WearPlane, heel_map, heel_surface
 from underfoot.shoe import surface_map as tilted
-from underfoot.shoe._kernels.regions import local_width
+from underfoot.shoe._kernels.covering_discs import local_width
 from underfoot.shoe.files.orientation import levelled, resting_plane
 from underfoot.shoe.tread_measures import height_noise, tread_map, tread_measures
 from underfoot.shoe.worn import WornPatch, worn_surface

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from underfoot.compute.resolve import resolved
+from underfoot.compute.slips import slip_setting
 from underfoot.slip import ReportG6
 from underfoot.slip.dynamics import FrictionDraws
 from underfoot.studies import g5, g6, judge, study
@@ -143,6 +144,13 @@ def test_draws_of_studies_as_small_as_the_reports(monkeypatch):
     assert drawn["slipped"].mean() == pytest.approx(np.mean(speed > 1.5), abs=0.01)
     other = g5.population_draws(population, 11, draws=4000, seed=1)
     assert not np.array_equal(drawn["peak_speed"], other["peak_speed"])
+
+
+@pytest.mark.parametrize("grid", g5.GRIDS)
+@pytest.mark.parametrize("shoe", g5.COUNTS)
+def test_each_grid_of_the_slips_carries_its_sole(shoe, grid):
+    setting = slip_setting(g5.slip_case(shoe, grid=grid))
+    assert np.diff(setting.sole.x) == pytest.approx(1e-3 * float(grid.split()[0]), rel=1e-6)
 
 
 def passages(count, generator):

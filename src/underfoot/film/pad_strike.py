@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.integrate import solve_ivp
 
 from underfoot.core.checks import positive
 
@@ -90,6 +89,8 @@ def touch_time(strike: Strike, contact_pressure: Callable[[ArrayLike], Any]) -> 
     # SciPy ends the solution where an event with this attribute is met; functions declare none
     touched.terminal = True  # type: ignore[attr-defined]
     start = [strike.pool, strike.speed]
+    from scipy.integrate import solve_ivp  # heavy: it brings the optimisers along
+
     solved = solve_ivp(
         rate, (0.0, LONGEST), start, "LSODA", events=touched, rtol=1e-6, atol=[1e-9, 1e-7]
     )

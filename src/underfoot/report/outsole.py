@@ -218,7 +218,7 @@ def _parts(axes: Axes, surface: SoleSurface, measures: TreadMeasures) -> None:
     kinds = {
         "land": ("0.72", surface.land),
         "channels open to the rim": ("#dfeaf3", channel),
-        "closed channels": (_CLOSED, channel & ~draining(surface)),
+        "closed channels": (_CLOSED, channel & ~draining(surface.inside, channel)),
         f"largest untreaded patch, {measures.patch_area * 1e6:.3g} mm²": (
             _PATCH,
             largest_patch(surface),

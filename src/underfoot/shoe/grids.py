@@ -11,7 +11,7 @@ from underfoot.core import Breach, InputError, Range, breaches
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import between, not_negative, positive
 
-from ._kernels.regions import distance_to, local_width, nearest_true
+from ._kernels.regions import distance_to, nearest_true
 from .cut_cells import Cells, cut_cells
 from .geometry import CELLS_REFUSED, CELLS_WANTED, SoleMap, SoleSurface, centred
 from .shape import Heel, SoleShape
@@ -402,6 +402,8 @@ def resolution_breaches(surface: SoleSurface, spacing: float) -> list[Breach]:
     channel = surface.inside & ~surface.land
     if not channel.any():
         return []
+    from ._kernels.covering_discs import local_width  # compiled
+
     unresolved: list[Breach] = []
     for name, mask in (("channel", channel), ("lug", surface.land)):
         widths = local_width(mask, surface.spacing)[mask]

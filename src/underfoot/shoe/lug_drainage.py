@@ -19,9 +19,8 @@ from underfoot.core.arrays import Array, Mask
 from underfoot.core.presentation import percent, quantity_text
 from underfoot.core.sparse import factorization
 
-from ._kernels.regions import pieces
+from ._kernels.regions import draining, pieces
 from .geometry import SoleMap
-from .tread_measures import draining
 
 OPEN = 0.1
 """Of the highest fluid pressure: a channel under more is backed up and lets nothing out."""
@@ -135,7 +134,9 @@ def lug_drainage(sole: SoleMap, fluid_pressure: Array, film_thickness: Array) ->
     highest[order] = maximum(pressure, numbers, order)
     top = (pressure > 0) & (pressure >= TOP * highest[numbers])
     peaks = np.array([_middle(np.argwhere(top & (numbers == number))) for number in order])
-    clear = draining(sole) & (fluid_pressure < OPEN * pressure.max())
+    clear = draining(sole.inside, sole.inside & ~sole.land) & (
+        fluid_pressure < OPEN * pressure.max()
+    )
     wide = max(GROOVE / sole.spacing, 1.0)
     # beyond the array lies the rim, too
     goals = np.argwhere(np.pad(~sole.inside | clear, 1, constant_values=True)) - 1

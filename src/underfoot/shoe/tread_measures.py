@@ -7,19 +7,19 @@ import numpy as np
 
 from underfoot.core.arrays import Array, Mask
 
+from ._kernels.covering_discs import covering_value, local_width
 from ._kernels.regions import (
     carried_on,
-    covering_value,
     distance_to,
     distance_within,
-    local_width,
+    draining,
     nearest_true,
     pieces,
     rim,
     without_specks,
 )
 from ._kernels.rolling import rolled_base
-from .geometry import SoleMap, SoleSurface
+from .geometry import SoleSurface
 
 ROLLING_RADIUS = 0.5
 """Of the paraboloid that tells land: hollows of a larger radius are the sole's shape, m."""
@@ -210,7 +210,9 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
         depth = _shares(floor[counted])
         sipe_count, sipe_length = _sipes(channel, widths, spacing)
         width = _shares(widths[counted])
-        drained = float(np.count_nonzero(draining(surface)) / np.count_nonzero(channel))
+        drained = float(
+            np.count_nonzero(draining(surface.inside, channel)) / np.count_nonzero(channel)
+        )
     areas = np.bincount(pieces(land)[0].ravel())[1:].astype(np.float64) * spacing**2
     lugs = areas[areas >= SMALLEST_PIECE * (1 - 1e-9)]
     lugs = areas if lugs.size == 0 else lugs
@@ -287,12 +289,6 @@ def arch_area(tread: TreadMap, inside: Mask, spacing: float) -> float:
         return 0.0
     wide = local_width(channel, spacing) > WIDEST_CHANNEL
     return float(np.count_nonzero(wide & channel)) * spacing**2
-
-
-def draining(surface: SoleSurface | SoleMap) -> Mask:
-    """Return which cells of the channels are connected to the rim through channels."""
-    numbers, _ = pieces(surface.inside & ~surface.land)
-    return np.isin(numbers, np.setdiff1d(numbers[rim(surface.inside)], [0]))
 
 
 def _shares(values: Array) -> tuple[float, float, float]:

@@ -22,6 +22,7 @@ SHORTEST = 1e-4  # of the first step, below which the march gives up
 LETS_GO = 1.05  # times the pool depth; without it a cell at the brink flips at every step
 ROOM = 1.3  # times the cells needed now, beyond which they are chosen anew
 MARGIN = 3  # cells around the pool that may come into contact within a step
+DEEP = 0.6e-3  # m over the pool: cells further from the floor (deep channels) may not
 
 
 @dataclass(slots=True)
@@ -105,7 +106,9 @@ class March:
             if demand.clearance is not self.problem.clearance:
                 gap = gap + (demand.clearance - self.problem.clearance)
             film = _film_mask(problem, gap, self._pool_depth, self.film)
-            self._cells = _cells(problem, self._fit, self._cells, film)
+            self._cells = _cells(
+                problem, self._fit, self._cells, film, gap < self._pool_depth + DEEP
+            )
             self.counts.cells = max(self.counts.cells, self._cells.pattern.size)
             cells = self._cells
             attempt = implicit_step(
@@ -154,11 +157,13 @@ def _film_mask(problem: Problem, gap: Array, pool_depth: float, before: Mask | N
     return film
 
 
-def _cells(problem: Problem, fit: PoleFit, cells: Cells | None, film: Mask) -> Cells:
-    """Return cells that hold the film with room to spare, the present ones if they do."""
-    mask = np.asarray(binary_dilation(film, iterations=MARGIN), dtype=bool) & (
-        problem.clearance < 0.5
-    )
+def _cells(problem: Problem, fit: PoleFit, cells: Cells | None, film: Mask, near: Mask) -> Cells:
+    """Return cells that hold the film with room to spare, the present ones if they do.
+
+    ``near`` are those that may meet pool or floor within a step.
+    """
+    mask = film | (np.asarray(binary_dilation(film, iterations=MARGIN), dtype=bool) & near)
+    mask &= problem.clearance < 0.5
     if (
         cells is not None
         and not (film & ~cells.mask).any()

@@ -8,6 +8,7 @@ the factorisation.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,8 +87,12 @@ class Preconditioner:
         self.local = fit.local
         self.source = fit.strength * spacing**2 / scale  # of q, over dp
         diagonal = np.arange(size)
+        # beside the cells the field goes on as it decays along a line
+        screened = (fit.screening * spacing) ** 2
+        decayed = math.sqrt(screened + screened**2 / 4) - screened / 2
+        inner = pattern.neighbours_of(np.ones(size))[1:].sum(axis=0)
         self._screened = np.full((5, size), -1.0)
-        self._screened[0] = 4.0 + (fit.screening * spacing) ** 2
+        self._screened[0] = inner + (4 - inner) * decayed + screened
         # blocks of the rows of v (by v, by q) and of q (by q, by v), as ``factorise`` fills them
         rows = [pattern.rows, pattern.rows, pattern.rows + size, diagonal + size]
         own = pattern.indices.astype(np.int64)

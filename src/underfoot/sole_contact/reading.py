@@ -1,10 +1,12 @@
 """What a fluid-pressure sensor in the floor reads under a sliding sole."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy import sparse
 
 from underfoot.core import InputError, SourcedValue
 from underfoot.core.arrays import Array
@@ -21,15 +23,14 @@ BLIND = 0.5
 """Share of the film's own pressure that an inlet must read to see the film at a place."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class SensorReading:
     """Reading of one instrument, averaged over where its tracks may lie across the shoe.
 
     ``load`` (N) and ``peak_pressure`` (Pa) are means over the lateral offsets with their standard
     deviation as uncertainty. ``pressure`` (len(x), len(scan_y)) is the map for the central offset,
     with ``peak_position`` (x, y) in m. ``outermost_share`` is the share of the load read by the
-    first and last scan: when it is not small, the scans do not cover the film. ``seen`` is the
-    share of the film's load at places where the inlet reads at least half of the film's pressure.
+    first and last scan: when it is not small, the scans do not cover the film.
     """
 
     load: SourcedValue
@@ -39,9 +40,16 @@ class SensorReading:
     scan_y: Array
     pressure: Array
     outermost_share: float
-    seen: float
     loads: Array
     peaks: Array
+    _film: tuple[Array, ...] = field(repr=False)  # x, y, pressure and thickness
+    _pocket: dict[str, float] = field(repr=False)
+
+    @cached_property
+    def seen(self) -> float:
+        """Share of the film's load where the inlet reads at least half of the film's pressure."""
+        x, y, pressure, _ = self._film
+        return seen_share(pressure, pocket_pressure(*self._film, x, y, **self._pocket)[0])
 
 
 def floor_sensor_reading(
@@ -92,7 +100,7 @@ def floor_sensor_reading(
         InputError: Shapes that don't match, a pressure or gap that is not finite, an instrument
             that can't be.
     """
-    along, across, pressure, gap = _checked_maps(x, y, fluid_pressure, film_thickness)
+    film = along, *_ = _checked_maps(x, y, fluid_pressure, film_thickness)
     not_negative(inlet_diameter, "sensor.inlet_diameter")
     positive(scan_spacing, "sensor.scan_spacing")
     positive(sampling_step, "sensor.sampling_step")
@@ -116,8 +124,8 @@ def floor_sensor_reading(
     tracks = (np.arange(scans, dtype=np.float64) - 0.5 * (scans - 1)) * scan_spacing
     shifts = (np.arange(offsets) - offsets // 2) * (scan_spacing / offsets)
     lanes = (tracks[None, :] + shifts[:, None]).ravel()
-    maps = {"inlet_diameter": inlet_diameter, "gap_cap": gap_cap, "spacing": spacing}
-    read, cubes = pocket_pressure(along, across, pressure, gap, places, lanes, **maps)
+    pocket = {"inlet_diameter": inlet_diameter, "gap_cap": gap_cap, "spacing": spacing}
+    read, cubes = pocket_pressure(*film, places, lanes, **pocket)
     if compliance > 0:
         # the shoe goes forward: a sensor meets its front first
         rate = cubes * conductance_over_cube(inlet_diameter, viscosity) / compliance
@@ -139,11 +147,10 @@ def floor_sensor_reading(
         scan_y=tracks,
         pressure=central,
         outermost_share=float(outer) / total if total > 0 else 0.0,
-        seen=seen_share(
-            pressure, pocket_pressure(along, across, pressure, gap, along, across, **maps)[0]
-        ),
         loads=loads,
         peaks=peaks,
+        _film=film,
+        _pocket=pocket,
     )
 
 
@@ -164,21 +171,37 @@ def pocket_pressure(
     Mean film pressure over the rim weighted by h^3; lengths in m, maps (nx, ny) as in
     ``floor_sensor_reading``, which checks them.
     """
-    from scipy.ndimage import map_coordinates
-
     along, across = (places - x[0]) / spacing, (lanes - y[0]) / spacing
+    quarter = _rim_quarter(inlet_diameter, spacing) / spacing
+    rows, columns = (
+        [_interpolation(at + step, count) + _interpolation(at - step, count) for step in steps]
+        for at, steps, count in zip((along, across), quarter.T, (x.size, y.size), strict=True)
+    )
+    rows, columns = sparse.vstack(rows, format="csr"), sparse.hstack(columns, format="csr")
+
+    def mean_over_rim(field: Array) -> Array:
+        lines = (rows @ field).reshape(len(quarter), places.size, y.size)
+        sums = columns @ lines.transpose(0, 2, 1).reshape(-1, places.size)
+        return sums.T / (4 * len(quarter))
+
+    cap = gap_cap**3
     cubes = np.clip(np.asarray(film_thickness, dtype=float), _SMALLEST_GAP, gap_cap) ** 3
     # The product is interpolated, not its factors: next to a lug's edge the factors would put the
-    # lug's pressure on the channel's conductance.
-    driven = cubes * np.asarray(fluid_pressure, dtype=float)
-    flow = np.zeros((places.size, lanes.size))
-    weight = np.zeros_like(flow)
-    rim = _rim(inlet_diameter, spacing) / spacing
-    for point in rim:
-        at = np.meshgrid(along + point[0], across + point[1], indexing="ij")
-        flow += map_coordinates(driven, at, order=1, mode="constant", cval=0.0)
-        weight += map_coordinates(cubes, at, order=1, mode="constant", cval=gap_cap**3)
-    return flow / weight, weight / len(rim)
+    # lug's pressure on the channel's conductance. Beyond the grid there is no pressure, but the cap
+    flow = mean_over_rim(cubes * np.asarray(fluid_pressure, dtype=float))
+    weight = cap + mean_over_rim(cubes - cap)
+    return flow / weight, weight
+
+
+def _interpolation(places: Array, count: int) -> sparse.csr_matrix:
+    """Return the matrix (places, count) that interpolates linearly, 0 beyond the first and last."""
+    left = np.clip(np.floor(places), 0, count - 2).astype(np.int32)
+    share = places - left
+    weights = np.stack([1 - share, share], axis=1)
+    weights[(places < 0) | (places > count - 1)] = 0.0
+    cells = np.stack([left, left + 1], axis=1)
+    starts = 2 * np.arange(places.size + 1, dtype=np.int32)
+    return sparse.csr_matrix((weights.ravel(), cells.ravel(), starts), (places.size, count))
 
 
 def over_places(values: Array, unit: str, source: str, note: str) -> SourcedValue:
@@ -197,13 +220,14 @@ def lagged(pressure: Array, rate: Array, interval: float) -> Array:
 
     Exact where the rate (1/s) is constant and the pressure linear between samples.
     """
-    followed = np.zeros_like(pressure)
+    change = np.maximum(0.5 * (rate[1:] + rate[:-1]) * interval, 1e-12)
+    kept = np.exp(-change)
+    lag = np.diff(pressure, axis=0) * -np.expm1(-change) / change
+    behind = np.zeros_like(pressure)
+    behind[0] = pressure[0]
     for i in range(1, len(pressure)):
-        change = np.maximum(0.5 * (rate[i] + rate[i - 1]) * interval, 1e-12)
-        kept = np.exp(-change)
-        slope = (pressure[i] - pressure[i - 1]) * -np.expm1(-change) / change
-        followed[i] = pressure[i] - slope + (followed[i - 1] - pressure[i - 1]) * kept
-    return followed
+        behind[i] = lag[i - 1] + behind[i - 1] * kept[i - 1]
+    return pressure - behind
 
 
 def seen_share(pressure: Array, read: Array) -> float:
@@ -213,13 +237,14 @@ def seen_share(pressure: Array, read: Array) -> float:
     return float(film[read >= BLIND * film].sum()) / total if total > 0 else 1.0
 
 
-def _rim(diameter: float, spacing: float) -> Array:
-    """Return points (n, 2) on the rim, symmetric about both axes and no further apart than a cell.
+def _rim_quarter(diameter: float, spacing: float) -> Array:
+    """Return points (n, 2) on a quarter of the rim, no further apart than a cell.
 
-    A quarter of a step off the axes, so that a rim that touches a cell edge is not favoured.
+    With their mirror images they are symmetric about both axes; half a step off the axes, so that a
+    rim that touches a cell edge is not favoured.
     """
     quarter = max(6, math.ceil(math.pi * diameter / (4 * spacing))) if diameter > 0 else 1
-    angle = (np.arange(4 * quarter) + 0.5) * (math.pi / (2 * quarter))
+    angle = (np.arange(quarter) + 0.5) * (math.pi / (2 * quarter))
     return 0.5 * diameter * np.column_stack([np.cos(angle), np.sin(angle)])
 
 

@@ -7,7 +7,6 @@ nearest wall is exact on both sides, so that edges can be rounded and fillets ag
 import math
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from underfoot.core.arrays import Array
 
@@ -145,6 +144,8 @@ def outline_distance(x: Array, y: Array, segments: Array, corner: Array, pitch: 
     around = [pitch * (i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
     pieces = np.concatenate([pieces + shift for shift in around])
     step = np.tile(step, (len(around), 1))
+    from scipy.spatial import KDTree  # heavy, and only patterns of outlines need it
+
     _, near = KDTree(pieces + step / 2).query(place, k=_NEAR)
     from_piece, along = place[:, None] - pieces[near], step[near]
     share = (from_piece * along).sum(axis=2) / (along * along).sum(axis=2)

@@ -4,7 +4,8 @@ import numpy as np
 
 from underfoot.core.arrays import Array, Mask
 
-from .._kernels.regions import carried_on, grown, local_width, pieces, rim, without_holes
+from .._kernels.covering_discs import local_width
+from .._kernels.regions import carried_on, grown, pieces, rim, without_holes
 from ..tread_measures import TreadMap
 
 LARGEST_HOLE = 1e-4

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from underfoot.core.arrays import Array, Mask
 
-from .._kernels.regions import local_width, shrunk, without_specks
+from .._kernels.covering_discs import local_width
+from .._kernels.regions import shrunk, without_specks
 from .._kernels.rolling import rolled_base
 from ..tread_measures import ROLLING_RADIUS, STEEPEST_RIM, WIDEST_CHANNEL, tread_map
 from .settings import DIRECTIONS, FileSettings

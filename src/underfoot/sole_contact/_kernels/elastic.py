@@ -1,5 +1,6 @@
 """Surface deflection under pressure: symbols of layers, coefficients of the half-space."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -196,10 +197,8 @@ class Convolution:
         nx, ny = shape
         self.shape = shape
         self.influence = influence
-        self.padded = (
-            fast_length(2 * nx - 1),
-            fast_length(2 * ny - 1),
-        )
+        # the real axis in fours: 240 takes half the time of 225
+        self.padded = (fast_length(2 * nx - 1), 4 * fast_length(math.ceil((2 * ny - 1) / 4)))
         wrapped = np.zeros(self.padded)
         rows = np.arange(-nx + 1, nx) % self.padded[0]
         columns = np.arange(-ny + 1, ny) % self.padded[1]
