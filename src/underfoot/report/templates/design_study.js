@@ -43,6 +43,7 @@ function startStudy(root) {
     const place = find("sole"), stored = root.querySelector(`template[data-sole="${design.number}"]`);
     for (const canvas of place.querySelectorAll("canvas")) canvas.getContext("webgl2")?.getExtension("WEBGL_lose_context")?.loseContext();
     place.replaceChildren(...(stored ? [stored.content.cloneNode(true)] : []));
+    root.dispatchEvent(new CustomEvent("chosen", { detail: design.number, bubbles: true }));
     const viewer = place.querySelector(".viewer");
     if (viewer) await startViewer(viewer).catch((problem) => { viewer.querySelector('[data-part="loading"]').textContent = `No 3-D picture (${problem.message}).`; });
   }
