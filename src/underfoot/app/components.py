@@ -30,6 +30,13 @@ class SoleView(ui.element):
         ui.run_javascript(f"showSole({self.html_id!r}, {address!r})")
 
 
+def title(words: str, level: int = 1) -> ui.element:
+    """Return a heading."""
+    with ui.element(f"h{level}") as made:
+        ui.label(words)
+    return made
+
+
 def table(shown: Mapping[str, Any]) -> ui.element:
     """Return a table of text: ``title``, ``columns``, ``rows``."""
     with ui.element("div").classes("wide") as made, ui.element("table"):

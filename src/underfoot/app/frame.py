@@ -42,7 +42,8 @@ def framed(session: Session, page: Page) -> None:
     ui.page_title(f"{text(page.title)} · Underfoot")
     ui.add_head_html(HEAD)
     ui.on_exception(session.tell)
-    with ui.header().classes("bar"):
+    ui.colors(primary="#0b6fa4")
+    with ui.header().classes("app-bar"):
         home = ui.link("Underfoot", "/").classes("brand")
         home.props(f'aria-label="{text("start.title")}"')
         with ui.element("nav").props(f'aria-label="{text("frame.pages")}"'):

@@ -104,6 +104,7 @@ class Task:
     """A job of the queue.
 
     Attributes:
+        function: What computes it, "module:name".
         about: What it computes, such as the name of a variant.
         state: waiting, running, done, stopped, failed, or interrupted by the end of the server.
         problem: What went wrong, as the error says it.
@@ -112,6 +113,7 @@ class Task:
 
     number: int
     title: str
+    function: str = ""
     about: str = ""
     state: str = WAITING
     stage: str = ""
@@ -120,7 +122,7 @@ class Task:
     began: float = 0.0
     ended: float = 0.0
     answer: Any = field(default=None, repr=False)
-    work: tuple[str, tuple[Any, ...], dict[str, Any]] | None = field(default=None, repr=False)
+    work: tuple[tuple[Any, ...], dict[str, Any]] | None = field(default=None, repr=False)
 
     @property
     def open(self) -> bool:
@@ -161,7 +163,7 @@ class Jobs:
         The function writes what is to last into the project's folder.
         """
         number = max(self.tasks, default=0) + 1
-        task = Task(number, title, about, work=(function, args, options))
+        task = Task(number, title, function, about, work=(args, options))
         self.tasks[number] = task
         self._waiting.append(task)
         self._changed(task)
@@ -180,12 +182,12 @@ class Jobs:
         """Queue a task of this server's life once more."""
         if task.work is None:
             return None
-        function, args, options = task.work
-        return self.submit(task.title, function, *args, about=task.about, **options)
+        args, options = task.work
+        return self.submit(task.title, task.function, *args, about=task.about, **options)
 
-    def latest(self, about: str, title: str | None = None) -> Task | None:
-        """Return the newest task about something, None where there is none."""
-        found = [t for t in self.tasks.values() if t.about == about and title in (None, t.title)]
+    def latest(self, about: str, function: str) -> Task | None:
+        """Return the newest task of a function about something, None where there is none."""
+        found = [t for t in self.tasks.values() if (t.about, t.function) == (about, function)]
         return found[-1] if found else None
 
     async def run(self) -> None:
@@ -203,6 +205,10 @@ class Jobs:
             await asyncio.sleep(5 * TICK)
         return task
 
+    def warm(self) -> None:
+        """Start the process of the queue, so that the first job does not wait for it."""
+        self._full.start()
+
     def close(self) -> None:
         """End both processes."""
         self.live.close()
@@ -210,7 +216,7 @@ class Jobs:
 
     async def _compute(self, task: Task) -> None:
         assert task.work is not None
-        function, args, options = task.work
+        args, options = task.work
         task.state, task.began = RUNNING, time.time()
         self._changed(task)
 
@@ -218,7 +224,7 @@ class Jobs:
             task.stage, task.fraction = job.stage, job.fraction
 
         try:
-            task.answer = await self._full.ask(function, *args, heard=heard, **options)
+            task.answer = await self._full.ask(task.function, *args, heard=heard, **options)
             self._end(task, DONE)
         except Cancelled:
             self._end(task, STOPPED)

@@ -289,7 +289,7 @@ class Project:
             part.write_text(text, encoding="utf-8")
 
     def _record(self, name: str, action: str, text: str | None = None) -> None:
-        line = {"time": _now(), "variant": name, "action": action}
+        line: dict[str, Any] = {"time": _now(), "variant": name, "action": action}
         if action == "set":
             line["text"] = text
         append_line(self.folder / "history.jsonl", line)

@@ -10,18 +10,35 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from underfoot.case import Case
+from underfoot.compute.continuation import preview
 from underfoot.compute.result import Result
 from underfoot.compute.run import run as result_of
-from underfoot.core import Progress
-from underfoot.core.fields import Fields
-from underfoot.core.presentation import Presentable
+from underfoot.compute.sole import bottom_surface
+from underfoot.compute.summary import friction_limit
+from underfoot.core import Progress, SourcedValue
+from underfoot.core.fields import Fields, labelled
+from underfoot.core.files import checksum
+from underfoot.core.presentation import Presentable, interval_text, quantity_text
+from underfoot.questions.risk import odds, risk_assessment
+from underfoot.questions.sensitivity import sensitivity
 from underfoot.report import write_report
+from underfoot.report.outsole import inspected
 from underfoot.report.results import sole_fields
 from underfoot.report.viewer import scene_section, viewer_scene
+from underfoot.report.writing import write_text
+from underfoot.shoe.files import FileSettings
+from underfoot.shoe.tread_measures import channel_depth, tread_measures
+from underfoot.slip import RcofPopulation, slip_model, slip_risk
 
 FINEST_DRAWN = 20_000
 """Cells of a sole that is drawn while sliders move."""
+UNREAD = {"sensor.scans": 1}
+"""Spares a preview the reading of floor sensors, which it does not show: 50 ms."""
+DRAWN_SPACING = 0.75e-3
+"""m between the cells of a file's sole as it is drawn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,25 +56,111 @@ def case_of(path: str, changes: Mapping[str, Any] | None = None) -> Case:
 
 
 def sole(path: str, changes: Mapping[str, Any], *, progress: Progress) -> dict[str, Any]:
-    """Return the sole of a case as drawn (``scene``) and as a part of a page (``html``)."""
+    """Return the sole of a case as a part of a page (``html``), and its measures."""
     case = case_of(path, changes)
     fields = sole_fields(case, case.numerics.grid_spacing)
     if fields["inside"].size > FINEST_DRAWN:
         fields = sole_fields(case)
-    return _shown(Drawn(case.name, fields))
+    measures = tread_measures(bottom_surface(case))
+    words = {
+        "length": f"{1e3 * measures.length:.0f}",
+        "width": f"{1e3 * measures.width:.0f}",
+        "land": f"{100 * measures.land_ratio:.0f}",
+        "lugs": f"{measures.lug_count}",
+    }
+    return {"html": _html(Drawn(case.name, fields)), "measures": words}
 
 
-def computed(path: str, folder: str, quick: bool = False, *, progress: Progress) -> list[str]:
-    """Compute a case as ``underfoot run --out`` does; return its headline."""
-    result = result_of(Case.load(path), quick=quick, progress=progress)
-    write_report(result, Path(folder), overwrite=True)
-    return list(result.headline())
+def inspected_sole(path: str, settings: Mapping[str, Any], *, progress: Progress) -> dict[str, Any]:
+    """Return an outsole file as it is read with ``settings``: in words and as a part of a page."""
+    inspection = inspected(Path(path), FileSettings(**settings))
+    surface = inspection.outsole.surface
+    step = max(1, round(DRAWN_SPACING / surface.spacing))
+    thinned = (slice(None, None, step), slice(None, None, step))
+    depth = np.where(surface.land, np.nan, channel_depth(surface))
+    axes = ("x", "y")
+    fields = labelled(
+        {
+            "height": (axes, surface.height[thinned], {"units": "m", "long_name": "height"}),
+            "channel_depth": (
+                axes, depth[thinned], {"units": "m", "long_name": "depth of the channels"}
+            ),
+            "inside": (axes, surface.inside[thinned]),
+            "land": (axes, surface.land[thinned]),
+            "outline_x": ("outline", surface.outline[:, 0]),
+            "outline_y": ("outline", surface.outline[:, 1]),
+        },
+        {"x": ("x", surface.x[::step]), "y": ("y", surface.y[::step])},
+    )  # fmt: skip
+    html = _html(Drawn(inspection.file.name, fields))
+    return {**said(inspection), "html": html, "sha256": checksum(path)}
+
+
+def effects(path: str, folder: str, *, progress: Progress) -> None:
+    """Write what each open input of a case does to its results, as ``underfoot sensitivity``."""
+    case = Case.load(path)
+    shown = sensitivity(case, progress=progress)
+    write_report(shown, folder, overwrite=True, further={"case-hash.txt": write_text(case.hash)})
+
+
+def computed(
+    path: str,
+    folder: str,
+    changes: Mapping[str, Any] | None = None,
+    quick: bool = False,
+    *,
+    progress: Progress,
+) -> float | None:
+    """Compute a case as ``underfoot run --out`` does; return its COF."""
+    result = result_of(case_of(path, changes), quick=quick, progress=progress)
+    write_report(result, folder, overwrite=True)
+    return result.scalars["cof"].value if result.usable else None
+
+
+def advised(path: str, folder: str, *, progress: Progress) -> None:
+    """Add what would help to a stored result of a case, as ``underfoot run`` does after it."""
+    result, case = Result.load(folder), Case.load(path)
+    if result.usable and result.provenance.case_hash == case.hash:
+        advice = risk_assessment(case, progress=progress)
+        write_report(result, folder, overwrite=True, advice=advice)
 
 
 def answer(folder: str, *, progress: Progress) -> dict[str, Any]:
     """Return a stored result in words, tables and as a part of a page."""
     result = Result.load(folder)
-    return {**said(result), **_shown(result)}
+    texts = {}
+    if result.usable:
+        cof, slip = result.scalars["cof"], result.scalars.get("slip_probability")
+        texts = {"cof": f"{cof.value:.3f}", "interval": interval_text("cof", cof)}
+        texts["risk"] = odds(slip.value) if slip is not None and slip.value is not None else ""
+        texts["limit"] = str(friction_limit(result.scalars))
+    return {**said(result), "texts": texts, "html": _html(result)}
+
+
+def previewed(path: str, changes: Mapping[str, Any], *, progress: Progress) -> dict[str, Any]:
+    """Return what changes of a case make of its contact, by continuation: a preview."""
+    case = Case.load(path).replace(UNREAD)
+    changed = case.replace(changes) if changes else case
+    seen = preview(case, changes, progress=progress)
+    contact = seen.total_pressure - seen.fluid_pressure
+    axes = ("x", "y")
+    fields = sole_fields(changed).assign(
+        {
+            "contact_pressure": (axes, contact, {"units": "Pa"}),
+            "fluid_pressure": (axes, seen.fluid_pressure, {"units": "Pa"}),
+            "film_thickness": (axes, seen.film_thickness, {"units": "m"}),
+        }
+    )
+    cof = SourcedValue(seen.values["cof"], "1", uncertainty=seen.errors["cof"])
+    rcof = RcofPopulation(changed.risk.rcof_mean, changed.risk.rcof_sd)
+    slip = slip_risk(cof, rcof=rcof, model=slip_model(changed.risk.name)).probability.value
+    texts = {
+        "cof": f"{seen.values['cof']:.3f}",
+        "error": f"{seen.errors['cof']:.3f}",
+        "fluid_load": quantity_text(seen.values["fluid_load"], "N"),
+        "risk": "" if slip is None else odds(slip),
+    }
+    return {"cof": cof.value, "texts": texts, "html": _html(Drawn(changed.name, fields))}
 
 
 def said(shown: Presentable) -> dict[str, Any]:
@@ -77,6 +180,5 @@ def said(shown: Presentable) -> dict[str, Any]:
     }
 
 
-def _shown(drawn: Drawn | Result) -> dict[str, Any]:
-    scene = viewer_scene([drawn])
-    return {"scene": scene, "html": scene_section(scene)}
+def _html(drawn: Drawn | Result) -> str:
+    return scene_section(viewer_scene([drawn]))

@@ -24,6 +24,17 @@ _ASSUMED = "assumption"
 _mm = 1e-3
 _LUG_SIDES = ("lug_length", "ring_width", "front_lug_width")
 _CELLS = 2.0  # across a channel or lug: fewer and its width is wrong by half or more
+_USUAL = {"lug_width": "6 mm", "channel_width": "4 mm", "depth": "3 mm"}
+"""What a tread is where nothing is said: common work shoes (assumed)."""
+_FURTHER = {
+    "blocks": {"lug_length": "9 mm"},
+    "chevrons": {"arm_length": "12 mm", "angle": "35 deg"},
+    "waves": {"wave_length": "20 mm", "wave_height": "6 mm"},
+    "rings": {"lug_width": "12 mm", "ring_width": "3 mm"},
+    "graded_circles": {"front_lug_width": "4 mm", "graded_length": "60 mm"},
+    "lettering": {"lug_width": "16 mm", "channel_width": "3 mm", "text": "GRIP"},
+}
+"""What some patterns need beyond that (assumed)."""
 Turn = Annotated[float, Quantity("rad", -math.pi, math.pi)]
 Shift = Annotated[float, Quantity("m", -0.5, 0.5)]
 
@@ -323,6 +334,11 @@ class Lugs(TreadPattern):
                 where=f"{where}.width",
                 allowed=f"below {display(cuts.spacing / 2, 'm')} (half of their spacing)",
             )
+
+
+def usual_tread(pattern: str) -> dict[str, str]:
+    """Return the keys that a pattern needs with usual values, all of them assumed."""
+    return {} if pattern == "none" else _USUAL | _FURTHER.get(pattern, {})
 
 
 class GridTread(Lugs):

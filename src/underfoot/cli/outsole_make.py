@@ -36,17 +36,6 @@ def _given(text: str) -> Any:
     return typer.Option(help=text, show_default=False)
 
 
-USUAL = {"lug": "6 mm", "channel": "4 mm", "depth": "3 mm"}
-"""What a lug is where nothing is said: common work shoes (assumed)."""
-FURTHER = {
-    "blocks": {"lug_length": "9 mm"},
-    "chevrons": {"arm": "12 mm", "angle": "35 deg"},
-    "waves": {"wave_length": "20 mm", "wave_height": "6 mm"},
-    "rings": {"lug": "12 mm", "ring": "3 mm"},
-    "graded_circles": {"front_lug": "4 mm", "graded_length": "60 mm"},
-    "lettering": {"lug": "16 mm", "channel": "3 mm", "text": "GRIP"},
-}
-"""What some patterns need beyond that (assumed)."""
 PATTERNS = (
     "none, grid, blocks, transverse, longitudinal, bars, chevrons (zigzag), waves, circles, "
     "graded_circles, hexagons, rings, lettering."
@@ -178,7 +167,7 @@ def _from_options(
     whole: bool,
     settings: list[str] | None,
 ) -> SoleShape:
-    from underfoot.case.sole import TreadPattern
+    from underfoot.case.sole import TreadPattern, usual_tread
     from underfoot.compute.sole import outsole_from
     from underfoot.core import InputError, to_si, unknown_name
 
@@ -198,8 +187,9 @@ def _from_options(
             )
         given["channel"] = f"{whole_pitch - lug!r} m"
     chosen = _settings(settings)
-    usual = USUAL if pattern != "none" else {}
-    usual = usual | (FURTHER.get(pattern, {}))
+    fields = usual_tread(pattern)
+    keys = {name: path.removeprefix("tread.") for name, path in LENGTHS.items()}
+    usual = {name: fields[key] for name, key in keys.items() if key in fields}
     missing = [n for n in usual if given[n] is None and LENGTHS[n] not in chosen]
     if missing:
         given |= {name: usual[name] for name in missing}

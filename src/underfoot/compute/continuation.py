@@ -54,6 +54,7 @@ class Preview:
         values: Scalars of a result by name, at the tread's own position.
         errors: Estimated error of each against a march of the changed case.
         total_pressure: Fluid and contact pressure, (nx, ny), Pa.
+        fluid_pressure: Of that, the fluid's.
         film_thickness: Mean gap, at most the pool, (nx, ny), m.
         status: Always ``Status.PREVIEW``.
         seconds: Processor time that it took.
@@ -63,6 +64,7 @@ class Preview:
     values: Mapping[str, float]
     errors: Mapping[str, float]
     total_pressure: Array
+    fluid_pressure: Array
     film_thickness: Array
     status: Status
     seconds: float
@@ -141,6 +143,7 @@ class Continuation:
             values,
             errors,
             second.total_pressure,
+            second.fluid_pressure,
             second.film_thickness,
             Status.PREVIEW,
             time.process_time() - began,

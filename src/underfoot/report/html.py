@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ def embedded(picture: bytes) -> str:
     return "data:image/png;base64," + base64.b64encode(picture).decode("ascii")
 
 
+@cache
 def environment() -> Environment:
     """Return the template environment of this room, escaping everything by default."""
     from jinja2 import Environment, PackageLoader, StrictUndefined

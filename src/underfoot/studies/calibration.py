@@ -18,6 +18,8 @@ from underfoot.core import Progress, silent
 from underfoot.core.catalogue import Catalogue
 from underfoot.friction import viscous_decay
 from underfoot.questions.outcomes import outcomes
+from underfoot.questions.sensitivity import OPEN_INPUTS
+from underfoot.questions.slips import BANDS
 from underfoot.slip.dynamics import ReducedSole, SlipStudy, judged
 
 from .figure import OURS, PRINTED, Figure, Layer, Panel, level, line
@@ -32,6 +34,7 @@ FACETS = (8.0, 9.0, 10.0, 11.0, 12.0)
 ROUGHNESS = (1.0, 1.5, 2.0, 3.0, 4.0)
 MASSES = (0.04, 0.06, 0.08, 0.114, 0.17, 0.25, 0.4, 0.7)
 CONTACTS = (0.08, 0.11, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5)
+Z95 = 1.96
 READING = 0.15
 """Relative standard deviation of a reading of the slip tester, assumed: none is printed."""
 KINDS = ("work", "athletic")
@@ -72,20 +75,24 @@ NOT_IDENTIFIABLE = (
 
 @dataclass(frozen=True, slots=True)
 class Calibrated:
-    """A parameter's profile beside what the program uses by default."""
+    """A parameter's profile beside what the program uses by default, and from where to where."""
 
     profile: Profile
     data: str
     default: float
+    low: float
+    high: float
 
     @property
     def holds_default(self) -> str:
-        """Whether the default lies in the 95 % interval."""
+        """Whether the default, or at least a part of its 95 % range, lies in the 95 % interval."""
         if self.profile.fixed in (Fixed.NOT_IDENTIFIABLE, Fixed.REFUTED):
             return "-"
         low = -math.inf if self.profile.low is None else self.profile.low
         high = math.inf if self.profile.high is None else self.profile.high
-        return "inside" if low <= self.default <= high else "OUTSIDE"
+        if low <= self.default <= high:
+            return "inside"
+        return "its range is" if self.low <= high and low <= self.high else "OUTSIDE"
 
 
 def compute(options: Options) -> Computed:
@@ -104,8 +111,8 @@ def compute(options: Options) -> Computed:
     case = Condition("work", "untreaded", "glycerol").case
     angle = math.degrees(float(case.value("shoe.heel.profile.angle")))
     rough = float(case.value("interface.roughness_beyond_cutoff"))
-    contact = bare.setting.friction(2.5e5, 1.0, 1e-3)
-    own = float((contact.adhesion + contact.hysteresis) / 2.5e5)
+    assert tread.by_friction is not None  # the law of the pair has a spread
+    at_contact = np.quantile(tread.by_friction.cof, [0.5, 0.025, 0.975]).tolist()
     # N and Pa of both untreaded shoes in glycerol
     data = np.array(
         [[printed("fluid_load", k, "N"), printed("peak_pressure", k, "Pa")] for k in KINDS]
@@ -114,14 +121,19 @@ def compute(options: Options) -> Computed:
     by_angle = profile("facet angle", "deg", facets, misfit, data=2)
     by_roughness = profile("roughness beyond the cut-off", "1", roughness, misfit.T, data=2)
     by_mass, by_contact = mass_profile(bare), contact_profile(tread)
+    moving, (*_, shares) = bare.population.effective_mass, BANDS["effective_mass"]
     found = (
-        Calibrated(by_angle, "G.4.2, work shoe", angle),
-        Calibrated(by_roughness, "G.4.2, work shoe", rough),
-        Calibrated(by_mass, "G.5.2, over the sensors", bare.population.effective_mass),
-        Calibrated(by_contact, "G.5.2, treaded", own),
+        Calibrated(by_angle, "G.4.2, work shoe", angle, angle - Z95, angle + Z95),
+        Calibrated(by_roughness, "G.4.2, work shoe", rough, *_range_of_roughness(rough)),
+        Calibrated(by_mass, "G.5.2, over the sensors", moving, min(shares), max(shares)),
+        Calibrated(by_contact, "G.5.2, treaded", *at_contact),
     )
     i, j = (int(k) for k in np.unravel_index(int(misfit.argmin()), misfit.shape))
     mass = by_mass.best
+    reaches = {
+        "OUTSIDE": "and so does the range that runs carry",
+        "its range is": "the range that runs carry reaches into it",
+    }
     _, error = model_error([loads[1, i, j], peaks[1, i, j]], data[1])
     return Computed(
         {
@@ -136,9 +148,9 @@ def compute(options: Options) -> Computed:
         (
             *(
                 f"{one.profile.name}: fitted {one.profile.text()}; the default {one.default:.3g} "
-                "lies outside this 95 % interval and is kept."
+                f"lies outside this 95 % interval, {reaches[one.holds_default]}; it is kept."
                 for one in found
-                if one.holds_default == "OUTSIDE"
+                if one.holds_default in reaches
             ),
             f"Model error of film loads and peaks on untreaded heels: a factor of "
             f"{math.exp(error):.2f} either way, on the athletic shoe's readings at the work shoe's "
@@ -146,6 +158,13 @@ def compute(options: Options) -> Computed:
             *_other_conclusions(),
         ),
     )
+
+
+def _range_of_roughness(value: float) -> tuple[float, float]:
+    """Return the 95 % range of the roughness factor that intervals carry."""
+    (input_,) = (each for each in OPEN_INPUTS if each.path == "interface.roughness_beyond_cutoff")
+    spread = input_.deviation**Z95
+    return max(value / spread, input_.low), value * spread
 
 
 def slip_tester_grid(
@@ -238,8 +257,8 @@ def _tables(
             "parameter": one.profile.name,
             "data": one.data,
             "fitted (95 %)": one.profile.text(),
-            "default": f"{one.default:.3g}",
-            "default against 95 %": one.holds_default,
+            "default (95 %)": f"{one.default:.3g} ({one.low:.2g} to {one.high:.2g})",
+            "inside fitted 95 %": one.holds_default,
             "why": why.format(one.profile, one.profile.grid[0], one.profile.grid[-1]),
         }
         for one in found

@@ -34,9 +34,13 @@ write the module and its line in ``PAGES``; nothing else names it.
 from __future__ import annotations
 
 from ..session import Page
-from . import start
+from . import answer, design, start
 
 DESIGN, SAFETY, SCIENCE = "design", "safety", "science"
 """The doors: who comes in. Their words are ``doors.NAME`` in the text files."""
 
-PAGES = (Page("", "/", "start.title", "home", start.build),)
+PAGES = (
+    Page("", "/", "start.title", "home", start.build),
+    Page(DESIGN, "/design", "design.title", "straighten", design.build, design.example),
+    Page(DESIGN, "/answer", "answer.title", "query_stats", answer.build),
+)

@@ -4,19 +4,80 @@ from __future__ import annotations
 
 from nicegui import ui
 
-from ..session import Session
+from ..components import title
+from ..session import Session, address
+
+MOST_RECENT = 8
+TOUR = ("doors", "sole", "compute", "live", "files")
+"""Steps of the first-run tour, by the keys of their words."""
 
 
 def build(session: Session) -> None:
     """Show the doors that have pages, and the recent work."""
     text = session.text
+    title(text("start.title")).classes("hidden-title")
     ui.label(text("start.lead")).classes("lead")
     doors = dict.fromkeys(page.door for page in session.pages if page.door)
     with ui.element("div").classes("doors"):
         for door in doors:
-            pages = [page for page in session.pages if page.door == door]
-            with ui.element("section").classes("door"):
-                ui.element("h2").props(f'innerHTML="{text(f"doors.{door}")}"')
-                ui.label(text(f"doors.{door}_lead")).classes("soft")
-                for page in pages:
-                    ui.link(text(page.title), page.route)
+            _door(session, door)
+    _recent(session)
+    _tour(session)
+
+
+def _door(session: Session, door: str) -> None:
+    text = session.text
+    pages = [page for page in session.pages if page.door == door]
+    with ui.element("section").classes("door"):
+        title(text(f"doors.{door}"), 2)
+        ui.label(text(f"doors.{door}_lead")).classes("soft")
+        example = next((page.example for page in pages if page.example), None)
+        if example is not None:
+            button = ui.button(text("start.example"), icon="play_arrow")
+            button.props("no-caps unelevated").on_click(lambda: example(session))
+        with ui.element("div").classes("row"):
+            for page in pages:
+                ui.link(text(page.title), page.route)
+
+
+def _recent(session: Session) -> None:
+    text, project = session.text, session.project
+    names = project.variants()[:MOST_RECENT]
+    interrupted = [task for task in session.jobs.tasks.values() if task.state == "interrupted"]
+    if interrupted:
+        about = ", ".join(dict.fromkeys(task.about for task in interrupted if task.about))
+        ui.label(text("start.interrupted", about=about)).classes("caution")
+    if not names:
+        return
+    title(text("start.recent"), 2)
+    with ui.element("div").classes("recent"):
+        for name in names:
+            found = project.summary(name)
+            with ui.element("div").classes("recent-row"):
+                ui.link(name, address("/design", variant=name))
+                if found is None or found.cof is None:
+                    ui.label(text("start.not_computed")).classes("soft")
+                    continue
+                words = text("start.cof", cof=f"{found.cof:.3f}")
+                if found.low is not None and found.high is not None:
+                    words += f" ({found.low:.3f} – {found.high:.3f})"
+                ui.link(words, address("/answer", variant=name))
+
+
+def _tour(session: Session) -> None:
+    """Offer the tour; it opens by itself where the project is new."""
+    text = session.text
+    with ui.dialog() as dialog, ui.card().classes("tour"), ui.stepper() as steps:
+        steps.props("flat animated header-nav alternative-labels")
+        for number, key in enumerate(TOUR):
+            with ui.step(key, title=text(f"tour.{key}")):
+                ui.label(text(f"tour.{key}_words"))
+                with ui.stepper_navigation():
+                    last = number == len(TOUR) - 1
+                    forward = dialog.close if last else steps.next
+                    name = text("tour.begin") if last else text("tour.next")
+                    ui.button(name, on_click=forward).props("no-caps unelevated")
+                    ui.button(text("tour.skip"), on_click=dialog.close).props("no-caps flat")
+    ui.button(text("tour.open"), icon="help_outline", on_click=dialog.open).props("no-caps flat")
+    if not session.project.variants() and not session.project.removed():
+        dialog.open()

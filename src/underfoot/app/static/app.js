@@ -50,6 +50,13 @@ function takeFiles(id, { folder, most, multiple, accept }, words) {
   zone.addEventListener("drop", (e) => { e.preventDefault(); send([...e.dataTransfer.files].slice(0, multiple ? undefined : 1)); });
 }
 
+// Put words into every element that waits for them by name.
+function showTexts(texts) {
+  for (const [name, text] of Object.entries(texts)) {
+    for (const part of document.querySelectorAll(`[data-live="${name}"]`)) part.textContent = text;
+  }
+}
+
 // Sliders that ask: the next question goes out only when the last answer is drawn, and it carries
 // the newest values. An answer sets texts by name and the sole; "problem" says why there is none.
 function askLive(id, address, soleId) {
@@ -61,7 +68,7 @@ function askLive(id, address, soleId) {
     out.textContent = `${Number(shown.toPrecision(3))} ${input.dataset.unit}`.trim();
     input.setAttribute("aria-valuetext", out.textContent);
   };
-  const values = () => Object.fromEntries(inputs.filter((i) => i.value !== i.defaultValue).map((i) => [i.name, i.dataset.log ? 10 ** Number(i.value) : Number(i.value)]));
+  const values = () => Object.fromEntries(inputs.filter((i) => i.dataset.moved).map((i) => [i.name, i.dataset.log ? 10 ** Number(i.value) : Number(i.value)]));
   async function ask(last) {
     if (busy) { wanted = last ? "last" : wanted || "more"; return; }
     busy = true;
@@ -72,9 +79,7 @@ function askLive(id, address, soleId) {
       const answer = response.ok ? await response.json() : { problem: response.statusText };
       const note = root.querySelector("[data-part=problem]");
       if (note) note.textContent = answer.problem || "";
-      for (const [name, text] of Object.entries(answer.texts || {})) {
-        for (const part of document.querySelectorAll(`[data-live="${name}"]`)) part.textContent = text;
-      }
+      showTexts(answer.texts || {});
       const place = document.getElementById(soleId);
       if (answer.html && place) await putSole(place, answer.html);
       await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
@@ -85,7 +90,7 @@ function askLive(id, address, soleId) {
   }
   for (const input of inputs) {
     show(input);
-    input.addEventListener("input", () => { show(input); ask(false); });
+    input.addEventListener("input", () => { input.dataset.moved = "yes"; show(input); ask(false); });
     input.addEventListener("change", () => ask(true));
   }
 }

@@ -30,14 +30,16 @@ class Text:
         """Return the words of a key with its placeholders filled."""
         return self._words[key].format(**values)
 
-    def __contains__(self, key: str) -> bool:
-        return key in self._words
+    def get(self, key: str, otherwise: str) -> str:
+        """Return the words of a key, or ``otherwise`` where there is none."""
+        return self._words.get(key, otherwise)
 
 
 @cache
 def catalogue(language: str) -> dict[str, str]:
     """Return the words of a language by dotted key."""
-    return _flat(tomllib.loads(files(__package__).joinpath(f"{language}.toml").read_text("utf-8")))
+    file = files("underfoot.app.text").joinpath(f"{language}.toml")
+    return _flat(tomllib.loads(file.read_text("utf-8")))
 
 
 def chosen_language(cookie: str | None, accepted: str) -> str:

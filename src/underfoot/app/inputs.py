@@ -1,0 +1,130 @@
+"""Values of a case as people set them: sliders that answer while moved, fields with units."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from itertools import count
+from math import log10
+from typing import Any
+
+from nicegui import ui
+from nicegui.events import GenericEventArguments
+
+from underfoot.case import Case, unit_at
+from underfoot.core.units import to_si
+
+from .session import Session
+
+SIGNS = {"deg": "°", "um": "µm"}
+"""How a unit is shown where it is not as it is written in a case."""
+_numbers = count()
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """A value of a case with the unit and the range in which it is usually set.
+
+    Attributes:
+        path: In the case; its name is ``inputs.PATH`` in the text files.
+        unit: As a case file writes it, "" for a number.
+        low, high, step: In that unit; of a slider in decades (``log``) too.
+    """
+
+    path: str
+    unit: str
+    low: float
+    high: float
+    step: float
+    log: bool = False
+
+    @property
+    def sign(self) -> str:
+        """Return the unit as it is shown."""
+        return SIGNS.get(self.unit, self.unit)
+
+    def given(self, case: Case) -> float | None:
+        """Return the value of a case in the unit, None where it has none."""
+        value = case.value(self.path)
+        factor = to_si(f"1 {self.unit}", unit_at(self.path), where=self.path) if self.unit else 1.0
+        return None if value is None else float(value) / factor
+
+    def written(self, value: float) -> str | float:
+        """Return a value in the unit as a case takes it."""
+        return f"{value:.6g} {self.unit}" if self.unit else float(f"{value:.6g}")
+
+
+def changes(inputs: Sequence[Input], values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values of sliders as changes of a case; unknown names are left out."""
+    known = {each.path: each for each in inputs}
+    return {path: known[path].written(float(v)) for path, v in values.items() if path in known}
+
+
+def sliders(
+    session: Session,
+    inputs: Sequence[Input],
+    case: Case,
+    answer: Callable[[dict[str, Any], bool], Awaitable[dict[str, Any]]],
+    view: ui.element | None = None,
+) -> ui.element:
+    """Show a slider for each input that the case has; ``answer`` is asked while they move.
+
+    ``answer(changes, last)`` gets what differs from the case; ``last`` where a slider was let go.
+    It returns ``{"texts": {name: words}, "html": sole}``: the words go to every element with
+    ``data-live="name"``, the sole into ``view``.
+    """
+    rows = []
+    for each in inputs:
+        value = each.given(case)
+        if value is not None:
+            rows.append(_row(session, each, value))
+    root = ui.html("".join(rows) + '<p data-part="problem" role="alert"></p>', sanitize=False)
+    root.classes("sliders")
+
+    async def asked(question: dict[str, Any]) -> dict[str, Any]:
+        return await answer(changes(inputs, question["values"]), bool(question["last"]))
+
+    link = session.answers(asked)
+    sole = "" if view is None else view.html_id
+    ui.run_javascript(f"askLive({root.html_id!r}, {link!r}, {sole!r})")
+    return root
+
+
+def _row(session: Session, each: Input, value: float) -> str:
+    low, high, shown, step = each.low, max(each.high, value), min(max(value, 0), 1e9), each.step
+    shown = value
+    if each.log:
+        low, high, shown, step = log10(low), log10(high), log10(max(value, low)), 0.01
+    key = f"slider-{next(_numbers)}"
+    marks = f'data-unit="{each.sign}"' + (' data-log="1"' if each.log else "")
+    return (
+        f'<label for="{key}">{escape(session.text(f"inputs.{each.path}"))}</label>'
+        f'<input type="range" id="{key}" name="{each.path}" min="{min(low, shown):.6g}" '
+        f'max="{high:.6g}" step="{step:g}" value="{shown:.6g}" {marks}>'
+        f'<output for="{key}"></output>'
+    )
+
+
+def number_field(
+    session: Session, each: Input, case: Case, change: Callable[[dict[str, Any]], None]
+) -> None:
+    """Show a value with its unit and where it comes from; ``change`` gets what is typed."""
+    value, origin = each.given(case), case.origins.get(each.path)
+    if value is None and origin is None and case.value(each.path.rpartition(".")[0]) is None:
+        return
+    field = ui.number(session.text(f"inputs.{each.path}"), value=value and float(f"{value:.4g}"))
+    field.props(f'dense outlined suffix="{each.sign}" step="any"').classes("number")
+
+    def typed(_: GenericEventArguments) -> None:
+        if field.value is not None and field.value != value:
+            change({each.path: each.written(float(field.value))})
+
+    field.on("change", typed)
+    if origin is not None:
+        leaf = origin.leaf
+        kind = "assumed" if leaf.assumed else origin.kind
+        words = session.text(f"origin.{kind}")
+        field.props(f'hint="{escape(words)}"')
+        if leaf.source:
+            field.tooltip(leaf.source)

@@ -1,0 +1,276 @@
+"""The answer for a variant: friction with its interval, risk, the sole in 3-D, what would help."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from typing import Any
+
+from nicegui import ui
+
+from underfoot.case import Case
+
+from ..components import SoleView, sentences, table, task_line, title
+from ..inputs import Input, sliders
+from ..jobs import DONE, Task
+from ..session import Session
+from ..variant_bar import new_variant, variant_bar
+
+ROUTE = "/answer"
+LIVE = (
+    Input("motion.speed", "m/s", 0.05, 1.5, 0.01),
+    Input("contaminant.viscosity", "cP", 0.5, 1000.0, 1.0, log=True),
+    Input("shoe.wear.depth", "mm", 0.0, 4.0, 0.1),
+    Input("shoe.material.shore_a", "", 45.0, 85.0, 1.0),
+    Input("motion.normal_force", "N", 100.0, 900.0, 10.0),
+)
+"""Values that a preview can follow while they move."""
+RUN, ADVICE = "underfoot.app.work:computed", "underfoot.app.work:advised"
+TRIED = ".tried"
+"""Folder of results that holds full runs behind previews until they are kept as a variant."""
+
+
+def build(session: Session) -> None:
+    """Show the variant's answer, computing it first where the address says so."""
+    name = session.variant
+    if name is None:
+        ui.label(session.text("design.none")).classes("lead")
+        begin = ui.button(session.text("design.begin"), on_click=lambda: example(session))
+        begin.props("no-caps unelevated")
+        return
+    _Answer(session, name).show()
+
+
+def example(session: Session) -> None:
+    """Compute a worn work shoe on a floor with detergent."""
+    wanted = session.text("answer.example")
+    name = new_variant(session, wanted, shoe="work_shoe_half_tread", contaminant="detergent")
+    session.go(ROUTE, variant=name, run="1")
+
+
+class _Answer:
+    """The page of one variant."""
+
+    def __init__(self, session: Session, name: str) -> None:
+        self.session, self.name, self.text = session, name, session.text
+        self.case: Case = session.project.case(name)
+        self.folder = session.project.result_folder(name)
+        self.changes: dict[str, Any] = {}
+        self.preview_cof = 0.0
+        self.tried: Task | None = None
+
+    def show(self) -> None:
+        title(self.text("answer.title")).classes("hidden-title")
+        with ui.element("div").classes("bar-row"):
+            variant_bar(self.session, ROUTE, self.name, self._reload)
+            ui.link(self.text("answer.to_design"), f"/design?variant={self.name}")
+            ui.space()
+            self.run_button = ui.button(
+                self.text("design.run"), icon="play_arrow", on_click=self.run
+            )
+            self.run_button.props("no-caps unelevated").classes("main-action")
+        self.progress = ui.element("div")
+        self.place = ui.element("div")
+        current = self._current()
+        task = self.session.jobs.latest(self.name, RUN)
+        if task is not None and task.open:
+            self._follow(task)
+        elif not current and self.session.query.get("run"):
+            self.run()
+        self._fill()
+
+    def run(self) -> None:
+        """Compute the variant as its file says."""
+        title, path = self.text("answer.job"), str(self.session.project.path(self.name))
+        task = self.session.jobs.submit(title, RUN, path, str(self.folder), about=self.name)
+        self._follow(task)
+
+    def _reload(self) -> None:
+        self.session.go(ROUTE, variant=self.name)
+
+    def _current(self) -> bool:
+        """Return whether there is a result of what the file says now."""
+        found = self.session.project.summary(self.name)
+        return found is not None and found.case_hash == self.case.hash
+
+    def _follow(self, task: Task) -> None:
+        self.run_button.disable()
+
+        async def ended(done: Task) -> None:
+            self.run_button.enable()
+            if done.problem:
+                with self.progress:
+                    ui.label(done.problem).classes("problem problem-what").props('role="alert"')
+            if done.state == DONE:
+                path = str(self.session.project.path(self.name))
+                arguments = (self.text("answer.help_job"), ADVICE, path, str(self.folder))
+                self.session.jobs.submit(*arguments, about=self.name)
+                self._fill()
+
+        self.progress.clear()
+        with self.progress:
+            task_line(self.session, task, ended)
+
+    def _fill(self) -> None:
+        self.place.clear()
+        if self.session.project.summary(self.name) is None:
+            with self.place:
+                ui.label(self.text("answer.not_yet")).classes("lead")
+            return
+        with self.place, ui.element("div").classes("split"):
+            side = ui.element("section").classes("side")
+            with ui.element("section").classes("stage-side"):
+                self.view = SoleView(self.session)
+            self.tables = ui.element("section").classes("whole")
+        with side:
+            if not self._current():
+                ui.label(self.text("answer.changed")).classes("caution")
+            self.words = ui.element("div").props('aria-live="polite"')
+            self._live()
+            self.help = ui.element("div")
+        with self.place:
+            ui.timer(0, self._answer, once=True)
+            self.helped = ui.timer(1.0, self._helps)
+        self._helps()
+
+    async def _answer(self) -> None:
+        answer = await self.session.ask("underfoot.app.work:answer", str(self.folder))
+        self.view.show(answer["html"])
+        with self.words:
+            self._headline(answer)
+        with self.tables:
+            self._tables(answer)
+        if self._current():  # the march from which previews go on
+            path = str(self.session.project.path(self.name))
+            await self.session.ask("underfoot.app.work:previewed", path, {})
+
+    def _headline(self, answer: dict[str, Any]) -> None:
+        texts = answer["texts"]
+        with ui.element("div").classes("answer-card"):
+            if answer["usable"]:
+                ui.label(self.text("answer.cof")).classes("soft")
+                ui.label(texts["cof"]).classes("big")
+                if texts["interval"]:
+                    ui.label(self.text("answer.interval", interval=texts["interval"]))
+                if texts["risk"]:
+                    ui.label(self.text("answer.risk", risk=texts["risk"])).classes("strong")
+                ui.label(texts["limit"]).classes("soft")
+            else:
+                sentences(answer["headline"], "strong")
+        for caution in answer["cautions"]:
+            ui.label(caution).classes("caution")
+
+    def _tables(self, answer: dict[str, Any]) -> None:
+        sentences(answer["headline"])
+        for shown in answer["tables"]:
+            table(shown)
+        for heading, lines in answer["remarks"].items():
+            with ui.expansion(heading).classes("plain"):
+                sentences(lines, "soft")
+        report = self.session.project.folder.name
+        ui.label(self.text("answer.files", folder=f"{report}/results/{self.name}")).classes("soft")
+
+    # previews
+
+    def _live(self) -> None:
+        title(self.text("answer.live"), 2)
+        ui.label(self.text("answer.live_lead")).classes("soft")
+        with ui.element("div").classes("answer-card live-answer"):
+            for name in ("preview", "preview_note"):
+                kind = "strong" if name == "preview" else "soft"
+                ui.label("").classes(kind).props(f'data-live={name} aria-live="polite"')
+            self.behind = ui.element("div")
+        sliders(self.session, LIVE, self.case, self._moved, self.view)
+
+    async def _moved(self, changes: dict[str, Any], last: bool) -> dict[str, Any]:
+        path = str(self.session.project.path(self.name))
+        self.changes = changes
+        answer = await self.session.ask("underfoot.app.work:previewed", path, changes)
+        self.preview_cof = answer["cof"]
+        texts = answer["texts"]
+        if last:
+            with self.behind:
+                self._run_behind(path)
+        words = {
+            "preview": self.text("answer.preview", **texts),
+            "preview_note": self.text("answer.preview_note", **texts),
+        }
+        return {"texts": words, "html": answer["html"]}
+
+    def _run_behind(self, path: str) -> None:
+        """Start the full run of what the preview shows; give an earlier one up."""
+        jobs = self.session.jobs
+        if self.tried is not None and self.tried.open:
+            jobs.cancel(self.tried)
+        folder = str(self.session.project.inside("results", TRIED, self.name))
+        arguments = (path, folder, self.changes)
+        self.tried = jobs.submit(self.text("answer.full"), RUN, *arguments, about=f"{self.name} …")
+        self.behind.clear()
+
+        async def ended(done: Task) -> None:
+            if done is not self.tried or done.state != DONE or done.answer is None:
+                return
+            answer = await self.session.ask("underfoot.app.work:answer", folder)
+            self.view.show(answer["html"])
+            off = 100 * (done.answer / self.preview_cof - 1) if self.preview_cof else 0.0
+            self.behind.clear()
+            with self.behind:
+                texts = {
+                    **answer["texts"],
+                    "preview": f"{self.preview_cof:.3f}",
+                    "off": f"{off:+.1f}",
+                }
+                ui.label(self.text("answer.replaced", **texts)).classes("strong")
+                keep = ui.button(self.text("answer.keep"), on_click=lambda: self._keep(folder))
+                keep.props("no-caps outline")
+
+        with self.behind:
+            task_line(self.session, self.tried, ended)
+
+    def _keep(self, folder: str) -> None:
+        project = self.session.project
+        new = project.copy(self.name, self.name, self.changes)
+        shutil.move(folder, project.result_folder(new))
+        self.session.go(ROUTE, variant=new)
+
+    # what would help
+
+    def _helps(self) -> None:
+        try:
+            stored = json.loads((self.folder / "risk.json").read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            task = self.session.jobs.latest(self.name, ADVICE)
+            self.help.clear()
+            if task is not None and task.open:
+                with self.help:
+                    ui.label(self.text("answer.help_waits")).classes("soft")
+            else:
+                self.helped.deactivate()
+            return
+        self.helped.deactivate()
+        self.help.clear()
+        computed = [each for each in stored["changes"] if each["cof"] is not None]
+        computed.sort(key=lambda each: each["slip_probability"])
+        with self.help:
+            title(self.text("answer.help"), 2)
+            for each in computed:
+                self._change(each, stored["cof"]["value"])
+
+    def _change(self, each: dict[str, Any], now: float) -> None:
+        with ui.element("div").classes("help"):
+            action = each["action"][:1].upper() + each["action"][1:]
+            ui.label(
+                self.text(
+                    "answer.change", action=action, now=f"{now:.3f}", cof=f"{each['cof']:.3f}"
+                )
+            )
+            make = ui.button(self.text("answer.make"), on_click=lambda: self._make(each))
+            make.props("no-caps flat dense")
+
+    def _make(self, each: dict[str, Any]) -> None:
+        wanted = f"{self.name}, {each['name'].replace('_', ' ')}"
+        new = self.session.project.copy(self.name, wanted, each["values"])
+        if any(page.route == "/compare" for page in self.session.pages):
+            self.session.go("/compare", a=self.name, b=new)
+        else:
+            self.session.go(ROUTE, variant=new, run="1")
