@@ -93,4 +93,3 @@ def exported(folder: str, file: str, *, progress: Progress) -> str:
 def _chance(one: Result, other: Result) -> str:
     chance = None if one is other else chance_higher(one, other)
     return "" if chance is None else percent(chance)
-

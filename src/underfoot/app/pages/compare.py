@@ -92,7 +92,7 @@ class _Compare:
 
     def _csv(self) -> None:
         stream = io.StringIO()
-        writer = csv.DictWriter(stream, COLUMNS, extrasaction="ignore")
+        writer: Any = csv.DictWriter(stream, COLUMNS, extrasaction="ignore")
         writer.writeheader()
         writer.writerows(self.rows)
         ui.download.content(stream.getvalue(), "comparison.csv")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import tomlkit
@@ -72,7 +73,7 @@ def build(session: Session) -> None:
     ui.label(text("studies.lead")).classes("lead")
     for each in names:
         button = ui.button(each, icon="scatter_plot")
-        button.on_click(lambda each=each: session.go(ROUTE, study=each))
+        button.on_click(partial(session.go, ROUTE, study=each))
         button.props("flat no-caps align=left")
     begin = ui.button(text("studies.new"), icon="add", on_click=lambda: example(session))
     begin.props("no-caps unelevated")
@@ -188,7 +189,7 @@ class _Study:
         area.props("autogrow dense outlined spellcheck=false")
 
         async def changed() -> None:
-            wanted = [line.strip() for line in area.value.splitlines() if line.strip()]
+            wanted = [line.strip() for line in (area.value or "").splitlines() if line.strip()]
             await self.keep("outputs", {goal: wanted or None}, part=True)
 
         area.on("blur", changed)
@@ -230,8 +231,9 @@ class _Study:
         await self._write(tomlkit.dumps(document))
 
     async def _edited(self) -> None:
-        if self.editor.value != self.written():
-            await self._write(self.editor.value)
+        text = self.editor.value or ""
+        if text != self.written():
+            await self._write(text)
             await self._fill()
 
     async def _write(self, text: str) -> None:
@@ -404,7 +406,7 @@ def _fields(section: str, value: Any) -> dict[str, str] | None:
     fields = dict.fromkeys(FIELDS[section], "")
     if isinstance(value, list) and "values" in fields:
         return fields | {"values": ", ".join(map(str, value))}
-    if not isinstance(value, Mapping) or section == "conditions" and value:
+    if not isinstance(value, Mapping) or (section == "conditions" and value):
         return None
     if section == "uncertain":
         for kind, keys in KINDS.items():

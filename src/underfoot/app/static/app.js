@@ -19,6 +19,14 @@ async function putSole(place, html) {
   if (before && place.sole) place.sole.colour(before.quantity);
 }
 
+// Show the plots of a design study at an address; a click on a design sends "chosen" with its number.
+async function showStudy(id, address) {
+  const place = document.getElementById(id), response = place && await fetch(address);
+  if (!response || !response.ok) return;
+  place.innerHTML = await response.text();
+  for (const root of place.querySelectorAll(".study")) startStudy(root);
+}
+
 // Send files one after the other into a folder of the project; "files" says where they are.
 function takeFiles(id, { folder, most, multiple, accept }, words) {
   const zone = document.getElementById(id), state = zone.querySelector(".drop-state");
