@@ -132,6 +132,16 @@ def test_a_mirrored_sole_is_opened_on_the_other_side(shift):
     assert other.load[0] == one.load[0]
 
 
+def test_mirrored_lugs_on_one_sole_are_opened_to_opposite_sides():
+    """Two lugs wider than long, an even number of cells across, under an even film."""
+    land = np.zeros((SIZE, SIZE), dtype=bool)
+    land[25:35, 4:24] = land[25:35, 36:56] = True
+    found = drainage(sole(land), np.where(land, 1e5, 0.0))
+    assert found.y[0] == pytest.approx(-found.y[1], abs=1.1 * CELL)
+    sides = {bool(y > 0): SIDES[side] for y, side in zip(found.y, found.groove_side, strict=True)}
+    assert sides == {True: "left", False: "right"}
+
+
 def test_a_bar_is_split_along_and_not_notched_across():
     """Film of a long bar goes with the third power of its width: what is split bears a quarter."""
     land = np.zeros((SIZE, SIZE), dtype=bool)

@@ -27,6 +27,7 @@ def flat_map(x, y, clearance):
         inside=ones,
         land=ones,
         cut=None,
+        slits=None,
         tread_depth=np.zeros_like(clearance),
         spacing=float(x[1] - x[0]),
     )

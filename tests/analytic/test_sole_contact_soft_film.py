@@ -33,6 +33,7 @@ def flat_map(x, y, clearance):
     ones = np.ones(clearance.shape, bool)
     return SimpleNamespace(
         cut=None,
+        slits=None,
         x=x,
         y=y,
         clearance=clearance,

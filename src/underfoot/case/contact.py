@@ -149,6 +149,8 @@ class ComplianceOption(Option):
 
     slot: ClassVar[str] = "compliance"
     usual: ClassVar[str | None] = "layered"
+    cut: ClassVar[bool] = False
+    """Whether sipes finer than the grid let the lugs give way further."""
 
     @abstractmethod
     def build(self, context: Context, sole: SoleMap) -> Compliance:
@@ -173,6 +175,7 @@ class LayeredCompliance(ComplianceOption):
 
     name: ClassVar[str] = "layered"
     source: ClassVar[str] = "outsole layer with free edges"
+    cut: ClassVar[bool] = True
 
     def build(self, context: Context, sole: SoleMap) -> Compliance:
         from underfoot.sole_contact.compliance import layered_compliance

@@ -29,6 +29,7 @@ from underfoot.sole_contact import SensorReading
 from underfoot.sole_contact.cost import refuse_too_large
 from underfoot.sole_contact.edge_peak import peak_pressure
 from underfoot.sole_contact.lug_edges import EdgedLaw
+from underfoot.sole_contact.slits import slit_words
 from underfoot.sole_contact.solver import SoleContact
 
 from . import numbers
@@ -172,6 +173,9 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         remarks = {
             "lug_edges": "" if lugs is None else lugs.words() + chamfer_words(case),
             "drainage": drainage.words() if drainage else "",
+            "sipes": ""
+            if sole.slits is None
+            else slit_words(sole.slits, giving="compliance" not in own and case.compliance.cut),
             "cof_spread_basis": getattr(law, "spread_basis", ""),
             **(positions.labels() if positions else {}),
             "overload": numbers.overload_words(overload),

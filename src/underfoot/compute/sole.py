@@ -39,6 +39,7 @@ from underfoot.shoe import SoleMap, SoleSurface, heel_map, rotated_surface, surf
 from underfoot.shoe.shape import SoleShape
 from underfoot.shoe.worn import ArchardStep, WornMap, archard_wear, worn_surface
 from underfoot.sole_contact.edge_peak import MOST_OVERLOADED, overloaded_share
+from underfoot.sole_contact.slits import loaded_slits
 from underfoot.sole_contact.sole_state import SoleState
 from underfoot.sole_contact.solver import SolverSettings, solve_sliding
 from underfoot.sole_contact.stepping import rolled_clearance
@@ -96,7 +97,9 @@ def sole_map(
         shape = cast("SoleShape", replace(cast("Any", shape), tread=shape.tread.moved(shift)))
     sole = shoe.heel_map(shape, shoe_angle=case.motion.shoe_angle + turn, spacing=spacing)
     plan = case.shoe.heel
-    return trimmed(sole, plan.reach, rolls(case)) if isinstance(plan, WholePlan) else sole
+    if isinstance(plan, WholePlan):
+        sole = trimmed(sole, plan.reach, rolls(case))
+    return _pressed(case, sole)
 
 
 def rolls(case: Case) -> NDArray[np.float64]:
@@ -264,7 +267,22 @@ def file_sole_map(
         rolls(case),
     )
     check_load(case, sole)
-    return sole
+    return _pressed(case, sole)
+
+
+def _pressed(case: Case, sole: SoleMap) -> SoleMap:
+    """Return the sole with its slits as the load closes them: the mean pressure of a first look."""
+    if sole.slits is None:
+        return sole
+    _, area = spring_contact(case, sole)
+    modulus = youngs_modulus(case)[0].value
+    assert modulus is not None
+    return loaded_slits(
+        sole,
+        modulus=modulus,
+        poisson_ratio=case.shoe.material.poisson_ratio,
+        pressure=case.motion.normal_force / area,
+    )
 
 
 def trimmed(
@@ -292,6 +310,7 @@ def trimmed(
         land=sole.land[part],
         tread_depth=sole.tread_depth[part],
         cut=sole.cut and sole.cut.part(part),
+        slits=sole.slits and sole.slits.part(part),
         whole=sole,
         removed=None if sole.removed is None else sole.removed[part],
     )
@@ -300,33 +319,39 @@ def trimmed(
 def check_load(case: Case, sole: SoleMap) -> None:
     """Refuse a load that bottoms the sole out, or that meets next to nothing of it.
 
-    A first look without a solver: each place of the land as a spring of its own, F = E / t sum
-    (d - c) dA over the land with clearance c below d, outsole thickness t. This estimate of the
-    approach d is too stiff for a thin layer's middle and too soft for none; refused is d above
-    half the thickness.
+    Of ``spring_contact``; refused is an approach above half the thickness.
     """
-    thickness = case.shoe.sole.thickness
-    modulus = youngs_modulus(case)[0].value
-    assert modulus is not None
-    force = case.motion.normal_force
-    heights = np.sort(sole.clearance[sole.land])
-    stiffness = modulus / thickness * sole.spacing**2
-    # with the n lowest places in touch: F = k (n d - sum of their clearances)
-    count = np.arange(1, heights.size + 1)
-    approach = (force / stiffness + np.cumsum(heights)) / count
-    reached = np.append(heights[1:], np.inf) >= approach
-    depth = float(approach[int(np.argmax(reached))])
+    thickness, force = case.shoe.sole.thickness, case.motion.normal_force
+    depth, area = spring_contact(case, sole)
     if depth <= BOTTOMED * thickness:
         return
-    area = np.count_nonzero(heights < depth) * sole.spacing**2 * 1e6
     raise InputError(
         f"{force:g} N bottoms out the sole: it would press {display(depth, 'm')} into "
-        f"{display(thickness, 'm')} of outsole, on {area:.0f} mm² of land",
+        f"{display(thickness, 'm')} of outsole, on {area * 1e6:.0f} mm² of land",
         where="motion.normal_force",
         allowed=f"an approach of up to {BOTTOMED:.0%} of the outsole's thickness",
         remedy="Look at the file with: underfoot outsole inspect. Is the right region under the "
         "load (region, forward, down), is the unit right, does a stray point stand out",
     )
+
+
+def spring_contact(case: Case, sole: SoleMap) -> tuple[float, float]:
+    """Return approach (m) and touching land (m^2) by a first look without a solver.
+
+    Each place of the land is a spring of its own, F = E / t sum (d - c) dA over the land with
+    clearance c below d, outsole thickness t. The estimate of the approach d is too stiff for a thin
+    layer's middle and too soft for none.
+    """
+    modulus = youngs_modulus(case)[0].value
+    assert modulus is not None
+    heights = np.sort(sole.clearance[sole.land])
+    stiffness = modulus / case.shoe.sole.thickness * sole.spacing**2
+    # with the n lowest places in touch: F = k (n d - sum of their clearances)
+    count = np.arange(1, heights.size + 1)
+    approach = (case.motion.normal_force / stiffness + np.cumsum(heights)) / count
+    reached = np.append(heights[1:], np.inf) >= approach
+    depth = float(approach[int(np.argmax(reached))])
+    return depth, np.count_nonzero(heights < depth) * sole.spacing**2
 
 
 def compression_breaches(case: Case, approach: float) -> list[Breach]:

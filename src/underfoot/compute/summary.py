@@ -42,6 +42,7 @@ LABELS = {
     "edge_peak": "Caution on pressures",
     "drainage": "Drainage",
     "lug_edges": "Edges of the lugs",
+    "sipes": "Sipes",
     "sensor": "Caution on the sensor",
     "objects": "Computed with an object in place of the case's option",
 }

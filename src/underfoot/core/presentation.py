@@ -144,6 +144,11 @@ def percent(share: float) -> str:
     return f"{value:.1f} %" if value < 9.95 else f"{value:.0f} %"
 
 
+def probability_text(probability: float) -> str:
+    """Return a computed probability in percent: none is exactly 0 or 1."""
+    return percent(min(max(probability, 1e-9), 1 - 1e-9))
+
+
 def quantity_text(value: float, unit: str, uncertainty: float | None = None) -> str:
     """Return a number, and its uncertainty, in one unit people read; forces in newtons."""
     newtons = unit == "N" and unit_system() == "si"
@@ -186,7 +191,7 @@ def interval_text(name: str, scalar: SourcedValue) -> str:
 
 
 def _plain(name: str, value: float) -> str:
-    return percent(value) if name in PROBABILITIES else f"{value:.3f}"
+    return probability_text(value) if name in PROBABILITIES else f"{value:.3f}"
 
 
 def _skewed(value: float, interval: tuple[float, float]) -> bool:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from underfoot.compute.summary import FrictionLimit, cautions, friction_limit
 from underfoot.core import InputError, Progress, SourcedValue, UnderfootError, silent
-from underfoot.core.presentation import Presentable, Table, percent, value_text
+from underfoot.core.presentation import Presentable, Table, percent, probability_text, value_text
 from underfoot.slip import RcofPopulation, ReportG6, slip_model, slip_risk
 from underfoot.slip.model import MODELS
 from underfoot.slip.risk import needed_acof
@@ -126,10 +126,10 @@ class RiskAssessment(Presentable):
     def change_sentences(self, most: int = MOST_CHANGES) -> list[str]:
         """Return the most effective changes with the COF and probability they lead to."""
         before = f"{self.outcome.number('cof'):.2f}"
-        chance = percent(self.outcome.number("slip_probability"))
+        chance = probability_text(self.outcome.number("slip_probability"))
         lines = [
             f"{each.change.action}: COF {before} to {each.number('cof'):.2f}, slip probability "
-            f"{chance} to {percent(each.number('slip_probability'))}"
+            f"{chance} to {probability_text(each.number('slip_probability'))}"
             + (" (extrapolated)" if _note(each) else "")
             for each in self.best[:most]
         ]
@@ -153,7 +153,7 @@ class RiskAssessment(Presentable):
         rows = []
         for one in self.models:
             needed = "not reachable" if one.needed_acof is None else f"{one.needed_acof:.3f}"
-            rows.append((one.name, percent(one.probability), needed))
+            rows.append((one.name, probability_text(one.probability), needed))
         heads = ("Model", "Slip probability", f"COF needed for {percent(self.target)}")
         models = Table("Slip probability of the same friction by every model", heads, rows)
         return (self.table(), models) if self.usable else ()
@@ -282,7 +282,7 @@ def odds(probability: float) -> str:
         return "fewer than 1 in 1000 steps"
     if probability < RARE:
         return f"1 in {1 / probability:.0f} steps"
-    return f"{percent(probability)} of steps"
+    return f"{probability_text(probability)} of steps"
 
 
 def _note(effect: ChangeEffect) -> str:

@@ -107,10 +107,10 @@ def _areas(own: Cells, other: Cells, within: Array, beyond: Array, land: Mask) -
     pairs = np.maximum(total(own, np.ones(own.size)) + total(other, np.ones(own.size)), 1.0)
     taken, left = beyond / pairs[other], (1 - within) / pairs[own]
     area = 1.0 + total(own, taken) - total(own, left) - total(other, taken) + total(other, left)
-    return _with_least(area.reshape(land.shape), land)
+    return with_least_area(area.reshape(land.shape), land)
 
 
-def _with_least(area: Array, land: Mask) -> Array:
+def with_least_area(area: Array, land: Mask) -> Array:
     """Return areas of at least LEAST_AREA and of the same sum: the cells around a sliver give."""
     for i, j in np.argwhere(area < LEAST_AREA):
         reach = 0

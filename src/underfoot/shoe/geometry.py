@@ -11,6 +11,7 @@ from underfoot.core.checks import positive
 
 from ._kernels.regions import carried_on
 from .cut_cells import CutCells
+from .slits import Slits
 
 CELLS_REFUSED = 2.0
 """A channel or lug of fewer cells is refused: its width would be wrong by half or more."""
@@ -80,6 +81,7 @@ class SoleMap(_Areas):
         cut: How the outlines of lugs cut the cells; None: not at all.
         whole: The map that this one is a part of, on the same cells; None where it is all.
         removed: Thickness of the land that wear has taken, m; None for a new sole.
+        slits: Sipes narrower than two cells: land to the map; None where there are none.
     """
 
     x: Array
@@ -94,6 +96,7 @@ class SoleMap(_Areas):
     cut: CutCells | None = None
     whole: "SoleMap | None" = field(default=None, repr=False, compare=False)
     removed: Array | None = None
+    slits: Slits | None = None
 
     def __post_init__(self) -> None:
         self._check_shapes("sole", "clearance", "inside", "land", "tread_depth", "removed")

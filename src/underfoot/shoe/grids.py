@@ -15,6 +15,9 @@ from ._kernels.regions import distance_to, nearest_true
 from .cut_cells import Cells, cut_cells
 from .geometry import CELLS_REFUSED, CELLS_WANTED, SoleMap, SoleSurface, centred
 from .shape import Heel, SoleShape
+from .slits import Slits, slits_of, without_slits
+from .tread import Sipes
+from .tread_measures import surface_without_slits
 
 HALF, NARROW = 50.0, 10.0
 """Percentiles of the local width by area: what is refused, and what is listed."""
@@ -71,6 +74,9 @@ def heel_map(
 
     cut = cut_cells(channel_level(heel, x, y_map, spacing), inside, level_at)
     land &= inside
+    slits = _heel_slits(heel, (x, y_map, stretch), (inside, land), spacing)
+    if slits is not None:
+        cut = without_slits(cut, slits, land)
     clearance = np.where(inside, x * sine + height * cosine, np.inf)
     if inside.any():
         clearance -= clearance.min()
@@ -86,10 +92,44 @@ def heel_map(
         outline=np.column_stack([along(rim[:, 0], rim[:, 1]) - rear, rim[:, 1]]),
         breaches=tuple(breaches_of_grid),
         cut=cut,
+        slits=slits,
         removed=None
         if heel.wear is None
         else heel.land_height(x, y_map) - heel.unworn_height(x, y_map),
     )
+
+
+def _heel_slits(
+    heel: SoleShape, places: tuple[Array, Array, Array], masks: tuple[Mask, Mask], spacing: float
+) -> Slits | None:
+    """Return the sipes that the grid is too coarse for, at ``places`` (x, y, dx per cell)."""
+    tread = heel.tread
+    if tread is None or tread.depth == 0 or tread.sipes is None or _shown(tread.sipes, spacing):
+        return None
+    x, y, stretch = places
+    inside, land = masks
+    sipes = tread.sipes
+    removed = heel.land_height(x, y) - heel.unworn_height(x, y)
+
+    def level_at(i: Cells, j: Cells, along: Array, across: Array) -> Array:
+        return tread.slit_distance(x[i, j] + along * stretch[i, j], y[i, j] + across * spacing)
+
+    angle = tread.sipes.angle
+    return slits_of(
+        tread.slit_distance(x, y) > -1.5 * spacing,
+        land,
+        inside,
+        spacing,
+        level_at,
+        depth=np.maximum(sipes.depth - removed, 0.0),
+        width=np.full(x.shape, sipes.width),
+        tangent=(np.full(x.shape, math.sin(angle)), np.full(x.shape, math.cos(angle))),
+    )
+
+
+def _shown(sipes: Sipes, spacing: float) -> bool:
+    """Return whether cells of ``spacing`` (m) show slits as channels."""
+    return spacing <= sipes.width / CELLS_REFUSED * (1 + 1e-9)
 
 
 def _check_grid(
@@ -130,7 +170,7 @@ def cut_heel(
 ) -> tuple[Array, Mask, Array]:
     """Return height over the sole plane, land and lug height, all in the frame of the sole.
 
-    Sipes narrower than two cells of ``spacing`` are left out: closed slits.
+    Sipes narrower than two cells of ``spacing`` are left out: ``SoleMap.slits`` has them.
     """
     unworn = heel.unworn_height(x, y)
     base = heel.land_height(x, y)
@@ -151,7 +191,7 @@ def cut_heel(
         channel = into > 0
         height, land = _cut(height, land, channel, unworn + tread.depth, base)
         sipes = tread.sipes
-        if sipes is not None and spacing <= sipes.width / CELLS_REFUSED * (1 + 1e-9):
+        if sipes is not None and _shown(sipes, spacing):
             slit = ~channel & (tread.slit_distance(x, y) > 0)
             height, land = _cut(height, land, slit, unworn + sipes.depth, base)
     arc = heel.arc_channel
@@ -169,7 +209,7 @@ def channel_level(heel: SoleShape, x: Array, y: Array, spacing: float = 0.0) -> 
     if tread is not None and tread.depth > 0:
         sipes = tread.sipes
         level = np.minimum(tread.channel_distance(x, y), depth + tread.depth)
-        if sipes is not None and spacing <= sipes.width / CELLS_REFUSED * (1 + 1e-9):
+        if sipes is not None and _shown(sipes, spacing):
             slit = np.minimum(tread.slit_distance(x, y), depth + sipes.depth)
             level = np.maximum(level, slit)
     if arc is not None and arc.depth > 0:
@@ -196,9 +236,8 @@ def _resolution(heel: SoleShape, spacing: float) -> list[Breach]:
         features.append(("arc_channel.width", "arc channel", heel.arc_channel.width))
     unresolved: list[Breach] = []
     sipes = heel.tread.sipes if heel.tread is not None and heel.tread.depth > 0 else None
-    if sipes is not None:
-        quantity = "cells across a sipe (below 2 it is taken as closed)"
-        unresolved += _few_cells(quantity, sipes.width / spacing)
+    if sipes is not None and _shown(sipes, spacing):
+        features.append(("tread.sipes.width", "sipe", sipes.width))
     for where, name, width in features:
         cells = width / spacing
         if cells < CELLS_REFUSED * (1 - 1e-9):
@@ -282,6 +321,7 @@ def surface_map(
     """
     _check_grid(surface, shoe_angle, spacing, padding)
     cosine, sine = math.cos(shoe_angle), math.sin(shoe_angle)
+    surface, cuts = surface_without_slits(surface, CELLS_REFUSED * spacing)
     inside, base = surface.inside, _land_everywhere(surface)
     outline, rear = _outline_on_floor(surface, base, shoe_angle)
     margin = max(1, math.ceil(padding / spacing - 1e-9))
@@ -306,13 +346,31 @@ def surface_map(
     land = covered & surface.land[cells]
     origin = np.where(covered, origin, surface.x[0])
     stretch = np.gradient(origin, axis=0)
-    into = _signed_distance(surface)
+    into = _signed_distance(surface, surface.land, surface.inside & ~surface.land)
 
-    def level_at(i: Cells, j: Cells, along: Array, across: Array) -> Array:
-        return into(origin[i, j] + along * stretch[i, j], y[j] + across * spacing)
+    def near(into: Callable[[Array, Array], Array]) -> Callable[..., Array]:
+        def level_at(i: Cells, j: Cells, along: Array, across: Array) -> Array:
+            return into(origin[i, j] + along * stretch[i, j], y[j] + across * spacing)
+
+        return level_at
 
     level = into(origin, np.broadcast_to(y, origin.shape))
     level = np.where(land, np.minimum(level, 0.0), np.maximum(level, np.finfo(float).tiny))
+    cut, slits = cut_cells(level, covered, near(into)), None
+    if cuts is not None:
+        into_slit = _signed_distance(surface, ~cuts.mask, cuts.mask)
+        slits = slits_of(
+            into_slit(origin, np.broadcast_to(y, origin.shape)) > -1.5 * spacing,
+            land,
+            covered,
+            spacing,
+            near(into_slit),
+            depth=cuts.depth[cells],
+            width=cuts.width[cells],
+            tangent=(cuts.tangent[0][cells], cuts.tangent[1][cells]),
+        )
+        if slits is not None:
+            cut = without_slits(cut, slits, land)
     return SoleMap(
         x=x,
         y=y,
@@ -323,16 +381,18 @@ def surface_map(
         spacing=float(spacing),
         outline=outline,
         breaches=tuple(resolution_breaches(surface, spacing)),
-        cut=cut_cells(level, covered, level_at),
+        cut=cut,
+        slits=slits,
         removed=None if surface.removed is None else surface.removed[cells],
     )
 
 
-def _signed_distance(surface: SoleSurface) -> Callable[[Array, Array], Array]:
-    """Return the distance (m) into the channels of a height map at points (x, y)."""
+def _signed_distance(
+    surface: SoleSurface, land: Mask, channel: Mask
+) -> Callable[[Array, Array], Array]:
+    """Return the distance (m) into ``channel`` from ``land`` at points (x, y)."""
     from scipy.ndimage import map_coordinates
 
-    land, channel = surface.land, surface.inside & ~surface.land
     level = np.full(land.shape, -_FAR)
     if channel.any():
         to_land, to_channel = distance_to(land) - 0.5, distance_to(channel) - 0.5

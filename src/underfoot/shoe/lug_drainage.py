@@ -145,7 +145,9 @@ def lug_drainage(sole: SoleMap, fluid_pressure: Array, film_thickness: Array) ->
     share = sums[order] / float((fluid_pressure * area).sum())
     film = pressure, film_thickness, area
     grooves = [
-        _best_groove(numbers == number, peak, ~sole.inside | clear, film, wide)
+        _best_groove(
+            numbers == number, peak, ~sole.inside | clear, film, wide, float(sole.y[peak[1]])
+        )
         for number, peak in zip(order[share >= MATTERS], peaks, strict=False)
     ]
     grooves += [(np.nan, -1, np.nan)] * (len(order) - len(grooves))
@@ -172,16 +174,22 @@ def _middle(cells: NDArray[np.intp]) -> NDArray[np.intp]:
 def _way_out(offsets: NDArray[np.intp], y: float) -> tuple[float, int]:
     """Return length (cells) and side of the shortest of the ways to ``offsets`` (n, 2), cells.
 
-    Of ways equal within half a cell: one along the shoe, to the front, away from the middle line.
+    Of ways equal within half a cell: the first of ``_preferred``.
     """
     length = np.hypot(*offsets.T)
     shortest = float(length.min())
     along, across = offsets[length <= shortest + 0.5].T
     lengthwise = np.abs(along) >= np.abs(across)
-    if lengthwise.any():
-        return shortest, 0 if (along[lengthwise] > 0).any() else 1
-    to_left = across > 0
-    return shortest, 2 if to_left.all() or (to_left.any() and y >= 0) else 3
+    sides = np.where(lengthwise, np.where(along > 0, 0, 1), np.where(across > 0, 2, 3))
+    return shortest, next(side for side in _preferred(y) if side in sides)
+
+
+def _preferred(y: float) -> tuple[int, ...]:
+    """Return the sides in the order in which equal ways are taken from a place at ``y`` (m).
+
+    Along the shoe, to the front, then away from the middle line: mirrored lugs get mirrored advice.
+    """
+    return (0, 1, 2, 3) if y > -MIDDLE else (0, 1, 3, 2)
 
 
 def _best_groove(
@@ -190,8 +198,12 @@ def _best_groove(
     open_: Mask,
     film: tuple[Array, Array, Array],
     wide: float,
+    y: float,
 ) -> tuple[float, int, float]:
-    """Return length (cells), side and relief of the groove that a lug should have."""
+    """Return length (cells), side and relief of the groove that a lug should have.
+
+    Of grooves equal within a cell (a peak between two cells lies in one): that of ``_preferred``.
+    """
     pressure, gap, area = film
     full = lug & (pressure > 0)
     load = float((pressure * area)[full].sum())
@@ -206,7 +218,12 @@ def _best_groove(
         relief = float((fallen * area).sum()) / load
         found.append((float(length), side, relief))
     most = max(relief for *_, relief in found)
-    return min(each for each in found if each[2] >= NEARLY * most)
+    best = [each for each in found if each[2] >= NEARLY * most]
+    shortest = min(length for length, *_ in best) + 1
+    order = _preferred(y)
+    return min(
+        (each for each in best if each[0] <= shortest), key=lambda each: order.index(each[1])
+    )
 
 
 def _fallen(free: Mask, groove: Mask, pressure: Array, conductance: Array) -> Array:

@@ -1,7 +1,7 @@
 """Land and channels of a sole known by its heights, and measures of its tread."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from underfoot.core.arrays import Array, Mask
 
 from ._kernels.covering_discs import covering_value, local_width
 from ._kernels.regions import (
+    Labels,
     carried_on,
     distance_to,
     distance_within,
@@ -245,19 +246,83 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
 
 def _sipes(channel: Mask, widths: Array, spacing: float) -> tuple[int, float]:
     """Return how many slits there are and their length in all, m."""
-    from scipy.ndimage import find_objects, sum_labels
-
-    numbers, count = pieces(channel & (widths < WIDEST_SIPE), diagonal=True)
-    if count == 0:
-        return 0, 0.0
-    extent = np.array(
-        [math.hypot(*(s.stop - s.start for s in box)) for box in find_objects(numbers)]
-    )
-    own = extent * spacing >= SHORTEST_SIPE
+    numbers, count = _slit_pieces(channel & (widths < WIDEST_SIPE), spacing)
     # area over width: a slit may be bent
-    inverse = np.where(numbers > 0, spacing**2 / np.maximum(widths, spacing), 0.0)
-    lengths = np.asarray(sum_labels(inverse, numbers, np.arange(1, count + 1)))
-    return int(np.count_nonzero(own)), float(lengths[own].sum())
+    lengths = np.where(numbers > 0, spacing**2 / np.maximum(widths, spacing), 0.0)
+    return count, float(lengths.sum())
+
+
+def _slit_pieces(narrow: Mask, spacing: float) -> tuple[Labels, int]:
+    """Return the number of the slit of each cell and how many are long enough to count."""
+    from scipy.ndimage import find_objects
+
+    numbers, _ = pieces(narrow, diagonal=True)
+    extent = [math.hypot(*(s.stop - s.start for s in box)) for box in find_objects(numbers)]
+    own = np.array([False, *(cells * spacing >= SHORTEST_SIPE for cells in extent)])
+    kept = np.cumsum(own) * own
+    return kept[numbers], int(kept.max())
+
+
+@dataclass(frozen=True, slots=True)
+class SurfaceSlits:
+    """Slits of a height map; ``mask`` marks them, arrays (nx, ny) hold those of the nearest one.
+
+    ``width`` and ``depth`` in m, ``tangent`` the unit vector along it (two arrays).
+    """
+
+    mask: Mask
+    width: Array
+    depth: Array
+    tangent: tuple[Array, Array]
+
+
+def surface_without_slits(
+    surface: SoleSurface, widest: float
+) -> tuple[SoleSurface, SurfaceSlits | None]:
+    """Return the surface with its slits narrower than ``widest`` (m) filled, and these.
+
+    Slits as ``TreadMeasures`` counts them, each with the median of its width and of its depth. Land
+    beside them is as high as the wider channels around are deep; where none is near, as the slits.
+    """
+    from scipy.ndimage import gaussian_filter, median
+
+    channel, spacing = surface.inside & ~surface.land, surface.spacing
+    if not channel.any():
+        return surface, None
+    widths = local_width(channel, spacing)
+    numbers, count = _slit_pieces(channel & (widths < min(widest, WIDEST_SIPE)), spacing)
+    if count == 0:
+        return surface, None
+    mask = numbers > 0
+    nearest = nearest_true(mask)
+    each = np.arange(1, count + 1)
+    floor = floor_depth(channel_depth(surface), channel)
+    width, depth = (
+        np.append(0.0, np.asarray(median(values, numbers, each)))[numbers][nearest]
+        for values in (np.maximum(widths, spacing), floor)
+    )
+    # the direction in which the mask changes least
+    reach = max(float(width[mask].max()) / spacing, 1.0)
+    slope = np.gradient(gaussian_filter(mask.astype(np.float64), 0.5 * reach))
+    xx, xy, yy = (
+        gaussian_filter(one * other, reach)
+        for one, other in ((slope[0], slope[0]), (slope[0], slope[1]), (slope[1], slope[1]))
+    )
+    across = 0.5 * np.arctan2(2 * xy, xx - yy)[nearest]
+    land, wide = surface.land | mask, channel & ~mask
+    lugs = np.where(land, depth, 0.0)
+    if wide.any():
+        near = distance_to(wide) * spacing <= LUG_REACH
+        lugs = np.where(land & near, floor[nearest_true(wide)], lugs)
+        lugs = np.where(near | (distance_to(mask) * spacing <= LUG_REACH), lugs, 0.0)
+    filled = replace(
+        surface,
+        height=np.where(mask, surface.land_base, surface.height),
+        land=land,
+        tread_depth=lugs,
+        base=surface.land_base,
+    )
+    return filled, SurfaceSlits(mask, width, depth, (-np.sin(across), np.cos(across)))
 
 
 def largest_patch(surface: SoleSurface) -> Mask:

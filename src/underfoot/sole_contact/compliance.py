@@ -190,7 +190,8 @@ def layered_compliance(
     its mask so that a uniform pressure compresses it as ``block_compression`` says: by its own
     height at each place, more near a free side than in the middle. Lugs stand in series on the
     layer, which feels what of a wave of pressure gets through their mean height; where lugs are
-    worn down to less of it, and in channels worn nearly through, it feels short waves too.
+    worn down to less of it, and in channels worn nearly through, it feels short waves too. Slits
+    (``SoleMap.slits``) are free sides of the lugs as far as they are deep and open.
     """
     _check_elastic(modulus, poisson_ratio)
     _check_positive(thickness, "thickness")
@@ -246,12 +247,12 @@ def layered_compliance(
             lambda q: rest(q) + footprint(q),
         )
 
-    height = np.where(sole.tread_depth > 0, sole.tread_depth, 0.0)
-    # untreaded land beside the lugs is as stiff as a lug of the least height the grid can tell
-    height = np.maximum(height, min(0.5 * sole.spacing, depth))
+    height = lug_height(sole)
     cut = sole.cut or CutCells.none(shape)
     edges = cut.along, cut.across
-    lug_give = block_compression(land, sole.spacing, height, modulus, poisson_ratio, edges)
+    lug_give = block_compression(
+        land, sole.spacing, height, modulus, poisson_ratio, edges, sole.slits
+    )
     uniform = float(np.average(lug_give[land], weights=cut.area[land]))
     lug = partial(free_sided_symbol, **elastic, uniform=uniform)
     smooth = partial(attenuation, depth=depth)
@@ -296,6 +297,14 @@ def mean_lug_depth(sole: SoleMap) -> float:
     depth = np.asarray(sole.tread_depth)[land]
     lugs = depth[depth > 0]
     return float(lugs.mean()) if lugs.size > TREADED_SHARE * depth.size else 0.0
+
+
+def lug_height(sole: SoleMap) -> Array:
+    """Return the height (m) of the lugs as blocks, (nx, ny).
+
+    Untreaded land beside the lugs is as stiff as a lug of the least height the grid can tell.
+    """
+    return np.maximum(sole.tread_depth, min(0.5 * sole.spacing, mean_lug_depth(sole)))
 
 
 def _check_positive(value: float, where: str) -> None:

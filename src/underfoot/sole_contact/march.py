@@ -151,6 +151,8 @@ def _film_mask(problem: Problem, gap: Array, pool_depth: float, before: Mask | N
     if before is not None:
         film |= before & (gap < LETS_GO * pool_depth)
     film &= problem.clearance < 0.5
+    if problem.drained is not None:
+        film &= ~problem.drained
     film[[0, -1]] = film[:, [0, -1]] = False  # the rim of the grid is open to the surroundings
     if not film.any():
         film = problem.clearance < problem.clearance.min() + 2e-5

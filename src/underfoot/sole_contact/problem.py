@@ -30,6 +30,7 @@ class Problem:
     decay: float  # m, gap over which the asperity pressure falls by about e
     settings: SolverSettings
     cut: CutCells
+    drained: Mask | None = None  # cells with a slit that is a way out: no film, but contact
 
     def gap(self, pressure: Array, approach: float) -> Array:
         """Return the mean gap of a pressure field and an approach."""

@@ -118,6 +118,7 @@ class SlidingSole:
             decay=decay,
             settings=settings,
             cut=sole.cut or CutCells.none(clearance.shape),
+            drained=sole.slits and sole.slits.drained,
         )
         lift = settings.start_film if viscosity is not None else touch
         blank = np.zeros_like(clearance)

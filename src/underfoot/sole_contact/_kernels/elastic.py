@@ -11,6 +11,7 @@ from underfoot.core.arrays import Array
 from underfoot.core.fourier import fourier_library
 from underfoot.core.fourier import transform as prepared_transform
 from underfoot.core.sparse import factorization
+from underfoot.shoe.slits import Slits
 
 
 def bonded_layer_symbol(
@@ -61,6 +62,7 @@ def block_compression(
     modulus: float,
     poisson_ratio: float,
     edges: tuple[Array | float, Array | float] = (0.5, 0.5),
+    slits: Slits | None = None,
 ) -> Array:
     """Return the deflection (m/Pa) of blocks under a uniform pressure, 0 outside the mask.
 
@@ -75,7 +77,47 @@ def block_compression(
     with M = E (1 - nu) / ((1 + nu)(1 - 2 nu)) of the confined rest (infinite for nu = 0.5). The
     mean of q falls with the shape factor as Gent and Lindley (1959) found for blocks bonded at both
     ends, here of twice the height; the face near a free side gives way more than its middle.
+
+    ``slits`` are free sides too, as far as they are deep (``slit_openness``) and until their walls
+    meet (``Slits.openness``).
     """
+    share = free_share(mask, spacing, height, poisson_ratio, edges)
+    if slits is not None:
+        cut = free_share(mask, spacing, height, poisson_ratio, edges, slits)
+        share += slits.openness * (cut - share)
+    return np.where(mask, compression(share, height, modulus, poisson_ratio), 0.0)
+
+
+def compression(share: Array, height: Array, modulus: float, poisson_ratio: float) -> Array:
+    """Return f of ``block_compression`` (m/Pa) where the flow carries ``share`` of the pressure."""
+    confined = (1 + poisson_ratio) * (1 - 2 * poisson_ratio) / (1 - poisson_ratio)
+    return BONDED_END * height / modulus * (share + (1 - share) * confined)
+
+
+def slit_openness(depth: Array) -> Array:
+    """Return b of a slit as deep as ``depth`` of the height: 0 for none, infinite for all of it.
+
+    It takes up 2 b (1 - q) / d of the flow per length, from both sides, with
+
+        b = w^2 (0.8 + (1 - w)^2) / (1 - w)
+
+    Found from plane-strain finite elements of layers with slits 1.5 to 6 heights apart, nu 0.49:
+    the gain in compression is met within 0.06 of that of slits through the whole height (0.13 too
+    large where they are 0.7 heights apart).
+    """
+    bounded = np.clip(depth, 0.0, 1 - 1e-6)
+    return bounded**2 * (0.8 + (1 - bounded) ** 2) / (1 - bounded)
+
+
+def free_share(
+    mask: NDArray[np.bool_],
+    spacing: float,
+    height: Array,
+    poisson_ratio: float,
+    edges: tuple[Array | float, Array | float] = (0.5, 0.5),
+    slits: Slits | None = None,
+) -> Array:
+    """Return q of ``block_compression`` (nx, ny), 0 outside the mask, with its slits wide open."""
     from scipy.sparse import csr_matrix
 
     inside = np.argwhere(mask) + 1
@@ -83,31 +125,71 @@ def block_compression(
     number = np.full((mask.shape[0] + 2, mask.shape[1] + 2), -1)
     number[inside[:, 0], inside[:, 1]] = np.arange(count)
     depth = np.broadcast_to(height, mask.shape)[mask]
-    diagonal = 1.5 / (1 + poisson_ratio) * (spacing / depth) ** 2
+    diagonal = flow_constant(poisson_ratio) * (spacing / depth) ** 2
     right = np.zeros(count)
     rows, columns = [np.arange(count)], [np.arange(count)]
+    values = []
     for axis, step in ((0, 1), (0, -1), (1, 1), (1, -1)):
         along, across = (step, 0) if axis == 0 else (0, step)
         neighbour = number[inside[:, 0] + along, inside[:, 1] + across]
         held = neighbour >= 0
         rows.append(np.flatnonzero(held))
         columns.append(neighbour[held])
-        place = np.pad(np.broadcast_to(edges[axis], mask.shape), 1, constant_values=0.5)
         before = inside if step > 0 else inside - (axis == 0, axis == 1)
-        away = np.abs((step < 0) - place[before[:, 0], before[:, 1]])
-        free = 1 / np.maximum(away, NEAREST)
-        diagonal += np.where(held, 1.0, free)
-        right += np.where(held, 0.0, free)
-    values = np.concatenate([diagonal, np.full(sum(map(len, rows)) - count, -1.0)])
+        at = before[:, 0], before[:, 1]
+        place = np.pad(np.broadcast_to(edges[axis], mask.shape), 1, constant_values=0.5)
+        free = 1 / np.maximum(np.abs((step < 0) - place[at]), NEAREST)
+        link, side = np.where(held, 1.0, 0.0), np.where(held, 0.0, free)
+        if slits is not None:
+            taken, near, far = (np.pad(part[axis], 1)[at] for part in _slit_flow(slits, height))
+            near, far = (near, far) if step > 0 else (far, near)
+            cut = held & (taken > 0)
+            total = np.where(cut, near + far + taken, 1.0)
+            link, side = (
+                np.where(cut, near * part / total, plain)
+                for part, plain in ((far, link), (taken, side))
+            )
+        diagonal += link + side
+        right += side
+        values.append(-link[held])
+    entries = np.concatenate([diagonal, *values])
     matrix = csr_matrix(
-        (values, (np.concatenate(rows), np.concatenate(columns))), shape=(count, count)
+        (entries, (np.concatenate(rows), np.concatenate(columns))), shape=(count, count)
     )
     matrix.sort_indices()
-    share = factorization(matrix, kind="positive definite", where="blocks").solve(right)
-    confined = (1 + poisson_ratio) * (1 - 2 * poisson_ratio) / (1 - poisson_ratio)
     result = np.zeros(mask.shape)
-    result[mask] = BONDED_END * depth / modulus * (share + (1 - share) * confined)
+    result[mask] = factorization(matrix, kind="positive definite", where="blocks").solve(right)
     return result
+
+
+def flow_constant(poisson_ratio: float) -> float:
+    """Return c of ``block_compression``."""
+    return 1.5 / (1 + poisson_ratio)
+
+
+def _slit_flow(slits: Slits, height: Array) -> tuple[Array, Array, Array]:
+    """Return what slits take up and lead to both centres, per difference of q, (2, nx, ny)."""
+    tall = np.broadcast_to(height, slits.depth.shape)
+    taken = 2 * slit_openness(slits.depth / tall) * slits.length / tall
+    return taken, 1 / slits.place, 1 / (1 - slits.place)
+
+
+def slit_closing(
+    share: Array, slits: Slits, height: Array, modulus: float, poisson_ratio: float
+) -> float:
+    """Return by how much (m/Pa) the walls of open slits move together under a uniform pressure.
+
+    Mean over slits and their depth of what the flow of ``free_share`` brings in from both sides,
+    0.875 d^3 / (c E) times the jump of its slope, over the depth of the slit.
+    """
+    taken, near, far = _slit_flow(slits, height)
+    # a slit that ends at the rim of a lug counts where both centres are on it
+    taken = taken * np.stack([(share > 0) & (np.roll(share, -1, axis=a) > 0) for a in (0, 1)])
+    beside = np.stack([np.roll(share, -1, axis=axis) for axis in (0, 1)])
+    at_wall = (near * share + far * beside + taken) / (near + far + taken)
+    volume = BONDED_END * height**3 / (flow_constant(poisson_ratio) * modulus)
+    flow = (volume * taken * (1 - at_wall)).sum()
+    return float(flow / max((slits.depth * slits.length * (taken > 0)).sum(), 1e-30))
 
 
 def attenuation(wavenumber: Array, depth: float) -> Array:
