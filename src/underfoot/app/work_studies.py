@@ -27,6 +27,8 @@ from .work import Drawn, said
 
 COLUMNS = ("cof", "slip_probability", "fluid_load", "peak_fluid_pressure", "contact_area")
 """Numbers of a result that the table of a comparison can be sorted by."""
+TRIED = 12
+"""Cases that are built while a study file is changed, to see which can't be."""
 
 
 def form(text: str, *, progress: Progress) -> dict[str, Any]:
@@ -36,16 +38,16 @@ def form(text: str, *, progress: Progress) -> dict[str, Any]:
 
 
 def state(file: str, folder: str, *, progress: Progress) -> dict[str, Any]:
-    """Return what a study will take, and how far it is where it was begun."""
+    """Return what a study will take, or how far it is where it was begun as the file is now."""
     study = Study.load(file, folder)
-    begun = study.store.exists
-    status = study_status(study) if begun else None
-    return {
-        "check": said(study_check(study.plan)),
-        "headline": list(status.headline()) if status else [],
-        "ended": len(study.store.records()) if begun else 0,
-        "open": status.endings["open"] if status else 0,
-    }
+    store, plan = study.store, study.plan
+    ended = len(store.records()) if store.exists else 0
+    if not ended or store.plan().text != plan.text:
+        return {**said(study_check(plan, TRIED)), "ended": ended, "begun": False, "open": True}
+    status = study_status(study)
+    most = plan.designs * plan.cases_per_design
+    left = ended < most or status.endings["open"] > 0 or plan.method.front_grid is not None
+    return {**said(status), "ended": ended, "begun": True, "open": left}
 
 
 def computed(file: str, folder: str, *, progress: Progress) -> None:
@@ -54,11 +56,16 @@ def computed(file: str, folder: str, *, progress: Progress) -> None:
     write_study_report(study, study.run(workers=available_processors(), progress=progress))
 
 
-def results(file: str, folder: str, *, progress: Progress) -> str:
-    """Return what is finished of a study as a part of a page: plots, tables, indices."""
-    ready = shown(Study.load(file, folder).result())
-    pictures = {name: png(make()) for name, make in figures(ready).items()}
-    return page_part(sections(ready, pictures)[0])
+def results(file: str, folder: str, whole: bool = True, *, progress: Progress) -> list[str]:
+    """Return what is finished of a study as parts of a page: the plots, and all that follows.
+
+    While it runs (not ``whole``) without surrogates, indices and their figures.
+    """
+    result = Study.load(file, folder).result()
+    ready = shown(result) if whole else result
+    pictures = {name: png(make()) for name, make in figures(ready).items()} if whole else {}
+    plots, *rest = sections(ready, pictures)[0]
+    return [page_part([plots]), page_part(rest)]
 
 
 def design(file: str, folder: str, number: int, *, progress: Progress) -> dict[str, str]:

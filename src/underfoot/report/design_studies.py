@@ -236,6 +236,7 @@ def slices_figure(models: Sequence[Surrogate], centre: np.ndarray) -> Figure:
     grid = figure.subplots(len(models), len(dimensions), squeeze=False, sharey="row")
     shares = np.linspace(0.0, 1.0, SLICE)
     for row, model in zip(grid, models, strict=True):
+        scale, shown_unit = display_unit(float(np.abs(model.values).max()), model.unit)
         for axes, one, k in zip(row, dimensions, range(len(dimensions)), strict=True):
             points = np.tile(centre, (SLICE, 1))
             points[:, k] = shares
@@ -245,15 +246,15 @@ def slices_figure(models: Sequence[Surrogate], centre: np.ndarray) -> Figure:
             unit = unit_at(one.path)
             factor, name = display_unit(float(values[-1]), unit) if numeric else (1.0, "1")
             places: Any = np.array(values) / factor if numeric else list(map(str, values))
-            axes.plot(places, mean, color="#0b6fa4")
-            axes.fill_between(
-                places, mean - deviation, mean + deviation, color="#0b6fa4", alpha=0.2
-            )
+            low, middle, high = (mean + k * deviation for k in (-1, 0, 1))
+            axes.plot(places, middle / scale, color="#0b6fa4")
+            axes.fill_between(places, low / scale, high / scale, color="#0b6fa4", alpha=0.2)
             axes.axvline(places[int(centre[k] * (SLICE - 1))], color="0.7", linewidth=0.8)
             short = one.path.split(".")[-1].replace("_", " ")
             axes.set_xlabel(short + (f" ({name})" if name != "1" else ""), fontsize=8)
             axes.tick_params(labelsize=7)
-        row[0].set_ylabel(f"{model.name}\nQ2 {model.q2:.3f}", fontsize=8)
+        named = model.name + (f" ({shown_unit})" if shown_unit != "1" else "")
+        row[0].set_ylabel(f"{named}\nQ2 {model.q2:.3f}", fontsize=8)
     return figure
 
 

@@ -122,13 +122,14 @@ class _Study:
             with ui.element("section"):
                 self.checked = ui.element("div").props('role="status"')
                 self.progress = ui.element("div")
-                self.results = ui.element("div").classes("report")
-                self.results.on("chosen", self._choose, args=["detail"])
+                self.plots = ui.element("div").classes("report")
+                self.plots.on("chosen", self._choose, args=["detail"])
                 with ui.element("div").classes("bar-row") as self.design:
                     self.caption = ui.label().classes("strong")
                     variant = ui.button(self.text("studies.to_variant"), icon="content_copy")
                     variant.on_click(self._to_variant).props("flat no-caps")
                 self.sole = SoleView(session)
+                self.rest = ui.element("div").classes("report")
         self.design.set_visibility(False)
         self.sole.set_visibility(False)
         ui.timer(0, self._open, once=True)
@@ -256,13 +257,13 @@ class _Study:
             for kind, words in problem_parts(problem) if problem else ():
                 ui.label(words).classes(f"problem-{kind}")
             if sheet:
-                ui.label(" ".join(sheet["headline"] or sheet["check"]["headline"])).classes("lead")
-                sentences(sheet["check"]["cautions"], "soft")
-                for title, lines in sheet["check"]["remarks"].items():
+                ui.label(" ".join(sheet["headline"])).classes("lead")
+                sentences(sheet["cautions"], "soft")
+                for title, lines in sheet["remarks"].items():
                     sentences([f"{title}: {line}" for line in lines[:3]], "soft")
-        begun = bool(sheet and sheet["ended"])
-        self.run_button.text = self.text("studies.go_on" if begun else "studies.run")
-        self.run_button.set_enabled(bool(sheet))
+        words = "run" if not (sheet and sheet["begun"]) else "go_on" if sheet["open"] else "done"
+        self.run_button.text = self.text(f"studies.{words}")
+        self.run_button.set_enabled(words != "done" and sheet is not None)
         return sheet
 
     # the run
@@ -282,7 +283,7 @@ class _Study:
             self.run_button.set_enabled(False)
             if sheet and sheet["ended"] != count:
                 count = sheet["ended"]
-                await self._show()
+                await self._show(whole=False)
 
         async def done(ended: Task) -> None:
             timer.deactivate()
@@ -297,11 +298,12 @@ class _Study:
 
     # what came of it
 
-    async def _show(self) -> None:
+    async def _show(self, *, whole: bool = True) -> None:
         """Show what is finished."""
-        html = await self.session.ask(f"{WORK}:results", *self.at)
-        address = self.session.keep(html)
-        ui.run_javascript(f"showStudy({self.results.html_id!r}, {address!r})")
+        parts = await self.session.ask(f"{WORK}:results", *self.at, whole)
+        addresses = [self.session.keep(part) for part in parts]
+        ui.run_javascript(f"showStudy({self.plots.html_id!r}, {addresses[0]!r})")
+        ui.run_javascript(f"showPart({self.rest.html_id!r}, {addresses[1]!r})")
 
     async def _choose(self, event: GenericEventArguments) -> None:
         """Show the sole of the design that was clicked."""
@@ -344,12 +346,14 @@ class _Rows:
         with self.place, ui.element("div").classes("study-row") as row:
             if shown is None:
                 ui.label(f"{path} = {json.dumps(value, ensure_ascii=False)}")
+                self._remover(row, lambda: read)
                 read: Callable[[], tuple[str, Any]] = lambda: (path, value)  # noqa: E731
             else:
                 options = [*({path} if path else ()), *ALIASES[self.section], *paths()]
                 choice = ui.select(options, value=path or None, with_input=True)
                 choice.props("dense outlined options-dense").classes("study-path")
                 choice.props(f'label="{self.text("studies.path")}"')
+                self._remover(row, lambda: read)
                 fields = {key: self._field(key, shown[key]) for key in FIELDS[self.section]}
                 choice.on_value_change(lambda: self._proposed(choice.value, fields))
                 read = lambda: (  # noqa: E731
@@ -358,13 +362,14 @@ class _Rows:
                 )
             self.rows.append(read)
 
-            async def remove() -> None:
-                self.rows.remove(read)
-                row.delete()
-                await self.changed()
+    def _remover(self, row: ui.element, read: Callable[[], Any]) -> None:
+        async def remove() -> None:
+            self.rows.remove(read())
+            row.delete()
+            await self.changed()
 
-            gone = ui.button(icon="close", on_click=remove).props("flat round dense")
-            gone.props(f'aria-label="{self.text("studies.remove")}"')
+        gone = ui.button(icon="close", on_click=remove).props("flat round dense")
+        gone.props(f'aria-label="{self.text("studies.remove")}"')
 
     def _field(self, key: str, value: str) -> Any:
         label = self.text(f"studies.field_{key}")

@@ -31,6 +31,7 @@ function startStudy(root) {
     mark();
     const design = designs[number];
     find("chosen").hidden = false;
+    root.dataset.chosen = design.number;
     find("title").textContent = `Design ${design.number}${design.front ? ", on the front" : ""}`;
     const row = (tag, texts) => {
       const made = document.createElement("tr");
@@ -97,7 +98,8 @@ function startStudy(root) {
   find("up").value = goals[0] ?? columns.length - 1;
   scatter();
   parallel();
-  const first = designs.findIndex((d) => d.front);
+  const wanted = designs.findIndex((d) => String(d.number) === root.dataset.chosen);
+  const first = wanted >= 0 ? wanted : designs.findIndex((d) => d.front);
   if (first >= 0) choose(first);
   root.dataset.ready = "yes";
 }
