@@ -43,7 +43,7 @@ def framed(session: Session, page: Page) -> None:
     ui.add_head_html(HEAD)
     ui.on_exception(session.tell)
     ui.colors(primary="#0b6fa4")
-    with ui.header().classes("app-bar"):
+    with ui.header(fixed=False).classes("app-bar"):
         home = ui.link("Underfoot", "/").classes("brand")
         home.props(f'aria-label="{text("start.title")}"')
         with ui.element("nav").props(f'aria-label="{text("frame.pages")}"'):

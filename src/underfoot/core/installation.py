@@ -25,6 +25,7 @@ _OPTIONAL = (
     ("trimesh", "trimesh", "cad", "OBJ and PLY, writing solids"),
     ("emcee", "emcee", "study", "the law of a pair from others' measurements"),
     ("SurfaceTopography", "SurfaceTopography", "instruments", "files of surface instruments"),
+    ("nicegui", "nicegui", "app", "the app in the browser, underfoot app"),
     ("meshio", "meshio", "paraview", "snapshots of the block for ParaView"),
 )
 _GAIN = "; MKL would save 10 to 30 % of a run, the numbers stay the same"

@@ -45,13 +45,15 @@ class StudyCheck(Presentable):
 
     def headline(self) -> tuple[str, ...]:
         """Return the number of cases and their cost."""
-        low, high = (value / 3600 for value in self.seconds)
-        per = f"{len(self.plan.states)} conditions x {len(self.plan.draws)} draws"
-        cost = f"about {low:.2g} to {high:.2g} h of one processor"
+        states, draws = len(self.plan.states), len(self.plan.draws)
+        per = f" x {states} conditions" * (states > 1) + f" x {draws} draws" * (draws > 1)
+        cost = (
+            f"about {time_text(self.seconds[0])} to {time_text(self.seconds[1])} of one processor"
+        )
         bad = sum(self.infeasible.values())
         share = f"{bad} of {self.built} cases of the first designs can't be built"
         return (
-            f"{self.designs} designs x {per}: {self.cases} cases at most, {cost}.",
+            f"{self.designs} designs{per}: {self.cases} cases at most, {cost}.",
             f"{share[0].upper()}{share[1:]}."
             if bad
             else f"All {self.built} cases tried can be built.",
@@ -112,3 +114,10 @@ def study_check(plan: StudyPlan, most: int = MOST_BUILT) -> StudyCheck:
             except InputError as error:
                 reasons[str(error)] += 1
     return StudyCheck(plan, designs, cases, (low * cases, high * cases), built, dict(reasons))
+
+
+def time_text(seconds: float) -> str:
+    """Return a time in the unit that people read."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

@@ -30,7 +30,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.linalg import solve_banded
+from scipy.linalg.lapack import dgttrf, dgttrs
 
 from underfoot.core.arrays import Array, Mask
 
@@ -98,7 +98,7 @@ class FilmOperator:
 
     def by_gap(self, pressure: Array, fraction: Array) -> Stencil:
         """Return the derivative of the balance by gap, m^2/s, at given pressure and fraction."""
-        drop_x, drop_y = np.diff(pressure, axis=0), np.diff(pressure, axis=1)
+        drop_x, drop_y = pressure[1:] - pressure[:-1], pressure[:, 1:] - pressure[:, :-1]
         filled = self._upstream(fraction)
         x_a = self.carry.by_a * filled - self.kx.by_a * drop_x
         x_b = self.carry.by_b * filled - self.kx.by_b * drop_x
@@ -108,8 +108,8 @@ class FilmOperator:
     def flows(self, pressure: Array, fraction: Array) -> tuple[Array, Array]:
         """Return the flow (m^3/s) through the x and the y faces."""
         flow_x = self.carry.value * self._upstream(fraction)
-        flow_x -= self.kx.value * np.diff(pressure, axis=0)
-        return flow_x, -self.ky.value * np.diff(pressure, axis=1)
+        flow_x -= self.kx.value * (pressure[1:] - pressure[:-1])
+        return flow_x, self.ky.value * (pressure[:, :-1] - pressure[:, 1:])
 
     def imbalance(self, pressure: Array, fraction: Array, content: Array | float = 0.0) -> Array:
         """Return what leaves each cell plus what it stores, m^3/s: 0 where volume is conserved.
@@ -166,16 +166,22 @@ class Cavity:
         self.cells = np.ravel_multi_index((along, across), mask.shape)  # x runs fastest
         rows = operator.by_fraction
         linked = (np.diff(along) == 1) & (np.diff(across) == 0)
-        self._bands = np.zeros((3, self.cells.size))
-        self._bands[0, 1:] = np.where(linked, rows.east.flat[self.cells[:-1]], 0.0)
-        self._bands[1] = rows.centre.flat[self.cells]
-        self._bands[2, :-1] = np.where(linked, rows.west.flat[self.cells[1:]], 0.0)
+        # factorised once, for it is solved in each product; three rows of their own at the end, for
+        # LAPACK's wrapper takes no fewer
+        below, above = np.zeros((2, self.cells.size + 2))
+        below[: linked.size] = np.where(linked, rows.west.flat[self.cells[1:]], 0.0)
+        above[: linked.size] = np.where(linked, rows.east.flat[self.cells[:-1]], 0.0)
+        own = np.append(rows.centre.flat[self.cells], np.ones(3))
+        *self._factors, failed = dgttrf(below, own, above)
+        if failed:
+            raise np.linalg.LinAlgError("a cavity that neither holds nor passes on liquid")
 
     def filled_by(self, inflow: Array) -> Array:
         """Return the liquid fraction that an inflow (m^3/s) makes, both at ``cells``."""
         if not self.cells.size:
             return inflow
-        return solve_banded((1, 1), self._bands, inflow, check_finite=False)
+        solution, _ = dgttrs(*self._factors, np.append(inflow, np.zeros(3)))
+        return solution[:-3]
 
 
 def film_operator(

@@ -5,14 +5,14 @@ doors, jobs, errors) is there already; ``build`` puts NiceGUI elements below it.
 write the module and its line in ``PAGES``; nothing else names it.
 
     def build(session: Session) -> None:
-        ui.label(session.text("trials.intro"))                     # words: text/en.toml, de.toml
+        ui.label(session.text("answer.live"))                      # words: text/en.toml, de.toml
 
         async def analyse() -> None:
             answer = await session.ask("underfoot.app.work_trials:analysed", str(folder))
             ...                                                     # raise freely: errors are told
 
         def run() -> None:                                          # minutes: the queue
-            session.jobs.submit(session.text("trials.job"), "module:function", argument, about=name)
+            session.jobs.submit(session.text("answer.job"), "module:function", argument, about=name)
 
 - ``session.ask("module:function", *args)`` (the warm process, while a person waits) and
   ``session.jobs.submit(title, "module:function", *args)`` (the queue) compute in another process:

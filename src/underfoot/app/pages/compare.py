@@ -8,7 +8,7 @@ from typing import Any
 
 from nicegui import ui
 
-from ..components import SoleView, sentences, table
+from ..components import SoleView, sentences, table, title
 from ..session import Session
 
 ROUTE = "/compare"
@@ -28,6 +28,7 @@ class _Compare:
         self.session, self.text = session, session.text
         names = [each.name for each in session.project.results()]
         asked = [name for name in session.query.get("variants", "").split("|") if name in names]
+        title(self.text("compare.title")).classes("hidden-title")
         ui.label(self.text("compare.lead", most=MOST)).classes("lead")
         if len(names) < 2:
             ui.label(self.text("compare.too_few")).classes("soft")

@@ -18,10 +18,11 @@ from underfoot.core.errors import UnderfootError
 from underfoot.core.files import whole_file
 from underfoot.core.units import display
 
-from ..components import SoleView, sentences, task_line
+from ..components import SoleView, sentences, task_line, title
 from ..jobs import Task
 from ..project import NAME
 from ..session import Session, problem_parts
+from ..variant_bar import new_variant
 
 ROUTE = "/studies"
 WORK = "underfoot.app.work_studies"
@@ -70,6 +71,7 @@ def build(session: Session) -> None:
         _Study(session, name)
         return
     text = session.text
+    title(text("studies.title")).classes("hidden-title")
     ui.label(text("studies.lead")).classes("lead")
     for each in names:
         button = ui.button(each, icon="scatter_plot")
@@ -80,10 +82,8 @@ def build(session: Session) -> None:
 
 
 def example(session: Session) -> None:
-    """Begin a study of the variant that was changed last."""
-    variant = session.variant
-    if variant is None:
-        raise InputError(session.text("studies.no_variant"))
+    """Begin a study of the variant that was changed last, of a new one where there is none."""
+    variant = session.variant or new_variant(session, session.text("design.example"))
     wanted, number = f"{variant} {session.text('studies.word')}", 1
     name = wanted
     while session.project.inside("studies", f"{name}.toml").exists():
@@ -102,6 +102,7 @@ class _Study:
         self.file = session.project.inside("studies", f"{name}.toml")
         self.at = (str(self.file), str(self.file.with_suffix("")))
         self.chosen = -1
+        title(name).classes("hidden-title")
         with ui.element("div").classes("bar-row"):
             back = ui.button(icon="arrow_back", on_click=lambda: session.go(ROUTE))
             back.props(f'flat round dense aria-label="{self.text("studies.all")}"')
@@ -119,7 +120,7 @@ class _Study:
                         self.editor = ui.textarea(value=self.written()).classes("study-file")
                         self.editor.props("autogrow outlined spellcheck=false")
                         self.editor.on("blur", self._edited)
-            with ui.element("section"):
+            with ui.element("section").classes("study-results"):
                 self.checked = ui.element("div").props('role="status"')
                 self.progress = ui.element("div")
                 self.plots = ui.element("div").classes("report")
@@ -169,8 +170,7 @@ class _Study:
                     self._method(key, options, plain.get("method", {}))
 
     def _heading(self, key: str) -> None:
-        with ui.element("h2"):
-            ui.label(self.text(f"studies.{key}"))
+        title(self.text(f"studies.{key}"), 2)
         ui.label(self.text(f"studies.{key}_hint")).classes("soft")
 
     def _base(self, base: str) -> None:
@@ -259,8 +259,8 @@ class _Study:
             if sheet:
                 ui.label(" ".join(sheet["headline"])).classes("lead")
                 sentences(sheet["cautions"], "soft")
-                for title, lines in sheet["remarks"].items():
-                    sentences([f"{title}: {line}" for line in lines[:3]], "soft")
+                for kind, lines in sheet["remarks"].items():
+                    sentences([f"{kind}: {line}" for line in lines[:3]], "soft")
         words = "run" if not (sheet and sheet["begun"]) else "go_on" if sheet["open"] else "done"
         self.run_button.text = self.text(f"studies.{words}")
         self.run_button.set_enabled(words != "done" and sheet is not None)
@@ -270,8 +270,8 @@ class _Study:
 
     async def run(self) -> None:
         """Compute what is not finished; what is finished stays, however the run ends."""
-        title = self.text("studies.job")
-        self._follow(self.session.jobs.submit(title, f"{WORK}:computed", *self.at, about=self.name))
+        name, work = self.text("studies.job"), f"{WORK}:computed"
+        self._follow(self.session.jobs.submit(name, work, *self.at, about=self.name))
 
     def _follow(self, task: Task) -> None:
         self.run_button.set_enabled(False)

@@ -1,0 +1,122 @@
+"""Who is let in: token, cookie, host, origin, sizes; and files that arrive."""
+
+import asyncio
+
+import pytest
+
+pytest.importorskip("nicegui")
+
+from underfoot.app.gate import Gate
+from underfoot.app.project import Project
+from underfoot.app.uploads import received, upload_path
+from underfoot.core import InputError
+
+TOKEN, PORT = "t" * 40, 8642
+COOKIE = f"underfoot-{PORT}={TOKEN}"
+
+
+def asked(path="/", query="", method="GET", kind="http", **headers):
+    """Return (status, headers, body) of one request; the application answers 200."""
+    sent = []
+
+    async def app(scope, receive, send):
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+        await send({"type": "http.response.body", "body": b"in"})
+
+    async def send(message):
+        sent.append(message)
+
+    headers = {"host": f"127.0.0.1:{PORT}", **headers}
+    scope = {
+        "type": kind, "path": path, "method": method, "query_string": query.encode(),
+        "headers": [(k.replace("_", "-").encode(), v.encode()) for k, v in headers.items()],
+    }  # fmt: skip
+    asyncio.run(Gate(app, TOKEN, PORT, 300_000_000)(scope, None, send))
+    if kind == "websocket" and sent[0]["type"] == "websocket.close":
+        return 403, {}, b""
+    found = {k.decode(): v.decode() for k, v in sent[0]["headers"]}
+    return sent[0]["status"], found, sent[1]["body"]
+
+
+def test_the_token_becomes_a_cookie_and_leaves_the_address():
+    status, headers, _ = asked("/design", f"variant=a&token={TOKEN}")
+    assert status == 303
+    assert headers["location"] == "/design?variant=a"
+    assert "HttpOnly" in headers["set-cookie"]
+    assert "SameSite=Strict" in headers["set-cookie"]
+
+
+@pytest.mark.parametrize("cookie", ["", "underfoot-8642=wrong", "underfoot-1=" + TOKEN, ";;="])
+def test_without_the_cookie_nothing_is_told(cookie):
+    status, _, body = asked(cookie=cookie)
+    assert status == 403
+    assert b"terminal" in body
+    assert asked(kind="websocket", cookie=cookie)[0] == 403
+
+
+def test_a_wrong_token_is_refused():
+    assert asked(query="token=" + "u" * 40)[0] == 403
+
+
+@pytest.mark.parametrize(
+    "host", ["evil.example:8642", "127.0.0.1:80", "127.0.0.1", "", "[::1", "localhost.evil:8642"]
+)
+def test_names_of_other_sites_are_refused_even_with_the_cookie(host):
+    assert asked(cookie=COOKIE, host=host)[0] == 403
+
+
+@pytest.mark.parametrize(
+    "host", ["127.0.0.1:8642", "localhost:8642", "[::1]:8642", "10.0.0.7:8642"]
+)
+def test_this_machine_is_let_in(host):
+    assert asked(cookie=COOKIE, host=host)[0] == 200
+
+
+def test_pages_of_other_sites_can_not_ask():
+    own = f"http://127.0.0.1:{PORT}"
+    assert asked(cookie=COOKIE, origin=own)[0] == 200
+    for origin in ("http://evil.example", "null", f"https://127.0.0.1:{PORT}"):
+        assert asked(cookie=COOKIE, origin=origin)[0] == 403
+        assert asked(kind="websocket", cookie=COOKIE, origin=origin)[0] == 403
+
+
+def test_pages_may_load_nothing_from_elsewhere():
+    policy = asked(cookie=COOKIE)[1]["content-security-policy"]
+    assert "default-src 'self'" in policy
+    assert "http" not in policy
+
+
+def test_two_gigabytes_are_refused_in_words_before_they_are_read():
+    size = {"content_length": "2000000000"}
+    status, _, body = asked("/api/files/soles/a.stl", method="POST", cookie=COOKIE, **size)
+    assert status == 413
+    assert b"2000 MB. Allowed: at most 300 MB" in body
+    assert asked("/api/ask/x", method="POST", cookie=COOKIE, content_length="2000000")[0] == 413
+    assert asked("/api/ask/x", method="POST", cookie=COOKIE)[0] == 411
+
+
+async def stream(*chunks):
+    for chunk in chunks:
+        yield chunk
+
+
+def test_files_arrive_whole_or_not_at_all(tmp_path, monkeypatch):
+    project = Project(tmp_path)
+    path = asyncio.run(received(project, "soles/heel.stl", stream(b"ab", b"c")))
+    assert path == tmp_path / "soles" / "heel.stl"
+    assert path.read_bytes() == b"abc"
+    monkeypatch.setattr("underfoot.app.uploads.MOST_BYTES", 4)
+    with pytest.raises(InputError, match="Allowed: at most"):
+        asyncio.run(received(project, "soles/heel.stl", stream(b"abc", b"def")))
+    with pytest.raises(InputError, match="empty"):
+        asyncio.run(received(project, "soles/heel.stl", stream()))
+    assert [p.name for p in (tmp_path / "soles").iterdir()] == ["heel.stl"]
+    assert path.read_bytes() == b"abc"
+
+
+@pytest.mark.parametrize(
+    "place", ["variants/a.toml", "soles", "soles/", "soles/../a", "soles/.x", "soles/a:b", "/etc/x"]
+)
+def test_files_go_nowhere_else(tmp_path, place):
+    with pytest.raises(InputError):
+        upload_path(Project(tmp_path), place)

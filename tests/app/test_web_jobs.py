@@ -1,0 +1,120 @@
+"""Jobs: order, progress, cancel at once, what a killed server leaves."""
+
+import asyncio
+import os
+import time
+
+import pytest
+
+pytest.importorskip("nicegui")
+
+from underfoot.app.jobs import Jobs, Lane
+from underfoot.core import InputError
+from underfoot.core.errors import Cancelled
+
+HERE = "test_web_jobs:"
+
+
+def doubled(number, progress):
+    progress("half way", 0.5)
+    return 2 * number
+
+
+def deaf(seconds, progress):
+    progress("deaf", 0.1)
+    time.sleep(seconds)
+
+
+def refused(progress):
+    raise InputError("too fast", where="motion.speed", allowed="at most 5 m/s")
+
+
+def killed(progress):
+    os._exit(1)
+
+
+@pytest.fixture
+def path(monkeypatch):
+    here = os.path.dirname(__file__)
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([here, os.environ.get("PYTHONPATH", "")]))
+
+
+async def with_jobs(folder, work):
+    jobs = Jobs(folder)
+    runner = asyncio.create_task(jobs.run())
+    try:
+        return await work(jobs)
+    finally:
+        runner.cancel()
+        jobs.close()
+
+
+@pytest.mark.usefixtures("path")
+def test_jobs_run_in_order_and_say_what_went_wrong(tmp_path):
+    async def work(jobs):
+        tasks = [jobs.submit("a", HERE + "doubled", n, about="x") for n in (1, 2)]
+        tasks += [jobs.submit("b", HERE + name) for name in ("refused", "killed")]
+        tasks.append(jobs.submit("c", HERE + "doubled", 3))
+        for task in tasks:
+            await jobs.finished(task)
+        assert jobs.latest("x", HERE + "doubled") is tasks[1]
+        return tasks
+
+    one, two, bad, dead, last = asyncio.run(with_jobs(tmp_path, work))
+    assert (one.answer, two.answer, last.answer) == (2, 4, 6)
+    assert bad.state == "failed"
+    assert bad.problem == "motion.speed: too fast. Allowed: at most 5 m/s."
+    assert "died" in dead.problem
+    assert one.ended <= two.began
+
+
+@pytest.mark.usefixtures("path")
+def test_cancel_is_heeded_at_once_even_by_a_job_that_does_not_listen(tmp_path):
+    async def work(jobs):
+        task, waiting = (jobs.submit("deaf", HERE + "deaf", 60) for _ in range(2))
+        while task.stage != "deaf":
+            await asyncio.sleep(0.01)
+        began = time.monotonic()
+        jobs.cancel(waiting)
+        jobs.cancel(task)
+        await jobs.finished(task)
+        return task, waiting, time.monotonic() - began
+
+    task, waiting, took = asyncio.run(with_jobs(tmp_path, work))
+    assert task.state == waiting.state == "stopped"
+    assert took < 0.5
+
+
+@pytest.mark.usefixtures("path")
+def test_a_restart_shows_what_finished_and_what_was_interrupted(tmp_path):
+    async def work(jobs):
+        await jobs.finished(jobs.submit("one", HERE + "doubled", 1, about="x"))
+        long, _ = (jobs.submit("two", HERE + "deaf", 60, about=a) for a in "yz")
+        while long.stage != "deaf":
+            await asyncio.sleep(0.01)
+
+    asyncio.run(with_jobs(tmp_path, work))
+    again = Jobs(tmp_path)
+    states = {task.about: task.state for task in again.tasks.values()}
+    assert states == {"x": "done", "y": "interrupted", "z": "interrupted"}
+    assert {task.about: task.state for task in Jobs(tmp_path).tasks.values()} == states
+
+
+@pytest.mark.usefixtures("path")
+def test_who_leaves_does_not_keep_the_process_busy():
+    async def work():
+        lane = Lane()
+        try:
+            with pytest.raises(asyncio.TimeoutError):
+                await asyncio.wait_for(lane.ask(HERE + "deaf", 0.5), 0.1)
+            assert await lane.ask(HERE + "doubled", 4) == 8
+            asked = asyncio.create_task(lane.ask(HERE + "deaf", 60))
+            await asyncio.sleep(0.2)
+            lane.stop()
+            with pytest.raises(Cancelled):
+                await asked
+            assert await lane.ask(HERE + "doubled", 5) == 10
+        finally:
+            lane.close()
+
+    asyncio.run(work())

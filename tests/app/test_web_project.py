@@ -1,0 +1,139 @@
+"""A project as a folder of files: states, names, what other programs do to it."""
+
+import json
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+pytest.importorskip("nicegui")
+
+from underfoot.app.project import Project
+from underfoot.app.variant_bar import USUAL
+from underfoot.case import Case, CaseError
+from underfoot.case.template import template
+from underfoot.core import InputError
+from underfoot.core.catalogue import Catalogue
+
+TEXT = template(**USUAL, catalogue=Catalogue.load(), name="one")
+
+
+@pytest.fixture
+def project(tmp_path):
+    made = Project(tmp_path / "p")
+    made.add("one", TEXT)
+    return made
+
+
+def speed(project, name="one"):
+    return Case.load(project.path(name)).motion.speed
+
+
+def test_states_go_back_and_forward_over_a_restart(project):
+    project.change("one", {"motion.speed": "0.5 m/s"})
+    project.change("one", {"motion.speed": "0.3 m/s"})
+    project.undo("one")
+    assert speed(project) == 0.5
+    again = Project(project.folder)
+    assert again.can_undo("one")
+    assert again.can_redo("one")
+    again.redo("one")
+    assert speed(again) == 0.3
+    again.undo("one")
+    again.undo("one")
+    assert speed(again) == 0.7
+    assert not again.can_undo("one")
+    again.change("one", {"motion.speed": "0.4 m/s"})
+    assert not again.can_redo("one"), "a new state ends what was undone"
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.lists(st.sampled_from(["change", "undo", "redo"]), max_size=12))
+def test_undo_and_redo_walk_one_line_of_states(tmp_path_factory, moves):
+    project = Project(tmp_path_factory.mktemp("p"))
+    project.add("one", TEXT)
+    states, at = [TEXT], 0
+    for number, move in enumerate(moves):
+        if move == "change":
+            project.change("one", {"motion.speed": f"{0.1 + number / 100:.2f} m/s"})
+            states, at = [*states[: at + 1], project.text("one")], at + 1
+        elif move == "undo":
+            project.undo("one")
+            at = max(at - 1, 0)
+        else:
+            project.redo("one")
+            at = min(at + 1, len(states) - 1)
+        assert project.text("one") == states[at]
+    assert Project(project.folder).text("one") == states[at]
+
+
+def test_what_another_program_writes_is_a_state(project):
+    other = project.text("one").replace('# speed = "0.7 m/s"', 'speed = "0.2 m/s"')
+    project.path("one").write_text(other)
+    project.change("one", {"motion.normal_force": "400 N"})
+    project.undo("one")
+    assert project.text("one") == other
+
+
+def test_a_refused_change_leaves_the_file(project):
+    before = project.text("one")
+    with pytest.raises(CaseError, match=r"motion\.speed"):
+        project.change("one", {"motion.speed": "5 kg"})
+    assert project.text("one") == before
+
+
+def test_removed_variants_come_back(project):
+    project.change("one", {"motion.speed": "0.5 m/s"})
+    project.remove("one")
+    assert project.variants() == []
+    again = Project(project.folder)
+    assert again.removed() == ["one"]
+    again.restore("one")
+    assert speed(again) == 0.5
+
+
+def test_copies_and_new_names(project):
+    second = project.copy("one", "one", {"shoe.wear.depth": "1 mm"})
+    assert second == "one 2"
+    assert project.case(second).name == "one 2"
+    assert project.rename(second, "worn") == "worn"
+    assert set(project.variants()) == {"one", "worn"}
+    with pytest.raises(InputError, match="exists"):
+        project.rename("worn", "one")
+
+
+@pytest.mark.parametrize("name", ["../x", "", ".hidden", "a/b", "a\\b", "x" * 61, "con\n", "a."])
+def test_names_that_are_no_files_are_refused(project, name):
+    with pytest.raises(InputError, match="is no name"):
+        project.add(name, TEXT)
+
+
+def test_paths_stay_inside(project):
+    with pytest.raises(InputError, match="outside the project"):
+        project.inside("soles", "..", "..", "etc")
+
+
+def test_a_line_cut_short_by_a_power_cut_is_left_out(project):
+    project.change("one", {"motion.speed": "0.5 m/s"})
+    with (project.folder / "history.jsonl").open("a") as stream:
+        stream.write('{"variant": "one", "acti')
+    again = Project(project.folder)
+    again.change("one", {"motion.speed": "0.4 m/s"})
+    last = (project.folder / "history.jsonl").read_text().splitlines()[-1]
+    assert json.loads(last)["action"] == "set"
+    again.undo("one")
+    assert speed(again) == 0.5
+
+
+def test_a_file_is_no_project(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="can't be used as a project"):
+        Project(tmp_path / "file")
+
+
+def test_damaged_results_are_none(project):
+    folder = project.result_folder("one")
+    folder.mkdir()
+    (folder / "result.json").write_text("{")
+    assert project.summary("one") is None
+    assert project.results() == []

@@ -1,0 +1,120 @@
+"""The app as a process on a free port, and its pages in Chromium by Playwright."""
+
+import contextlib
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from chromium import browser
+
+COMMAND = "from underfoot.cli import main; main()"
+SOURCE = Path(__file__).resolve().parents[2] / "src"
+
+
+class Served:
+    """A running app: its address with and without the key, its process."""
+
+    def __init__(self, folder, home, *options):
+        self.began = time.monotonic()
+        environment = {
+            **os.environ, "PYTHONPATH": str(SOURCE), "PYTHONUNBUFFERED": "1",
+            "XDG_STATE_HOME": str(home), "XDG_CACHE_HOME": str(home),
+        }  # fmt: skip
+        self.folder = Path(folder)
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", COMMAND, "app", str(folder), "--no-browser", *options],
+            env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        )  # fmt: skip
+        self.said = ""
+        while "token=" not in self.said:
+            line = self.process.stdout.readline()
+            assert line, self.said
+            self.said += line
+        self.link = re.search(r"http\S+", self.said)[0]
+        self.base = self.link.partition("?")[0]
+
+    def kill(self):
+        """End the server as a power cut does."""
+        self.process.send_signal(signal.SIGKILL)
+        self.process.wait()
+        self.process.stdout.close()
+
+    def memory(self):
+        """Return the resident memory of the server in MB."""
+        text = Path(f"/proc/{self.process.pid}/status").read_text()
+        return int(re.search(r"VmRSS:\s+(\d+)", text)[1]) / 1e3
+
+    def libraries(self):
+        """Return the text that names every library in the server's memory."""
+        return Path(f"/proc/{self.process.pid}/maps").read_text()
+
+
+@contextlib.contextmanager
+def served(folder, home, *options):
+    """Yield the app on a free port."""
+    app = Served(folder, home, "--port", "0", *options)
+    try:
+        yield app
+    finally:
+        app.process.terminate()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            app.process.wait(10)
+        app.kill()
+
+
+@contextlib.contextmanager
+def page_of(link, *, width=1366, height=768, dark=False, touch=False, webgl=True):
+    """Yield a page in a fresh browser; ``page.complaints`` are errors and outside requests."""
+    from playwright.sync_api import sync_playwright
+
+    flags = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+    if not webgl:
+        flags = ["--no-sandbox", "--disable-gpu", "--disable-3d-apis"]
+    host = re.match(r"http://[^/]*/", link)[0]
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=browser(), args=flags)
+        context = chromium.new_context(
+            viewport={"width": width, "height": height}, has_touch=touch, is_mobile=touch,
+            color_scheme="dark" if dark else "light",
+        )  # fmt: skip
+        page = context.new_page()
+        page.complaints = []
+
+        def note(message):
+            if message.type in ("error", "warning") and "GPU stall" not in message.text:
+                page.complaints.append(message.text)
+
+        def asked(request):
+            if not request.url.startswith((host, "data:", "blob:", "about:")):
+                page.complaints.append(request.url)
+
+        page.on("console", note)
+        page.on("pageerror", lambda error: page.complaints.append(str(error)))
+        page.on("request", asked)
+        page.set_default_timeout(90_000)
+        page.goto(link)
+        try:
+            yield page
+        finally:
+            chromium.close()
+
+
+SOLE = ".viewer[data-ready=yes]"
+
+
+def drawn(page):
+    """Wait until a sole is drawn."""
+    page.wait_for_selector(SOLE)
+    page.evaluate("new Promise((d) => requestAnimationFrame(() => requestAnimationFrame(d)))")
+
+
+def begin(page, base):
+    """Open the design page with the usual work shoe, drawn."""
+    page.goto(base + "design")
+    page.get_by_role("button", name="Begin with a work shoe").click()
+    page.wait_for_url("**/design?variant=*")
+    drawn(page)
