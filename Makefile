@@ -10,7 +10,7 @@ export OMP_NUM_THREADS ?= 1
 export MKL_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: run app check test test-slow test-install chromium bench validate docs clean help
+.PHONY: run app check test test-slow test-install chromium bundle bundle-check bench validate docs clean help
 
 run: $(READY)  ## the main job: a worn work shoe on a floor with glycerol
 	$(BIN)/underfoot run examples/work_shoe_untreaded_glycerol.toml --out out/work_shoe_untreaded_glycerol --overwrite
@@ -36,6 +36,13 @@ test-install: $(READY)  ## the wheel without the lock, on newest and lowest vers
 chromium:  ## a browser for the tests of the pages, where there is none (Debian, Ubuntu; as root)
 	@command -v chromium chromium-browser google-chrome chrome || { \
 	apt-get update -q && apt-get install -y -q --no-install-recommends chromium; }
+
+bundle: $(READY)  ## the program as a folder that needs no Python, in out/bundle (minutes)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check "pyinstaller>=6.11"
+	$(BIN)/python packaging/bundle.py
+
+bundle-check:  ## the bundle serves its first page and computes a case
+	$(BIN)/python packaging/bundle.py --check
 
 validate: $(READY)  ## closed-form checks, printed with their errors
 	$(BIN)/underfoot validate

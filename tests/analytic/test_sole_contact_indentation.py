@@ -28,6 +28,7 @@ def flat_map(x, y, clearance):
         land=ones,
         cut=None,
         slits=None,
+        joint=None,
         tread_depth=np.zeros_like(clearance),
         spacing=float(x[1] - x[0]),
     )

@@ -34,6 +34,7 @@ def flat_map(x, y, clearance):
     return SimpleNamespace(
         cut=None,
         slits=None,
+        joint=None,
         x=x,
         y=y,
         clearance=clearance,

@@ -99,6 +99,11 @@ def test_a_restart_shows_what_finished_and_what_was_interrupted(tmp_path):
     assert states == {"x": "done", "y": "interrupted", "z": "interrupted"}
     assert {task.about: task.state for task in Jobs(tmp_path).tasks.values()} == states
 
+    async def once_more(jobs):
+        return await jobs.finished(jobs.again(jobs.tasks[1]))
+
+    assert asyncio.run(with_jobs(tmp_path, once_more)).answer == 2
+
 
 @pytest.mark.usefixtures("path")
 def test_who_leaves_does_not_keep_the_process_busy():

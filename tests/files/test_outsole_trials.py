@@ -246,6 +246,15 @@ def test_text_stl_without_an_end_is_refused(tmp_path):
         read_mesh(tmp_path / "half.stl")
 
 
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-8-sig"])
+def test_text_files_of_windows_shells_are_read(tmp_path, encoding):
+    heel = triangles(heel_body())
+    path = made.by_trimesh("obj", heel)(tmp_path)
+    plain = read_mesh(path)
+    path.write_text(path.read_text(), encoding=encoding)
+    assert np.array_equal(read_mesh(path).triangles, plain.triangles)
+
+
 def test_rhino_file_tells_bodies_by_layer_and_object(tmp_path):
     rhino = pytest.importorskip("rhino3dm")
     model = rhino.File3dm()

@@ -113,7 +113,8 @@ def wavy_slider(cells=48, length=0.01):
     clearance = np.repeat(clearance - clearance.min(), 9, axis=1)
     everywhere = np.ones(clearance.shape, bool)
     return SimpleNamespace(
-        x=x, y=y, clearance=clearance, inside=everywhere, land=everywhere, cut=None, slits=None,
+        x=x, y=y, clearance=clearance, inside=everywhere, land=everywhere,
+        cut=None, slits=None, joint=None,
         tread_depth=np.zeros_like(clearance), spacing=length / cells,
     )  # fmt: skip
 

@@ -159,6 +159,13 @@ def passages(count, generator):
             "peak": 5e5 - 3e5 * lateral + 1e5 * speed}  # fmt: skip
 
 
+def test_too_few_passages_have_no_regression_of_any_name():
+    few = {name: values[:3] for name, values in passages(9, np.random.default_rng(3)).items()}
+    none = g5.regressions(few)
+    assert none.keys() == g5.regressions(passages(40, np.random.default_rng(3))).keys()
+    assert np.isnan([*none.values()]).all()
+
+
 def test_regressions_find_what_the_pressure_follows():
     found = g5.regressions(passages(4000, np.random.default_rng(3)))
     assert found["slope_lateral"] == pytest.approx(-3e5, rel=0.03)

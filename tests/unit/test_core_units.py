@@ -80,6 +80,8 @@ def test_inches_and_pounds_on_request(monkeypatch):
     shown = [quantity_text(*each) for each in values]
     assert shown == ["0.118 in", "1 mil", "1 psi", "100 lbf", "1 in²"]
     assert tread_unit("m") == (25.4e-3, "in")
+    assert tread_unit("m^3") == (pytest.approx(25.4e-3**3), "in^3")
+    assert tread_unit("1") == (1.0, "1")
     # what is read does not change with what is written
     assert to_si("3 mm", "m", where="x") == 3e-3
     for value, unit in values:

@@ -122,3 +122,6 @@ def _job_row(session: Session, task: Task) -> None:
         if task.open:
             stop = ui.button(text("jobs.stop"), on_click=lambda: session.jobs.cancel(task))
             stop.props("flat dense no-caps")
+        elif task.state != "done":
+            again = ui.button(text("jobs.again"), on_click=lambda: session.jobs.again(task))
+            again.props("flat dense no-caps")

@@ -65,14 +65,17 @@ def sliders(
     session: Session,
     inputs: Sequence[Input],
     case: Case,
-    answer: Callable[[dict[str, Any], bool], Awaitable[dict[str, Any]]],
-    view: ui.element | None = None,
+    moving: Callable[[dict[str, Any]], Awaitable[dict[str, Any]]],
+    resting: Callable[[dict[str, Any]], object],
+    view: ui.element,
+    *,
+    keep: bool,
 ) -> ui.element:
-    """Show a slider for each input that the case has; ``answer`` is asked while they move.
+    """Show a slider for each input that the case has, with what is done while they move.
 
-    ``answer(changes, last)`` gets what differs from the case; ``last`` where a slider was let go.
-    It returns ``{"texts": {name: words}, "html": sole}``: the words go to every element with
-    ``data-live="name"``, the sole into ``view``.
+    ``moving`` gets the changes of the case and returns ``{"texts": {name: words}, "html": sole}``:
+    the words go to every element with ``data-live="name"``, the sole into ``view``. ``resting``
+    gets them when a slider was let go, at once where it keeps them.
     """
     rows = []
     for each in inputs:
@@ -83,11 +86,14 @@ def sliders(
     root.classes("sliders")
 
     async def asked(question: dict[str, Any]) -> dict[str, Any]:
-        return await answer(changes(inputs, question["values"]), bool(question["last"]))
+        changed = changes(inputs, question["values"])
+        if question["last"]:
+            resting(changed)
+            return {}
+        return await moving(changed)
 
-    link = session.answers(asked)
-    sole = "" if view is None else view.html_id
-    ui.run_javascript(f"askLive({root.html_id!r}, {link!r}, {sole!r})")
+    link, kept = session.answers(asked), "true" if keep else "false"
+    ui.run_javascript(f"askLive({root.html_id!r}, {link!r}, {view.html_id!r}, {kept})")
     return root
 
 

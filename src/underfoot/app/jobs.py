@@ -8,6 +8,7 @@ server it shows what had finished and what was interrupted.
 from __future__ import annotations
 
 import asyncio
+import os
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -25,6 +26,8 @@ TICK = 0.01
 """s between two looks at a process that computes."""
 GRACE = 0.25
 """s that a cancelled job has to end by itself before its process is killed."""
+PATIENT = 10
+"""Niceness of full runs: sliders move meanwhile."""
 WAITING, RUNNING, DONE = "waiting", "running", "done"
 STOPPED, FAILED, INTERRUPTED = "stopped", "failed", "interrupted"
 SHOWN = 50
@@ -36,10 +39,12 @@ class Lane:
 
     Parameters:
         preload: Modules that the process imports when it starts.
+        patient: Give way to other processes, so that they answer at once.
     """
 
-    def __init__(self, preload: Sequence[str] = ()) -> None:
+    def __init__(self, preload: Sequence[str] = (), *, patient: bool = False) -> None:
         self._preload = preload
+        self._call = patiently if patient else named
         self._worker: Worker | None = None
         self._turn = asyncio.Lock()
         self._stop = False
@@ -76,7 +81,7 @@ class Lane:
             worker = self._worker
             assert worker is not None
             self._stop = False
-            job = worker.submit(named, function, *args, **options)
+            job = worker.submit(self._call, function, *args, **options)
             while not job.done:
                 if self._stop:
                     await asyncio.to_thread(worker.cancel)
@@ -109,6 +114,7 @@ class Task:
         state: waiting, running, done, stopped, failed, or interrupted by the end of the server.
         problem: What went wrong, as the error says it.
         answer: What the function returned, while the server runs.
+        arguments, options: What the function takes, plain data.
     """
 
     number: int
@@ -122,7 +128,8 @@ class Task:
     began: float = 0.0
     ended: float = 0.0
     answer: Any = field(default=None, repr=False)
-    work: tuple[tuple[Any, ...], dict[str, Any]] | None = field(default=None, repr=False)
+    arguments: Sequence[Any] = ()
+    options: dict[str, Any] = field(default_factory=dict)
 
     @property
     def open(self) -> bool:
@@ -130,7 +137,7 @@ class Task:
         return self.state in (WAITING, RUNNING)
 
 
-KEPT = tuple(each.name for each in fields(Task) if each.name not in ("answer", "work"))
+KEPT = tuple(each.name for each in fields(Task) if each.name != "answer")
 """What of a task is written to ``jobs.jsonl``."""
 
 
@@ -148,7 +155,7 @@ class Jobs:
 
     def __init__(self, folder: Path, preload: Sequence[str] = ()) -> None:
         self.live = Lane(preload)
-        self._full = Lane(preload)
+        self._full = Lane(preload, patient=True)
         self._file = folder / "jobs.jsonl"
         self.tasks: dict[int, Task] = {}
         self._waiting: deque[Task] = deque()
@@ -160,10 +167,10 @@ class Jobs:
     ) -> Task:
         """Queue ``function(*args, progress=..., **options)`` ("module:name"), return its task.
 
-        The function writes what is to last into the project's folder.
+        The function writes what is to last into the project's folder; what it takes is plain data.
         """
         number = max(self.tasks, default=0) + 1
-        task = Task(number, title, function, about, work=(args, options))
+        task = Task(number, title, function, about, arguments=args, options=options)
         self.tasks[number] = task
         self._waiting.append(task)
         self._changed(task)
@@ -178,12 +185,10 @@ class Jobs:
         elif task.state == RUNNING:
             self._full.stop()
 
-    def again(self, task: Task) -> Task | None:
-        """Queue a task of this server's life once more."""
-        if task.work is None:
-            return None
-        args, options = task.work
-        return self.submit(task.title, task.function, *args, about=task.about, **options)
+    def again(self, task: Task) -> Task:
+        """Queue a task once more."""
+        about = {"about": task.about, **task.options}
+        return self.submit(task.title, task.function, *task.arguments, **about)
 
     def latest(self, about: str, function: str) -> Task | None:
         """Return the newest task of a function about something, None where there is none."""
@@ -215,8 +220,6 @@ class Jobs:
         self._full.close()
 
     async def _compute(self, task: Task) -> None:
-        assert task.work is not None
-        args, options = task.work
         task.state, task.began = RUNNING, time.time()
         self._changed(task)
 
@@ -224,7 +227,9 @@ class Jobs:
             task.stage, task.fraction = job.stage, job.fraction
 
         try:
-            task.answer = await self._full.ask(task.function, *args, heard=heard, **options)
+            task.answer = await self._full.ask(
+                task.function, *task.arguments, heard=heard, **task.options
+            )
             self._end(task, DONE)
         except Cancelled:
             self._end(task, STOPPED)
@@ -259,3 +264,10 @@ def named(function: str, *args: Any, progress: Any, **options: Any) -> Any:
     """Return what a function ("module:name") answers."""
     module, _, name = function.partition(":")
     return getattr(import_module(module), name)(*args, progress=progress, **options)
+
+
+def patiently(function: str, *args: Any, progress: Any, **options: Any) -> Any:
+    """Return what a function ("module:name") answers, at low priority from now on."""
+    if hasattr(os, "nice") and os.nice(0) < PATIENT:
+        os.nice(PATIENT - os.nice(0))
+    return named(function, *args, progress=progress, **options)

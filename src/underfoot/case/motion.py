@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 _TESTER = "final progress report on shoe-floor friction, G.4.1"
 _mm = 1e-3
 ShoeAngle = Annotated[float, Quantity("rad", math.radians(-30), math.radians(60))]
+RolledAngle = Annotated[float, Quantity("rad", math.radians(-70), math.radians(60))]
 Time = Annotated[float, Quantity("s", 0.0, 60.0, open_low=True)]
 Instant = Annotated[float, Quantity("s", 0.0, 60.0)]
 AnySpeed = Annotated[float, Quantity("m/s", -20.0, 20.0)]
@@ -124,7 +125,7 @@ class MotionPoint(Section):
     time: Instant
     normal_force: AnyForce
     speed: AnySpeed = Field(description="of the shoe, forward positive")
-    shoe_angle: ShoeAngle | None = optional("toe up positive; default: motion.shoe_angle")
+    shoe_angle: RolledAngle | None = optional("toe up positive; default: motion.shoe_angle")
 
 
 class MotionFromHistory(Motion):

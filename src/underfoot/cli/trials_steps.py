@@ -38,7 +38,13 @@ def edit(
     """
     from underfoot.core import InputError
     from underfoot.trials.analyse.conditions import profile_of
-    from underfoot.trials.analyse.edit_table import edit_from, edits_of, with_edit_row
+    from underfoot.trials.analyse.edit_table import (
+        edit_from,
+        edit_text,
+        edits_of,
+        with_edit_row,
+        write_edit_text,
+    )
     from underfoot.trials.gait import required_frictions
     from underfoot.trials.readers import read_trial
 
@@ -55,7 +61,7 @@ def edit(
     what, value = changes[0]
     read, _ = profile_of(file.parent, profile)
     trial = read_trial(file, read)
-    log = file.parent / "edits.csv"
+    text = edit_text(file.parent)
     new = edit_from(step, what, value, reason, "this edit")
     earlier = edits_of(file.parent, [file.name], others=True).get(file.name, [])
     options = {"walking": read.walking, "heels": read.heels}
@@ -64,9 +70,8 @@ def edit(
     for old, one in zip(before, after, strict=True):
         if old.stance.by_hand != one.stance.by_hand:
             print(f"{old.stance.label}: {_words(old)} -> {_words(one)}")
-    text = log.read_text(encoding="utf-8-sig") if log.is_file() else ""
-    log.write_text(with_edit_row(text, (file.name, step, what, value, reason)), encoding="utf-8")
-    say(f"written to {log}")
+    write_edit_text(file.parent, with_edit_row(text, (file.name, step, what, value, reason)))
+    say(f"written to {file.parent / 'edits.csv'}")
 
 
 def _words(step: RequiredFriction) -> str:

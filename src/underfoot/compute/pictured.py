@@ -6,6 +6,7 @@ import numpy as np
 
 from underfoot.core.arrays import Array
 from underfoot.shoe import SoleMap
+from underfoot.shoe.ball_joint import rolled_height
 from underfoot.sole_contact.compliance import Compliance
 from underfoot.sole_contact.sole_state import SoleState
 
@@ -60,6 +61,5 @@ def pictured_fields(
 
 
 def _rolled(sole: SoleMap, angle: float) -> Array:
-    """Return z' = x sin a + z cos a (m), inf outside."""
-    rolled = sole.clearance * np.cos(angle) + sole.x[:, None] * np.sin(angle)
-    return np.where(sole.inside, rolled, np.inf)
+    """Return the height (m) over the floor, inf outside."""
+    return np.where(sole.inside, rolled_height(sole.x, sole.clearance, angle, sole.joint), np.inf)

@@ -212,7 +212,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         *overload,
         *sole.breaches,
         *compression_breaches(case, contact.approach),
-        *forefoot_breaches(case),
+        *forefoot_breaches(case, sole),
         *asperities.breaches(pressure=contact.contact_pressure.max(), speed=speed),
         *law.breaches(**local),
         *(risk.breaches if risk else ()),

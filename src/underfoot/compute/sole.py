@@ -36,6 +36,7 @@ from underfoot.core import (
     silent,
 )
 from underfoot.shoe import SoleMap, SoleSurface, heel_map, rotated_surface, surface_map
+from underfoot.shoe.ball_joint import PLACE, BallJoint
 from underfoot.shoe.shape import SoleShape
 from underfoot.shoe.worn import ArchardStep, WornMap, archard_wear, worn_surface
 from underfoot.sole_contact.edge_peak import MOST_OVERLOADED, overloaded_share
@@ -59,6 +60,8 @@ FOREFOOT_RIGID = Range(
     "a forefoot bends once the heel rises; slip-resistance tests tilt it by 7 deg at most",
 )
 """Shoe angles at which a sole without a joint at the ball stands for a shoe."""
+WHOLE = 0.95
+"""Share of a file's whole sole from which a region of it has a ball to bend at."""
 ROLL_STEP = math.radians(1.0)
 """Between the angles at which the sole is held against the floor to find what comes near it."""
 WEAR_STEP = 0.25e-3
@@ -98,8 +101,16 @@ def sole_map(
     sole = shoe.heel_map(shape, shoe_angle=case.motion.shoe_angle + turn, spacing=spacing)
     plan = case.shoe.heel
     if isinstance(plan, WholePlan):
-        sole = trimmed(sole, plan.reach, rolls(case))
+        sole = trimmed(_jointed(case, sole, plan.length), plan.reach, rolls(case))
     return _pressed(case, sole)
+
+
+def _jointed(case: Case, sole: SoleMap, length: float) -> SoleMap:
+    """Return a whole sole of ``length`` (m) with its joint, where the motion rolls it."""
+    if not np.ptp(rolls(case)):
+        return sole
+    joint = BallJoint(PLACE * length, case.motion.shoe_angle)
+    return replace(sole, joint=joint)
 
 
 def rolls(case: Case) -> NDArray[np.float64]:
@@ -261,11 +272,10 @@ def file_sole_map(
             allowed=f"above {display(deepest, 'm')}",
         )
     assert case.shoe.outsole is not None  # file_surface refuses a case without one
-    sole = trimmed(
-        surface_map(surface, shoe_angle=case.motion.shoe_angle + turn, spacing=spacing),
-        case.shoe.outsole.reach,
-        rolls(case),
-    )
+    sole = surface_map(surface, shoe_angle=case.motion.shoe_angle + turn, spacing=spacing)
+    if surface.length > WHOLE * file_outsole(case).whole_length:
+        sole = _jointed(case, sole, surface.length)
+    sole = trimmed(sole, case.shoe.outsole.reach, rolls(case))
     check_load(case, sole)
     return _pressed(case, sole)
 
@@ -361,8 +371,10 @@ def compression_breaches(case: Case, approach: float) -> list[Breach]:
     return breaches("compliance", {name: LINEAR_STRAIN}, {name: strain})
 
 
-def forefoot_breaches(case: Case) -> list[Breach]:
+def forefoot_breaches(case: Case, sole: SoleMap) -> list[Breach]:
     """Return whether the motion raises the heel beyond what a rigid forefoot stands for."""
+    if sole.joint is not None:
+        return []
     name = "shoe angle of a sole whose forefoot does not bend"
     return breaches(
         "forefoot", {name: FOREFOOT_RIGID}, {name: rolls(case) + case.motion.shoe_angle}

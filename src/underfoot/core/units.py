@@ -48,6 +48,7 @@ _US_SCALES = {
     "N": ((4.4482216152605, "lbf"),),
     "m/s": ((0.3048, "ft/s"),),
     "m^2": ((6.4516e-4, "in^2"),),
+    "m^3": ((1.6387064e-5, "in^3"),),
     "kg": ((0.45359237, "lb"),),
 }
 """Inch, pound and second: scales that take the place of the metric ones in output."""
@@ -172,13 +173,14 @@ def display_unit(value: float, unit: str) -> tuple[float, str]:
 
 
 def tread_unit(unit: str) -> tuple[float, str]:
-    """Return (factor, name) of the one unit that sizes of a tread are given in.
+    """Return (factor, name) of the one unit that a table of treads gives a quantity in.
 
-    Millimetres for "m", square millimetres for "m^2"; inches and square inches where asked for.
+    Millimetres and their powers, newtons and kilopascals; inches and pounds where asked for.
     """
-    if unit_system() == "us":
+    if unit_system() == "us" and unit in _US_SCALES:
         return _US_SCALES[unit][0]
-    return {"m": (1e-3, "mm"), "m^2": (1e-6, "mm^2")}[unit]
+    metric = {"m": (1e-3, "mm"), "m^2": (1e-6, "mm^2"), "m^3": (1e-9, "mm^3"), "Pa": (1e3, "kPa")}
+    return metric.get(unit, (1.0, unit))
 
 
 def si_unit(given: str, *, where: str) -> str:

@@ -16,6 +16,7 @@ from underfoot.core import InputError, Progress, display, silent, to_si, unknown
 from underfoot.core.fields import Fields, labelled
 from underfoot.core.presentation import Presentable, Table, percent
 from underfoot.core.progress import part
+from underfoot.core.units import tread_unit
 
 from .outcomes import Outcome, outcomes
 from .sensitivity import OPEN_INPUTS, OpenInput, open_inputs, variants
@@ -52,19 +53,19 @@ SLIGHT_WEAR = "Hemler et al. 2019, five shoes ground at three angles (abstract, 
 REPORT = "final progress report on shoe-floor friction, G.4.3"
 LOADS = {"fluid_load_sensor": "as floor sensors read it", "fluid_load": "under the sole"}
 MEASURES = (
-    ("removed_depth", "m", 1e3, "Lost (mm)"),
-    ("tread_left", "m", 1e3, "Tread left, least (mm)"),
-    ("mean_tread_left", "m", 1e3, "Tread left, mean (mm)"),
-    ("worn_patch_area", "m2", 1e6, "Worn patch (mm²)"),
-    ("removed_volume", "m3", 1e9, "Volume lost (mm³)"),
+    ("removed_depth", "m", "Lost"),
+    ("tread_left", "m", "Tread left, least"),
+    ("mean_tread_left", "m", "Tread left, mean"),
+    ("worn_patch_area", "m^2", "Worn patch"),
+    ("removed_volume", "m^3", "Volume lost"),
 )
-"""Name, SI unit, factor and heading of each measure of wear."""
+"""Name, SI unit and heading of each measure of wear."""
 NUMBERS = (
-    ("cof", "1", 1.0, "COF"),
-    ("fluid_load", "N", 1.0, "Fluid load (N)"),
-    ("fluid_load_sensor", "N", 1.0, "by sensor (N)"),
-    ("peak_fluid_pressure", "Pa", 1e-3, "Peak (kPa)"),
-    ("peak_fluid_pressure_sensor", "Pa", 1e-3, "by sensor (kPa)"),
+    ("cof", "1", "COF"),
+    ("fluid_load", "N", "Fluid load"),
+    ("fluid_load_sensor", "N", "by sensor"),
+    ("peak_fluid_pressure", "Pa", "Peak"),
+    ("peak_fluid_pressure_sensor", "Pa", "by sensor"),
 )
 SCREEN = ("removed_depth tread_left worn_patch_area cof fluid_load fluid_load_sensor").split()
 """Measures and numbers in the table; the files have all."""
@@ -138,8 +139,8 @@ class WearSeries(Presentable):
         if walks:
             measured = self.walker is not None and self.walker.pair is not None
             bound = "" if measured else "life not estimated; walked on an abrasive sheet "
-            volume = _short(float(self.measured("removed_volume")[-1]) * 1e9)
-            sentences.append(f"The last state has lost {volume} mm³: {bound}{walks[-1]}.")
+            volume = _size(float(self.measured("removed_volume")[-1]), "m^3")
+            sentences.append(f"The last state has lost {volume}: {bound}{walks[-1]}.")
         return tuple(sentences)
 
     def walked(self) -> list[Walked]:
@@ -172,10 +173,17 @@ class WearSeries(Presentable):
         numbers = [each for each in NUMBERS if each[0] in SCREEN]
         rows = []
         for point in self.points:
-            values = [getattr(point.measures, name) * scale for name, _, scale, _ in measures]
-            values += [point.outcome.number(name) * scale for name, _, scale, _ in numbers]
+            values = [
+                getattr(point.measures, name) / tread_unit(unit)[0] for name, unit, _ in measures
+            ]
+            values += [
+                point.outcome.number(name) / tread_unit(unit)[0] for name, unit, _ in numbers
+            ]
             rows.append(["not determined" if math.isnan(v) else _short(v) for v in values])
-        heads = tuple(label for *_, label in (*measures, *numbers))
+        heads = tuple(
+            label if unit == "1" else f"{label} ({_unit_name(unit)})"
+            for _, unit, label in (*measures, *numbers)
+        )
         walks = self.walked()
         if walks:
             heads = (*heads, "Walked" if self.walker and self.walker.pair else "On abrasive sheet")
@@ -225,7 +233,7 @@ class WearSeries(Presentable):
         }
 
     def data_tables(self) -> dict[str, Table]:
-        heads = [f"{name}_{unit}" for name, unit, *_ in MEASURES]
+        heads = [f"{name}_{unit.replace('^', '')}" for name, unit, _ in MEASURES]
         for name, unit, *_ in NUMBERS:
             heads += [f"{name}_{unit}", f"{name}_low", f"{name}_high"]
         ends = {name: self.ends(name) for name, *_ in NUMBERS}
@@ -308,11 +316,9 @@ class WearSeries(Presentable):
             [each[measure] for each in (crossing.at, crossing.low, crossing.high)]
             for measure in ("tread_left", "worn_patch_area")
         )
-        text = (
-            f"{subject} exceeds {self.limit:g} N with {_interval(tread, 1e3, 'mm')} of tread left"
-        )
+        text = f"{subject} exceeds {self.limit:g} N with {_interval(tread, 'm')} of tread left"
         worn = any(each > 0 for each in patch)
-        area = f" and a worn patch of {_interval(patch, 1e6, 'mm²')}" if worn else ""
+        area = f" and a worn patch of {_interval(patch, 'm^2')}" if worn else ""
         return f"{text} at the most worn place{area}{share}."
 
 
@@ -668,7 +674,17 @@ def _short(value: float) -> str:
     return f"{value:.0f}" if abs(value) >= 100 else f"{value:.3g}"
 
 
-def _interval(values: Sequence[float], scale: float, unit: str) -> str:
+def _unit_name(unit: str) -> str:
+    """Return the name of the unit in which sizes of a tread are given."""
+    return tread_unit(unit)[1].replace("^2", "²").replace("^3", "³")
+
+
+def _size(value: float, unit: str) -> str:
+    return f"{_short(value / tread_unit(unit)[0])} {_unit_name(unit)}"
+
+
+def _interval(values: Sequence[float], unit: str) -> str:
     value, *ends = values
-    low, high = ("beyond the range" if math.isinf(e) else _short(e * scale) for e in ends)
-    return f"{_short(value * scale)} {unit} (90 %: {low} to {high})"
+    factor, _ = tread_unit(unit)
+    low, high = ("beyond the range" if math.isinf(e) else _short(e / factor) for e in ends)
+    return f"{_size(value, unit)} (90 %: {low} to {high})"

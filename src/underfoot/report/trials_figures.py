@@ -334,7 +334,20 @@ _TRIAL = {
 }  # fmt: skip
 
 
-def _sheets(analysis: FolderAnalysis) -> Iterator[TrialFigure]:
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """Tiles of a folder on common scales: (file, tile) in order; refused files have no curve."""
+
+    kind: str
+    title: str
+    tiles: tuple[tuple[str, Tile], ...]
+    x_range: tuple[float, float]
+    y_range: tuple[float, float]
+    line: float | None = None
+
+
+def sheets(files: Sequence[FileResult]) -> Iterator[Sheet]:
+    """Yield the contact sheets of files: steps, heels, slides, runs and holds, where there are."""
     # Curves, title, and the least seconds across and height of the common scales.
     for keys, title, across, up in (
         (("steps", "rejected"), "Shear / normal of every step", 0.8, 0.5),
@@ -343,31 +356,43 @@ def _sheets(analysis: FolderAnalysis) -> Iterator[TrialFigure]:
         (("run",), "COF of every run", 0.5, 0.075),
         (("hold",), "Force of every hold, share of its start", 1.0, 1.1),
     ):
-        curves = [
-            (k, one, c) for one in analysis.files for k in keys for c in one.curves.get(k, [])
-        ]
+        curves = [(k, one, c) for one in files for k in keys for c in one.curves.get(k, [])]
         if not curves:
             continue
-        made = [_tile(key, one, curve) for key, one, curve in curves]
-        tiles = [tile for tile, _ in made]
-        ends = [t.x[-1] for t in tiles if keys[0] not in ("steps", "heel")]
-        tiles += [
-            Tile(one.file, one.verdict, np.empty(0), np.empty(0), reason="; ".join(one.reasons))
-            for one in analysis.files
+        made = [(one.file, *_tile(key, one, curve)) for key, one, curve in curves]
+        ends = [t.x[-1] for _, t, _ in made if keys[0] not in ("steps", "heel")]
+        empty = [
+            (one.file, Tile(one.file, one.verdict, *_NO_CURVE, reason="; ".join(one.reasons)))
+            for one in files
             if not one.curves
         ]
-        line = curves[-1][2].get("threshold")
+        yield Sheet(
+            keys[0],
+            title,
+            (*((file, tile) for file, tile, _ in made), *empty),
+            (0.0, float(max([across, *ends]))),
+            (0.0, max([up, *(height for *_, height in made)])),
+            curves[-1][2].get("threshold"),
+        )
+
+
+_NO_CURVE = (np.empty(0), np.empty(0))
+
+
+def _sheets(analysis: FolderAnalysis) -> Iterator[TrialFigure]:
+    for sheet in sheets(analysis.files):
+        line, title = sheet.line, sheet.title
         pages = contact_sheets(
-            tiles,
-            x_range=(0.0, float(max([across, *ends]))),
-            y_range=(0.0, max([up, *(height for _, height in made)])),
+            [tile for _, tile in sheet.tiles],
+            x_range=sheet.x_range,
+            y_range=sheet.y_range,
             title=title,
             line=line,
             line_label=f"slip above {line:g} m/s" if line is not None else "",
         )
         for number, page in enumerate(pages, start=1):
             caption = f"Contact sheet, {title[0].lower()}{title[1:]}"
-            yield TrialFigure(f"sheet_{keys[0]}_{number}", caption, page, "sheets")
+            yield TrialFigure(f"sheet_{sheet.kind}_{number}", caption, page, "sheets")
 
 
 def _tile(key: str, one: FileResult, curve: Curve) -> tuple[Tile, float]:

@@ -112,36 +112,49 @@ def trials_page(
     analysis: FolderAnalysis, all_tables: Sequence[Table], pictures: list[tuple[TrialFigure, bytes]]
 ) -> str:
     """Return the page of an analysis as HTML text; it opens without a network."""
-    counts = Counter(one.verdict for one in analysis.files)
-    tables = {table.name: table for table in all_tables}
-    study = list(analysis.study.tables)
-    summary = study.pop(0) if study and study[0].name not in ("steps",) else None
     chapters: dict[str, list[dict[str, str]]] = {"study": [], "trials": [], "sheets": []}
     for one, picture in pictures:
         width = f"{5.3 * one.figure.get_figwidth():.1f}"
         chapters[one.chapter].append(
             {"caption": one.caption, "source": embedded(picture), "width": width}
         )
+    tables = {table.name: table for table in all_tables}
     noted = {name for one in analysis.files for name in one.conditions}
+    return environment().get_template("trials.html").render(
+        analysis=analysis,
+        **study_parts(analysis),
+        first=chapters["study"][:1],
+        figures={**chapters, "study": chapters["study"][1:]},
+        files=_page_table(_on_page(tables["files"], noted), limit=10_000),
+        edits=_page_table(tables["edits"]) if "edits" in tables else None,
+    )  # fmt: skip
+
+
+def study_parts(analysis: FolderAnalysis) -> dict[str, Any]:
+    """Return what a page says of a folder as a whole, as plain data.
+
+    ``lead``: one sentence; ``counts``: files by verdict; ``reasons``: the most frequent ones with
+    their number; ``summary`` (or None), ``study`` and ``findings``: tables with title, columns,
+    rows of text, long text below each row, which columns are numbers, and notes; findings have
+    cautions too.
+    """
+    study = list(analysis.study.tables)
+    summary = study.pop(0) if study and study[0].name not in ("steps",) else None
     reasons = Counter(
         re.sub(r"\d[\d.]*", "…", re.sub(r" \([^)]*\)", "", reason.split(": ", 1)[-1]))[:90]
         for one in analysis.files
         for reason in one.reasons
         if one.verdict != "accepted"
     )
-    return environment().get_template("trials.html").render(
-        analysis=analysis,
-        counts=counts,
-        lead=lead_sentence(analysis),
-        reasons=reasons.most_common(4),
-        summary=None if summary is None else _page_table(_on_page(summary)),
-        first=chapters["study"][:1],
-        figures={**chapters, "study": chapters["study"][1:]},
-        study=[_page_table(_on_page(table)) for table in study],
-        findings=[_page_table(f.table) | {"cautions": f.cautions} for f in analysis.study.findings],
-        files=_page_table(_on_page(tables["files"], noted), limit=10_000),
-        edits=_page_table(tables["edits"]) if "edits" in tables else None,
-    )  # fmt: skip
+    findings = analysis.study.findings
+    return {
+        "lead": lead_sentence(analysis),
+        "counts": Counter(one.verdict for one in analysis.files),
+        "reasons": reasons.most_common(4),
+        "summary": None if summary is None else _page_table(_on_page(summary)),
+        "study": [_page_table(_on_page(table)) for table in study],
+        "findings": [_page_table(f.table) | {"cautions": f.cautions} for f in findings],
+    }
 
 
 def lead_sentence(analysis: FolderAnalysis) -> str:

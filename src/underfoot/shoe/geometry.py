@@ -10,6 +10,7 @@ from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import positive
 
 from ._kernels.regions import carried_on
+from .ball_joint import BallJoint
 from .cut_cells import CutCells
 from .slits import Slits
 
@@ -82,6 +83,7 @@ class SoleMap(_Areas):
         whole: The map that this one is a part of, on the same cells; None where it is all.
         removed: Thickness of the land that wear has taken, m; None for a new sole.
         slits: Sipes narrower than two cells: land to the map; None where there are none.
+        joint: Where the sole bends as it rolls; None: it stays straight.
     """
 
     x: Array
@@ -97,6 +99,7 @@ class SoleMap(_Areas):
     whole: "SoleMap | None" = field(default=None, repr=False, compare=False)
     removed: Array | None = None
     slits: Slits | None = None
+    joint: BallJoint | None = None
 
     def __post_init__(self) -> None:
         self._check_shapes("sole", "clearance", "inside", "land", "tread_depth", "removed")

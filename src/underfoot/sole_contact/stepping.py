@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from underfoot.core import ConvergenceError, InputError, Progress, Status, silent
 from underfoot.core.arrays import Array
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
+from underfoot.shoe.ball_joint import rolled_height
 from underfoot.shoe.cut_cells import CutCells
 from underfoot.shoe.geometry import SoleMap
 
@@ -336,6 +337,8 @@ class SlidingSole:
         return _bounded(rolled_clearance(self.sole, angle - self._map_angle))
 
     def _check_stretch(self, angle: float) -> None:
+        if self.sole.joint is not None:  # what is behind it leaves the floor
+            angle = self.sole.joint.forepart(angle)
         stretch = abs(math.cos(angle) / math.cos(self._map_angle) - 1)
         if stretch > MOST_STRETCH:
             raise InputError(
@@ -383,10 +386,10 @@ class SlidingSole:
 def rolled_clearance(sole: SoleMap, angle: float) -> Array:
     """Return the clearance (nx, ny) in m of a sole rolled by ``angle`` (rad, toe up), inf outside.
 
-    A point (x, z) goes to z' = x sin a + z cos a; the lowest is put at 0. Cells stay with the sole.
+    Of ``rolled_height``, the lowest put at 0. Cells stay with the sole.
     """
     clearance = np.asarray(sole.clearance)
-    rolled = clearance * math.cos(angle) + np.asarray(sole.x)[:, None] * math.sin(angle)
+    rolled = rolled_height(np.asarray(sole.x), clearance, angle, sole.joint)
     rolled = np.where(np.isfinite(clearance), rolled, np.inf)
     return rolled - rolled.min()
 

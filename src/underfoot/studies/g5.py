@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import cycle, pairwise
+from itertools import combinations, cycle, pairwise
 from types import SimpleNamespace
 from typing import Any
 
@@ -144,7 +144,8 @@ def _passages(study: SlipStudy, persons: Sequence[Any]) -> dict[str, Array]:
 
 def regressions(passages: Mapping[str, Array]) -> dict[str, float]:
     """Return slopes and adjusted R2 of Table 7; nan where too few sensors were passed."""
-    names = [f"r2_{'_'.join(s)}" for s in (*((p,) for p in PREDICTORS), PREDICTORS)]
+    sizes = range(1, len(PREDICTORS) + 1)
+    names = [f"r2_{'_'.join(s)}" for size in sizes for s in combinations(PREDICTORS, size)]
     if passages["peak"].size < 6 or any(np.ptp(passages[p]) == 0 for p in PREDICTORS):
         return dict.fromkeys(("slope_lateral", "slope_speed", *names), math.nan)
     subsets = all_subsets(passages["peak"], {name: passages[name] for name in PREDICTORS})

@@ -180,25 +180,23 @@ class _Answer:
                 kind = "strong" if name == "preview" else "soft"
                 ui.label("").classes(kind).props(f'data-live={name} aria-live="polite"')
             self.behind = ui.element("div")
-        sliders(self.session, LIVE, self.case, self._moved, self.view)
+        sliders(self.session, LIVE, self.case, self._moved, self._rested, self.view, keep=False)
 
-    async def _moved(self, changes: dict[str, Any], last: bool) -> dict[str, Any]:
+    async def _moved(self, changes: dict[str, Any]) -> dict[str, Any]:
         path = str(self.session.project.path(self.name))
-        self.changes = changes
         answer = await self.session.ask("underfoot.app.work:previewed", path, changes)
         self.preview_cof = answer["cof"]
         texts = answer["texts"]
-        if last:
-            with self.behind:
-                self._run_behind(path)
         words = {
             "preview": self.text("answer.preview", **texts),
             "preview_note": self.text("answer.preview_note", **texts),
         }
         return {"texts": words, "html": answer["html"]}
 
-    def _run_behind(self, path: str) -> None:
+    def _rested(self, changes: dict[str, Any]) -> None:
         """Start the full run of what the preview shows; give an earlier one up."""
+        path = str(self.session.project.path(self.name))
+        self.changes = changes
         jobs = self.session.jobs
         if self.tried is not None and self.tried.open:
             jobs.cancel(self.tried)

@@ -94,8 +94,8 @@ class _Design:
                         with ui.tab_panel(tab) as panel:
                             self.places[part] = panel
             with ui.element("section").classes("stage-side"):
+                ui.label("").props('data-live=measures role="status"').classes("soft measures")
                 self.view = SoleView(self.session)
-                ui.label("").props('data-live=measures role="status"').classes("soft")
         self.fill()
 
     def fill(self) -> None:
@@ -148,7 +148,7 @@ class _Design:
             self._entries("material", case.catalogue),
             case.entries.get("shoe.material"),
         )
-        sliders(self.session, TREAD, case, self._moved, self.view)
+        sliders(self.session, TREAD, case, self._drawn, self._keep, self.view, keep=True)
         ui.separator()
         sole_file.build(self.session, self.name, self.view, self.fill)
 
@@ -160,10 +160,8 @@ class _Design:
                 kept[f"shoe.tread.{key}"] = value
         return kept
 
-    async def _moved(self, changes: dict[str, Any], last: bool) -> dict[str, Any]:
-        if last and changes:
-            self.session.project.change(self.name, changes)
-        return await self._drawn(changes)
+    def _keep(self, changes: dict[str, Any]) -> None:
+        self.session.project.change(self.name, changes)
 
     async def _drawn(self, changes: dict[str, Any]) -> dict[str, Any]:
         path = str(self.session.project.path(self.name))

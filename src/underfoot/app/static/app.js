@@ -79,38 +79,56 @@ function showTexts(texts) {
 
 // Sliders that ask: the next question goes out only when the last answer is drawn, and it carries
 // the newest values. An answer sets texts by name and the sole; "problem" says why there is none.
-function askLive(id, address, soleId) {
+// Where a slider has come to rest the question says "last": at once where values are kept, so that
+// none is lost to who goes on quickly, else after a moment.
+function askLive(id, address, soleId, keep) {
   const root = document.getElementById(id), inputs = [...root.querySelectorAll("input[type=range]")];
-  let wanted = false, busy = false;
+  let asked = "{}", settled = "{}", busy = false, telling = false, resting = 0;
+  const values = () => JSON.stringify(Object.fromEntries(inputs.filter((i) => i.dataset.moved)
+    .map((i) => [i.name, i.dataset.log ? 10 ** Number(i.value) : Number(i.value)])));
   const show = (input) => {
-    const out = root.querySelector(`output[for="${input.id}"]`), value = Number(input.value) * Number(input.dataset.factor || 1);
-    const shown = input.dataset.log ? 10 ** value : value;
-    out.textContent = `${Number(shown.toPrecision(3))} ${input.dataset.unit}`.trim();
-    input.setAttribute("aria-valuetext", out.textContent);
+    const shown = input.dataset.log ? 10 ** Number(input.value) : Number(input.value);
+    const words = `${Number(shown.toPrecision(3))} ${input.dataset.unit}`.trim();
+    root.querySelector(`output[for="${input.id}"]`).textContent = words;
+    input.setAttribute("aria-valuetext", words);
   };
-  const values = () => Object.fromEntries(inputs.filter((i) => i.dataset.moved).map((i) => [i.name, i.dataset.log ? 10 ** Number(i.value) : Number(i.value)]));
-  async function ask(last) {
-    if (busy) { wanted = last ? "last" : wanted || "more"; return; }
-    busy = true;
-    const began = performance.now();
+  const tell = (words) => { root.querySelector("[data-part=problem]").textContent = words || ""; };
+  async function send(now, last) {
+    const body = `{"values": ${now}, "last": ${last}}`, headers = { "content-type": "application/json" };
     try {
-      const body = JSON.stringify({ values: values(), last: Boolean(last) });
-      const response = await fetch(address, { method: "POST", body, headers: { "content-type": "application/json" } });
-      const answer = response.ok ? await response.json() : { problem: response.statusText };
-      const note = root.querySelector("[data-part=problem]");
-      if (note) note.textContent = answer.problem || "";
+      const response = await fetch(address, { method: "POST", body, headers, keepalive: last });
+      return response.ok ? await response.json() : { problem: response.statusText };
+    } catch (problem) { return { problem: problem.message }; }
+  }
+  async function ask() {
+    if (busy) return;
+    busy = true;
+    for (let now = values(); now !== asked; now = values()) {
+      const began = performance.now(), answer = await send(now, false), place = document.getElementById(soleId);
+      asked = now;
+      tell(answer.problem);
       showTexts(answer.texts || {});
-      const place = document.getElementById(soleId);
       if (answer.html && place) await putSole(place, answer.html);
       await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
-      root.dataset.asked = String(Number(root.dataset.asked || 0) + 1);
       root.dataset.took = String(performance.now() - began);
-    } finally { busy = false; }
-    if (wanted) { const next = wanted; wanted = false; ask(next === "last"); }
+      root.dataset.asked = String(Number(root.dataset.asked || 0) + 1);
+    }
+    busy = false;
   }
+  async function rest() { // one at a time, in order
+    if (telling) return;
+    telling = true;
+    for (let now = values(); now !== settled; now = values()) {
+      settled = now;
+      const answer = await send(now, true);
+      if (answer.problem) tell(answer.problem);
+    }
+    telling = false;
+  }
+  if (keep) addEventListener("pagehide", () => { if (values() !== settled) send(values(), true); });
   for (const input of inputs) {
     show(input);
-    input.addEventListener("input", () => { input.dataset.moved = "yes"; show(input); ask(false); });
-    input.addEventListener("change", () => ask(true));
+    input.addEventListener("input", () => { input.dataset.moved = "yes"; clearTimeout(resting); show(input); ask(); });
+    input.addEventListener("change", () => { if (keep) rest(); else { clearTimeout(resting); resting = setTimeout(rest, 500); } });
   }
 }

@@ -16,7 +16,7 @@ LANGUAGES = {"en": "English", "de": "Deutsch"}
 
 
 class Text:
-    """The words of one language: ``text("start.title")``, ``text("jobs.left", seconds=3)``.
+    """The words of one language: ``text("start.title")``, ``text("jobs.open", count=3)``.
 
     Raises:
         KeyError: No such key, or a placeholder without a value.

@@ -3,10 +3,12 @@
 import json
 import re
 import zipfile
+from codecs import BOM_UTF8, BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from underfoot.core import DataError, InputError, nearest_match
 from underfoot.core.optional import optional_module
@@ -34,6 +36,7 @@ SUFFIXES = {
 }
 """Endings of file names and the format they promise."""
 FORMATS = "STEP, IGES, BREP, 3DM, STL, OBJ, PLY, OFF, GLB, GLTF, 3MF"
+_MARKED_TEXT = {"utf-8-sig": (BOM_UTF8,), "utf-16": (BOM_UTF16_LE, BOM_UTF16_BE)}
 _MAGIC = {
     b"ISO-10303-21": "STEP",
     b"ply\n": "PLY",
@@ -73,6 +76,9 @@ def read_mesh(path: Path | str, unit: str = "auto") -> Mesh:
     """
     path = Path(path)
     head = _head(path)
+    for encoding, marks in _MARKED_TEXT.items():
+        if head.startswith(marks):
+            return _of_text(path, encoding, unit)
     optional_module("numba", "cad", "Reading a sole from a file")
     promised = SUFFIXES.get(path.suffix.lower())
     content = _format_of(head, path)
@@ -98,6 +104,18 @@ def read_mesh(path: Path | str, unit: str = "auto") -> Mesh:
         remark = f"The file is named {ending} but holds {content}; it was read as {content}."
         mesh = replace(mesh, remarks=(remark, *mesh.remarks))
     return mesh
+
+
+def _of_text(path: Path, encoding: str, unit: str) -> Mesh:
+    """Return the triangles of a text file with a byte-order mark, as shells of Windows write it."""
+    try:
+        text = path.read_bytes().decode(encoding)
+    except UnicodeDecodeError as error:
+        raise DataError(f"damaged {encoding} text", where=str(path)) from error
+    with TemporaryDirectory() as folder:
+        plain = Path(folder, path.name)
+        plain.write_text(text, encoding="utf-8")
+        return read_mesh(plain, unit)
 
 
 def _reader(content: str, unit: str) -> Callable[[Path], Mesh]:
@@ -135,7 +153,7 @@ def _format_of(head: bytes, path: Path) -> str | None:
     Raises:
         DataError: An archive or a format of another program.
     """
-    start = head.removeprefix(b"\xef\xbb\xbf").lstrip()
+    start = head.lstrip()
     for beginning, name in _MAGIC.items():
         if start.startswith(beginning):
             return name

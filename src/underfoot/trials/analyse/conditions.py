@@ -336,10 +336,13 @@ def table_rows(path: Path) -> list[list[str]]:
         text = decoded(data, path.name)
     except DataError as error:
         raise InputError(error.what, where=path.name) from error
-    first = text.split("\n", 1)[0]
-    delimiter = max(",;\t", key=first.count)
-    lines = csv.reader(io.StringIO(text), delimiter=delimiter)
+    lines = csv.reader(io.StringIO(text), delimiter=table_delimiter(text))
     return [[cell.strip() for cell in row] for row in lines]
+
+
+def table_delimiter(text: str) -> str:
+    """Return what divides the headings of a CSV table: comma, semicolon or tab."""
+    return max(",;\t", key=text.split("\n", 1)[0].count)
 
 
 def _column(cells: list[str], unit: str, where: str, name: str) -> list[Any]:

@@ -2,16 +2,17 @@
 
 import csv
 import io
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any
 
 from underfoot.core import InputError, nearest_match, to_si
+from underfoot.core.files import whole_file
 
 from ..events import EditError
-from ..readers.text import is_number
+from ..readers.text import decoded, is_number, name_and_unit
 from ..trial import Edit
-from .conditions import named_file, table_columns
+from .conditions import named_file, table_columns, table_delimiter
 
 NAMES = ("edits.csv", "edits.xlsx")
 COLUMNS = ("file", "step", "edit", "value", "why")
@@ -29,9 +30,19 @@ def edits_of(folder: Path, labels: Sequence[str], *, others: bool = False) -> di
     An `EditError` with the line says that a column is missing, a value does not fit, or there is no
     reason.
     """
+    found: dict[str, list[Edit]] = {}
+    for _, file, edit in edit_rows(folder, labels, others=others):
+        found.setdefault(file, []).append(edit)
+    return found
+
+
+def edit_rows(
+    folder: Path, labels: Sequence[str], *, others: bool = False
+) -> list[tuple[int, str, Edit]]:
+    """Return line, file and edit of each row of ``edits.csv``, otherwise as ``edits_of``."""
     path = next((folder / name for name in NAMES if (folder / name).is_file()), None)
     if path is None:
-        return {}
+        return []
     columns, lines = table_columns(path)
     cells = {name.casefold(): (unit, own) for name, unit, own in columns}
     lacking = [name for name in COLUMNS if name not in cells]
@@ -39,7 +50,7 @@ def edits_of(folder: Path, labels: Sequence[str], *, others: bool = False) -> di
         raise EditError(
             f'there is no column "{lacking[0]}"', where=path.name, allowed=", ".join(COLUMNS)
         )
-    found: dict[str, list[Edit]] = {}
+    found: list[tuple[int, str, Edit]] = []
     rows = zip(*(cells[name][1] for name in COLUMNS), strict=True)
     for line, (name, step, what, value, why) in zip(lines, rows, strict=True):
         where = f"{path.name}, line {line}"
@@ -50,7 +61,7 @@ def edits_of(folder: Path, labels: Sequence[str], *, others: bool = False) -> di
             nearest = nearest_match(name, labels)
             raise EditError(f'there is no file "{name}"', where=where, nearest=nearest)
         edit = edit_from(step, what, value, why, where, cells["value"][0])
-        found.setdefault(file, []).append(edit)
+        found.append((line, file, edit))
     return found
 
 
@@ -86,15 +97,53 @@ def _time(text: str, unit: str, where: str) -> float:
         raise EditError(f'"{text}" is no time', where=where, allowed=allowed) from error
 
 
-def with_edit_row(text: str, row: Sequence[str]) -> str:
-    """Return the text of ``edits.csv`` with one more row; the headings when it is empty."""
-    stream = io.StringIO(newline="")
-    writer = csv.writer(stream, lineterminator="\n")
+def edit_text(folder: Path) -> str:
+    """Return the text of a folder's ``edits.csv``, empty where there is none.
+
+    EditError: the edits stand in a workbook, which is not written.
+    """
+    path = folder / NAMES[0]
+    if path.is_file():
+        return decoded(path.read_bytes(), path.name) if path.stat().st_size else ""
+    if (folder / NAMES[1]).is_file():
+        raise EditError(
+            "the edits of this folder stand in a workbook, which is not written",
+            where=NAMES[1],
+            remedy=f"Save it as {NAMES[0]} and take it away",
+        )
+    return ""
+
+
+def write_edit_text(folder: Path, text: str) -> None:
+    """Make ``text`` the folder's ``edits.csv``, whole or not at all; without text there is none."""
+    path = folder / NAMES[0]
+    if not text:
+        path.unlink(missing_ok=True)
+        return
+    with whole_file(path) as part:
+        part.write_text(text, encoding="utf-8", newline="")
+
+
+def with_edit_row(text: str, row: Sequence[str] = (), without: Collection[int] = ()) -> str:
+    """Return the text of ``edits.csv`` with one more row and without the lines ``without``.
+
+    ``row`` has the cells of ``COLUMNS``; the columns and the delimiter of the text are kept. An
+    empty text gets the headings.
+    """
+    delimiter = table_delimiter(text)
+    rows = list(csv.reader(io.StringIO(text), delimiter=delimiter))
+    heads = [name_and_unit(head)[0].casefold() for head in next(filter(any, rows), COLUMNS)]
+    made = io.StringIO(newline="")
+    writer = csv.writer(made, delimiter=delimiter, lineterminator="\n")
     if not text.strip():
         writer.writerow(COLUMNS)
-    writer.writerow(row)
-    joint = "" if not text or text.endswith("\n") else "\n"
-    return text + joint + stream.getvalue()
+    if without:
+        writer.writerows(row for line, row in enumerate(rows, start=1) if line not in without)
+        text = ""
+    if row:
+        cells: dict[str, str] = dict(zip(COLUMNS, row, strict=True))
+        writer.writerow([cells.get(head, "") for head in heads])
+    return text + ("" if not text or text.endswith("\n") else "\n") + made.getvalue()
 
 
 def edit_log(
@@ -115,7 +164,8 @@ def edit_log(
         quantity = "peak slipping speed" if "peak_slipping_speed" in old else "rcof"
         key = quantity.replace(" ", "_")
         events = _event(edit.what, old), _event(edit.what, new)
-        row = (old["item"], edit.what, *events, quantity, old[key], new[key], edit.why)
+        # a contact that was excluded is no slip any more and has no speed
+        row = (old["item"], edit.what, *events, quantity, old[key], new.get(key), edit.why)
         rows.append(dict(zip(EDIT_COLUMNS, row, strict=True)))
     return rows
 

@@ -3,11 +3,12 @@
 import json
 import os
 import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from underfoot.core import Progress, UnderfootError, content_hash, silent
+from underfoot.core import Progress, UnderfootError, content_hash, silent, unknown_name
 from underfoot.core.pool import available_processors, in_processes
 from underfoot.core.provenance import version
 
@@ -24,7 +25,7 @@ from .steps import STEP_KINDS, analysed_trial, check_ramp
 from .study import Study, study_of
 from .tables import Table, curve_table, edit_table, file_table, measurement_table, step_tables
 
-_CODE = "2"  # raised when the numbers of a file change, so that stored results are made again
+_CODE = "3"  # raised when what a file gives changes, so that stored results are made again
 _DIED = "the process that analysed it ended without an answer"
 
 
@@ -85,7 +86,47 @@ def analyse_folder(
     InputError: no such folder, no trial file in it, a wrong profile, ramp or table of conditions.
     EditError: an edit by hand that names no step, changes nothing or contradicts another.
     """
-    folder = Path(folder)
+    jobs, notes = _jobs(Path(folder), protocol, profile, conditions, names, merge_spelling, store)
+    results = _run(jobs, processes or available_processors(), progress)
+    files = tuple(sorted((one for part in results for one in part), key=lambda one: one.file))
+    study = study_of(files, protocol)
+    methods = tuple(methods_paragraphs(files, protocol, study, version()))
+    return FolderAnalysis(protocol, files, study, methods, notes)
+
+
+def recording_results(
+    folder: Path,
+    name: str,
+    protocol: Protocol,
+    *,
+    edits: Sequence[Edit] | None = None,
+    names: str = "",
+    merge_spelling: bool = False,
+    store: Path | None = None,
+) -> list[FileResult]:
+    """Return what ``analyse_folder`` finds in one recording, without the work for the others.
+
+    ``name`` is that of a ``Recording`` of the folder. ``edits`` stand in place of those that the
+    folder's ``edits.csv`` has for it: what an edit would do before it is written. The rest and the
+    errors are those of ``analyse_folder``; an unknown name is an InputError too.
+    """
+    jobs, _ = _jobs(Path(folder), protocol, None, None, names, merge_spelling, store)
+    job = next((job for job in jobs if job[0] == name), None)
+    if job is None:
+        raise unknown_name("recording", name, [job[0] for job in jobs], where=str(folder))
+    return _job(job if edits is None else (*job[:3], list(edits), *job[4:]))
+
+
+def _jobs(
+    folder: Path,
+    protocol: Protocol,
+    profile: Path | None,
+    conditions: Path | None,
+    names: str,
+    merge_spelling: bool,
+    store: Path | None,
+) -> tuple[list[tuple[Any, ...]], tuple[str, ...]]:
+    """Return what ``_job`` takes for each recording of a folder; notes on what is left aside."""
     check_ramp(protocol)
     names = names or protocol.text("names")
     study_files = study_folder(
@@ -100,11 +141,7 @@ def analyse_folder(
         (one.name, one.paths, one.conditions, edits.get(one.name, []), read, protocol, base, store)
         for one in study_files.recordings
     ]
-    results = _run(jobs, processes or available_processors(), progress)
-    files = tuple(sorted((one for part in results for one in part), key=lambda one: one.file))
-    study = study_of(files, protocol)
-    methods = tuple(methods_paragraphs(files, protocol, study, version()))
-    return FolderAnalysis(protocol, files, study, methods, study_files.notes)
+    return jobs, study_files.notes
 
 
 def _run(jobs: list[tuple[Any, ...]], processes: int, progress: Progress) -> list[list[FileResult]]:
@@ -159,21 +196,7 @@ def _analysed(
             return reading_results(name, files[0], checksum, noted, protocol)
         except UnderfootError as error:
             return [FileResult(name, checksum, REFUSED, (str(error),), conditions=noted)]
-    notes: list[str] = []
-    trials: list[Trial] = []
-    refusals: list[str] = []
-    for file in files:
-        try:
-            read = read_trials(file, profile)
-        except UnderfootError as error:
-            refusals.append(str(error))
-            continue
-        if not trials:
-            trials = list(read)
-        elif len(trials) == len(read) == 1:
-            trials = [joined(trials[0], read[0])]
-        else:
-            notes.append(f"{file.name} holds {len(read)} trials: not joined")
+    trials, refusals, notes = recording_trials(files, profile)
     if not trials:
         return [FileResult(name, checksum, REFUSED, tuple(refusals), conditions=noted)]
     notes += [f"left out: {reason}" for reason in refusals]
@@ -201,6 +224,28 @@ def _analysed(
             draft.refusals.append(f"the analysis failed ({type(error).__name__}: {error})")
         results.append(draft.finished(protocol))
     return results
+
+
+def recording_trials(
+    files: Sequence[Path], profile: Profile
+) -> tuple[list[Trial], list[str], list[str]]:
+    """Return the trials in the files of one recording, why files can't be read, and notes."""
+    notes: list[str] = []
+    trials: list[Trial] = []
+    refusals: list[str] = []
+    for file in files:
+        try:
+            read = read_trials(file, profile)
+        except UnderfootError as error:
+            refusals.append(str(error))
+            continue
+        if not trials:
+            trials = list(read)
+        elif len(trials) == len(read) == 1:
+            trials = [joined(trials[0], read[0])]
+        else:
+            notes.append(f"{file.name} holds {len(read)} trials: not joined")
+    return trials, refusals, notes
 
 
 def _check_whole_edits(edits: list[Edit], trials: int, protocol: Protocol) -> None:

@@ -152,12 +152,31 @@ def rcof_definition(protocol: Protocol) -> RcofDefinition:
     return replace(base, **changes)
 
 
+def slip_definition(protocol: Protocol) -> SlipDefinition:
+    """Return the definition of a slip that a protocol sets: ``slip_threshold``, ``marker_cutoff``.
+
+    What it does not say is the standard definition's.
+    """
+    standard = SlipDefinition()
+    return SlipDefinition(
+        threshold=protocol.number("slip_threshold", "m/s", standard.threshold),
+        filter=LowPass(cutoff=protocol.number("marker_cutoff", "Hz", standard.filter.cutoff)),
+    )
+
+
 def protocol_ramp(protocol: Protocol) -> Ramp:
     """Return the slope of the walkway that a protocol sets (``ramp``, ``plate_frame``).
 
     No angle, and a slope without the axes of its plates, are an `InputError`.
     """
     return Ramp(protocol.number("ramp", "rad", 0.0), protocol.text("plate_frame"))
+
+
+def walk_axes(trial: Trial, protocol: Protocol, profile: Profile) -> Axes:
+    """Return the axes in which a walk is analysed: profile, then recording; the protocol's ramp."""
+    return axes_of(
+        trial, vertical=profile.vertical, walking=profile.walking, ramp=protocol_ramp(protocol)
+    )
 
 
 def check_ramp(protocol: Protocol) -> None:
@@ -179,9 +198,7 @@ def analysed_steps(trial: Trial, draft: Draft, protocol: Protocol, profile: Prof
     applied an `EditError`.
     """
     analysis = {"gait": _gait, "human_slip": _human_slip}[protocol.kind]
-    axes = axes_of(
-        trial, vertical=profile.vertical, walking=profile.walking, ramp=protocol_ramp(protocol)
-    )
+    axes = walk_axes(trial, protocol, profile)
     analysis(_Walk(trial, draft, protocol, profile, axes))
     if trial.edits:
         before = Draft(draft.file, draft.conditions)
@@ -216,10 +233,7 @@ def _human_slip(walk: _Walk) -> None:
     if not on_plate:
         raise DataError(f"no contact with the slippery plate ({name})", where=walk.trial.name)
     _required(walk, [s for s in walk.found if s not in on_plate])
-    definition = SlipDefinition(
-        threshold=protocol.number("slip_threshold", "m/s", 0.2),
-        filter=LowPass(cutoff=protocol.number("marker_cutoff", "Hz", 10.0)),
-    )
+    definition = slip_definition(protocol)
     standard = OutcomeLimits()
     limits = OutcomeLimits(
         protocol.number("no_slip_distance", "m", standard.no_slip),
@@ -242,6 +256,7 @@ def _human_slip(walk: _Walk) -> None:
         walk.trial, stance, axes=walk.axes, definition=definition, limits=limits, heels=heels
     )
     _slip_numbers(walk, stance, one, limits)
+    _ratio_curve(walk, stance, "slipping")
     if one.motion is not None:
         motion = one.motion
         near = (motion.time > one.contact - 0.15) & (motion.time < one.contact + 0.9)
@@ -342,7 +357,7 @@ def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
         draft.add(stance.label, own)
         draft.steps.append(_step_entry(walk, stance, step))
         if own.value is None:
-            _rejected_curve(walk, stance)
+            _ratio_curve(walk, stance, "rejected")
             continue
         values.append(own)
         assert stance.walking is not None  # an RCOF has one
@@ -364,8 +379,8 @@ def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
     return values
 
 
-def _rejected_curve(walk: _Walk, stance: Stance) -> None:
-    """Keep the ratio of a rejected contact: contact sheets show it with the reason."""
+def _ratio_curve(walk: _Walk, stance: Stance, kind: str) -> None:
+    """Keep the plain ratio of a contact without a required friction: rejected, or slipping."""
     plate, axes = plate_named(walk.trial, stance.plate), walk.axes
     force = plate.force[stance.start : stance.stop]
     up = axes.up if stance.walking is None else axes.ramp.surface(axes.up, stance.walking)[0]
@@ -373,7 +388,7 @@ def _rejected_curve(walk: _Walk, stance: Stance) -> None:
     shear = np.linalg.norm(force - np.outer(normal, up), axis=1)
     time, ratio = np.arange(len(force)) / plate.rate, shear / np.maximum(normal, 1.0)
     words = {"step": stance.label, "reason": stance.reason}
-    walk.draft.curve("rejected", time=time, normal=normal, ratio=ratio, **words)
+    walk.draft.curve(kind, time=time, normal=normal, ratio=ratio, **words)
 
 
 def _step_entry(

@@ -61,6 +61,11 @@ def quantity_name(name: str) -> str:
     return _NAMES.get(name, name.replace("_", " "))
 
 
+def shown_unit(name: str) -> str:
+    """Return the unit that people read a quantity in; "" for a ratio."""
+    return _UNITS.get(name, "")
+
+
 def heading(name: str, what: str = "") -> str:
     """Return a column heading of a quantity (its mean, or ``what`` of it) with its unit."""
     tail = f" ({_UNITS[name]})" if name in _UNITS else ""
