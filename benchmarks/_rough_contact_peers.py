@@ -1,8 +1,9 @@
 """Other rough-contact solvers, run in an environment of their own.
 
-tamaas (AGPL) and aspher (BSD, builds from source) are peers to compare with, never dependencies:
-``python -m venv peers && peers/bin/pip install tamaas==2.9 aspher``, then give that environment's
-python to rough_contact.py with --peers. This file runs there and needs NumPy alone.
+tamaas (AGPL), ContactMechanics (MIT) and aspher (BSD, builds from source) are peers to compare
+with, never dependencies: ``python -m venv peers && peers/bin/pip install tamaas==2.9
+ContactMechanics aspher``, then give that environment's python to rough_contact.py with --peers, or
+to the table of all jobs as UNDERFOOT_PEERS. This file runs there and needs NumPy alone.
 """
 
 from __future__ import annotations
@@ -24,6 +25,12 @@ try:
     import aspher
 except ImportError:
     aspher = None
+try:
+    import ContactMechanics
+    from ContactMechanics.Factory import make_system
+    from SurfaceTopography import Topography
+except ImportError:
+    ContactMechanics = None
 
 
 def tamaas_elastic(height, pressure, tolerance):
@@ -51,11 +58,24 @@ def aspher_elastic(height, pressure, tolerance):
     return np.array(result.pressure).reshape(height.shape)
 
 
+def contact_mechanics_elastic(height, pressure, tolerance):
+    system = make_system(
+        interaction="hardwall",
+        substrate=ContactMechanics.PeriodicFFTElasticHalfSpace(height.shape, 1.0, (1.0, 1.0)),
+        surface=Topography(height, (1.0, 1.0), periodic=True),
+    )
+    solved = system.minimize_proxy(
+        external_force=pressure, pentol=tolerance * height.std(), maxiter=10000
+    )
+    return np.array(solved.jac) * height.size
+
+
 def main() -> None:
     task = json.loads(sys.argv[1])
     solvers = {
         "tamaas": (tamaas, tamaas_elastic),
         "aspher": (aspher, aspher_elastic),
+        "ContactMechanics": (ContactMechanics, contact_mechanics_elastic),
     }
     module, solve = solvers[task["peer"]]
     if module is None:

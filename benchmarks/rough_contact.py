@@ -1,6 +1,6 @@
 """Rough contact: our elastic and sliding solves beside tamaas and aspher, one thread each.
 
-    python benchmarks/rough_contact.py --sizes 256 512 --peers peers/bin/python
+    python -m benchmarks.rough_contact --sizes 256 512 --peers peers/bin/python
 
 Self-affine surfaces (Hurst 0.8, waves from L/4 to 8 spacings, so that finer grids carry more
 scales), plane-strain modulus 1, rms slope 1; the sliding rubber has the relaxed modulus 1 and 30
@@ -28,12 +28,14 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import numpy as np
 
+from benchmarks._table import Row
 from underfoot.material import RelaxationSpectrum
 from underfoot.rough_contact import SlidingSettings, SteadySliding, steady_sliding
 
 TIMES = np.logspace(-9.0, 0.0, 30)
 RUBBER = RelaxationSpectrum(1.0, 0.025 * TIMES**-0.25, TIMES)
 SPEEDS = (0.01, 0.1, 1.0)
+PEERS = ("tamaas", "ContactMechanics", "aspher")
 LENGTH = 1e-3
 """m, side of the patch in the sliding runs; only speed over length matters."""
 
@@ -188,6 +190,28 @@ def row(n: int, pressure: float, options: argparse.Namespace, folder: Path) -> d
         "applications": [result.operator_applications]
         + [r.operator_applications for _, r in sliding],
     }
+
+
+def rows() -> list[Row]:
+    """Return the jobs of rough contact, beside those peers that UNDERFOOT_PEERS (a python) has."""
+    n, pressure, python = 512, 0.1, os.environ.get("UNDERFOOT_PEERS")
+    height = self_affine(n)
+    ours(self_affine(64), pressure, 1.0, "auto")
+    elastic, result = timed(height, pressure, 0.0, "auto", 3)
+    sliding, _ = timed(height, pressure, SPEEDS[1], "auto", 3)
+    found = [Row(f"elastic rough contact, {n} x {n}", elastic)]
+    area = float((result.pressure > 0).mean())
+    with tempfile.TemporaryDirectory() as folder:
+        path, out = Path(folder) / "height.npy", Path(folder) / "pressure.npy"
+        np.save(path, height)
+        task = {"height": str(path), "out": str(out), "pressure": pressure}
+        for name in PEERS:
+            seconds, field = peer(python, name, {**task, "tolerance": 1e-6, "repeats": 3})
+            if seconds is not None and field is not None:
+                off = 100 * (float((field > 0).mean()) / area - 1)
+                job = f"the same by {name}"
+                found.append(Row(job, seconds, error=off, reference="our contact area"))
+    return [*found, Row(f"sliding rough contact, {n} x {n}", sliding)]
 
 
 def growth(rows: list[dict]) -> str:

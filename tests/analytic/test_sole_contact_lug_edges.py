@@ -9,6 +9,7 @@ from underfoot.case import Case
 from underfoot.compute.run import run
 from underfoot.compute.sole import sole_map
 from underfoot.rough_contact import ExponentialLaw
+from underfoot.sole_contact import lug_edges as module
 from underfoot.sole_contact.lug_edges import LugEdges, lug_edges, lug_friction
 
 # A block 10 mm long and 5 mm high of 3 MPa at 100 kPa, pair of Rq 2 um, contact COF 0.3, full
@@ -71,6 +72,32 @@ def test_sharp_edges_grip_more_than_round_ones_under_thick_fluid():
     for drag in (0.01, 0.03, 0.1):
         sharp, rounded = (friction(one_lug(edge=r), drag=drag) for r in (0.11e-3, 0.83e-3))
         assert sharp.factor.item() > 1.3 * rounded.factor.item()
+
+
+def test_relaxation_by_aitkens_rule_ends_where_small_even_steps_do(monkeypatch):
+    """A block at which 200 even steps had not settled: its factor was 1.07."""
+    edges = one_lug(edge=0.83e-3)
+    quick = friction(edges, drag=0.01).factor.item()
+    monkeypatch.setattr(module, "RELAXATION", (0.02, 0.02))
+    monkeypatch.setattr(module, "STEPS", 5000)
+    monkeypatch.setattr(module, "STILL", 1e-9)
+    assert quick == pytest.approx(friction(edges, drag=0.01).factor.item(), rel=1e-5)
+    assert quick == pytest.approx(1.168, abs=1e-3)
+
+
+def test_mean_pressure_of_a_lug_does_not_ask_which_cells_were_solved():
+    """An asperity law never quite ends: what counted was where the solver had set it to 0."""
+    edges = LugEdges(np.ones((2, 2), dtype=int), np.ones((2, 2)), *(
+        np.array([value]) for value in (0.01, 1.0, 0.005, 1e-4, 1.0)
+    ))  # fmt: skip
+    asperities = ExponentialLaw(3e6, 0.5, 2e-6)
+    constants = {"modulus": 3e6, "viscosity": 0.01, "speed": 1.0, "suction": 1e5}
+
+    def factor(tail):
+        pressure = np.array([[4e5, 1e5], [tail, tail]])
+        return lug_friction(edges, pressure, np.array([0.3]), asperities, **constants).factor
+
+    assert factor(0.0) == pytest.approx(factor(1e-30), rel=1e-12)
 
 
 def test_limits():

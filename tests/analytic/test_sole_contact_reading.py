@@ -4,10 +4,16 @@ import math
 
 import numpy as np
 import pytest
+from scipy.ndimage import map_coordinates
 
 from underfoot.core import InputError
 from underfoot.sole_contact import floor_sensor_reading
-from underfoot.sole_contact.reading import conductance_over_cube, lagged
+from underfoot.sole_contact.reading import (
+    _rim_quarter,
+    conductance_over_cube,
+    lagged,
+    pocket_pressure,
+)
 
 MM = 1e-3
 
@@ -138,6 +144,27 @@ def test_a_pocket_over_channels_reads_next_to_nothing():
     assert narrow.peak_pressure.value > 0.5 * 2e5
     assert wide.seen == 0.0
     assert 0.0 < narrow.seen < 0.3  # only where the whole rim lies on the lug
+
+
+def test_reading_is_the_mean_of_points_on_the_rim():
+    """SciPy's bilinear interpolation at each point of the rim, the cap beyond the grid."""
+    x, y, (xx, _) = grid(30, 24, 1.0)
+    rng = np.random.default_rng(3)
+    pressure, gap = rng.uniform(0, 1e5, xx.shape), rng.uniform(1e-6, 6e-4, xx.shape)
+    places, lanes = np.linspace(-5e-3, 35e-3, 30), np.linspace(-15e-3, 15e-3, 7)
+    pocket = {"inlet_diameter": 7e-3, "gap_cap": 3e-4, "spacing": 1e-3}
+    read, mean_cube = pocket_pressure(x, y, pressure, gap, places, lanes, **pocket)
+    cubes, cap = np.minimum(gap, 3e-4) ** 3, 2.7e-11
+    quarter = _rim_quarter(7e-3, 1e-3)
+    flow, weight = np.zeros((2, places.size, lanes.size))
+    for step in np.concatenate([quarter * signs for signs in ((1, 1), (1, -1), (-1, 1), (-1, -1))]):
+        along, across = (places + step[0] - x[0]) / MM, (lanes + step[1] - y[0]) / MM
+        at = np.meshgrid(along, across, indexing="ij")
+        flow += map_coordinates(cubes * pressure, at, order=1, mode="constant")
+        weight += map_coordinates(cubes, at, order=1, mode="constant", cval=cap)
+    assert read == pytest.approx(flow / weight, rel=1e-9)
+    assert mean_cube == pytest.approx(weight / (4 * len(quarter)), rel=1e-9)
+    assert np.hypot(*quarter.T) == pytest.approx(3.5e-3)
 
 
 def test_an_empty_film_reads_zero():

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from underfoot.case import Case, CaseError
@@ -47,6 +47,7 @@ def bars():
     return case.replace({"shoe.tread": bars, "shoe.heel.width": "66 mm"})
 
 
+@settings(deadline=None)
 @given(
     st.sampled_from([name for name in PATTERNS if name != "lettering"]),  # it needs a text
     st.floats(-1.2, 1.2),
@@ -113,6 +114,7 @@ def test_a_sole_from_a_file_varies_in_angle_and_direction(count):
             assert np.mean(values**2) == pytest.approx(band**2 / 3)
 
 
+@settings(deadline=None)
 @given(
     st.floats(0, 1e3),
     st.lists(st.floats(0, 1e3), min_size=1, max_size=9).map(np.array),

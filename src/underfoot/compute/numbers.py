@@ -14,7 +14,7 @@ from underfoot.film import SHARE_LIMITS, lubrication_by_load_share
 from underfoot.friction import FrictionCoefficients, SampledCof
 from underfoot.slip import RcofPopulation, SlipModel, SlipRisk, slip_risk
 from underfoot.sole_contact import SensorReading
-from underfoot.sole_contact.sole_state import SoleState
+from underfoot.sole_contact.sole_state import FAINT, SoleState
 from underfoot.sole_contact.solver import SoleContact
 
 _NOT_ESTIMATED = "heel shape and interface roughness dominate; their spread is not propagated yet"
@@ -159,7 +159,7 @@ def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
 
 def touching_cells(state: SoleState) -> NDArray[np.bool_]:
     """Return where the rough surfaces touch: contact pressure above 1e-3 of the mean pressure."""
-    loaded = float(state.cut.area[state.total_pressure > 0].sum())
+    loaded = float(state.cut.area[state.total_pressure > FAINT].sum())
     mean = state.normal_force / max(loaded * state.spacing**2, state.spacing**2)
     return state.contact_pressure > CONTACT_SHARE * mean
 

@@ -181,7 +181,7 @@ def lug_friction(
         viscosity, speed: Pa s and m/s.
         suction: Highest pull p_a that an emptied contact holds, Pa, 0 or more.
     """
-    cells = np.maximum(sum_by_lug(edges, contact_pressure > 0), 1)
+    cells = _sums(edges.label, edges.length.size, edges.area)
     load = sum_by_lug(edges, contact_pressure)
     p = np.maximum(load / cells, IDLE)
     slender = edges.height / edges.length

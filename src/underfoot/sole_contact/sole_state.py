@@ -7,6 +7,9 @@ from underfoot.core import Status
 from underfoot.core.arrays import Array, Mask
 from underfoot.shoe.cut_cells import CutCells
 
+FAINT = 1.0
+"""Pa: less is the tail of an asperity law far from the floor, which no cell bears."""
+
 
 @dataclass(frozen=True, slots=True)
 class SolverSettings:
