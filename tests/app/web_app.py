@@ -9,6 +9,7 @@ import sys
 import time
 from pathlib import Path
 
+import psutil
 from chromium import browser
 
 COMMAND = "from underfoot.cli import main; main()"
@@ -74,7 +75,7 @@ def page_of(link, *, width=1366, height=768, dark=False, touch=False, webgl=True
     flags = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
     if not webgl:
         flags = ["--no-sandbox", "--disable-gpu", "--disable-3d-apis"]
-    host = re.match(r"http://[^/]*/", link)[0]
+    own = ("http://127.0.0.1:", "data:", "blob:", "about:")
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(executable_path=browser(), args=flags)
         context = chromium.new_context(
@@ -89,7 +90,7 @@ def page_of(link, *, width=1366, height=768, dark=False, touch=False, webgl=True
                 page.complaints.append(message.text)
 
         def asked(request):
-            if not request.url.startswith((host, "data:", "blob:", "about:")):
+            if not request.url.startswith(own):
                 page.complaints.append(request.url)
 
         page.on("console", note)
@@ -101,6 +102,31 @@ def page_of(link, *, width=1366, height=768, dark=False, touch=False, webgl=True
             yield page
         finally:
             chromium.close()
+
+
+class Cost:
+    """Wall time of a block and processor time of the app and the browser in it, s.
+
+    On a machine where others compute beside, wall time says little: ``least`` is the smaller.
+    """
+
+    def __enter__(self):
+        self._began, self._cpu = time.monotonic(), self._spent()
+        return self
+
+    def __exit__(self, *_):
+        self.wall, self.cpu = time.monotonic() - self._began, self._spent() - self._cpu
+        self.least = min(self.wall, self.cpu)
+
+    def __str__(self):
+        return f"{self.wall:.2f} s wall, {self.cpu:.2f} s of CPU"
+
+    def _spent(self):
+        total = 0.0
+        for process in psutil.Process().children(recursive=True):
+            with contextlib.suppress(psutil.NoSuchProcess):
+                total += sum(process.cpu_times()[:2])
+        return total
 
 
 SOLE = ".viewer[data-ready=yes]"

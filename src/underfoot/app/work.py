@@ -26,7 +26,7 @@ from underfoot.questions.risk import odds, risk_assessment
 from underfoot.questions.sensitivity import sensitivity
 from underfoot.report import write_report
 from underfoot.report.outsole import inspected
-from underfoot.report.results import sole_fields
+from underfoot.report.results import map_fields, sole_fields
 from underfoot.report.viewer import scene_section, viewer_scene
 from underfoot.report.writing import write_text
 from underfoot.shoe.files import FileSettings
@@ -144,7 +144,7 @@ def previewed(path: str, changes: Mapping[str, Any], *, progress: Progress) -> d
     seen = preview(case, changes, progress=progress)
     contact = seen.total_pressure - seen.fluid_pressure
     axes = ("x", "y")
-    fields = sole_fields(changed).assign(
+    fields = map_fields(seen.sole).assign(
         {
             "contact_pressure": (axes, contact, {"units": "Pa"}),
             "fluid_pressure": (axes, seen.fluid_pressure, {"units": "Pa"}),

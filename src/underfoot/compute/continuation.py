@@ -42,6 +42,8 @@ MOST_KEPT = 4
 MOST_CHANGED = 0.1
 """Share of the land's cells that a change may make or unmake; a shifted lug changes far more."""
 
+_OF_THE_SOLE = ("shoe", "hardness", "compliance", "numerics")
+"""Sections of a case that make its sole and compliance."""
 _SOLVED: dict[tuple[str, bool], Continuation] = {}
 
 
@@ -53,6 +55,7 @@ class Preview:
         changes: What differs from the case that was solved.
         values: Scalars of a result by name, at the tread's own position.
         errors: Estimated error of each against a march of the changed case.
+        sole: The undeformed sole on the grid of the fields.
         total_pressure: Fluid and contact pressure, (nx, ny), Pa.
         fluid_pressure: Of that, the fluid's.
         film_thickness: Mean gap, at most the pool, (nx, ny), m.
@@ -63,6 +66,7 @@ class Preview:
     changes: Mapping[str, Any]
     values: Mapping[str, float]
     errors: Mapping[str, float]
+    sole: SoleMap
     total_pressure: Array
     fluid_pressure: Array
     film_thickness: Array
@@ -142,6 +146,7 @@ class Continuation:
             dict(changes),
             values,
             errors,
+            parts.sole,
             second.total_pressure,
             second.fluid_pressure,
             second.film_thickness,
@@ -158,7 +163,7 @@ class Continuation:
         """Return the contact after one step and after two, on the grid of the march."""
         angle = self.case.motion.shoe_angle
         level = case.replace("motion.shoe_angle", angle)  # the map keeps its angle, the sole rolls
-        parts = _parts(level, self.spacing)
+        parts = _parts(level, self.spacing, near=(self.case, self._own))
         own_land, land = self._own.sole.land, parts.sole.land
         same = land.shape == own_land.shape
         if not same or np.count_nonzero(land != own_land) > MOST_CHANGED * own_land.sum():
@@ -211,14 +216,18 @@ class _Parts:
         return place_numbers(case, self.law, self.sole, contact, self.viscosity)
 
 
-def _parts(case: Case, spacing: float) -> _Parts:
+def _parts(case: Case, spacing: float, near: tuple[Case, _Parts] | None = None) -> _Parts:
+    """Return the parts of a case; sole and compliance of a near one where they are the same."""
     context = resolved(case)
-    sole = sole_map(case, spacing)
+    same = near is not None and all(
+        getattr(case, name) == getattr(near[0], name) for name in _OF_THE_SOLE
+    )
+    sole = near[1].sole if same and near else sole_map(case, spacing)
     asperities = case.rough_contact.build(context)
     law = case.friction.build(context)
     return _Parts(
         sole,
-        case.compliance.build(context, sole),
+        near[1].compliance if same and near else case.compliance.build(context, sole),
         asperities,
         case.film.build(context),
         edged_law(case, context, law, sole, asperities) or law,

@@ -15,6 +15,7 @@ from underfoot.core.fields import Fields, labelled
 from underfoot.core.presentation import Table
 from underfoot.questions.comparison import Comparison
 from underfoot.questions.risk import RiskAssessment
+from underfoot.shoe import SoleMap
 
 from .chart import line_chart
 from .dispatch import FigureMakers, figures, files, plot, sections, write_report, written
@@ -149,7 +150,11 @@ def _comparison_sections(
 
 def sole_fields(case: Case, spacing: float | None = None) -> Fields:
     """Return the height of a case's sole above the floor, on the coarse grid or one of its own."""
-    sole = sole_map(case, spacing or case.numerics.quick_grid_spacing, silent)
+    return map_fields(sole_map(case, spacing or case.numerics.quick_grid_spacing, silent))
+
+
+def map_fields(sole: SoleMap) -> Fields:
+    """Return the height of a sole above the floor with its rim and its land."""
     labels = {"units": "m", "long_name": "height of the undeformed sole"}
     return labelled(
         {
