@@ -19,7 +19,7 @@ from underfoot.core import InputError
 from underfoot.core.errors import UnderfootError
 from underfoot.core.files import whole_file
 
-from ..components import sentences, table, task_line
+from ..components import sentences, table, task_line, title
 from ..gate import UPLOADS
 from ..jobs import Task
 from ..session import Session
@@ -122,13 +122,13 @@ class _Trials:
 
         self.place.clear()
         with self.place:
-            _heading("h1", text("trials.title"))
+            title(text("trials.title"))
             ui.label(text("trials.lead")).classes("lead")
             FolderDrop(session, arriving).on("arrived", arrived)
             made = ui.button(text("trials.try"), on_click=self.make_example)
             made.props("flat no-caps")
             if self.studies():
-                _heading("h2", text("trials.folders"))
+                title(text("trials.folders"), 2)
             with ui.element("ul").classes("folders"):
                 for name in self.studies():
                     with ui.element("li"):
@@ -176,7 +176,7 @@ class _Trials:
             with ui.element("div").classes("trial-bar"):
                 back = ui.button(text("trials.all_folders"), icon="arrow_back")
                 back.on_click(self.choose).props("flat no-caps dense")
-                _heading("h1", self.study)
+                title(self.study)
                 ui.space()
                 report = ui.button(text("trials.report"), icon="description", on_click=self.report)
                 report.props("no-caps unelevated")
@@ -307,8 +307,8 @@ class _Trials:
     async def report(self) -> None:
         """Write the report and show the way to it."""
         session, text = self.session, self.text
-        work, title = f"{WORK}:written_report", text("trials.report_job")
-        task = session.jobs.submit(title, work, self.asked(), about=self.study)
+        work = f"{WORK}:written_report"
+        task = session.jobs.submit(text("trials.report_job"), work, self.asked(), about=self.study)
 
         async def done(ended: Task) -> None:
             if ended.problem:
@@ -335,7 +335,7 @@ class _Trials:
             with ui.element("div").classes("trial-bar"):
                 back = ui.button(text("trials.all_trials"), icon="arrow_back")
                 back.on_click(self.overview).props("flat no-caps dense")
-                _heading("h1", file)
+                title(file)
                 ui.space()
                 self._beside(-1, "navigate_before", "trials.before")
                 self._beside(1, "navigate_next", "trials.after")
@@ -472,7 +472,7 @@ class _Trials:
         text, edits = self.text, self.view["edits"]
         if not edits or (self.pending is not None and len(edits) == 1):
             return
-        _heading("h2", text("trials.edits"))
+        title(text("trials.edits"), 2)
         for number, entry in enumerate(edits[:-1] if self.pending is not None else edits):
             with ui.element("div").classes("edit"):
                 ui.label(f"{entry['step']}: {_edit_words(entry)}. {entry['why']}")
@@ -527,11 +527,6 @@ class _Trials:
 
     def _address(self, **query: str) -> None:
         ui.run_javascript(f"history.replaceState(null, '', {json.dumps('?' + urlencode(query))})")
-
-
-def _heading(level: str, words: str) -> None:
-    with ui.element(level):
-        ui.label(words)
 
 
 def _study_table(shown: Mapping[str, Any]) -> None:

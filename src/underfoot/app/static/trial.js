@@ -48,6 +48,7 @@ export default {
   props: { plot: Object, words: Object, chosen: Number, choosing: Boolean, panel: { default: 150 }, revision: Number },
   data: () => ({ width: 700, moving: null, time: 0, LEFT, RIGHT, TOP, AXIS }),
   mounted() {
+    this.width = Math.max(280, this.$el.clientWidth);
     this.observer = new ResizeObserver(([e]) => { this.width = Math.max(280, Math.floor(e.contentRect.width)); });
     this.observer.observe(this.$el);
   },
