@@ -83,7 +83,7 @@ def draw() -> Path | None:
     versions = list(dict.fromkeys(entry["commit"] for entry in entries))
     figure = Figure(figsize=(9, 5), layout="constrained")
     axes = figure.add_subplot()
-    axes.set_prop_cycle(color=colormaps["tab20"].colors)
+    axes.set_prop_cycle(color=colormaps["tab20"](range(20)))
     for job in dict.fromkeys(entry["job"] for entry in entries):
         own = [entry for entry in entries if entry["job"] == job]
         places = [versions.index(entry["commit"]) for entry in own]

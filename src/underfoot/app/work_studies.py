@@ -42,7 +42,7 @@ def state(file: str, folder: str, *, progress: Progress) -> dict[str, Any]:
     study = Study.load(file, folder)
     store, plan = study.store, study.plan
     ended = len(store.records()) if store.exists else 0
-    if not ended or store.plan().text != plan.text:
+    if not ended or not store.jobs() or store.plan().text != plan.text:
         return {**said(study_check(plan, TRIED)), "ended": ended, "begun": False, "open": True}
     status = study_status(study)
     most = plan.designs * plan.cases_per_design

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from functools import partial
 from typing import Any
 
 import tomlkit
@@ -21,7 +20,7 @@ from underfoot.core.units import display
 from ..components import SoleView, sentences, task_line, title
 from ..jobs import Task
 from ..project import NAME
-from ..session import Session, problem_parts
+from ..session import Session, address, problem_parts
 from ..variant_bar import new_variant
 
 ROUTE = "/studies"
@@ -73,10 +72,10 @@ def build(session: Session) -> None:
     text = session.text
     title(text("studies.title")).classes("hidden-title")
     ui.label(text("studies.lead")).classes("lead")
-    for each in names:
-        button = ui.button(each, icon="scatter_plot")
-        button.on_click(partial(session.go, ROUTE, study=each))
-        button.props("flat no-caps align=left")
+    with ui.element("div").classes("recent"):
+        for each in names:
+            with ui.element("div").classes("recent-row"):
+                ui.link(each, address(ROUTE, study=each))
     begin = ui.button(text("studies.new"), icon="add", on_click=lambda: example(session))
     begin.props("no-caps unelevated")
 
