@@ -39,13 +39,18 @@ def build(session: Session) -> None:
     """Show the folder of the address, or the folders there are and a place for a new one."""
     ui.add_head_html('<link rel="stylesheet" href="/static/trials.css">')
     page = _Trials(session)
-    wanted = session.query.get("study", "")
+    wanted, file = session.query.get("study", ""), session.query.get("trial", "")
+    # What waits for an answer stands beside the place that it fills: there it would be removed.
     if wanted in studies(session.project):
-        page.open(wanted, session.query.get("trial", ""))
-        return
-    page.choose()
-    if "example" in session.query:
-        ui.timer(0.01, page.make_example, once=True)
+        page.study = Study(session.project, wanted)
+        if file:
+            ui.timer(0.01, partial(page.show, file), once=True)
+        else:
+            page.overview()
+    else:
+        page.choose()
+        if "example" in session.query:
+            ui.timer(0.01, page.make_example, once=True)
 
 
 def example(session: Session) -> None:
@@ -97,14 +102,10 @@ class _Trials:
         study.keep({"protocol": "report_g6"})
         self.open(study.name)
 
-    def open(self, name: str, file: str = "") -> None:
-        """Show a folder, or one trial of it."""
+    def open(self, name: str) -> None:
+        """Show a folder."""
         self.study = Study(self.session.project, name)
-        if not file:
-            self.overview()
-            return
-        with self.place:
-            ui.timer(0.01, partial(self.show, file), once=True)
+        self.overview()
 
     def overview(self) -> None:
         """Show the folder that is open."""
@@ -130,7 +131,8 @@ class _Trials:
         if self.session.problems is not None:
             self.session.problems.clear()
         address = ROUTE + (f"?{urlencode(query)}" if query else "")
-        ui.run_javascript(f"history.replaceState(null, '', {json.dumps(address)})")
+        with self.place:  # what was pressed may be gone
+            ui.run_javascript(f"history.replaceState(null, '', {json.dumps(address)})")
 
     def _settled(self, arriving: str) -> str:
         """Give a folder that has arrived its name; a folder in it alone is the folder meant."""
