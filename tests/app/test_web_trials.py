@@ -109,7 +109,7 @@ def test_a_folder_is_dropped_edited_and_reported(tmp_path):
         _press(page, "Redo the edit")
         edits.nth(1).wait_for(state="detached")
         page.reload()
-        page.get_by_text("step 1 on plate 2: RCOF 0.214").wait_for()
+        page.get_by_text("step 1 on plate 2: RCOF 0.2159").wait_for()
         assert page.complaints == []
 
 
