@@ -73,6 +73,7 @@ def keep(rows: list[Row]) -> None:
 
 def draw() -> Path | None:
     """Draw the history, a line for each job, and return the picture; None without a history."""
+    from matplotlib import colormaps
     from matplotlib.figure import Figure
 
     if not HISTORY.exists():
@@ -82,11 +83,14 @@ def draw() -> Path | None:
     versions = list(dict.fromkeys(entry["commit"] for entry in entries))
     figure = Figure(figsize=(9, 5), layout="constrained")
     axes = figure.add_subplot()
+    axes.set_prop_cycle(color=colormaps["tab20"](range(20)))
     for job in dict.fromkeys(entry["job"] for entry in entries):
         own = [entry for entry in entries if entry["job"] == job]
         places = [versions.index(entry["commit"]) for entry in own]
         axes.plot(places, [float(entry["cpu"]) for entry in own], marker="o", label=job)
     axes.set(yscale="log", ylabel="processor time (s)", xlabel="version")
+    for axis_format in (axes.yaxis.set_major_formatter, axes.yaxis.set_minor_formatter):
+        axis_format("{x:g}")
     axes.set_xticks(range(len(versions)), versions, rotation=45)
     axes.spines[["top", "right"]].set_visible(False)
     figure.legend(loc="outside right upper", frameon=False, fontsize=8)

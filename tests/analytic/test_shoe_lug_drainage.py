@@ -132,14 +132,18 @@ def test_a_mirrored_sole_is_opened_on_the_other_side(shift):
     assert other.load[0] == one.load[0]
 
 
-def test_mirrored_lugs_on_one_sole_are_opened_to_opposite_sides():
-    """Two lugs wider than long, an even number of cells across, under an even film."""
+@pytest.mark.parametrize("rise", [0.0, 1.0])
+def test_mirrored_lugs_on_one_sole_get_mirrored_advice(rise):
+    """Two lugs wider than long, an even number of cells across, under an even or a domed film."""
     land = np.zeros((SIZE, SIZE), dtype=bool)
     land[25:35, 4:24] = land[25:35, 36:56] = True
-    found = drainage(sole(land), np.where(land, 1e5, 0.0))
-    assert found.y[0] == pytest.approx(-found.y[1], abs=1.1 * CELL)
-    sides = {bool(y > 0): SIDES[side] for y, side in zip(found.y, found.groove_side, strict=True)}
-    assert sides == {True: "left", False: "right"}
+    dome = np.zeros(SIZE)
+    dome[4:24] = dome[36:56] = 1 - ((np.arange(20) - 9.5) / 10) ** 2
+    found = drainage(sole(land), np.where(land, 1e5 * (1 + rise * dome), 0.0))
+    assert found.y[0] == pytest.approx(-found.y[1], abs=1e-9)
+    assert {SIDES[side] for side in found.groove_side} == {"left", "right"}
+    assert found.groove[0] == pytest.approx(found.groove[1])
+    assert found.relief[0] == pytest.approx(found.relief[1], rel=1e-6)
 
 
 def test_a_bar_is_split_along_and_not_notched_across():

@@ -2,12 +2,15 @@
 
 import os
 import signal
+import subprocess
+import sys
 import time
 
 import pytest
 
 from underfoot.core import InputError, UnderfootError
 from underfoot.core.errors import Cancelled
+from underfoot.core.pool import in_processes
 from underfoot.core.worker import Worker
 
 KEPT: list[int] = []
@@ -96,3 +99,22 @@ def test_a_deaf_or_killed_process_is_replaced(worker, end):
     count, other = worker.wait(worker.submit(counted, 1))
     assert count == 1
     assert other != process
+
+
+def shared(count, progress):
+    """Return numbers that two workers of the warm process computed."""
+    return sorted(number for _, number in in_processes(abs, range(-count, 0), 2))
+
+
+def test_a_warm_process_may_have_workers_of_its_own():
+    with Worker() as worker:
+        assert worker.wait(worker.submit(shared, 3)) == [1, 2, 3]
+
+
+def test_a_program_ends_though_its_worker_was_not_closed(tmp_path):
+    script = tmp_path / "ends.py"
+    script.write_text(
+        "from underfoot.core.worker import Worker\n"
+        "if __name__ == '__main__':\n    Worker()\n    kept = Worker()\n"
+    )
+    subprocess.run([sys.executable, script], check=True, timeout=60)

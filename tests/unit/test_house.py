@@ -11,7 +11,7 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 SOURCE = REPOSITORY / "src"
-LARGEST = 84_000  # lines of source: 80,000 without the app
+LARGEST = 86_000  # lines of source: 80,000 without the app
 START = 0.15  # s of CPU that `import underfoot` may take
 
 

@@ -21,8 +21,8 @@ from underfoot.compute.summary import friction_limit
 from underfoot.core import Progress, SourcedValue
 from underfoot.core.fields import Fields, labelled
 from underfoot.core.files import checksum
-from underfoot.core.presentation import Presentable, interval_text, quantity_text
-from underfoot.questions.risk import odds, risk_assessment
+from underfoot.core.presentation import Presentable, quantity_text
+from underfoot.questions.risk import risk_assessment
 from underfoot.questions.sensitivity import sensitivity
 from underfoot.report import write_report
 from underfoot.report.outsole import inspected
@@ -128,13 +128,14 @@ def advised(path: str, folder: str, *, progress: Progress) -> None:
 def answer(folder: str, *, progress: Progress) -> dict[str, Any]:
     """Return a stored result in words, tables and as a part of a page."""
     result = Result.load(folder)
-    texts = {}
-    if result.usable:
-        cof, slip = result.scalars["cof"], result.scalars.get("slip_probability")
-        texts = {"cof": f"{cof.value:.3f}", "interval": interval_text("cof", cof)}
-        texts["risk"] = odds(slip.value) if slip is not None and slip.value is not None else ""
-        texts["limit"] = str(friction_limit(result.scalars))
-    return {**said(result), "texts": texts, "html": _html(result)}
+    cof, slip = result.scalars["cof"], result.scalars.get("slip_probability")
+    numbers = {
+        "cof": cof.value,
+        "interval": cof.interval,
+        "slip": None if slip is None else slip.value,
+        "limit": str(friction_limit(result.scalars)) if result.usable else "",
+    }
+    return {**said(result), **numbers, "html": _html(result)}
 
 
 def previewed(path: str, changes: Mapping[str, Any], *, progress: Progress) -> dict[str, Any]:
@@ -154,13 +155,13 @@ def previewed(path: str, changes: Mapping[str, Any], *, progress: Progress) -> d
     cof = SourcedValue(seen.values["cof"], "1", uncertainty=seen.errors["cof"])
     rcof = RcofPopulation(changed.risk.rcof_mean, changed.risk.rcof_sd)
     slip = slip_risk(cof, rcof=rcof, model=slip_model(changed.risk.name)).probability.value
-    texts = {
-        "cof": f"{seen.values['cof']:.3f}",
-        "error": f"{seen.errors['cof']:.3f}",
+    return {
+        "cof": cof.value,
+        "error": cof.uncertainty,
         "fluid_load": quantity_text(seen.values["fluid_load"], "N"),
-        "risk": "" if slip is None else odds(slip),
+        "slip": slip,
+        "html": _html(Drawn(changed.name, fields)),
     }
-    return {"cof": cof.value, "texts": texts, "html": _html(Drawn(changed.name, fields))}
 
 
 def said(shown: Presentable) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from multiprocessing.connection import Connection
+from multiprocessing.util import Finalize
 from typing import Any
 
 from .errors import Cancelled, UnderfootError
@@ -158,9 +159,11 @@ class Worker:
         self._cancelled = context.Event()
         by_kernel = threading.current_thread() is threading.main_thread()
         arguments = (other, self._cancelled, self._preload, os.getpid(), by_kernel)
-        self._process = context.Process(target=_serve, args=arguments, daemon=True)
+        self._process = context.Process(target=_serve, args=arguments)
         with one_thread():
             self._process.start()
+        # no daemon, which could have no workers of its own: at this one's end it is killed
+        Finalize(self, self._process.kill, exitpriority=1)
         other.close()
 
 

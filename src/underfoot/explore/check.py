@@ -16,7 +16,7 @@ from .proposals import first_points
 from .result import value_text
 
 MOST_BUILT = 300
-"""Cases that are built to see which can't be."""
+"""Cases that are built to see which can't be; 0.03 s each."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,13 +45,15 @@ class StudyCheck(Presentable):
 
     def headline(self) -> tuple[str, ...]:
         """Return the number of cases and their cost."""
-        low, high = (value / 3600 for value in self.seconds)
-        per = f"{len(self.plan.states)} conditions x {len(self.plan.draws)} draws"
-        cost = f"about {low:.2g} to {high:.2g} h of one processor"
+        states, draws = len(self.plan.states), len(self.plan.draws)
+        per = f" x {states} conditions" * (states > 1) + f" x {draws} draws" * (draws > 1)
+        cost = (
+            f"about {time_text(self.seconds[0])} to {time_text(self.seconds[1])} of one processor"
+        )
         bad = sum(self.infeasible.values())
         share = f"{bad} of {self.built} cases of the first designs can't be built"
         return (
-            f"{self.designs} designs x {per}: {self.cases} cases at most, {cost}.",
+            f"{self.designs} designs{per}: {self.cases} cases at most, {cost}.",
             f"{share[0].upper()}{share[1:]}."
             if bad
             else f"All {self.built} cases tried can be built.",
@@ -95,15 +97,15 @@ class StudyCheck(Presentable):
         }
 
 
-def study_check(plan: StudyPlan) -> StudyCheck:
-    """Return what a study will take; nothing is computed."""
+def study_check(plan: StudyPlan, most: int = MOST_BUILT) -> StudyCheck:
+    """Return what a study will take; nothing is computed, about ``most`` cases are built."""
     designs = plan.designs
     low, high = run_cost(plan.base, quick=plan.method.quick).seconds
     cases = designs * plan.cases_per_design
     reasons: Counter[str] = Counter()
     built = 0
     points = first_points(plan)
-    step = max(1, len(points) * plan.cases_per_design // MOST_BUILT)
+    step = max(1, len(points) * plan.cases_per_design // most)
     for number, point in enumerate(points[::step]):
         for job in plan.jobs(number, point, 0):
             built += 1
@@ -112,3 +114,10 @@ def study_check(plan: StudyPlan) -> StudyCheck:
             except InputError as error:
                 reasons[str(error)] += 1
     return StudyCheck(plan, designs, cases, (low * cases, high * cases), built, dict(reasons))
+
+
+def time_text(seconds: float) -> str:
+    """Return a time in the unit that people read."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

@@ -231,12 +231,12 @@ class StudyResult(Presentable):
     def cautions(self) -> tuple[str, ...]:
         """Return what keeps the numbers from being taken as they are."""
         reasons = list(self.plan.remarks)
-        programs = {record.program for record in self.records.values()}
-        if programs - {program_hash()[:16], ""}:
-            reasons.append(
-                f"Cases of {len(programs)} versions of the program are mixed: run the study in a "
-                "new folder to compare them."
-            )
+        programs = {record.program for record in self.records.values()} - {""}
+        if programs - {program_hash()[:16]}:
+            mixed = f"Cases of {len(programs)} versions of the program are mixed"
+            older = "The cases were computed by another version of the program"
+            advice = "run the study in a new folder to have all by this one"
+            reasons.append(f"{mixed if len(programs) > 1 else older}: {advice}.")
         lost = self.endings.total() - self.endings[Ending.COMPUTED] - self.endings[Ending.OPEN]
         if lost:
             have = "1 case has" if lost == 1 else f"{lost} cases have"

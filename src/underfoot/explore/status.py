@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 from underfoot.core.presentation import Table
 
+from .check import time_text
 from .record import Ending
 from .result import StudyResult
 from .study import Study
@@ -69,7 +70,7 @@ class StudyStatus(StudyResult):
         at_work = f"{self.working} workers at work" if self.working else "Nobody works on it"
         rate = f"{at_work}; {self.per_minute:.3g} cases a minute, workers {self.busy:.0%} busy"
         seconds = self.seconds_left
-        left = "" if seconds is None else f", about {_time(seconds)} left"
+        left = "" if seconds is None else f", about {time_text(seconds)} left"
         return (super().headline()[0], f"{rate}{left}.")
 
     def table(self) -> Table:
@@ -94,9 +95,3 @@ def study_status(study: Study) -> StudyStatus:
     """Return how far a study in its folder is."""
     found = study.result()
     return StudyStatus(found.plan, found.jobs, found.records, found.sessions, time.time())
-
-
-def _time(seconds: float) -> str:
-    if seconds < 90:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

@@ -210,11 +210,11 @@ def _listed(given: Any) -> Sequence[Any]:
     return given if isinstance(given, list | tuple) else [given]
 
 
-def _flat(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+def flat_paths(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
     """Yield path and value; quoted and bare paths mean the same."""
     for key, value in table.items():
         if isinstance(value, Mapping) and value and not VALUE_KEYS & set(value):
-            yield from _flat(value, f"{prefix}{key}.")
+            yield from flat_paths(value, f"{prefix}{key}.")
         else:
             yield f"{prefix}{key}", value
 
@@ -286,7 +286,7 @@ class _Reader:
         """Return a section with flat, dotted keys."""
         given = self.plain.get(name, {})
         self.refuse_if(not isinstance(given, Mapping), name, f"{given!r} is no section")
-        return dict(_flat(given)) if isinstance(given, Mapping) else {}
+        return dict(flat_paths(given)) if isinstance(given, Mapping) else {}
 
     def base(self, folder: Path, catalogue: Catalogue | None) -> Case:
         """Return the case that is changed; without it nothing else can be judged."""

@@ -30,10 +30,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dgttrf, dgttrs
+from scipy.linalg import get_lapack_funcs
 
 from underfoot.core.arrays import Array, Mask
 
+dgttrf, dgttrs = get_lapack_funcs(("gttrf", "gttrs"), dtype=np.float64)
 SMOOTH, STEP = 1.0, 2.0
 """|ln| of the ratio of neighbouring gaps: up to SMOOTH the film varies, from STEP it is a step."""
 

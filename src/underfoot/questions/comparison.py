@@ -273,12 +273,12 @@ def _ranking(results: Sequence[Result]) -> tuple[Rank, ...]:
     ranks = []
     for place, (letter, result) in enumerate(order, start=1):
         cof = result.scalars["cof"]
-        chance = _chance_higher(result, order[place][1]) if place < len(order) else None
+        chance = chance_higher(result, order[place][1]) if place < len(order) else None
         ranks.append(Rank(letter, result.name, cof, _interval(cof), chance))
     return tuple(ranks)
 
 
-def _chance_higher(first: Result, second: Result) -> float | None:
+def chance_higher(first: Result, second: Result) -> float | None:
     """Return the probability that the first COF is higher, from shared draws where there are."""
     laws = {result.provenance.closures.get("friction") for result in (first, second)}
     both = []

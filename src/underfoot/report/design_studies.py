@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import pairwise
@@ -53,20 +54,9 @@ class ShownStudy(StudyResult):
     missing: str = ""
 
 
-def shown(study: Study, result: StudyResult, progress: Progress = silent) -> ShownStudy:
-    """Return a result with the soles of its best designs, surrogates and indices."""
-    plan, soles = study.plan, {}
-    chosen = {one.number: one for one in (result.front or result.designs)[:MOST_SOLES]}
-    for count, one in enumerate(chosen.values(), start=1):
-        progress("Soles", count / len(chosen))
-        job = next(job for job in result.jobs if job.design == one.number)
-        fields = study.store.maps(job.key)
-        try:
-            soles[one.number] = (
-                sole_fields(plan.base.replace(job.changes)) if fields is None else fields
-            )
-        except UnderfootError:
-            continue  # infeasible: the table says so
+def shown(result: StudyResult, soles: Mapping[int, Fields] | None = None) -> ShownStudy:
+    """Return a result with its surrogates and indices, and the soles of some designs."""
+    plan = result.plan
     goals: list[AnyGoal] = [*plan.goals] or [Goal("cof", "1")]
     models: list[Surrogate] = []
     indices: list[Effects] = []
@@ -78,8 +68,30 @@ def shown(study: Study, result: StudyResult, progress: Progress = silent) -> Sho
             models = surrogates(result, goals)
     except UnderfootError as error:
         missing = str(error)
-    own = (result.plan, result.jobs, result.records, result.sessions)
-    return ShownStudy(*own, soles=soles, models=models, indices=indices, missing=missing)
+    own = (plan, result.jobs, result.records, result.sessions)
+    return ShownStudy(*own, soles=soles or {}, models=models, indices=indices, missing=missing)
+
+
+def design_sole(study: Study, result: StudyResult, number: int) -> Fields:
+    """Return the maps of a design in its first condition where they are kept, else its sole.
+
+    Raises:
+        CaseError: The design can't be built.
+    """
+    job = next(job for job in result.jobs if job.design == number)
+    kept = study.store.maps(job.key)
+    return sole_fields(study.plan.base.replace(job.changes)) if kept is None else kept
+
+
+def _soles(study: Study, result: StudyResult, progress: Progress) -> Mapping[int, Fields]:
+    """Return the soles of the best designs that can be built."""
+    found = {}
+    chosen = dict.fromkeys(one.number for one in (result.front or result.designs)[:MOST_SOLES])
+    for count, number in enumerate(chosen, start=1):
+        progress("Soles", count / len(chosen))
+        with suppress(UnderfootError):
+            found[number] = design_sole(study, result, number)
+    return found
 
 
 def write_study_report(
@@ -87,7 +99,7 @@ def write_study_report(
 ) -> Written:
     """Write results.csv, results.parquet, surrogate.json and report.html into a study's folder."""
     failures = study.store.write_views(result.cases())
-    ready = shown(study, result, progress)
+    ready = shown(result, _soles(study, result, progress))
     if ready.models:
         models = [one.to_dict() for one in ready.models]
         with whole_file(study.store.folder / "surrogate.json") as part:
@@ -224,6 +236,7 @@ def slices_figure(models: Sequence[Surrogate], centre: np.ndarray) -> Figure:
     grid = figure.subplots(len(models), len(dimensions), squeeze=False, sharey="row")
     shares = np.linspace(0.0, 1.0, SLICE)
     for row, model in zip(grid, models, strict=True):
+        scale, shown_unit = display_unit(float(np.abs(model.values).max()), model.unit)
         for axes, one, k in zip(row, dimensions, range(len(dimensions)), strict=True):
             points = np.tile(centre, (SLICE, 1))
             points[:, k] = shares
@@ -233,15 +246,15 @@ def slices_figure(models: Sequence[Surrogate], centre: np.ndarray) -> Figure:
             unit = unit_at(one.path)
             factor, name = display_unit(float(values[-1]), unit) if numeric else (1.0, "1")
             places: Any = np.array(values) / factor if numeric else list(map(str, values))
-            axes.plot(places, mean, color="#0b6fa4")
-            axes.fill_between(
-                places, mean - deviation, mean + deviation, color="#0b6fa4", alpha=0.2
-            )
+            low, middle, high = (mean + k * deviation for k in (-1, 0, 1))
+            axes.plot(places, middle / scale, color="#0b6fa4")
+            axes.fill_between(places, low / scale, high / scale, color="#0b6fa4", alpha=0.2)
             axes.axvline(places[int(centre[k] * (SLICE - 1))], color="0.7", linewidth=0.8)
             short = one.path.split(".")[-1].replace("_", " ")
             axes.set_xlabel(short + (f" ({name})" if name != "1" else ""), fontsize=8)
             axes.tick_params(labelsize=7)
-        row[0].set_ylabel(f"{model.name}\nQ2 {model.q2:.3f}", fontsize=8)
+        named = model.name + (f" ({shown_unit})" if shown_unit != "1" else "")
+        row[0].set_ylabel(f"{named}\nQ2 {model.q2:.3f}", fontsize=8)
     return figure
 
 

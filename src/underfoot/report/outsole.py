@@ -83,7 +83,7 @@ class OutsoleInspection(Presentable):
             ("Channel width, median", spread(m.channel_width, "m")),
             ("Draft of the walls", "none" if draft is None else f"{np.degrees(draft):.1f}°"),
             ("Channels open to the rim", "none" if drained is None else f"{drained:.0%} of area"),
-            ("Sipes", f"{m.sipe_count}, {_lengths(m.sipe_length)} in all"),
+            ("Sipes", _sipes(m)),
             ("Lugs", f"{m.lug_count}"),
             ("Lug area, median", spread(m.lug_area, "m^2")),
             ("Largest untreaded patch", _area(m.patch_area, tread_unit("m^2"))),
@@ -138,6 +138,14 @@ class OutsoleInspection(Presentable):
         )
         # np.savetxt compresses by the ending
         np.savetxt(path, surface.height * 1e3, fmt="%.4f", delimiter=",", header=header)
+
+
+def _sipes(measures: TreadMeasures) -> str:
+    """Return how many sipes there are and what a run makes of them."""
+    if measures.sipe_count == 0:
+        return "none"
+    length = _lengths(measures.sipe_length)
+    return f"{measures.sipe_count}, {length} in all; computed as slits where finer than two cells"
 
 
 def _lengths(*values: float, digits: int = 3) -> str:

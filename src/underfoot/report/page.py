@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from underfoot.core.presentation import Presentable, Table
 
@@ -52,12 +53,19 @@ def page(shown: Presentable, sections: Sequence[Section], *, script: str = "") -
             shown=shown,
             headline=shown.headline(),
             cautions=shown.cautions(),
-            sections=sections,
             script=script,
-            numeric=_is_number,
-            most=MOST_ITEMS,
+            **_content(sections),
         )
     )
+
+
+def page_part(sections: Sequence[Section]) -> str:
+    """Return sections as HTML for a page that has style and scripts already."""
+    return environment().get_template("sections.html").render(**_content(sections))
+
+
+def _content(sections: Sequence[Section]) -> dict[str, Any]:
+    return {"sections": sections, "numeric": _is_number, "most": MOST_ITEMS}
 
 
 def table_sections(shown: Presentable) -> list[Section]:

@@ -186,7 +186,7 @@ _LOADS = (("load_history", "applied load"), ("fluid_load_history", "carried by t
 _THROUGH_A_MOTION = {
     "cof_history": ("coefficient of friction", 1.0),
     "contact_area_history": ("contact area (cm²)", 1e4),
-    "centre_of_pressure_history": ("centre of pressure from the rear end (mm)", 1e3),
+    "centre_of_pressure_history": ("centre of pressure (mm)", 1e3),
 }
 _TIME = "time after first contact with the film (ms)"
 

@@ -133,7 +133,7 @@ def lug_drainage(sole: SoleMap, fluid_pressure: Array, film_thickness: Array) ->
     highest = np.zeros(count + 1)
     highest[order] = maximum(pressure, numbers, order)
     top = (pressure > 0) & (pressure >= TOP * highest[numbers])
-    peaks = np.array([_middle(np.argwhere(top & (numbers == number))) for number in order])
+    peaks = np.array([_middle(np.argwhere(top & (numbers == number)), sole.y) for number in order])
     clear = draining(sole.inside, sole.inside & ~sole.land) & (
         fluid_pressure < OPEN * pressure.max()
     )
@@ -166,9 +166,13 @@ def lug_drainage(sole: SoleMap, fluid_pressure: Array, film_thickness: Array) ->
     )
 
 
-def _middle(cells: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Return that of the cells (n, 2) which is next to the centre of all."""
-    return cells[np.argmin(np.hypot(*(cells - cells.mean(axis=0)).T))]
+def _middle(cells: NDArray[np.intp], y: Array) -> NDArray[np.intp]:
+    """Return that of the cells (n, 2) which is next to the centre of all.
+
+    Of equals the one farthest from the middle line, so that mirrored lugs have mirrored peaks.
+    """
+    away = np.hypot(*(cells - cells.mean(axis=0)).T)
+    return cells[np.lexsort((-np.abs(y[cells[:, 1]]), away.round(6)))[0]]
 
 
 def _way_out(offsets: NDArray[np.intp], y: float) -> tuple[float, int]:

@@ -247,9 +247,8 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
 def _sipes(channel: Mask, widths: Array, spacing: float) -> tuple[int, float]:
     """Return how many slits there are and their length in all, m."""
     numbers, count = _slit_pieces(channel & (widths < WIDEST_SIPE), spacing)
-    # area over width: a slit may be bent
-    lengths = np.where(numbers > 0, spacing**2 / np.maximum(widths, spacing), 0.0)
-    return count, float(lengths.sum())
+    areas, mean_widths = _slit_widths(numbers, count, spacing)
+    return count, float((areas / mean_widths).sum())
 
 
 def _slit_pieces(narrow: Mask, spacing: float) -> tuple[Labels, int]:
@@ -261,6 +260,22 @@ def _slit_pieces(narrow: Mask, spacing: float) -> tuple[Labels, int]:
     own = np.array([False, *(cells * spacing >= SHORTEST_SIPE for cells in extent)])
     kept = np.cumsum(own) * own
     return kept[numbers], int(kept.max())
+
+
+def _slit_widths(numbers: Labels, count: int, spacing: float) -> tuple[Array, Array]:
+    """Return area (m^2) and mean width (m) of each slit, however it bends.
+
+    Width: 2 area / perimeter, the perimeter by the Crofton formula over four directions, which is
+    within 5 % at any angle (along the axes 5 % short).
+    """
+    padded = np.pad(numbers, 1)
+    crossings = np.zeros(count + 1)
+    for step, weight in (((1, 0), 1.0), ((0, 1), 1.0), ((1, 1), 0.5**0.5), ((1, -1), 0.5**0.5)):
+        leaving = padded[padded != np.roll(padded, step, (0, 1))]
+        crossings += weight * np.bincount(leaving, minlength=count + 1)
+    cells = np.bincount(numbers.ravel(), minlength=count + 1)[1:].astype(np.float64)
+    areas = cells * spacing**2
+    return areas, 2 * areas / (math.pi / 4 * spacing * crossings[1:])
 
 
 @dataclass(frozen=True, slots=True)
@@ -281,7 +296,7 @@ def surface_without_slits(
 ) -> tuple[SoleSurface, SurfaceSlits | None]:
     """Return the surface with its slits narrower than ``widest`` (m) filled, and these.
 
-    Slits as ``TreadMeasures`` counts them, each with the median of its width and of its depth. Land
+    Slits as ``TreadMeasures`` counts them, each with its mean width and median depth. Land
     beside them is as high as the wider channels around are deep; where none is near, as the slits.
     """
     from scipy.ndimage import gaussian_filter, median
@@ -297,10 +312,9 @@ def surface_without_slits(
     nearest = nearest_true(mask)
     each = np.arange(1, count + 1)
     floor = floor_depth(channel_depth(surface), channel)
-    width, depth = (
-        np.append(0.0, np.asarray(median(values, numbers, each)))[numbers][nearest]
-        for values in (np.maximum(widths, spacing), floor)
-    )
+    _, mean_widths = _slit_widths(numbers, count, spacing)
+    of_each = mean_widths, np.asarray(median(floor, numbers, each))
+    width, depth = (np.append(0.0, values)[numbers][nearest] for values in of_each)
     # the direction in which the mask changes least
     reach = max(float(width[mask].max()) / spacing, 1.0)
     slope = np.gradient(gaussian_filter(mask.astype(np.float64), 0.5 * reach))

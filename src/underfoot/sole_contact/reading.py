@@ -42,14 +42,15 @@ class SensorReading:
     outermost_share: float
     loads: Array
     peaks: Array
-    _film: tuple[Array, ...] = field(repr=False)  # x, y, pressure and thickness
+    _film: tuple[Array, Array, Array, Array] = field(repr=False)  # x, y, pressure and thickness
     _pocket: dict[str, float] = field(repr=False)
 
     @cached_property
     def seen(self) -> float:
         """Share of the film's load where the inlet reads at least half of the film's pressure."""
-        x, y, pressure, _ = self._film
-        return seen_share(pressure, pocket_pressure(*self._film, x, y, **self._pocket)[0])
+        x, y, pressure, gap = self._film
+        read, _ = pocket_pressure(x, y, pressure, gap, x, y, **self._pocket)
+        return seen_share(pressure, read)
 
 
 def floor_sensor_reading(

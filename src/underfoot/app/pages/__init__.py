@@ -34,7 +34,7 @@ write the module and its line in ``PAGES``; nothing else names it.
 from __future__ import annotations
 
 from ..session import Page
-from . import answer, design, start, trials
+from . import answer, compare, design, start, studies, trials
 
 DESIGN, SAFETY, SCIENCE = "design", "safety", "science"
 """The doors: who comes in. Their words are ``doors.NAME`` in the text files."""
@@ -43,5 +43,7 @@ PAGES = (
     Page("", "/", "start.title", "home", start.build),
     Page(DESIGN, "/design", "design.title", "straighten", design.build, design.example),
     Page(DESIGN, "/answer", "answer.title", "query_stats", answer.build),
+    Page(DESIGN, "/compare", "compare.title", "compare", compare.build),
     Page(SAFETY, trials.ROUTE, "trials.title", "directions_walk", trials.build, trials.example),
+    Page(SCIENCE, "/studies", "studies.title", "scatter_plot", studies.build, studies.example),
 )

@@ -9,6 +9,7 @@ from typing import Any
 from nicegui import ui
 
 from underfoot.case import Case
+from underfoot.core.presentation import percent
 
 from ..components import SoleView, sentences, table, task_line, title
 from ..inputs import Input, sliders
@@ -145,16 +146,16 @@ class _Answer:
             await self.session.ask("underfoot.app.work:previewed", path, {})
 
     def _headline(self, answer: dict[str, Any]) -> None:
-        texts = answer["texts"]
         with ui.element("div").classes("answer-card"):
             if answer["usable"]:
                 ui.label(self.text("answer.cof")).classes("soft")
-                ui.label(texts["cof"]).classes("big")
-                if texts["interval"]:
-                    ui.label(self.text("answer.interval", interval=texts["interval"]))
-                if texts["risk"]:
-                    ui.label(self.text("answer.risk", risk=texts["risk"])).classes("strong")
-                ui.label(texts["limit"]).classes("soft")
+                ui.label(f"{answer['cof']:.3f}").classes("big")
+                if answer["interval"]:
+                    low, high = (f"{end:.3f}" for end in answer["interval"])
+                    ui.label(self.text("answer.interval", low=low, high=high))
+                if answer["slip"] is not None:
+                    ui.label(self._risk(answer["slip"])).classes("strong")
+                ui.label(answer["limit"]).classes("soft")
             else:
                 sentences(answer["headline"], "strong")
         for caution in answer["cautions"]:
@@ -169,6 +170,14 @@ class _Answer:
                 sentences(lines, "soft")
         report = self.session.project.folder.name
         ui.label(self.text("answer.files", folder=f"{report}/results/{self.name}")).classes("soft")
+
+    def _risk(self, probability: float) -> str:
+        """Return how often a person slips, as people say it."""
+        if probability < 1e-3:
+            return self.text("answer.risk_rare")
+        if probability < 0.2:
+            return self.text("answer.risk_odds", count=f"{1 / probability:.0f}")
+        return self.text("answer.risk", share=percent(probability))
 
     # previews
 
@@ -186,10 +195,11 @@ class _Answer:
         path = str(self.session.project.path(self.name))
         answer = await self.session.ask("underfoot.app.work:previewed", path, changes)
         self.preview_cof = answer["cof"]
-        texts = answer["texts"]
+        cof, error = f"{answer['cof']:.3f}", f"{answer['error']:.3f}"
+        load, slip = answer["fluid_load"], answer["slip"]
         words = {
-            "preview": self.text("answer.preview", **texts),
-            "preview_note": self.text("answer.preview_note", **texts),
+            "preview": self.text("answer.preview", cof=cof, error=error, fluid_load=load),
+            "preview_note": "" if slip is None else self._risk(slip),
         }
         return {"texts": words, "html": answer["html"]}
 
@@ -213,12 +223,9 @@ class _Answer:
             off = 100 * (done.answer / self.preview_cof - 1) if self.preview_cof else 0.0
             self.behind.clear()
             with self.behind:
-                texts = {
-                    **answer["texts"],
-                    "preview": f"{self.preview_cof:.3f}",
-                    "off": f"{off:+.1f}",
-                }
-                ui.label(self.text("answer.replaced", **texts)).classes("strong")
+                cof, before = f"{done.answer:.3f}", f"{self.preview_cof:.3f}"
+                words = self.text("answer.replaced", cof=cof, preview=before, off=f"{off:+.1f}")
+                ui.label(words).classes("strong")
                 keep = ui.button(self.text("answer.keep"), on_click=lambda: self._keep(folder))
                 keep.props("no-caps outline")
 
@@ -252,16 +259,15 @@ class _Answer:
         with self.help:
             title(self.text("answer.help"), 2)
             for each in computed:
-                self._change(each, stored["cof"]["value"])
+                self._change(each, stored)
 
-    def _change(self, each: dict[str, Any], now: float) -> None:
+    def _change(self, each: dict[str, Any], now: dict[str, Any]) -> None:
         with ui.element("div").classes("help"):
             action = each["action"][:1].upper() + each["action"][1:]
-            ui.label(
-                self.text(
-                    "answer.change", action=action, now=f"{now:.3f}", cof=f"{each['cof']:.3f}"
-                )
-            )
+            cof, slip = now["cof"]["value"], now["slip_probability"]["value"]
+            numbers = {"now": f"{cof:.3f}", "cof": f"{each['cof']:.3f}"}
+            numbers |= {"before": percent(slip), "after": percent(each["slip_probability"])}
+            ui.label(self.text("answer.change", action=action, **numbers))
             make = ui.button(self.text("answer.make"), on_click=lambda: self._make(each))
             make.props("no-caps flat dense")
 
@@ -269,6 +275,6 @@ class _Answer:
         wanted = f"{self.name}, {each['name'].replace('_', ' ')}"
         new = self.session.project.copy(self.name, wanted, each["values"])
         if any(page.route == "/compare" for page in self.session.pages):
-            self.session.go("/compare", a=self.name, b=new)
+            self.session.go("/compare", variants=f"{self.name}|{new}")
         else:
             self.session.go(ROUTE, variant=new, run="1")

@@ -19,6 +19,26 @@ async function putSole(place, html) {
   if (before && place.sole) place.sole.colour(before.quantity);
 }
 
+// Show the plots of a design study at an address; a click on a design sends "chosen" with its number.
+// The axes and the design that a person chose stay.
+async function showStudy(id, address) {
+  const place = document.getElementById(id), response = place && await fetch(address);
+  if (!response || !response.ok) return;
+  const before = place.querySelector(".study"), axes = () => [...place.querySelectorAll(".study select")];
+  const chosen = before?.dataset.chosen, names = axes().map((axis) => axis.value);
+  place.innerHTML = await response.text();
+  const root = place.querySelector(".study");
+  if (chosen) root.dataset.chosen = chosen;
+  startStudy(root);
+  if (before) axes().forEach((axis, k) => { axis.value = names[k]; axis.dispatchEvent(new Event("change")); });
+}
+
+// Show a part of a page at an address.
+async function showPart(id, address) {
+  const place = document.getElementById(id), response = place && await fetch(address);
+  if (response && response.ok) place.innerHTML = await response.text();
+}
+
 // Send files one after the other into a folder of the project; "files" says where they are.
 function takeFiles(id, { folder, most, multiple, accept }, words) {
   const zone = document.getElementById(id), state = zone.querySelector(".drop-state");

@@ -31,6 +31,7 @@ function startStudy(root) {
     mark();
     const design = designs[number];
     find("chosen").hidden = false;
+    root.dataset.chosen = design.number;
     find("title").textContent = `Design ${design.number}${design.front ? ", on the front" : ""}`;
     const row = (tag, texts) => {
       const made = document.createElement("tr");
@@ -43,6 +44,7 @@ function startStudy(root) {
     const place = find("sole"), stored = root.querySelector(`template[data-sole="${design.number}"]`);
     for (const canvas of place.querySelectorAll("canvas")) canvas.getContext("webgl2")?.getExtension("WEBGL_lose_context")?.loseContext();
     place.replaceChildren(...(stored ? [stored.content.cloneNode(true)] : []));
+    root.dispatchEvent(new CustomEvent("chosen", { detail: design.number, bubbles: true }));
     const viewer = place.querySelector(".viewer");
     if (viewer) await startViewer(viewer).catch((problem) => { viewer.querySelector('[data-part="loading"]').textContent = `No 3-D picture (${problem.message}).`; });
   }
@@ -96,7 +98,8 @@ function startStudy(root) {
   find("up").value = goals[0] ?? columns.length - 1;
   scatter();
   parallel();
-  const first = designs.findIndex((d) => d.front);
+  const wanted = designs.findIndex((d) => String(d.number) === root.dataset.chosen);
+  const first = wanted >= 0 ? wanted : designs.findIndex((d) => d.front);
   if (first >= 0) choose(first);
   root.dataset.ready = "yes";
 }

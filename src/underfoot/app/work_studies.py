@@ -1,0 +1,102 @@
+"""What the pages of design studies and comparisons ask the computing processes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from underfoot.case import text as toml
+from underfoot.compute.result import Result
+from underfoot.core import Progress
+from underfoot.core.pool import available_processors
+from underfoot.core.presentation import percent, value_text
+from underfoot.explore import Study
+from underfoot.explore.check import study_check
+from underfoot.explore.status import study_status
+from underfoot.explore.study_file import flat_paths
+from underfoot.questions.comparison import chance_higher, compare
+from underfoot.report.design_studies import design_sole, shown, write_study_report
+from underfoot.report.dispatch import figures, sections
+from underfoot.report.export import export_result
+from underfoot.report.html import png
+from underfoot.report.page import page_part
+from underfoot.report.viewer import scene_section, viewer_scene
+
+from .work import Drawn, said
+
+COLUMNS = ("cof", "slip_probability", "fluid_load", "peak_fluid_pressure", "contact_area")
+"""Numbers of a result that the table of a comparison can be sorted by."""
+TRIED = 12
+"""Cases that are built while a study file is changed, to see which can't be."""
+
+
+def form(text: str, *, progress: Progress) -> dict[str, Any]:
+    """Return the sections of a study file with flat paths."""
+    plain = toml.parsed(text)
+    return {k: dict(flat_paths(v)) if isinstance(v, Mapping) else v for k, v in plain.items()}
+
+
+def state(file: str, folder: str, *, progress: Progress) -> dict[str, Any]:
+    """Return what a study will take, or how far it is where it was begun as the file is now."""
+    study = Study.load(file, folder)
+    store, plan = study.store, study.plan
+    ended = len(store.records()) if store.exists else 0
+    if not ended or not store.jobs() or store.plan().text != plan.text:
+        return {**said(study_check(plan, TRIED)), "ended": ended, "begun": False, "open": True}
+    status = study_status(study)
+    most = plan.designs * plan.cases_per_design
+    left = ended < most or status.endings["open"] > 0 or plan.method.front_grid is not None
+    return {**said(status), "ended": ended, "begun": True, "open": left}
+
+
+def computed(file: str, folder: str, *, progress: Progress) -> None:
+    """Compute what is not finished of a study, as ``underfoot study run`` does."""
+    study = Study.load(file, folder)
+    write_study_report(study, study.run(workers=available_processors(), progress=progress))
+
+
+def results(file: str, folder: str, whole: bool = True, *, progress: Progress) -> list[str]:
+    """Return what is finished of a study as parts of a page: the plots, and all that follows.
+
+    While it runs (not ``whole``) without surrogates, indices and their figures.
+    """
+    result = Study.load(file, folder).result()
+    ready = shown(result) if whole else result
+    pictures = {name: png(make()) for name, make in figures(ready).items()} if whole else {}
+    plots, *rest = sections(ready, pictures)[0]
+    return [page_part([plots]), page_part(rest)]
+
+
+def design(file: str, folder: str, number: int, *, progress: Progress) -> dict[str, str]:
+    """Return a design of a study: its sole as a part of a page and its case file."""
+    study = Study.load(file, folder)
+    result, name = study.result(), f"{study.plan.name}, design {number}"
+    job = next(job for job in result.jobs if job.design == number)
+    case = study.plan.base.replace({**job.changes, "name": name})
+    sole = Drawn(name, design_sole(study, result, number))
+    return {"case": case.to_toml(), "html": scene_section(viewer_scene([sole]))}
+
+
+def comparison(folders: Sequence[str], *, progress: Progress) -> dict[str, Any]:
+    """Return stored results side by side: words, a row each, every pair, and the page's part."""
+    found = compare(*(Result.load(folder) for folder in folders))
+    rows = []
+    for letter, result in zip(found.letters, found.results, strict=True):
+        known = {name: result.scalars[name] for name in COLUMNS if name in result.scalars}
+        numbers = {name: each.value for name, each in known.items()}
+        texts = {f"{name}_text": value_text(name, each) for name, each in known.items()}
+        rows.append({"letter": letter, "name": result.name, **numbers, **texts})
+    chances = [[_chance(one, other) for other in found.results] for one in found.results]
+    html = scene_section(viewer_scene(found.results))
+    return {**said(found), "rows": rows, "chances": chances, "html": html}
+
+
+def exported(folder: str, file: str, *, progress: Progress) -> str:
+    """Write the sole of a stored result for other programs; return what was written."""
+    return export_result(Result.load(folder), Path(file)).sentence()
+
+
+def _chance(one: Result, other: Result) -> str:
+    chance = None if one is other else chance_higher(one, other)
+    return "" if chance is None else percent(chance)
