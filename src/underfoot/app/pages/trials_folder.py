@@ -128,7 +128,9 @@ class FolderView:
             self._sheet()
 
         words = self.text(f"trials.{verdict or 'every'}")
-        chip = ui.button(f"{count} {words}", on_click=choose, color=None).classes(f"chip {verdict}")
+        chip = ui.button(f"{count} {words}", on_click=choose, color=None).classes(
+            f"chip is-{verdict}"
+        )
         chip.props("flat no-caps dense")
 
     def _sheet(self) -> None:
@@ -149,7 +151,7 @@ class FolderView:
                 ui.button(rest, on_click=more).props("flat no-caps")
 
     def _card(self, card: Mapping[str, Any]) -> None:
-        made = ui.element("button").classes(f"trial-card {card['verdict']}")
+        made = ui.element("button").classes(f"trial-card is-{card['verdict']}")
         with made.on("click", partial(self.show, card["file"])):
             ui.label(card["file"]).classes("name")
             if card["svg"]:

@@ -112,7 +112,7 @@ class TrialView:
     def _summary(self) -> None:
         view, text = self.view, self.text
         with ui.element("div").classes("trial-summary"):
-            ui.label(text(f"trials.{view['verdict']}")).classes(f"tag {view['verdict']}")
+            ui.label(text(f"trials.{view['verdict']}")).classes(f"tag is-{view['verdict']}")
             for words in view["numbers"]:
                 ui.label(words).classes("number")
             ui.label(", ".join(f"{n}: {v}" for n, v in view["conditions"].items())).classes("soft")
@@ -125,7 +125,7 @@ class TrialView:
             for step in sorted(view["steps"], key=lambda each: each["number"]):
                 number = "–" if step["rcof"] is None else f"{step['rcof']:.3f}"
                 words = f"{step['number']} {text('trials.side_' + step['side'])}: {number}"
-                chip = ui.button(words, color=None).classes(f"chip {step['verdict']}")
+                chip = ui.button(words, color=None).classes(f"chip is-{step['verdict']}")
                 chip.on_click(partial(self.choose_step, step["number"]))
                 chip.props("flat no-caps dense")
                 chip.props(f'aria-pressed="{str(step["number"] == view["chosen"]).lower()}"')
