@@ -125,7 +125,7 @@ class Cost:
         total = 0.0
         for process in psutil.Process().children(recursive=True):
             with contextlib.suppress(psutil.NoSuchProcess):
-                total += sum(process.cpu_times()[:2])
+                total += sum(process.cpu_times()[:4])  # those of its ended children too
         return total
 
 

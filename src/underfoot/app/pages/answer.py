@@ -14,7 +14,7 @@ from underfoot.core.presentation import percent
 from ..components import SoleView, sentences, table, task_line, title
 from ..inputs import Input, sliders
 from ..jobs import DONE, Task
-from ..session import Session
+from ..session import Session, address
 from ..variant_bar import new_variant, variant_bar
 
 ROUTE = "/answer"
@@ -127,6 +127,11 @@ class _Answer:
             if not self._current():
                 ui.label(self.text("answer.changed")).classes("caution")
             self.words = ui.element("div").props('aria-live="polite"')
+            beside = self.session.query.get("beside", "")
+            if beside in self.session.project.variants():
+                words = self.text("answer.beside", name=beside)
+                pair = address("/compare", variants=f"{beside}|{self.name}")
+                ui.link(words, pair).classes("strong")
             self._live()
             self.help = ui.element("div")
         with self.place:
@@ -274,7 +279,4 @@ class _Answer:
     def _make(self, each: dict[str, Any]) -> None:
         wanted = f"{self.name}, {each['name'].replace('_', ' ')}"
         new = self.session.project.copy(self.name, wanted, each["values"])
-        if any(page.route == "/compare" for page in self.session.pages):
-            self.session.go("/compare", variants=f"{self.name}|{new}")
-        else:
-            self.session.go(ROUTE, variant=new, run="1")
+        self.session.go(ROUTE, variant=new, run="1", beside=self.name)

@@ -85,10 +85,8 @@ class _Inspection:
 
     def _read(self) -> None:
         self.found.clear()
-        with self.found, ui.element("div").classes("row"):
-            ui.spinner(size="1.4em")
-            ui.label(self.text("sole_file.reading"))
         with self.found:
+            ui.label(self.text("sole_file.reading")).classes("soft")
             ui.timer(0, self._show, once=True)
 
     async def _show(self) -> None:
