@@ -108,6 +108,8 @@ def test_a_folder_is_dropped_edited_and_reported(tmp_path):
         assert len((kept / "edits.csv").read_text().splitlines()) == 3
         _press(page, "Redo the edit")
         edits.nth(1).wait_for(state="detached")
+        page.reload()
+        page.get_by_text("step 1 on plate 2: RCOF 0.2159").wait_for()
         assert page.complaints == []
 
 

@@ -90,6 +90,8 @@ def step_plot(one: FileResult, entry: Mapping[str, Any], signals: RecordSignals)
         {"id": "contact", "time": contact, "least": plate.start, "most": toe_off - least},
         {"id": "toe off", "time": toe_off, "least": contact + least, "most": plate.end},
     ]
+    if "exclude" in entry["by_hand"]:  # its marks show where it was; they are not moved
+        events = [{"id": each["id"], "time": each["time"]} for each in events]
     label = f"step {entry['number']} on {entry['plate']}"
     curves = (each for kind in RATIOS for each in one.curves.get(kind, ()))
     for curve in (each for each in curves if each["step"] == label):
