@@ -15,7 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "out" / "bundle"
 PROGRAM = FOLDER / "underfoot" / ("underfoot.exe" if sys.platform == "win32" else "underfoot")
-LEFT_OUT = ("torch", "pytest", "playwright", "sphinx", "pyright", "SurfaceTopography", "IPython")
+LEFT_OUT = ("torch", "pytest", "playwright", "sphinx", "pyright", "SurfaceTopography", "babel")
 """Packages of this environment that the program does without."""
 
 
@@ -33,7 +33,7 @@ def make() -> None:
     options += ["--collect-data=nicegui", "--recursive-copy-metadata=underfoot"]
     options += [f"--exclude-module={name}" for name in LEFT_OUT]
     PyInstaller.__main__.run([*options, str(ROOT / "packaging" / "launch.py")])
-    size = sum(path.stat().st_size for path in FOLDER.rglob("*") if path.is_file())
+    size = sum(path.stat().st_size for path in FOLDER.rglob("*") if not path.is_symlink())
     print(f"{FOLDER / 'underfoot'}: {size / 1e6:.0f} MB")
 
 

@@ -157,7 +157,7 @@ def test_from_the_first_page_to_a_compared_pair_in_under_ten_clicks(app):
             page.get_by_role("link", name="Compare with Work shoe on glycerol"),
         ]
         for number, place in enumerate(clicks):
-            place.click(timeout=240_000)
+            place.click(timeout=480_000)
             if number == 1:
                 page.wait_for_url("**/design?variant=*")
         page.wait_for_url("**/compare?**")
@@ -210,7 +210,7 @@ def test_fifty_megabytes_of_stl_are_inspected_and_used(app, tmp_path):
         assert cost.least < 6
         page.get_by_text("280 x 95 mm").first.wait_for()
         page.get_by_role("button", name="Use this sole").click()
-        page.get_by_text("The sole comes from ../soles/big.stl").wait_for()
+        page.get_by_text("The sole comes from big.stl").wait_for()
         assert page.complaints == []
 
 

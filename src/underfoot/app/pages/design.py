@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 from nicegui import ui
@@ -134,7 +135,8 @@ class _Design:
 
     def _sole(self, case: Case) -> None:
         if case.shoe.outsole is not None:
-            ui.label(self.text("design.from_file", file=case.shoe.outsole.file)).classes("soft")
+            file = Path(case.shoe.outsole.file).name
+            ui.label(self.text("design.from_file", file=file)).classes("strong")
         shoes = self._entries("shoe", case.catalogue)
         self._choice("shoe", shoes, case.entries.get("shoe"))
         if case.shoe.tread is not None:

@@ -41,7 +41,8 @@ async function showPart(id, address) {
 
 // Send files one after the other into a folder of the project; "files" says where they are.
 function takeFiles(id, { folder, most, multiple, accept }, words) {
-  const zone = document.getElementById(id), state = zone.querySelector(".drop-state");
+  const zone = document.getElementById(id), state = zone?.querySelector(".drop-state");
+  if (!zone) return; // filled anew meanwhile
   const input = Object.assign(document.createElement("input"), { type: "file", multiple, accept, hidden: true });
   zone.append(input);
   const say = (text, ...values) => { state.textContent = values.reduce((t, v, k) => t.replace(`%${k + 1}`, v), text); };
@@ -82,7 +83,7 @@ function showTexts(texts) {
 // Where a slider has come to rest the question says "last": at once where values are kept, so that
 // none is lost to who goes on quickly, else after a moment.
 function askLive(id, address, soleId, keep) {
-  const root = document.getElementById(id), inputs = [...root.querySelectorAll("input[type=range]")];
+  const root = document.getElementById(id), inputs = [...(root?.querySelectorAll("input[type=range]") || [])];
   let asked = "{}", settled = "{}", busy = false, telling = false, resting = 0;
   const values = () => JSON.stringify(Object.fromEntries(inputs.filter((i) => i.dataset.moved)
     .map((i) => [i.name, i.dataset.log ? 10 ** Number(i.value) : Number(i.value)])));
