@@ -217,7 +217,12 @@ class _Answer:
             jobs.cancel(self.tried)
         folder = str(self.session.project.inside("results", TRIED, self.name))
         arguments = (path, folder, self.changes)
-        self.tried = jobs.submit(self.text("answer.full"), RUN, *arguments, about=f"{self.name} …")
+        self.tried = jobs.submit(
+            self.text("answer.full"),
+            RUN,
+            *arguments,
+            about=f"{self.name} ({self.text('answer.live')})",
+        )
         self.behind.clear()
 
         async def ended(done: Task) -> None:

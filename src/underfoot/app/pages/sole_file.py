@@ -10,7 +10,7 @@ from nicegui import ui
 from underfoot.core import InputError
 
 from ..components import SoleView, drop_zone, sentences, table
-from ..session import Session
+from ..session import Session, as_json
 
 ACCEPT = ".step,.stp,.iges,.igs,.brep,.stl,.obj,.ply,.off,.glb,.gltf,.3mf,.3dm"
 AXES = ("auto", "+x", "-x", "+y", "-y", "+z", "-z")
@@ -101,6 +101,8 @@ class _Inspection:
             raise
         self.found.clear()
         self.view.show(answer["html"])
+        words = {"measures": " ".join(answer["headline"])}
+        ui.run_javascript(f"showTexts({as_json(words)})")
         with self.found:
             sentences(answer["headline"])
             use = ui.button(
