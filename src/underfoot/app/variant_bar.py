@@ -21,6 +21,13 @@ USUAL = {
 """Catalogue entries of a new variant: the best documented pair of the package."""
 
 
+def no_variant(session: Session, example: Callable[[Session], None]) -> None:
+    """Say that there is no variant yet, and offer an example to begin with."""
+    ui.label(session.text("design.none")).classes("lead")
+    begin = ui.button(session.text("design.begin"), on_click=lambda: example(session))
+    begin.props("no-caps unelevated")
+
+
 def new_variant(session: Session, wanted: str, **entries: str) -> str:
     """Write a variant made of catalogue entries and return its name."""
     name = session.project.free_name(wanted)

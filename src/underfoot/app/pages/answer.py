@@ -15,7 +15,7 @@ from ..components import SoleView, sentences, table, task_line, title
 from ..inputs import Input, sliders
 from ..jobs import DONE, Task
 from ..session import Session, address
-from ..variant_bar import new_variant, variant_bar
+from ..variant_bar import new_variant, no_variant, variant_bar
 
 ROUTE = "/answer"
 LIVE = (
@@ -35,11 +35,9 @@ def build(session: Session) -> None:
     """Show the variant's answer, computing it first where the address says so."""
     name = session.variant
     if name is None:
-        ui.label(session.text("design.none")).classes("lead")
-        begin = ui.button(session.text("design.begin"), on_click=lambda: example(session))
-        begin.props("no-caps unelevated")
-        return
-    _Answer(session, name).show()
+        no_variant(session, example)
+    else:
+        _Answer(session, name).show()
 
 
 def example(session: Session) -> None:
@@ -82,8 +80,9 @@ class _Answer:
 
     def run(self) -> None:
         """Compute the variant as its file says."""
-        title, path = self.text("answer.job"), str(self.session.project.path(self.name))
-        task = self.session.jobs.submit(title, RUN, path, str(self.folder), about=self.name)
+        arguments = (str(self.session.project.path(self.name)), str(self.folder))
+        job = self.text("answer.job")
+        task = self.session.jobs.submit(job, RUN, *arguments, about=self.name)
         self._follow(task)
 
     def _reload(self) -> None:

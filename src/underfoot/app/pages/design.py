@@ -14,8 +14,8 @@ from underfoot.case.sole import TreadPattern, usual_tread
 
 from ..components import SoleView, title
 from ..inputs import Input, number_field, sliders
-from ..session import Session
-from ..variant_bar import new_variant, variant_bar
+from ..session import Session, as_json
+from ..variant_bar import new_variant, no_variant, variant_bar
 from . import assumptions, sole_file
 
 ROUTE = "/design"
@@ -58,11 +58,9 @@ def build(session: Session) -> None:
     """Show the variant's form beside its sole."""
     name = session.variant
     if name is None:
-        ui.label(session.text("design.none")).classes("lead")
-        begin = ui.button(session.text("design.begin"), on_click=lambda: example(session))
-        begin.props("no-caps unelevated")
-        return
-    _Design(session, name).show()
+        no_variant(session, example)
+    else:
+        _Design(session, name).show()
 
 
 def example(session: Session) -> None:
@@ -120,7 +118,7 @@ class _Design:
             answer = await self._drawn({})
             self.session.jobs.warm()
             self.view.show(answer["html"])
-            ui.run_javascript(f"showTexts({answer['texts']!r})")
+            ui.run_javascript(f"showTexts({as_json(answer['texts'])})")
 
         ui.timer(0, drawn, once=True)
 
