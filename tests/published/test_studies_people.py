@@ -208,3 +208,12 @@ def test_g5_shares_every_parameter_with_g4():
     example = Case.load(folder / "human_slip_untreaded.toml")
     assert ours.slip == example.slip
     assert ours.shoe == example.shoe
+
+
+@pytest.mark.parametrize("outcome", [False, True])
+def test_no_logistic_where_everybody_or_nobody_slips(outcome):
+    difference = np.linspace(-0.1, 0.1, 30)
+    fit = g6.fitted_logistic(difference, np.full(30, outcome))
+    steps = g6.Slips(difference, 0 * difference, np.full(30, outcome), {}, fit)
+    assert np.isnan([fit.slope, fit.half]).all()
+    assert g6._logistic_words(steps) == ("everybody slips" if outcome else "nobody slips")

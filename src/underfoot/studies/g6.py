@@ -287,7 +287,12 @@ def precision_of_published(*, draws: int = 200, seed: int = 0) -> tuple[Array, A
 
 
 def fitted_logistic(difference: Array, slipped: Array) -> Logistic:
-    """Return the logistic of slips in ACOF - RCOF; separated data by Firth's penalty."""
+    """Return the logistic of slips in ACOF - RCOF; separated data by Firth's penalty.
+
+    All nan where everybody slips or nobody does: there is none then.
+    """
+    if slipped.all() or not slipped.any():
+        return Logistic(*[math.nan] * 5)
     outcome = slipped.astype(int)
     try:
         fit = logistic_regression(outcome, {"difference": difference})
@@ -385,8 +390,12 @@ def quantities(
             spread = math.sqrt(max(share * (1 - share), 1.0 / trials) / trials)
             found[f"steps.{name}.{sole}"] = Quantity.of(share, deviation=spread)
         spread = (one.fit.slope_high - one.fit.slope_low) / (2 * 1.96)
-        found[f"slope.{name}"] = Quantity.of(one.fit.slope, deviation=spread)
-        found[f"half.{name}"] = Quantity.of(one.fit.half, deviation=one.fit.half_error)
+        if math.isnan(one.fit.slope):
+            none = Quantity.none(f"{_who(one)} slips: there is no logistic")
+            found |= {f"slope.{name}": none, f"half.{name}": none}
+        else:
+            found[f"slope.{name}"] = Quantity.of(one.fit.slope, deviation=spread)
+            found[f"half.{name}"] = Quantity.of(one.fit.half, deviation=one.fit.half_error)
     return found
 
 
@@ -456,11 +465,10 @@ def _conclusions(
         "The differences between outsoles do not follow with certainty: real contact area gives "
         f"the right order ({area['soft'].cof - area['hard'].cof:+.3f} from hard to soft), films at "
         "asperities the opposite one, and the hardness itself is not printed.",
-        "Slips computed from gait and mass alone, with the printed friction at every speed, have "
-        f"a slope of {constant.fit.slope:.0f} and half of them slip at {constant.fit.half:.3f}; if "
-        "friction falls with the slipping speed as on the pin (0.47 at rest), the outcome hardly "
-        f"follows ACOF - RCOF any more (slope {falling.fit.slope:.0f}): the observed slopes speak "
-        "for friction that does not rise much towards rest under a real heel.",
+        "Slips computed from gait and mass alone, with the printed friction at every speed: "
+        f"{_logistic_words(constant)}. If friction falls with the slipping speed as on the pin "
+        f"(0.47 at rest): {_logistic_words(falling)}. The observed slope of -49.2 speaks for "
+        "friction that does not rise much towards rest under a real heel.",
         f"Fifty trials fix the slope to {low:.0f} .. {high:.0f} only: the slopes quoted from other "
         "studies (-41 to -55) are not told apart from -49.2.",
     )
@@ -516,11 +524,21 @@ def logistic_figure(steps: Mapping[str, Slips], drawn: tuple[Array, Array]) -> F
             points(difference, one.slipped + noise, colour="0.6", marker="."),
             Layer("band", x, low=low, high=high, colour=PRINTED, label=text),
             line(x, _curve(x, PRINTED_SLOPE, PRINTED_HALF), "report: slope -49.2", colour=PRINTED),
-            line(x, fitted, f"steps: slope {one.fit.slope:.0f}"),
+            line(x, fitted, f"steps: {_logistic_words(one)}"),
         )
         panels.append(Panel(layers, "ACOF - RCOF", "chance of a slip", STEPS[name]))
     title = "Fig. 37 C: computed slips and logistic curves"
     return Figure(panels, title, columns=2, size=(5.2, 3.8), share_y=True)
+
+
+def _who(steps: Slips) -> str:
+    return "everybody" if steps.slipped.all() else "nobody"
+
+
+def _logistic_words(steps: Slips) -> str:
+    if math.isnan(steps.fit.slope):
+        return f"{_who(steps)} slips"
+    return f"slope {steps.fit.slope:.0f}, half at {steps.fit.half:.3f}"
 
 
 def _curve(x: Any, slope: Any, half: Any) -> Array:
