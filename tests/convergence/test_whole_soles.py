@@ -47,6 +47,7 @@ def test_a_whole_sole_converges(tmp_path, name, spacing):
     cells = [data[f"cell_{each}"].values for each in ("area", "film_area")]
     assert all(each.min() > 0 for each in cells)
     assert found.usable, found.headline()
+    assert not found.labels.get("sipes"), "what the outline leaves of a channel is no sipe"
     pressures = [data[f"{each}_pressure"].values for each in ("contact", "fluid")]
     load = sum((p * a).sum() for p, a in zip(pressures, cells, strict=True))
     assert load * float(spacing[:-3]) ** 2 * 1e-6 == pytest.approx(500.0, rel=1e-3)

@@ -211,7 +211,7 @@ def test_the_report_room_is_not_imported_by_the_types_it_draws():
         ("cof", SourcedValue(0.1), "0.100"),
         ("cof", SourcedValue(None, reason="not converged"), "not determined: not converged"),
         ("slip_probability", SourcedValue(0.73, uncertainty=0.2), "73 % ± 20 %"),
-        ("slip_probability", SourcedValue(1.0, uncertainty=1e-5), "100 %"),
+        ("slip_probability", SourcedValue(1.0, uncertainty=1e-5), "above 99.9 %"),
     ],
 )
 def test_a_value_has_number_unit_and_uncertainty(name, scalar, text):

@@ -174,7 +174,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
             "lug_edges": "" if lugs is None else lugs.words() + chamfer_words(case),
             "drainage": drainage.words() if drainage else "",
             "sipes": ""
-            if sole.slits is None
+            if sole.slits is None or not sole.slits.length.any()
             else slit_words(sole.slits, giving="compliance" not in own and case.compliance.cut),
             "cof_spread_basis": getattr(law, "spread_basis", ""),
             **(positions.labels() if positions else {}),

@@ -41,6 +41,8 @@ WIDEST_SIPE = 1.2e-3
 """A channel narrower than this is a slit, m."""
 SHORTEST_SIPE = 3e-3
 """Of a slit that counts, m."""
+MOST_OPEN = 1 / 3
+"""Share of a slit's walls that may be the outline of the sole: half of them is a channel's rest."""
 SMALLEST_PIECE = 1e-6
 """A channel or lug of less area is a speck, m^2."""
 LUG_REACH = 10e-3
@@ -209,7 +211,7 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
         counted = counted if counted.any() else channel
         floor = floor_depth(channel_depth(surface), channel)
         depth = _shares(floor[counted])
-        sipe_count, sipe_length = _sipes(channel, widths, spacing)
+        sipe_count, sipe_length = _sipes(channel, surface.inside, widths, spacing)
         width = _shares(widths[counted])
         drained = float(
             np.count_nonzero(draining(surface.inside, channel)) / np.count_nonzero(channel)
@@ -244,20 +246,32 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
     )
 
 
-def _sipes(channel: Mask, widths: Array, spacing: float) -> tuple[int, float]:
+def _sipes(channel: Mask, inside: Mask, widths: Array, spacing: float) -> tuple[int, float]:
     """Return how many slits there are and their length in all, m."""
-    numbers, count = _slit_pieces(channel & (widths < WIDEST_SIPE), spacing)
+    numbers, count = _slit_pieces(channel & (widths < WIDEST_SIPE), inside, spacing)
     areas, mean_widths = _slit_widths(numbers, count, spacing)
     return count, float((areas / mean_widths).sum())
 
 
-def _slit_pieces(narrow: Mask, spacing: float) -> tuple[Labels, int]:
-    """Return the number of the slit of each cell and how many are long enough to count."""
+def _slit_pieces(narrow: Mask, inside: Mask, spacing: float) -> tuple[Labels, int]:
+    """Return the number of the slit of each cell and how many count.
+
+    Those that are long enough and have land on both sides: what the outline leaves of a channel is
+    none.
+    """
     from scipy.ndimage import find_objects
 
-    numbers, _ = pieces(narrow, diagonal=True)
+    numbers, count = pieces(narrow, diagonal=True)
     extent = [math.hypot(*(s.stop - s.start for s in box)) for box in find_objects(numbers)]
     own = np.array([False, *(cells * spacing >= SHORTEST_SIPE for cells in extent)])
+    walls, open_walls = np.zeros((2, count + 1))
+    for axis in (0, 1):
+        for step in (1, -1):
+            beside = np.roll(np.pad(numbers, 1), step, axis)[1:-1, 1:-1] > 0
+            sole = np.roll(np.pad(inside, 1), step, axis)[1:-1, 1:-1]
+            walls += np.bincount(numbers[~beside], minlength=count + 1)
+            open_walls += np.bincount(numbers[~sole], minlength=count + 1)
+    own &= open_walls < MOST_OPEN * walls
     kept = np.cumsum(own) * own
     return kept[numbers], int(kept.max())
 
@@ -305,7 +319,9 @@ def surface_without_slits(
     if not channel.any():
         return surface, None
     widths = local_width(channel, spacing)
-    numbers, count = _slit_pieces(channel & (widths < min(widest, WIDEST_SIPE)), spacing)
+    numbers, count = _slit_pieces(
+        channel & (widths < min(widest, WIDEST_SIPE)), surface.inside, spacing
+    )
     if count == 0:
         return surface, None
     mask = numbers > 0
