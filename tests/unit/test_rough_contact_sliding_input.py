@@ -186,8 +186,8 @@ def test_any_array_library_and_device_gives_the_same_contact(device, pressure):
 
 @pytest.mark.slow
 def test_memory_is_that_of_sixteen_fields(monkeypatch):
-    monkeypatch.syspath_prepend(Path(__file__).parents[2] / "benchmarks")
-    benchmark = importlib.import_module("rough_contact")
+    monkeypatch.syspath_prepend(Path(__file__).parents[2])
+    benchmark = importlib.import_module("benchmarks.rough_contact")
     for pressure, speed in ((0.3, 0.0), (1.0, 1.0)):
         assert benchmark.memory_in_arrays(2048, pressure, speed, "auto") < 16.0
 

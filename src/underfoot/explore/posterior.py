@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from scipy.special import ndtri
@@ -36,6 +36,8 @@ DISCREPANCY = 0.15
 """Scale of the half-normal prior of delta: the law of a pair misses its readings by about so much
 (docs/physics/pair_friction.md)."""
 WALKERS, STEPS, BURNT = 32, 1500, 500
+MOST_STEPS = 6 * STEPS
+"""Of a chain that is slow to forget where it began."""
 KEPT = 1000
 """Draws that are written."""
 LONG_ENOUGH = 20
@@ -177,10 +179,14 @@ def posterior(
     generator = np.random.default_rng(plan.method.seed)
     sampler = emcee.EnsembleSampler(WALKERS, size + 1, log_probability, vectorize=True)
     sampler.random_state = np.random.RandomState(plan.method.seed).get_state()
-    start = generator.uniform(0.05, 0.95, (WALKERS, size + 1))
-    for step, _ in enumerate(sampler.sample(start, iterations=STEPS), start=1):
-        progress("Sampling the posterior", 0.9 + 0.1 * step / STEPS)
-    lengths = STEPS / float(np.max(sampler.get_autocorr_time(quiet=True)))
+    last: Any = generator.uniform(0.05, 0.95, (WALKERS, size + 1))
+    lengths, steps = 0.0, 0
+    while lengths < LONG_ENOUGH and steps < MOST_STEPS:
+        start = last
+        for last in sampler.sample(start, iterations=STEPS):  # noqa: B007 the next part goes on
+            steps += 1
+            progress("Sampling the posterior", 0.9 + 0.1 * steps / MOST_STEPS)
+        lengths = steps / float(np.max(sampler.get_autocorr_time(quiet=True)))
     chain = sampler.get_chain(discard=BURNT, flat=True)
     kept = chain[np.linspace(0, len(chain) - 1, KEPT).round().astype(int)]
     flat = generator.uniform(0.0, 1.0, (KEPT, size))
