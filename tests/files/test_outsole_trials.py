@@ -84,8 +84,8 @@ def test_sipes_are_counted(tmp_path):
 
     found = read(triangles(heel_body(slit, step=0.25e-3)), FileSettings(spacing=0.25e-3))
     measures = tread_measures(found.surface)
-    assert measures.sipe_count == 6  # the last one is cut by the front end
-    assert measures.sipe_length == pytest.approx(6 * 30e-3, rel=0.15)
+    assert measures.sipe_count == 5  # the sixth has no wall at the front end: a step, no slit
+    assert measures.sipe_length == pytest.approx(5 * 30e-3, rel=0.15)
 
 
 @pytest.mark.slow
