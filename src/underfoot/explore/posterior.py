@@ -38,6 +38,8 @@ DISCREPANCY = 0.15
 WALKERS, STEPS, BURNT = 32, 1500, 500
 MOST_STEPS = 6 * STEPS
 """Of a chain that is slow to forget where it began."""
+PART = 50
+"""Steps between two words of progress."""
 KEPT = 1000
 """Draws that are written."""
 LONG_ENOUGH = 20
@@ -179,12 +181,12 @@ def posterior(
     generator = np.random.default_rng(plan.method.seed)
     sampler = emcee.EnsembleSampler(WALKERS, size + 1, log_probability, vectorize=True)
     sampler.random_state = np.random.RandomState(plan.method.seed).get_state()
-    last: Any = generator.uniform(0.05, 0.95, (WALKERS, size + 1))
+    state: Any = generator.uniform(0.05, 0.95, (WALKERS, size + 1))
     lengths, steps = 0.0, 0
     while lengths < LONG_ENOUGH and steps < MOST_STEPS:
-        start = last
-        for last in sampler.sample(start, iterations=STEPS):  # noqa: B007 the next part goes on
-            steps += 1
+        for _ in range(STEPS // PART):
+            state = sampler.run_mcmc(state, PART, skip_initial_state_check=steps > 0)
+            steps += PART
             progress("Sampling the posterior", 0.9 + 0.1 * steps / MOST_STEPS)
         lengths = steps / float(np.max(sampler.get_autocorr_time(quiet=True)))
     chain = sampler.get_chain(discard=BURNT, flat=True)

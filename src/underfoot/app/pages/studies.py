@@ -345,25 +345,28 @@ class _Rows:
         with self.place, ui.element("div").classes("study-row") as row:
             if shown is None:
                 ui.label(f"{path} = {json.dumps(value, ensure_ascii=False)}")
-                self._remover(row, lambda: read)
-                read: Callable[[], tuple[str, Any]] = lambda: (path, value)  # noqa: E731
-            else:
-                options = [*({path} if path else ()), *ALIASES[self.section], *paths()]
-                choice = ui.select(options, value=path or None, with_input=True)
-                choice.props("dense outlined options-dense").classes("study-path")
-                choice.props(f'label="{self.text("studies.path")}"')
-                self._remover(row, lambda: read)
-                fields = {key: self._field(key, shown[key]) for key in FIELDS[self.section]}
-                choice.on_value_change(lambda: self._proposed(choice.value, fields))
-                read = lambda: (  # noqa: E731
-                    choice.value or "",
-                    _value(self.section, {k: f.value for k, f in fields.items()}),
-                )
-            self.rows.append(read)
+                self._keep(row, lambda: (path, value))
+                return
+            options = [*({path} if path else ()), *ALIASES[self.section], *paths()]
+            choice = ui.select(options, value=path or None, with_input=True)
+            choice.props("dense outlined options-dense").classes("study-path")
+            choice.props(f'label="{self.text("studies.path")}"')
+            fields: dict[str, Any] = {}
 
-    def _remover(self, row: ui.element, read: Callable[[], Any]) -> None:
+            def read() -> tuple[str, Any]:
+                given = {key: field.value for key, field in fields.items()}
+                return choice.value or "", _value(self.section, given)
+
+            self._keep(row, read)
+            fields |= {key: self._field(key, shown[key]) for key in FIELDS[self.section]}
+            choice.on_value_change(lambda: self._proposed(choice.value, fields))
+
+    def _keep(self, row: ui.element, read: Callable[[], tuple[str, Any]]) -> None:
+        """Count a row, and show the button that removes it."""
+        self.rows.append(read)
+
         async def remove() -> None:
-            self.rows.remove(read())
+            self.rows.remove(read)
             row.delete()
             await self.changed()
 
