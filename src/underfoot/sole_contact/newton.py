@@ -114,12 +114,14 @@ def implicit_step(
     duration: float,
     film: Mask,
     content: Array,
+    tolerance: float,
     tick: Callable[[float], None],
 ) -> Attempt:
     """Return the state after ``duration`` under ``load``, if Newton finds it.
 
     All are on the box of the cells. ``film`` marks the cells that the pool reaches, ``content`` (m)
-    is the liquid that they hold at the start; ``tick`` receives the residual of each step.
+    is the liquid that they hold at the start, ``tolerance`` the largest relative imbalance; ``tick``
+    receives the residual of each Newton step.
     """
     pattern = cells.pattern
     area = problem.spacing**2
@@ -162,7 +164,7 @@ def implicit_step(
         error = max(error, 0.01 * float(np.abs(lacking).max()) / problem.decay)
         attempt.residuals.append(error)
         tick(error)
-        if error < problem.settings.tolerance:
+        if error < tolerance:
             attempt.state = State(
                 pressure,
                 approach,
