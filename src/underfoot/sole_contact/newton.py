@@ -68,6 +68,8 @@ class Cells:
         )
         self.pattern = Pattern(mask[self.box])
         self._compliance = compliance_within(problem.compliance, self.box)
+        # for directions of a Newton step: GMRES solves to 1e-3, balances are in double precision
+        self.direction = compliance_within(problem.compliance, self.box, np.float32)
         scale = float(np.median(self.pattern.gather(self._compliance.self_compliance)))
         self.preconditioner = Preconditioner(self.pattern, fit, scale, problem.spacing)
 
@@ -188,7 +190,7 @@ def implicit_step(
                 break
 
         def product(vector: Array, linear=linear) -> Array:
-            field = problem.compliance.apply(pattern.scatter(vector[:-1]))
+            field = cells.direction.apply(pattern.scatter(vector[:-1]))
             out = np.empty_like(vector)
             out[:-1] = linear.residual(vector[:-1], pattern.gather(field) - vector[-1])
             out[-1] = vector[:-1].mean()
