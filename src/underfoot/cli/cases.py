@@ -53,7 +53,9 @@ def run(
     advice = None
     if result.usable and not (shared.quick or no_advice):
         with bar("effect of possible changes") as progress:
-            advice = risk_assessment(given, processes=shared.processes, progress=progress)
+            advice = risk_assessment(
+                given, result=result, processes=shared.processes, progress=progress
+            )
     written = None
     if folder is not None:
         written = write_report(result, folder, overwrite=shared.overwrite, advice=advice, maps=maps)
