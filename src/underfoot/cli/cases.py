@@ -170,8 +170,8 @@ def risk(
 ) -> None:
     """Predict the slip probability, what limits the friction and the effect of changes.
 
-    Every change (tread, compound, floor, cleaning, shorter steps) is simulated with the whole
-    model.
+    Every change (tread, compound, floor, cleaning, shorter steps) is simulated, on the coarse grid
+    unless --full.
     """
     from underfoot.core import to_si
     from underfoot.questions.risk import risk_assessment
