@@ -69,7 +69,7 @@ class Section(BaseModel):
     ``note``.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     uncounted: ClassVar[tuple[str, ...]] = ()
     """Fields that a hash leaves out, such as the path of a file whose checksum counts."""

@@ -17,7 +17,6 @@ from .geometry import CELLS_REFUSED, CELLS_WANTED, SoleMap, SoleSurface, centred
 from .shape import Heel, SoleShape
 from .slits import Slits, slits_of, without_slits
 from .tread import Sipes
-from .tread_measures import surface_without_slits
 
 HALF, NARROW = 50.0, 10.0
 """Percentiles of the local width by area: what is refused, and what is listed."""
@@ -319,6 +318,10 @@ def surface_map(
         InputError: Grid too coarse for the plan form or for most of the channels; angle out of
             range.
     """
+    # compiled: numba takes a while to import
+    from ._kernels.height_buffer import tilted_rows
+    from .tread_measures import surface_without_slits
+
     _check_grid(surface, shoe_angle, spacing, padding)
     cosine, sine = math.cos(shoe_angle), math.sin(shoe_angle)
     surface, cuts = surface_without_slits(surface, CELLS_REFUSED * spacing)
@@ -330,8 +333,6 @@ def surface_map(
     count_y = math.ceil((high - low) / spacing - 1e-9) + 2 * margin
     x = (np.arange(count_x, dtype=np.float64) + 0.5 - margin) * spacing
     y = (low + high) / 2 + centred(count_y, spacing)
-    from ._kernels.height_buffer import tilted_rows  # compiled: numba takes a while to import
-
     clearance, origin = tilted_rows(
         (surface.x, surface.y), base, inside, (x + rear, y), cosine, sine
     )
