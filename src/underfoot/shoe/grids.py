@@ -92,9 +92,7 @@ def heel_map(
         breaches=tuple(breaches_of_grid),
         cut=cut,
         slits=slits,
-        removed=None
-        if heel.wear is None
-        else heel.land_height(x, y_map) - heel.unworn_height(x, y_map),
+        removed=None if heel.wear is None else heel.worn_off(x, y_map),
     )
 
 
@@ -108,8 +106,6 @@ def _heel_slits(
     x, y, stretch = places
     inside, land = masks
     sipes = tread.sipes
-    removed = heel.land_height(x, y) - heel.unworn_height(x, y)
-
     def level_at(i: Cells, j: Cells, along: Array, across: Array) -> Array:
         return tread.slit_distance(x[i, j] + along * stretch[i, j], y[i, j] + across * spacing)
 
@@ -120,7 +116,7 @@ def _heel_slits(
         inside,
         spacing,
         level_at,
-        depth=np.maximum(sipes.depth - removed, 0.0),
+        depth=np.maximum(sipes.depth - heel.worn_off(x, y), 0.0),
         width=np.full(x.shape, sipes.width),
         tangent=(np.full(x.shape, math.sin(angle)), np.full(x.shape, math.cos(angle))),
     )
@@ -202,7 +198,7 @@ def cut_heel(
 
 def channel_level(heel: SoleShape, x: Array, y: Array, spacing: float = 0.0) -> Array:
     """Return the distance (m) into the open channels of ``cut_heel``: 0 or less on land."""
-    depth = heel.unworn_height(x, y) - heel.land_height(x, y)
+    depth = -heel.worn_off(x, y)
     level = np.full(x.shape, -_FAR)
     tread, arc = heel.tread, heel.arc_channel
     if tread is not None and tread.depth > 0:
