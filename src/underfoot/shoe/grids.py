@@ -106,6 +106,7 @@ def _heel_slits(
     x, y, stretch = places
     inside, land = masks
     sipes = tread.sipes
+
     def level_at(i: Cells, j: Cells, along: Array, across: Array) -> Array:
         return tread.slit_distance(x[i, j] + along * stretch[i, j], y[i, j] + across * spacing)
 
