@@ -32,7 +32,9 @@ def underfoot(*arguments, folder, **settings):
 def finished(tmp_path_factory):
     """Return the folder and the process of one quick run."""
     folder = tmp_path_factory.mktemp("run")
-    return folder, underfoot("run", DRY, "--quick", *FAST, "--out", "result", folder=folder)
+    listed = {"PYTHONPROFILEIMPORTTIME": "1"}  # on stderr, what the process imports
+    done = underfoot("run", DRY, "--quick", *FAST, "--out", "result", folder=folder, **listed)
+    return folder, done
 
 
 def test_help_imports_nothing_heavy(tmp_path):
@@ -49,6 +51,14 @@ def test_help_imports_nothing_heavy(tmp_path):
     loaded = done.stdout.strip().splitlines()[-1]
     heavy = "numpy scipy pydantic pint tomlkit xarray matplotlib jinja2 numba".split()
     assert [name for name in heavy if f"'{name}'" in loaded] == []
+
+
+def test_a_run_on_a_parametric_tread_imports_no_compiler(finished):
+    _, done = finished
+    lines = (line for line in done.stderr.splitlines() if line.startswith("import time:"))
+    loaded = {line.rpartition("|")[2].strip() for line in lines}
+    assert {"underfoot.compute.run", "underfoot.shoe.grids", "scipy.ndimage"} <= loaded
+    assert loaded & {"numba", "pandas", "xarray", "matplotlib"} == set()
 
 
 def test_a_run_ends_with_a_table_and_leaves_a_whole_folder(finished):

@@ -15,9 +15,12 @@ from hypothesis import strategies as st
 from scipy.stats import norm
 
 from underfoot.case import Case
-from underfoot.core import InputError
+from underfoot.compute.positions import TOLERANCE
+from underfoot.compute.run import run
+from underfoot.core import Cancelled, InputError
 from underfoot.core.presentation import percent
 from underfoot.questions.changes import Change, possible_changes
+from underfoot.questions.effects import STAGE
 from underfoot.questions.risk import odds, risk_assessment
 from underfoot.slip import MODELS, Chang2004, RcofPopulation, needed_acof, slip_model
 
@@ -102,6 +105,67 @@ def test_changes_are_computed_and_ranked_by_the_chance_they_leave() -> None:
         *(f"{place}." for place in range(1, len(found.best) + 1)),
         *["-"] * (len(found.changes) - len(found.best)),
     ]
+
+
+def test_no_change_gives_back_the_result_and_other_walkers_take_its_friction() -> None:
+    tread = {"pattern": "grid", "depth": "3 mm", "lug_width": "12 mm", "channel_width": "6 mm"}
+    case = Case.from_text(TEXT).replace({f"shoe.tread.{key}": tread[key] for key in tread})
+    fine = case.replace("numerics.grid_spacing", "2 mm")
+    result = run(fine)
+    viscosity = fine.value("contaminant.viscosity")
+    same = Change("same", "same", "cleaning", {"contaminant.viscosity": viscosity})
+    slower = Change("slower", "slower", "walking", {"risk.rcof_mean": 0.15})
+    kept, walked = risk_assessment(fine, result=result, changes=[same, slower]).changes
+    for name in ("cof", "fluid_load"):
+        assert kept.number(name) == pytest.approx(result.value(name), rel=1e-6)
+    assert kept.number("slip_probability") == pytest.approx(
+        result.value("slip_probability"), abs=0.01
+    )
+    assert walked.scalars["cof"] == result.scalars["cof"]
+    assert (
+        walked.scalars["slip_probability"]
+        == (run(fine.replace(slower.values)).scalars["slip_probability"])
+    )
+    with pytest.raises(InputError, match="not of this case"):
+        risk_assessment(case, result=result)
+
+
+def test_a_motion_with_a_history_is_run_for_each_change() -> None:
+    case = Case.from_text(TEXT).replace("motion", "heel_strike_to_flat")
+    case = case.replace("numerics.tolerance", TOLERANCE)
+    rougher = Change("rougher", "rougher", "floor", {"floor.roughness.rq": 5e-6})
+    (found,) = risk_assessment(case, changes=[rougher]).changes
+    alone = run(case.replace(rougher.values), quick=True)  # no tread: one position either way
+    for name, scalar in found.scalars.items():
+        assert scalar.value == pytest.approx(alone.value(name), rel=1e-9)
+    assert found.error is None
+
+
+def test_cancel_ends_the_changes() -> None:
+    def stop(stage: str, fraction: float, residual: float | None = None) -> None:
+        if stage == STAGE:
+            raise Cancelled(stage)
+
+    with pytest.raises(Cancelled):
+        risk_assessment(Case.from_text(TEXT), progress=stop)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("shoe", ["work_shoe_full_tread", "work_shoe_untreaded"])
+def test_changes_are_those_of_whole_runs(shoe) -> None:
+    case = Case.load(f"examples/{shoe}_glycerol.toml")
+    found = risk_assessment(case)
+    slips = {"own": found.outcome.number("slip_probability")}
+    for effect in found.changes:
+        alone = run(case.replace(effect.change.values), quick=True)
+        off = abs(effect.number("cof") - alone.value("cof"))
+        assert off <= max(0.01, effect.error or 0.0), effect.change.name
+        slips[effect.change.name] = alone.value("slip_probability")
+        off = abs(effect.number("slip_probability") - slips[effect.change.name])
+        assert off <= 0.03, effect.change.name
+    best = [each.change.name for each in found.best]
+    assert best[:3] == sorted(best, key=lambda name: slips[name])[:3]
+    assert all(slips[name] < slips["own"] for name in best[:3])
 
 
 def test_without_a_film_the_fluid_limits() -> None:

@@ -20,6 +20,9 @@ def test_no_change_is_the_march_itself(solved):
     assert not same.status.usable
     for name, value in solved.values.items():
         assert same.values[name] == pytest.approx(value, rel=1e-9), name
+    assert same.cof.value == pytest.approx(solved.values["cof"], rel=1e-9)
+    assert same.cof_draws is not None
+    assert same.cof_draws.std(ddof=1) == pytest.approx(same.cof.uncertainty, rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -51,6 +54,8 @@ def test_another_plan_of_the_tread_is_refused(solved):
         solved.continued({"shoe.tread.lug_width": "7 mm"})
 
 
-def test_a_motion_with_a_history_is_refused():
+def test_a_motion_with_a_history_is_refused(solved):
+    with pytest.raises(InputError, match="history"):
+        solved.continued({"motion": "heel_strike_to_flat"})
     with pytest.raises(InputError, match="history"):
         Continuation(CASE.replace("motion", "heel_strike_to_flat"))

@@ -9,8 +9,9 @@ import pytest
 from underfoot.compute import summary
 from underfoot.core import InputError, SourcedValue, Status
 from underfoot.questions.changes import Change
+from underfoot.questions.effects import ChangeEffect
 from underfoot.questions.outcomes import Outcome
-from underfoot.questions.risk import ChangeEffect, ModelRisk, RiskAssessment
+from underfoot.questions.risk import ModelRisk, RiskAssessment
 from underfoot.questions.sensitivity import QUANTITIES, Effect, Sensitivity
 from underfoot.questions.wear import WearSeries, deepest_wear, limit_load
 from underfoot.questions.wear_limit import Crossing, LimitCrossing, WearPoint
@@ -88,13 +89,14 @@ def assessment(*effects, missing=0.1, present=None):
 
 
 def effect(name, cof, slip, **changes):
-    return ChangeEffect(Change(name, f"do {name}", "shoe", {}), outcome(cof, slip, **changes))
+    scalars = outcome(cof, slip, **changes).scalars
+    return ChangeEffect(Change(name, f"do {name}", "shoe", {}), scalars)
 
 
 def test_changes_are_ranked_by_the_probability_they_leave_then_by_friction():
     worse, failed = (
         effect("worse", 0.05, 0.9),
-        ChangeEffect(Change("x", "do x", "shoe", {}), FAILED),
+        ChangeEffect(Change("x", "do x", "shoe", {}), {}, "not converged"),
     )
     found = assessment(
         worse,

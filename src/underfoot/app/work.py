@@ -14,11 +14,12 @@ import numpy as np
 
 from underfoot.case import Case
 from underfoot.compute.continuation import preview
+from underfoot.compute.numbers import slip_probability
 from underfoot.compute.result import Result
 from underfoot.compute.run import run as result_of
 from underfoot.compute.sole import bottom_surface
 from underfoot.compute.summary import friction_limit
-from underfoot.core import Progress, SourcedValue
+from underfoot.core import Progress
 from underfoot.core.fields import Fields, labelled
 from underfoot.core.files import checksum
 from underfoot.core.presentation import Presentable, quantity_text
@@ -31,7 +32,6 @@ from underfoot.report.viewer import scene_section, viewer_scene
 from underfoot.report.writing import write_text
 from underfoot.shoe.files import FileSettings
 from underfoot.shoe.tread_measures import channel_depth, tread_measures
-from underfoot.slip import RcofPopulation, slip_model, slip_risk
 
 FINEST_DRAWN = 20_000
 """Cells of a sole that is drawn while sliders move."""
@@ -121,7 +121,7 @@ def advised(path: str, folder: str, *, progress: Progress) -> None:
     """Add what would help to a stored result of a case, as ``underfoot run`` does after it."""
     result, case = Result.load(folder), Case.load(path)
     if result.usable and result.provenance.case_hash == case.hash:
-        advice = risk_assessment(case, progress=progress)
+        advice = risk_assessment(case, result=result, progress=progress)
         write_report(result, folder, overwrite=True, advice=advice)
 
 
@@ -152,14 +152,11 @@ def previewed(path: str, changes: Mapping[str, Any], *, progress: Progress) -> d
             "film_thickness": (axes, seen.film_thickness, {"units": "m"}),
         }
     )
-    cof = SourcedValue(seen.values["cof"], "1", uncertainty=seen.errors["cof"])
-    rcof = RcofPopulation(changed.risk.rcof_mean, changed.risk.rcof_sd)
-    slip = slip_risk(cof, rcof=rcof, model=slip_model(changed.risk.name)).probability.value
     return {
-        "cof": cof.value,
-        "error": cof.uncertainty,
+        "cof": seen.cof.value,
+        "error": seen.errors["cof"],
         "fluid_load": quantity_text(seen.values["fluid_load"], "N"),
-        "slip": slip,
+        "slip": slip_probability(changed, seen.cof, seen.cof_draws)[0].value,
         "html": _html(Drawn(changed.name, fields)),
     }
 

@@ -5,8 +5,6 @@ A *slot* is one choice of the case (its friction law, its tread pattern). It is 
 checks, sources and ``build``. Defining the class is all that a new option takes.
 """
 
-from __future__ import annotations
-
 import types
 import typing
 from collections.abc import Iterator, Mapping
@@ -69,7 +67,7 @@ class Section(BaseModel):
     ``note``.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     uncounted: ClassVar[tuple[str, ...]] = ()
     """Fields that a hash leaves out, such as the path of a file whose checksum counts."""
@@ -107,7 +105,7 @@ class Section(BaseModel):
         return given
 
     @classmethod
-    def _bound(cls, section: Section, key: str, origin: Origin) -> Origin:
+    def _bound(cls, section: "Section", key: str, origin: Origin) -> Origin:
         """Return the origin tied to the value that the section holds."""
         field, written = cls.model_fields.get(key), origin.leaf.uncertainty
         if field is None:
@@ -215,7 +213,7 @@ class Option(Section):
     reads: ClassVar[tuple[str, ...]] = ()
     """Paths of other sections that only some options read; nobody else lets them be given."""
 
-    _known: ClassVar[dict[str, dict[str, type[Option]]]] = {}
+    _known: ClassVar[dict[str, dict[str, type["Option"]]]] = {}
 
     @classmethod
     def __pydantic_init_subclass__(cls, **options: Any) -> None:
@@ -240,13 +238,13 @@ class Option(Section):
         return core_schema.with_info_plain_validator_function(cls._validated)
 
     @classmethod
-    def _validated(cls, given: Any, info: ValidationInfo) -> Option:
+    def _validated(cls, given: Any, info: ValidationInfo) -> "Option":
         return cls.pick(given).model_validate(
             {cls.key: given} if isinstance(given, str) else given, context=info.context
         )
 
     @classmethod
-    def options(cls) -> dict[str, type[Option]]:
+    def options(cls) -> dict[str, type["Option"]]:
         """Return the options of the slot by name, those of other packages too."""
         for name, address in _entry_points().get(f"underfoot.{cls.slot}", {}).items():
             if name not in cls.known():
@@ -254,7 +252,7 @@ class Option(Section):
         return dict(cls.known())
 
     @classmethod
-    def known(cls) -> dict[str, type[Option]]:
+    def known(cls) -> dict[str, type["Option"]]:
         """Return the options of the slot whose classes are defined by now."""
         return cls._known.get(cls.slot, {})
 
@@ -264,7 +262,7 @@ class Option(Section):
         return sum(map(len, cls._known.values()))
 
     @classmethod
-    def pick(cls, given: Any) -> type[Option]:
+    def pick(cls, given: Any) -> type["Option"]:
         """Return the class of the option that ``given`` names, or that its keys choose."""
         if isinstance(given, cls):
             return type(given)
@@ -293,7 +291,7 @@ class Option(Section):
             raise refused_at(cls, (cls.key,), error, name) from error
 
     @classmethod
-    def _load(cls, address: str) -> type[Option]:
+    def _load(cls, address: str) -> type["Option"]:
         """Return the option at ``module:Class``, of another package or of the user's own."""
         module, _, name = address.partition(":")
         try:

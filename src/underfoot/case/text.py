@@ -1,7 +1,7 @@
 """Case files as text: read, change a value with its comments kept, write, and where keys stand."""
 
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -94,7 +94,7 @@ def _set(document: Any, parts: list[str], value: Any, expand: Callable[[Any, str
         else:
             table.pop(key, None)
             leaf = "value" in value
-            table[key] = _inline(dict(value)) if leaf else dict(value)
+            table[key] = tomlkit.value(_line(value)) if leaf else dict(value)
     elif isinstance(old, Item) and not isinstance(old, dict):
         item, trivia = tomlkit.item(value), old.trivia
         item.trivia.indent, item.trivia.trail = trivia.indent, trivia.trail
@@ -110,36 +110,31 @@ def _table_like(parent: Any) -> Any:
 
 def written(tree: Mapping[str, Any], comment: str = "") -> str:
     """Return nested mappings as TOML: a mapping with ``value`` stands on one line."""
-    document = tomlkit.document()
-    if comment:
-        document.add(tomlkit.comment(comment))
-    plain = {key: item for key, item in tree.items() if not isinstance(item, Mapping)}
-    for key, item in {**plain, **tree}.items():
-        document[key] = _table(item) if isinstance(item, Mapping) else item
-    return tomlkit.dumps(document)
+    tables = "\n".join(_tables(tree))
+    return f"# {comment}\n{tables}" if comment else tables
 
 
-def _table(tree: Mapping[str, Any]) -> Any:
-    table = tomlkit.table()
+def _tables(tree: Mapping[str, Any], path: tuple[str, ...] = ()) -> Iterator[str]:
+    """Yield each table with its header; one of tables alone goes without."""
     below = {k: v for k, v in tree.items() if isinstance(v, Mapping) and "value" not in v}
-    for key, value in tree.items():
-        if key not in below:
-            table[key] = _inline(value)
+    lines = [f"{_key(key)} = {_line(tree[key])}\n" for key in tree if key not in below]
+    if lines or not below:
+        header = f"[{'.'.join(map(_key, path))}]\n" if path else ""
+        yield header + "".join(lines)
     for key, value in below.items():
-        table[key] = _table(value)
-    return table
+        yield from _tables(value, (*path, key))
 
 
-def _inline(value: Any) -> Any:
-    if not isinstance(value, dict | list | tuple):
-        return value
-    if isinstance(value, dict):
-        inline = tomlkit.inline_table()
-        inline.update({key: _inline(item) for key, item in value.items()})
-        return inline
-    array = tomlkit.array()
-    array.extend(map(_inline, value))
-    return array
+def _key(name: str) -> str:
+    return tomlkit.key(name).as_string()
+
+
+def _line(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{_key(key)} = {_line(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_line, value))}]"
+    return tomlkit.item(value).as_string()
 
 
 def save(text: str, path: Path, *, overwrite: bool = False) -> None:

@@ -53,7 +53,9 @@ def run(
     advice = None
     if result.usable and not (shared.quick or no_advice):
         with bar("effect of possible changes") as progress:
-            advice = risk_assessment(given, processes=shared.processes, progress=progress)
+            advice = risk_assessment(
+                given, result=result, processes=shared.processes, progress=progress
+            )
     written = None
     if folder is not None:
         written = write_report(result, folder, overwrite=shared.overwrite, advice=advice, maps=maps)
@@ -168,8 +170,8 @@ def risk(
 ) -> None:
     """Predict the slip probability, what limits the friction and the effect of changes.
 
-    Every change (tread, compound, floor, cleaning, shorter steps) is simulated with the whole
-    model.
+    Every change (tread, compound, floor, cleaning, shorter steps) is simulated, on the coarse grid
+    unless --full.
     """
     from underfoot.core import to_si
     from underfoot.questions.risk import risk_assessment

@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 
 from underfoot.case import Case
-from underfoot.core import ConvergenceError, InputError, Progress, Status, silent
+from underfoot.case.context import Context
+from underfoot.core import ConvergenceError, InputError, Progress, SourcedValue, Status, silent
 from underfoot.core.arrays import Array
 from underfoot.friction import FrictionLaw
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
@@ -30,6 +31,7 @@ from underfoot.sole_contact.lug_edges import EdgedLaw
 from underfoot.sole_contact.solver import SoleContact, solve_on
 
 from .contact import edged_law, solved_motion, solver_settings
+from .contact_friction import contact_friction
 from .positions import place_numbers
 from .resolve import resolved
 from .sole import sole_map
@@ -53,6 +55,8 @@ class Preview:
 
     Attributes:
         changes: What differs from the case that was solved.
+        cof: With the spread of the friction law, as a result has it.
+        cof_draws: (n,) of that spread; None where the law has none.
         values: Scalars of a result by name, at the tread's own position.
         errors: Estimated error of each against a march of the changed case.
         sole: The undeformed sole on the grid of the fields.
@@ -64,6 +68,8 @@ class Preview:
     """
 
     changes: Mapping[str, Any]
+    cof: SourcedValue
+    cof_draws: Array | None
     values: Mapping[str, float]
     errors: Mapping[str, float]
     sole: SoleMap
@@ -95,12 +101,7 @@ class Continuation:
     """
 
     def __init__(self, case: Case, *, quick: bool = True, progress: Progress = silent) -> None:
-        if case.motion.build() is not None:
-            raise InputError(
-                "a history of the motion can't be continued",
-                where="motion",
-                allowed="a load that rises and stays",
-            )
+        _refuse_history(case)
         self.case = case
         numerics = case.numerics
         self.spacing = numerics.quick_grid_spacing if quick else numerics.grid_spacing
@@ -135,6 +136,7 @@ class Continuation:
         """
         began = time.process_time()
         case = self.case.replace(changes)
+        _refuse_history(case)
         parts, first, second = self._steps(case)
         one, two = parts.numbers(case, first), parts.numbers(case, second)
         values, errors = {}, {}
@@ -142,8 +144,12 @@ class Continuation:
             off = self.values[name] - self._unchanged[name]
             values[name] = two[name] + off
             errors[name] = SAFETY * (abs(off) + abs(two[name] - one[name]))
+        drawn = contact_friction(case, parts.context, parts.law, parts.sole, second)
+        factor = max(values["cof"] / two["cof"], 0.0) if two["cof"] else 1.0
         return Preview(
             dict(changes),
+            drawn.sums.cof.scaled(factor),
+            None if drawn.sampled is None else factor * drawn.sampled.cof,
             values,
             errors,
             parts.sole,
@@ -202,10 +208,20 @@ def preview(
     return _SOLVED[key].continued(changes)
 
 
+def _refuse_history(case: Case) -> None:
+    if case.motion.build() is not None:
+        raise InputError(
+            "a history of the motion can't be continued",
+            where="motion",
+            allowed="a load that rises and stays",
+        )
+
+
 @dataclass(frozen=True, slots=True)
 class _Parts:
     """What a case becomes on one grid."""
 
+    context: Context
     sole: SoleMap
     compliance: Compliance
     asperities: PressureGapLaw
@@ -226,6 +242,7 @@ def _parts(case: Case, spacing: float, near: tuple[Case, _Parts] | None = None) 
     asperities = case.rough_contact.build(context)
     law = case.friction.build(context)
     return _Parts(
+        context,
         sole,
         near[1].compliance if same and near else case.compliance.build(context, sole),
         asperities,

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from underfoot.case import Case
 from underfoot.core import Breach, SourcedValue, Status, content_hash, display
@@ -60,15 +60,8 @@ def scalars(
     model: SlipModel | None = None,
 ) -> tuple[dict[str, SourcedValue], SlipRisk]:
     """Return the numbers of a result by name, and the slip risk behind one of them."""
-    mean, spread = case.sourced("risk.rcof_mean"), case.sourced("risk.rcof_sd")
-    # the case itself lists an assumed required friction, so the risk need not do so again
-    risk = slip_risk(
-        friction.cof,
-        rcof=RcofPopulation(case.risk.rcof_mean, case.risk.rcof_sd, mean.source),
-        model=model or case.risk.build(),
-        samples=None if sampled is None else sampled.cof,
-    )
-    assumed = risk.probability.assumed or mean.assumed or spread.assumed
+    draws = None if sampled is None else sampled.cof
+    probability, risk = slip_probability(case, friction.cof, draws, model)
 
     def computed(value: float, unit: str, note: str = "") -> SourcedValue:
         return SourcedValue(
@@ -93,17 +86,39 @@ def scalars(
         "minimum_film_thickness": computed(thinnest, "m")
         if thinnest is not None
         else SourcedValue(None, "m", reason="dry floor: no film"),
-        "slip_probability": replace(
-            risk.probability,
-            assumed=assumed,
-            note="; ".join(
-                f"extrapolated: {one.quantity} = {one.low:.3f} is outside the tested "
-                f"{one.range.low:g} to {one.range.high:g}"
-                for one in risk.breaches
-            ),
-        ),
+        "slip_probability": probability,
     }
     return numbers, risk
+
+
+def slip_probability(
+    case: Case,
+    acof: SourcedValue,
+    draws: ArrayLike | None = None,
+    model: SlipModel | None = None,
+) -> tuple[SourcedValue, SlipRisk]:
+    """Return the slip probability at an available friction, and the risk behind it.
+
+    ``draws`` (n,) of the friction stand for its spread; ``model`` takes the place of the case's.
+    """
+    mean, spread = case.sourced("risk.rcof_mean"), case.sourced("risk.rcof_sd")
+    # the case itself lists an assumed required friction, so the risk need not do so again
+    risk = slip_risk(
+        acof,
+        rcof=RcofPopulation(case.risk.rcof_mean, case.risk.rcof_sd, mean.source),
+        model=model or case.risk.build(),
+        samples=draws,
+    )
+    probability = replace(
+        risk.probability,
+        assumed=risk.probability.assumed or mean.assumed or spread.assumed,
+        note="; ".join(
+            f"extrapolated: {one.quantity} = {one.low:.3f} is outside the tested "
+            f"{one.range.low:g} to {one.range.high:g}"
+            for one in risk.breaches
+        ),
+    )
+    return probability, risk
 
 
 def undetermined(case: Case, status: Status) -> dict[str, SourcedValue]:

@@ -3,7 +3,6 @@
 import re
 import time
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from itertools import chain
 from typing import Any
 
@@ -21,7 +20,7 @@ from underfoot.core import (
     unknown_name,
 )
 from underfoot.core.fields import Fields, labelled
-from underfoot.friction import FrictionLaw, cof, sampled_cof
+from underfoot.friction import FrictionLaw
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
 from underfoot.shoe import SoleMap
 from underfoot.shoe.lug_drainage import lug_drainage
@@ -43,6 +42,7 @@ from .contact import (
     scanned,
     solved_motion,
 )
+from .contact_friction import contact_friction
 from .pictured import pictured_fields
 from .positions import Place, tread_positions
 from .resolve import resolved, turned
@@ -108,41 +108,13 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
     contact = solved_motion(case, sole, compliance, asperities, watch=recorder, **common)
     solved = time.perf_counter()
     speed = case.motion.speed
-    pressures = contact.contact_pressure, contact.fluid_pressure
     local = {
         "contact_pressure": contact.contact_pressure,
         "speed": speed,
         "film_thickness": contact.film_thickness,
     }
-    parts, lugs, suction = local_law(**local), None, None
-    if isinstance(local_law, EdgedLaw):
-        lugs = local_law.lugs(**local)
-        pull = case.sourced("film.suction")
-        pull = pull if pull.uncertainty else replace(pull, uncertainty=numbers.SUCTION_SPREAD)
-        suction = pull, lugs.suction_share(parts)
-    sampled = sampled_cof(
-        law,
-        *pressures,
-        contact.film_thickness,
-        speed=speed,
-        wet=contact.wet,
-        **contact.areas,
-        fluid_inputs={} if context.viscosity is None else {"viscosity": context.viscosity},
-        film_error=numbers.FILM_ERROR,
-        sole=numbers.sole_name(case),
-        contact_factor=1.0 if lugs is None else lugs.factor_map(),
-        suction=suction,
-        seed=case.numerics.seed,
-    )
-    friction = cof(
-        parts,
-        *pressures,
-        spacing=sole.spacing,
-        wet=contact.wet,
-        **contact.areas,
-        sampled=sampled,
-        source=f"{law.name} law: {law.source}",
-    )
+    found = contact_friction(case, context, local_law, sole, contact)
+    parts, lugs, friction, sampled = found.parts, found.lugs, found.sums, found.sampled
     sensor = scanned(case, sole, contact, viscosity=viscosity)
 
     def solved_quick(case: Case, place: Place, progress: Progress) -> tuple[SoleMap, SoleContact]:

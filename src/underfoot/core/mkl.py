@@ -66,6 +66,8 @@ class Pardiso:
 
     def __init__(self, matrix: sp.csr_matrix, kind: str) -> None:
         self._system = _System(matrix, kind)
+        if kind == "positive definite":  # maps, factorised once: minimum degree, half the time
+            self._system.options[1] = 0
         self._system.call(_ANALYSE)
         self._system.call(_FACTORISE)
 

@@ -1,6 +1,6 @@
 """A number that knows its unit, its source, how sure it is and whether it was assumed."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from .units import display
@@ -45,3 +45,13 @@ class SourcedValue:
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON and CSV."""
         return {name: getattr(self, name) for name in self.__slots__}
+
+    def scaled(self, factor: float) -> "SourcedValue":
+        """Return the value, its uncertainty and its interval times a factor, 0 or more."""
+        ends = self.interval
+        return replace(
+            self,
+            value=None if self.value is None else factor * self.value,
+            uncertainty=None if self.uncertainty is None else factor * self.uncertainty,
+            interval=None if ends is None else (factor * ends[0], factor * ends[1]),
+        )

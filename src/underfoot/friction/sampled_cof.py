@@ -121,7 +121,7 @@ def sampled_cof(
 
     def sums(shear: FrictionParts, solid: Any, fluid: Any) -> Array:
         weighted = ((shear.adhesion, solid), (shear.hysteresis, solid), (shear.viscous, fluid))
-        return np.array([float(np.sum(part * weight)) for part, weight in weighted]) / load
+        return np.array([np.vdot(part, weight) for part, weight in weighted]) / load
 
     exact = sums(law(contact, speed, film), contact_factor * cells, mask * cells)
     coarse = sums(law(pressure, speed, gap), counts, wet_counts)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 class Outcome:
     """Numbers of one computed case, as those of ``compute.result.Result``.
 
-    ``maps`` holds those of its fields that were asked for, with ``x`` and ``y``, SI.
+    ``maps`` holds the fields that were asked for, where it has them, with ``x`` and ``y``, SI.
     """
 
     name: str
@@ -78,7 +78,7 @@ class Outcome:
             result.breaches,
             result.assumptions,
             float(sum(result.provenance.timings.values())),
-            {name: np.asarray(result.data[name]) for name in (*axes, *maps)},
+            {name: np.asarray(result.data[name]) for name in (*axes, *maps) if name in result.data},
         )
 
     def as_text(self) -> str:

@@ -7,18 +7,22 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from underfoot.compute.run import run
 from underfoot.compute.summary import FrictionLimit, cautions, friction_limit
-from underfoot.core import InputError, Progress, SourcedValue, UnderfootError, silent
+from underfoot.core import InputError, Progress, SourcedValue, silent
 from underfoot.core.presentation import Presentable, Table, percent, probability_text, value_text
+from underfoot.core.progress import part
 from underfoot.slip import RcofPopulation, ReportG6, slip_model, slip_risk
 from underfoot.slip.model import MODELS
 from underfoot.slip.risk import needed_acof
 
 from .changes import Change, possible_changes
-from .outcomes import Outcome, outcomes
+from .effects import ChangeEffect, change_effects
+from .outcomes import Outcome
 
 if TYPE_CHECKING:
     from underfoot.case import Case
+    from underfoot.compute.result import Result
     from underfoot.slip import SlipModel
 
 QUOTED_SLOPES = (-41.2, -45.1, -54.7)
@@ -41,24 +45,6 @@ class ModelRisk:
     low: float | None
     high: float | None
     needed_acof: float | None
-
-
-@dataclass(frozen=True, slots=True)
-class ChangeEffect:
-    """A change and the result of the changed case; ``reason`` says why there is none."""
-
-    change: Change
-    outcome: Outcome | None
-    reason: str = ""
-
-    @property
-    def computed(self) -> bool:
-        """Whether the change gave a result."""
-        return self.outcome is not None and self.outcome.usable
-
-    def number(self, name: str) -> float:
-        """Return a number of the changed case; nan where it could not be computed."""
-        return float("nan") if self.outcome is None else self.outcome.number(name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,11 +125,11 @@ class RiskAssessment(Presentable):
         place = {id(each): number for number, each in enumerate(self.best, 1)}
         rows = []
         for each in sorted(self.changes, key=lambda one: place.get(id(one), len(self.changes) + 1)):
-            outcome, rank = each.outcome, place.get(id(each))
-            if outcome is None or not each.computed:
+            rank = place.get(id(each))
+            if not each.computed:
                 rows.append(("-", each.change.action, "", "", f"not computed: {each.reason}"))
                 continue
-            texts = [value_text(k, outcome.scalars[k]) for k in ("cof", "slip_probability")]
+            texts = [value_text(k, each.scalars[k]) for k in ("cof", "slip_probability")]
             note = "extrapolated" if _note(each) else ""
             rows.append(("-" if rank is None else f"{rank}.", each.change.action, *texts, note))
         heads = ("", "Change", "COF", "Slip probability", "")
@@ -193,6 +179,7 @@ class RiskAssessment(Presentable):
                         name: each.number(name) if each.computed else None
                         for name in ("cof", "slip_probability", "fluid_load")
                     },
+                    "cof_error": each.error,
                     "reason": each.reason,
                 }
                 for each in self.changes
@@ -200,7 +187,16 @@ class RiskAssessment(Presentable):
         }
 
     def data_tables(self) -> dict[str, Table]:
-        names = ("name", "lever", "action", "cof", "slip_probability", "fluid_load", "reason")
+        names = (
+            "name",
+            "lever",
+            "action",
+            "cof",
+            "slip_probability",
+            "fluid_load",
+            "cof_error",
+            "reason",
+        )
         rows = [tuple(change[name] for name in names) for change in self.to_dict()["changes"]]
         return {"changes": Table("", names, rows)}
 
@@ -208,6 +204,7 @@ class RiskAssessment(Presentable):
 def risk_assessment(
     case: Case,
     *,
+    result: Result | None = None,
     target: float = 0.05,
     changes: Sequence[Change] | None = None,
     quick: bool = True,
@@ -219,41 +216,39 @@ def risk_assessment(
     Parameters:
         case: Shoe, floor, fluid, motion and people.
         target: Slip probability to aim at, for the friction that is missing.
-        changes: What to try; None takes ``possible_changes(case)``. Each is computed with the whole
-            model.
-        quick: The coarse grid for all, so that differences are between like and like.
+        result: Of the case as ``run`` gave it; None computes it.
+        changes: What to try; None takes ``possible_changes(case)``.
+        quick: Compute on the coarse grid, as ``change_effects`` says.
+        processes: At most so many for changes that need a run of their own; None takes the cores.
 
     Raises:
-        InputError: ``target`` outside (0, 1); a case that can't be computed.
+        InputError: ``target`` outside (0, 1); a case that can't be computed; a result of another.
     """
     if not 0 < target < 1:
         raise InputError(f"{target:g}", where="target", allowed="above 0 and below 1")
-    tried = list(possible_changes(case) if changes is None else changes)
-    variants: list[Case] = []
-    reasons: dict[int, str] = {}
-    for number, change in enumerate(tried):
-        try:
-            variants.append(case.replace(change.values))
-        except UnderfootError as error:
-            reasons[number] = str(error)
-    cases, stage = [case, *variants], "Simulating changes"
-    present, *rest = outcomes(
-        cases, quick=quick, processes=processes, progress=progress, stage=stage
-    )
-    effects = []
-    for number, change in enumerate(tried):
-        outcome = None if number in reasons else rest.pop(0)
-        failed = outcome is not None and not outcome.usable
-        reason = str(outcome.status) if outcome is not None and failed else reasons.get(number, "")
-        effects.append(ChangeEffect(change, outcome, reason))
+    if result is None:
+        present = run(case, quick=quick, progress=part(progress, 0.0, 0.3))
+    elif result.provenance.case_hash == case.hash:
+        present = result
+    else:
+        raise InputError(
+            f"the result of {result.name!r} is not of this case",
+            where="result",
+            remedy="Run the case as it is, without objects",
+        )
+    outcome, tried = Outcome.of(present), possible_changes(case) if changes is None else changes
+    if not outcome.usable:
+        nothing = FrictionLimit(*[math.nan] * 3)
+        return RiskAssessment(case.name, outcome, (), nothing, target, None, ())
+    rest = part(progress, 0.3, 1.0) if result is None else progress
     return RiskAssessment(
         case.name,
-        present,
-        model_risks(case, present.scalars["cof"], target) if present.usable else (),
-        friction_limit(present.scalars) if present.usable else FrictionLimit(*[math.nan] * 3),
+        outcome,
+        model_risks(case, present.scalars["cof"], target),
+        friction_limit(present.scalars),
         target,
-        _missing(case, present, target),
-        tuple(effects),
+        _missing(case, outcome, target),
+        change_effects(case, present, tried, quick=quick, processes=processes, progress=rest),
     )
 
 
@@ -286,7 +281,7 @@ def odds(probability: float) -> str:
 
 
 def _note(effect: ChangeEffect) -> str:
-    return "" if effect.outcome is None else effect.outcome.scalars["slip_probability"].note
+    return effect.scalars["slip_probability"].note
 
 
 def _needed(target: float, rcof: RcofPopulation, model: SlipModel) -> float | None:
@@ -298,8 +293,6 @@ def _needed(target: float, rcof: RcofPopulation, model: SlipModel) -> float | No
 
 def _missing(case: Case, outcome: Outcome, target: float) -> float | None:
     """Return how much more ACOF the case's own model requires for ``target``."""
-    if not outcome.usable:
-        return None
     rcof = RcofPopulation(case.risk.rcof_mean, case.risk.rcof_sd)
     needed = _needed(target, rcof, slip_model(case.risk.name))
     return None if needed is None else max(needed - outcome.number("cof"), 0.0)

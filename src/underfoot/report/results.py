@@ -60,7 +60,8 @@ def _result_sections(
         *table_sections(result),
     ]
     if advice is not None:
-        parts.append(Section(advice.table().title, "Coarse grid.", table=advice.table()))
+        words = "This result, moved by what each change does on the coarse grid."
+        parts.append(Section(advice.table().title, words, table=advice.table()))
     titles = {quantity.name: quantity.title for quantity in quantities([result.data])}
     maps = [
         Picture(f"Map of {titles[name].lower()} on the sole", embedded(data))

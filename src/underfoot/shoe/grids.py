@@ -17,7 +17,6 @@ from .geometry import CELLS_REFUSED, CELLS_WANTED, SoleMap, SoleSurface, centred
 from .shape import Heel, SoleShape
 from .slits import Slits, slits_of, without_slits
 from .tread import Sipes
-from .tread_measures import surface_without_slits
 
 HALF, NARROW = 50.0, 10.0
 """Percentiles of the local width by area: what is refused, and what is listed."""
@@ -93,9 +92,7 @@ def heel_map(
         breaches=tuple(breaches_of_grid),
         cut=cut,
         slits=slits,
-        removed=None
-        if heel.wear is None
-        else heel.land_height(x, y_map) - heel.unworn_height(x, y_map),
+        removed=None if heel.wear is None else heel.worn_off(x, y_map),
     )
 
 
@@ -109,7 +106,6 @@ def _heel_slits(
     x, y, stretch = places
     inside, land = masks
     sipes = tread.sipes
-    removed = heel.land_height(x, y) - heel.unworn_height(x, y)
 
     def level_at(i: Cells, j: Cells, along: Array, across: Array) -> Array:
         return tread.slit_distance(x[i, j] + along * stretch[i, j], y[i, j] + across * spacing)
@@ -121,7 +117,7 @@ def _heel_slits(
         inside,
         spacing,
         level_at,
-        depth=np.maximum(sipes.depth - removed, 0.0),
+        depth=np.maximum(sipes.depth - heel.worn_off(x, y), 0.0),
         width=np.full(x.shape, sipes.width),
         tangent=(np.full(x.shape, math.sin(angle)), np.full(x.shape, math.cos(angle))),
     )
@@ -203,7 +199,7 @@ def cut_heel(
 
 def channel_level(heel: SoleShape, x: Array, y: Array, spacing: float = 0.0) -> Array:
     """Return the distance (m) into the open channels of ``cut_heel``: 0 or less on land."""
-    depth = heel.unworn_height(x, y) - heel.land_height(x, y)
+    depth = -heel.worn_off(x, y)
     level = np.full(x.shape, -_FAR)
     tread, arc = heel.tread, heel.arc_channel
     if tread is not None and tread.depth > 0:
@@ -319,6 +315,10 @@ def surface_map(
         InputError: Grid too coarse for the plan form or for most of the channels; angle out of
             range.
     """
+    # compiled: numba takes a while to import
+    from ._kernels.height_buffer import tilted_rows
+    from .tread_measures import surface_without_slits
+
     _check_grid(surface, shoe_angle, spacing, padding)
     cosine, sine = math.cos(shoe_angle), math.sin(shoe_angle)
     surface, cuts = surface_without_slits(surface, CELLS_REFUSED * spacing)
@@ -330,8 +330,6 @@ def surface_map(
     count_y = math.ceil((high - low) / spacing - 1e-9) + 2 * margin
     x = (np.arange(count_x, dtype=np.float64) + 0.5 - margin) * spacing
     y = (low + high) / 2 + centred(count_y, spacing)
-    from ._kernels.height_buffer import tilted_rows  # compiled: numba takes a while to import
-
     clearance, origin = tilted_rows(
         (surface.x, surface.y), base, inside, (x + rear, y), cosine, sine
     )

@@ -19,7 +19,7 @@ from underfoot.core.arrays import Array, Mask
 from underfoot.core.presentation import percent, quantity_text
 from underfoot.core.sparse import factorization
 
-from ._kernels.regions import draining, pieces
+from ._kernels.regions import Labels, draining, pieces
 from .geometry import SoleMap
 
 OPEN = 0.1
@@ -143,13 +143,9 @@ def lug_drainage(sole: SoleMap, fluid_pressure: Array, film_thickness: Array) ->
     ways = [_way_out(goals - peak, float(sole.y[peak[1]])) for peak in peaks]
     i, j = peaks.T
     share = sums[order] / float((fluid_pressure * area).sum())
-    film = pressure, film_thickness, area
-    grooves = [
-        _best_groove(
-            numbers == number, peak, ~sole.inside | clear, film, wide, float(sole.y[peak[1]])
-        )
-        for number, peak in zip(order[share >= MATTERS], peaks, strict=False)
-    ]
+    film = sums, pressure, film_thickness**3, area
+    named = order[share >= MATTERS]
+    grooves = _best_grooves(numbers, named, peaks, ~sole.inside | clear, film, wide, sole.y)
     grooves += [(np.nan, -1, np.nan)] * (len(order) - len(grooves))
     return LugDrainage(
         load=sums[order] * sole.spacing**2,
@@ -196,38 +192,44 @@ def _preferred(y: float) -> tuple[int, ...]:
     return (0, 1, 2, 3) if y > -MIDDLE else (0, 1, 3, 2)
 
 
-def _best_groove(
-    lug: Mask,
-    peak: NDArray[np.intp],
+def _best_grooves(
+    numbers: Labels,
+    lugs: NDArray[np.intp],
+    peaks: NDArray[np.intp],
     open_: Mask,
-    film: tuple[Array, Array, Array],
+    film: tuple[Array, Array, Array, Array],
     wide: float,
-    y: float,
-) -> tuple[float, int, float]:
-    """Return length (cells), side and relief of the groove that a lug should have.
+    y: Array,
+) -> list[tuple[float, int, float]]:
+    """Return length (cells), side and relief of the groove that each of ``lugs`` should have.
 
-    Of grooves equal within a cell (a peak between two cells lies in one): that of ``_preferred``.
+    ``film``: load by number, and pressure, conductance and area of the cells. Of grooves equal
+    within a cell (a peak between two cells lies in one): that of ``_preferred``.
     """
-    pressure, gap, area = film
-    full = lug & (pressure > 0)
-    load = float((pressure * area)[full].sum())
-    along, across = np.indices(lug.shape) - peak[:, None, None]
-    ahead = ((along, across), (-along, across), (across, along), (-across, along))
+    load, pressure, conductance, area = film
+    full = np.isin(numbers, lugs) & (pressure > 0)
+    rows, columns = np.ogrid[: open_.shape[0], : open_.shape[1]]
+    lengths, reliefs = np.zeros((2, len(SIDES), len(lugs)))
+    for side in range(len(SIDES)):
+        cut = np.zeros(open_.shape, dtype=np.bool_)
+        for k, (number, (i, j)) in enumerate(zip(lugs, peaks, strict=False)):
+            along, across = rows - i, columns - j
+            line = (open_[i + 1 :, j], open_[:i, j][::-1], open_[i, j + 1 :], open_[i, :j][::-1])
+            lengths[side, k] = np.append(line[side], True).argmax() + 1
+            forward, aside = (along, -along, across, -across)[side], (across, along)[side // 2]
+            within = (forward > -wide / 2) & (forward < lengths[side, k])
+            cut |= within & (np.abs(aside) < wide / 2) & (numbers == number)
+        # lugs don't touch: one system holds them all
+        fallen = _fallen(full & ~cut, cut, pressure, conductance)
+        relieved = np.bincount(numbers.ravel(), (fallen * area).ravel(), load.size)
+        reliefs[side] = relieved[lugs] / load[lugs]
     found = []
-    for side, (forward, aside) in enumerate(ahead):
-        goals = forward[open_ & (aside == 0) & (forward > 0)]
-        length = int(goals.min()) if goals.size else int(forward.max()) + 1
-        groove = lug & (np.abs(aside) < wide / 2) & (forward > -wide / 2) & (forward < length)
-        fallen = _fallen(full & ~groove, groove, pressure, gap**3)
-        relief = float((fallen * area).sum()) / load
-        found.append((float(length), side, relief))
-    most = max(relief for *_, relief in found)
-    best = [each for each in found if each[2] >= NEARLY * most]
-    shortest = min(length for length, *_ in best) + 1
-    order = _preferred(y)
-    return min(
-        (each for each in best if each[0] <= shortest), key=lambda each: order.index(each[1])
-    )
+    for length, relief, place in zip(lengths.T, reliefs.T, y[peaks[:, 1]], strict=False):
+        best = relief >= NEARLY * relief.max()
+        best &= length <= length[best].min() + 1
+        side = next(side for side in _preferred(float(place)) if best[side])
+        found.append((float(length[side]), side, float(relief[side])))
+    return found
 
 
 def _fallen(free: Mask, groove: Mask, pressure: Array, conductance: Array) -> Array:

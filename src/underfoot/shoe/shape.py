@@ -156,6 +156,12 @@ class SoleShape(ABC):
             return unworn
         return self.wear.worn_height(x, y, unworn, self)
 
+    def worn_off(self, x: Array, y: Array) -> Array:
+        """Return the thickness (m) that wear has taken off the land."""
+        if self.wear is None or self.wear.depth == 0:
+            return np.zeros(x.shape)
+        return self.land_height(x, y) - self.unworn_height(x, y)
+
     def unworn_height(self, x: Array, y: Array) -> Array:
         """Return the height (m) of the new sole over its plane, as if there were no channels."""
         height = self.profile.height(x)

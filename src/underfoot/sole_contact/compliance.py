@@ -215,11 +215,11 @@ def layered_compliance(
         thickness = float(body[sole.inside & sole.land].mean())
     total = thickness + (midsole_thickness or 0.0)
     extent = 2 * max(shape) * sole.spacing
-    box = fast_length(math.ceil(max(extent, BOX_THICKNESSES * total) / sole.spacing))
-    k = wavenumbers((box, box), sole.spacing)
+    box = 2 * fast_length(math.ceil(max(extent, BOX_THICKNESSES * total) / (2 * sole.spacing)))
+    k = wavenumbers(box, sole.spacing)
 
     def influence(symbol: Symbol) -> Array:
-        return influence_from_symbol(symbol(k), box, shape)
+        return influence_from_symbol(symbol(k), shape)
 
     def midsole(q: Array) -> Array:
         if midsole_modulus is None or midsole_thickness is None:

@@ -42,7 +42,7 @@ LIFTING, LIFT = 0.12, 1.9
 """Shift of the pressure, over the length, from which a lug lifts; loss of contact per shift."""
 LACKING = 0.25
 """Share of the gap that lacks fluid behind the edge (0.15 to 0.3 computed)."""
-STEPS, STILL = 200, 1e-6
+STEPS, STILL = 200, 1e-9
 RELAXATION = 0.1, 1.0
 IDLE = 20e3
 """Pa: a lug whose contact bears less on the mean hardly touches."""
@@ -78,15 +78,13 @@ class LugFriction:
     """What the edges do to each lug, (lugs,).
 
     ``load`` on its contact (pressure times cells, Pa; 0 of a lug that hardly bears, which is
-    left as it is), the shares of it on film and of suction, the share of its face in contact, and
-    the factor on its contact friction.
+    left as it is), the shares of it on film and of suction, and the factor on its contact friction.
     """
 
     edges: LugEdges
     load: Array
     film: Array
     suction: Array
-    contact: Array
     factor: Array
 
     def factor_map(self) -> Array:
@@ -183,6 +181,7 @@ def lug_friction(
     """
     cells = _sums(edges.label, edges.length.size, edges.area)
     load = sum_by_lug(edges, contact_pressure)
+    bears = load / cells > IDLE
     p = np.maximum(load / cells, IDLE)
     slender = edges.height / edges.length
     drag = viscosity * abs(speed)
@@ -193,7 +192,7 @@ def lug_friction(
     pressures = asperities.pressure(gaps)
     reach = np.sqrt(np.minimum(edges.length, 2 * edges.height) / edges.edge)
     mu, pull = np.array(cof_contact), np.zeros_like(p)
-    film = lifted = np.zeros_like(p)
+    film = np.zeros_like(p)
     # fixed point a lug, relaxed by what the last step turned the change by (Aitken's rule)
     share, before = np.full_like(p, RELAXATION[0]), np.zeros((2, p.size))
     for _ in range(STEPS):
@@ -212,17 +211,16 @@ def lug_friction(
         sheared = drag / gap * (lifted - 0.5 * emptied) / p
         now = cof_contact * np.maximum(1 - film + pull, 0.0) + sheared
         change = np.stack([now - mu, emptied * suction / p - pull])
-        if np.abs(change).max() < STILL:
+        if np.abs(change[:, bears]).max(initial=0.0) < STILL:
             break
         turned = change - before
         share *= -(before * turned).sum(axis=0) / np.maximum((turned**2).sum(axis=0), 1e-300)
         share = np.clip(share, *RELAXATION)
         before = change
         mu, pull = np.stack([mu, pull]) + share * change
-    bears = load / cells > IDLE
     film, pull = (np.where(bears, edges.fed * each, 0.0) for each in (film, pull))
     load = np.where(bears, load, 0.0)
-    return LugFriction(edges, load, film, pull, lifted, np.maximum(1 - film + pull, 0.0))
+    return LugFriction(edges, load, film, pull, np.maximum(1 - film + pull, 0.0))
 
 
 def sum_by_lug(edges: LugEdges, values: Array | Mask) -> Array:
@@ -256,7 +254,11 @@ class EdgedLaw:
 
     def lugs(self, contact_pressure: Array, speed: float, film_thickness: Array) -> LugFriction:
         """Return what the edges do at contact pressure (Pa), speed (m/s) and film (m), (nx, ny)."""
-        parts = self.law(contact_pressure, speed, film_thickness)
+        return self._lugs(
+            self.law(contact_pressure, speed, film_thickness), contact_pressure, speed
+        )
+
+    def _lugs(self, parts: FrictionParts, contact_pressure: Array, speed: float) -> LugFriction:
         touching = np.where(contact_pressure > 0, contact_pressure, 1.0)
         cof = (parts.adhesion + parts.hysteresis) / touching
         load = np.maximum(sum_by_lug(self.edges, contact_pressure), 1e-9)
@@ -282,7 +284,7 @@ class EdgedLaw:
     ) -> FrictionParts:
         """Return the shear stresses in Pa."""
         parts = self.law(contact_pressure, speed, film_thickness)
-        factor = self.lugs(contact_pressure, speed, film_thickness).factor_map()
+        factor = self._lugs(parts, contact_pressure, speed).factor_map()
         return replace(
             parts, adhesion=parts.adhesion * factor, hysteresis=parts.hysteresis * factor
         )

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
 from underfoot.core import InputError, SourcedValue
@@ -174,16 +174,14 @@ def pocket_pressure(
     """
     along, across = (places - x[0]) / spacing, (lanes - y[0]) / spacing
     quarter = _rim_quarter(inlet_diameter, spacing) / spacing
-    rows, columns = (
-        [_interpolation(at + step, count) + _interpolation(at - step, count) for step in steps]
-        for at, steps, count in zip((along, across), quarter.T, (x.size, y.size), strict=True)
-    )
-    rows, columns = sparse.vstack(rows, format="csr"), sparse.hstack(columns, format="csr")
+    points = np.arange(len(quarter), dtype=np.int32)[:, None]
+    sides = quarter[:, :, None] * [1.0, -1.0]
+    rows = _interpolation(along[:, None, None] + sides[:, 0], x.size, points)
+    columns = _interpolation((across[:, None] + sides[:, 1, None]).reshape(-1, 2), y.size)
 
     def mean_over_rim(field: Array) -> Array:
-        lines = (rows @ field).reshape(len(quarter), places.size, y.size)
-        sums = columns @ lines.transpose(0, 2, 1).reshape(-1, places.size)
-        return sums.T / (4 * len(quarter))
+        lines = (columns @ field.T).reshape(points.size, lanes.size, x.size)
+        return (rows @ lines.transpose(0, 2, 1).reshape(-1, lanes.size)) / (4 * points.size)
 
     cap = gap_cap**3
     cubes = np.clip(np.asarray(film_thickness, dtype=float), _SMALLEST_GAP, gap_cap) ** 3
@@ -194,15 +192,23 @@ def pocket_pressure(
     return flow / weight, weight
 
 
-def _interpolation(places: Array, count: int) -> sparse.csr_matrix:
-    """Return the matrix (places, count) that interpolates linearly, 0 beyond the first and last."""
+def _interpolation(
+    places: Array, count: int, block: NDArray[np.int32] | None = None
+) -> sparse.csr_matrix:
+    """Return the matrix whose rows sum what linear interpolation gives at ``places`` (rows, ...).
+
+    Of ``count`` values, 0 beyond the first and last; each place in its own ``block`` of them.
+    """
     left = np.clip(np.floor(places), 0, count - 2).astype(np.int32)
     share = places - left
-    weights = np.stack([1 - share, share], axis=1)
+    weights = np.stack([1 - share, share], axis=-1)
     weights[(places < 0) | (places > count - 1)] = 0.0
-    cells = np.stack([left, left + 1], axis=1)
-    starts = 2 * np.arange(places.size + 1, dtype=np.int32)
-    return sparse.csr_matrix((weights.ravel(), cells.ravel(), starts), (places.size, count))
+    blocks = 1 if block is None else block.size
+    left += 0 if block is None else block * count
+    cells = np.stack([left, left + 1], axis=-1)
+    starts = np.arange(0, weights.size + 1, weights[0].size, dtype=np.int32)
+    shape = len(places), blocks * count
+    return sparse.csr_matrix((weights.ravel(), cells.ravel(), starts), shape)
 
 
 def over_places(values: Array, unit: str, source: str, note: str) -> SourcedValue:

@@ -198,20 +198,21 @@ def attenuation(wavenumber: Array, depth: float) -> Array:
     return (1 + reduced) * np.exp(-reduced)
 
 
-def wavenumbers(shape: tuple[int, int], spacing: float) -> Array:
-    """Return |k| (rad/m) on the layout of ``rfft2``."""
-    kx = 2 * np.pi * np.fft.fftfreq(shape[0], spacing)
-    ky = 2 * np.pi * np.fft.rfftfreq(shape[1], spacing)
-    return np.hypot(kx[:, None], ky[None, :])
+def wavenumbers(box: int, spacing: float) -> Array:
+    """Return |k| (rad/m) of the waves of a square box of an even number of cells, one quadrant."""
+    along = np.pi / (spacing * (box // 2)) * np.arange(box // 2 + 1)
+    return np.hypot(along[:, None], along)
 
 
-def influence_from_symbol(symbol: Array, box: int, shape: tuple[int, int]) -> Array:
-    """Return the (2 nx - 1, 2 ny - 1) coefficients of a symbol sampled on a square box."""
-    coefficients = inverse_transform(symbol, (box, box))
+def influence_from_symbol(symbol: Array, shape: tuple[int, int]) -> Array:
+    """Return the (2 nx - 1, 2 ny - 1) coefficients of a symbol on ``wavenumbers`` of a box.
+
+    The symbol is even, so that its transform is one of cosines.
+    """
     nx, ny = shape
-    rows = np.arange(-nx + 1, nx) % box
-    columns = np.arange(-ny + 1, ny) % box
-    return coefficients[np.ix_(rows, columns)]
+    lines: Any = fft.idct(symbol, type=1, axis=1)
+    quadrant: Any = fft.idct(lines[:, :ny], type=1, axis=0)
+    return quadrant[np.ix_(np.abs(np.arange(-nx + 1, nx)), np.abs(np.arange(-ny + 1, ny)))]
 
 
 def fast_length(least: int) -> int:
@@ -219,16 +220,6 @@ def fast_length(least: int) -> int:
     length = fft.next_fast_len(least, True)
     assert length is not None
     return length
-
-
-def transform(field: Array, shape: tuple[int, int]) -> NDArray[np.complex128]:
-    """Return the real transform of a field padded with zeros to ``shape``."""
-    return np.asarray(fft.rfft2(field, s=shape))
-
-
-def inverse_transform(spectrum: NDArray[np.complex128] | Array, shape: tuple[int, int]) -> Array:
-    """Return the real field of a spectrum."""
-    return np.asarray(fft.irfft2(spectrum, s=shape))
 
 
 def half_space_influence(shape: tuple[int, int], spacing: float, plane_modulus: float) -> Array:
