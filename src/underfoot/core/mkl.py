@@ -88,7 +88,7 @@ def pardiso_schur_complement(
     """Return the Schur complement on the ``retained`` unknowns (ascending), see ``core.sparse``."""
     system = _System(upper, kind)
     system.retained[retained] = 1
-    system.options[1] = 2  # nested dissection (METIS), for bodies in three dimensions
+    system.options[1] = 2
     system.options[35] = 1  # the complement, dense, in the place of the solution
     answer = np.zeros((retained.size, retained.size))
     system.call(_ANALYSE_AND_FACTORISE, np.zeros(system.retained.size), answer)
@@ -110,9 +110,10 @@ class _System:
         self.options = np.zeros(64, dtype=np.int32)
         self.options[0] = 1  # no defaults
         self.options[34] = 1  # indices from zero
-        # Minimum degree (options[1] = 0) and, of general matrices, the two-level factorization:
-        # with the 2,000 to 24,000 unknowns under a sole up to 2.5 times as fast as nested dissection
-        # and the classic one.
+        # Systems on maps (2,000 to 24,000 unknowns under a sole) are ordered by minimum degree
+        # (options[1] = 0), those of bodies by nested dissection; general ones take the two-level
+        # factorization: up to 2.5 times as fast as nested dissection and the classic one.
+        self.options[1] = 2 if kind == "symmetric" else 0
         self.options[23] = 10 if kind == "general" else 0
         self.options[9] = 10 if kind == "general" else 8  # perturb pivots below 10^-this
         self._handle = np.zeros(64, dtype=np.int64)

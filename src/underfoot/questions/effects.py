@@ -10,7 +10,6 @@ import numpy as np
 
 from underfoot.compute.continuation import Continuation, Preview
 from underfoot.compute.numbers import slip_probability
-from underfoot.compute.positions import TOLERANCE
 from underfoot.core import (
     ConvergenceError,
     InputError,
@@ -147,7 +146,6 @@ def change_effects(
     mean, own = _levels(present)
     march = start = None
     if quick:
-        case = case.replace("numerics.tolerance", max(case.numerics.tolerance, TOLERANCE))
         march = _march(case, part(progress, 0.0, 0.3))
     if march is not None:
         start = _Level(march.values["cof"], march.values["fluid_load"])

@@ -122,8 +122,8 @@ def implicit_step(
     """Return the state after ``duration`` under ``load``, if Newton finds it.
 
     All are on the box of the cells. ``film`` marks the cells that the pool reaches, ``content`` (m)
-    is the liquid that they hold at the start, ``tolerance`` the largest relative imbalance; ``tick``
-    receives the residual of each Newton step.
+    is the liquid that they hold at the start, ``tolerance`` the largest relative imbalance;
+    ``tick`` receives the residual of each Newton step.
     """
     pattern = cells.pattern
     area = problem.spacing**2
