@@ -13,7 +13,7 @@ from underfoot.shoe.geometry import SoleMap
 
 from .compliance import Compliance
 from .sole_state import SoleState, SolverSettings
-from .solver import SoleContact, with_history
+from .solver import PIECES, SoleContact, passing_time, with_history
 from .stepping import Reporting, SlidingSole
 
 STEPS = 24.0
@@ -97,6 +97,9 @@ def solve_history(
     _, force, speed, angle = (float(value) for value in rows[0])
     sliding.begin(normal_force=force, speed=speed, shoe_angle=angle)
     longest = float(history.time[-1]) / STEPS
+    if viscosity is not None:
+        passing = PIECES * passing_time(sole, float(np.abs(history.speed).max()))
+        longest = min(longest, passing / sliding.settings.time_resolution)
     state = None
     for before, after in pairwise(rows):
         _, force, speed, angle = (float(value) for value in after)
