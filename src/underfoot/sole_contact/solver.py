@@ -16,10 +16,10 @@ from .march import Counts, History
 from .sole_state import SoleState, SolverSettings
 from .stepping import Bookmark, Reporting, SlidingSole
 
-
-PIECES = 6.0
-"""Pieces of land that the floor passes in as many time steps as a stage takes at least: with twice
-as many the film of lugs near starvation is off by a fifth (docs/guide/performance.md)."""
+PIECES, FINEST = 6.0, 8.0
+"""Pieces of land that the floor passes in as many time steps as a stage takes at least, and how
+many times as many it takes at most: with longer steps the film of lugs near starvation is off by up
+to a fifth (docs/guide/performance.md)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,12 +84,12 @@ def solve_sliding(
         ),
     )
     rise = settings.rise_time
-    longest = math.inf if dry else PIECES * passing_time(sole, speed)
+    passing = math.inf if dry else passing_time(sole, speed)
     state = sliding.advance(
         rise,
         normal_force=normal_force,
         speed=speed,
-        longest_step=min(rise, longest) / settings.time_resolution,
+        longest_step=longest_step(rise, passing) / settings.time_resolution,
     )
     counts = sliding.counts
     left = settings.most_time_steps - counts.time_steps - counts.rejected
@@ -101,7 +101,8 @@ def solve_sliding(
                 end - rise,
                 normal_force=normal_force,
                 speed=speed,
-                longest_step=min(max(end - rise, rise), longest) / settings.time_resolution,
+                longest_step=longest_step(max(end - rise, rise), passing)
+                / settings.time_resolution,
                 most_steps=left,
             )
     return with_history(state, sliding)
@@ -117,6 +118,11 @@ def passing_time(sole: SoleMap, speed: float) -> float:
     lengths = np.nonzero(ends < 0)[1] - np.nonzero(ends > 0)[1]
     length = float((lengths**2).sum()) / float(lengths.sum()) * sole.spacing
     return length / abs(speed) if speed else math.inf
+
+
+def longest_step(stage: float, passing: float) -> float:
+    """Return the longest time step (s, at a time resolution of 1) in a stage of so many seconds."""
+    return min(max(PIECES * passing, stage / FINEST), stage)
 
 
 def solve_on(
