@@ -34,7 +34,6 @@ MOST_ERROR = 0.01
 """COF that a continuation may miss by its own estimate; half of the COF's own spread if more."""
 STAGE = "Simulating changes"
 _DRAWS = "cof_draws"
-_ONE_POSITION = {"numerics.tread_positions": 1}
 _OF_THE_PLAN = ("heel", "tread", "sole", "outsole")
 
 
@@ -146,9 +145,10 @@ def change_effects(
         return tuple(effects.values())
     mean, own = _levels(present)
     march = start = None
+    tolerance = max(case.numerics.tolerance, TOLERANCE)
+    place = {"numerics.tread_positions": 1, "numerics.tolerance": tolerance}
     if quick:
-        case = case.replace("numerics.tolerance", max(case.numerics.tolerance, TOLERANCE))
-        march = _march(case, part(progress, 0.0, 0.3))
+        march = _march(case.replace(place), part(progress, 0.0, 0.3))
     if march is not None:
         start = _Level(march.values["cof"], march.values["fluid_load"])
         for number, variant in variants.items():
@@ -162,11 +162,11 @@ def change_effects(
                 effects[number] = there.effect(changes[number], variant, error)
     alike = {number for number, each in variants.items() if quick and _same_plan(case, each)}
     runs = {
-        number: each.replace(_ONE_POSITION) if number in alike else each
+        number: each.replace(place) if number in alike else each
         for number, each in variants.items()
         if number not in effects
     }
-    unchanged = [case.replace(_ONE_POSITION)] if quick and march is None else []
+    unchanged = [case.replace(place)] if quick and march is None else []
     found = outcomes(
         [*unchanged, *runs.values()],
         quick=quick,
