@@ -24,8 +24,6 @@ ANGLE_BAND = math.radians(1)
 """The shoe angle lies evenly within this of the case's, rad; assumed."""
 DIRECTION_BAND = math.radians(3)
 """The same of the sliding direction against a sole from a file, rad; assumed."""
-TOLERANCE = 1e-3
-"""Tolerance at the positions, a fifth faster than 1e-4: it moves loads by 0.1 %."""
 HELD = "spread of the friction law, its inputs and the position of the tread"
 
 
@@ -219,12 +217,11 @@ def tread_positions(
     tread = _tread(case)
     lying = file_places(count) if tread is None else places(tread.periods, count)
     own = place_numbers(case, law_on(sole), sole, contact, viscosity)
-    eased = case.replace("numerics.tolerance", max(case.numerics.tolerance, TOLERANCE))
     kept = [(Place(), own)] if quick else []
     coarse = None
     for k, place in list(enumerate(lying))[len(kept) :]:
         try:
-            there = solve(eased, place, _stage(progress, k, count))
+            there = solve(case, place, _stage(progress, k, count))
         except ConvergenceError:
             continue
         if there[1].status.usable:

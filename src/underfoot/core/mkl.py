@@ -30,6 +30,8 @@ _BACKWARD_SCALE, _CONJUGATE_EVEN_STORAGE, _PLACEMENT = 5, 10, 11
 _INPUT_STRIDES, _OUTPUT_STRIDES, _THREAD_LIMIT = 12, 13, 27
 _COMPLEX_COMPLEX, _NOT_INPLACE = 39, 44
 
+_NONE = np.zeros(1)
+
 
 class MklError(RuntimeError):
     """MKL reported an error code."""
@@ -64,20 +66,18 @@ class Pardiso:
 
     def __init__(self, matrix: sp.csr_matrix, kind: str) -> None:
         self._system = _System(matrix, kind)
-        if kind == "positive definite":  # maps, factorised once: minimum degree, half the time
-            self._system.options[1] = 0
         self._system.call(_ANALYSE)
-        self.factorise(matrix)
+        self._system.call(_FACTORISE)
 
     def factorise(self, matrix: sp.csr_matrix) -> None:
         """Factorise the values of a matrix of the same sparsity."""
-        self._system.values = np.ascontiguousarray(matrix.data, dtype=float)
+        self._system.values[:] = matrix.data
         self._system.call(_FACTORISE)
 
     def solve(self, right: Array) -> Array:
         """Return the solution for right-hand sides (n,) or (n, m)."""
         right = np.asfortranarray(right, dtype=float)
-        answer = np.zeros_like(right, order="F")
+        answer = np.empty_like(right, order="F")
         self._system.call(_SOLVE, right, answer)
         return answer
 
@@ -87,61 +87,60 @@ def pardiso_schur_complement(
 ) -> Array:
     """Return the Schur complement on the ``retained`` unknowns (ascending), see ``core.sparse``."""
     system = _System(upper, kind)
-    system.retained = np.zeros(system.size, dtype=np.int32)
     system.retained[retained] = 1
+    system.options[1] = 2
     system.options[35] = 1  # the complement, dense, in the place of the solution
     answer = np.zeros((retained.size, retained.size))
-    system.call(_ANALYSE_AND_FACTORISE, np.zeros(system.size), answer)
+    system.call(_ANALYSE_AND_FACTORISE, np.zeros(system.retained.size), answer)
     one_side = not np.tril(answer, -1).any()
     return np.triu(answer) + np.triu(answer, 1).T if one_side else answer
 
 
 class _System:
-    """Arguments that PARDISO wants with every call for one matrix."""
+    """One matrix with the arguments that PARDISO wants at every call, prepared once."""
 
     def __init__(self, matrix: sp.csr_matrix, kind: str) -> None:
         library = mkl_library()
         if library is None:
             raise MklError("MKL is not installed")
         self._pardiso = library.pardiso
-        self._handle = np.zeros(64, dtype=np.int64)
-        self._type = MATRIX_TYPES[kind]
+        size = matrix.indptr.size - 1
+        self.values = np.array(matrix.data, dtype=float)
+        self.retained = np.zeros(size, dtype=np.int32)
         self.options = np.zeros(64, dtype=np.int32)
         self.options[0] = 1  # no defaults
-        self.options[1] = 2  # nested dissection (METIS)
-        self.options[9] = 10 if kind == "general" else 8  # perturb pivots below 10^-this
         self.options[34] = 1  # indices from zero
-        self.size = matrix.indptr.size - 1
+        # Systems on maps (2,000 to 24,000 unknowns under a sole) are ordered by minimum degree
+        # (options[1] = 0), those of bodies by nested dissection; general ones take the two-level
+        # factorization: up to 2.5 times as fast as nested dissection and the classic one.
+        self.options[1] = 2 if kind == "symmetric" else 0
+        self.options[23] = 10 if kind == "general" else 0
+        self.options[9] = 10 if kind == "general" else 8  # perturb pivots below 10^-this
+        self._handle = np.zeros(64, dtype=np.int64)
         self._rows = matrix.indptr.astype(np.int32)
-        self._columns = matrix.indices.astype(np.int32)
-        self.values = np.ascontiguousarray(matrix.data, dtype=float)
-        self.retained = np.zeros(1, dtype=np.int32)
-
-    def call(self, phase: int, right: Array | None = None, answer: Array | None = None) -> None:
-        """Run one phase; raise ``MklError`` where it fails."""
-        right = np.zeros(1) if right is None else right
-        answer = np.zeros(1) if answer is None else answer
-        columns = right.shape[1] if right.ndim == 2 else 1
-        error = ctypes.c_int32(0)
-
-        def integers(*values: int) -> list[Any]:
-            return [ctypes.byref(ctypes.c_int32(value)) for value in values]
-
-        self._pardiso(
+        self._indices = matrix.indices.astype(np.int32)
+        self._phase, self._columns, self._error = (ctypes.c_int32() for _ in range(3))
+        one, none, type_, count = map(ctypes.c_int32, (1, 0, MATRIX_TYPES[kind], size))
+        self._before = (
             _address(self._handle),
-            *integers(1, 1, self._type, phase, self.size),
-            *map(_address, (self.values, self._rows, self._columns, self.retained)),
-            *integers(columns),
+            *map(ctypes.byref, (one, one, type_, self._phase, count)),
+            *map(_address, (self.values, self._rows, self._indices, self.retained)),
+            ctypes.byref(self._columns),
             _address(self.options),
-            *integers(0),
-            *map(_address, (right, answer)),
-            ctypes.byref(error),
+            ctypes.byref(none),
         )
+
+    def call(self, phase: int, right: Array = _NONE, answer: Array = _NONE) -> None:
+        """Run one phase; raise ``MklError`` where it fails."""
+        self._phase.value = phase
+        self._columns.value = right.shape[1] if right.ndim == 2 else 1
+        error = self._error
+        self._pardiso(*self._before, _address(right), _address(answer), ctypes.byref(error))
         if error.value and phase != _RELEASE:
             raise MklError(f"PARDISO reported error {error.value}")
 
     def __del__(self) -> None:
-        if getattr(self, "retained", None) is not None:
+        if getattr(self, "_before", None) is not None:
             self.call(_RELEASE)
 
 

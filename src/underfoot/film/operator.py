@@ -24,8 +24,10 @@ Taking the gap linear between cell centres instead doubles the film under a lug 
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from functools import cached_property
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -71,7 +73,7 @@ class Conductance(NamedTuple):
     slope: Array
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class FilmOperator:
     """Face coefficients of one gap; made by ``film_operator``.
 
@@ -91,7 +93,7 @@ class FilmOperator:
         kx, ky = self.kx.value, self.ky.value
         return self._stencil(np.zeros(self.gap.shape), (kx, kx), (ky, ky))
 
-    @property
+    @cached_property
     def by_fraction(self) -> Stencil:
         """Derivative of the balance by liquid fraction, m^3/s; a cell depends on its upstream."""
         forward, backward = np.maximum(self.carry.value, 0.0), np.minimum(self.carry.value, 0.0)
@@ -108,9 +110,13 @@ class FilmOperator:
 
     def flows(self, pressure: Array, fraction: Array) -> tuple[Array, Array]:
         """Return the flow (m^3/s) through the x and the y faces."""
-        flow_x = self.carry.value * self._upstream(fraction)
+        flow_x = self.carried(fraction)
         flow_x -= self.kx.value * (pressure[1:] - pressure[:-1])
         return flow_x, self.ky.value * (pressure[:, :-1] - pressure[:, 1:])
+
+    def carried(self, fraction: Array) -> Array:
+        """Return what the walls carry through the x faces, m^3/s."""
+        return self.carry.value * self._upstream(fraction)
 
     def imbalance(self, pressure: Array, fraction: Array, content: Array | float = 0.0) -> Array:
         """Return what leaves each cell plus what it stores, m^3/s: 0 where volume is conserved.
@@ -154,9 +160,15 @@ class FilmOperator:
         return Stencil(centre, east, west, north, south)
 
     def _upstream(self, fraction: Array) -> Array:
-        if (self.carry.value < 0).all():  # a sole that slides forward
+        if self._backward is True:  # a sole that slides forward
             return fraction[1:]
-        return np.where(self.carry.value > 0, fraction[:-1], fraction[1:])
+        return np.where(self._backward, fraction[1:], fraction[:-1])
+
+    @cached_property
+    def _backward(self) -> Mask | Literal[True]:
+        """Faces that the walls carry liquid through towards -x (or none); True for all."""
+        backward = self.carry.value <= 0
+        return True if backward.all() else backward
 
 
 class Cavity:
@@ -356,6 +368,8 @@ class Pattern:
         self.rows = rows[self._order]
         self.indices = columns[self._order].astype(np.int32)
         self.indptr = np.searchsorted(self.rows, np.arange(self.size + 1)).astype(np.int32)
+        sparse = np.ones(self.rows.size), self.indices, self.indptr
+        self._ones = sp.csr_matrix(sparse, shape=(self.size, self.size))
 
     def gather(self, field: NDArray[Any]) -> NDArray[Any]:
         """Return the values of a grid field at the numbered cells."""
@@ -381,6 +395,6 @@ class Pattern:
 
     def matrix(self, coefficients: Array) -> sp.csr_matrix:
         """Return the sparse matrix of (5, size) coefficients."""
-        return sp.csr_matrix(
-            (self.data(coefficients), self.indices, self.indptr), shape=(self.size, self.size)
-        )
+        matrix = copy(self._ones)  # SciPy's constructor takes longer than a product
+        matrix.data = self.data(coefficients)
+        return matrix

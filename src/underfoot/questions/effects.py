@@ -10,7 +10,6 @@ import numpy as np
 
 from underfoot.compute.continuation import Continuation, Preview
 from underfoot.compute.numbers import slip_probability
-from underfoot.compute.positions import TOLERANCE
 from underfoot.core import (
     ConvergenceError,
     InputError,
@@ -34,6 +33,7 @@ MOST_ERROR = 0.01
 """COF that a continuation may miss by its own estimate; half of the COF's own spread if more."""
 STAGE = "Simulating changes"
 _DRAWS = "cof_draws"
+_ONE_POSITION = {"numerics.tread_positions": 1}
 _OF_THE_PLAN = ("heel", "tread", "sole", "outsole")
 
 
@@ -145,10 +145,8 @@ def change_effects(
         return tuple(effects.values())
     mean, own = _levels(present)
     march = start = None
-    tolerance = max(case.numerics.tolerance, TOLERANCE)
-    place = {"numerics.tread_positions": 1, "numerics.tolerance": tolerance}
     if quick:
-        march = _march(case.replace(place), part(progress, 0.0, 0.3))
+        march = _march(case, part(progress, 0.0, 0.3))
     if march is not None:
         start = _Level(march.values["cof"], march.values["fluid_load"])
         for number, variant in variants.items():
@@ -162,11 +160,11 @@ def change_effects(
                 effects[number] = there.effect(changes[number], variant, error)
     alike = {number for number, each in variants.items() if quick and _same_plan(case, each)}
     runs = {
-        number: each.replace(place) if number in alike else each
+        number: each.replace(_ONE_POSITION) if number in alike else each
         for number, each in variants.items()
         if number not in effects
     }
-    unchanged = [case.replace(place)] if quick and march is None else []
+    unchanged = [case.replace(_ONE_POSITION)] if quick and march is None else []
     found = outcomes(
         [*unchanged, *runs.values()],
         quick=quick,

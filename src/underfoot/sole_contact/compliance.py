@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -90,13 +90,18 @@ class ConvolutionCompliance:
         """Return the deflection (nx, ny) in m of a pressure field (nx, ny) in Pa."""
         return _summed(self._parts, pressure)
 
-    def within(self, box: Box) -> ConvolutionCompliance:
-        """Return the compliance between the cells of a box: its cost is that of the box."""
+    def within(self, box: Box, dtype: Any = float) -> ConvolutionCompliance:
+        """Return the compliance between the cells of a box, whose cost is that of the box.
+
+        ``dtype`` is the precision of the transforms.
+        """
         part = object.__new__(ConvolutionCompliance)
         part._symbol, part._self = self._symbol, self._self[box]
-        shape = part._self.shape
         part._parts = [
-            (each.within(shape), weight[box] if isinstance(weight, np.ndarray) else weight)
+            (
+                each.within(part._self.shape, dtype),
+                weight[box].astype(dtype) if isinstance(weight, np.ndarray) else weight,
+            )
             for each, weight in self._parts
         ]
         return part
@@ -125,10 +130,13 @@ class BoxedCompliance:
         return self.whole.apply(field)[self.box]
 
 
-def compliance_within(compliance: Compliance, box: Box) -> Compliance:
-    """Return a compliance between the cells of a box (rows, columns)."""
+def compliance_within(compliance: Compliance, box: Box, dtype: Any = float) -> Compliance:
+    """Return a compliance between the cells of a box (rows, columns).
+
+    ``dtype`` is the precision of the transforms, where it has any.
+    """
     if isinstance(compliance, ConvolutionCompliance):
-        return compliance.within(box)
+        return compliance.within(box, dtype)
     return BoxedCompliance(compliance, box)
 
 

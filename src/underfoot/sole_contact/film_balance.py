@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core.arrays import Array, Mask
-from underfoot.film import Cavity, FilmOperator, Pattern, divergence, film_operator, upwinding
+from underfoot.film import Cavity, FilmOperator, Pattern, film_operator, upwinding
 
 from .problem import Problem
 
@@ -36,8 +36,7 @@ class Linearisation:
         film, matrix = self.film, self.pattern.matrix
         of_full = film.by_pressure * (self.pattern.neighbours_of(self.full.astype(float)) > 0)
         by_gap = film.by_gap + of_full * self.pattern.neighbours_of(self.stiffness)
-        of_cavity = matrix(film.by_fraction)[:, self.cavitated]
-        return matrix(of_full), matrix(by_gap), of_cavity
+        return matrix(of_full), matrix(by_gap), matrix(film.by_fraction)
 
     @cached_property
     def cavitated(self) -> NDArray[np.int64]:
@@ -52,7 +51,9 @@ class Linearisation:
             return fluid
         by_pressure, by_gap, by_fraction = self._matrices
         net = by_pressure @ pressure + by_gap @ gap
-        net += by_fraction @ self.film.cavity.filled_by(-net[self.cavitated])
+        filled = np.zeros_like(net)
+        filled[self.cavitated] = self.film.cavity.filled_by(-net[self.cavitated])
+        net += by_fraction @ filled
         return np.where(self.full, net / self.film.diagonal, fluid)
 
 
@@ -140,7 +141,10 @@ class FilmBalance:
         # where the gap is clipped the film does not follow the walls
         free = (gap > SMALLEST_GAP) & (gap < problem.largest_gap)
         overfull = by_fraction[0] * np.maximum(pattern.gather(fraction) - 1, 0.0)
-        carried = np.abs(divergence(*operator.flows(np.zeros_like(gap), fraction)))
+        through = operator.carried(fraction)
+        carried = np.zeros_like(gap)
+        carried[:-1] += through
+        carried[1:] -= through
         stored = self._storage * np.abs(operator.gap * fraction - self._content)
         wrong = np.where(full, np.abs(net), np.where(wet, overfull, 0.0)).sum()
         return FilmRows(
@@ -152,7 +156,7 @@ class FilmBalance:
             by_gap * pattern.neighbours_of(pattern.gather(free.astype(float))),
             fraction,
             cavity,
-            float(wrong) / (float((carried + stored)[self._film].sum()) + 1e-30),
+            float(wrong) / (float((np.abs(carried) + stored)[self._film].sum()) + 1e-30),
         )
 
     def _balance(

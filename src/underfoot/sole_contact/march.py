@@ -16,7 +16,7 @@ from .preconditioner import PoleFit
 from .problem import Problem, State
 
 EASY = 7  # Newton steps below which the time step grows
-GROWTH = 1.5
+GROWTH = 2.0
 CUT = 2.5
 SHORTEST = 1e-4  # of the first step, below which the march gives up
 LETS_GO = 1.05  # times the pool depth; without it a cell at the brink flips at every step
@@ -55,11 +55,15 @@ class Counts:
 
 @dataclass(frozen=True, slots=True)
 class Demand:
-    """What holds at the end of a step: load N, floor speed m/s and clearance of the sole m."""
+    """What holds at the end of a step: load N, floor speed m/s and clearance of the sole m.
+
+    ``tolerance`` is how exactly; 1.
+    """
 
     load: float
     wall_speed: float
     clearance: Array
+    tolerance: float
 
 
 class March:
@@ -119,6 +123,7 @@ class March:
                 duration=duration,
                 film=film[cells.box],
                 content=self._content()[cells.box],
+                tolerance=demand.tolerance,
                 tick=tick,
             )
             self.counts.newton += attempt.newton

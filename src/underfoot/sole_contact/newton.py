@@ -68,6 +68,8 @@ class Cells:
         )
         self.pattern = Pattern(mask[self.box])
         self._compliance = compliance_within(problem.compliance, self.box)
+        # for directions of a Newton step: GMRES solves to 1e-3, balances are in double precision
+        self.direction = compliance_within(problem.compliance, self.box, np.float32)
         scale = float(np.median(self.pattern.gather(self._compliance.self_compliance)))
         self.preconditioner = Preconditioner(self.pattern, fit, scale, problem.spacing)
 
@@ -114,12 +116,14 @@ def implicit_step(
     duration: float,
     film: Mask,
     content: Array,
+    tolerance: float,
     tick: Callable[[float], None],
 ) -> Attempt:
     """Return the state after ``duration`` under ``load``, if Newton finds it.
 
     All are on the box of the cells. ``film`` marks the cells that the pool reaches, ``content`` (m)
-    is the liquid that they hold at the start; ``tick`` receives the residual of each step.
+    is the liquid that they hold at the start, ``tolerance`` the largest relative imbalance;
+    ``tick`` receives the residual of each Newton step.
     """
     pattern = cells.pattern
     area = problem.spacing**2
@@ -162,7 +166,7 @@ def implicit_step(
         error = max(error, 0.01 * float(np.abs(lacking).max()) / problem.decay)
         attempt.residuals.append(error)
         tick(error)
-        if error < problem.settings.tolerance:
+        if error < tolerance:
             attempt.state = State(
                 pressure,
                 approach,
@@ -186,7 +190,7 @@ def implicit_step(
                 break
 
         def product(vector: Array, linear=linear) -> Array:
-            field = problem.compliance.apply(pattern.scatter(vector[:-1]))
+            field = cells.direction.apply(pattern.scatter(vector[:-1]))
             out = np.empty_like(vector)
             out[:-1] = linear.residual(vector[:-1], pattern.gather(field) - vector[-1])
             out[-1] = vector[:-1].mean()

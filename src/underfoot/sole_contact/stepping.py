@@ -22,7 +22,8 @@ from .problem import Problem, State
 from .sole_state import SoleState, SolverSettings
 
 FAR = 1.0  # m, clearance that stands for "outside the plan form"
-FIRST_STEP = 1 / 150  # of the rise time
+FIRST_STEP = 1 / 30  # of the rise time
+PASSED = (10.0, 1e-3)  # times the tolerance, at most the second: a balance that is only passed
 LEAST_LOAD = 1e-3  # of the largest load so far: what a foot about to lift still weighs
 LONGEST_TIME = 1e5  # s, when a film that still moves is given up as not steady
 STEADY_STEP = 0.25  # share of the elapsed time over which a steady state must not move
@@ -291,6 +292,8 @@ class SlidingSole:
         most = most_steps or self.settings.most_time_steps
         before = counts.time_steps + counts.rejected
         area = self.sole.spacing**2
+        exact = self.settings.tolerance
+        passed = max(exact, min(PASSED[0] * exact, PASSED[1]))
         while self._time < end * (1 - 1e-12):
             if counts.time_steps + counts.rejected - before >= most:
                 return False
@@ -301,7 +304,8 @@ class SlidingSole:
                 clearance = march.problem.clearance
                 if angle != self._angle:
                     clearance = self._clearance(angle)
-                return Demand(load, -speed, clearance)
+                last = settled is not None or self._time + duration > end * (1 - 1e-12)
+                return Demand(load, -speed, clearance, exact if last else passed)
 
             fraction = self._fraction(min(start + march.step, end))
             state = march.state
