@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from underfoot.core import Progress, silent
+from underfoot.core import ConvergenceError, Progress, silent
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
 from underfoot.shoe.geometry import SoleMap
 
@@ -174,6 +174,13 @@ def solve_on(
             # the change in two parts: one that lifts the sole is too much for Newton's method
             longest_step=duration / 2 if step == 0 else None,
         )
+        if not state.status.usable:
+            raise ConvergenceError(
+                "the step to the changed case could not be made",
+                history=state.residuals,
+                where="sole_contact",
+                remedy="Run the changed case",
+            )
         found.append(with_history(state, sliding))
     return found
 
