@@ -95,12 +95,12 @@ class FilmBalance:
         self._wet = pattern.gather(film)
         self._give = pattern.gather(problem.compliance.self_compliance)
         # upwinding from the gap at the start of the step: it stays out of the Newton matrix
-        start = np.clip(gap, SMALLEST_GAP, problem.largest_gap)
+        self._start = start = np.clip(gap, SMALLEST_GAP, problem.largest_gap)
         carried = 0.5 * abs(problem.wall_speed) * problem.spacing
         self._lean = upwinding(
             start,
             carried * problem.compliance.self_compliance,
-            problem.conductance(start).value,
+            problem.conductance(start, start).value,
             from_a=problem.wall_speed < 0,
         )
 
@@ -115,7 +115,7 @@ class FilmBalance:
         pattern, wet, give = self._pattern, self._wet, self._give
         problem = self._problem
         bounded = np.clip(gap, SMALLEST_GAP, problem.largest_gap)
-        conductance = problem.conductance(bounded)
+        conductance = problem.conductance(bounded, self._start)
         operator = film_operator(
             bounded,
             conductance,
