@@ -173,7 +173,7 @@ def implicit_step(
                 gap,
                 pattern.scatter(floor + np.where(full, above, 0.0)),
                 pattern.scatter(np.where(full, asperity, total - floor)),
-                film & (pattern.scatter(full.astype(float)) == 0),
+                film & ~pattern.scatter(full),
                 np.ones_like(gap) if rows is None else np.minimum(rows.fraction, 1.0),
             )
             return attempt

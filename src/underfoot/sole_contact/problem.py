@@ -40,8 +40,8 @@ class Problem:
         """Return what lets the fluid flow through a mean gap (m) between rough walls."""
         assert self.viscosity is not None
         factor, slope = self.law.flow_factor(gap), self.law.flow_factor_slope(gap)
-        twelve = 12 * self.viscosity
-        return Conductance(factor * gap**3 / twelve, (3 * factor + slope * gap) * gap**2 / twelve)
+        square = gap * gap / (12 * self.viscosity)
+        return Conductance(factor * gap * square, (3 * factor + slope * gap) * square)
 
 
 @dataclass(slots=True)
