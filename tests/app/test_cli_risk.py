@@ -15,7 +15,6 @@ from hypothesis import strategies as st
 from scipy.stats import norm
 
 from underfoot.case import Case
-from underfoot.compute.positions import TOLERANCE
 from underfoot.compute.run import run
 from underfoot.core import Cancelled, InputError
 from underfoot.core.presentation import percent
@@ -132,7 +131,6 @@ def test_no_change_gives_back_the_result_and_other_walkers_take_its_friction() -
 
 def test_a_motion_with_a_history_is_run_for_each_change() -> None:
     case = Case.from_text(TEXT).replace("motion", "heel_strike_to_flat")
-    case = case.replace("numerics.tolerance", TOLERANCE)
     rougher = Change("rougher", "rougher", "floor", {"floor.roughness.rq": 5e-6})
     (found,) = risk_assessment(case, changes=[rougher]).changes
     alone = run(case.replace(rougher.values), quick=True)  # no tread: one position either way

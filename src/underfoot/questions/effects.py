@@ -118,10 +118,10 @@ def change_effects(
 
     A change of who walks takes the friction that is there. With ``quick``, others go on from one
     march of the case on its coarse grid at the tread's own position (``Continuation``). What that
-    can't tell within ``MOST_ERROR`` is run there, another plan of the sole at the positions of a
-    quick run; with a motion history all are, in up to ``processes`` processes. What the coarse grid
-    and the one position miss is known of the unchanged case, and carried over in proportion to the
-    load that is left on the film:
+    can't tell within ``MOST_ERROR``, and another rubber, is run there; another plan of the sole at
+    the positions of a quick run; with a motion history all are, in up to ``processes`` processes.
+    What the coarse grid and the one position miss is known of the unchanged case, and carried over
+    in proportion to the load that is left on the film:
 
         x(changed) = x_1(changed) + (x - x_1) min(1, F_1(changed) / F_1)
 
@@ -149,13 +149,15 @@ def change_effects(
         march = _march(case, part(progress, 0.0, 0.3))
     if march is not None:
         start = _Level(march.values["cof"], march.values["fluid_load"])
-        for number in variants:
+        for number, variant in variants.items():
             progress(STAGE, 0.3 + 0.3 * number / len(changes))
+            if variant.shoe.material != case.shoe.material:
+                continue  # a rubber that gives way otherwise: most steps to it cost a march or fail
             seen = _continued(march, changes[number])
             if seen is not None:
                 there = _Friction.of_preview(seen).moved(start, mean)
                 error = seen.errors["cof"]
-                effects[number] = there.effect(changes[number], variants[number], error)
+                effects[number] = there.effect(changes[number], variant, error)
     alike = {number for number, each in variants.items() if quick and _same_plan(case, each)}
     runs = {
         number: each.replace(_ONE_POSITION) if number in alike else each
