@@ -86,22 +86,22 @@ class FilmOperator:
     def by_pressure(self) -> Stencil:
         """Derivative of the balance by pressure, m^3/(Pa s)."""
         kx, ky = self.kx.value, self.ky.value
-        return self._stencil(0.0, (kx, kx), (ky, ky))
+        return self._stencil(0.0, (-kx, kx), (-ky, ky))
 
     @cached_property
     def by_fraction(self) -> Stencil:
         """Derivative of the balance by liquid fraction, m^3/s; a cell depends on its upstream."""
         forward, backward = np.maximum(self.carry.value, 0.0), np.minimum(self.carry.value, 0.0)
-        return self._stencil(self.storage * self.gap, (-backward, forward))
+        return self._stencil(self.storage * self.gap, (backward, forward))
 
     def by_gap(self, pressure: Array, fraction: Array) -> Stencil:
         """Return the derivative of the balance by gap, m^2/s, at given pressure and fraction."""
-        drop_x, drop_y = pressure[1:] - pressure[:-1], pressure[:, 1:] - pressure[:, :-1]
+        drop_x, drop_y = pressure[:-1] - pressure[1:], pressure[:, :-1] - pressure[:, 1:]
         filled = self._upstream(fraction)
-        x_a = self.carry.by_a * filled - self.kx.by_a * drop_x
-        x_b = self.carry.by_b * filled - self.kx.by_b * drop_x
-        y_a, y_b = -self.ky.by_a * drop_y, -self.ky.by_b * drop_y
-        return self._stencil(self.storage * fraction, (-x_a, x_b), (-y_a, y_b))
+        x_a = self.carry.by_a * filled + self.kx.by_a * drop_x
+        x_b = self.carry.by_b * filled + self.kx.by_b * drop_x
+        y_a, y_b = self.ky.by_a * drop_y, self.ky.by_b * drop_y
+        return self._stencil(self.storage * fraction, (x_a, x_b), (y_a, y_b))
 
     def flows(self, pressure: Array, fraction: Array) -> tuple[Array, Array]:
         """Return the flow (m^3/s) through the x and the y faces."""
@@ -129,22 +129,21 @@ class FilmOperator:
     ) -> Stencil:
         """Return the coefficients of ``centre`` plus flows through the faces.
 
-        Of the two values of a face the first is minus the derivative of its flow by cell a, the
-        second the derivative by cell b.
+        The two values of a face are the derivatives of its flow by cell a and by cell b.
         """
         stencil: Stencil = np.zeros((5, *self.gap.shape))
         own, east, west, north, south = stencil
         own += centre
         x_a, x_b = along
-        own[1:] += x_a
+        own[1:] -= x_a
         own[:-1] += x_b
-        np.negative(x_a, out=east[:-1])
+        east[:-1] = x_a
         np.negative(x_b, out=west[1:])
         if across is not None:
             y_a, y_b = across
-            own[:, 1:] += y_a
+            own[:, 1:] -= y_a
             own[:, :-1] += y_b
-            np.negative(y_a, out=north[:, :-1])
+            north[:, :-1] = y_a
             np.negative(y_b, out=south[:, 1:])
         return stencil
 
@@ -214,9 +213,9 @@ def film_operator(
         edges: t of the x faces, (nx - 1, ny), and of the y faces, (nx, ny - 1).
     """
     dx, dy = spacing
-    k, dk = along
+    k, dk = (dy / dx * part for part in along)
     kx = series_conductance(k[1:], k[:-1], dk[1:], dk[:-1], edges[0])
-    m, dm = across
+    m, dm = (dx / dy * part for part in across)
     ky = series_conductance(m[:, 1:], m[:, :-1], dm[:, 1:], dm[:, :-1], edges[1])
     a, b = gap[1:], gap[:-1]
     of_a, of_b = (1 - edges[0]) / k[1:], edges[0] / k[:-1]
@@ -227,13 +226,7 @@ def film_operator(
     if roughness_flow is not None:
         more = kx.value * (of_a * roughness_flow[1:] + of_b * roughness_flow[:-1])
         carry = carry._replace(value=carry.value + dy * more)
-    return FilmOperator(
-        gap,
-        FaceValue(*(dy / dx * part for part in kx)),
-        FaceValue(*(dx / dy * part for part in ky)),
-        carry,
-        storage,
-    )
+    return FilmOperator(gap, kx, ky, carry, storage)
 
 
 def divergence(flow_x: Array, flow_y: Array) -> Array:
@@ -320,10 +313,10 @@ def upwinding(gap: Array, carried: Array, conductance: Array, *, from_a: bool) -
 
 def _smoothness(a: Array, b: Array) -> tuple[Array, Array]:
     """Return 1 between gaps alike, 0 across a step, and the derivative by ln(a / b)."""
-    ratio = np.log(a / b)
-    place = np.clip((np.abs(ratio) - SMOOTH) / (STEP - SMOOTH), 0.0, 1.0)
-    value = 1 - place * place * (3 - 2 * place)
-    return value, -6 * place * (1 - place) / (STEP - SMOOTH) * np.sign(ratio)
+    ratio = np.log(b / a)
+    near = np.clip((STEP - np.abs(ratio)) / (STEP - SMOOTH), 0.0, 1.0)
+    slope = 6 / (STEP - SMOOTH) * near * (1 - near)
+    return near * near * (3 - 2 * near), np.copysign(slope, ratio)
 
 
 class SparseLayout:
@@ -337,7 +330,9 @@ class SparseLayout:
         self, rows: NDArray[np.integer], columns: NDArray[np.integer], shape: tuple[int, int]
     ) -> None:
         present = np.flatnonzero(columns.ravel() >= 0)
-        places = rows.ravel()[present] * shape[1] + columns.ravel()[present]  # one row after another
+        places = (
+            rows.ravel()[present] * shape[1] + columns.ravel()[present]
+        )  # one row after another
         order = np.argsort(places)
         self._places = present[order]
         row, column = np.divmod(places[order], shape[1])

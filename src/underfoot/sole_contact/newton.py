@@ -190,7 +190,7 @@ def implicit_step(
                 break
 
         def product(vector: Array, linear=linear) -> Array:
-            field = cells.direction.apply(pattern.scatter(vector[:-1]))
+            field = cells.direction.apply(pattern.scatter(vector[:-1].astype(np.float32)))
             out = np.empty_like(vector)
             out[:-1] = linear.residual(vector[:-1], pattern.gather(field) - vector[-1])
             out[-1] = vector[:-1].mean()
