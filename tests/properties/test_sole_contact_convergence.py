@@ -1,5 +1,6 @@
 """A sole converges at any speed, load and viscosity that a foot meets, treaded like plain."""
 
+import dataclasses
 import functools
 import math
 
@@ -11,7 +12,7 @@ from underfoot.core import Status
 from underfoot.rough_contact.pressure_gap_law import ExponentialLaw
 from underfoot.shoe import Facet, Heel, Tread, heel_map
 from underfoot.sole_contact.compliance import layered_compliance
-from underfoot.sole_contact.solver import solve_sliding
+from underfoot.sole_contact.solver import SolverSettings, solve_sliding
 
 MODULUS = 5e6
 
@@ -55,3 +56,33 @@ def test_any_speed_load_and_viscosity(treaded, speed, force, viscosity, back):
     assert solved.fluid_load + solved.contact_load == pytest.approx(load, rel=2e-3)
     assert solved.counts.time_steps < 100
     assert solved.counts.rejected < 20
+
+
+@pytest.mark.slow
+def test_time_steps_of_a_tread_are_fine_enough_wherever_its_lugs_lie():
+    """Mean load on the film over positions within 3 % of that of steps eight times finer."""
+    heel = Heel(
+        length=0.06,
+        width=0.04,
+        rear_radius=0.02,
+        outsole_thickness=0.025,
+        profile=Facet(0.17, 0.03),
+    )
+    loads = []
+    for resolution in (8.0, 64.0):
+        for share in range(4):
+            shift = (share * 7.5e-3 / 4, 0.0)
+            lugs = Tread("grid", lug_width=5e-3, channel_width=2.5e-3, depth=3e-3, offset=shift)
+            sole = heel_map(dataclasses.replace(heel, tread=lugs), shoe_angle=0.17, spacing=1e-3)
+            solved = solve_sliding(
+                sole,
+                layered_compliance(sole, modulus=MODULUS, poisson_ratio=0.49, thickness=0.025),
+                ExponentialLaw(MODULUS, 0.5, 10e-6),
+                viscosity=0.219,
+                speed=0.7,
+                normal_force=300.0,
+                settings=SolverSettings(time_resolution=resolution),
+            )
+            loads.append(solved.fluid_load)
+    default, fine = sum(loads[:4]), sum(loads[4:])
+    assert default == pytest.approx(fine, rel=0.03)

@@ -7,9 +7,16 @@ import pytest
 
 from underfoot.core import Cancelled, ConvergenceError, InputError, Status
 from underfoot.rough_contact.pressure_gap_law import ExponentialLaw, PressureGapLaw
-from underfoot.shoe import Heel, heel_map
+from underfoot.shoe import Heel, Tread, heel_map
 from underfoot.sole_contact.compliance import half_space_compliance, layered_compliance
-from underfoot.sole_contact.solver import SolverSettings, solve_sliding
+from underfoot.sole_contact.solver import (
+    FINEST,
+    PIECES,
+    SolverSettings,
+    longest_step,
+    passing_time,
+    solve_sliding,
+)
 
 SOLE = heel_map(
     Heel(length=0.04, width=0.04, rear_radius=0.015, outsole_thickness=0.02, edge_radius=0.002),
@@ -148,3 +155,21 @@ def test_nothing_usable_raises_with_history():
         )
     assert caught.value.history
     assert caught.value.remedy
+
+
+def test_the_floor_passes_the_land_that_a_cell_lies_in():
+    assert passing_time(SOLE, 0.0) == np.inf
+    assert passing_time(SOLE, -2.0) == passing_time(SOLE, 2.0) == passing_time(SOLE, 1.0) / 2
+    tread = Tread("grid", lug_width=6e-3, channel_width=4e-3, depth=3e-3)
+    plain = Heel(length=0.06, width=0.05, rear_radius=0.001, outsole_thickness=0.02)
+    lugs = heel_map(dataclasses.replace(plain, tread=tread), shoe_angle=0.1, spacing=1e-3)
+    assert passing_time(lugs, 0.5) == pytest.approx(12e-3, rel=0.05)
+    assert passing_time(heel_map(plain, shoe_angle=0.1, spacing=1e-3), 0.5) == pytest.approx(
+        0.12, rel=0.03
+    )
+
+
+def test_steps_follow_the_lugs_between_those_of_the_stage_and_a_bound():
+    assert longest_step(0.09, np.inf) == 0.09
+    assert longest_step(0.09, 5e-3) == PIECES * 5e-3
+    assert longest_step(0.09, 1e-6) == 0.09 / FINEST

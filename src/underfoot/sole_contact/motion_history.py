@@ -1,5 +1,6 @@
 """A sole that follows a history of load, sliding speed and shoe angle."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
@@ -13,7 +14,7 @@ from underfoot.shoe.geometry import SoleMap
 
 from .compliance import Compliance
 from .sole_state import SoleState, SolverSettings
-from .solver import SoleContact, with_history
+from .solver import SoleContact, longest_step, passing_time, with_history
 from .stepping import Reporting, SlidingSole
 
 STEPS = 24.0
@@ -96,7 +97,11 @@ def solve_history(
     rows = np.column_stack([history.time, history.normal_force, history.speed, history.shoe_angle])
     _, force, speed, angle = (float(value) for value in rows[0])
     sliding.begin(normal_force=force, speed=speed, shoe_angle=angle)
-    longest = float(history.time[-1]) / STEPS
+    duration, fastest = float(history.time[-1]), float(np.abs(history.speed).max())
+    passing = math.inf if viscosity is None else passing_time(sole, fastest)
+    longest = min(
+        duration / STEPS, longest_step(duration, passing) / sliding.settings.time_resolution
+    )
     state = None
     for before, after in pairwise(rows):
         _, force, speed, angle = (float(value) for value in after)

@@ -25,6 +25,8 @@ class SolverSettings:
         end_time: Time at which the result is taken, s (assumed: 90 ms of sliding under full load).
         steady: Go on until nothing moves instead of stopping at ``end_time``.
         tolerance: Largest relative imbalance of volume, of load and of the cavitation condition.
+        time_resolution: Steps at least that the rise takes, that the rest takes, and that the floor
+            takes to pass six pieces of land (the lugs of a tread) in.
         backend: Sparse factorization: "pardiso", "superlu" or None for the fastest installed.
         cavity_pressure: Pressure of ruptured film, Pa above that of the air, 0 or less: 0 where air
             finds its way in, down to -1e5 where nothing does (the default is the former).
