@@ -235,9 +235,7 @@ def _step_share(problem: Problem, gap: Array, rise: Array) -> float:
     thin = gap < THIN
     if not thin.any():
         return 1.0
-    size = np.abs(gap[thin])
-    change = rise[thin]
-    down = np.maximum(0.7 * size, 1.5 * problem.decay)
-    up = np.maximum(3.0 * size, 3.0 * problem.decay)
-    room = np.where(change < 0, down / np.maximum(-change, 1e-30), up / np.maximum(change, 1e-30))
+    size, change, decay = np.abs(gap[thin]), rise[thin], problem.decay
+    down, up = np.maximum(0.7 * size, 1.5 * decay), 3.0 * np.maximum(size, decay)
+    room = np.where(change < 0, down, up) / np.maximum(np.abs(change), 1e-30)
     return float(min(1.0, max(0.05, room.min())))
