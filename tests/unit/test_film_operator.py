@@ -107,7 +107,12 @@ def test_a_cavity_passes_on_what_it_receives(seed, speed):
     pressure = np.where(mask, 0.0, 1e5 * rng.random(shape))
     content = gap * rng.random(shape)
     balance = operator(gap, speed, storage=SPACING**2 / 10 ** rng.uniform(-5, 0))
-    fraction = balance.cavity_fraction(pressure, Cavity(balance, mask), content)
+    pattern = Pattern(mask | (rng.random(shape) < 0.5))
+    rows = pattern.rows_of(balance.by_fraction)
+    cavity = Cavity(pattern, rows, pattern.gather(mask))
+    fraction = np.where(mask, 0.0, 1.0)
+    sent = pattern.gather(-balance.imbalance(pressure, fraction, content))
+    fraction.flat[pattern.cells[cavity.cells]] = cavity.filled_by(sent[cavity.cells])
     assert (fraction >= 0).all()
     assert (fraction[~mask] == 1).all()
     left = balance.imbalance(pressure, fraction, content)[mask]

@@ -4,7 +4,7 @@ from .operator import Cavity as Cavity
 from .operator import Conductance as Conductance
 from .operator import FilmOperator as FilmOperator
 from .operator import Pattern as Pattern
-from .operator import Stencil as Stencil
+from .operator import SparseLayout as SparseLayout
 from .operator import Upwinding as Upwinding
 from .operator import divergence as divergence
 from .operator import film_operator as film_operator

@@ -17,7 +17,7 @@ factorised without pivoting. A face lies between ``a``, the cell on its far side
 share t of the way between the centres that b's gap reaches (1/2, or where an edge cuts the cells),
 
     k = K_a K_b / (t K_a + (1 - t) K_b)                              pressure flow per difference
-    h_c = ((1 - t) a K_b + t b K_a) / (t K_a + (1 - t) K_b)          gap that carries the shear flow
+    h_c = k ((1 - t) a / K_a + t b / K_b)                            gap that carries the shear flow
 
 Taking the gap linear between cell centres instead doubles the film under a lug beside a channel.
 """
@@ -56,14 +56,9 @@ class Upwinding(NamedTuple):
     correction: Array  # m, added to the upstream gap
 
 
-class Stencil(NamedTuple):
-    """Five-point coefficients, each (nx, ny): row of a cell, columns itself and its neighbours."""
-
-    centre: Array
-    east: Array
-    west: Array
-    north: Array
-    south: Array
+Stencil = Array
+"""(5, nx, ny): coefficients of a cell's row in its own column and those to the east, west (x) and
+north, south (y)."""
 
 
 class Conductance(NamedTuple):
@@ -91,22 +86,22 @@ class FilmOperator:
     def by_pressure(self) -> Stencil:
         """Derivative of the balance by pressure, m^3/(Pa s)."""
         kx, ky = self.kx.value, self.ky.value
-        return self._stencil(np.zeros(self.gap.shape), (kx, kx), (ky, ky))
+        return self._stencil(0.0, (-kx, kx), (-ky, ky))
 
     @cached_property
     def by_fraction(self) -> Stencil:
         """Derivative of the balance by liquid fraction, m^3/s; a cell depends on its upstream."""
         forward, backward = np.maximum(self.carry.value, 0.0), np.minimum(self.carry.value, 0.0)
-        return self._stencil(self.storage * self.gap, (-backward, forward))
+        return self._stencil(self.storage * self.gap, (backward, forward))
 
     def by_gap(self, pressure: Array, fraction: Array) -> Stencil:
         """Return the derivative of the balance by gap, m^2/s, at given pressure and fraction."""
-        drop_x, drop_y = pressure[1:] - pressure[:-1], pressure[:, 1:] - pressure[:, :-1]
+        drop_x, drop_y = pressure[:-1] - pressure[1:], pressure[:, :-1] - pressure[:, 1:]
         filled = self._upstream(fraction)
-        x_a = self.carry.by_a * filled - self.kx.by_a * drop_x
-        x_b = self.carry.by_b * filled - self.kx.by_b * drop_x
-        y_a, y_b = -self.ky.by_a * drop_y, -self.ky.by_b * drop_y
-        return self._stencil(self.storage * fraction, (-x_a, x_b), (-y_a, y_b))
+        x_a = self.carry.by_a * filled + self.kx.by_a * drop_x
+        x_b = self.carry.by_b * filled + self.kx.by_b * drop_x
+        y_a, y_b = self.ky.by_a * drop_y, self.ky.by_b * drop_y
+        return self._stencil(self.storage * fraction, (x_a, x_b), (y_a, y_b))
 
     def flows(self, pressure: Array, fraction: Array) -> tuple[Array, Array]:
         """Return the flow (m^3/s) through the x and the y faces."""
@@ -126,38 +121,31 @@ class FilmOperator:
         outflow = divergence(*self.flows(pressure, fraction))
         return outflow + self.storage * (self.gap * fraction - content)
 
-    def cavity_fraction(
-        self, pressure: Array, cavity: Cavity, content: Array | float = 0.0
-    ) -> Array:
-        """Return the liquid fraction that conserves volume in a cavity, 1 elsewhere.
-
-        Values above 1 say that the cell has filled up.
-        """
-        fraction = np.ones_like(self.gap)
-        fraction.flat[cavity.cells] = 0.0
-        sent = -self.imbalance(pressure, fraction, content)
-        fraction.flat[cavity.cells] = cavity.filled_by(sent.flat[cavity.cells])
-        return fraction
-
     def _stencil(
-        self, centre: Array, along: tuple[Array, Array], across: tuple[Array, Array] | None = None
+        self,
+        centre: Array | float,
+        along: tuple[Array, Array],
+        across: tuple[Array, Array] | None = None,
     ) -> Stencil:
         """Return the coefficients of ``centre`` plus flows through the faces.
 
-        Of the two values of a face the first is minus the derivative of its flow by cell a, the
-        second the derivative by cell b.
+        The two values of a face are the derivatives of its flow by cell a and by cell b.
         """
+        stencil: Stencil = np.zeros((5, *self.gap.shape))
+        own, east, west, north, south = stencil
+        own += centre
         x_a, x_b = along
-        east, west, north, south = (np.zeros(self.gap.shape) for _ in range(4))
-        centre[1:] += x_a
-        centre[:-1] += x_b
-        east[:-1], west[1:] = -x_a, -x_b
+        own[1:] -= x_a
+        own[:-1] += x_b
+        east[:-1] = x_a
+        np.negative(x_b, out=west[1:])
         if across is not None:
             y_a, y_b = across
-            centre[:, 1:] += y_a
-            centre[:, :-1] += y_b
-            north[:, :-1], south[:, 1:] = -y_a, -y_b
-        return Stencil(centre, east, west, north, south)
+            own[:, 1:] -= y_a
+            own[:, :-1] += y_b
+            north[:, :-1] = y_a
+            np.negative(y_b, out=south[:, 1:])
+        return stencil
 
     def _upstream(self, fraction: Array) -> Array:
         if self._backward is True:  # a sole that slides forward
@@ -172,20 +160,22 @@ class FilmOperator:
 
 
 class Cavity:
-    """Cavitated cells, which pass on along x what they receive: a tridiagonal system."""
+    """Cavitated cells, which pass on along x what they receive: a tridiagonal system.
 
-    def __init__(self, operator: FilmOperator, mask: Mask) -> None:
-        along, across = np.nonzero(mask.T)[::-1]
-        self.cells = np.ravel_multi_index((along, across), mask.shape)  # x runs fastest
-        rows = operator.by_fraction
-        linked = (np.diff(along) == 1) & (np.diff(across) == 0)
+    ``by_fraction`` (5, size) holds the rows of the numbered cells, ``mask`` (size,) marks those
+    that are cavitated; ``cells`` are their numbers.
+    """
+
+    def __init__(self, pattern: Pattern, by_fraction: Array, mask: Mask) -> None:
+        cells = self.cells = pattern.along[mask[pattern.along]]
+        linked = pattern.columns[1, cells[:-1]] == cells[1:]
         # factorised once, for it is solved in each product; three rows of their own at the end, for
         # LAPACK's wrapper takes no fewer
-        below, above = np.zeros((2, self.cells.size + 2))
-        below[: linked.size] = np.where(linked, rows.west.flat[self.cells[1:]], 0.0)
-        above[: linked.size] = np.where(linked, rows.east.flat[self.cells[:-1]], 0.0)
-        own = np.append(rows.centre.flat[self.cells], np.ones(3))
-        *self._factors, failed = dgttrf(below, own, above)
+        below, own, above = np.zeros((3, cells.size + 3))
+        below[: linked.size] = linked * by_fraction[2, cells[1:]]
+        above[: linked.size] = linked * by_fraction[1, cells[:-1]]
+        own[:-3], own[-3:] = by_fraction[0, cells], 1.0
+        *self._factors, failed = dgttrf(below[:-1], own, above[:-1])
         if failed:
             raise np.linalg.LinAlgError("a cavity that neither holds nor passes on liquid")
 
@@ -223,27 +213,20 @@ def film_operator(
         edges: t of the x faces, (nx - 1, ny), and of the y faces, (nx, ny - 1).
     """
     dx, dy = spacing
-    k, dk = along
+    k, dk = (dy / dx * part for part in along)
     kx = series_conductance(k[1:], k[:-1], dk[1:], dk[:-1], edges[0])
-    m, dm = across
+    m, dm = (dx / dy * part for part in across)
     ky = series_conductance(m[:, 1:], m[:, :-1], dm[:, 1:], dm[:, :-1], edges[1])
     a, b = gap[1:], gap[:-1]
-    shear = shear_gap(a, b, (k[1:], k[:-1], dk[1:], dk[:-1]), edges[0])
+    of_a, of_b = (1 - edges[0]) / k[1:], edges[0] / k[:-1]
+    shear = shear_gap(a, b, of_a, of_b, kx)
     if upwinding is not None:
         shear = upwind_blend(a, b, shear, upwinding, from_a=speed < 0)
     carry = FaceValue(*(dy * speed * part for part in shear))
     if roughness_flow is not None:
-        nil = np.zeros_like(a)
-        flow = roughness_flow[1:], roughness_flow[:-1]
-        more = shear_gap(*flow, (k[1:], k[:-1], nil, nil), edges[0])
-        carry = carry._replace(value=carry.value + dy * more.value)
-    return FilmOperator(
-        gap,
-        FaceValue(*(dy / dx * part for part in kx)),
-        FaceValue(*(dx / dy * part for part in ky)),
-        carry,
-        storage,
-    )
+        more = kx.value * (of_a * roughness_flow[1:] + of_b * roughness_flow[:-1])
+        carry = carry._replace(value=carry.value + dy * more)
+    return FilmOperator(gap, kx, ky, carry, storage)
 
 
 def divergence(flow_x: Array, flow_y: Array) -> Array:
@@ -260,27 +243,20 @@ def series_conductance(
     ka: Array, kb: Array, dka: Array, dkb: Array, place: Array | float = 0.5
 ) -> FaceValue:
     """Return the conductance of two parts in series; ``dka`` is dK_a/da, ``place`` is t."""
-    total = place * ka + (1 - place) * kb
-    return FaceValue(
-        ka * kb / total, (1 - place) * (kb / total) ** 2 * dka, place * (ka / total) ** 2 * dkb
-    )
-
-
-def shear_gap(
-    a: Array, b: Array, conductances: tuple[Array, Array, Array, Array], place: Array | float = 0.5
-) -> FaceValue:
-    """Return the gap that carries the shear flow.
-
-    ``conductances`` are K_a, K_b, dK_a/da and dK_b/db, ``place`` is t.
-    """
-    ka, kb, dka, dkb = conductances
     rest = 1 - place
     total = place * ka + rest * kb
-    gap = (rest * a * kb + place * b * ka) / total
+    to_a, to_b = ka / total, kb / total
+    return FaceValue(ka * to_b, rest * to_b * to_b * dka, place * to_a * to_a * dkb)
+
+
+def shear_gap(a: Array, b: Array, of_a: Array, of_b: Array, series: FaceValue) -> FaceValue:
+    """Return the gap that carries the shear flow: the mean of two parts, each by its resistance.
+
+    ``of_a``, ``of_b`` are the resistances (1 - t) / K_a and t / K_b, ``series`` the conductance.
+    """
+    share, rest, step = of_a * series.value, of_b * series.value, a - b
     return FaceValue(
-        gap,
-        (rest * kb + place * (b - gap) * dka) / total,
-        (place * ka + rest * (a - gap) * dkb) / total,
+        share * a + rest * b, share - step * of_b * series.by_a, rest + step * of_a * series.by_b
     )
 
 
@@ -299,8 +275,9 @@ def upwind_blend(
     weight = lean.strength * smooth
     excess = (a if from_a else b) + lean.correction - gap
     turn = lean.strength * slope * excess
-    by_a = (1 - weight) * by_a + turn / a
-    by_b = (1 - weight) * by_b - turn / b
+    kept = 1 - weight
+    by_a = kept * by_a + turn / a
+    by_b = kept * by_b - turn / b
     if from_a:
         by_a = by_a + weight
     else:
@@ -336,10 +313,38 @@ def upwinding(gap: Array, carried: Array, conductance: Array, *, from_a: bool) -
 
 def _smoothness(a: Array, b: Array) -> tuple[Array, Array]:
     """Return 1 between gaps alike, 0 across a step, and the derivative by ln(a / b)."""
-    ratio = np.log(a / b)
-    place = np.clip((np.abs(ratio) - SMOOTH) / (STEP - SMOOTH), 0.0, 1.0)
-    value = 1 - place * place * (3 - 2 * place)
-    return value, -6 * place * (1 - place) / (STEP - SMOOTH) * np.sign(ratio)
+    ratio = np.log(b / a)
+    near = np.clip((STEP - np.abs(ratio)) / (STEP - SMOOTH), 0.0, 1.0)
+    slope = 6 / (STEP - SMOOTH) * near * (1 - near)
+    return near * near * (3 - 2 * near), np.copysign(slope, ratio)
+
+
+class SparseLayout:
+    """Where the entries of a sparse matrix lie, to fill it again and again.
+
+    ``rows`` and ``columns`` are of any one shape, that of the coefficients which fill the matrix; a
+    column below 0 stands for none.
+    """
+
+    def __init__(
+        self, rows: NDArray[np.integer], columns: NDArray[np.integer], shape: tuple[int, int]
+    ) -> None:
+        present = np.flatnonzero(columns.ravel() >= 0)
+        places = (
+            rows.ravel()[present] * shape[1] + columns.ravel()[present]
+        )  # one row after another
+        order = np.argsort(places)
+        self._places = present[order]
+        row, column = np.divmod(places[order], shape[1])
+        starts = np.searchsorted(row, np.arange(shape[0] + 1))
+        sparse = np.ones(order.size), column.astype(np.int32), starts.astype(np.int32)
+        self._ones = sp.csr_matrix(sparse, shape=shape)
+
+    def matrix(self, coefficients: Array) -> sp.csr_matrix:
+        """Return the matrix of coefficients; those without a column are dropped."""
+        matrix = copy(self._ones)  # SciPy's constructor takes longer than a product
+        matrix.data = coefficients.take(self._places)
+        return matrix
 
 
 class Pattern:
@@ -361,40 +366,36 @@ class Pattern:
             neighbour[tuple(inner)] = number[tuple(outer)]
             shifted.append(neighbour)
         self.columns = np.stack([part.ravel()[self.cells] for part in shifted])  # (5, size)
-        self._present = self.columns >= 0
-        rows = np.broadcast_to(np.arange(self.size), self.columns.shape)[self._present]
-        columns = self.columns[self._present]
-        self._order = np.lexsort((columns, rows))
-        self.rows = rows[self._order]
-        self.indices = columns[self._order].astype(np.int32)
-        self.indptr = np.searchsorted(self.rows, np.arange(self.size + 1)).astype(np.int32)
-        sparse = np.ones(self.rows.size), self.indices, self.indptr
-        self._ones = sp.csr_matrix(sparse, shape=(self.size, self.size))
+        self.beside = np.where(self.columns < 0, -1, self.columns + self.size)  # of a second block
+        self.rows = np.broadcast_to(np.arange(self.size), self.columns.shape)
+        self.along = number.T[mask.T]  # the cells line after line along x
+        self._layout = SparseLayout(self.rows, self.columns, (self.size, self.size))
+
+    @cached_property
+    def pair(self) -> SparseLayout:
+        """Layout of two operators side by side, filled by (10, size) coefficients."""
+        columns = np.concatenate([self.columns, self.beside])
+        return SparseLayout(np.tile(self.rows, (2, 1)), columns, (self.size, 2 * self.size))
 
     def gather(self, field: NDArray[Any]) -> NDArray[Any]:
         """Return the values of a grid field at the numbered cells."""
         return field.ravel()[self.cells]
 
-    def scatter(self, values: Array) -> Array:
+    def scatter(self, values: NDArray[Any]) -> NDArray[Any]:
         """Return the grid field that holds ``values`` at the numbered cells and 0 elsewhere."""
-        field = np.zeros(self.mask.shape)
+        field = np.zeros(self.mask.shape, values.dtype)
         field.ravel()[self.cells] = values
         return field
 
     def rows_of(self, stencil: Stencil) -> Array:
         """Return the (5, size) coefficients of the numbered cells."""
-        return np.stack([part.ravel()[self.cells] for part in stencil])
+        return stencil.reshape(5, -1).take(self.cells, axis=1)
 
-    def neighbours_of(self, values: Array, outside: float = 0.0) -> Array:
+    def neighbours_of(self, values: NDArray[Any], outside: float = 0) -> NDArray[Any]:
         """Return (5, size): ``values`` (size,) at each cell and its four neighbours."""
-        return np.where(self._present, values[self.columns], outside)
-
-    def data(self, coefficients: Array) -> Array:
-        """Return the CSR data of (5, size) coefficients; columns outside the mask are dropped."""
-        return coefficients[self._present][self._order]
+        padded = np.append(values, values.dtype.type(outside))  # column -1 is the last
+        return padded.take(self.columns)
 
     def matrix(self, coefficients: Array) -> sp.csr_matrix:
-        """Return the sparse matrix of (5, size) coefficients."""
-        matrix = copy(self._ones)  # SciPy's constructor takes longer than a product
-        matrix.data = self.data(coefficients)
-        return matrix
+        """Return the sparse matrix of (5, size) coefficients; columns outside are dropped."""
+        return self._layout.matrix(coefficients)

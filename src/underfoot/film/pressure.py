@@ -271,7 +271,7 @@ class _FilmSolver:
         iterations = 0
         while True:
             iterations += 1
-            of_full = pattern.neighbours_of(is_full.astype(float)) > 0
+            of_full = pattern.neighbours_of(is_full)
             rows = pattern.matrix(np.where(of_full, by_pressure, by_flow))
             right = known - np.where(of_full, by_fraction, 0.0).sum(axis=0)
             flows = self._solution(rows, right)
@@ -318,7 +318,7 @@ class _FilmSolver:
             pressure=pressure,
             fraction=fraction,
             gap=film.gap,
-            cavitated=film.mask & ~(pattern.scatter(is_full.astype(float)) > 0),
+            cavitated=film.mask & ~pattern.scatter(is_full),
             load=float(pressure[film.mask].sum()) * dx * dy,
             rim_outflow=float(-through_x.sum() - through_y.sum()),
             mass_residual=float(np.abs(missing).max()) / scale if scale > 0 else 0.0,

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from underfoot.core.arrays import Array, Mask
 from underfoot.film import Cavity, FilmOperator, Pattern, film_operator, upwinding
@@ -33,26 +32,19 @@ class Linearisation:
     @cached_property
     def _matrices(self):
         assert self.film is not None
-        film, matrix = self.film, self.pattern.matrix
-        of_full = film.by_pressure * (self.pattern.neighbours_of(self.full.astype(float)) > 0)
-        by_gap = film.by_gap + of_full * self.pattern.neighbours_of(self.stiffness)
-        return matrix(of_full), matrix(by_gap), matrix(film.by_fraction)
-
-    @cached_property
-    def cavitated(self) -> NDArray[np.int64]:
-        """Places of the cavitated cells among the numbered ones."""
-        assert self.film is not None
-        return np.searchsorted(self.pattern.cells, self.film.cavity.cells)
+        film, pattern = self.film, self.pattern
+        by_fields = pattern.pair.matrix(np.concatenate([film.by_pressure, film.by_gap]))
+        return by_fields, pattern.matrix(film.by_fraction)
 
     def residual(self, pressure: Array, gap: Array) -> Array:
         """Return what the rows become by a change of total pressure (Pa) and of gap (m)."""
         fluid = pressure + self.stiffness * gap
         if self.film is None:
             return fluid
-        by_pressure, by_gap, by_fraction = self._matrices
-        net = by_pressure @ pressure + by_gap @ gap
-        filled = np.zeros_like(net)
-        filled[self.cavitated] = self.film.cavity.filled_by(-net[self.cavitated])
+        by_fields, by_fraction = self._matrices
+        net = by_fields @ np.concatenate([self.full * fluid, gap])
+        cavity, filled = self.film.cavity, np.zeros_like(net)
+        filled[cavity.cells] = cavity.filled_by(-net[cavity.cells])
         net += by_fraction @ filled
         return np.where(self.full, net / self.film.diagonal, fluid)
 
@@ -92,6 +84,7 @@ class FilmBalance:
         self._content = content
         self._storage = problem.spacing**2 / duration * problem.cut.film_area
         self._area = pattern.gather(problem.cut.film_area)
+        self._areas = pattern.neighbours_of(self._area, 1.0)
         self._wet = pattern.gather(film)
         self._give = pattern.gather(problem.compliance.self_compliance)
         # upwinding from the gap at the start of the step: it stays out of the Newton matrix
@@ -127,19 +120,20 @@ class FilmBalance:
             edges=(problem.cut.along[:-1], problem.cut.across[:, :-1]),
         )
         by_pressure = pattern.rows_of(operator.by_pressure)
-        by_pressure /= pattern.neighbours_of(self._area, 1.0)
+        by_pressure /= self._areas
         by_fraction = pattern.rows_of(operator.by_fraction)
 
         before = full
-        fraction, net, by_gap, cavity = self._balance(operator, fluid, before)
-        diagonal = by_pressure[0] * (1 + stiffness * give) + np.abs(by_gap[0]) * give
+        pressure, fraction, net, cavity = self._balance(operator, by_fraction, fluid, before)
+        by_gap = pattern.gather(operator.by_gap(pressure, fraction)[0])
+        diagonal = by_pressure[0] * (1 + stiffness * give) + np.abs(by_gap) * give
         lacks = by_fraction[0] * (1 - pattern.gather(fraction))
         # at rest nothing flows and nothing is pressed: such a cell counts as full
         full = wet & (fluid - (net + lacks) / diagonal >= -faint)
         if (full != before).any():
-            fraction, net, by_gap, cavity = self._balance(operator, fluid, full)
+            pressure, fraction, net, cavity = self._balance(operator, by_fraction, fluid, full)
         # where the gap is clipped the film does not follow the walls
-        free = (gap > SMALLEST_GAP) & (gap < problem.largest_gap)
+        free = pattern.neighbours_of(pattern.gather(bounded == gap))
         overfull = by_fraction[0] * np.maximum(pattern.gather(fraction) - 1, 0.0)
         through = operator.carried(fraction)
         carried = np.zeros_like(gap)
@@ -153,21 +147,26 @@ class FilmBalance:
             diagonal,
             by_pressure,
             by_fraction,
-            by_gap * pattern.neighbours_of(pattern.gather(free.astype(float))),
+            free * pattern.rows_of(operator.by_gap(pressure, fraction)),
             fraction,
             cavity,
             float(wrong) / (float((np.abs(carried) + stored)[self._film].sum()) + 1e-30),
         )
 
     def _balance(
-        self, operator: FilmOperator, fluid: Array, full: Mask
+        self, operator: FilmOperator, by_fraction: Array, fluid: Array, full: Mask
     ) -> tuple[Array, Array, Array, Cavity]:
-        """Return liquid fraction, imbalance, its derivative by gap and the cavity of a set."""
+        """Return pressure and liquid fraction (nx, ny), imbalance (size,) and cavity of a set."""
         pattern, floor = self._pattern, self._problem.settings.cavity_pressure
-        above = fluid / self._area
-        pressure = pattern.scatter(np.where(full, above + floor, np.where(self._wet, floor, 0.0)))
-        cavity = Cavity(operator, self._film & (pattern.scatter(full.astype(float)) == 0))
-        fraction = operator.cavity_fraction(pressure, cavity, self._content)
-        net = operator.imbalance(pressure, np.minimum(fraction, 1.0), self._content)
-        by_gap = operator.by_gap(pressure, fraction)
-        return fraction, pattern.gather(net), pattern.rows_of(by_gap), cavity
+        cavity = Cavity(pattern, by_fraction, self._wet & ~full)
+        pressure = pattern.scatter(full * (fluid / self._area) + floor * self._wet)
+        fraction = np.ones_like(operator.gap)
+        cells = pattern.cells[cavity.cells]
+        fraction.flat[cells] = 0.0
+        net = pattern.gather(operator.imbalance(pressure, fraction, self._content))
+        filled = np.zeros_like(net)
+        filled[cavity.cells] = cavity.filled_by(-net[cavity.cells])
+        fraction.flat[cells] = filled[cavity.cells]
+        # linear in the fraction
+        net += (by_fraction * pattern.neighbours_of(np.minimum(filled, 1.0))).sum(axis=0)
+        return pressure, fraction, net, cavity

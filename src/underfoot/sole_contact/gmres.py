@@ -1,5 +1,6 @@
 """Right-preconditioned GMRES that keeps the preconditioned vectors."""
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -20,43 +21,44 @@ def krylov_solution(
     GMRES of Saad and Schultz (1986) preconditioned from the right, without restart; the
     preconditioned basis is stored, so the solution needs no further preconditioner call.
     """
-    norm = float(np.linalg.norm(right))
+    norm = math.sqrt(right @ right)
     if norm == 0.0:
         return np.zeros_like(right), 0, 0.0
     basis = np.empty((most + 1, right.size))
     images = np.empty((most, right.size))
     basis[0] = right / norm
-    hessenberg = np.zeros((most + 1, most))
-    rotations = np.zeros((most, 2))
-    target = np.zeros(most + 1)
-    target[0] = norm
-    count = 0
+    columns: list[list[float]] = []  # of the triangle that rotations make of the Hessenberg matrix
+    rotations: list[tuple[float, float]] = []
+    target = [norm]
     for j in range(most):
         images[j] = precondition(basis[j])
         vector = operator(images[j])
-        for _ in range(2):  # once more than Gram-Schmidt needs on paper, for orthogonality
-            part = basis[: j + 1] @ vector
-            vector -= part @ basis[: j + 1]
-            hessenberg[: j + 1, j] += part
-        length = float(np.linalg.norm(vector))
-        for i in range(j):
-            c, s = rotations[i]
-            upper, lower = hessenberg[i, j], hessenberg[i + 1, j]
-            hessenberg[i, j] = c * upper + s * lower
-            hessenberg[i + 1, j] = -s * upper + c * lower
-        radius = float(np.hypot(hessenberg[j, j], length))
-        if radius == 0.0 or not np.isfinite(radius):
+        known = basis[: j + 1]
+        part = known @ vector
+        vector -= part @ known
+        again = known @ vector  # once more than on paper, for orthogonality
+        vector -= again @ known
+        column = (part + again).tolist()
+        length = math.sqrt(vector @ vector)
+        for i, (c, s) in enumerate(rotations):
+            upper, lower = column[i], column[i + 1]
+            column[i], column[i + 1] = c * upper + s * lower, c * lower - s * upper
+        radius = math.hypot(column[j], length)
+        if radius == 0.0 or not math.isfinite(radius):
             break
-        c, s = hessenberg[j, j] / radius, length / radius
-        rotations[j] = c, s
-        hessenberg[j, j] = radius
-        target[j + 1] = -s * target[j]
-        target[j] = c * target[j]
-        count = j + 1
-        if abs(target[count]) <= tolerance * norm or length <= 1e-14 * radius:
+        c, s = column[j] / radius, length / radius
+        column[j] = radius
+        columns.append(column)
+        rotations.append((c, s))
+        target[j:] = c * target[j], -s * target[j]
+        if abs(target[-1]) <= tolerance * norm or length <= 1e-14 * radius:
             break
-        basis[count] = vector / length
+        np.divide(vector, length, out=basis[j + 1])
+    count = len(columns)
     if count == 0:
-        return np.full_like(right, np.nan), 0, float("nan")
-    weights = np.linalg.solve(np.triu(hessenberg[:count, :count]), target[:count])
-    return weights @ images[:count], count, abs(float(target[count])) / norm
+        return np.full_like(right, np.nan), 0, math.nan
+    weights = np.array(target[:count])
+    for j in range(count - 1, -1, -1):
+        weights[j] /= columns[j][j]
+        weights[:j] -= weights[j] * np.array(columns[j][:j])
+    return weights @ images[:count], count, abs(target[count]) / norm

@@ -173,7 +173,7 @@ def implicit_step(
                 gap,
                 pattern.scatter(floor + np.where(full, above, 0.0)),
                 pattern.scatter(np.where(full, asperity, total - floor)),
-                film & (pattern.scatter(full.astype(float)) == 0),
+                film & ~pattern.scatter(full),
                 np.ones_like(gap) if rows is None else np.minimum(rows.fraction, 1.0),
             )
             return attempt
@@ -190,7 +190,7 @@ def implicit_step(
                 break
 
         def product(vector: Array, linear=linear) -> Array:
-            field = cells.direction.apply(pattern.scatter(vector[:-1]))
+            field = cells.direction.apply(pattern.scatter(vector[:-1].astype(np.float32)))
             out = np.empty_like(vector)
             out[:-1] = linear.residual(vector[:-1], pattern.gather(field) - vector[-1])
             out[-1] = vector[:-1].mean()
@@ -235,9 +235,7 @@ def _step_share(problem: Problem, gap: Array, rise: Array) -> float:
     thin = gap < THIN
     if not thin.any():
         return 1.0
-    size = np.abs(gap[thin])
-    change = rise[thin]
-    down = np.maximum(0.7 * size, 1.5 * problem.decay)
-    up = np.maximum(3.0 * size, 3.0 * problem.decay)
-    room = np.where(change < 0, down / np.maximum(-change, 1e-30), up / np.maximum(change, 1e-30))
+    size, change, decay = np.abs(gap[thin]), rise[thin], problem.decay
+    down, up = np.maximum(0.7 * size, 1.5 * decay), 3.0 * np.maximum(size, decay)
+    room = np.where(change < 0, down, up) / np.maximum(np.abs(change), 1e-30)
     return float(min(1.0, max(0.05, room.min())))

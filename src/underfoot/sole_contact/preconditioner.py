@@ -13,12 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from underfoot.core import ConvergenceError
-from underfoot.core.arrays import Array
+from underfoot.core.arrays import Array, Mask
 from underfoot.core.sparse import Factorization, factorization
-from underfoot.film import Pattern
+from underfoot.film import Pattern, SparseLayout
 
 from .compliance import Compliance
 from .film_balance import Linearisation
@@ -86,67 +85,56 @@ class Preconditioner:
         self.scale = scale
         self.local = fit.local
         self.source = fit.strength * spacing**2 / scale  # of q, over dp
-        diagonal = np.arange(size)
         # beside the cells the field goes on as it decays along a line
         screened = (fit.screening * spacing) ** 2
         decayed = math.sqrt(screened + screened**2 / 4) - screened / 2
         inner = pattern.neighbours_of(np.ones(size))[1:].sum(axis=0)
         self._screened = np.full((5, size), -1.0)
         self._screened[0] = inner + (4 - inner) * decayed + screened
-        # blocks of the rows of v (by v, by q) and of q (by q, by v), as ``factorise`` fills them
-        rows = [pattern.rows, pattern.rows, pattern.rows + size, diagonal + size]
-        own = pattern.indices.astype(np.int64)
-        columns = [own, own + size, own + size, diagonal]
-        row, column = np.concatenate(rows), np.concatenate(columns)
-        self._total = 2 * size
-        self._order = np.lexsort((column, row))
-        self._indices = column[self._order].astype(np.int32)
-        self._indptr = np.searchsorted(row[self._order], np.arange(self._total + 1)).astype(
-            np.int32
+        # rows of v (by v, by q) and of q (by q, by v), as ``factorise`` fills them
+        own, columns, beside = pattern.rows, pattern.columns, pattern.beside
+        self._layout = SparseLayout(
+            np.concatenate([own, own, own + size, own[:1] + size]),
+            np.concatenate([columns, beside, beside, columns[:1]]),
+            (2 * size, 2 * size),
         )
         self._factors: Factorization | None = None
 
     def factorise(self, linear: Linearisation, backend: str | None) -> BorderedSolve:
         """Return the solver for a linearised problem."""
         pattern, size = self.pattern, self.pattern.size
-        full = linear.full
+        full, film = linear.full, linear.film
         yields = 1 / (1 + linear.stiffness * self.local)
-        scale = np.ones(size)
-        balance, by_gap = np.zeros((5, size)), np.zeros((5, size))
-        balance[0] = 1.0  # a dry cell: v = 0
-        if linear.film is not None:
-            film = linear.film
-            cavity = np.zeros(size, dtype=bool)
-            cavity[linear.cavitated] = True
-            wet = full | cavity
-            pressure, fraction = film.by_pressure, film.by_fraction
-            # fraction in units of pressure: so that both kinds of column have the size of A
-            unit = pressure[0] / np.where(fraction[0] > 0, fraction[0], 1.0)
-            of_cavity = pattern.neighbours_of(cavity.astype(float)) > 0
-            of_full = pattern.neighbours_of(full.astype(float)) > 0
-            mixed = np.where(of_full, pressure, 0.0)
-            mixed += np.where(of_cavity, fraction * pattern.neighbours_of(unit), 0.0)
-            balance = np.where(wet, mixed, balance)
-            by_gap = np.where(wet, film.by_gap, 0.0) * pattern.neighbours_of(yields)
-            balance = balance + by_gap * self.local * of_full
-            scale = np.abs(balance[0])
-            balance, by_gap = balance / scale, by_gap / scale
-        through = pattern.data(by_gap * self.scale)
         resisted = linear.stiffness * yields * self.scale
+        source = self.source * yields
+        balance, through = np.zeros((2, 5, size))
+        balance[0] = 1.0  # a dry cell: v = 0
+        rows = np.zeros(size)
+        if film is not None:
+            cavity, wet = film.cavity.cells, full.copy()
+            wet[cavity] = True
+            # fraction in units of pressure: so that both kinds of column have the size of A
+            own, unit = film.by_fraction[0, cavity], np.zeros(size)
+            unit[cavity] = film.by_pressure[0, cavity] / np.where(own > 0, own, 1.0)
+            mixed = film.by_pressure * pattern.neighbours_of(full)
+            mixed += film.by_gap * pattern.neighbours_of(self.local * yields * full)
+            mixed += film.by_fraction * pattern.neighbours_of(unit)
+            scale = np.where(wet, np.abs(mixed[0]), 1.0)
+            balance = np.where(wet, mixed / scale, balance)
+            through = film.by_gap * pattern.neighbours_of(self.scale * yields) * (wet / scale)
+            rows = full * film.diagonal / scale
         screened = self._screened.copy()
         screened[0] += self.source * resisted
-        data = [pattern.data(balance), through, pattern.data(screened)]
-        values = np.concatenate([*data, -self.source * yields * full])[self._order]
-        matrix = sp.csr_matrix((values, self._indices, self._indptr), (self._total,) * 2)
+        blocks = np.concatenate([balance, through, screened, -(source * full)[None]])
+        matrix = self._layout.matrix(blocks)
         if self._factors is None:
             self._factors = factorization(matrix, backend)
         else:
             self._factors.factorise(matrix)
-        by_unfilled = pattern.matrix(by_gap * self.local)
-        lifted = np.bincount(pattern.rows, weights=through, minlength=size).astype(np.float64)
-        column = -np.concatenate([lifted, self.source * resisted])
-        rows = 1.0 if linear.film is None else linear.film.diagonal / scale
-        return BorderedSolve(self, self._factors, full, yields, resisted, rows, by_unfilled, column)
+        column = -np.concatenate([through.sum(axis=0), self.source * resisted])
+        return BorderedSolve(
+            self, self._factors, full, yields, resisted, rows, pattern.matrix(through), column
+        )
 
 
 class BorderedSolve:
@@ -156,35 +144,37 @@ class BorderedSolve:
         self,
         layout: Preconditioner,
         factors: Factorization,
-        full: NDArray[np.bool_],
+        full: Mask,
         yields: Array,
         resisted: Array,
-        rows: Array | float,
-        by_unfilled: sp.csr_matrix,
+        rows: Array,
+        through: sp.csr_matrix,
         column: Array,
     ) -> None:
-        self._layout, self._factors = layout, factors
-        self._full, self._yields, self._resisted = full, yields, resisted
-        self._rows, self._by_unfilled = rows, by_unfilled
-        self._answer = self._pressure(factors.solve(column), 0.0) - resisted
+        self._factors, self._scale = factors, layout.scale
+        self._rows, self._through = rows, through
+        self._yields, self._resisted = yields * full, resisted
+        # what is due in a cell that is not full: of its pressure, of the gap and of the field
+        self._due = yields * ~full
+        self._bent, self._source = layout.local / layout.scale * ~full, layout.source * self._due
+        self._answer = self._pressure(factors.solve(column)) - resisted
         self._pivot = float(self._answer.mean())
         if self._pivot == 0.0 or not np.isfinite(self._pivot):
             raise ConvergenceError("the load does not depend on the approach", where="sole_contact")
 
     def __call__(self, right: Array) -> Array:
         """Return the pressure change of the cells and the change of the approach."""
-        unfilled = np.where(self._full, 0.0, right[:-1])
-        balance = np.where(self._full, right[:-1] * self._rows, 0.0) - self._by_unfilled @ unfilled
-        source = self._layout.source * self._yields * unfilled
-        plain = self._pressure(self._factors.solve(np.concatenate([balance, source])), unfilled)
+        due = right[:-1]
+        balance = self._rows * due - self._through @ (self._bent * due)
+        solved = self._factors.solve(np.concatenate([balance, self._source * due]))
+        result = np.empty_like(right)
+        plain = np.add(self._pressure(solved), self._due * due, out=result[:-1])
         approach = (float(plain.mean()) - float(right[-1])) / self._pivot
-        result = np.empty(right.size)
-        result[:-1] = plain - approach * self._answer
-        result[-1] = approach * self._layout.scale
+        plain -= approach * self._answer
+        result[-1] = approach * self._scale
         return result
 
-    def _pressure(self, solved: Array, unfilled: Array | float) -> Array:
+    def _pressure(self, solved: Array) -> Array:
         """Return the change of total pressure that belongs to (v, q)."""
         by_fluid, bent = solved.reshape(2, -1)
-        fluid = np.where(self._full, by_fluid, 0.0) + unfilled
-        return self._yields * fluid - self._resisted * bent
+        return self._yields * by_fluid - self._resisted * bent

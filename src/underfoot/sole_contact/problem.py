@@ -48,10 +48,10 @@ class Problem:
         """
         assert self.viscosity is not None
         factor, slope = self.law.flow_factor(gap), self.law.flow_factor_slope(gap)
-        twelve, both = 12 * self.viscosity, before + gap
-        mean = 2 * (before * gap) ** 2 / both
+        both = before + gap
+        mean = (before * gap) ** 2 / (6 * self.viscosity * both)
         by_gap = mean * (2 * before + gap) / (gap * both)
-        return Conductance(factor * mean / twelve, (factor * by_gap + slope * mean) / twelve)
+        return Conductance(factor * mean, factor * by_gap + slope * mean)
 
 
 @dataclass(slots=True)
