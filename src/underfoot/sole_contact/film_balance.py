@@ -68,7 +68,9 @@ class FilmBalance:
     """Mass balance of the film in one time step.
 
     ``film`` marks the cells that the pool reaches, ``content`` (m) is the liquid they hold at the
-    start, when the gap is ``gap``.
+    start, when the gap is ``gap``. A step that ``leaps`` to what comes after a change takes the flow
+    at its end: with the mean over the step (``Problem.conductance``) steps longer than the memory of
+    the film swing about the steady state.
     """
 
     def __init__(
@@ -79,6 +81,7 @@ class FilmBalance:
         gap: Array,
         content: Array,
         duration: float,
+        leaps: bool,
     ) -> None:
         self._problem, self._pattern, self._film = problem, pattern, film
         self._content = content
@@ -88,12 +91,13 @@ class FilmBalance:
         self._wet = pattern.gather(film)
         self._give = pattern.gather(problem.compliance.self_compliance)
         # upwinding from the gap at the start of the step: it stays out of the Newton matrix
-        self._start = start = np.clip(gap, SMALLEST_GAP, problem.largest_gap)
+        start = np.clip(gap, SMALLEST_GAP, problem.largest_gap)
+        self._before = None if leaps else start
         carried = 0.5 * abs(problem.wall_speed) * problem.spacing
         self._lean = upwinding(
             start,
             carried * problem.compliance.self_compliance,
-            problem.conductance(start, start).value,
+            problem.conductance(start).value,
             from_a=problem.wall_speed < 0,
         )
 
@@ -108,7 +112,7 @@ class FilmBalance:
         pattern, wet, give = self._pattern, self._wet, self._give
         problem = self._problem
         bounded = np.clip(gap, SMALLEST_GAP, problem.largest_gap)
-        conductance = problem.conductance(bounded, self._start)
+        conductance = problem.conductance(bounded, self._before)
         operator = film_operator(
             bounded,
             conductance,

@@ -57,13 +57,14 @@ class Counts:
 class Demand:
     """What holds at the end of a step: load N, floor speed m/s and clearance of the sole m.
 
-    ``tolerance`` is how exactly; 1.
+    ``tolerance`` is how exactly, relative; ``leaps``: only what comes after the step matters.
     """
 
     load: float
     wall_speed: float
     clearance: Array
     tolerance: float
+    leaps: bool
 
 
 class March:
@@ -124,6 +125,7 @@ class March:
                 film=film[cells.box],
                 content=self._content()[cells.box],
                 tolerance=demand.tolerance,
+                leaps=demand.leaps,
                 tick=tick,
             )
             self.counts.newton += attempt.newton

@@ -117,12 +117,14 @@ def implicit_step(
     film: Mask,
     content: Array,
     tolerance: float,
+    leaps: bool,
     tick: Callable[[float], None],
 ) -> Attempt:
     """Return the state after ``duration`` under ``load``, if Newton finds it.
 
     All are on the box of the cells. ``film`` marks the cells that the pool reaches, ``content`` (m)
-    is the liquid that they hold at the start, ``tolerance`` the largest relative imbalance;
+    is the liquid that they hold at the start, ``tolerance`` the largest relative imbalance; for
+    ``leaps`` see ``FilmBalance``;
     ``tick`` receives the residual of each Newton step.
     """
     pattern = cells.pattern
@@ -136,7 +138,7 @@ def implicit_step(
     balance = None
     if problem.viscosity is not None:
         full = wet & ~pattern.gather(start.cavitated)
-        balance = FilmBalance(problem, pattern, film, start.gap, content, duration)
+        balance = FilmBalance(problem, pattern, film, start.gap, content, duration, leaps)
     pressure = np.where(pattern.mask, start.pressure, 0.0)
     approach = start.approach
     gap = start.gap

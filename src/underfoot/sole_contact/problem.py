@@ -36,10 +36,10 @@ class Problem:
         """Return the mean gap of a pressure field and an approach."""
         return self.clearance - approach + self.compliance.apply(pressure)
 
-    def conductance(self, gap: Array, before: Array) -> Conductance:
-        """Return what lets the fluid flow between rough walls, as a mean over a time step.
+    def conductance(self, gap: Array, before: Array | None = None) -> Conductance:
+        """Return what lets the fluid flow between rough walls at a gap, or as a mean over a step.
 
-        ``gap`` (m) is that at the end of the step, ``before`` that at its start. Their mean
+        With the gap ``before`` a time step (m) its mean with ``gap``, that at the end of it,
 
             m = 2 h_0^2 h^2 / (h_0 + h)   in place of h^3
 
@@ -48,6 +48,9 @@ class Problem:
         """
         assert self.viscosity is not None
         factor, slope = self.law.flow_factor(gap), self.law.flow_factor_slope(gap)
+        if before is None:
+            square = gap * gap / (12 * self.viscosity)
+            return Conductance(factor * gap * square, (3 * factor + slope * gap) * square)
         both = before + gap
         mean = (before * gap) ** 2 / (6 * self.viscosity * both)
         by_gap = mean * (2 * before + gap) / (gap * both)

@@ -131,7 +131,7 @@ class SlidingSole:
             pool_depth=settings.pool_depth,
             first_step=settings.rise_time * FIRST_STEP,
         )
-        self._status = Status.CONVERGED
+        self._leaps = False
 
     @property
     def time(self) -> float:
@@ -255,6 +255,7 @@ class SlidingSole:
             )
         march.state, march.film, march.step = state, film, first_step
         self._load, self._speed = mark.load, mark.speed
+        self._leaps = True
 
     def _ramp(
         self, duration: float, normal_force: float, speed: float, shoe_angle: float | None
@@ -304,8 +305,9 @@ class SlidingSole:
                 clearance = march.problem.clearance
                 if angle != self._angle:
                     clearance = self._clearance(angle)
+                leaps = self._leaps or settled is not None
                 last = settled is not None or self._time + duration > end * (1 - 1e-12)
-                return Demand(load, -speed, clearance, exact if last else passed)
+                return Demand(load, -speed, clearance, exact if last else passed, leaps)
 
             fraction = self._fraction(min(start + march.step, end))
             state = march.state
