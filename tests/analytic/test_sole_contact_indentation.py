@@ -114,7 +114,7 @@ def test_compliance_is_reciprocal():
     assert (one * layer.apply(one)).sum() > 0
 
 
-def test_rigid_disc_sinks_at_the_closed_form_rate():
+def test_rigid_disc_sinks_at_the_closed_form_rate_in_steps_of_any_length():
     radius, viscosity, load, start = 8e-3, 0.2, 20.0, 100e-6
     n = 33
     x = (np.arange(n) - n // 2) * (2 * radius / 28)
@@ -124,7 +124,7 @@ def test_rigid_disc_sinks_at_the_closed_form_rate():
     area = (distance < radius).sum() * sole.spacing**2
     same_area = (area / np.pi) ** 0.5
     errors = []
-    for resolution in (16.0, 32.0, 64.0):
+    for resolution in (1.0, 8.0, 64.0):
         settings = SolverSettings(
             start_film=start,
             rise_time=1e-4,
@@ -146,10 +146,9 @@ def test_rigid_disc_sinks_at_the_closed_form_rate():
         )
         errors.append(float(solved.film_thickness[n // 2, n // 2] / exact - 1))
     assert exact < 0.7 * start
-    assert abs(errors[-1]) < 0.03
-    # backward Euler: halving the step halves what the grid leaves
-    ratio = (errors[0] - errors[1]) / (errors[1] - errors[2])
-    assert 1.6 < ratio < 2.5
+    assert abs(errors[-1]) < 0.005  # what the grid leaves
+    # the mean mobility of a step is exact for a squeezed plate; the cube at its end is 5 % off
+    assert np.ptp(errors) < 1e-3
 
 
 @pytest.fixture(scope="module")
