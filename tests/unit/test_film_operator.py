@@ -112,7 +112,7 @@ def test_a_cavity_passes_on_what_it_receives(seed, speed):
     cavity = Cavity(pattern, rows, pattern.gather(mask))
     fraction = np.where(mask, 0.0, 1.0)
     sent = pattern.gather(-balance.imbalance(pressure, fraction, content))
-    fraction.flat[pattern.cells[cavity.cells]] = cavity.filled_by(sent[cavity.cells])
+    fraction += pattern.scatter(cavity.filled_by(sent))
     assert (fraction >= 0).all()
     assert (fraction[~mask] == 1).all()
     left = balance.imbalance(pressure, fraction, content)[mask]

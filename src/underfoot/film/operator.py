@@ -180,11 +180,13 @@ class Cavity:
             raise np.linalg.LinAlgError("a cavity that neither holds nor passes on liquid")
 
     def filled_by(self, inflow: Array) -> Array:
-        """Return the liquid fraction that an inflow (m^3/s) makes, both at ``cells``."""
-        if not self.cells.size:
-            return inflow
-        solution, _ = dgttrs(*self._factors, np.append(inflow, np.zeros(3)))
-        return solution[:-3]
+        """Return the liquid fraction (size,) that an inflow (m^3/s) makes; 0 in other cells."""
+        right = np.zeros(self.cells.size + 3)
+        right[:-3] = inflow[self.cells]
+        solution, _ = dgttrs(*self._factors, right, overwrite_b=True)
+        filled = np.zeros_like(inflow)
+        filled[self.cells] = solution[:-3]
+        return filled
 
 
 def film_operator(

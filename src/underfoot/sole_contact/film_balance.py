@@ -43,9 +43,7 @@ class Linearisation:
             return fluid
         by_fields, by_fraction = self._matrices
         net = by_fields @ np.concatenate([self.full * fluid, gap])
-        cavity, filled = self.film.cavity, np.zeros_like(net)
-        filled[cavity.cells] = cavity.filled_by(-net[cavity.cells])
-        net += by_fraction @ filled
+        net += by_fraction @ self.film.cavity.filled_by(-net)
         return np.where(self.full, net / self.film.diagonal, fluid)
 
 
@@ -162,15 +160,13 @@ class FilmBalance:
     ) -> tuple[Array, Array, Array, Cavity]:
         """Return pressure and liquid fraction (nx, ny), imbalance (size,) and cavity of a set."""
         pattern, floor = self._pattern, self._problem.settings.cavity_pressure
-        cavity = Cavity(pattern, by_fraction, self._wet & ~full)
+        empty = self._wet & ~full
+        cavity = Cavity(pattern, by_fraction, empty)
         pressure = pattern.scatter(full * (fluid / self._area) + floor * self._wet)
-        fraction = np.ones_like(operator.gap)
-        cells = pattern.cells[cavity.cells]
-        fraction.flat[cells] = 0.0
+        fraction = 1.0 - pattern.scatter(empty)
         net = pattern.gather(operator.imbalance(pressure, fraction, self._content))
-        filled = np.zeros_like(net)
-        filled[cavity.cells] = cavity.filled_by(-net[cavity.cells])
-        fraction.flat[cells] = filled[cavity.cells]
+        filled = cavity.filled_by(-net)
+        fraction += pattern.scatter(filled)
         # linear in the fraction
         net += (by_fraction * pattern.neighbours_of(np.minimum(filled, 1.0))).sum(axis=0)
         return pressure, fraction, net, cavity

@@ -195,7 +195,7 @@ def implicit_step(
             field = cells.direction.apply(pattern.scatter(vector[:-1].astype(np.float32)))
             out = np.empty_like(vector)
             out[:-1] = linear.residual(vector[:-1], pattern.gather(field) - vector[-1])
-            out[-1] = vector[:-1].mean()
+            out[-1] = vector[:-1].sum() / size
             return out
 
         right = -residual - linear.residual(np.zeros(size), lacking)

@@ -169,7 +169,7 @@ class BorderedSolve:
         solved = self._factors.solve(np.concatenate([balance, self._source * due]))
         result = np.empty_like(right)
         plain = np.add(self._pressure(solved), self._due * due, out=result[:-1])
-        approach = (float(plain.mean()) - float(right[-1])) / self._pivot
+        approach = (plain.sum() / plain.size - right[-1]) / self._pivot
         plain -= approach * self._answer
         result[-1] = approach * self._scale
         return result
