@@ -9,8 +9,8 @@ from underfoot import Case, run
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = json.loads((ROOT / "tests/data/examples_film_operator.json").read_text())
-"""{example: {scalar: [before, after]}}; SI. After, of soles without channels: with steps in time that
-squeeze a plate exactly."""
+"""{example: {scalar: [before, after]}}; SI. After, of soles without channels: with steps in time
+that squeeze a plate exactly."""
 
 
 @pytest.mark.parametrize("name", EXAMPLES)

@@ -66,9 +66,9 @@ class FilmBalance:
     """Mass balance of the film in one time step.
 
     ``film`` marks the cells that the pool reaches, ``content`` (m) is the liquid they hold at the
-    start, when the gap is ``gap``. A step that ``leaps`` to what comes after a change takes the flow
-    at its end: with the mean over the step (``Problem.conductance``) steps longer than the memory of
-    the film swing about the steady state.
+    start, when the gap is ``gap``. A step that ``leaps`` to what comes after a change takes the
+    flow at its end: with the mean over the step (``Problem.conductance``) steps longer than the
+    memory of the film swing about the steady state.
     """
 
     def __init__(
