@@ -113,9 +113,10 @@ def error_over_positions() -> dict[str, float]:
     from underfoot.case import Case
     from underfoot.compute.positions import places
 
-    tread = Case.load(CASE).shoe.tread
+    pattern = Case.load(CASE).shoe.tread
+    tread = None if pattern is None else pattern.build()
     assert tread is not None
-    shifts = [place.shift for place in places(tread.build().periods, PHASES)]
+    shifts = [place.shift for place in places(tread.periods, PHASES)]
     default, fine = (
         sum(march(1e-3, {}, finer, shift)["fluid_load"] for shift in shifts) for finer in (1, 4)
     )
