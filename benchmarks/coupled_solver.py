@@ -14,7 +14,7 @@ import math
 import time
 from pathlib import Path
 
-from benchmarks._separate import separate
+from benchmarks._separate import peak_memory, separate
 
 HERE = "benchmarks.coupled_solver"
 SPACINGS = (1.0e-3, 0.7e-3, 0.5e-3, 0.35e-3)
@@ -27,7 +27,6 @@ FINE = ("work_shoe_untreaded_glycerol", "work_shoe_half_tread_glycerol")
 
 def measured(spacing: float, treaded: bool, backend: str | None) -> dict[str, float]:
     """Return what one run took, in this process."""
-    import resource
 
     from underfoot.rough_contact.pressure_gap_law import ExponentialLaw
     from underfoot.shoe import Facet, Heel, Tread, heel_map
@@ -62,14 +61,13 @@ def measured(spacing: float, treaded: bool, backend: str | None) -> dict[str, fl
         "newton": counts.newton,
         "krylov": counts.krylov / counts.newton,
         "cpu": time.process_time() - began,
-        "peak": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
+        "peak": peak_memory(),
         "fluid_load": solved.fluid_load,
     }
 
 
 def condition(name: str, spacing: float) -> dict[str, float]:
     """Return what one of the example cases took, in this process."""
-    import resource
 
     from underfoot.case import Case
     from underfoot.compute.contact import solved_motion
@@ -92,7 +90,7 @@ def condition(name: str, spacing: float) -> dict[str, float]:
         "newton": counts.newton,
         "krylov": counts.krylov / counts.newton,
         "cpu": time.process_time() - began,
-        "peak": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
+        "peak": peak_memory(),
         "fluid_load": solved.fluid_load,
     }
 

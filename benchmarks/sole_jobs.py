@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks._separate import THREADS, separate
+from benchmarks._separate import THREADS, peak_memory, separate
 from benchmarks._table import Row, printed
 
 HERE = "benchmarks.sole_jobs"
@@ -85,7 +85,7 @@ def march(
     return {
         "cpu": cpu,
         "limit": (counts.krylov + counts.newton) * of_box + counts.time_steps * of_grid,
-        "memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
+        "memory": peak_memory(),
         "cells": float(sole.clearance.size),
         "newton": float(counts.newton),
         "fluid_load": solved.fluid_load,
@@ -145,27 +145,30 @@ def command(*options: str) -> tuple[float, float]:
 
     Of a second call: like an installed program's, its modules are compiled already.
     """
-    call = [sys.executable, "-c", "from underfoot.cli import main; main()", "run", CASE]
+    code = (
+        "import atexit; from benchmarks._separate import peak_memory; "
+        "atexit.register(lambda: print(peak_memory())); from underfoot.cli import main; main()"
+    )
+    call = [sys.executable, "-c", code, "run", CASE]
     with tempfile.TemporaryDirectory() as folder:
         environment = os.environ | THREADS | {"PYTHONPYCACHEPREFIX": f"{folder}/compiled"}
         environment.pop("PYTHONDONTWRITEBYTECODE", None)
         for name in ("first", "second"):
             before = resource.getrusage(resource.RUSAGE_CHILDREN)
-            subprocess.run(
+            done = subprocess.run(
                 [*call, "--out", f"{folder}/{name}", *options],
                 env=environment,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
+                capture_output=True,
+                text=True,
                 check=True,
             )
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     user, system = after.ru_utime - before.ru_utime, after.ru_stime - before.ru_stime
-    return user + system, after.ru_maxrss / 1024
+    return user + system, float(done.stdout.splitlines()[-1])
 
 
 def rows() -> list[Row]:
     """Return the jobs of the sole solver."""
-    # the smaller process first: a peak of children is that of the largest so far
     quick_run, run = command("--quick"), command("--no-advice")
     found = [Row("run, quick, cold process", *quick_run), Row("run, cold process", *run)]
     within = separate(HERE, "warm")
