@@ -124,8 +124,7 @@ def implicit_step(
 
     All are on the box of the cells. ``film`` marks the cells that the pool reaches, ``content`` (m)
     is the liquid that they hold at the start, ``tolerance`` the largest relative imbalance; for
-    ``leaps`` see ``FilmBalance``;
-    ``tick`` receives the residual of each Newton step.
+    ``leaps`` see ``FilmBalance``; ``tick`` receives the residual of each Newton step.
     """
     pattern = cells.pattern
     area = problem.spacing**2
