@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[2]
 BEFORE = json.loads((ROOT / "tests/data/examples_before_rebuild.json").read_text())
 FILM = json.loads((ROOT / "tests/data/examples_film_operator.json").read_text())
 UNMOVED = ("work_shoe_untreaded_glycerol",)
-"""Example of which the stored film numbers are those of the present operator."""
+"""Example of which the stored film numbers are those of the present operator and steps in time."""
 APART = {"contact_area": 1e-3}
 """Cells that bear less than 1 Pa no longer count as touching."""
 

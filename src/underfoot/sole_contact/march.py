@@ -110,10 +110,11 @@ class March:
             gap = self.state.gap
             if demand.clearance is not self.problem.clearance:
                 gap = gap + (demand.clearance - self.problem.clearance)
-            film = _film_mask(problem, gap, self._pool_depth, self.film)
-            self._cells = _cells(
-                problem, self._fit, self._cells, film, gap < self._pool_depth + DEEP
-            )
+            film = low = _film_mask(problem, gap, self._pool_depth, self.film)
+            if problem.drained is not None:  # no film, but they touch the floor
+                low = film | (problem.drained & (gap < self._pool_depth))
+            near = gap < self._pool_depth + DEEP
+            self._cells = _cells(problem, self._fit, self._cells, low, near)
             self.counts.cells = max(self.counts.cells, self._cells.pattern.size)
             cells = self._cells
             attempt = implicit_step(
@@ -166,16 +167,16 @@ def _film_mask(problem: Problem, gap: Array, pool_depth: float, before: Mask | N
     return film
 
 
-def _cells(problem: Problem, fit: PoleFit, cells: Cells | None, film: Mask, near: Mask) -> Cells:
-    """Return cells that hold the film with room to spare, the present ones if they do.
+def _cells(problem: Problem, fit: PoleFit, cells: Cells | None, low: Mask, near: Mask) -> Cells:
+    """Return cells that hold the ``low`` ones with room to spare, the present cells if they do.
 
     ``near`` are those that may meet pool or floor within a step.
     """
-    mask = film | (np.asarray(binary_dilation(film, iterations=MARGIN), dtype=bool) & near)
+    mask = low | (np.asarray(binary_dilation(low, iterations=MARGIN), dtype=bool) & near)
     mask &= problem.clearance < 0.5
     if (
         cells is not None
-        and not (film & ~cells.mask).any()
+        and not (low & ~cells.mask).any()
         and cells.pattern.size < ROOM * np.count_nonzero(mask)
     ):
         return cells
