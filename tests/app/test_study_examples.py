@@ -62,7 +62,7 @@ def test_a_clog_for_oil_and_detergent_over_its_wear(tmp_path):
 
 @pytest.mark.slow
 def test_own_readings_narrow_the_parameters(tmp_path):
-    found = posterior(small("own_readings", tmp_path, "2.5 mm", budget=48), workers=2)
+    found = posterior(small("own_readings", tmp_path, "2 mm", budget=48), workers=2)
     assert found.usable
     # the readings tie roughness and angle together: the area of the cloud shrinks, not each side
     after, before = (np.linalg.det(np.cov(each.T)) for each in (found.draws, found.prior))
