@@ -331,22 +331,27 @@ def test_two_hundred_random_actions_lose_no_variant_and_raise_no_error(app):
             project.case(name)
 
 
+def one_of(chance, found):
+    """Return one of what was found, None where there is none (counted once: pages come and go)."""
+    count = found.count()
+    return found.nth(chance.randrange(count)) if count else None
+
+
 def act(page, chance, base):
     """Do one thing that a person could do; what is not there is left alone."""
     kind = chance.choice(
         ["slider", "slider", "tab", "undo", "redo", "menu", "go", "pattern", "key"]
     )
     if kind == "slider":
-        sliders = page.locator("input[type=range]:visible")
-        if sliders.count():
-            chosen = sliders.nth(chance.randrange(sliders.count()))
+        chosen = one_of(chance, page.locator("input[type=range]:visible"))
+        if chosen is not None:
             chosen.focus()
             for _ in range(chance.randrange(1, 6)):
                 page.keyboard.press(chance.choice(["ArrowLeft", "ArrowRight", "PageUp"]))
     elif kind == "tab":
-        tabs = page.get_by_role("tab")
-        if tabs.count():
-            tabs.nth(chance.randrange(tabs.count())).click()
+        tab = one_of(chance, page.get_by_role("tab"))
+        if tab is not None:
+            tab.click()
     elif kind in ("undo", "redo"):
         button = page.get_by_role("button", name=kind.capitalize(), exact=True)
         if button.count():
