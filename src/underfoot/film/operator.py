@@ -332,9 +332,8 @@ class SparseLayout:
         self, rows: NDArray[np.integer], columns: NDArray[np.integer], shape: tuple[int, int]
     ) -> None:
         present = np.flatnonzero(columns.ravel() >= 0)
-        places = (
-            rows.ravel()[present] * shape[1] + columns.ravel()[present]
-        )  # one row after another
+        # one row after another
+        places = rows.ravel()[present] * shape[1] + columns.ravel()[present]
         order = np.argsort(places)
         self._places = present[order]
         row, column = np.divmod(places[order], shape[1])
