@@ -14,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from underfoot.core import DataError, InputError
+from underfoot.core.progress import silent
 from underfoot.explore import store as store_module
 from underfoot.explore.record import Ending, Job, Record
 from underfoot.explore.result import StudyResult
@@ -113,6 +114,27 @@ def test_a_silent_process_of_another_machine_loses_its_claim(store):
         assert store.claim("a")
 
 
+@pytest.mark.parametrize("call", ["write", "fsync"])
+def test_stopped_between_two_lines_of_code_it_leaves_no_claim(store, monkeypatch, call):
+    """Ctrl-C before the claim has its owner, and after a record is on disk but still claimed."""
+    study = Study.load(store.folder)
+    real = getattr(os, call)
+
+    def stopped(descriptor, *data):
+        if any((store.folder / "claims").iterdir()):
+            raise KeyboardInterrupt
+        return real(descriptor, *data)
+
+    def compute(function, jobs, died):
+        return (record(job.key) for job in jobs if job)
+
+    monkeypatch.setattr(store_module.os, call, stopped)
+    with pytest.raises(KeyboardInterrupt, match="every finished case is kept"):
+        study._compute(compute, 1, silent, leads=True)
+    assert list((store.folder / "claims").iterdir()) == []
+    assert len(Store(store.folder).records()) == (call == "fsync")
+
+
 def test_two_masters_on_one_folder_are_told_of_each_other(store):
     study = Study.load(store.folder)
     with store.leading() as leads:
@@ -121,6 +143,12 @@ def test_two_masters_on_one_folder_are_told_of_each_other(store):
             study.run()
     with store.leading() as leads:
         assert leads
+
+
+def test_a_folder_that_another_process_is_about_to_fill_is_joined(tmp_path):
+    begun = Store.made(tmp_path / "study")
+    assert not begun.exists
+    assert Store.made(tmp_path / "study").claim("a")
 
 
 def test_a_folder_of_something_else_is_left_alone(tmp_path):

@@ -69,7 +69,8 @@ class Store:
         place = store.folder
         if place.is_file():
             raise InputError(f"{place} is a file", where="--out", allowed="a folder")
-        if not store.exists and place.is_dir() and any(place.iterdir()):
+        other = place.is_dir() and not store.exists and any(place.iterdir())
+        if other and not (place / "claims").is_dir():  # made first: another process may begin it
             raise InputError(
                 f"the folder {place} holds no study",
                 where="--out",
@@ -270,8 +271,11 @@ class Store:
         return False
 
     def release(self, key: str) -> None:
-        """End the claim on a case."""
-        (self.folder / "claims" / key).unlink(missing_ok=True)
+        """End the claim of this process on a case, a half-made one too."""
+        path = self.folder / "claims" / key
+        with suppress(FileNotFoundError):
+            if path.read_text(encoding="utf-8") in (self.name, ""):
+                path.unlink()
 
     def sessions(self) -> list[dict[str, Any]]:
         """Return when each process began and ended (None: still at work) and its workers."""

@@ -127,13 +127,15 @@ class Study:
         try:
             while True:
                 for job in self._open():
-                    if job.key in self.store.records() or not self.store.claim(job.key):
+                    if job.key in held or job.key in self.store.records():
                         continue
-                    if job.key in self.store.records():  # finished between the look and the claim
+                    held.add(job.key)  # first: Ctrl-C may come in the middle of the claim
+                    if not self.store.claim(job.key):
+                        held.remove(job.key)
+                    elif job.key in self.store.records():  # finished between look and claim
                         self.store.release(job.key)
-                        continue
-                    held.add(job.key)
-                    yield job
+                    else:
+                        yield job
                 held -= self.store.records().keys()
                 if held:
                     yield None
@@ -142,7 +144,7 @@ class Study:
                 elif not self._advanced(leads):
                     return
         finally:
-            for key in held - self.store.records().keys():
+            for key in held:  # a finished one too: Ctrl-C may come before its claim is ended
                 self.store.release(key)
 
     def _advanced(self, leads: bool) -> bool:
