@@ -1,9 +1,21 @@
-"""The grid's share in a reading: exact for a first-order error, said in words and spread."""
+"""What grid and steps in time leave open: exact for first-order errors, in words and spread."""
+
+from pathlib import Path
 
 import pytest
 
-from underfoot.compute.numbers import GRID_NAMES, grid_errors, grid_words, with_grid_errors
+from underfoot.case import Case
+from underfoot.compute.numbers import (
+    GRID_NAMES,
+    discretisation_words,
+    grid_errors,
+    step_errors,
+    with_discretisation_errors,
+)
+from underfoot.compute.run import run
 from underfoot.core import SourcedValue
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def test_first_order_error_is_found_exactly():
@@ -14,6 +26,8 @@ def test_first_order_error_is_found_exactly():
     assert errors["fluid_load"] == pytest.approx(5 * 0.6)
     assert errors["fluid_load_sensor"] == pytest.approx(2 * 0.6)
     assert errors["peak_fluid_pressure_sensor"] == 0.0
+    # the same of a time step, whose half is solved too
+    assert step_errors(reading(1.0), reading(0.5))["fluid_load"] == pytest.approx(5 * 1.0)
 
 
 def test_the_error_joins_a_known_spread_and_is_said():
@@ -22,9 +36,29 @@ def test_the_error_joins_a_known_spread_and_is_said():
         "fluid_load_sensor": SourcedValue(40.0, "N", source="s", uncertainty=3.0, note="tracks"),
         "peak_fluid_pressure_sensor": SourcedValue(1e5, "Pa", source="s", uncertainty=0.0),
     }
-    errors = dict(zip(GRID_NAMES, (5.0, 4.0, 2e3), strict=True))
-    found = with_grid_errors(numbers, errors)
-    assert found["fluid_load_sensor"].uncertainty == pytest.approx(5.0)
+    grid = dict(zip(GRID_NAMES, (5.0, 4.0, 2e3), strict=True))
+    steps = dict(zip(GRID_NAMES, (1.0, 12.0, 0.0), strict=True))
+    found = with_discretisation_errors(numbers, grid, steps)
+    assert found["fluid_load_sensor"].uncertainty == pytest.approx(13.0)
     assert found["fluid_load"].uncertainty is None
-    assert "grid error about 4 N" in found["fluid_load_sensor"].note
-    assert "1 and 0.6 mm" in grid_words(found, errors, 0.6e-3, 1e-3)
+    assert "grid error about 4 N, of the steps in time 12 N" in found["fluid_load_sensor"].note
+    words = discretisation_words(found, grid, steps, 0.6e-3, 1e-3)
+    assert "from 1 and 0.6 mm" in words
+    assert "steps in time: fluid load +- 1 N" in words
+    dry = with_discretisation_errors(numbers, grid, {})
+    assert dry["fluid_load_sensor"].uncertainty == pytest.approx(5.0)
+    assert "steps" not in dry["fluid_load_sensor"].note
+
+
+@pytest.mark.parametrize("name", ["untreaded_glycerol", "full_tread_dry"])
+def test_a_run_tells_of_grid_and_steps(name):
+    case = Case.load(EXAMPLES / f"work_shoe_{name}.toml").replace(
+        {
+            "numerics.grid_check": True,
+            "numerics.grid_spacing": "1 mm",
+            "numerics.quick_grid_spacing": "1.2 mm",
+        }
+    )
+    words = run(case).labels["grid_error"]
+    assert "from 1.2 and 1 mm" in words
+    assert ("from twice as many on 1.2 mm" in words) == ("dry" not in name)

@@ -24,7 +24,10 @@ class Numerics(Section):
     )
     tolerance: Tolerance = default(1e-4, 1e-4, "relative imbalance of volume and load")
     grid_check: Flag = default(
-        False, False, "one grid; true solves the quick one too and estimates the grid's error"
+        False,
+        False,
+        "one grid; true solves the quick one too, once more there with twice the steps in time, "
+        "and estimates the errors of both",
     )
     tread_positions: Annotated[int, Field(ge=1, le=64, strict=True)] = default(
         4, 4, "of a tread's pattern, averaged over; half of them on the quick grid; 1: as it lies"

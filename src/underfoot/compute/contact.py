@@ -57,10 +57,11 @@ def pool_depth(case: Case) -> float:
     return 0.6e-3 if case.contaminant is None else case.contaminant.pool_depth
 
 
-def solver_settings(case: Case) -> SolverSettings:
-    """Return how the contact of the case is solved."""
+def solver_settings(case: Case, *, finer: float = 1) -> SolverSettings:
+    """Return how the contact of the case is solved, with ``finer`` times the steps in time."""
     motion = case.motion
     return SolverSettings(
+        time_resolution=SolverSettings().time_resolution * finer,
         pool_depth=pool_depth(case),
         start_film=motion.start_film,
         rise_time=motion.force_rise_time,
@@ -77,14 +78,15 @@ def solved_motion(
     asperities: PressureGapLaw,
     *,
     viscosity: float | None,
+    finer: float = 1,
     watch: Callable[[SoleState], None] | None = None,
     progress: Progress = silent,
 ) -> SoleContact:
-    """Return contact and film at the end of the case's motion."""
+    """Return contact and film at the end of the case's motion; ``finer``: ``solver_settings``."""
     motion, history, parts = case.motion, case.motion.build(), (sole, compliance, asperities)
     common: dict[str, Any] = {
         "viscosity": viscosity,
-        "settings": solver_settings(case),
+        "settings": solver_settings(case, finer=finer),
         "progress": progress,
         "watch": watch,
     }

@@ -47,8 +47,8 @@ SUCTION_SPREAD = 29e3
 """Pa: standard deviation of a suction anywhere between 0 and 100 kPa."""
 GRID_ORDER = 1.0
 """Order of convergence: steps and rims of the film are first order on square cells."""
-GRID_NAMES = ("fluid_load", "fluid_load_sensor", "peak_fluid_pressure_sensor")
-"""Numbers that a grid error is estimated for."""
+GRID_NAMES: tuple[str, ...] = ("fluid_load", "fluid_load_sensor", "peak_fluid_pressure_sensor")
+"""Numbers that errors of grid and steps in time are estimated for."""
 
 
 def scalars(
@@ -193,7 +193,7 @@ def sole_name(case: Case) -> str:
 
 
 def readings(contact: SoleContact, sensor: SensorReading) -> dict[str, float]:
-    """Return the numbers that a grid error is estimated for."""
+    """Return the numbers that errors of grid and steps in time are estimated for."""
     return {
         "fluid_load": contact.fluid_load,
         "fluid_load_sensor": sensor.load.value or 0.0,
@@ -213,30 +213,51 @@ def grid_errors(
     }
 
 
-def with_grid_errors(
-    numbers: Mapping[str, SourcedValue], errors: Mapping[str, float]
+def step_errors(own: Mapping[str, float], finer: Mapping[str, float]) -> dict[str, float]:
+    """Return 2 |own - finer|: the error of steps in time, against twice as many (first order)."""
+    return {name: 2 * abs(own[name] - finer[name]) for name in GRID_NAMES}
+
+
+def with_discretisation_errors(
+    numbers: Mapping[str, SourcedValue], grid: Mapping[str, float], steps: Mapping[str, float]
 ) -> dict[str, SourcedValue]:
-    """Return the numbers with the grid's error in their uncertainty and said in their note."""
+    """Return the numbers with the errors of grid and steps in their uncertainty and their note."""
     found = dict(numbers)
-    for name, error in errors.items():
-        value = numbers[name]
-        said = f"grid error about {display(float(f'{error:.2g}'), value.unit)}"
+    for name, error in grid.items():
+        value, by_steps = numbers[name], steps.get(name, 0.0)
+        said = f"grid error about {_error(error, value)}"
+        if steps:
+            said += f", of the steps in time {_error(by_steps, value)}"
         # a spread that isn't known stays so: the grid is not what decides it
         spread = value.uncertainty
         found[name] = replace(
             value,
-            uncertainty=None if spread is None else float(np.hypot(spread, error)),
+            uncertainty=None if spread is None else math.hypot(spread, error, by_steps),
             note=f"{value.note}; {said}" if value.note else said,
         )
     return found
 
 
-def grid_words(
-    numbers: Mapping[str, SourcedValue], errors: Mapping[str, float], fine: float, coarse: float
+def discretisation_words(
+    numbers: Mapping[str, SourcedValue],
+    grid: Mapping[str, float],
+    steps: Mapping[str, float],
+    fine: float,
+    coarse: float,
 ) -> str:
-    """Return the remark on the grid for a summary."""
-    parts = [
-        f"{name.replace('_', ' ')} +- {display(float(f'{error:.2g}'), numbers[name].unit)}"
-        for name, error in errors.items()
-    ]
-    return f"{', '.join(parts)} (from {coarse * 1e3:g} and {fine * 1e3:g} mm, first order)"
+    """Return the remark on grid and steps in time for a summary."""
+
+    def parts(errors: Mapping[str, float]) -> str:
+        return ", ".join(
+            f"{name.replace('_', ' ')} +- {_error(error, numbers[name])}"
+            for name, error in errors.items()
+        )
+
+    words = f"grid: {parts(grid)} (from {coarse * 1e3:g} and {fine * 1e3:g} mm, first order)"
+    if steps:
+        words += f"; steps in time: {parts(steps)} (from twice as many on {coarse * 1e3:g} mm)"
+    return words
+
+
+def _error(error: float, value: SourcedValue) -> str:
+    return display(float(f"{error:.2g}"), value.unit)

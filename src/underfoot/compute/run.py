@@ -117,12 +117,14 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
     parts, lugs, friction, sampled = found.parts, found.lugs, found.sums, found.sampled
     sensor = scanned(case, sole, contact, viscosity=viscosity)
 
-    def solved_quick(case: Case, place: Place, progress: Progress) -> tuple[SoleMap, SoleContact]:
+    def solved_quick(
+        case: Case, place: Place, progress: Progress, finer: float = 1
+    ) -> tuple[SoleMap, SoleContact]:
         where = {"shift": place.shift, "turn": place.turn, "direction": place.direction}
         there = sole_map(case, case.numerics.quick_grid_spacing, **where)
         body = case.compliance.build(turned(context, place.turn), there)
         return there, solved_motion(
-            case, there, body, asperities, viscosity=viscosity, progress=progress
+            case, there, body, asperities, viscosity=viscosity, finer=finer, progress=progress
         )
 
     overload = overload_breaches(contact, context.youngs_modulus)
@@ -167,18 +169,24 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
                     where="numerics.grid_check",
                     remedy="Set numerics.grid_check = false",
                 )
-            coarse_sole, coarse = (positions and positions.coarse) or solved_quick(
-                case, Place(), progress
-            )
-            if coarse.status.usable:
-                there = numbers.readings(
-                    coarse, scanned(case, coarse_sole, coarse, viscosity=viscosity)
+            on_quick = (case, Place(), progress)
+            coarse = (positions and positions.coarse) or solved_quick(*on_quick)
+            # a dry contact has no memory: its steps are not steps in time
+            stepped = None if viscosity is None else solved_quick(*on_quick, finer=2)
+
+            def read(there: tuple[SoleMap, SoleContact]) -> dict[str, float]:
+                return numbers.readings(there[1], scanned(case, *there, viscosity=viscosity))
+
+            if coarse[1].status.usable and (stepped is None or stepped[1].status.usable):
+                refinement = coarse_spacing / spacing
+                errors = (
+                    numbers.grid_errors(read((sole, contact)), read(coarse), refinement),
+                    numbers.step_errors(read(coarse), read(stepped)) if stepped else {},
                 )
-                errors = numbers.grid_errors(
-                    numbers.readings(contact, sensor), there, coarse_spacing / spacing
+                values = numbers.with_discretisation_errors(values, *errors)
+                labels["grid_error"] = numbers.discretisation_words(
+                    values, *errors, spacing, coarse_spacing
                 )
-                values = numbers.with_grid_errors(values, errors)
-                labels["grid_error"] = numbers.grid_words(values, errors, spacing, coarse_spacing)
     breaches = [
         *context.modulus_breaches,
         *overload,

@@ -17,8 +17,9 @@ from .sole_state import SoleState, SolverSettings
 from .solver import SoleContact, longest_step, passing_time, with_history
 from .stepping import Reporting, SlidingSole
 
-STEPS = 24.0
-"""Inner steps into which the whole history falls at least; every point of it ends one."""
+STEPS = 3.0
+"""Inner steps into which the whole history falls at least, over the time resolution; every point of
+the history ends one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,9 +100,8 @@ def solve_history(
     sliding.begin(normal_force=force, speed=speed, shoe_angle=angle)
     duration, fastest = float(history.time[-1]), float(np.abs(history.speed).max())
     passing = math.inf if viscosity is None else passing_time(sole, fastest)
-    longest = min(
-        duration / STEPS, longest_step(duration, passing) / sliding.settings.time_resolution
-    )
+    longest = min(duration / STEPS, longest_step(duration, passing))
+    longest /= sliding.settings.time_resolution
     state = None
     for before, after in pairwise(rows):
         _, force, speed, angle = (float(value) for value in after)
