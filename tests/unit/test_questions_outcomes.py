@@ -9,7 +9,7 @@ import pytest
 
 from underfoot.case import Case
 from underfoot.compute.run import run
-from underfoot.core import SourcedValue, Status
+from underfoot.core import ConvergenceError, SourcedValue, Status
 from underfoot.questions.outcomes import Outcome, outcomes
 from underfoot.questions.sensitivity import Effect, OpenInput, Sensitivity, open_inputs, sensitivity
 
@@ -47,6 +47,22 @@ def test_outcomes_are_those_of_single_runs_and_are_kept(case, tmp_path) -> None:
     assert len(list(tmp_path.rglob("*.npz"))) == 2
     again = outcomes([softer], quick=True)[0]
     assert again == found[1]
+
+
+def test_a_case_that_can_not_even_start_leaves_the_others_their_numbers(case, monkeypatch) -> None:
+    softer = case.replace("shoe.material.shore_a", 60)
+
+    def fails_when_soft(one, **options):
+        if one == softer:
+            raise ConvergenceError("could not be solved", where="sole_contact")
+        return run(one, **options)
+
+    monkeypatch.setattr("underfoot.questions.outcomes.run", fails_when_soft)
+    found = outcomes([softer, case], quick=True)
+    assert found[0].status is Status.NOT_CONVERGED
+    assert "could not be solved" in found[0].remedy
+    assert math.isnan(found[0].number("cof"))
+    assert found[1].number("cof") > 0
 
 
 def test_processes_change_nothing(case) -> None:

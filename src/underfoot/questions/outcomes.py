@@ -10,9 +10,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from underfoot.compute.numbers import undetermined
 from underfoot.compute.run import run
 from underfoot.compute.summary import ranked_assumptions
-from underfoot.core import Progress, SourcedValue, Status, content_hash, silent
+from underfoot.core import (
+    ConvergenceError,
+    Progress,
+    SourcedValue,
+    Status,
+    content_hash,
+    silent,
+)
 from underfoot.core.arrays import Array
 from underfoot.core.cache import Cache
 from underfoot.core.pool import available_processors, in_processes
@@ -110,6 +118,8 @@ def outcomes(
 ) -> list[Outcome]:
     """Return the outcome of every case, in order; equal cases are computed once.
 
+    A case whose contact can't be solved even at its start is an outcome that did not converge.
+
     Parameters:
         quick: Use the coarse grid of the cases.
         maps: Names of the fields on (x, y) that each outcome keeps.
@@ -122,8 +132,7 @@ def outcomes(
             and what is done stays in the cache.
 
     Raises:
-        UnderfootError: As ``compute.run`` raises it for the first case that can't be computed at
-            all.
+        InputError: As ``compute.run`` raises it for the first case whose parts don't fit.
     """
     store = Cache("outcomes-1")
     keys = [_key(case, quick, maps) for case in cases]
@@ -150,7 +159,12 @@ def outcomes(
 
 
 def _computed_alone(case: Case, *, quick: bool, maps: Sequence[str]) -> Outcome:
-    return Outcome.of(run(case, quick=quick), maps)
+    try:
+        return Outcome.of(run(case, quick=quick), maps)
+    except ConvergenceError as error:  # one case without numbers, the others go on
+        status = Status.NOT_CONVERGED
+        none = undetermined(case, status)
+        return Outcome(case.name, case.hash, none, {}, status, str(error), (), (), 0.0)
 
 
 def _key(case: Case, quick: bool, maps: Sequence[str]) -> str:
