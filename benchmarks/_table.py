@@ -40,13 +40,13 @@ class Row:
 
 def printed(rows: list[Row]) -> str:
     """Return the table as text."""
-    head = f"{'job':44} {'CPU s':>7} {'MB':>6} {'limit s':>8} {'ratio':>6} {'growth':>7} error"
+    head = f"{'job':45} {'CPU s':>7} {'MB':>6} {'limit s':>8} {'ratio':>6} {'growth':>7} error"
     lines = [head]
     for row in rows:
         ratio = None if row.limit is None else row.cpu / row.limit
         error = "" if row.error is None else f"{row.error:+.2f} % of {row.reference}"
         lines.append(
-            f"{row.job:44} {row.cpu:7.2f} {_text(row.memory, '6.0f')} {_text(row.limit, '8.3f')} "
+            f"{row.job:45} {row.cpu:7.2f} {_text(row.memory, '6.0f')} {_text(row.limit, '8.3f')} "
             f"{_text(ratio, '6.1f')} {_text(row.growth, '7.2f')} {error}".rstrip()
         )
     return "\n".join([*lines, "limit: the job's Fourier transforms alone, timed in the same run"])

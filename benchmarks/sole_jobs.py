@@ -93,19 +93,25 @@ def march(
 
 
 def warm() -> dict[str, float]:
-    """Return what a second quick run takes in one process, and phases over one march."""
+    """Return what runs take in one process after a first, with one position and with PHASES."""
     from underfoot.case import Case
     from underfoot.compute.run import run
 
     case = Case.load(CASE)
     run(case, quick=True)
 
-    def taken(positions: int) -> float:
+    def taken(positions: int, quick: bool) -> float:
         began = time.process_time()
-        run(case.replace("numerics.tread_positions", positions), quick=True)
+        run(case.replace("numerics.tread_positions", positions), quick=quick)
         return time.process_time() - began
 
-    return {"quick": taken(4), "one": taken(1), "phases": taken(2 * PHASES)}
+    return {
+        "quick": taken(4, True),
+        "one, quick": taken(1, True),
+        "phases, quick": taken(2 * PHASES, True),  # a quick run takes half of them
+        "one": taken(1, False),
+        "phases": taken(PHASES, False),
+    }
 
 
 def error_over_positions() -> dict[str, float]:
@@ -180,12 +186,14 @@ def rows() -> list[Row]:
     found.append(
         Row(
             f"{PHASES} positions of the tread, quick",
-            within["phases"],
+            within["phases, quick"],
             error=separate(HERE, "error_over_positions")["error"],
             reference="time and tolerance 4 times finer, mean",
         )
     )
-    found.append(Row("one position of the tread, quick", within["one"]))
+    found.append(Row("one position of the tread, quick", within["one, quick"]))
+    found.append(Row(f"run, {PHASES} positions of the tread, warm process", within["phases"]))
+    found.append(Row("run, one position of the tread, warm process", within["one"]))
     marches = {side: separate(HERE, "march", side, {}) for side in (1e-3, 0.6e-3)}
     coarse, fine = marches.values()
     growth = math.log(fine["cpu"] / coarse["cpu"]) / math.log(fine["cells"] / coarse["cells"])
