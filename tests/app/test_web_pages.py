@@ -112,6 +112,15 @@ def test_the_answer_then_previews_then_the_full_run(app):
         result = next((app.folder / "results").glob("*/result.json"))
         assert cof == pytest.approx(json.loads(result.read_text())["cof"]["value"], abs=6e-4)
         page.get_by_role("heading", name="What would help").wait_for(timeout=240_000)
+        page.get_by_role("button", name="Simulated without gain").wait_for()
+        page.mouse.wheel(0, 600)
+        page.wait_for_function("scrollY >= 500")
+        places = "(name) => document.querySelector(name).getBoundingClientRect()"
+        sole, words = (page.evaluate(places, name) for name in (".stage-side", ".whole"))
+        assert sole["bottom"] <= words["top"]
+        page.set_viewport_size({"width": 390, "height": 844})
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390
+        page.set_viewport_size({"width": 1366, "height": 768})
         page.wait_for_timeout(2000)  # nothing else is computed
         with Cost() as cost:
             switches = page.evaluate(

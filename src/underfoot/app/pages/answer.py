@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from functools import partial
 from typing import Any
 
 from nicegui import ui
@@ -117,10 +118,11 @@ class _Answer:
             with self.place:
                 ui.label(self.text("answer.not_yet")).classes("lead")
             return
-        with self.place, ui.element("div").classes("split"):
-            side = ui.element("section").classes("side")
-            with ui.element("section").classes("stage-side"):
-                self.view = SoleView(self.session)
+        with self.place:
+            with ui.element("div").classes("split"):
+                side = ui.element("section").classes("side")
+                with ui.element("section").classes("stage-side"):
+                    self.view = SoleView(self.session)
             self.tables = ui.element("section").classes("whole")
         with side:
             if not self._current():
@@ -265,22 +267,44 @@ class _Answer:
         self.help.clear()
         computed = [each for each in stored["changes"] if each["cof"] is not None]
         computed.sort(key=lambda each: each["slip_probability"])
+        present = stored["slip_probability"]["value"]
+        better = [each for each in computed if each["slip_probability"] < present]
         with self.help:
             title(self.text("answer.help"), 2)
-            for each in computed:
-                self._change(each, stored)
+            for each in better:
+                with ui.element("div").classes("help"):
+                    ui.label(self._change(each, stored))
+                    make = ui.button(self.text("answer.make"), on_click=partial(self._make, each))
+                    make.props("no-caps flat dense")
+            if not better:
+                ui.label(self.text("answer.no_help"))
+            rest = [self._change(each, stored) for each in computed if each not in better]
+            for each in stored["changes"]:
+                if each["cof"] is None:
+                    words = {"action": _capital(each["action"]), "reason": each["reason"]}
+                    rest.append(self.text("answer.not_computed", **words))
+            if rest:
+                with ui.expansion(self.text("answer.tried")).classes("soft"):
+                    for words in rest:
+                        ui.label(words).classes("soft")
 
-    def _change(self, each: dict[str, Any], now: dict[str, Any]) -> None:
-        with ui.element("div").classes("help"):
-            action = each["action"][:1].upper() + each["action"][1:]
-            cof, slip = now["cof"]["value"], now["slip_probability"]["value"]
-            numbers = {"now": f"{cof:.3f}", "cof": f"{each['cof']:.3f}"}
-            numbers |= {"before": percent(slip), "after": percent(each["slip_probability"])}
-            ui.label(self.text("answer.change", action=action, **numbers))
-            make = ui.button(self.text("answer.make"), on_click=lambda: self._make(each))
-            make.props("no-caps flat dense")
+    def _change(self, each: dict[str, Any], now: dict[str, Any]) -> str:
+        slip = now["slip_probability"]["value"]
+        words = self.text(
+            "answer.change",
+            action=_capital(each["action"]),
+            now=f"{now['cof']['value']:.3f}",
+            cof=f"{each['cof']:.3f}",
+            before=percent(slip),
+            after=percent(each["slip_probability"]),
+        )
+        return words.replace(" %", "\u00a0%")  # a narrow column must not part number and unit
 
     def _make(self, each: dict[str, Any]) -> None:
         wanted = f"{self.name}, {each['name'].replace('_', ' ')}"
         new = self.session.project.copy(self.name, wanted, each["values"])
         self.session.go(ROUTE, variant=new, run="1", beside=self.name)
+
+
+def _capital(words: str) -> str:
+    return words[:1].upper() + words[1:]
