@@ -112,6 +112,22 @@ def test_trends_see_which_way_the_numbers_go():
     assert trends(even)[3].agrees is False
 
 
+@pytest.mark.parametrize(
+    ("cof", "agrees"),
+    [
+        ([0.137, 0.147, 0.0099, 0.0098, 0.00984], True),  # the end moves by less than is printed
+        ([0.137, 0.1373, 0.09], False),
+        ([0.1, 0.12, 0.09, 0.11], False),
+    ],
+)
+def test_friction_that_first_rises_and_then_falls(cof, agrees):
+    points = states([1] * len(cof))
+    for point, value in zip(points, cof, strict=True):
+        point.outcome.values["cof"] = value
+    series = WearSeries("x", "plane", 5.0, tuple(points), {}, ())
+    assert trends(series)[2].agrees is agrees
+
+
 def test_the_patch_at_the_limit_is_measured_not_interpolated():
     # no patch before the last tenth of the last step, though the last state has one
     def state(part):

@@ -294,6 +294,9 @@ def test_the_sole_is_printed_with_the_page(page):
         pdf = base64.b64decode(tab.call("Page.printToPDF", printBackground=True)["data"])
         size = tab.value("(() => { const c = document.querySelector('canvas'); return c.width })()")
         assert f"/Width {size}".encode() in pdf
+        # what is folded on the screen is unfolded on paper
+        assert tab.value("document.querySelectorAll('details').length") > 0
+        assert tab.value("[...document.querySelectorAll('details')].every((one) => one.open)")
         tab.call("Emulation.setEmulatedMedia", media="print")
         tab.settle()
         assert tab.value("getComputedStyle(document.querySelector('canvas')).display") == "none"

@@ -46,6 +46,8 @@ LONGEST_HEEL, WIDTH_OF_HEEL = 0.12, 0.65
 """m, and the heel's width as a share of a whole sole's (assumed: common lasts)."""
 
 
+EVEN = 5e-4
+"""COF below which a change is none: it is printed with three decimals."""
 WORN_REGION = (
     "Beschorner et al., worn region size, 57 shoes (abstract; doi 10.5061/dryad.vmcvdncsk)"
 )
@@ -651,12 +653,16 @@ def trends(series: WearSeries) -> list[Trend]:
 
 
 def _rises_first(series: WearSeries) -> bool | None:
-    """Return whether the COF is highest in between and only falls from there to the end."""
+    """Return whether the COF is highest in between and falls from there to the end.
+
+    What differs by less than ``EVEN`` neither rises nor falls.
+    """
     cof = series.values("cof")
     if not np.isfinite(cof).all():
         return None
     highest = int(cof.argmax())
-    return bool(0 < highest < cof.size - 1 and (np.diff(cof[highest:]) < 0).all())
+    up, down = cof[highest] - cof[0], cof[highest] - cof[-1]
+    return bool(min(up, down) > EVEN and (np.diff(cof[highest:]) < EVEN).all())
 
 
 def _rank(finding: str, x: np.ndarray, y: np.ndarray, sign: int) -> Trend:

@@ -9,7 +9,7 @@ from html import escape
 import numpy as np
 from numpy.typing import ArrayLike
 
-WIDTH, HEIGHT, LEFT, BOTTOM, TOP = 720, 250, 56, 40, 12
+WIDTH, HEIGHT, LEFT, BOTTOM, TOP = 720, 270, 56, 40, 32
 STYLES = ('stroke="currentColor" stroke-dasharray="6 4"', 'stroke="#2a7fb8"')
 
 
@@ -46,7 +46,7 @@ def line_chart(
         )
     middle = f'x="{(LEFT + WIDTH) / 2}" y="{HEIGHT - 6}"'
     parts.append(f'<text {middle} text-anchor="middle">{escape(x_label)}</text>')
-    turned = f'transform="translate(14 {(HEIGHT - BOTTOM) / 2}) rotate(-90)"'
+    turned = f'transform="translate(14 {(HEIGHT - BOTTOM + TOP) / 2}) rotate(-90)"'
     parts.append(f'<text {turned} text-anchor="middle">{escape(y_label)}</text>')
     for number, ((name, _), line, style) in enumerate(zip(lines, values, STYLES, strict=False)):
         there = np.isfinite(line)
@@ -54,10 +54,10 @@ def line_chart(
             f"{at_x(a):.1f},{at_y(b):.1f}" for a, b in zip(x[there], line[there], strict=True)
         )
         parts.append(f'<polyline points="{points}" fill="none" stroke-width="2" {style}/>')
-        row = TOP + 12 + 17 * number
+        begin = LEFT + 190 * number  # above the axes, where no line runs
         parts.append(
-            f'<path d="M{WIDTH - 190} {row - 4}h26" stroke-width="2" {style}/>'
-            f'<text x="{WIDTH - 158}" y="{row}">{escape(name)}</text>'
+            f'<path d="M{begin} 12h26" stroke-width="2" {style}/>'
+            f'<text x="{begin + 32}" y="16">{escape(name)}</text>'
         )
     return "".join([*parts, "</svg>"])
 

@@ -93,8 +93,9 @@ def wear_figure(series: WearSeries) -> Figure:
         label = "thickness lost at the most worn place (mm)"
     worn = zip(series.measured("tread_left"), series.measured("worn_patch_area"), strict=True)
     labels = [f"{left * 1e3:.2g} mm\n{patch * 1e6:.0f} mm²" for left, patch in worn]
+    every = math.ceil(len(labels) / 4)  # more would run into one another
     top = load.secondary_xaxis("top")
-    top.set_xticks(place, labels, fontsize=7)
+    top.set_xticks(place[::-every], labels[::-every], fontsize=7)
     top.set_xlabel("tread left where it is least, worn patch", fontsize=8)
     for axes, name, text, colour, scale in (
         (load, "fluid_load", "under the sole", FILM, 1.0),
