@@ -138,6 +138,8 @@ def test_the_answer_then_previews_then_the_full_run(app):
             )
         print(f"field switches, ms: {[round(each) for each in switches]}; {cost}")
         assert min(np.median(switches) / 1e3, cost.cpu / len(switches)) < 0.3
+        viscosity = page.locator("input[name='contaminant.viscosity']")
+        assert viscosity.get_attribute("aria-valuetext") == "219 cP"
         slider = page.locator("input[name='motion.speed']")
         slider.focus()
         asked = "document.querySelector('.sliders').dataset.asked"

@@ -98,12 +98,12 @@ def sliders(
 
 
 def _row(session: Session, each: Input, value: float) -> str:
-    low, high, shown, step = each.low, max(each.high, value), min(max(value, 0), 1e9), each.step
-    shown = value
+    low, high, shown, step = each.low, max(each.high, value), value, each.step
     if each.log:
         low, high, shown, step = log10(low), log10(high), log10(max(value, low)), 0.01
     key = f"slider-{next(_numbers)}"
-    marks = f'data-unit="{each.sign}"' + (' data-log="1"' if each.log else "")
+    # the browser moves the thumb to the next step: the value stands beside it until it is moved
+    marks = f'data-unit="{each.sign}" data-given="{value:.6g}"' + (' data-log="1"' * each.log)
     return (
         f'<label for="{key}">{escape(session.text(f"inputs.{each.path}"))}</label>'
         f'<input type="range" id="{key}" name="{each.path}" min="{min(low, shown):.6g}" '

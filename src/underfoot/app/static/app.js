@@ -85,11 +85,14 @@ function showTexts(texts) {
 function askLive(id, address, soleId, keep) {
   const root = document.getElementById(id), inputs = [...(root?.querySelectorAll("input[type=range]") || [])];
   let asked = "{}", settled = "{}", busy = false, telling = false, resting = 0;
+  const value = (input) => {
+    if (!input.dataset.moved) return Number(input.dataset.given);
+    return input.dataset.log ? 10 ** Number(input.value) : Number(input.value);
+  };
   const values = () => JSON.stringify(Object.fromEntries(inputs.filter((i) => i.dataset.moved)
-    .map((i) => [i.name, i.dataset.log ? 10 ** Number(i.value) : Number(i.value)])));
+    .map((i) => [i.name, value(i)])));
   const show = (input) => {
-    const shown = input.dataset.log ? 10 ** Number(input.value) : Number(input.value);
-    const words = `${Number(shown.toPrecision(3))} ${input.dataset.unit}`.trim();
+    const words = `${Number(value(input).toPrecision(3))} ${input.dataset.unit}`.trim();
     root.querySelector(`output[for="${input.id}"]`).textContent = words;
     input.setAttribute("aria-valuetext", words);
   };
