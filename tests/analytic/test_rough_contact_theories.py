@@ -253,6 +253,21 @@ def test_constants_of_the_exponential_law_against_the_theory_it_is_taken_from():
     assert law.mean_gap(2.0 * law.reference_pressure) == pytest.approx(-law.decay_length)
 
 
+@pytest.mark.parametrize("scales", [30, 300, 3000])
+def test_the_exponential_law_follows_the_theory_up_to_its_tested_range(scales):
+    """For q0 Rq = 0.26, what its constant stands for."""
+    rms = 10e-6
+    q, c = spectrum(rms, 0.26 / rms, 0.26 / rms * scales)
+    law = ExponentialLaw(3e6, 0.5, rms)
+    end = law.reference_pressure
+    assert law.breaches(pressure=end, speed=0.0) == []
+    assert law.breaches(pressure=1.01 * end, speed=0.0)
+    pressure = end * np.geomspace(0.01, 1.0, 9)
+    theory = yang_persson_mean_gap(pressure, q, c, 3e6)
+    assert law.mean_gap(pressure) == pytest.approx(theory, abs=0.2 * rms)
+    assert theory[-1] == pytest.approx(0.05 * rms, abs=0.02 * rms)
+
+
 def test_pressure_gap_laws_present_themselves():
     law = ExponentialLaw(3e6, 0.5, 2e-6)
     assert len(repr(law)) < 200

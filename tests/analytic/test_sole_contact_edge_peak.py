@@ -2,12 +2,13 @@
 
 import math
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from underfoot.case import Case
-from underfoot.compute.numbers import overload_words
+from underfoot.compute.numbers import bearing_pressure, overload_words
 from underfoot.compute.run import run
 from underfoot.compute.sole import overload_breaches
 from underfoot.compute.summary import headline
@@ -47,6 +48,21 @@ def test_load_on_what_rubber_cannot_bear_is_counted_with_what_cells_stand_for():
     pressure, area = np.array([[1e6, 9e6]]), np.array([[1.5, 0.5]])
     assert overloaded_share(pressure, pressure * area, 5e6) == pytest.approx(4.5 / 6.0)
     assert overloaded_share(pressure, pressure * area, 10e6) == 0.0
+
+
+def test_few_cells_at_an_edge_do_not_decide_which_pressure_the_contact_bears():
+    """Pressures even from 0 to 1 MPa: the load up to p is p^2 of it, 99 % up to sqrt(0.99)."""
+
+    def bears(pressure, area):
+        state: Any = SimpleNamespace(contact_pressure=pressure, cut=SimpleNamespace(area=area))
+        return bearing_pressure(state)
+
+    even = np.linspace(0, 1e6, 10_000).reshape(100, 100)
+    area = np.ones_like(even)
+    assert bears(even, area) == pytest.approx(math.sqrt(0.99) * 1e6, rel=1e-3)
+    even[0, 0] = 2e7  # 0.4 % of the load in one cell
+    assert bears(even, area) == pytest.approx(1e6, rel=5e-3)
+    assert bears(np.zeros_like(even), area) == 0.0
 
 
 def test_a_sole_worn_nearly_through_has_no_rigid_points():

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from underfoot.core import Status
@@ -61,6 +61,7 @@ def solve(
     force=st.floats(50, 800),
     rq=st.floats(4e-6, 30e-6),
 )
+@example(0.001, -6e-5, 429.0, 18.9e-6)  # hardly a film: cells leave and join it in turn
 def test_load_pressure_and_film_are_physical(viscosity, speed, force, rq):
     shape = sole()
     solved = solve(shape, viscosity=viscosity, speed=speed, force=force, rq=rq)

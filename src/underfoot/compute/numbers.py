@@ -20,6 +20,8 @@ from underfoot.sole_contact.solver import SoleContact
 _NOT_ESTIMATED = "heel shape and interface roughness dominate; their spread is not propagated yet"
 CONTACT_SHARE = 1e-3
 """Contact pressure below this share of the mean pressure doesn't count as contact."""
+BEARING_SHARE = 0.99
+"""Share of the contact's load whose pressures decide whether the law of the asperities is left."""
 _INPUTS = {
     "cof_boundary": "friction at rest",
     "cof_hysteresis": "hysteresis",
@@ -177,6 +179,17 @@ def touching_cells(state: SoleState) -> NDArray[np.bool_]:
     loaded = float(state.cut.area[state.total_pressure > FAINT].sum())
     mean = state.normal_force / max(loaded * state.spacing**2, state.spacing**2)
     return state.contact_pressure > CONTACT_SHARE * mean
+
+
+def bearing_pressure(state: SoleState) -> float:
+    """Return the contact pressure (Pa) up to which 99 % of the contact's load is borne.
+
+    The highest is that of a few cells at the edges of lugs, and grows as the grid is refined.
+    """
+    pressure = state.contact_pressure.ravel()
+    order = np.argsort(pressure)
+    borne = np.cumsum((pressure * state.cut.area.ravel())[order])
+    return float(pressure[order][np.searchsorted(borne, BEARING_SHARE * borne[-1])])
 
 
 def contact_area(state: SoleState) -> float:

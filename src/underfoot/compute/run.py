@@ -193,7 +193,7 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
         *sole.breaches,
         *compression_breaches(case, contact.approach),
         *forefoot_breaches(case, sole),
-        *asperities.breaches(pressure=contact.contact_pressure.max(), speed=speed),
+        *asperities.breaches(pressure=numbers.bearing_pressure(contact), speed=speed),
         *law.breaches(**local),
         *(risk.breaches if risk else ()),
     ]

@@ -102,7 +102,10 @@ class ExponentialLaw(_PresentableLaw):
     within 5 %. beta is no constant of the theory: it is 1.43 q0 Rq, with q0 the wave number of the
     longest wave. 0.375 (the constant of the grant report's macro model) stands for q0 Rq = 0.26; a
     surface with longer waves meets p at a gap smaller by u0 ln(0.26 / (q0 Rq)). Where the spectrum
-    is known, ``persson_law`` takes it. Low squeezing pressure: tested below 0.1 E* (assumed limit).
+    is known, ``persson_law`` takes it. Against the theory in full, for such surfaces of 1.5 to 3.5
+    decades of waves, the gap is up to 0.2 Rq too large between 0.05 and 0.2 E*, where lugs press
+    (the load on the film under the example treads is 14 to 24 % below that of the theory, COF 1 to
+    4 %). It is 0 at p0, the end of the tested range, where the theory keeps 0.05 Rq.
     The gap enters the flow uncorrected (phi = 1), which overrates the permeability at small gaps.
     """
 
@@ -152,9 +155,8 @@ class ExponentialLaw(_PresentableLaw):
         return np.zeros_like(np.asarray(gap, dtype=float))
 
     def breaches(self, *, pressure: ArrayLike, speed: ArrayLike) -> list[Breach]:
-        """Return the breach of the low-load range, if any (the law does not know the speed)."""
-        limit = 0.1 * self.modulus / (1 - self.poisson_ratio**2)
-        ranges = {"pressure": Range(0.0, limit, "Pa", self.source)}
+        """Return the breach of the range above, if any (the law does not know the speed)."""
+        ranges = {"pressure": Range(0.0, self.reference_pressure, "Pa", self.source)}
         return breaches(self.name, ranges, {"pressure": pressure})
 
 

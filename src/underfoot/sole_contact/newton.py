@@ -39,6 +39,7 @@ STALL = 12  # Newton steps without halving the residual after which a shorter ti
 STALE = 10  # GMRES iterations above which the next Newton step gets a new factorization
 NEAR = 0.3  # share to which the last Newton step must have brought the residual for that
 FORCING = 0.3  # share of the residual to which GMRES solves, once the residual is small
+CYCLE = 0.05  # relative difference of balances two Newton steps apart that counts as none
 RIM = 2  # cells beside the wet ones that the upwinding of their faces looks at
 THIN = 2e-4  # m; steps are limited where the film is thinner
 
@@ -146,6 +147,7 @@ def implicit_step(
     attempt = Attempt(None, 0, 0)
     change = np.inf
     solve, count = None, 0
+    balances: list[float] = []
     faint = 1e-9 * load / (size * area)
 
     for iteration in range(problem.settings.most_newton + 1):
@@ -163,7 +165,8 @@ def implicit_step(
         shortage = load - float(pressure.sum()) * area
         wrong = float(np.abs(np.where(full, np.minimum(above, 0.0), above)).sum())
         lacking = pattern.gather(missing)
-        error = max(imbalance, wrong * area / load, abs(shortage) / load, min(change, 1.0) * 0.1)
+        balances.append(max(imbalance, wrong * area / load, abs(shortage) / load))
+        error = max(balances[-1], min(change, 1.0) * 0.1)
         error = max(error, 0.01 * float(np.abs(lacking).max()) / problem.decay)
         attempt.residuals.append(error)
         tick(error)
@@ -213,6 +216,8 @@ def implicit_step(
         delta = pattern.scatter(step[:-1])
         rise = problem.compliance.apply(delta) - step[-1] + missing
         share = _step_share(problem, local_gap, pattern.gather(rise))
+        if _cycling(balances):
+            share *= 0.5
         pressure = pressure + share * delta
         approach += share * float(step[-1])
         gap = gap + share * rise
@@ -229,6 +234,14 @@ def _hopeless(residuals: list[float]) -> bool:
     if residuals[-1] > 1e3 * max(residuals[0], 1.0):
         return True
     return len(residuals) > STALL and min(residuals[-STALL:]) > 0.5 * min(residuals[:-STALL])
+
+
+def _cycling(balances: list[float]) -> bool:
+    """Return whether cells leave and join the film in turn: every second balance is the same."""
+    if len(balances) < 5:
+        return False
+    before, now = np.array(balances[-5:-2]), np.array(balances[-3:])
+    return bool((np.abs(now - before) < CYCLE * now).all())
 
 
 def _step_share(problem: Problem, gap: Array, rise: Array) -> float:

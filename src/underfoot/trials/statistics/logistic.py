@@ -281,10 +281,16 @@ def logistic_regression(
     covariance = back @ np.linalg.inv(information(centred, eta)) @ back.T
     errors = np.sqrt(np.diag(covariance))
     coefficients = []
+    # The intercept is a sum of the centred coefficients: axes with it as the first keep columns of
+    # one size, where those of the predictors themselves may lie far from 0.
+    axes, reach = np.linalg.qr(back[0][:, None], mode="complete")
+    axes *= np.sign(reach[0, 0])
     for j, name in enumerate(names):
-        work, at = (matrix / scale, beta * scale) if j == 0 else (centred, scaled)
-        *ends, p = _profile(work, y, at, j, firth, best, confidence, errors[j] * scale[j])
-        low, high = (None if end is None else float(end / scale[j]) for end in ends)
+        work, at, unit = centred, scaled, scale[j]
+        if j == 0:
+            work, at, unit = centred @ axes, axes.T @ scaled, 1 / abs(reach[0, 0])
+        *ends, p = _profile(work, y, at, j, firth, best, confidence, errors[j] * unit)
+        low, high = (None if end is None else float(end / unit) for end in ends)
         coefficients.append(Coefficient(name, float(beta[j]), float(errors[j]), low, high, p))
     null = float(np.sum(y * np.log(mean) + (1 - y) * np.log(1 - mean)))
     likelihoods = log_likelihood(eta, y), null, objective(matrix, eta, y, True) if firth else None
