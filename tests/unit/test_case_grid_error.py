@@ -1,10 +1,12 @@
 """What grid and steps in time leave open: exact for first-order errors, in words and spread."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from underfoot.case import Case
+from underfoot.compute.contact import solved_motion
 from underfoot.compute.numbers import (
     GRID_NAMES,
     discretisation_words,
@@ -13,7 +15,7 @@ from underfoot.compute.numbers import (
     with_discretisation_errors,
 )
 from underfoot.compute.run import run
-from underfoot.core import SourcedValue
+from underfoot.core import SourcedValue, Status
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -62,3 +64,19 @@ def test_a_run_tells_of_grid_and_steps(name):
     words = run(case).labels["grid_error"]
     assert "from 1.2 and 1 mm" in words
     assert ("from twice as many on 1.2 mm" in words) == ("dry" not in name)
+
+
+def test_a_check_that_does_not_converge_is_told(monkeypatch):
+    def fails_with_more_steps(*given, finer=1, **options):
+        contact = solved_motion(*given, finer=finer, **options)
+        return replace(contact, status=Status.NOT_CONVERGED) if finer > 1 else contact
+
+    monkeypatch.setattr("underfoot.compute.run.solved_motion", fails_with_more_steps)
+    case = Case.load(EXAMPLES / "work_shoe_untreaded_glycerol.toml").replace(
+        {
+            "numerics.grid_check": True,
+            "numerics.grid_spacing": "2 mm",
+            "numerics.quick_grid_spacing": "3 mm",
+        }
+    )
+    assert run(case).labels["grid_error"].startswith("not estimated: a march on 3 mm")

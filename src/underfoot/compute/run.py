@@ -187,6 +187,10 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
                 labels["grid_error"] = numbers.discretisation_words(
                     values, *errors, spacing, coarse_spacing
                 )
+            else:
+                labels["grid_error"] = (
+                    f"not estimated: a march on {coarse_spacing * 1e3:g} mm did not converge"
+                )
     breaches = [
         *context.modulus_breaches,
         *overload,
