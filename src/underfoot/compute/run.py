@@ -178,10 +178,10 @@ def run(case: Case, *, quick: bool = False, progress: Progress = silent, **objec
                 return numbers.readings(there[1], scanned(case, *there, viscosity=viscosity))
 
             if coarse[1].status.usable and (stepped is None or stepped[1].status.usable):
-                refinement = coarse_spacing / spacing
+                own, there = numbers.readings(contact, sensor), read(coarse)
                 errors = (
-                    numbers.grid_errors(read((sole, contact)), read(coarse), refinement),
-                    numbers.step_errors(read(coarse), read(stepped)) if stepped else {},
+                    numbers.grid_errors(own, there, coarse_spacing / spacing),
+                    numbers.step_errors(there, read(stepped)) if stepped else {},
                 )
                 values = numbers.with_discretisation_errors(values, *errors)
                 labels["grid_error"] = numbers.discretisation_words(
