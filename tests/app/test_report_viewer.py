@@ -300,6 +300,8 @@ def test_the_sole_is_printed_with_the_page(page):
         tab.call("Emulation.setEmulatedMedia", media="print")
         tab.settle()
         assert tab.value("getComputedStyle(document.querySelector('canvas')).display") == "none"
+        titles = "[...document.querySelectorAll('details.section > summary')]"
+        assert tab.value(f"{titles}.every((one) => getComputedStyle(one).display !== 'none')")
         tab.value("document.querySelector('img.print').scrollIntoView()")
         tab.value("document.querySelector('img.print').decode().then(() => true)")
         tab.settle()
