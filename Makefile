@@ -6,11 +6,9 @@ READY := $(VENV)/.ready
 # Two workers. Quick tests: each takes over from the other when its own are done. Slow ones: a file
 # stays with one worker, since its tests share long runs.
 PYTEST := $(BIN)/pytest -n 2 --dist
-export OMP_NUM_THREADS ?= 1
-export MKL_NUM_THREADS ?= 1
-export OPENBLAS_NUM_THREADS ?= 1
+SEED := $(or $(SEED),$(shell od -An -N4 -tu4 /dev/urandom | tr -d " "))
 
-.PHONY: run app check test test-slow test-install chromium bundle bundle-check bench validate docs clean help
+.PHONY: run app check test test-slow fuzz test-install chromium bundle bundle-check bench validate docs clean help
 
 run: $(READY)  ## the main job: a worn work shoe on a floor with glycerol
 	$(BIN)/underfoot run examples/work_shoe_untreaded_glycerol.toml --out out/work_shoe_untreaded_glycerol --overwrite
@@ -26,6 +24,10 @@ check: $(READY)  ## ruff, pyright, import-linter (a minute)
 
 test: check  ## static checks, then every test that is not slow (minutes)
 	$(PYTEST) worksteal -m "not slow"
+
+fuzz: $(READY)  ## Hypothesis with examples that no run had before; SEED=N repeats a run
+	@echo "make fuzz SEED=$(SEED) repeats this run; a find becomes an @example of its test"
+	$(PYTEST) worksteal -m "hypothesis and not slow" --hypothesis-profile=fuzz --hypothesis-seed=$(SEED)
 
 test-slow: $(READY)  ## the slow tests
 	$(PYTEST) loadfile -m slow
@@ -64,5 +66,5 @@ $(READY): requirements.lock pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Underfoot needs Python 3.11 or newer; set PYTHON=python3.11 (or newer)")'
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps -e .
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps -e . -e wings/block
 	@touch $(READY)

@@ -70,9 +70,9 @@ def condition(name: str, spacing: float) -> dict[str, float]:
     """Return what one of the example cases took, in this process."""
 
     from underfoot.case import Case
-    from underfoot.compute.contact import solved_motion
     from underfoot.compute.resolve import resolved
     from underfoot.compute.sole import sole_map
+    from underfoot.compute.solve import solved_motion
 
     case = Case.load(f"examples/{name}.toml")
     began = time.process_time()
@@ -82,7 +82,7 @@ def condition(name: str, spacing: float) -> dict[str, float]:
         sole,
         case.compliance.build(context, sole),
         case.rough_contact.build(context),
-        viscosity=case.film.build(context),
+        film=case.film.build(context),
     )
     counts = solved.counts
     return {

@@ -1,4 +1,4 @@
-// The march of underfoot.block.explicit in C++: gather, element loop, scatter, cosine
+// The march of underfoot_block.explicit in C++: gather, element loop, scatter, cosine
 // floor, move. The element loop is filled with the statements that the Numba kernel is made of.
 #include <cmath>
 #include <cstring>

@@ -49,9 +49,9 @@ def march(
 ) -> dict[str, float]:
     """Return what one march took, in this process."""
     from underfoot.case import Case
-    from underfoot.compute.contact import solver_settings
     from underfoot.compute.resolve import resolved
     from underfoot.compute.sole import sole_map
+    from underfoot.compute.solve import solver_settings
     from underfoot.sole_contact.compliance import compliance_within
     from underfoot.sole_contact.solver import solve_sliding
 
@@ -69,7 +69,7 @@ def march(
         sole,
         body,
         case.rough_contact.build(context),
-        viscosity=case.film.build(context),
+        viscosity=case.film.build(context).viscosity,
         speed=case.motion.speed,
         normal_force=case.motion.normal_force,
         settings=settings,

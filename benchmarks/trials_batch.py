@@ -1,4 +1,4 @@
-"""A folder of 500 slip trials (5 s, 1000 Hz, nine sensors, two plates): time, memory, limits."""
+"""A folder of 500 slip trials and one of 2,004 walks: time, memory, size, limits."""
 
 import os
 import resource
@@ -12,9 +12,11 @@ import psutil
 from underfoot.report.trials_report import STORE, write_trials_report
 from underfoot.trials.analyse import analyse_folder
 from underfoot.trials.protocols import protocol
-from underfoot.trials.simulate import simulated_folder
+from underfoot_simulator import simulated_folder
+from underfoot_simulator.folder import NAMES
 
 TRIALS = 500
+WALKS = 2004
 TIME_LIMIT, MEMORY_LIMIT = 60.0, 1e9  # s on two cores, bytes over all processes
 
 
@@ -44,6 +46,7 @@ def main() -> None:
     print(
         "within the limits" if total < TIME_LIMIT and memory.largest < MEMORY_LIMIT else "TOO MUCH"
     )
+    walks()
 
 
 class _Memory:
@@ -76,6 +79,24 @@ def _cpu() -> float:
     """CPU time of this process and its finished children."""
     children = resource.getrusage(resource.RUSAGE_CHILDREN)
     return time.process_time() + children.ru_utime + children.ru_stime
+
+
+def walks() -> None:
+    """2,000 walks of a study: CPU time, memory and size of the report, with one process."""
+    with tempfile.TemporaryDirectory() as place:
+        folder, out = Path(place) / "study", Path(place) / "out"
+        simulated_folder("study", folder, count=WALKS // 12)
+        with _Memory() as memory:
+            begin = _cpu()
+            level = protocol("level_walking")
+            analysis = analyse_folder(folder, level, names=NAMES, store=out / STORE, processes=1)
+            middle = _cpu()
+            write_trials_report(analysis, out, processes=1)
+            end = _cpu()
+        size = (out / "report.html").stat().st_size / 1e6
+    print(f"{len(analysis.files)} made-up walks, one process")
+    print(f"analysis {middle - begin:.1f} CPU s, report {end - middle:.1f} CPU s (both: limit 60)")
+    print(f"memory {memory.largest / 1e6:.0f} MB (limit 400), report {size:.1f} MB (limit 8)")
 
 
 if __name__ == "__main__":

@@ -29,10 +29,13 @@ html_css_files = ["pages.css"]
 templates_path: list[str] = []
 
 napoleon_google_docstring = True
+napoleon_numpy_docstring = True
 napoleon_use_ivar = True  # attributes as a list: as objects they would be described twice
 napoleon_custom_sections = [("Errors", "Raises"), "Source"]
 autodoc_member_order = "bysource"
-autodoc_typehints = "none"
+autodoc_typehints = "description"
+autodoc_typehints_description_target = "documented"
+autodoc_typehints_format = "short"
 autodoc_default_options = {"members": True, "undoc-members": False}
 suppress_warnings = ["myst.header", "ref.python", "misc.highlighting_failure"]
 

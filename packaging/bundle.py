@@ -29,7 +29,12 @@ def make() -> None:
         f"--workpath={ROOT / 'build'}",
         f"--specpath={ROOT / 'build'}",
     ]
-    options += ["--collect-submodules=underfoot", "--collect-data=underfoot"]
+    options += [
+        "--collect-submodules=underfoot",
+        "--collect-submodules=underfoot_readers",
+        "--collect-submodules=underfoot_simulator",
+    ]
+    options += ["--collect-data=underfoot"]
     options += ["--collect-data=nicegui", "--recursive-copy-metadata=underfoot"]
     options += [f"--exclude-module={name}" for name in LEFT_OUT]
     PyInstaller.__main__.run([*options, str(ROOT / "packaging" / "launch.py")])

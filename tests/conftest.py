@@ -5,13 +5,16 @@ import shutil
 import signal
 
 import pytest
+from hypothesis import settings
 
 CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "chrome")
-LONG = 10  # s of CPU, above which a test should be marked slow
+LONG = 5  # s of CPU, above which a test should be marked slow
+CPU = pytest.StashKey[list[float]]()
 NO_BROWSER = "no Chromium on this machine (Debian, Ubuntu: apt-get install chromium)"
 
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("MKL_NUM_THREADS", "1")
+# the same examples in every run, on every machine; make fuzz draws others
+settings.register_profile("fuzz", settings.get_profile("default"), deadline=None, print_blob=True)
+settings.load_profile("ci")
 # started in the background of a shell, the programs of the tests would ignore Ctrl-C
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -27,14 +30,30 @@ def pytest_runtest_setup(item):
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item):
-    before = os.times()
+    before = cpu_seconds()
     answer = yield
-    cpu = sum(os.times()[:4]) - sum(before[:4])  # this process and those it waited for
-    item.user_properties.append(("cpu", cpu))
+    item.user_properties.append(("cpu", cpu_seconds() - before))
     return answer
 
 
+def cpu_seconds():
+    """Return the CPU s of this process and of those it waited for."""
+    return sum(os.times()[:4])
+
+
+def pytest_sessionfinish(session):
+    if hasattr(session.config, "workeroutput"):  # of a worker of pytest-xdist, read below
+        session.config.workeroutput["cpu"] = cpu_seconds()
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node):
+    node.config.stash.setdefault(CPU, []).append(getattr(node, "workeroutput", {}).get("cpu", 0.0))
+
+
 def pytest_terminal_summary(terminalreporter, config):
+    cpu = sum(config.stash.get(CPU, [])) or cpu_seconds()
+    terminalreporter.line(f"{cpu:.0f} s of CPU ({cpu / 60:.1f} min)")
     passed = (
         terminalreporter.stats.get("passed", []) if config.option.markexpr == "not slow" else []
     )

@@ -1,8 +1,9 @@
 """Underfoot: the friction between a shoe, a floor and what is spilled on it.
 
->>> import underfoot as uf
->>> case = uf.load("examples/work_shoe_untreaded_glycerol.toml")  # doctest: +SKIP
->>> uf.run(case).value("cof")  # doctest: +SKIP
+import underfoot as uf
+
+case = uf.load("examples/work_shoe_untreaded_glycerol.toml")
+uf.run(case).value("cof")
 """
 
 from __future__ import annotations

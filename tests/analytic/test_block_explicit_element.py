@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from underfoot.block import (
+from underfoot.material import RelaxationSpectrum
+from underfoot_block import (
     ExplicitSettings,
     MicroBlock,
     MicroLoading,
     MicroMaterial,
     MicroSurface,
 )
-from underfoot.block._kernels import loops, names
-from underfoot.block.assembly import Assembly, assembled
-from underfoot.material import RelaxationSpectrum
+from underfoot_block._kernels import loops, names
+from underfoot_block.assembly import Assembly, assembled
 
 G, NU = 1.0e6, 0.45
 ELASTIC = MicroMaterial.from_poisson(RelaxationSpectrum(G), NU, density=1000.0)
@@ -77,13 +77,14 @@ def test_element_loops_are_made_once_and_never_meet_old_machine_code(tmp_path, m
     assert loops.element_loops.__wrapped__().__file__ != str(path)
 
 
+@pytest.mark.slow  # compiles anew
 def test_element_loops_without_any_cache_folder_work_and_say_so(tmp_path, monkeypatch):
     (tmp_path / "__pycache__").write_text("a file where the folder should be")
     monkeypatch.setattr(loops, "HERE", tmp_path)
     monkeypatch.setenv("UNDERFOOT_CACHE", str(tmp_path / "__pycache__"))
     with pytest.warns(RuntimeWarning, match="no cache folder can be written"):
         made = loops.element_loops.__wrapped__()
-    monkeypatch.setattr("underfoot.block.assembly.element_loops", lambda: made)
+    monkeypatch.setattr("underfoot_block.assembly.element_loops", lambda: made)
     assembly = block_at_rest()
     turned = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]) - np.eye(3)
     forces = internal_forces(assembly, turned @ assembly.mesh.nodes)

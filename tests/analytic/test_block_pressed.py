@@ -6,7 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from underfoot.block import (
+from underfoot.core import InputError
+from underfoot.material import RelaxationSpectrum
+from underfoot_block import (
     ExplicitSettings,
     MicroBlock,
     MicroLoading,
@@ -19,9 +21,7 @@ from underfoot.block import (
     pressed_block,
     pressure_ratio_of,
 )
-from underfoot.block._kernels.hexahedron import MODES, forces_and_tangents, mean_gradient
-from underfoot.core import InputError
-from underfoot.material import RelaxationSpectrum
+from underfoot_block._kernels.hexahedron import MODES, forces_and_tangents, mean_gradient
 
 CUBE = np.array(
     [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)],

@@ -218,7 +218,7 @@ def test_slits_work_as_the_same_slits_resolved_by_the_grid():
                 sole,
                 case.compliance.build(context, sole),
                 case.rough_contact.build(context),
-                viscosity=case.film.build(context),
+                viscosity=case.film.build(context).viscosity,
                 speed=case.motion.speed,
                 normal_force=case.motion.normal_force,
             )

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from underfoot.case import Case
-from underfoot.compute.contact import chamfer_words
+from underfoot.compute.read import chamfer_remark
 from underfoot.core import InputError
 from underfoot.shoe import Facet, Heel, Sipes, Tread, heel_surface
 from underfoot.shoe.grids import cut_heel
@@ -143,6 +143,6 @@ def test_unknown_kind_of_file(tmp_path):
 
 def test_a_chamfer_says_what_its_film_counts_as():
     case = Case.load(OUTSOLES / "heel_hexagons_glycerol.toml")
-    assert chamfer_words(case) == ""
-    assert "sharp" in chamfer_words(case.replace("shoe.tread.edge_chamfer", "0.3 mm"))
-    assert chamfer_words(case.replace("shoe.tread.pattern", "none")) == ""
+    assert chamfer_remark(case) == ""
+    assert "sharp" in chamfer_remark(case.replace("shoe.tread.edge_chamfer", "0.3 mm"))
+    assert chamfer_remark(case.replace("shoe.tread.pattern", "none")) == ""

@@ -65,6 +65,7 @@ def test_few_cells_at_an_edge_do_not_decide_which_pressure_the_contact_bears():
     assert bears(np.zeros_like(even), area) == 0.0
 
 
+@pytest.mark.slow
 def test_a_sole_worn_nearly_through_has_no_rigid_points():
     """Remains of channels and of lugs, a tenth of a millimetre high, on the body of the sole."""
     case = Case.load("examples/work_shoe_full_tread_glycerol.toml")

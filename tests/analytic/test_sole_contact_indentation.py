@@ -29,6 +29,8 @@ def flat_map(x, y, clearance):
         cut=None,
         slits=None,
         joint=None,
+        cells=None,
+        columns=1,
         tread_depth=np.zeros_like(clearance),
         spacing=float(x[1] - x[0]),
     )

@@ -35,6 +35,8 @@ def flat_map(x, y, clearance):
         cut=None,
         slits=None,
         joint=None,
+        cells=None,
+        columns=1,
         x=x,
         y=y,
         clearance=clearance,

@@ -24,8 +24,8 @@ from underfoot.trials import (
     slip_of,
     stances,
 )
-from underfoot.trials.simulate import Defects, SlipTruth, walk_c3d, walk_with_slip
 from underfoot.trials.slips import Outcome
+from underfoot_simulator import Defects, SlipTruth, walk_c3d, walk_with_slip
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
 TRUTH = {"plate 2": 0.216, "plate 1": 0.252}

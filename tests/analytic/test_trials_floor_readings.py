@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from underfoot.core import DataError, InputError
 from underfoot.trials import profile_from
 from underfoot.trials.analyse import analyse_folder
-from underfoot.trials.analyse.readings import SCHEMES, class_scheme, cof_of_pendulum
+from underfoot.trials.analyse.floor_classes import SCHEMES, class_scheme, cof_of_pendulum
 from underfoot.trials.protocols import protocol
 from underfoot.trials.readers import read_trial
 
@@ -16,20 +16,27 @@ from underfoot.trials.readers import read_trial
 @pytest.mark.parametrize(
     ("scheme", "values"),
     [
-        ("uksrg_pendulum", {24.4: "high", 24.6: "moderate", 35.4: "moderate", 36: "low"}),
+        # Halves are rounded down: a mean of 35.5 is not 36.
+        ("uksrg_pendulum", {24.5: "high", 24.6: "moderate", 35.5: "moderate", 36: "low"}),
         (
             "din_51130",
-            {5.9: "none", 6.1: "R9", 10: "R9", 10.1: "R10", 19: "R10", 27.5: "R12", 36: "R13"},
+            {5.9: "none", 6: "R9", 10: "R9", 10.1: "R10", 19: "R10", 27.5: "R12", 36: "R13"},
         ),
         ("din_51097", {11.9: "none", 12: "A", 18: "B", 23.9: "B", 24: "C"}),
         ("dguv_tribometer", {0.29: "unsafe", 0.30: "conditionally", 0.45: "safe"}),
-        ("ansi_a326_3", {0.41: "below", 0.42: "at or above"}),
+        (
+            "ansi_a326_3",
+            {0.41: "below", 0.42: "interior wet", 0.5: "interior wet plus", 0.55: "exterior wet"},
+        ),
+        ("ansi_a326_3_dry", {0.41: "below", 0.42: "interior dry", 0.6: "interior dry"}),
     ],
 )
 def test_classes(scheme, values):
+    found = class_scheme(scheme)
     for value, name in values.items():
-        assert class_scheme(scheme).class_of(value).startswith(name)
-    assert "not verified" in class_scheme(scheme).source
+        assert found.class_of(value).startswith(name)
+    assert ("read at" in found.standing()) == (scheme != "dguv_tribometer")
+    assert ("not verified" in found.standing()) == (scheme == "dguv_tribometer")
 
 
 def test_an_unknown_scheme_names_the_nearest():
@@ -47,9 +54,11 @@ def test_higher_readings_are_never_a_lower_class(name, one, two):
 
 def test_pendulum_values_as_cof():
     # The scale of the pendulum: 36 is 0.37, 24 is 0.24, 0 is 0.
-    assert cof_of_pendulum(36) == pytest.approx(0.367, abs=5e-4)
-    assert cof_of_pendulum(24) == pytest.approx(0.235, abs=5e-4)
-    assert cof_of_pendulum(0) == 0
+    assert cof_of_pendulum(36)[0] == pytest.approx(0.367, abs=5e-4)
+    assert cof_of_pendulum(24)[0] == pytest.approx(0.235, abs=5e-4)
+    assert cof_of_pendulum(0) == (0, 0)
+    value, error = cof_of_pendulum(36, 0.01)
+    assert error == pytest.approx(cof_of_pendulum(36.01)[0] - value, rel=1e-3)
 
 
 def study(folder, name):
@@ -58,9 +67,9 @@ def study(folder, name):
 
 
 def test_a_pendulum_survey(tmp_path):
-    rows = ["surface;direction;PTV"]
-    rows += [f"tile;1;{v}" for v in (50, 45, 40, 34, 36, 35, 35, 37)]
-    rows += [f"vinyl;1;{v}" for v in (30, 30, 30, "22,0", 23, 22, 22, 21)]
+    rows = ["surface;slider;condition;direction;PTV"]
+    rows += [f"tile;96;wet;1;{v}" for v in (50, 45, 40, 34, 36, 35, 35, 37)]
+    rows += [f"vinyl;96;wet;1;{v}" for v in (30, 30, 30, "22,0", 23, 22, 22, 21)]
     (tmp_path / "hall.csv").write_text("\n".join(rows))
     analysis, tables = study(tmp_path, "en_16165_pendulum")
     samples = [
@@ -68,12 +77,131 @@ def test_a_pendulum_survey(tmp_path):
     ]
     assert [s["PTV"] for s in samples] == pytest.approx([35.4, 22.0])
     assert [s["class"] for s in samples] == ["moderate slip potential", "high slip potential"]
-    # The interval of the tile (t with 4 degrees of freedom) reaches 36.
-    assert samples[0]["interval reaches"] == "low slip potential"
+    # 2.8 % of the calibration and the scatter of five readings: 2 u reaches 36.
+    scatter = np.std([34, 36, 35, 35, 37], ddof=1) / np.sqrt(5)
+    assert samples[0]["u"] == pytest.approx(np.hypot(scatter, 0.028 * 35.4))
+    assert samples[0]["2 u reaches"] == "low slip potential"
     assert samples[0]["PTV SD"] == pytest.approx(np.std([34, 36, 35, 35, 37], ddof=1))
     assert samples[0]["COF from PTV"] == pytest.approx(3 * 35.4 / (330 - 35.4))
-    assert any("from memory" in note for note in tables["samples"].notes)
+    assert any("Guidelines 2005" in note for note in tables["samples"].notes)
     assert all(f.verdict == "accepted" for f in analysis.files)
+    said = analysis.files[0].measurements[0]["conventions"]
+    assert said["left out"].endswith("before those that count: 50, 45, 40")
+    unverified = [text for text in analysis.methods if "Not verified" in text]
+    assert len(unverified) == 1
+    assert "conditioning, readings" in unverified[0]
+
+
+def pendulum(tmp_path, rows, heads="surface,slider,condition,direction,run,PTV"):
+    folder = tmp_path / "one"
+    folder.mkdir(exist_ok=True)
+    (folder / "x.csv").write_text("\n".join([heads, *rows]))
+    return study(folder, "en_16165_pendulum")
+
+
+def test_all_five_readings_of_a_report_count(tmp_path):
+    analysis, _ = pendulum(tmp_path, [f"tile,96,wet,1,,{v}" for v in (34, 36, 35, 35, 36)])
+    (one,) = analysis.files
+    assert one.measurements[0]["n"] == 5
+    assert one.main["ptv"] == pytest.approx(35.2)
+    assert one.verdict == "accepted"
+
+
+@pytest.mark.parametrize(
+    ("readings", "words"),
+    [
+        ((34, 36, 35), "3 readings, 3 of them used; expected are 5 or 8"),
+        ((34, 36, 35, 35, 36, 35, 36), "7 readings, 5 of them used"),
+        ((36, 36, 36, 37, 63), "readings differ by 27"),
+    ],
+)
+def test_an_odd_number_of_readings_and_an_outlier_are_told(tmp_path, readings, words):
+    analysis, _ = pendulum(tmp_path, [f"tile,96,wet,1,,{v}" for v in readings])
+    assert words in " ".join(analysis.files[0].reasons)
+
+
+def test_directions_are_told_each_with_the_lowest(tmp_path):
+    means = {"along": 38, "across": 34, "diagonal": 40}
+    rows = [f"tile,96,wet,{way},,{v}" for way, mean in means.items() for v in [mean] * 5]
+    _, tables = pendulum(tmp_path, rows)
+    row = dict(zip(tables["lowest"].columns, tables["lowest"].rows[0], strict=True))
+    assert row["lowest"] == "across"
+    assert row["PTV"] == 34
+    assert row["class"] == "moderate slip potential"
+    assert all(way in row["directions"] for way in means)
+    assert not row["directions measured"]
+    _, tables = pendulum(tmp_path, rows[:10])
+    row = dict(zip(tables["lowest"].columns, tables["lowest"].rows[0], strict=True))
+    assert row["directions measured"] == "2 of 3"
+
+
+def test_slider_condition_and_direction_are_asked_for(tmp_path):
+    analysis, _ = pendulum(tmp_path, [f"tile,{v}" for v in (34, 36, 35, 35, 36)], "surface,PTV")
+    assert "not noted: slider, condition, direction" in analysis.files[0].reasons[0]
+
+
+@pytest.mark.parametrize(
+    ("reading", "slider", "verdict"),
+    [(61, "96", "accepted"), (70, "96", "refused"), (61, "55", "refused")],
+)
+def test_check_surfaces_of_the_pendulum(tmp_path, reading, slider, verdict):
+    rows = [f"lapping film,{slider},wet,1,check,{reading}" for _ in range(3)]
+    rows += [f"tile,{slider},wet,1,,{v}" for v in (34, 36, 35, 35, 36)]
+    analysis, _ = pendulum(tmp_path, rows)
+    (one,) = analysis.files
+    assert one.verdict == verdict
+    assert (
+        f"slider {slider}" in one.measurements[0]["conventions"]["check surfaces"] or slider == "55"
+    )
+
+
+def test_a_check_of_the_other_slider_says_nothing(tmp_path):
+    rows = ["float glass,55,wet,1,check,30"] + [f"tile,96,wet,1,,{v}" for v in (34, 36, 35, 35, 36)]
+    analysis, _ = pendulum(tmp_path, rows)
+    assert analysis.files[0].verdict == "accepted"
+    rows[0] = "marble,96,wet,1,check,30"
+    analysis, _ = pendulum(tmp_path, rows)
+    assert "unknown surface" in analysis.files[0].reasons[0]
+
+
+@pytest.mark.parametrize(
+    ("protocol_name", "head", "values", "verdict"),
+    [
+        ("en_16165_pendulum", "PTV", "0.355 0.36 0.35 0.36 0.35", "refused"),
+        ("en_16165_shod_ramp", "angle", "0.35 0.36", "refused"),
+        ("en_16165_shod_ramp", "angle (rad)", "0.35 0.36", "accepted"),
+        ("en_16165_shod_ramp", "angle", "20.1 20.6", "accepted"),
+        ("en_16165_shod_ramp", "angle (gon)", "20.1 20.6", "refused"),
+        ("machine_cof", "COF", "1.8 1.9", "caution"),
+        ("machine_cof", "COF (%)", "42 44", "accepted"),
+    ],
+)
+def test_a_quantity_or_unit_mistaken(tmp_path, protocol_name, head, values, verdict):
+    rows = [f"tile,96,wet,1,{v}" for v in values.split()]
+    (tmp_path / "x.csv").write_text(
+        "\n".join([f"surface,slider,condition,direction,{head}", *rows])
+    )
+    (one,) = study(tmp_path, protocol_name)[0].files
+    assert one.verdict == verdict
+    if head == "angle (rad)":
+        assert one.main["angle"] == pytest.approx(np.degrees(0.355))
+    if head == "COF (%)":
+        assert one.main["cof"] == pytest.approx(0.43)
+
+
+def test_two_spellings_of_one_floor_are_refused(tmp_path):
+    (tmp_path / "x.csv").write_text("surface,COF\nTile A,0.4\ntile a,0.5\n")
+    (one,) = study(tmp_path, "machine_cof")[0].files
+    assert one.verdict == "refused"
+    assert '"Tile A"' in one.reasons[0]
+
+
+def test_dry_readings_have_their_own_class(tmp_path):
+    rows = ["condition,surface,COF", "dry,a,0.6", "dry,a,0.61", "wet,a,0.6", "wet,a,0.61"]
+    (tmp_path / "x.csv").write_text("\n".join(rows))
+    _, tables = study(tmp_path, "ansi_a326_3")
+    classes = {row[1]: row[-2] for row in tables["samples"].rows}
+    assert classes == {"dry": "interior dry", "wet": "exterior wet, oils and greases"}
 
 
 def test_zero_and_conditioning_runs(tmp_path):
@@ -85,7 +213,9 @@ def test_zero_and_conditioning_runs(tmp_path):
     assert one.measurements[0]["conventions"]["left out"] == "1 conditioning, 2 zero runs"
     (tmp_path / "x.csv").write_text("run,surface,PTV\nzero,a,3\n,a,40\n,a,41\n")
     analysis, _ = study(tmp_path, "en_16165_pendulum")
-    assert analysis.files[0].verdict == "refused"  # three conditioning swings leave nothing
+    assert "the zero run reads 3.0" in " ".join(analysis.files[0].reasons)
+    (tmp_path / "x.csv").write_text("run,surface,PTV\nzero,a,0\n")
+    analysis, _ = study(tmp_path, "en_16165_pendulum")
     assert "no reading is left" in analysis.files[0].reasons[0]
 
 

@@ -2,23 +2,22 @@
 
 import json
 import math
-import subprocess
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
+from commands import called
 from underfoot.core import InputError
 from underfoot.trials import read_trial
 from underfoot.trials.analyse import analyse_folder
-from underfoot.trials.axes import LEVEL, Direction, DirectionSource, Ramp, axes_of, ramp_from
-from underfoot.trials.events import Stance, body_weight
+from underfoot.trials.axes import LEVEL, Direction, DirectionSource, Ramp, ramp_from
+from underfoot.trials.events import Stance
 from underfoot.trials.gait import RcofDefinition, required_friction, required_frictions
 from underfoot.trials.protocols import protocol
-from underfoot.trials.simulate import Defects, SlipTruth, walk_c3d, walk_with_slip
 from underfoot.trials.trial import Plate, Trial
+from underfoot.trials.walkway import walkway_of
+from underfoot_simulator import Defects, SlipTruth, walk_c3d, walk_with_slip
 
 WEIGHT = 700.0
 FORWARD, UP = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
@@ -52,20 +51,20 @@ def standing(force):
 def test_a_body_at_rest_on_a_ramp_needs_the_tangent_of_its_angle(degrees):
     angle = math.radians(degrees)
     trial, stance = standing([0.0, 0.0, WEIGHT])
-    axes = axes_of(trial, vertical="z", walking="x", ramp=Ramp(angle, "horizontal"))
-    found = required_friction(trial, stance, ANY, axes=axes, checked=False)
+    way = walkway_of(trial, vertical="z", walking="x", ramp=Ramp(angle, "horizontal"))
+    found = required_friction(way, stance, ANY, checked=False)
     assert found.measurement.value == pytest.approx(math.tan(abs(angle)), abs=1e-12)
     assert found.normal == pytest.approx(WEIGHT * math.cos(angle), rel=1e-9)
-    assert body_weight(trial, axes).newtons == pytest.approx(WEIGHT)
+    assert way.weight.newtons == pytest.approx(WEIGHT)
     # The same body on a plate that is mounted in the ramp.
     force = [WEIGHT * math.sin(angle), 0.0, WEIGHT * math.cos(angle)]
     trial, stance = standing(force)
-    axes = axes_of(trial, vertical="z", walking="x", ramp=Ramp(angle, "surface"))
-    found = required_friction(trial, stance, ANY, axes=axes, checked=False)
+    way = walkway_of(trial, vertical="z", walking="x", ramp=Ramp(angle, "surface"))
+    found = required_friction(way, stance, ANY, checked=False)
     assert found.measurement.value == pytest.approx(math.tan(abs(angle)), abs=1e-12)
-    assert body_weight(trial, axes).newtons == pytest.approx(WEIGHT)
+    assert way.weight.newtons == pytest.approx(WEIGHT)
     if degrees > 3:  # without the angle the push along the ramp is no quiet standing
-        assert body_weight(trial, axes_of(trial, vertical="z", walking="x")) is None
+        assert walkway_of(trial, vertical="z", walking="x").weight is None
 
 
 @pytest.mark.parametrize("degrees", [-8.0, 5.0])
@@ -79,7 +78,7 @@ def test_both_frames_give_the_number_of_the_walking_surface(walk, degrees):
     level = replace(walk, plates=plates)
     stance = first.stance
     results = {
-        frame: required_friction(trial, stance, axes=axes_of(trial, vertical="z", ramp=ramp))
+        frame: required_friction(walkway_of(trial, vertical="z", ramp=ramp), stance)
         for frame, trial, ramp in (
             ("surface", walk, Ramp(angle, "surface")),
             ("horizontal", level, Ramp(angle, "horizontal")),
@@ -99,8 +98,8 @@ def test_both_frames_give_the_number_of_the_walking_surface(walk, degrees):
 
 def test_level_is_what_it_was(walk):
     plain = required_frictions(walk)[0].measurement
-    zero = axes_of(walk, ramp=ramp_from("0 deg", "horizontal"))
-    assert required_frictions(walk, axes=zero)[0].measurement.value == plain.value
+    zero = walkway_of(walk, ramp=ramp_from("0 deg", "horizontal"))
+    assert required_frictions(zero)[0].measurement.value == plain.value
     assert plain.conventions["surface"] == "level"
 
 
@@ -151,28 +150,34 @@ def test_the_words_name_the_direction():
 
 
 def test_commands_take_the_ramp(folder):
-    def underfoot(*words):
-        command = [str(Path(sys.executable).with_name("underfoot")), "trials", *map(str, words)]
-        return subprocess.run(command, capture_output=True, text=True, timeout=120)
-
     file = folder / "walk.c3d"
     options = ("--ramp", "5 deg", "--plate-frame")
     described = {
-        frame: json.loads(underfoot("describe", file, *options, frame, "--json").stdout)[0]
+        frame: json.loads(called("trials", "describe", file, *options, frame, "--json").stdout)[0]
         for frame in ("surface", "horizontal")
     }
-    plain = json.loads(underfoot("describe", file, "--json").stdout)[0]
+    plain = json.loads(called("trials", "describe", file, "--json").stdout)[0]
     value = {k: d["stances"][0]["rcof"]["value"] for k, d in described.items()}
     assert value["surface"] == plain["stances"][0]["rcof"]["value"]
     assert value["horizontal"] != pytest.approx(value["surface"], abs=0.03)
     assert "walking up" in described["surface"]["axes"]["surface"]
-    refused = underfoot("describe", file, "--ramp", "5 deg")
+    refused = called("trials", "describe", file, "--ramp", "5 deg")
     assert refused.returncode == 2
     assert "plate_frame" in refused.stderr
     assert "Traceback" not in refused.stderr
     out = folder.parent / "ramp_report"
-    done = underfoot(
-        "analyse", folder, "--protocol", "level_walking", *options, "surface", "--out", out
+    done = called(
+        "trials",
+        "analyse",
+        folder,
+        "--processes",
+        1,
+        "--protocol",
+        "level_walking",
+        *options,
+        "surface",
+        "--out",
+        out,
     )
     assert done.returncode == 0, done.stderr
     assert "ramp of 5 deg, walking up" in (out / "report.html").read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ from underfoot.trials import Channel, Marker, read_profile, read_trial
 from underfoot.trials.analyse import analyse_folder
 from underfoot.trials.pressure_map import pressure_map, pressure_scan
 from underfoot.trials.protocols import protocol
-from underfoot.trials.simulate import (
+from underfoot_simulator import (
     Defects,
     ScanTruth,
     SlipTruth,
@@ -229,7 +229,7 @@ def test_simulated_folders_are_labelled_and_repeatable(tmp_path):
 
 def test_boundary_folder(tmp_path):
     """Forces built from known adhesion and hysteresis: Eq. 22 to 26 must give them back."""
-    from underfoot.trials.simulate.folder import disk_run
+    from underfoot_simulator.folder import disk_run
 
     rng = np.random.default_rng(9)
     pairs = {

@@ -317,10 +317,10 @@ def test_a_fault_of_the_program_is_told_without_a_traceback(underfoot, monkeypat
 
 
 def test_a_case_that_does_not_converge_ends_with_4_and_no_plain_number(underfoot, monkeypatch):
-    from underfoot.compute import contact
+    from underfoot.compute import solve
 
-    stunted = functools.partial(contact.SolverSettings, most_time_steps=3)
-    monkeypatch.setattr(contact, "SolverSettings", stunted)
+    stunted = functools.partial(solve.SolverSettings, most_time_steps=3)
+    monkeypatch.setattr(solve, "SolverSettings", stunted)
     found = underfoot("run", EXAMPLE, "--quick", "--set", "numerics.quick_grid_spacing=2 mm")
     assert found.exit_code == 4
     assert "not converged" in (found.stdout + found.stderr)

@@ -5,15 +5,13 @@ from __future__ import annotations
 import csv
 import json
 import math
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.stats import norm
 
+from commands import called, process
 from underfoot.case import Case
 from underfoot.core import InputError
 from underfoot.questions.method import Basis, method_name, method_prediction, probability_at_least
@@ -38,11 +36,6 @@ def case_file(tmp_path) -> Path:
     path = tmp_path / "case.toml"
     path.write_text(TEXT, encoding="utf-8")
     return path
-
-
-def underfoot(*words: object) -> subprocess.CompletedProcess[str]:
-    command = [str(Path(sys.executable).with_name("underfoot")), *map(str, words)]
-    return subprocess.run(command, capture_output=True, text=True, env=os.environ.copy())
 
 
 def test_probability_is_that_of_the_normal_distribution() -> None:
@@ -93,7 +86,7 @@ def test_unknown_methods_and_parts_are_answered_with_the_nearest() -> None:
 @pytest.mark.slow
 def test_command_writes_what_it_shows(case_file, tmp_path) -> None:
     out = tmp_path / "out"
-    done = underfoot("test", case_file, "--method", "report-whole-shoe", "--quick", "--out", out)
+    done = process("test", case_file, "--method", "report-whole-shoe", "--quick", "--out", out)
     assert done.returncode == 0, done.stderr
     stored = json.loads((out / "test.json").read_text(encoding="utf-8"))
     value = stored["conditions"][0]["cof"]["value"]
@@ -101,7 +94,7 @@ def test_command_writes_what_it_shows(case_file, tmp_path) -> None:
     with (out / "conditions.csv").open(encoding="utf-8") as stream:
         (row,) = csv.DictReader(stream)
     assert float(row["cof"]) == value
-    refused = underfoot("test", case_file, "--quick", "--out", out)
+    refused = called("test", case_file, "--quick", "--out", out)
     assert refused.returncode != 0
     assert "--overwrite" in refused.stderr
 
@@ -109,7 +102,7 @@ def test_command_writes_what_it_shows(case_file, tmp_path) -> None:
 @pytest.mark.slow
 def test_sensitivity_command(case_file, tmp_path) -> None:
     out = tmp_path / "out"
-    done = underfoot("sensitivity", case_file, "--out", out, "--json")
+    done = process("sensitivity", case_file, "--out", out, "--json")
     assert done.returncode == 0, done.stderr
     quantities = json.loads(done.stdout)["quantities"]
     load = quantities["fluid_load"]

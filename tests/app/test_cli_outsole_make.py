@@ -1,12 +1,11 @@
-"""``underfoot outsole make`` and ``underfoot wear`` as processes, and the shipped outsoles."""
+"""``underfoot outsole make`` and ``underfoot wear``, and the shipped outsoles."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
+from commands import called, process
 from underfoot.case import Case
 from underfoot.compute.sole import new_sole, read_outsole
 from underfoot.core import InputError
@@ -16,25 +15,16 @@ SPECS = sorted(path for path in OUTSOLES.glob("*.toml") if not path.stem.endswit
 CASES = sorted(OUTSOLES.glob("*_glycerol.toml"))
 
 
-def underfoot(*arguments):
-    return subprocess.run(
-        [str(Path(sys.executable).with_name("underfoot")), *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-
-
 def test_make_writes_a_sole_and_says_how_it_reads_back(tmp_path):
     out = tmp_path / "sole.stl"
     sizes = ("--lug", "14 mm", "--channel", "4 mm", "--depth", "3 mm")
-    done = underfoot("outsole", "make", "--pattern", "grid", *sizes, "--out", out, "--json")
+    done = process("outsole", "make", "--pattern", "grid", *sizes, "--out", out, "--json")
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
     assert found["file_volume_m3"] == pytest.approx(found["volume_m3"], rel=0.01)
     assert found["triangles"] > 100
     assert out.stat().st_size > 1000
-    again = underfoot("outsole", "make", "--pattern", "grid", *sizes, "--out", out)
+    again = called("outsole", "make", "--pattern", "grid", *sizes, "--out", out)
     assert again.returncode == 2
     assert "--overwrite" in again.stderr
 
@@ -49,7 +39,7 @@ def test_make_writes_a_sole_and_says_how_it_reads_back(tmp_path):
     ],
 )
 def test_make_refuses(arguments, words):
-    done = underfoot("outsole", "make", *arguments)
+    done = called("outsole", "make", *arguments)
     assert done.returncode == 2
     assert words in done.stderr
     assert "Traceback" not in done.stderr
@@ -128,7 +118,7 @@ def test_cases_refuse_soles_that_can_not_be(settings, words):
     ],
 )
 def test_wear_refuses(arguments, words):
-    done = underfoot("wear", OUTSOLES / "heel_hexagons_glycerol.toml", *arguments)
+    done = called("wear", OUTSOLES / "heel_hexagons_glycerol.toml", *arguments)
     assert done.returncode == 2
     assert words in done.stderr.replace("\n", " ")
     assert "Traceback" not in done.stderr
@@ -138,7 +128,7 @@ def test_wear_refuses(arguments, words):
 def test_wear_of_a_hexagon_heel(tmp_path):
     case = OUTSOLES / "heel_hexagons_glycerol.toml"
     coarse = ("--set", "numerics.quick_grid_spacing=1.2 mm")
-    done = underfoot(
+    done = process(
         "wear",
         case,
         "--mode",

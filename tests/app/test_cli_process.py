@@ -1,7 +1,6 @@
 """The command line as a person meets it: a real process with its exit code, output and files."""
 
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -9,23 +8,12 @@ from pathlib import Path
 
 import pytest
 
+from commands import COMMAND, called, process
+
 EXAMPLES = Path(__file__).parents[2] / "examples"
 DRY = EXAMPLES / "work_shoe_full_tread_dry.toml"
 WET = EXAMPLES / "work_shoe_untreaded_glycerol.toml"
-COMMAND = [sys.executable, "-c", "from underfoot.cli import main; main()"]
 FAST = ["--set", "numerics.grid_spacing=1.2 mm", "--set", "numerics.quick_grid_spacing=1.2 mm"]
-
-
-def underfoot(*arguments, folder, **settings):
-    return subprocess.run(
-        [*COMMAND, *map(str, arguments)],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        timeout=300,
-        env={**os.environ, **settings},
-        check=False,
-    )
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +21,7 @@ def finished(tmp_path_factory):
     """Return the folder and the process of one quick run."""
     folder = tmp_path_factory.mktemp("run")
     listed = {"PYTHONPROFILEIMPORTTIME": "1"}  # on stderr, what the process imports
-    done = underfoot("run", DRY, "--quick", *FAST, "--out", "result", folder=folder, **listed)
+    done = process("run", DRY, "--quick", *FAST, "--out", "result", folder=folder, **listed)
     return folder, done
 
 
@@ -93,7 +81,7 @@ def test_the_case_of_a_result_runs_again_as_the_same_case(finished):
 def test_an_existing_folder_is_refused_before_anything_is_computed(finished):
     folder, _ = finished
     before = {path: path.stat().st_mtime_ns for path in (folder / "result").iterdir()}
-    done = underfoot("run", DRY, "--quick", "--out", "result", folder=folder)
+    done = called("run", DRY, "--quick", "--out", "result", folder=folder)
     assert done.returncode == 2
     assert "exists and is not empty" in done.stderr
     assert "--overwrite" in done.stderr
@@ -102,7 +90,7 @@ def test_an_existing_folder_is_refused_before_anything_is_computed(finished):
 
 
 def test_json_goes_to_standard_output_alone_and_writes_nothing(tmp_path):
-    done = underfoot("run", DRY, "--quick", *FAST, "--json", folder=tmp_path)
+    done = process("run", DRY, "--quick", *FAST, "--json", folder=tmp_path)
     assert done.returncode == 0, done.stderr
     content = json.loads(done.stdout)
     assert content["cof"]["value"] == pytest.approx(0.8, rel=1e-6)
@@ -114,20 +102,20 @@ def test_json_goes_to_standard_output_alone_and_writes_nothing(tmp_path):
 
 def test_compare_reads_result_folders_and_names_what_differs(finished):
     folder, _ = finished
-    other = underfoot(
+    other = called(
         "run", DRY, "--quick", *FAST, "--out", "other",
         "--set", "interface.constant_cof=0.6", folder=folder,
     )  # fmt: skip
     assert other.returncode == 0, other.stderr
-    done = underfoot("compare", "result", "other", "--json", folder=folder)
+    done = called("compare", "result", "other", "--json", folder=folder)
     assert done.returncode == 0, done.stderr
     content = json.loads(done.stdout)
     assert content["differences"] == [{"path": "friction.cof", "values": ["0.8", "0.6"]}]
     assert "higher COF" in content["headline"][0]
     assert "by 0.200" in content["headline"][0]
-    shown = underfoot("compare", "result", "other", folder=folder)
+    shown = called("compare", "result", "other", folder=folder)
     assert "friction.cof" in shown.stdout
-    three = underfoot(
+    three = called(
         "compare", "result", "other", "other", "--out", "compared", "--json", folder=folder
     )
     assert three.returncode == 0, three.stderr
@@ -137,12 +125,12 @@ def test_compare_reads_result_folders_and_names_what_differs(finished):
     page = (folder / "compared" / "report.html").read_text()
     assert page.count('class="stage"') == 3
     assert (folder / "compared" / "contact_pressure.png").stat().st_size > 10_000
-    missing = underfoot("compare", "result", "nothing.toml", folder=folder)
+    missing = called("compare", "result", "nothing.toml", folder=folder)
     assert missing.returncode == 2
 
 
 def test_a_bad_case_ends_with_its_exit_code_and_no_files(tmp_path):
-    done = underfoot(
+    done = called(
         "run", WET, "--set", "shoe.sole.outsole_thickness=0 mm", "--set", "motion.speed=0.7",
         folder=tmp_path,
     )  # fmt: skip
@@ -164,20 +152,20 @@ def test_a_run_ended_by_a_signal_leaves_nothing_behind(tmp_path, number, code, m
     (tmp_path / "kept").mkdir()
     (tmp_path / "kept" / ".underfoot").write_text("earlier results")
     (tmp_path / "kept" / "old.txt").write_text("mine")
-    process = subprocess.Popen(
+    running = subprocess.Popen(
         [*COMMAND, "run", str(WET), "--out", "kept", "--overwrite", "--set",
          "numerics.grid_spacing=0.3 mm"],
         cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
     try:
-        assert process.stderr is not None
-        assert " s so far" in process.stderr.readline()
-        assert process.poll() is None, "it ended before it could be stopped"
-        process.send_signal(number)
-        out, err = process.communicate(timeout=180)
+        assert running.stderr is not None
+        assert " s so far" in running.stderr.readline()
+        assert running.poll() is None, "it ended before it could be stopped"
+        running.send_signal(number)
+        out, err = running.communicate(timeout=180)
     finally:
-        process.kill()
-    assert process.returncode == code, err
+        running.kill()
+    assert running.returncode == code, err
     lines = [line for line in err.splitlines() if " s so far" not in line]
     assert len(lines) == bool(message)
     assert message in err

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import csv
 import json
-import os
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import norm
 
+from commands import called, process
 from underfoot.case import Case
 from underfoot.compute.run import run
 from underfoot.core import Cancelled, InputError
@@ -198,13 +195,7 @@ def test_percent_has_no_false_digits() -> None:
 def test_command(tmp_path) -> None:
     path = tmp_path / "case.toml"
     path.write_text(TEXT, encoding="utf-8")
-    command = [str(Path(sys.executable).with_name("underfoot")), "risk", str(path)]
-    done = subprocess.run(
-        [*command, "--out", str(tmp_path / "out")],
-        capture_output=True,
-        text=True,
-        env=os.environ.copy(),
-    )
+    done = process("risk", path, "--out", tmp_path / "out")
     assert done.returncode == 0, done.stderr
     assert "Slip probability" in done.stdout
     stored = json.loads((tmp_path / "out" / "risk.json").read_text(encoding="utf-8"))
@@ -212,7 +203,7 @@ def test_command(tmp_path) -> None:
     with (tmp_path / "out" / "changes.csv").open(encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     assert len(rows) == len(stored["changes"]) > 4
-    wrong = subprocess.run([*command, "--target", "150 %"], capture_output=True, text=True)
+    wrong = called("risk", path, "--target", "150 %")
     assert wrong.returncode != 0
     assert "above 0 and below 1" in wrong.stderr
 
@@ -220,8 +211,7 @@ def test_command(tmp_path) -> None:
 def test_a_full_run_ends_with_what_would_help(tmp_path) -> None:
     path = tmp_path / "case.toml"
     path.write_text(TEXT + 'numerics.grid_spacing = "2.5 mm"\n', encoding="utf-8")
-    command = [str(Path(sys.executable).with_name("underfoot")), "run", str(path), "--out"]
-    done = subprocess.run([*command, str(tmp_path / "full")], capture_output=True, text=True)
+    done = called("run", path, "--out", tmp_path / "full")
     assert done.returncode == 0, done.stderr
     stored = json.loads((tmp_path / "full" / "risk.json").read_text(encoding="utf-8"))
     best = min(
@@ -232,6 +222,5 @@ def test_a_full_run_ends_with_what_would_help(tmp_path) -> None:
     for text in (done.stdout.replace("\n", " "), page):
         assert best["action"] in " ".join(text.split())
         assert "The film carries" in text
-    command = [*command, str(tmp_path / "plain"), "--no-advice"]
-    assert subprocess.run(command, capture_output=True).returncode == 0
+    assert called("run", path, "--out", tmp_path / "plain", "--no-advice").returncode == 0
     assert not (tmp_path / "plain" / "risk.json").exists()

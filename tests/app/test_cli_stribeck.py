@@ -135,6 +135,7 @@ def test_options_of_another_study_are_refused():
     assert found.exit_code == 2
 
 
+@pytest.mark.slow
 def test_study_g2_draws_its_figures(tmp_path):
     out = tmp_path / "g2"
     found = RUNNER.invoke(app, ["studies", "run", "g2", "--quick", "--out", str(out)])

@@ -7,8 +7,9 @@ import sys
 import pytest
 
 from underfoot.core import MissingExtraError, installation, sparse
+from underfoot.core.identity import package_version
 from underfoot.core.optional import optional_module
-from underfoot.core.provenance import Provenance, package_version
+from underfoot.core.provenance import Provenance
 
 
 def test_doctor_as_a_process(tmp_path):
@@ -46,7 +47,7 @@ def test_version_that_is_not_recorded_is_unknown_and_no_error(monkeypatch):
     monkeypatch.setattr(installation.metadata, "version", none)
     monkeypatch.setattr(installation.metadata, "requires", none)
     assert dict(installation.installation())["numpy"] == "unknown"
-    assert Provenance.now("hash", closures={}).versions["scipy"] == "unknown"
+    assert Provenance.now("hash", grid=1e-3, closures={}).versions["scipy"] == "unknown"
 
 
 def test_optional_module_loads_or_names_the_extra():

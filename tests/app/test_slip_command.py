@@ -1,29 +1,25 @@
-"""``underfoot slip`` as a process."""
+"""``underfoot slip`` as a person uses it."""
 
 import csv
 import json
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+
+from commands import called, process
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 DRY = EXAMPLES / "work_shoe_full_tread_dry.toml"
 WET = EXAMPLES / "human_slip_untreaded.toml"
 
 
-def slip(*arguments, cache, check=True):
-    command = [
-        sys.executable,
-        "-c",
-        "from underfoot.cli import main; main()",
-        "slip",
-        *map(str, arguments),
-    ]
-    environment = {**os.environ, "UNDERFOOT_CACHE": str(cache), "OMP_NUM_THREADS": "1"}
-    found = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
+@pytest.fixture(autouse=True)
+def _own_cache(tmp_path, monkeypatch):
+    monkeypatch.setenv("UNDERFOOT_CACHE", str(tmp_path))
+
+
+def slip(*arguments, check=True, ask=called):
+    found = ask("slip", *arguments)
     if check:
         assert found.returncode == 0, found.stderr
     return found
@@ -31,7 +27,7 @@ def slip(*arguments, cache, check=True):
 
 def test_a_dry_floor_needs_no_film(tmp_path):
     out = tmp_path / "out"
-    found = slip(DRY, "--subjects", 12, "--out", out, cache=tmp_path)
+    found = slip(DRY, "--subjects", 12, "--out", out, ask=process)
     assert "0 of 12 walkers slip" in found.stdout
     assert "The floor is dry" in found.stdout
     rows = list(csv.DictReader((out / "subjects.csv").read_text().splitlines()))
@@ -45,7 +41,6 @@ def test_a_dry_floor_needs_no_film(tmp_path):
 def test_a_slippery_dry_floor_slips(tmp_path):
     found = slip(
         DRY, "--json", "--subjects", 20, "--set", "interface.constant_cof=0.05",
-        cache=tmp_path,
     )  # fmt: skip
     data = json.loads(found.stdout)
     assert data["numbers"]["slipped"] > 0.9
@@ -54,7 +49,7 @@ def test_a_slippery_dry_floor_slips(tmp_path):
 
 
 def test_one_person_has_no_band(tmp_path):
-    data = json.loads(slip(DRY, "--json", "--subjects", 1, cache=tmp_path).stdout)
+    data = json.loads(slip(DRY, "--json", "--subjects", 1).stdout)
     assert "no interval" in data["headline"][1]
     assert data["numbers"]["peak_speed_sd"] is None
     assert data["numbers"]["slipped_low"] is None
@@ -64,7 +59,7 @@ def test_rcof_from_measurements_replaces_the_case_s(tmp_path):
     table = tmp_path / "measurements.csv"
     table.write_text("file,item,quantity,value,unit\na,1,rcof,0.25,1\nb,1,rcof,0.35,1\nb,2,x,9,1\n")
     arguments = ("--json", "--subjects", 3, "--rcof-from", table)
-    data = json.loads(slip(DRY, *arguments, cache=tmp_path).stdout)
+    data = json.loads(slip(DRY, *arguments).stdout)
     assert any("RCOF 0.3 ± 0.071" in line for line in data["remarks"]["Assumptions"])
 
 
@@ -80,7 +75,7 @@ def test_rcof_from_measurements_replaces_the_case_s(tmp_path):
     ],
 )
 def test_bad_input_is_said(tmp_path, arguments, says):
-    found = slip(DRY, *arguments, cache=tmp_path, check=False)
+    found = slip(DRY, *arguments, check=False)
     assert found.returncode not in (0, 70)
     assert says in found.stderr
     assert "Traceback" not in found.stderr
@@ -93,7 +88,7 @@ def test_a_history_that_ends_before_the_slip_is_flagged(tmp_path):
     data = json.loads(
         slip(
             DRY, "--json", "--subjects", 4, "--history", table,
-            "--set", "interface.constant_cof=0.02", cache=tmp_path,
+            "--set", "interface.constant_cof=0.02",
         ).stdout
     )  # fmt: skip
     assert any("lower bounds" in line for line in data["cautions"])
@@ -105,11 +100,11 @@ def test_an_untreaded_sole_in_glycerol_slips_and_the_run_is_kept(tmp_path):
         "--json", "--subjects", 10, "--set", "slip.fit_runs=4", "--set", "slip.test_runs=1",
         "--set", "slip.time_step=20 ms", "--set", "numerics.quick_grid_spacing=2 mm",
     )  # fmt: skip
-    first = json.loads(slip(WET, *arguments, cache=tmp_path).stdout)
+    first = json.loads(slip(WET, *arguments).stdout)
     assert first["numbers"]["slipped"] == 1.0
     assert first["numbers"]["peak_speed"] > 1.0
     assert first["numbers"]["peak_pressure"] > 20e3
     kept = sorted(p.name for p in tmp_path.glob("slip-*/*.npz"))
-    again = json.loads(slip(WET, *arguments, cache=tmp_path).stdout)
+    again = json.loads(slip(WET, *arguments).stdout)
     assert sorted(p.name for p in tmp_path.glob("slip-*/*.npz")) == kept
     assert again["numbers"] == first["numbers"]

@@ -1,18 +1,15 @@
 """All studies in one run: failures, the page, the table in the documentation."""
 
 import json
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
+from commands import called, process
 from underfoot.core.errors import Cancelled
 from underfoot.report.studies_page import studies_page, write_study
 from underfoot.studies import (
-    STUDIES,
     Computed,
     Figure,
     Layer,
@@ -28,6 +25,7 @@ from underfoot.studies import (
     read_results,
     run_all,
     runner,
+    studies,
     study,
     summary_markdown,
     write_summary,
@@ -65,7 +63,7 @@ def one_fails(monkeypatch):
 
 def test_a_failing_study_is_said_and_does_not_stop_the_rest(one_fails):
     results = list(run_all(options=Options(quick=True)))
-    assert [r.study.name for r in results] == list(STUDIES)
+    assert [r.study.name for r in results] == list(studies())
     assert [r.study.name for r in results if r.error] == ["g2"]
     text = summary_markdown(results)
     assert "Failed: ValueError: broken on purpose" in text
@@ -100,10 +98,10 @@ def test_the_page_and_folders_hold_everything_and_need_no_network(one_fails, tmp
     assert not re.search(r"(src|href)=[\"']https?:", page)
     assert "broken on purpose" in page
     assert "A table of &lt;words&gt;" in page
-    assert page.count("data:image/png") == len(STUDIES) - 1
+    assert page.count("data:image/png") == len(studies()) - 1
     write_summary(results, tmp_path)
     table = (tmp_path / "summary.csv").read_text(encoding="utf-8-sig").splitlines()
-    assert len(table) == 1 + sum(len(study(n).statements) for n in STUDIES if n != "g2")
+    assert len(table) == 1 + sum(len(study(n).statements) for n in studies() if n != "g2")
     again = read_results(tmp_path)  # judged again from the files alone
     assert headline(again) == headline([r for r in results if not r.error])
     points = (tmp_path / "g1/made_up.csv").read_text(encoding="utf-8-sig").splitlines()
@@ -120,7 +118,7 @@ def test_the_headline_is_the_count_of_independent_statements():
 
 def test_every_wanted_figure_is_in_the_list():
     wanted = {3, *range(5, 12), 14, 15, *range(16, 21), *range(22, 26), 29, 30, *range(32, 38)}
-    listed = [one for name in STUDIES for one in study(name).figures]
+    listed = [one for name in studies() for one in study(name).figures]
     assert wanted <= {number for number, *_ in listed}
     assert all(file or remark for _, _, file, remark in listed)
     rows = figure_rows([result("g1")], {"g1": ["fig03_history"]})
@@ -150,35 +148,28 @@ def test_the_documented_table_agrees_with_a_fresh_computation():
         assert rows[f"{s.text} ({s.place})"] == (s.printed, one.ours, str(one.verdict))
 
 
-def studies(*arguments):
-    return subprocess.run(
-        [sys.executable, "-c", "from underfoot.cli import main; main()", "studies", *arguments],
-        capture_output=True, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"}, check=False,
-    )  # fmt: skip
-
-
 def test_the_list_names_all_and_wrong_names_are_refused():
-    found = studies("list")
+    found = called("studies", "list")
     assert found.returncode == 0
-    assert all(name in found.stdout for name in STUDIES)
-    wrong = studies("run", "g9")
+    assert all(name in found.stdout for name in studies())
+    wrong = called("studies", "run", "g9")
     assert wrong.returncode == 2
     assert "g" in wrong.stderr
     assert "Traceback" not in wrong.stderr
-    explicit = studies("run", "all", "--explicit")
+    explicit = called("studies", "run", "all", "--explicit")
     assert explicit.returncode == 2
     assert "--explicit" in explicit.stderr
 
 
 def test_a_finished_folder_is_judged_again_as_a_process(tmp_path):
     out = tmp_path / "g3"
-    assert studies("run", "g3", "--out", str(out)).returncode == 0
-    found = studies("summary", str(out), "--json")
+    assert process("studies", "run", "g3", "--out", out).returncode == 0
+    found = called("studies", "summary", str(out), "--json")
     assert found.returncode == 0, found.stderr
     verdicts = {row["statement"]: row["verdict"] for row in json.loads(found.stdout)}
     assert verdicts["g3.order_dry"] == "disagrees"
     empty = tmp_path / "empty"
     empty.mkdir()
-    nothing = studies("summary", str(empty))
+    nothing = called("studies", "summary", str(empty))
     assert nothing.returncode == 2
     assert "studies run --out" in nothing.stderr

@@ -11,11 +11,11 @@ from pathlib import Path
 import psutil
 import pytest
 
+from commands import COMMAND, called, process
 from underfoot.case import load
 from underfoot.explore import Study
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-COMMAND = [sys.executable, "-c", "from underfoot.cli import main; main()"]
 STUDY = f"""\
 base = "{(EXAMPLES / "work_shoe_untreaded_glycerol.toml").as_posix()}"
 [set]
@@ -30,13 +30,6 @@ minimise = ["stiffness"]
 [method]
 fields = true
 """
-
-
-def underfoot(*arguments, folder, check=True):
-    return subprocess.run(
-        [*COMMAND, *map(str, arguments)],
-        cwd=folder, capture_output=True, text=True, timeout=300, check=check,
-    )  # fmt: skip
 
 
 def numbers(folder):
@@ -64,7 +57,8 @@ def finished(tmp_path_factory):
     """Return the folder of a study that ran without a break, in one process."""
     folder = tmp_path_factory.mktemp("study")
     (folder / "heel.toml").write_text(STUDY.replace("STEPS", "3"))
-    done = underfoot("study", "run", "heel.toml", "--workers", "1", folder=folder)
+    done = process("study", "run", "heel.toml", "--workers", "1", folder=folder)
+    assert done.returncode == 0, done.stderr
     return folder, done
 
 
@@ -82,14 +76,14 @@ def test_a_study_leaves_tables_and_a_page_and_says_what_came_of_it(finished):
 
 def test_check_status_best_and_export(finished):
     folder, _ = finished
-    plain = json.loads(underfoot("study", "check", "heel.toml", "--json", folder=folder).stdout)
+    plain = json.loads(called("study", "check", "heel.toml", "--json", folder=folder).stdout)
     assert (plain["cases"], plain["infeasible"]) == (6, {})
-    plain = json.loads(underfoot("study", "status", "out/heel", "--json", folder=folder).stdout)
+    plain = json.loads(called("study", "status", "out/heel", "--json", folder=folder).stdout)
     assert plain["endings"] == {"computed": 6}
     assert 0.3 < plain["busy"] <= 1.0
-    best = json.loads(underfoot("study", "best", "out/heel", "--json", folder=folder).stdout)
+    best = json.loads(called("study", "best", "out/heel", "--json", folder=folder).stdout)
     assert all(one["front"] for one in best)
-    underfoot("study", "export", "out/heel", "given", "--count", "1", "--no-step", folder=folder)
+    called("study", "export", "out/heel", "given", "--count", "1", "--no-step", folder=folder)
     (case,) = (folder / "given").glob("design_*.toml")
     assert "profile" in case.read_text()
     assert (folder / "given" / "results.csv").stat().st_size > 500
@@ -121,7 +115,7 @@ def test_killed_at_any_time_it_goes_on_and_gives_the_same(finished, tmp_path):
     opened = len(study._open())
     assert time.process_time() - began < 5.0
     assert opened == 6 - len(before)
-    underfoot("study", "run", "heel.toml", folder=tmp_path)
+    process("study", "run", "heel.toml", folder=tmp_path)
     assert numbers(store) == numbers(folder / "out" / "heel")
 
 
@@ -150,7 +144,7 @@ def test_the_best_designs_leave_as_solids(finished, tmp_path):
     pytest.importorskip("netgen")
     folder, _ = finished
     study = Study.load(folder / "out" / "heel")
-    underfoot("study", "export", study.store.folder, "given", "--count", "2", folder=tmp_path)
+    called("study", "export", study.store.folder, "given", "--count", "2", folder=tmp_path)
     for one in study.result().best(2):
         case = load(tmp_path / "given" / f"design_{one.number}.toml")
         assert case.shoe.heel.profile.angle == one.changes["shoe.heel.profile.angle"]
@@ -208,7 +202,7 @@ def test_a_case_that_kills_its_workers_is_on_record_and_the_others_go_on(tmp_pat
 )
 def test_hostile_study_files_get_sentences(tmp_path, text, words):
     (tmp_path / "bad.toml").write_text(text)
-    done = underfoot("study", "check", "bad.toml", folder=tmp_path, check=False)
+    done = called("study", "check", "bad.toml", folder=tmp_path)
     assert done.returncode == 2
     assert "Traceback" not in done.stderr
     for word in words:
@@ -220,7 +214,7 @@ def test_a_scheduler_that_is_not_there_is_named(finished, tmp_path):
     folder, _ = finished
     address = "dask:tcp://127.0.0.1:9"
     run = ("study", "run", folder / "heel.toml", "--out", "x", "--on", address)
-    done = underfoot(*run, folder=tmp_path, check=False)
+    done = called(*run, folder=tmp_path)
     assert done.returncode == 2
     assert "no Dask scheduler answers at tcp://127.0.0.1:9" in done.stderr
 
@@ -257,7 +251,7 @@ def test_a_dask_cluster_that_loses_a_worker_and_then_its_scheduler(finished, tmp
         for process in (scheduler, *workers):
             process.kill()
             process.wait()
-    underfoot("study", "run", folder / "heel.toml", "--out", "x", folder=tmp_path)
+    process("study", "run", folder / "heel.toml", "--out", "x", folder=tmp_path)
     assert numbers(store) == numbers(folder / "out" / "heel")
 
 

@@ -22,7 +22,7 @@ from underfoot.trials.analyse import folder as folder_module
 from underfoot.trials.analyse.conditions import conditions_of
 from underfoot.trials.analyse.methods import methods_paragraphs
 from underfoot.trials.protocols import QUANTITIES, protocol, protocol_names
-from underfoot.trials.simulate import simulated_folder
+from underfoot_simulator import simulated_folder
 
 
 @pytest.fixture(scope="module")

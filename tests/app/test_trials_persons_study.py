@@ -2,16 +2,14 @@
 
 import csv
 import json
-import os
-import subprocess
-import sys
 from itertools import combinations
 
 import pytest
 
+from commands import process
 from underfoot.trials.analyse import analyse_folder
 from underfoot.trials.protocols import protocol
-from underfoot.trials.simulate.folder import NAMES, SHOES, simulated_study
+from underfoot_simulator.folder import NAMES, SHOES, simulated_study
 
 
 def findings(analysis):
@@ -59,13 +57,10 @@ def test_without_persons_files_are_the_units_and_it_is_said(tmp_path):
 def test_the_interval_of_a_mixed_model_holds_the_truth(tmp_path):
     simulated_study(tmp_path, persons=12, trials=4, seed=3)
     (tmp_path / "a").mkdir()
-    command = [
-        sys.executable, "-c", "from underfoot.cli import main; main()",
-        "trials", "analyse", str(tmp_path),
-        "--protocol", "level_walking", "--names", NAMES, "--out", str(tmp_path / "a"),
-        "--processes", "2",
-    ]  # fmt: skip
-    done = subprocess.run(command, capture_output=True, text=True, env={**os.environ})
+    done = process(
+        "trials", "analyse", tmp_path, "--protocol", "level_walking", "--names", NAMES,
+        "--out", tmp_path / "a", "--processes", 2,
+    )  # fmt: skip
     assert done.returncode == 0, done.stderr
     with (tmp_path / "a" / "tables" / "tukey_rcof_shoe.csv").open(newline="") as stream:
         lines = [line for line in stream if not line.startswith("#")]

@@ -16,7 +16,7 @@ from underfoot.core import InputError
 from underfoot.trials.analyse.edit_table import edit_text, edits_of, with_edit_row
 from underfoot.trials.analyse.record_signals import Signal
 from underfoot.trials.events import EditError
-from underfoot.trials.simulate import simulated_folder
+from underfoot_simulator import simulated_folder
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
 WALK, OTHER = "HC030A05.c3d", "HC036A23.c3d"

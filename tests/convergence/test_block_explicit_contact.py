@@ -5,7 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from underfoot.block import (
+from underfoot.core import Status, silent
+from underfoot.material import RelaxationSpectrum
+from underfoot.rough_contact import steady_sliding
+from underfoot_block import (
     ExplicitSettings,
     MicroBlock,
     MicroLoading,
@@ -13,11 +16,8 @@ from underfoot.block import (
     MicroSurface,
     explicit_sliding,
 )
-from underfoot.block.assembly import Assembly, assembled
-from underfoot.block.march import BlockMarch
-from underfoot.core import Status, silent
-from underfoot.material import RelaxationSpectrum
-from underfoot.rough_contact import steady_sliding
+from underfoot_block.assembly import Assembly, assembled
+from underfoot_block.march import BlockMarch
 
 G, NU, LENGTH = 1.0e6, 0.45, 0.4e-3
 MATERIAL = MicroMaterial.from_poisson(RelaxationSpectrum(G), NU)

@@ -11,6 +11,7 @@ from pages import ROOT, agrees, blocks_of, held, numbers_compared
 
 TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
 PHYSICS = [p for p in sorted((ROOT / "docs/physics").glob("*.md")) if p.stem != "index"]
+LONG_PAGES = {"lug_edges", "block"}
 
 
 @pytest.mark.slow
@@ -19,14 +20,22 @@ def test_a_tutorial_prints_what_it_says(page, tmp_path):
     assert numbers_compared(page, tmp_path) >= 20
 
 
-@pytest.mark.parametrize("page", PHYSICS, ids=lambda page: page.stem)
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(page, id=page.stem, marks=[pytest.mark.slow] * (page.stem in LONG_PAGES))
+        for page in PHYSICS
+    ],
+)
 def test_a_page_of_physics_computes_its_numbers_and_figures(page, tmp_path):
     languages = [block.language for block in blocks_of(page)]
     assert languages.count("{plot}") >= 1
     assert numbers_compared(page, tmp_path) >= 3
 
 
-@pytest.mark.parametrize("name", ["trials_analysis", "design_studies"])
+@pytest.mark.parametrize(
+    "name", [pytest.param("trials_analysis", marks=pytest.mark.slow), "design_studies"]
+)
 def test_a_guide_prints_what_it_says(name, tmp_path):
     assert numbers_compared(ROOT / "docs" / "guide" / f"{name}.md", tmp_path) >= 1
 

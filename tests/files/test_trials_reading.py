@@ -78,7 +78,7 @@ def test_relaxation_table_is_read_with_its_uneven_times():
     [
         (VISCOELASTIC / "freq_user_raw.csv", "no time column"),
         (VISCOELASTIC / "time_user_raw.csv", "time does not increase"),
-        (DATA.parent / "roughness" / "dektak-1.csv", "no time column"),
+        (DATA.parent / "roughness" / "dektak-1.csv", "25 lines stand above the table"),
         (DATA / "README.md", "no table of numbers"),
     ],
 )

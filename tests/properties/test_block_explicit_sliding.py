@@ -6,7 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from underfoot.block import (
+from underfoot.core import Cancelled, ConvergenceError, DataError, InputError, Status
+from underfoot.material import Elastomer, RelaxationSpectrum
+from underfoot_block import (
     ExplicitSettings,
     MicroBlock,
     MicroLoading,
@@ -15,10 +17,8 @@ from underfoot.block import (
     MicroSurface,
     explicit_sliding,
 )
-from underfoot.block.assembly import assembled, mass_scaling_error
-from underfoot.block.result import EDGE_EXCESS, edge_excess_area
-from underfoot.core import Cancelled, ConvergenceError, DataError, InputError, Status
-from underfoot.material import Elastomer, RelaxationSpectrum
+from underfoot_block.assembly import assembled, mass_scaling_error
+from underfoot_block.result import EDGE_EXCESS, edge_excess_area
 
 # The grant report's block, rubber and roughness (G.1.1, Tables 1 and 2) with nu = 0.45: K low for
 # speed, on a coarser mesh.

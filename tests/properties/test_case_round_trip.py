@@ -86,7 +86,7 @@ def cases(draw):
     return Case.from_mapping(mapping).replace({**draw(CHANGES), **draw(pool_and_roughness())})
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=25)
 @given(cases())
 def test_case_to_toml_to_case_keeps_the_hash(case):
     assert Case.from_text(case.to_toml()).hash == case.hash

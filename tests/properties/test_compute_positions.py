@@ -206,6 +206,18 @@ def test_a_sole_without_tread_does_not_change(worn_shoe_case, worn_shoe_result):
     assert "position_cof" not in alone.fields
 
 
+@pytest.mark.parametrize("quick", [pytest.param(False, marks=pytest.mark.slow), True])
+def test_the_share_done_of_a_run_rises_over_all_its_positions(bars, quick):
+    grids = {"numerics.grid_spacing": "1.6 mm", "numerics.quick_grid_spacing": "2 mm"}
+    told = []
+    run(bars.replace(grids), quick=quick, progress=lambda _, share, __=None: told.append(share))
+    assert told[0] < 0.05
+    assert told[-1] == pytest.approx(1.0)
+    steps = np.diff(told)
+    assert steps.min() > -0.05  # a step in time that is tried again is shorter
+    assert steps.max() < 0.2
+
+
 @pytest.mark.slow
 def test_one_position_is_the_case_s_own(bars):
     coarse = bars.replace(

@@ -10,7 +10,6 @@ from underfoot.material import (
     RelaxationCurve,
     RelaxationSpectrum,
     WlfShift,
-    compression_forces,
     compression_moduli,
     dynamic_master_curve,
     fit_arrhenius,
@@ -193,29 +192,6 @@ def test_equations_13_to_16_as_printed():
         compression_moduli(100.0, 50.0, 80.0, 6e-3, 5e-4)
     with pytest.raises(InputError, match="thickness"):
         compression_moduli(1.0, 3.0, 2.0, 0.0, 5e-4)
-
-
-def test_forces_are_read_off_a_ramp_and_hold():
-    t = np.linspace(0.0, 241.0, 2411)
-    d = np.minimum(t, 1.0) * 1.2e-3
-    spring = single_exponential_spectrum(1e6, 0.5e6, 0.1)
-    f = np.where(t <= 1.0, d * 1e6, 1.2e-3 * spring.relaxation_modulus(np.maximum(t - 1.0, 0.0)))
-    found = compression_forces(t, d, f, 6e-3)
-    assert found.force_2_percent == pytest.approx(120.0)
-    assert found.peak_force == pytest.approx(1200.0)
-    assert found.asymptotic_force == pytest.approx(600.0, rel=1e-6)
-    assert found.hold_time == pytest.approx(240.0)
-    assert abs(found.still_falling) < 1e-6
-    short = compression_forces(t[:60], d[:60], f[:60], 6e-3)
-    assert short.still_falling > 0.05
-    with pytest.raises(DataError, match="after the peak"):
-        compression_forces(t[:12], d[:12], f[:12], 6e-3)
-    with pytest.raises(DataError, match="2 %"):
-        compression_forces(t, d, f, 1.0)
-    with pytest.raises(DataError, match="missing"):
-        compression_forces(t, d, np.where(t > 9, np.nan, f), 6e-3)
-    with pytest.raises(DataError, match="ascend"):
-        compression_forces(t[::-1], d, f, 6e-3)
 
 
 @pytest.mark.parametrize(

@@ -63,7 +63,7 @@ def test_more_wear_takes_more(heel, share, angle, plane):
 
 
 @given(heels(), st.floats(0.05e-3, 5e-3), st.floats(1.0, 1.5))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=10, deadline=None)
 def test_walking_never_gives_material_back(heel, depth, more):
     x = np.linspace(0.0, heel.length, 400)
     new = heel.unworn_height(x, np.zeros(x.size))
@@ -77,7 +77,7 @@ def test_walking_never_gives_material_back(heel, depth, more):
 
 
 @given(heels())
-@settings(max_examples=3, deadline=None)
+@settings(max_examples=2, deadline=None)
 def test_a_sole_walked_through_is_that_of_a_shoe_without_tread(heel):
     wear = WalkingWear(0.012)
     worn, bare = (

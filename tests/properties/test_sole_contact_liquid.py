@@ -116,7 +116,7 @@ def wavy_slider(cells=48, length=0.01):
     everywhere = np.ones(clearance.shape, bool)
     return SimpleNamespace(
         x=x, y=y, clearance=clearance, inside=everywhere, land=everywhere,
-        cut=None, slits=None, joint=None,
+        cut=None, slits=None, joint=None, cells=None, columns=1,
         tread_depth=np.zeros_like(clearance), spacing=length / cells,
     )  # fmt: skip
 

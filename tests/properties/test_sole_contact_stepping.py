@@ -12,7 +12,7 @@ from underfoot.rough_contact.pressure_gap_law import ExponentialLaw
 from underfoot.shoe import Facet, Flat, Heel, heel_map
 from underfoot.sole_contact.compliance import layered_compliance
 from underfoot.sole_contact.solver import SolverSettings, solve_sliding
-from underfoot.sole_contact.stepping import SlidingSole, rolled_clearance
+from underfoot.sole_contact.stepping import SlidingSole, rolled_sole
 
 MODULUS = 5e6
 TEN = math.radians(10)
@@ -127,7 +127,7 @@ def test_rolled_map_is_the_map_of_the_new_angle(profile):
     spacing = 0.5e-3
     shape = heel_map(heel(profile), shoe_angle=TEN, spacing=spacing)
     change = math.radians(-6)
-    rolled = rolled_clearance(shape, change)
+    rolled = rolled_sole(shape, change).clearance
     other = heel_map(heel(profile), shoe_angle=TEN + change, spacing=spacing)
     middle = shape.y.size // 2
     inside = shape.inside[:, middle] & (shape.x > 3e-3) & (shape.x < 0.055)

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from underfoot.block import (
+from underfoot.core import InputError
+from underfoot_block import (
     ExplicitSettings,
     MicroMaterial,
     MicroResult,
@@ -14,7 +15,6 @@ from underfoot.block import (
     report_loading,
     report_material,
 )
-from underfoot.core import InputError
 
 
 def test_table_2_bulk_moduli():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from underfoot.studies import Options, Quantity, judged, study
-from underfoot.studies.g1 import Settings, changes, matrix, outcomes, series_quantities
+from underfoot_block.g1 import Settings, changes, matrix, outcomes, series_quantities
 
 pytestmark = pytest.mark.slow
 QUICK = Settings().quick
@@ -96,7 +96,7 @@ def test_the_folder_holds_figures_and_tables(tmp_path, monkeypatch):
     assert {"study.json", "verdicts.csv", "cases.csv", "errata.csv", "fig03_history.csv"} <= names
     content = json.loads((folder / "study.json").read_text(encoding="utf-8"))
     again = StudyResult.from_dict(content)
-    assert [j.as_dict() for j in again.judgements] == [j.as_dict() for j in result.judgements]
+    assert [j.to_dict() for j in again.judgements] == [j.to_dict() for j in result.judgements]
     kept = run_study(study("g1"), options)  # from the cache, with its figures
     assert kept.seconds == result.seconds
     assert set(kept.computed.figures) == set(result.computed.figures)

@@ -2,13 +2,11 @@
 
 import json
 import math
-import os
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 
+from commands import called, process
 from underfoot.core import SourcedValue, Status
 from underfoot.core.catalogue import Catalogue
 from underfoot.questions.outcomes import Outcome
@@ -17,7 +15,6 @@ from underfoot.studies.g4 import Reading, conditions, inputs_of, threshold, vari
 
 PLAN = conditions()
 X, Y = np.arange(0.0, 0.06, 0.7e-3), np.linspace(-0.03, 0.03, 7)
-COMMAND = [sys.executable, "-c", "from underfoot.cli import main; main()"]
 UNITS = {
     "cof": "1", "fluid_load": "N", "fluid_load_sensor": "N", "peak_fluid_pressure_sensor": "Pa",
 }  # fmt: skip
@@ -194,11 +191,8 @@ def test_figures_of_made_up_readings():
     assert max(row[3] for row in rows if row[1].startswith("map")) == pytest.approx(234.0, rel=0.01)
 
 
-def test_options_of_other_studies_are_refused_as_a_process():
-    done = subprocess.run(
-        [*COMMAND, "studies", "run", "g4", "--explicit"],
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
+def test_options_of_other_studies_are_refused():
+    done = called("studies", "run", "g4", "--explicit")
     assert done.returncode == 2
     assert "--explicit" in done.stderr
 
@@ -207,11 +201,7 @@ def test_options_of_other_studies_are_refused_as_a_process():
 def test_the_quick_study_as_a_process(tmp_path):
     """One coarse grid: values of every condition, and no verdict that a grid enters."""
     out = tmp_path / "g4"
-    done = subprocess.run(
-        [*COMMAND, "studies", "run", "g4", "--quick", "--json", "--out", str(out)],
-        capture_output=True, text=True, check=False,
-        env={**os.environ, "OMP_NUM_THREADS": "1"},
-    )  # fmt: skip
+    done = process("studies", "run", "g4", "--quick", "--json", "--out", out)
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
     verdicts = {one["statement"]: one["verdict"] for one in found["statements"]}

@@ -155,6 +155,7 @@ def test_study_g2_draws_the_reports_figures(found):
         assert np.all(np.array(predicted_line.y) <= np.array(band.high) + 1e-12)
 
 
+@pytest.mark.slow
 def test_intervals_are_reproducible(found):
     again = g2.compute(Options(quick=True, seed=1))
     table, other = (next(t for t in c.tables if t.name == "curves") for c in (found, again))

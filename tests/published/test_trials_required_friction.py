@@ -24,6 +24,7 @@ from underfoot.trials import (
     required_frictions,
     slip_of,
     stances,
+    walkway_of,
 )
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
@@ -125,9 +126,9 @@ def test_forces_named_in_body_weight_need_the_mass():
 def test_walking_direction_can_be_given_and_heels_are_found():
     trial = _trial("kineticstoolkit/c3d_sample.c3d")
     assert heel_candidates(trial)["right"] == ["r heel"]
-    found = required_frictions(trial, walking="+x")
+    found = required_frictions(walkway_of(trial, walking="+x"))
     assert all(f.stance.direction.source == "given" for f in found)
-    backward = required_frictions(trial, walking="-x")
+    backward = required_frictions(walkway_of(trial, walking="-x"))
     assert all("no braking" in f.measurement.reason for f in backward)
     with pytest.raises(InputError, match="vertical axis"):
         axes_of(trial, walking="y")
@@ -165,7 +166,7 @@ def test_contacts_from_heels_alone_agree_with_the_plates():
     for name in ("biomechzoo/HC030A05.c3d", "kineticstoolkit/c3d_sample.c3d", "walk1"):
         trial = _trial(name)
         axes = axes_of(trial)
-        for stance in stances(trial, axes=axes):
+        for stance in stances(trial):
             found = contact_from_heel(trial.marker(stance.heel), axes.up)
             assert min(abs(time - stance.contact) for time in found) < 0.025
 

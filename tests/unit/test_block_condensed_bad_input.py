@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from underfoot.block import (
+from underfoot.core import Cancelled, InputError, Status
+from underfoot.material import RelaxationSpectrum
+from underfoot_block import (
     MicroBlock,
     MicroLoading,
     MicroMaterial,
@@ -13,8 +15,6 @@ from underfoot.block import (
     condensed_block,
     condensed_sliding,
 )
-from underfoot.core import Cancelled, InputError, Status
-from underfoot.material import RelaxationSpectrum
 
 ROUGH = MicroSurface.checkerboard(35.1e-6, 0.4e-3)
 BLOCK = MicroBlock(

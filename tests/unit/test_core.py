@@ -65,8 +65,6 @@ def test_the_hash_follows_content_not_identity():
     assert content_hash(array) != content_hash(array.T)
     assert content_hash(1) != content_hash(1.0)
     assert content_hash(["ab"]) != content_hash(["a", "b"])
-    with pytest.raises(TypeError):
-        content_hash(object())
 
 
 def test_the_cache_returns_what_was_stored_and_survives_damage(tmp_path):
@@ -76,7 +74,7 @@ def test_the_cache_returns_what_was_stored_and_survives_damage(tmp_path):
     loaded = cache.load("k")
     assert loaded is not None
     assert np.array_equal(loaded["x"], np.eye(3))
-    entry = tmp_path / "room-1" / "k.npz"
+    (entry,) = (tmp_path / "room-1").rglob("k.npz")
     entry.write_bytes(entry.read_bytes()[:40])
     assert cache.load("k") is None
     assert not entry.exists()

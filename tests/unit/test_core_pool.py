@@ -9,6 +9,8 @@ from pathlib import Path
 
 import psutil
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from underfoot.core import Cancelled, UnderfootError
 from underfoot.core import progress as progress_module
@@ -128,9 +130,54 @@ def test_time_left_follows_the_rate_of_the_stage():
     left = TimeLeft()
     assert left("solve", 0.0, 10.0) is None
     assert left("solve", 0.25, 15.0) == pytest.approx(15.0)
-    assert left("solve", 1.0, 40.0) == 0.0
+    assert left("solve", 1.0, 30.0) == 0.0
     assert left("write", 0.5, 41.0) is None  # a new stage begins where it is first seen
     assert left("write", 0.75, 43.0) == pytest.approx(2.0)
+
+
+@given(
+    steps=st.lists(st.tuples(st.floats(0.01, 1.0), st.floats(1.0, 1.5)), min_size=30, max_size=60)
+)
+def test_time_left_of_steady_work_is_right_within_the_spread_of_its_rate(steps):
+    total, whole = sum(size for size, _ in steps), sum(size * pace for size, pace in steps)
+    left, done, now = TimeLeft(), 0.0, 0.0
+    assert left("solve", 0.0, 0.0) is None
+    for size, pace in steps[:-1]:
+        done, now = done + size, now + size * pace
+        seconds = left("solve", done / total, now)
+        if done < 0.1 * total:
+            assert seconds is None
+        elif done > 0.11 * total:
+            assert seconds is not None
+            assert (whole - now) / 1.51 < seconds < 1.51 * (whole - now)
+
+
+@given(
+    reports=st.lists(st.tuples(st.floats(0.0, 0.2), st.floats(0.0, 1e4)), min_size=2, max_size=40)
+)
+def test_no_time_left_is_beyond_nine_times_the_time_spent(reports):
+    """A march that hardly gets on was once told to have 102 h left after some minutes."""
+    left, done, now = TimeLeft(), 0.0, 0.0
+    for gain, seconds in [(0.0, 0.0), *reports]:
+        done, now = min(1.0, done + gain), now + seconds
+        estimate = left("solve", done, now)
+        assert estimate is None or 0.0 <= estimate <= 9.001 * now
+
+
+def test_work_that_stalls_or_starts_slowly_has_no_estimate():
+    left = TimeLeft()
+    for now in range(600):
+        assert left("solve", 0.008 + 1e-5 * now, float(now)) is None
+    for now in range(600, 660):  # then a march in its usual pace
+        last = left("solve", 0.014 + 0.01 * (now - 600), float(now))
+    assert last is None  # ten minutes of a tenth's work: its rate says nothing
+    left = TimeLeft()
+    for now in range(50):
+        steady = left("solve", 0.01 * now, float(now))
+    assert steady == pytest.approx(51.0)
+    for now in range(50, 200):
+        stalled = left("solve", 0.49, float(now))
+    assert stalled is None
 
 
 def test_lines_come_outside_a_terminal_after_a_while_and_not_too_often(monkeypatch, capsys):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from underfoot.core import ConvergenceError, InputError, MissingExtraError, fourier, sparse
+from underfoot.core import ConvergenceError, InputError, MissingExtraError, fourier, mkl, sparse
 
 BOTH = pytest.mark.parametrize("name", sparse.back_ends())
 
@@ -105,3 +105,76 @@ def test_without_mkl_the_rest_remains_and_the_extra_is_named(monkeypatch):
         sparse.back_end("pardiso")
     with pytest.raises(MissingExtraError, match=r"underfoot\[fast\]"):
         fourier.fourier_library("mkl")
+
+
+def film_matrix(size=100):
+    """Return an upwinded film equation on a rough gap: factors of conductance of e^6 and more."""
+    random = np.random.default_rng(size)
+    gap = np.exp(random.normal(0.0, 2.0, (size, size)))
+    cell = np.arange(size**2).reshape(size, size)
+    diagonal, rows, columns, values = np.zeros(size**2), [], [], []
+    for one, two, height in (
+        (cell[:-1], cell[1:], gap[:-1] + gap[1:]),
+        (cell[:, :-1], cell[:, 1:], gap[:, :-1] + gap[:, 1:]),
+    ):
+        conductance = height.ravel() ** 3
+        carried = 0.5 * random.random(conductance.size) * conductance
+        rows += [one.ravel(), two.ravel()]
+        columns += [two.ravel(), one.ravel()]
+        values += [carried - conductance, -conductance - carried]
+        np.add.at(diagonal, one.ravel(), conductance + carried)
+        np.add.at(diagonal, two.ravel(), conductance - carried)
+    entries = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
+    matrix = sp.csr_matrix(entries) + sp.diags(diagonal + 1e-3 * diagonal.mean())
+    matrix = sp.csr_matrix(matrix)
+    matrix.sort_indices()
+    return matrix
+
+
+def solutions(count=10):
+    """Return solutions of film equations of one sparsity, by the back end in use."""
+    matrix, random = film_matrix(), np.random.default_rng(0)
+    factors = sparse.factorization(matrix)
+    answers = []
+    for _ in range(count):
+        changed = matrix.copy()
+        changed.data *= 1.0 + 0.1 * random.random(matrix.nnz)
+        factors.factorise(changed)
+        answers.append(factors.solve(random.normal(size=matrix.shape[0])))
+    return np.array(answers)
+
+
+def test_back_ends_agree_on_a_film_of_any_gap(monkeypatch):
+    answers = []
+    for name in sparse.back_ends():
+        monkeypatch.setenv(sparse.VARIABLE, name)
+        answers.append(solutions())
+    for other in answers[1:]:
+        assert np.abs(other - answers[0]).max() < 1e-9 * np.abs(answers[0]).max()
+
+
+def test_a_factorization_that_is_wrong_on_two_threads_is_caught(monkeypatch):
+    """Minimum degree with the two-level factorization: the residual of a first solve tells."""
+    library = mkl.mkl_library()
+    if library is None:
+        pytest.skip("MKL is not installed")
+    made = mkl._System.__init__
+
+    def wrong(self, matrix, kind):
+        made(self, matrix, kind)
+        self.options[1], self.options[23] = 0, 10
+        self._set_threads = lambda _: library.MKL_Set_Num_Threads_Local(2)
+
+    monkeypatch.setattr(mkl._System, "__init__", wrong)
+    monkeypatch.setenv(sparse.VARIABLE, "pardiso")
+    before = library.MKL_Get_Dynamic()
+    library.MKL_Set_Dynamic(0)  # two threads on one processor too
+    try:
+        with pytest.raises(
+            ConvergenceError,
+            match=r"^film: a solution by pardiso is wrong.*UNDERFOOT_SPARSE=superlu",
+        ):
+            solutions(30)
+    finally:
+        library.MKL_Set_Dynamic(before)
+        library.MKL_Set_Num_Threads_Local(0)

@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from underfoot.core.progress import silent
 from underfoot.explore import store as store_module
 from underfoot.explore.record import Ending, Job, Record
 from underfoot.explore.result import StudyResult
+from underfoot.explore.status import StudyStatus
 from underfoot.explore.store import Store
 from underfoot.explore.study import Study
 from underfoot.explore.study_file import read_plan
@@ -190,3 +192,15 @@ def test_a_job_is_the_same_after_its_line():
     job = Job("k", 3, 1, 0, 2, (0.5, 0.25), {"shoe.tread.depth": 0.002, "contaminant": "water"})
     assert Job.from_line(job.line()) == job
     assert json.loads(job.line())["changes"]["contaminant"] == "water"
+
+
+def test_time_left_is_told_once_every_worker_has_ended_a_case():
+    jobs = [Job(str(n), n, 0, 0, 0, (), {}) for n in range(10)]
+    session = {"began": 1000.0, "ended": None, "workers": 2}
+
+    def left(count):
+        records = {str(n): replace(record(str(n)), ended=1000.0 + 5 * n) for n in range(count)}
+        return StudyStatus(read_plan(TEXT, EXAMPLES), jobs, records, [session], 1060.0).seconds_left
+
+    assert [left(0), left(1)] == [None, None]
+    assert left(2) == pytest.approx(8 * 30.0)

@@ -268,7 +268,7 @@ def test_units_and_names_must_fit():
 def test_quantities_survive_their_file():
     draws = np.random.default_rng(1).lognormal(size=1000)
     one = Quantity.of(1.0, N, draws=draws, levels=[(1e-3, 1.1), (5e-4, 1.0)])
-    other = Quantity.from_dict(one.as_dict())
+    other = Quantity.from_dict(one.to_dict())
     assert other == one
     assert other.probability(0.5, 2.0) == one.probability(0.5, 2.0)
 

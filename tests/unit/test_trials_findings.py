@@ -31,7 +31,8 @@ from underfoot.trials.gait_context import gait_context
 from underfoot.trials.plates import channel_forces, ordered_corners, plate_axes
 from underfoot.trials.protocols import protocol
 from underfoot.trials.signals import saturated, unloaded
-from underfoot.trials.simulate import (
+from underfoot.trials.slips import Outcome
+from underfoot_simulator import (
     Defects,
     SlipTruth,
     simulated_folder,
@@ -39,7 +40,6 @@ from underfoot.trials.simulate import (
     walk_c3d,
     walk_with_slip,
 )
-from underfoot.trials.slips import Outcome
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
 UP = np.array([0.0, 0.0, 1.0])
@@ -213,11 +213,7 @@ def _table(tmp_path, head: str) -> Trial:
 
 
 def test_four_causes_of_no_contact_are_told_apart(tmp_path):
-    from underfoot.trials import axes_of
-
-    def reason(trial: Trial) -> str:
-        return no_contact_reason(trial, axes_of(trial))
-
+    reason = no_contact_reason
     assert reason(Trial("t")) == "the file holds no force plate"
     assert "no columns are recognised" in reason(_table(tmp_path, "time,Kraft X1,Kraft Z1"))
     unit = reason(_table(tmp_path, "time (s),Fx (furlong),Fy (furlong),Fz (furlong)"))
@@ -330,15 +326,13 @@ def test_cautions_of_steps_are_counted_and_decide_the_verdict(tmp_path):
 
 
 def test_gait_context_of_a_made_up_walk(tmp_path):
-    from underfoot.trials import axes_of
-    from underfoot.trials.simulate.activities import activity, activity_c3d
+    from underfoot_simulator.activities import activity, activity_c3d
 
     path = tmp_path / "walk.c3d"
     path.write_bytes(activity_c3d(activity("walk", np.random.default_rng(1))))
     trial = read_trial(path)
-    axes = axes_of(trial)
-    found = stances(trial, axes=axes)
-    first, second = (gait_context(trial, stance, found, axes) for stance in found)
+    found = stances(trial)
+    first, second = (gait_context(trial, stance, found) for stance in found)
     assert first.step_length is None
     assert second.step_length == pytest.approx(0.62, abs=0.01)
     assert second.step_time == pytest.approx(0.55, abs=0.02)
@@ -349,11 +343,8 @@ def test_gait_context_of_a_made_up_walk(tmp_path):
 
 def test_gait_context_of_a_real_walk(walk):
     """A child of 45.8 kg at 1.05 m/s lands on its heel, 15 to 30 deg toe up."""
-    from underfoot.trials import axes_of
-
-    axes = axes_of(walk)
-    found = stances(walk, axes=axes)
-    one = gait_context(walk, found[1], found, axes)
+    found = stances(walk)
+    one = gait_context(walk, found[1], found)
     assert 0.9 < one.walking_speed < 1.2
     assert 0.4 < one.step_length < 0.7
     assert one.step_time == pytest.approx(found[1].contact - found[0].contact)

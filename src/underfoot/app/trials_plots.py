@@ -16,7 +16,7 @@ import numpy as np
 from underfoot.report.trials_figures import Sheet, Tile
 from underfoot.trials.analyse import FileResult
 from underfoot.trials.analyse.record_signals import Envelope, RecordSignals
-from underfoot.trials.events import CONTACT_FORCE
+from underfoot.trials.signals import CONTACT_FORCE
 
 WIDTH = 900
 """Parts of a signal that are drawn across a page."""
@@ -163,7 +163,8 @@ def _line(name: str, seen: Envelope) -> dict[str, Any]:
 def _curve(
     name: str, time: Sequence[float], values: Sequence[float | None], offset: float = 0.0
 ) -> dict[str, Any]:
-    return {"name": name, "x": [offset + t for t in time], "low": list(values), "high": []}
+    low = _plain(np.array(values, dtype=float))
+    return {"name": name, "x": [offset + t for t in time], "low": low, "high": []}
 
 
 def _plain(values: np.ndarray) -> list[float | None]:

@@ -38,8 +38,8 @@ from underfoot.trials.analyse.folder import recording_trials
 from underfoot.trials.analyse.record_signals import record_signals
 from underfoot.trials.analyse.tables import quantity_name, scaled, shown_unit
 from underfoot.trials.protocols import Protocol, protocol, protocol_names
-from underfoot.trials.simulate import simulated_folder
 from underfoot.trials.trial import Edit
+from underfoot_simulator import simulated_folder
 
 from .trials_plots import record_plot, run_plot, step_plot, tile_svg
 
@@ -120,7 +120,7 @@ def folder_view(asked: Mapping[str, Any], *, progress: Progress = silent) -> dic
         "counts": dict(parts["counts"]),
         "title": analysis.protocol.title,
         "kind": analysis.protocol.kind,
-        "notes": [*analysis.notes, *analysis.study.notes],
+        "notes": [*map(str, analysis.doubts), *analysis.notes, *analysis.study.notes],
         "cards": _cards(analysis),
     }
 

@@ -76,7 +76,7 @@ class StribeckCurve:
             for i, speed in enumerate(self.speed)
         ]
 
-    def as_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
         return {
             "fluid": self.label,

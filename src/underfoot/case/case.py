@@ -313,25 +313,34 @@ class Case(Presentable):
     def hash(self) -> str:
         """Hash of the values and their uncertainties, the same on every machine.
 
-        Names, comments, sources and who walks (``slip``) don't count.
+        Files count by their content, options of other packages by their code, and what an option
+        looks up in the catalogue by what stands there. Names, comments and sources don't count.
         """
-        content: dict[str, Any] = {}
+        content: dict[str, Any] = {"catalogue": self.consulted.content()}
+        content["code"] = {path: section.code() for path, section in walk(self._parts)}
         for path, section, name in self._values():
             cls, here = type(section), f"{path}.{name}"
             if isinstance(section, Option) and name == section.key:
                 own = cls.__module__.startswith("underfoot.")
-                content[here] = section.name if own else f"{cls.__module__}:{cls.__qualname__}"
+                content[here] = section.name if own else cls
                 continue
             value = getattr(section, name)
-            left_out = path == "slip" or here in self.idle_paths
-            if left_out or value is None or isinstance(value, Section):
+            if here in self.idle_paths or value is None or isinstance(value, Section):
                 continue
-            if name not in (*cls.uncounted, *cls.replaced):
+            if name in cls.file_paths:
+                content[here] = Path(value).stem
+            elif name not in cls.replaced:
                 content[here] = _rounded(value)
                 origin = section._origins.get(name)
                 if origin and origin.value == value and origin.uncertainty is not None:
                     content[f"{here}.uncertainty"] = _rounded(origin.uncertainty)
         return content_hash(content)[:32]
+
+    @property
+    def consulted(self) -> Catalogue:
+        """The entries of the catalogue that the chosen options look up."""
+        options = (each for _, each in walk(self._parts) if isinstance(each, Option))
+        return self.catalogue.of({kind for option in options for kind in option.consults})
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Case) and self.hash == other.hash

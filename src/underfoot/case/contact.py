@@ -16,6 +16,7 @@ from .section import Option
 from .surfaces import WAVES
 
 if TYPE_CHECKING:
+    from underfoot.film import FilmModel
     from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
     from underfoot.shoe import SoleMap
     from underfoot.sole_contact.compliance import Compliance
@@ -222,8 +223,8 @@ class FilmOption(Option):
     usual: ClassVar[str | None] = "reynolds"
 
     @abstractmethod
-    def build(self, context: Context) -> float | None:
-        """Return the viscosity of the film, Pa s; None where the fluid builds up no pressure."""
+    def build(self, context: Context) -> FilmModel | None:
+        """Return the film; None where the fluid builds up no pressure."""
 
     @property
     def closure(self) -> str:
@@ -245,8 +246,11 @@ class ReynoldsFilm(FilmOption):
         assumed=True,
     )
 
-    def build(self, context: Context) -> float | None:
-        return context.viscosity_value
+    def build(self, context: Context) -> FilmModel | None:
+        from underfoot.film import NewtonianFilm
+
+        viscosity = context.viscosity_value
+        return None if viscosity is None else NewtonianFilm(viscosity)
 
 
 class NoFilm(FilmOption):
@@ -255,5 +259,5 @@ class NoFilm(FilmOption):
     name: ClassVar[str] = "none"
     source: ClassVar[str] = "none: the fluid builds up no pressure"
 
-    def build(self, context: Context) -> float | None:
+    def build(self, context: Context) -> FilmModel | None:
         return None

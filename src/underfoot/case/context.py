@@ -28,6 +28,7 @@ class Context:
         viscosity: Of the contaminant, Pa s; None on a dry floor.
         rq: Rq of the interface, m; ``rq_deviation`` is its standard deviation over itself.
         fluid: Name of the contaminant.
+        catalogue: Entries of the kinds that the options of the case name in ``consults``.
     """
 
     shoe: Shoe

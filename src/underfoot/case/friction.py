@@ -17,7 +17,7 @@ from .context import Context
 from .quantity import Force, Friction, Pressure, Quantity, Speed, Viscosity, optional, required
 from .section import CaseView, Option, Section
 from .surfaces import FLOOR_RQ, SOLE_RQ, WAVES, SurfaceRoughness
-from .tables import as_written, plain, table_columns, table_source, with_checksum
+from .tables import as_written, meant_file, plain, table_columns, table_source, with_checksum
 
 if TYPE_CHECKING:
     from underfoot.friction import AsperityScale, BoundaryFriction, FrictionLaw, SpeedEffectLaw
@@ -80,7 +80,7 @@ class PairOption(FrictionOption):
     dry: ClassVar[bool] = True
     source: ClassVar[str] = "calibrated on published measurements of other pairs"
     reads: ClassVar[tuple[str, ...]] = ("contaminant.family",)
-    uncounted: ClassVar[tuple[str, ...]] = ("draws_file", "contact_table")
+    file_paths: ClassVar[tuple[str, ...]] = ("draws_file", "contact_table")
 
     draws_file: str | None = optional(
         "draws calibrated to readings of your own by underfoot calibrate pair; the "
@@ -109,12 +109,18 @@ class PairOption(FrictionOption):
         material = context.shoe.material
         hysteresis, origin, full_contact = _hysteresis(context), "Persson theory", None
         if self.contact_table:
-            table = ContactTable.load(self.contact_table)
+            with meant_file(
+                self.contact_table, self.contact_table_sha256, "friction.contact_table"
+            ) as path:
+                table = ContactTable.load(path)
             at = HYSTERESIS_PRESSURE, context.motion.speed
             area = float(table.real_contact_fraction(*at))
             hysteresis, origin = float(table.cof_hysteresis(*at)), Path(self.contact_table).name
             full_contact = HYSTERESIS_PRESSURE / float(erfinv(min(area, 1 - 1e-9)))
-        draws = read_pair_draws(Path(self.draws_file)) if self.draws_file else None
+        draws = packaged_pair_draws()
+        if self.draws_file:
+            with meant_file(self.draws_file, self.sha256, "friction.draws_file") as path:
+                draws = read_pair_draws(path)
         pair = Pair(
             shore_a=_hardness(context),
             sole_rq=_span(context.shoe.roughness, SOLE_RQ),
@@ -126,7 +132,7 @@ class PairOption(FrictionOption):
             polymer=material.polymer,
             shore_a_deviation=(material.shore_a and material.sourced("shore_a").uncertainty) or 0.0,
         )
-        return PairContactLaw(pair, context.viscosity_value, draws or packaged_pair_draws())
+        return PairContactLaw(pair, context.viscosity_value, draws)
 
 
 class _Measured(FrictionOption):
@@ -161,6 +167,7 @@ class BoundaryOption(_Measured):
 
     name: ClassVar[str] = "boundary"
     source: ClassVar[str] = "boundary friction of the pair and fluid"
+    consults: ClassVar[tuple[str, ...]] = ("fluid",)
 
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import BoundaryLaw, boundary_friction_at
@@ -181,6 +188,7 @@ class StribeckOption(_Measured):
     name: ClassVar[str] = "stribeck"
     source: ClassVar[str] = "friction of the pair and fluid as measured at the speed"
     chosen_by: ClassVar[tuple[str, ...]] = ("cof_bl", "tau_hydro", "cof_asymptote")
+    consults: ClassVar[tuple[str, ...]] = ("fluid",)
 
     tau_hydro: Speed | None = optional("decay speed (Eq. 17)")
     cof_asymptote: Friction | None = optional("COF at high speed (Eq. 17)")
@@ -309,6 +317,7 @@ class MeanFilmSharingOption(_Mechanism):
 
     name: ClassVar[str] = "mean_film_sharing"
     source: ClassVar[str] = "load shared with the mean film of a pin"
+    consults: ClassVar[tuple[str, ...]] = ("setup",)
 
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import MeanFilmSharing

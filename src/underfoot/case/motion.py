@@ -160,7 +160,7 @@ class MotionFromHistory(Motion):
                 )
             points = read_motion_table(folder / name, f"{where}.history")
             table["history_points"] = points
-        if isinstance(points, list) and points and isinstance(points[-1], dict):
+        if isinstance(points, list | tuple) and points and isinstance(points[-1], dict):
             last = points[-1]
             force = last.get("normal_force")
             if isinstance(force, str) and to_si(force, "N", where=f"{where}.history_points") < 1.0:

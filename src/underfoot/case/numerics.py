@@ -1,6 +1,6 @@
 """Section for grid, tolerance and limits of the computation."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -19,6 +19,11 @@ class Numerics(Section):
         0.6 * _mm, "0.6 mm", "four cells in the narrowest channel of the report"
     )
     quick_grid_spacing: Spacing = default(1.0 * _mm, "1 mm", "for a first look")
+    cells_along: Literal[1, 2, 4, 8, 16, 32] = default(
+        1,
+        1,
+        "cells along the sliding in one spacing, beside rims and corners; 1 for square cells alone",
+    )
     seed: Annotated[int, Field(ge=0, le=2**31, strict=True)] = default(
         0, 0, "of the draws behind the intervals; the same seed gives the same numbers"
     )
@@ -26,8 +31,8 @@ class Numerics(Section):
     grid_check: Flag = default(
         False,
         False,
-        "one grid; true solves the quick one too, once more there with twice the steps in time, "
-        "and estimates the errors of both",
+        "one grid; true solves the quick one too, with 16 cells along the sliding beside rims and "
+        "corners and twice the steps in time, and puts the differences into the errors",
     )
     tread_positions: Annotated[int, Field(ge=1, le=64, strict=True)] = default(
         4, 4, "of a tread's pattern, averaged over; half of them on the quick grid; 1: as it lies"

@@ -101,8 +101,9 @@ def field_at(path: str) -> FieldInfo | None:
     """Return the field at a dotted path, or None; the first option of a slot that has it."""
     path = current_path(path)
     if path not in fields() and path not in keys():
-        for slot in slot_table().values():
-            slot.options()  # those of other packages
+        for at, slot in slot_table().items():
+            if path.startswith(f"{at}."):
+                slot.options()  # those of other packages
     return fields().get(path)
 
 

@@ -8,9 +8,9 @@ checks, sources and ``build``. Defining the class is all that a new option takes
 import types
 import typing
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
-from importlib import import_module, metadata
 from pathlib import Path
 from typing import Any, ClassVar, Protocol, Self
 
@@ -29,6 +29,7 @@ from pydantic_core import CoreSchema, InitErrorDetails, core_schema
 
 from underfoot.core import InputError, SourcedValue, to_si, unknown_name
 from underfoot.core.leaves import INHERITED, Leaf
+from underfoot.core.registry import all_offers, loaded, offered, offers
 
 from .quantity import Quantity, default_of, refusal
 
@@ -69,8 +70,8 @@ class Section(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
-    uncounted: ClassVar[tuple[str, ...]] = ()
-    """Fields that a hash leaves out, such as the path of a file whose checksum counts."""
+    file_paths: ClassVar[tuple[str, ...]] = ()
+    """Paths of files: a hash counts their names alone, and the checksums beside them."""
     replaced: ClassVar[tuple[str, ...]] = ()
     """Fields that name a file whose content is a field beside them."""
 
@@ -121,6 +122,19 @@ class Section(BaseModel):
             except InputError as error:
                 raise refused_at(cls, (key, "uncertainty"), error, written) from error
         return replace(origin, value=getattr(section, key), uncertainty=uncertainty)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in type(self).model_fields:
+            raise InputError(
+                f"a section of a case is frozen: {name} can't be set",
+                where=f"{type(self).__name__}.{name}",
+                remedy=f'Make a new case: case.replace("PATH.{name}", ...), or a new section: '
+                f'section.model_copy(update={{"{name}": ...}})',
+            )
+        super().__setattr__(name, value)
+
+    def __delattr__(self, name: str) -> None:
+        self.__setattr__(name, None)
 
     def tree(self) -> dict[str, Any]:
         """Return what was set, sub-sections and values, each value with its origin if it has one.
@@ -191,6 +205,10 @@ class Section(BaseModel):
         """Return the section's table with what it takes from files; paths count from ``folder``."""
         return table
 
+    def code(self) -> Any:
+        """Return what of other packages it is computed with, beside its own class."""
+        return None
+
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         """Yield what does not fit together; ``where`` is the section's path in the case."""
         return iter(())
@@ -212,6 +230,8 @@ class Option(Section):
     """Keys that choose this option when none is named."""
     reads: ClassVar[tuple[str, ...]] = ()
     """Paths of other sections that only some options read; nobody else lets them be given."""
+    consults: ClassVar[tuple[str, ...]] = ()
+    """Kinds of entries that it looks up in ``context.catalogue``, which holds no others."""
 
     _known: ClassVar[dict[str, dict[str, type["Option"]]]] = {}
 
@@ -223,8 +243,10 @@ class Option(Section):
         present = cls._known.setdefault(cls.slot, {})
         other, where = present.get(name), f"{cls.__module__}.{cls.__qualname__}"
         option = f'the {cls.slot} option "{name}"'
-        if other is not None and other.__module__.startswith("underfoot."):
-            what, remedy = "is defined by Underfoot", "Give the class another name"
+        if other is not None and f"{other.__module__}.{other.__qualname__}" != where:
+            ours = other.__module__.startswith("underfoot.")
+            what = f"is defined by {'Underfoot' if ours else other.__module__}"
+            remedy = "Give the class another name"
             raise InputError(f"{option} {what}", where=where, remedy=remedy)
         if missing := ", ".join(sorted(cls.__abstractmethods__)):
             remedy = f"Define it as the other options of {cls.slot} do"
@@ -245,10 +267,10 @@ class Option(Section):
 
     @classmethod
     def options(cls) -> dict[str, type["Option"]]:
-        """Return the options of the slot by name, those of other packages too."""
-        for name, address in _entry_points().get(f"underfoot.{cls.slot}", {}).items():
-            if name not in cls.known():
-                cls._load(address)
+        """Return the options of the slot by name, those of other packages too where they load."""
+        for name in offers(cls.slot).keys() - cls.known().keys():
+            with suppress(InputError):  # ``underfoot doctor`` and who asks for it are told
+                offered(cls.slot, name, cls._wrong)
         return dict(cls.known())
 
     @classmethod
@@ -284,46 +306,35 @@ class Option(Section):
         option = cls.known().get(str(name))
         if option is not None:
             return option
-        _entry_points.cache_clear()  # a package may have been installed since
+        all_offers.cache_clear()  # a package may have been installed since
         try:
-            return cls._load(name) if ":" in str(name) else _named(cls.options(), str(name))
+            return cls._elsewhere(str(name))
         except InputError as error:
             raise refused_at(cls, (cls.key,), error, name) from error
 
     @classmethod
-    def _load(cls, address: str) -> type["Option"]:
-        """Return the option at ``module:Class``, of another package or of the user's own."""
-        module, _, name = address.partition(":")
-        try:
-            found = getattr(import_module(module), name)
-        except (ImportError, AttributeError, ValueError) as error:
-            raise InputError(
-                f'"{address}" can\'t be imported ({error})',
-                allowed="module:Class of a module on Python's path",
-                remedy="Set PYTHONPATH to the folder of the module",
-            ) from error
+    def _elsewhere(cls, name: str) -> type["Option"]:
+        """Return the option that a package offers by this name, or at ``module:Class``."""
+        if ":" not in name:
+            option = offered(cls.slot, name, cls._wrong)
+            return option or _named(cls.options(), name)
+        option = loaded(name)
+        if wrong := cls._wrong(option):
+            raise InputError(f'"{name}" {wrong}')
+        return option
+
+    @classmethod
+    def _wrong(cls, option: Any) -> str:
+        """Return why an object is no option of the slot, "" where it is one."""
         slot = next((base for base in cls.__mro__ if "slot" in base.__dict__), cls)
-        if not (isinstance(found, type) and issubclass(found, slot) and found.name):
-            raise InputError(
-                f'"{address}" is no option of {cls.slot}',
-                allowed=f"a class derived from {slot.__module__}.{slot.__qualname__} with a name",
-            )
-        return found
+        if isinstance(option, type) and issubclass(option, slot) and option.name:
+            return ""
+        address = f"{slot.__module__}.{slot.__qualname__}"
+        return f"is no option of {cls.slot}: no class derived from {address} with a name"
 
     def __repr__(self) -> str:
         shown = [f"{name}={getattr(self, name)!r}" for name in sorted(self.model_fields_set)]
         return f"{type(self).__name__}({', '.join(shown)})"
-
-
-@cache
-def _entry_points() -> dict[str, dict[str, str]]:
-    """Return name and address of the options of other packages, by group."""
-    groups: dict[str, dict[str, str]] = {}
-    for distribution in metadata.distributions():
-        for entry in distribution.entry_points:
-            if entry.group.startswith("underfoot."):
-                groups.setdefault(entry.group, {})[entry.name] = entry.value
-    return groups
 
 
 def _named(options: Mapping[str, type[Option]], name: str) -> type[Option]:

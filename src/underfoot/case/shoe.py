@@ -8,6 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from underfoot.core import InputError, RangeError, display
+from underfoot.core.registry import offered
 
 from .quantity import Flag, Length, Quantity, default, optional
 from .section import CATALOGUE, GIVEN, CaseView, Origin, Section, leaf_of, origin_of, refused_at
@@ -111,7 +112,7 @@ class SoleLayers(Section):
 class OutsoleFile(Section):
     """Outsole from a file in place of heel and tread; ``underfoot outsole inspect`` reads one."""
 
-    uncounted: ClassVar[tuple[str, ...]] = ("file",)  # the checksum tells which outsole it is
+    file_paths: ClassVar[tuple[str, ...]] = ("file",)  # the checksum tells which outsole it is
 
     file: str = Field(
         description="STEP, IGES, BREP, 3DM, STL, OBJ, PLY, OFF, GLB, GLTF or 3MF; the path counts "
@@ -144,6 +145,9 @@ class OutsoleFile(Section):
     @classmethod
     def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
         return with_checksum(table, "file", folder, where)
+
+    def code(self) -> Any:
+        return offered("outsole_readers", Path(self.file).suffix.lower()[1:])
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         down, forward = self.down, self.forward

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -68,6 +69,27 @@ def with_checksum(
             remedy=f"Bring back that file, or remove {checksum_key} to take this one",
         )
     return {**table, key: str(path), checksum_key: present}
+
+
+@contextmanager
+def meant_file(path: str, sha256: str | None, where: str) -> Iterator[Path]:
+    """Give the path of a file while it is read; refuse one that is not what the case was made of.
+
+    Raises:
+        InputError: No such file; another content, now or when it has been read.
+    """
+    _refuse_changed(Path(path), sha256, where)
+    yield Path(path)
+    _refuse_changed(Path(path), sha256, where)
+
+
+def _refuse_changed(path: Path, sha256: str | None, where: str) -> None:
+    if checksum(existing_file(path, where)) != sha256:
+        raise InputError(
+            f"{path} has changed since the case was made",
+            where=where,
+            remedy="Load the case again to take the file as it is now",
+        )
 
 
 def table_columns(

@@ -90,7 +90,7 @@ def _overrides(section: str, name: str, catalogue: Catalogue) -> list[str]:
     for path, leaf in values.items():
         full = f"{section}.{path}"
         full = RENAMED.get(full) or SHORT.get(full) or full
-        if not full.startswith(f"{section}.") or isinstance(leaf.given, list):
+        if not full.startswith(f"{section}.") or isinstance(leaf.given, list | tuple):
             continue
         remark = _remark(field_at(full), assumed=leaf.assumed)
         path = full.removeprefix(f"{section}.")

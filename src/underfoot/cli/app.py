@@ -1,19 +1,23 @@
 """The commands; each imports what it needs when it runs."""
 
 import os
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Sequence
 from enum import StrEnum
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperCommand
+from typer.main import get_group
+
+from underfoot.core import InputError
+from underfoot.core.registry import offered, offers
 
 from . import cases, tools
 from .calibrate import calibrate_app
 from .contact import contact
 from .export import export
 from .guard import guarded, say
-from .micro import micro
 from .outsole import outsole_app
 from .stribeck import stribeck
 from .studies import studies_app
@@ -64,6 +68,7 @@ COMMANDS: tuple[Callable[..., None], ...] = (
     tools.new,
     cases.check,
     cases.run,
+    cases.ask,
     cases.slip,
     cases.compare,
     cases.sensitivity,
@@ -72,7 +77,6 @@ COMMANDS: tuple[Callable[..., None], ...] = (
     export,
     stribeck,
     contact,
-    micro,
     tools.explain,
     tools.catalogue,
     tools.schema,
@@ -84,6 +88,23 @@ for command in COMMANDS:
     app.command(cls=Command)(guarded(command))
 app.command("test", cls=Command)(guarded(cases.by_method))
 app.command("app", cls=Command)(guarded(web_app))
+
+
+def add_offered(arguments: Sequence[str]) -> None:
+    """Add the commands of other packages: the one asked for, or all of them where none is."""
+    asked = next((each for each in arguments if not each.startswith("-")), "")
+    if asked in get_group(app).commands:
+        return
+    for name in [asked] if asked else offers("commands"):
+        try:
+            if (function := offered("commands", name)) is not None:
+                app.command(name, cls=Command)(guarded(function))
+        except InputError as error:
+            say(f"{'error' if asked else 'caution'}: {error}")
+            if asked:
+                sys.exit(2)
+
+
 for group in (trials_app, calibrate_app, studies_app, study_app, outsole_app):
     app.add_typer(group)
 

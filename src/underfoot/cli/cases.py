@@ -1,5 +1,6 @@
 """Commands on a case: ``check``, ``run``, ``slip``, ``compare``, ``risk``, ``test`` and so on."""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -60,6 +61,18 @@ def run(
     if folder is not None:
         written = write_report(result, folder, overwrite=shared.overwrite, advice=advice, maps=maps)
     finish(result, written, json=shared.json, everything=shared.everything, advice=advice)
+
+
+@sharing()
+def ask(
+    shared: Shared,
+    question: Annotated[str, typer.Argument(help="Its name.", show_default=False)],
+    case: CasePath,
+) -> None:
+    """Answer a question that another package asks of a case (docs/extending.md)."""
+    from underfoot.questions.ask import ask as answer_of
+
+    shared.ask(shared.case(case), partial(answer_of, question))
 
 
 @sharing(quick=True, without=("processes",))

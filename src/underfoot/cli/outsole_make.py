@@ -99,7 +99,7 @@ def make(
         else _from_options(pattern or "", given, pitch, sipes, whole, set_)
     )
     written = None if out is None else write_sole(shape, out)
-    measures = as_dict(shape, written)
+    measures = measures_of(shape, written)
     if json:
         import json as json_text
 
@@ -108,7 +108,7 @@ def make(
         _show(measures, written)
 
 
-def as_dict(shape: SoleShape, written: SoleFile | None) -> dict[str, Any]:
+def measures_of(shape: SoleShape, written: SoleFile | None) -> dict[str, Any]:
     """Return the measures of a sole and of its file as plain data, SI."""
     from underfoot.shoe import heel_surface
 

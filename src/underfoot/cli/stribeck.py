@@ -69,7 +69,7 @@ def stribeck(
         with whole_folder(out, overwrite=overwrite) as staging:
             _write(curves, staging, f"{given.name}: {curves[0].law}, {pressure}")
     if json:
-        content = {"pressure_Pa": load, "curves": [curve.as_dict() for curve in curves]}
+        content = {"pressure_Pa": load, "curves": [curve.to_dict() for curve in curves]}
         print(dumps(content, indent=2, ensure_ascii=False))
         return
     _show(curves, pressure, out)

@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from underfoot.core import InputError
+from underfoot.core.registry import offered
+
 from .guard import guarded, say
 from .options import AsJson, OutFolder, Overwrite, Processes, Quick, ShowAll
 from .output import print_table, show
@@ -30,9 +33,14 @@ def _of_g1(name: str, text: str) -> Any:
 
 def list_studies(json: AsJson = False) -> None:
     """List the studies that can be run."""
-    from underfoot.studies import STUDIES, study
+    from underfoot.studies import studies, study
 
-    rows = [{"name": n, "title": study(n).title, "source": study(n).source} for n in STUDIES]
+    rows = []
+    for name in studies():
+        try:
+            rows.append({"name": name, "title": study(name).title, "source": study(name).source})
+        except InputError as error:  # a study of another package that is broken
+            say(f"caution: {error.what}")
     if json:
         _print_json(rows)
         return
@@ -143,8 +151,7 @@ def _settings(
         raise InputError(
             f"study {name} has no such setting", where=used[0], remedy=f"Leave out {used[0]}"
         )
-    from underfoot.studies.g1 import Settings
-
+    settings = offered("studies", "g1").Settings
     series = series or ("report" if explicit else "both")
     for option, value, known in (
         ("series", series, ("report", "broad", "both")),
@@ -152,7 +159,7 @@ def _settings(
     ):
         if value not in known:
             raise unknown_name(option, value, known, where=f"--{option}")
-    return Settings(
+    return settings(
         series=("report", "broad") if series == "both" else (series,),
         solver="explicit" if explicit else "condensed",
         control="displacement" if control == "height" else "load",
@@ -189,7 +196,7 @@ def _deliver(
                 page = studies_page(results, images, quick=any(r.quick for r in results))
                 (staging / "studies.html").write_text(page, encoding="utf-8")
     if json:
-        content: Any = [one.as_dict() for result in results for one in result.judgements]
+        content: Any = [one.to_dict() for result in results for one in result.judgements]
         _print_json(content if everything else results[0].to_dict())
     elif everything:
         _show_headline(results)

@@ -9,7 +9,8 @@ import typer
 
 from .guard import guarded
 from .options import AsJson, PlateFrame, RampAngle, optional
-from .trials_analyse import analyse, simulate
+from .trials_analyse import analyse, persons, simulate
+from .trials_bundle import bundle
 from .trials_steps import definitions, edit, export
 
 trials_app = typer.Typer(
@@ -73,6 +74,8 @@ def describe(
 trials_app.command()(guarded(describe))
 trials_app.command()(guarded(analyse))
 trials_app.command()(guarded(simulate))
+trials_app.command()(guarded(persons))
 trials_app.command()(guarded(edit))
 trials_app.command()(guarded(definitions))
 trials_app.command()(guarded(export))
+trials_app.command()(guarded(bundle))

@@ -41,6 +41,10 @@ def analyse(
     ] = False,
     ramp: RampAngle = None,
     plate_frame: PlateFrame = None,
+    equivalence: Annotated[
+        float | None,
+        optional("Test pairs for equivalence within this difference of RCOF or COF, as 0.02."),
+    ] = None,
     details: Annotated[int, typer.Option(help="Number of single trials drawn in detail.")] = 4,
     processes: Annotated[
         int | None, typer.Option(help="Files analysed at once.", show_default="all processors")
@@ -66,7 +70,9 @@ def analyse(
     if folder is None or protocol is None or out is None:
         option = "FOLDER" if folder is None else "--protocol" if protocol is None else "--out"
         raise InputError("is missing", where=option, remedy="See underfoot trials analyse --help")
-    slope = {"ramp": ramp, "plate_frame": plate_frame}
+    if equivalence is not None and not equivalence > 0:
+        raise InputError(f"{equivalence:g}", where="--equivalence", allowed="above 0, as 0.02")
+    slope = {"ramp": ramp, "plate_frame": plate_frame, "equivalence": equivalence}
     settings = {key: value for key, value in slope.items() if value is not None}
     chosen = protocol_named(protocol, known).with_settings(settings)
     if details < 0 or (processes is not None and processes < 1):
@@ -94,6 +100,8 @@ def analyse(
     for one in analysis.files:
         reasons = f": {'; '.join(one.reasons)}" if one.reasons else ""
         print(f"{one.verdict:<9} {one.file}{reasons}")
+    for doubt in analysis.doubts:
+        say(f"doubt: {doubt}")
     for note in (*analysis.notes, *analysis.study.notes):
         say(f"note: {note}")
     verdicts = [one.verdict for one in analysis.files]
@@ -106,6 +114,36 @@ def analyse(
         raise typer.Exit(3)
 
 
+def persons(
+    design: Annotated[str, typer.Argument(help="paired, groups, repeated or slips.")],
+    difference: Annotated[float, typer.Option(help="Difference of means to be found.")] = 0.0,
+    sd: Annotated[
+        float,
+        typer.Option(
+            help="SD of differences within persons (paired), of a person's mean in one condition "
+            "(repeated), between persons (groups)."
+        ),
+    ] = 1.0,
+    shares: Annotated[tuple[float, float], typer.Option(help="Shares of slips in both groups.")] = (
+        0.0,
+        0.0,
+    ),
+    conditions: Annotated[int, typer.Option(help="Number of conditions (repeated).")] = 2,
+    power: Annotated[float, typer.Option(help="Chance to find it.")] = 0.8,
+) -> None:
+    """Print how many persons a study needs (in each group, for groups and slips)."""
+    from underfoot.trials import statistics
+
+    settings = {"difference": difference, "sd": sd, "shares": shares, "conditions": conditions}
+
+    def chance(count: int) -> float:
+        return statistics.power(design, count, **settings)  # type: ignore[arg-type]  # each design takes what it needs
+
+    count = statistics.persons_needed(chance, power)
+    each = " in each group" if design in ("groups", "slips") else ""
+    print(f"{count} persons{each}: power {chance(count):.3f} at alpha 0.05, two-sided")
+
+
 def simulate(
     kind: Annotated[str, typer.Argument(help="slips, study, tester, pin_on_disk or relaxation.")],
     out: Annotated[Path, optional("Folder to be made.")],
@@ -116,7 +154,7 @@ def simulate(
     """Write made-up measurements with known truth, to try the analysis out; clearly synthetic."""
     from underfoot.core.files import whole_folder
     from underfoot.core.progress import bar
-    from underfoot.trials.simulate import simulated_folder
+    from underfoot_simulator import simulated_folder
 
     with bar("writing made-up trials") as progress, whole_folder(out, overwrite=overwrite) as made:
         paths = simulated_folder(kind, made, count=count, seed=seed, progress=progress)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -47,6 +48,7 @@ def edit(
     )
     from underfoot.trials.gait import required_frictions
     from underfoot.trials.readers import read_trial
+    from underfoot.trials.walkway import walkway_of
 
     given = {"contact": contact, "toe off": toe_off, "side": side, "plate": plate}
     changes = [(what, value) for what, value in given.items() if value is not None]
@@ -64,9 +66,11 @@ def edit(
     text = edit_text(file.parent)
     new = edit_from(step, what, value, reason, "this edit")
     earlier = edits_of(file.parent, [file.name], others=True).get(file.name, [])
-    options = {"walking": read.walking, "heels": read.heels}
-    before = required_frictions(trial.with_edits(*earlier), **options)
-    after = required_frictions(trial.with_edits(*earlier, new), **options)
+    walk = walkway_of(trial, vertical=read.vertical, walking=read.walking, heels=read.heels)
+    before, after = (
+        required_frictions(replace(walk, trial=trial.with_edits(*edits)))
+        for edits in (earlier, [*earlier, new])
+    )
     for old, one in zip(before, after, strict=True):
         if old.stance.by_hand != one.stance.by_hand:
             print(f"{old.stance.label}: {_words(old)} -> {_words(one)}")
@@ -120,6 +124,7 @@ def export(
     from underfoot.trials.export import c3d_with_events
     from underfoot.trials.readers import Profile, read_profile, read_trial
     from underfoot.trials.trial import joined
+    from underfoot.trials.walkway import walkway_of
 
     if out.exists():
         raise InputError(f"{out} is there already", where="--out", remedy="Choose another name")
@@ -127,6 +132,7 @@ def export(
     trial = read_trial(file, read)
     if companion is not None:
         trial = joined(trial, read_trial(companion, read))
-    found = stances(trial, walking=read.walking, heels=read.heels)
+    walk = walkway_of(trial, vertical=read.vertical, walking=read.walking, heels=read.heels)
+    found = stances(walk)
     out.write_bytes(c3d_with_events(trial, found))
     say(f"{sum(s.accepted for s in found)} steps as events in {out}")

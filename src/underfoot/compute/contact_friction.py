@@ -14,6 +14,7 @@ from underfoot.friction import (
 )
 from underfoot.shoe import SoleMap
 from underfoot.sole_contact.lug_edges import EdgedLaw, LugFriction
+from underfoot.sole_contact.sole_state import CellState, SoleState
 from underfoot.sole_contact.solver import SoleContact
 
 from . import numbers
@@ -37,22 +38,26 @@ def contact_friction(
     contact: SoleContact,
 ) -> ContactFriction:
     """Return the friction of a contact by the local law, drawn over the spread of its inputs."""
-    maps = contact.contact_pressure, case.motion.speed, contact.film_thickness
-    parts, lugs, suction, plain = law(*maps), None, None, law
+    maps = law(contact.contact_pressure, case.motion.speed, contact.film_thickness)
+    at = contact.finest
+    law = law_on(law, at)
+    values = at.contact_pressure, case.motion.speed, at.film_thickness
+    parts = maps if at is contact else law(*values)
+    lugs, suction, plain = None, None, law
     if isinstance(law, EdgedLaw):
-        plain, lugs = law.law, law.lugs(*maps)
+        plain, lugs = law.law, law.lugs(*values)
         pull = case.sourced("film.suction")
         pull = pull if pull.uncertainty else replace(pull, uncertainty=numbers.SUCTION_SPREAD)
         suction = pull, lugs.suction_share(parts)
     assert isinstance(plain, FrictionLaw)
-    pressures = contact.contact_pressure, contact.fluid_pressure
+    pressures = at.contact_pressure, at.fluid_pressure
     sampled = sampled_cof(
         plain,
         *pressures,
-        contact.film_thickness,
+        at.film_thickness,
         speed=case.motion.speed,
-        wet=contact.wet,
-        **contact.areas,
+        wet=at.wet,
+        **at.areas,
         fluid_inputs={} if context.viscosity is None else {"viscosity": context.viscosity},
         film_error=numbers.FILM_ERROR,
         sole=numbers.sole_name(case),
@@ -64,9 +69,24 @@ def contact_friction(
         parts,
         *pressures,
         spacing=sole.spacing,
-        wet=contact.wet,
-        **contact.areas,
+        wet=at.wet,
+        **at.areas,
         sampled=sampled,
         source=f"{plain.name} law: {plain.source}",
     )
-    return ContactFriction(parts, lugs, sums, sampled)
+    return ContactFriction(maps, lugs, sums, sampled)
+
+
+def law_on(law: FrictionLaw | EdgedLaw, state: SoleState | CellState) -> FrictionLaw | EdgedLaw:
+    """Return the local friction on the cells of a state."""
+    return law.on(state) if isinstance(law, EdgedLaw) else law
+
+
+def friction_sums(
+    law: FrictionLaw | EdgedLaw, state: SoleState, speed: float
+) -> FrictionCoefficients:
+    """Return the friction of an instant, without its spread."""
+    at = state.finest
+    shear = law_on(law, at)(at.contact_pressure, speed, at.film_thickness)
+    pressures = at.contact_pressure, at.fluid_pressure
+    return cof(shear, *pressures, spacing=state.spacing, wet=at.wet, **at.areas)

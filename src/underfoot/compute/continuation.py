@@ -20,21 +20,16 @@ from typing import Any
 import numpy as np
 
 from underfoot.case import Case
-from underfoot.case.context import Context
 from underfoot.core import ConvergenceError, InputError, Progress, SourcedValue, Status, silent
 from underfoot.core.arrays import Array
-from underfoot.friction import FrictionLaw
-from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
+from underfoot.core.threads import threads_limited
 from underfoot.shoe import SoleMap
-from underfoot.sole_contact.compliance import Compliance
-from underfoot.sole_contact.lug_edges import EdgedLaw
 from underfoot.sole_contact.solver import SoleContact, solve_on
 
-from .contact import edged_law, solved_motion, solver_settings
 from .contact_friction import contact_friction
 from .positions import place_numbers
-from .resolve import resolved
-from .sole import sole_map
+from .prepare import Prepared, prepared
+from .solve import solved_motion, solver_settings
 
 SAFETY, SHARE = 2.0, 0.1
 """Error per unit of what the steps move, and of the change. Chosen on 21 changes of two treaded
@@ -108,13 +103,13 @@ class Continuation:
         self.case = case
         numerics = case.numerics
         self.spacing = numerics.quick_grid_spacing if quick else numerics.grid_spacing
-        self._own = own = _parts(case, self.spacing)
+        self._parts = parts = prepared(case, self.spacing)
         self.contact = solved_motion(
             case,
-            own.sole,
-            own.compliance,
-            own.asperities,
-            viscosity=own.viscosity,
+            parts.sole,
+            parts.compliance,
+            parts.asperities,
+            parts.film,
             progress=progress,
         )
         if not self.contact.status.usable:
@@ -128,7 +123,7 @@ class Continuation:
     @cached_property
     def values(self) -> dict[str, float]:
         """Scalars of the march by name, SI."""
-        return self._own.numbers(self.case, self.contact)
+        return _numbers(self._parts, self.case, self.contact)
 
     def continued(self, changes: Mapping[str, Any]) -> Preview:
         """Return what the changes (path in the case: new value) make of the contact.
@@ -141,14 +136,14 @@ class Continuation:
         case = self.case.replace(changes)
         _refuse_history(case)
         parts, first, second = self._steps(case)
-        one, two = parts.numbers(case, first), parts.numbers(case, second)
+        one, two = _numbers(parts, case, first), _numbers(parts, case, second)
         values, errors = {}, {}
         for name in one.keys() & self.values.keys() & self._unchanged.keys():
             off = self.values[name] - self._unchanged[name]
             values[name] = two[name] + off
             steps = abs(off) + abs(two[name] - one[name])
             errors[name] = SAFETY * steps + SHARE * abs(two[name] - self._unchanged[name])
-        drawn = contact_friction(case, parts.context, parts.law, parts.sole, second)
+        drawn = contact_friction(case, parts.context, parts.local_law, parts.sole, second)
         factor = max(values["cof"] / two["cof"], 0.0) if two["cof"] else 1.0
         return Preview(
             dict(changes),
@@ -167,23 +162,23 @@ class Continuation:
     @cached_property
     def _unchanged(self) -> dict[str, float]:
         parts, _, second = self._steps(self.case)
-        return parts.numbers(self.case, second)
+        return _numbers(parts, self.case, second)
 
-    def _steps(self, case: Case) -> tuple[_Parts, SoleContact, SoleContact]:
+    def _steps(self, case: Case) -> tuple[Prepared, SoleContact, SoleContact]:
         """Return the contact after one step and after two, on the grid of the march."""
         angle = self.case.motion.shoe_angle
         level = case.replace("motion.shoe_angle", angle)  # the map keeps its angle, the sole rolls
-        parts = _parts(level, self.spacing, near=(self.case, self._own))
-        own_land, land = self._own.sole.land, parts.sole.land
-        same = land.shape == own_land.shape
-        if not same or np.count_nonzero(land != own_land) > MOST_CHANGED * own_land.sum():
+        parts = _changed(self._parts, level)
+        before, land = self._parts.sole.land, parts.sole.land
+        same = land.shape == before.shape
+        if not same or np.count_nonzero(land != before) > MOST_CHANGED * before.sum():
             raise InputError(
                 "the plan of the sole or the grid changes",
                 where="continued",
                 allowed="fluid, speed, load, angle, wear, hardness, roughness",
                 remedy="Run the changed case",
             )
-        settings = replace(solver_settings(case), most_time_steps=MOST_STEPS)
+        settings = replace(solver_settings(case, parts.film), most_time_steps=MOST_STEPS)
         first, second = solve_on(
             self.contact,
             parts.sole,
@@ -200,6 +195,7 @@ class Continuation:
         return parts, first, second
 
 
+@threads_limited(1)
 def preview(
     case: Case, changes: Mapping[str, Any], *, quick: bool = True, progress: Progress = silent
 ) -> Preview:
@@ -221,35 +217,11 @@ def _refuse_history(case: Case) -> None:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class _Parts:
-    """What a case becomes on one grid."""
-
-    context: Context
-    sole: SoleMap
-    compliance: Compliance
-    asperities: PressureGapLaw
-    viscosity: float | None
-    law: FrictionLaw | EdgedLaw
-
-    def numbers(self, case: Case, contact: SoleContact) -> dict[str, float]:
-        return place_numbers(case, self.law, self.sole, contact, self.viscosity)
+def _numbers(parts: Prepared, case: Case, contact: SoleContact) -> dict[str, float]:
+    return place_numbers(case, parts.local_law, parts.sole, contact, parts.viscosity)
 
 
-def _parts(case: Case, spacing: float, near: tuple[Case, _Parts] | None = None) -> _Parts:
-    """Return the parts of a case; sole and compliance of a near one where they are the same."""
-    context = resolved(case)
-    same = near is not None and all(
-        getattr(case, name) == getattr(near[0], name) for name in _OF_THE_SOLE
-    )
-    sole = near[1].sole if same and near else sole_map(case, spacing)
-    asperities = case.rough_contact.build(context)
-    law = case.friction.build(context)
-    return _Parts(
-        context,
-        sole,
-        near[1].compliance if same and near else case.compliance.build(context, sole),
-        asperities,
-        case.film.build(context),
-        edged_law(case, context, law, sole, asperities) or law,
-    )
+def _changed(parts: Prepared, case: Case) -> Prepared:
+    """Return another case on the same grid; sole and compliance stay where nothing makes others."""
+    same = all(getattr(case, name) == getattr(parts.case, name) for name in _OF_THE_SOLE)
+    return prepared(case, parts.spacing, geometry=(parts.sole, parts.compliance) if same else None)

@@ -47,9 +47,12 @@ FILM_ERROR = math.log(1.41)
 heels of the report's slip tester (docs/studies/calibration.md), assumed of every sole."""
 SUCTION_SPREAD = 29e3
 """Pa: standard deviation of a suction anywhere between 0 and 100 kPa."""
-GRID_ORDER = 1.0
-"""Order of convergence: steps and rims of the film are first order on square cells."""
-GRID_NAMES: tuple[str, ...] = ("fluid_load", "fluid_load_sensor", "peak_fluid_pressure_sensor")
+GRID_NAMES: tuple[str, ...] = (
+    "cof",
+    "fluid_load",
+    "fluid_load_sensor",
+    "peak_fluid_pressure_sensor",
+)
 """Numbers that errors of grid and steps in time are estimated for."""
 
 
@@ -205,25 +208,15 @@ def sole_name(case: Case) -> str:
     return content_hash([row[:2] for row in case.rows() if row[0].startswith(parts)])
 
 
-def readings(contact: SoleContact, sensor: SensorReading) -> dict[str, float]:
+def readings(contact: SoleContact, cof: float, sensor: SensorReading) -> dict[str, float]:
     """Return the numbers that errors of grid and steps in time are estimated for."""
-    return {
-        "fluid_load": contact.fluid_load,
-        "fluid_load_sensor": sensor.load.value or 0.0,
-        "peak_fluid_pressure_sensor": sensor.peak_pressure.value or 0.0,
-    }
+    values = cof, contact.fluid_load, sensor.load.value or 0.0, sensor.peak_pressure.value or 0.0
+    return dict(zip(GRID_NAMES, values, strict=True))
 
 
-def grid_errors(
-    fine: Mapping[str, float], coarse: Mapping[str, float], refinement: float
-) -> dict[str, float]:
-    """Return |fine - coarse| / (r^p - 1): what the fine grid still lacks (Richardson, p = 1).
-
-    ``refinement`` r is coarse over fine spacing, above 1.
-    """
-    return {
-        name: abs(fine[name] - coarse[name]) / (refinement**GRID_ORDER - 1) for name in GRID_NAMES
-    }
+def grid_errors(plain: Mapping[str, float], resolved: Mapping[str, float]) -> dict[str, float]:
+    """Return by how much the run's cells differ from cells that resolve rims and corners."""
+    return {name: abs(plain[name] - resolved[name]) for name in GRID_NAMES}
 
 
 def step_errors(own: Mapping[str, float], finer: Mapping[str, float]) -> dict[str, float]:
@@ -242,10 +235,14 @@ def with_discretisation_errors(
         if steps:
             said += f", of the steps in time {_error(by_steps, value)}"
         # a spread that isn't known stays so: the grid is not what decides it
-        spread = value.uncertainty
+        spread, ends, both = value.uncertainty, value.interval, math.hypot(error, by_steps)
+        if ends is not None and value.value is not None:
+            low, high = (math.hypot(end - value.value, both) for end in ends)
+            ends = max(value.value - low, 0.0), value.value + high
         found[name] = replace(
             value,
-            uncertainty=None if spread is None else math.hypot(spread, error, by_steps),
+            uncertainty=None if spread is None else math.hypot(spread, both),
+            interval=ends,
             note=f"{value.note}; {said}" if value.note else said,
         )
     return found
@@ -255,10 +252,9 @@ def discretisation_words(
     numbers: Mapping[str, SourcedValue],
     grid: Mapping[str, float],
     steps: Mapping[str, float],
-    fine: float,
-    coarse: float,
+    cells: str,
 ) -> str:
-    """Return the remark on grid and steps in time for a summary."""
+    """Return the remark on grid and steps in time for a summary; ``cells`` they were judged on."""
 
     def parts(errors: Mapping[str, float]) -> str:
         return ", ".join(
@@ -266,9 +262,9 @@ def discretisation_words(
             for name, error in errors.items()
         )
 
-    words = f"grid: {parts(grid)} (from {coarse * 1e3:g} and {fine * 1e3:g} mm, first order)"
+    words = f"grid: {parts(grid)} (difference to {cells})"
     if steps:
-        words += f"; steps in time: {parts(steps)} (from twice as many on {coarse * 1e3:g} mm)"
+        words += f"; steps in time: {parts(steps)} (from twice as many on these)"
     return words
 
 

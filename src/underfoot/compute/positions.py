@@ -10,14 +10,16 @@ import numpy as np
 from underfoot.case import Case
 from underfoot.core import ConvergenceError, Progress, SourcedValue, display, silent
 from underfoot.core.arrays import Array
-from underfoot.friction import FrictionCoefficients, FrictionLaw, SampledCof, cof
+from underfoot.friction import FrictionCoefficients, FrictionLaw, SampledCof
 from underfoot.shoe import SoleMap, Tread
 from underfoot.sole_contact.cost import Cost
 from underfoot.sole_contact.lug_edges import EdgedLaw
 from underfoot.sole_contact.solver import SoleContact
 
-from .contact import cost, scanned
+from .contact_friction import friction_sums
+from .cost import cost
 from .numbers import scalars
+from .sensors import scanned
 from .sole import file_surface
 
 ANGLE_BAND = math.radians(1)
@@ -292,9 +294,7 @@ def place_numbers(
     viscosity: float | None,
 ) -> dict[str, float]:
     """Return the numbers of a result that depend on where the tread lies."""
-    shear = law(contact.contact_pressure, case.motion.speed, contact.film_thickness)
-    pressures = contact.contact_pressure, contact.fluid_pressure
-    friction = cof(shear, *pressures, spacing=sole.spacing, wet=contact.wet, **contact.areas)
+    friction = friction_sums(law, contact, case.motion.speed)
     numbers, _ = scalars(case, contact, friction, scanned(case, sole, contact, viscosity=viscosity))
     fixed = ("normal_force", "slip_probability")
     return {

@@ -22,7 +22,7 @@ def resolved(case: Case, progress: Progress = silent) -> Context:
         rq=case.effective_rq,
         rq_deviation=case.interface.rq_deviation(case.shoe.roughness, case.floor.roughness),
         fluid=case.entries.get("contaminant", "the fluid"),
-        catalogue=case.catalogue,
+        catalogue=case.consulted,
         progress=progress,
     )
 

@@ -6,11 +6,11 @@ import csv
 import json
 import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from underfoot.core import DataError, Provenance, SourcedValue, Status
+from underfoot.core import DataError, Provenance, SourcedValue, Status, unknown_name
 from underfoot.core.fields import Fields, from_xarray
 from underfoot.core.files import whole_folder
 from underfoot.core.presentation import Presentable, Table, value_text
@@ -18,6 +18,7 @@ from underfoot.core.presentation import Presentable, Table, value_text
 from . import summary
 
 if TYPE_CHECKING:
+    import pandas
     import xarray
 
 FORMAT = 1
@@ -77,7 +78,7 @@ class Result(Presentable):
 
     def cautions(self) -> tuple[str, ...]:
         slip_model = self.provenance.closures.get("slip", "")
-        inputs = (self.breaches, self.assumptions, slip_model)
+        inputs = (self.breaches, self.assumptions, slip_model, self.labels)
         return summary.cautions(self.status, self.scalars, *inputs)
 
     def table(self) -> Table:
@@ -98,9 +99,54 @@ class Result(Presentable):
             "Assumptions": summary.ranked_assumptions(self.assumptions),
         }
 
+    def __str__(self) -> str:
+        return self.summary()
+
+    def __getitem__(self, name: str) -> SourcedValue:
+        """Return a scalar with its unit, uncertainty, interval and source.
+
+        Raises:
+            InputError: No scalar of this name; the nearest one is named.
+        """
+        if name not in self.scalars:
+            raise unknown_name("quantity", name, self.scalars, where=self.name)
+        return self.scalars[name]
+
+    def to_frame(self) -> pandas.DataFrame:
+        """Return every scalar as numbers in SI, a row each.
+
+        Returns:
+            Index: name of the scalar. Columns: ``value``, ``unit`` (SI), ``uncertainty`` (one
+            standard deviation), ``low`` and ``high`` (ends of the central 95 %), nan where not
+            known, ``assumed``, ``source`` and ``note`` (the reason where there is no number).
+        """
+        import pandas
+
+        rows = {}
+        for name, scalar in self.scalars.items():
+            low, high = scalar.interval or (None, None)
+            rows[name] = {
+                "value": scalar.value,
+                "unit": scalar.unit,
+                "uncertainty": scalar.uncertainty,
+                "low": low,
+                "high": high,
+                "assumed": scalar.assumed,
+                "source": scalar.source,
+                "note": scalar.note or (scalar.reason if scalar.uncertainty is None else ""),
+            }
+        frame = pandas.DataFrame.from_dict(rows, orient="index").rename_axis("quantity")
+        numbers = ["value", "uncertainty", "low", "high"]
+        return frame.astype(dict.fromkeys(numbers, float))
+
     def value(self, name: str) -> float:
-        """Return a scalar's number; an error when it was not determined or is not a result."""
-        scalar = self.scalars[name]
+        """Return a scalar's number in SI.
+
+        Raises:
+            InputError: No scalar of this name.
+            DataError: It was not determined, or the computation is no result.
+        """
+        scalar = self[name]
         if scalar.value is None:
             raise DataError(f"{name} was not determined: {scalar.reason}", where=self.name)
         if not self.status.usable:
@@ -111,7 +157,7 @@ class Result(Presentable):
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data: every scalar an object with value, unit, uncertainty, assumed."""
-        scalars = {name: value.as_dict() for name, value in self.scalars.items()}
+        scalars = {name: value.to_dict() for name, value in self.scalars.items()}
         status = {"value": str(self.status), "unit": None, "uncertainty": None}
         status |= {"reason": self.status.remedy, "assumed": False}
         return {
@@ -122,10 +168,8 @@ class Result(Presentable):
             "labels": self.labels,
             "breaches": list(self.breaches),
             "assumptions": list(self.assumptions),
-            "provenance": self.provenance.as_dict(),
+            "provenance": self.provenance.to_dict(),
         }
-
-    as_dict = to_dict
 
     def save(self, folder: Path | str, *, overwrite: bool = False) -> Path:
         """Write ``folder`` as a whole: case.toml, result.json, summary.csv and result.nc.
@@ -219,13 +263,13 @@ class Result(Presentable):
                 )
             reserved = "format name status labels breaches assumptions provenance".split()
             scalars = {
-                name: SourcedValue(**entry)
+                name: _known(SourcedValue, entry)
                 for name, entry in stored.items()
-                if name not in reserved
+                if name not in reserved and isinstance(entry, dict) and "value" in entry
             }
             provenance = dict(stored["provenance"])
             for key in ("citations", "errata"):
-                provenance[key] = tuple(provenance[key])
+                provenance[key] = tuple(provenance.get(key, ()))
             return cls(
                 name=stored["name"],
                 scalars=scalars,
@@ -234,7 +278,7 @@ class Result(Presentable):
                 status=Status(stored["status"]["value"]),
                 breaches=tuple(stored["breaches"]),
                 assumptions=tuple(stored["assumptions"]),
-                provenance=Provenance(**provenance),
+                provenance=_known(Provenance, provenance),
                 case_text=case_text,
             )
         except (OSError, ValueError, KeyError, TypeError) as error:
@@ -244,6 +288,11 @@ class Result(Presentable):
                 allowed="a folder with case.toml, result.json and result.nc",
                 remedy="Run the case again with --out",
             ) from error
+
+
+def _known(cls: Any, entry: dict[str, Any]) -> Any:
+    """Return an object of what it knows in an entry, which another version may have written."""
+    return cls(**{each.name: entry[each.name] for each in fields(cls) if each.name in entry})
 
 
 def _write_text(path: Path, text: str) -> None:

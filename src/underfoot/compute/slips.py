@@ -4,7 +4,10 @@ import math
 from collections.abc import Sequence
 
 from underfoot.case import Case
+from underfoot.case.people import Walkers
 from underfoot.core import InputError, Progress, silent
+from underfoot.core.threads import threads_limited
+from underfoot.film import NewtonianFilm
 from underfoot.slip.dynamics import (
     FloorSensors,
     GaitHistory,
@@ -15,11 +18,11 @@ from underfoot.slip.dynamics import (
     packaged_histories,
     slip_study,
 )
+from underfoot.sole_contact.lug_edges import EdgedLaw
 from underfoot.sole_contact.sole_state import SolverSettings
 
-from .contact import edged_law, pool_depth
-from .resolve import resolved
-from .sole import sole_map
+from .prepare import prepared
+from .solve import pool_depth
 
 
 def slip_setting(case: Case, *, quick: bool = True) -> Setting:
@@ -28,23 +31,23 @@ def slip_setting(case: Case, *, quick: bool = True) -> Setting:
     ``quick`` takes the coarse grid: a slip is some hundred contacts.
     """
     spacing = case.numerics.quick_grid_spacing if quick else case.numerics.grid_spacing
-    context, sole = resolved(case), sole_map(case, spacing)
-    asperities, friction = case.rough_contact.build(context), case.friction.build(context)
+    parts, strangers = prepared(case, spacing), case.model_copy(update={"slip": Walkers()})
     return Setting(
-        sole=sole,
-        compliance=case.compliance.build(context, sole),
-        asperities=asperities,
-        friction=friction,
-        viscosity=case.film.build(context),
+        sole=parts.sole,
+        compliance=parts.compliance,
+        asperities=parts.asperities,
+        friction=parts.law,
+        viscosity=parts.viscosity,
         settings=SolverSettings(
             pool_depth=pool_depth(case),
             start_film=case.motion.start_film,
             rise_time=case.motion.force_rise_time,
             tolerance=case.numerics.tolerance,
+            film=None if isinstance(parts.film, NewtonianFilm) else parts.film,
         ),
         shoe_angle=case.motion.shoe_angle,
-        key=f"{case.hash} {spacing:.6g}",
-        edged=edged_law(case, context, friction, sole, asperities),
+        key=f"{strangers.hash} {spacing:.6g}",
+        edged=parts.local_law if isinstance(parts.local_law, EdgedLaw) else None,
     )
 
 
@@ -108,6 +111,7 @@ def slip_sensors(case: Case) -> FloorSensors:
     )
 
 
+@threads_limited(1)
 def slips(
     case: Case,
     *,

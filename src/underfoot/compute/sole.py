@@ -1,7 +1,7 @@
 """The sole of a case: parametric or from a file, worn, tilted, trimmed and checked."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -21,6 +21,7 @@ from underfoot.case.errors import placed, translated
 from underfoot.case.quantity import DOOR, Length, default
 from underfoot.case.section import walk
 from underfoot.case.sole import SolePlan, TreadPattern, WholePlan
+from underfoot.case.tables import meant_file
 from underfoot.case.text import Places, parsed, read
 from underfoot.case.wear import ArchardWear
 from underfoot.core import (
@@ -37,6 +38,7 @@ from underfoot.core import (
 )
 from underfoot.shoe import SoleMap, SoleSurface, heel_map, rotated_surface, surface_map
 from underfoot.shoe.ball_joint import PLACE, BallJoint
+from underfoot.shoe.row_division import row_cells
 from underfoot.shoe.shape import SoleShape
 from underfoot.shoe.worn import ArchardStep, WornMap, archard_wear, worn_surface
 from underfoot.sole_contact.edge_peak import MOST_OVERLOADED, overloaded_share
@@ -98,11 +100,22 @@ def sole_map(
     shape = sole_shape(case, progress)
     if shape.tread is not None and any(shift):
         shape = cast("SoleShape", replace(cast("Any", shape), tread=shape.tread.moved(shift)))
-    sole = shoe.heel_map(shape, shoe_angle=case.motion.shoe_angle + turn, spacing=spacing)
+    angle = case.motion.shoe_angle + turn
+    sole = shoe.heel_map(shape, shoe_angle=angle, spacing=spacing)
     plan = case.shoe.heel
     if isinstance(plan, WholePlan):
         sole = trimmed(_jointed(case, sole, plan.length), plan.reach, rolls(case))
-    return _pressed(case, sole)
+    return _with_cells(
+        case,
+        _pressed(case, sole),
+        lambda columns: heel_map(shape, shoe_angle=angle, spacing=spacing, columns=columns),
+    )
+
+
+def _with_cells(case: Case, sole: SoleMap, fine: Callable[[int], SoleMap]) -> SoleMap:
+    """Return the sole with the cells along the sliding that the case asks for."""
+    columns = case.numerics.cells_along
+    return sole if columns == 1 else replace(sole, cells=row_cells(sole, fine(columns)))
 
 
 def _jointed(case: Case, sole: SoleMap, length: float) -> SoleMap:
@@ -163,12 +176,15 @@ def archard_state(case: Case, *, progress: Progress = silent) -> ArchardStep:
         context.poisson_ratio,
         context.rq_value,
         case.shoe.sole.model_dump(),
-        case.rough_contact.name,
-        case.compliance.name,
+        case.rough_contact,
+        case.interface,
+        case.compliance,
+        case.motion.speed,
+        case.numerics.tolerance,
         spacing,
         wear.wear_rate,
     )
-    store = Cache("archard_wear-2")
+    store = Cache("archard_wear")
     state: ArchardStep | None = None
     steps = [*np.arange(WEAR_STEP, wear.depth - 1e-9, WEAR_STEP), wear.depth]
     for number, depth in enumerate(steps):
@@ -240,7 +256,8 @@ def _read(path: str, checksum: str, settings: "FileSettings") -> "FileOutsole":
     """Read a file once in a process: the checksum is part of the key."""
     from underfoot.shoe.files import outsole_from_file
 
-    return outsole_from_file(path, settings)
+    with meant_file(path, checksum, "shoe.outsole.file") as file:
+        return outsole_from_file(file, settings)
 
 
 def file_surface(case: Case) -> SoleSurface:
@@ -272,12 +289,17 @@ def file_sole_map(
             allowed=f"above {display(deepest, 'm')}",
         )
     assert case.shoe.outsole is not None  # file_surface refuses a case without one
-    sole = surface_map(surface, shoe_angle=case.motion.shoe_angle + turn, spacing=spacing)
+    angle = case.motion.shoe_angle + turn
+    sole = surface_map(surface, shoe_angle=angle, spacing=spacing)
     if surface.length > WHOLE * file_outsole(case).whole_length:
         sole = _jointed(case, sole, surface.length)
     sole = trimmed(sole, case.shoe.outsole.reach, rolls(case))
     check_load(case, sole)
-    return _pressed(case, sole)
+    return _with_cells(
+        case,
+        _pressed(case, sole),
+        lambda columns: surface_map(surface, shoe_angle=angle, spacing=spacing, columns=columns),
+    )
 
 
 def _pressed(case: Case, sole: SoleMap) -> SoleMap:
@@ -304,7 +326,10 @@ def trimmed(
     the map's). The result keeps the whole map for pictures (``SoleMap.whole``).
     """
     angles = np.atleast_1d(np.asarray(rolled_by, dtype=float))
-    near = np.any([rolled_clearance(sole, angle) <= reach for angle in angles], axis=0)
+    near = np.any(
+        [rolled_clearance(sole.x, sole.clearance, angle, sole.joint) <= reach for angle in angles],
+        axis=0,
+    )
     margin = max(1, math.ceil(padding / sole.spacing))
     keep = []
     for axis in (0, 1):

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
+from types import MappingProxyType
 from typing import Literal
 
 from underfoot.core import SourcedValue, Status
@@ -146,6 +147,7 @@ def cautions(
     breaches: Sequence[str],
     assumptions: Sequence[str],
     slip_model: str = "",
+    labels: Mapping[str, str] = MappingProxyType({}),
 ) -> tuple[str, ...]:
     """Return why the numbers of a usable result may not be trusted; ``slip_model`` is its name."""
     if not status.usable:
@@ -166,6 +168,8 @@ def cautions(
             f"The film load depends on assumed values ({inputs}) that the ± leaves out; "
             "underfoot sensitivity gives their effect."
         )
+    if "film_inlet" in labels and friction_limit(scalars).kind == "film":
+        reasons.append(labels["film_inlet"])
     return tuple(reasons)
 
 

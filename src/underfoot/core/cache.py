@@ -1,10 +1,10 @@
 """On-disk cache of arrays, keyed by the content of what they were computed from."""
 
-import hashlib
-import json
 import os
+import shutil
+import time
 from collections.abc import Mapping
-from dataclasses import asdict, is_dataclass
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 from zipfile import BadZipFile
@@ -12,29 +12,22 @@ from zipfile import BadZipFile
 import numpy as np
 
 from .files import whole_file
+from .identity import program_hash
 
-
-def content_hash(*parts: Any) -> str:
-    """Return a hash of numbers, text, arrays, mappings, sequences and dataclasses.
-
-    Equal content gives equal hashes on every machine and in every session.
-    """
-    digest = hashlib.sha256()
-    for part in parts:
-        _feed(digest, part)
-    return digest.hexdigest()
+FORGOTTEN = 30 * 86400.0
+"""s without a new entry, after which the next program removes what another one stored."""
 
 
 class Cache:
     """Arrays stored under a content key; a damaged or missing entry is simply computed again.
 
-    ``room`` names the part of the program that owns the entries; raise its version suffix
-    (``"contact_table-2"``) when the numbers behind a key change. Entries lie in ``folder``, by
-    default that of ``default_folder()``.
+    ``room`` names the part of the program that owns the entries. An entry is of the program that
+    stored it: no other version finds it. Entries lie in ``folder``, by default that of
+    ``default_folder()``.
     """
 
     def __init__(self, room: str, folder: Path | None = None) -> None:
-        self.folder = Path(folder or default_folder()) / room
+        self.folder = Path(folder or default_folder()) / room / program_hash()[:16]
 
     def load(self, key: str) -> dict[str, np.ndarray] | None:
         """Return the arrays stored under ``key``, or None."""
@@ -51,8 +44,18 @@ class Cache:
     def store(self, key: str, arrays: Mapping[str, Any]) -> None:
         """Store arrays under ``key``; readers never see a half-written entry."""
         plain: dict[str, Any] = {key: np.asarray(value) for key, value in arrays.items()}
+        if not self.folder.is_dir():
+            self._forget_others()
         with whole_file(self.folder / f"{key}.npz") as part, part.open("wb") as stream:
             np.savez_compressed(stream, **plain)
+
+    def _forget_others(self) -> None:
+        """Remove what programs stored that have not been used for long."""
+        oldest = time.time() - FORGOTTEN
+        for other in self.folder.parent.glob("*"):
+            with suppress(OSError):
+                if other.is_file() or other.stat().st_mtime < oldest:
+                    shutil.rmtree(other) if other.is_dir() else other.unlink()
 
 
 def default_folder() -> Path:
@@ -62,31 +65,3 @@ def default_folder() -> Path:
     from platformdirs import user_cache_path
 
     return user_cache_path("underfoot")
-
-
-def _feed(digest: Any, part: Any) -> None:
-    if isinstance(part, np.ndarray):
-        array = np.ascontiguousarray(part)
-        digest.update(f"array{array.dtype.str}{array.shape}".encode())
-        digest.update(array.tobytes())
-    elif is_dataclass(part) and not isinstance(part, type):
-        _feed(digest, [type(part).__name__, asdict(part)])
-    elif isinstance(part, Mapping):
-        digest.update(b"{")
-        for key in sorted(part):
-            _feed(digest, key)
-            _feed(digest, part[key])
-        digest.update(b"}")
-    elif isinstance(part, list | tuple):
-        digest.update(b"[")
-        for item in part:
-            _feed(digest, item)
-        digest.update(b"]")
-    elif isinstance(part, np.generic):
-        _feed(digest, part.item())
-    elif isinstance(part, float):
-        digest.update(f"float{part.hex()};".encode())
-    elif part is None or isinstance(part, bool | int | str | complex):
-        digest.update(f"{type(part).__name__}{json.dumps(str(part))};".encode())
-    else:
-        raise TypeError(f"content of type {type(part).__name__} can't be hashed")

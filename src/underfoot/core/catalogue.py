@@ -8,7 +8,7 @@ the ``source`` of the entry, or tables with ``value`` and any of ``uncertainty``
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache
@@ -17,9 +17,10 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from .errors import InputError, unknown_name
-from .files import read_toml
-from .leaves import Leaf, leaves
+from .files import checksum, read_toml
+from .leaves import FrozenTable, Leaf, leaves
 from .presentation import Presentable, Table
+from .registry import offers
 from .values import SourcedValue
 
 KINDS = ("fluid", "floor", "material", "protocol", "published", "setup", "shoe")
@@ -41,6 +42,9 @@ class Entry:
     values: Mapping[str, Leaf]
     note: str = ""
     parents: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", FrozenTable(self.values))
 
     def leaf(self, path: str) -> Leaf:
         """Return the leaf at a dotted path."""
@@ -88,6 +92,9 @@ class Catalogue(Presentable):
     entries: Mapping[tuple[str, str], Entry] = field(default_factory=dict)
     folders: tuple[str, ...] = ()
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "entries", FrozenTable(self.entries))
+
     @classmethod
     def load(cls, folders: Iterable[Path | str] = ()) -> Catalogue:
         """Return the built-in entries and those of ``folders``, read in order.
@@ -100,7 +107,7 @@ class Catalogue(Presentable):
                 ``from`` that leads nowhere or in a circle.
         """
         chosen = tuple(str(Path(folder)) for folder in folders)
-        return _loaded(chosen, tuple(_stamp(Path(folder)) for folder in chosen))
+        return _loaded(chosen, tuple(map(_content, (*chosen, *_offered_folders()))))
 
     def __repr__(self) -> str:
         own = f", with {', '.join(self.folders)}" if self.folders else ""
@@ -130,6 +137,21 @@ class Catalogue(Presentable):
         if name not in known:
             raise unknown_name(kind, name, known, where=where)
         return self.entries[kind, name]
+
+    def of(self, kinds: Iterable[str]) -> Catalogue:
+        """Return the catalogue of some kinds alone."""
+        kinds = set(kinds)
+        return Catalogue({at: e for at, e in self.entries.items() if at[0] in kinds}, self.folders)
+
+    def content(self) -> dict[str, Any]:
+        """Return what the entries say in plain data, without sources and notes."""
+        return {
+            f"{kind}.{name}": {
+                "parents": entry.parents,
+                **{k: (v.given, v.uncertainty, v.assumed) for k, v in entry.values.items()},
+            }
+            for (kind, name), entry in self.entries.items()
+        }
 
     def describe(self, name: str) -> str:
         """Return every entry of this name in words: values, sources, notes."""
@@ -167,9 +189,12 @@ def _built_in_tables() -> _Tables:
 
 
 @lru_cache(maxsize=16)
-def _loaded(folders: tuple[str, ...], stamps: tuple[tuple[Any, ...], ...]) -> Catalogue:
-    """Read folders once for each state (``stamps``) of their files."""
+def _loaded(folders: tuple[str, ...], content: tuple[tuple[Any, ...], ...]) -> Catalogue:
+    """Read folders once for each ``content`` of their files."""
     raw = dict(_built_in_tables())
+    for folder in _offered_folders():
+        with suppress(InputError):  # told by ``offered_catalogues``; nobody else is touched
+            raw = _folder_tables(Path(folder)) | raw  # what is there already stays
     for folder in folders:
         for (kind, name), (origin, table) in _folder_tables(Path(folder)).items():
             if (kind, name) in raw and not table.get("replaces", False):
@@ -177,14 +202,36 @@ def _loaded(folders: tuple[str, ...], stamps: tuple[tuple[Any, ...], ...]) -> Ca
             raw[kind, name] = (origin, table)
     entries: dict[tuple[str, str], Entry] = {}
     for kind, name in raw:
-        _resolve(kind, name, raw, entries, ())
+        offered = raw[kind, name][0].startswith(_offered_folders())
+        with suppress(*(InputError,) * offered):
+            _resolve(kind, name, raw, entries, ())
     return Catalogue(entries, folders)
 
 
-def _stamp(folder: Path) -> tuple[Any, ...]:
-    """Return name, time and size of every file of a folder."""
-    states = [(file, file.stat()) for file in sorted(folder.rglob("*.toml"))]
-    return tuple((str(file), state.st_mtime_ns, state.st_size) for file, state in states)
+def _offered_folders() -> tuple[str, ...]:
+    """Return the folders of catalogues that other packages ship (``underfoot.catalogues``)."""
+    folders = []
+    for offer in offers("catalogues").values():
+        with suppress(InputError):
+            folders.append(str(offer.folder()))
+    return tuple(folders)
+
+
+def offered_catalogues() -> Iterator[str]:
+    """Yield what is wrong with the catalogues that other packages ship, a line each."""
+    for offer in offers("catalogues").values():
+        try:
+            tables = _folder_tables(offer.folder())
+        except InputError as error:
+            yield f"{offer}: {error}"
+            continue
+        for kind, name in tables.keys() & _built_in_tables().keys():
+            yield f"{offer}: the {kind} {name} stays as Underfoot has it"
+
+
+def _content(folder: str) -> tuple[tuple[str, str], ...]:
+    """Return name and checksum of every file of a folder: a copy may keep time and size."""
+    return tuple((str(file), checksum(file)) for file in sorted(Path(folder).rglob("*.toml")))
 
 
 def _folder_tables(folder: Path, *, built_in: bool = False) -> _Tables:

@@ -131,7 +131,11 @@ def file_trouble(error: OSError) -> str:
 
 
 def nearest_match(given: str, known: Iterable[str]) -> str | None:
-    """Return the known name closest to ``given``, or None when nothing is close."""
+    """Return the known name closest to ``given``, or None when nothing is close.
+
+    >>> nearest_match("coff", ["cof", "fluid_load"])
+    'cof'
+    """
     names = list(known)
     folded = {name.casefold(): name for name in names}
     matches = difflib.get_close_matches(given.casefold(), folded, n=1, cutoff=0.5)

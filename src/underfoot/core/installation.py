@@ -10,10 +10,11 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from .cache import default_folder
-from .catalogue import Catalogue, catalogue_folders
+from .catalogue import Catalogue, catalogue_folders, offered_catalogues
 from .fourier import fourier_library
+from .identity import package_version
 from .mkl import mkl_library
-from .provenance import package_version
+from .registry import all_offers, broken_offers
 from .sparse import back_end
 
 # module, package, extra, what it is for
@@ -46,6 +47,8 @@ def installation() -> list[tuple[str, str]]:
         *((name, os.environ.get(name, "not set")) for name in _THREADS),
         ("cache", _cache(default_folder())),
     ]
+    rows += [("extension", str(offer)) for offer in all_offers()]
+    rows += [("broken extension", line) for line in (*broken_offers(), *offered_catalogues())]
     folders = catalogue_folders(Path.cwd())
     rows.append(("catalogue", f"{len(Catalogue.load(folders).entries)} entries"))
     return rows + [("catalogue folder", str(folder)) for folder in folders]

@@ -2,15 +2,28 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Never
 
-from .errors import unknown_name
+from .errors import InputError, unknown_name
 from .units import si_unit, to_si
 from .values import SourcedValue
 
 INHERITED = ("source", "assumed", "verified", "note")
 """Marks that a table hands down to the values in it."""
 _LEAF_KEYS = frozenset({"value", "uncertainty", "erratum", *INHERITED})
+
+
+class FrozenTable(dict[Any, Any]):
+    """A table that all who read it share: it can't be changed."""
+
+    def _refused(self, *_given: Any, **_more: Any) -> Never:
+        raise InputError("this table is shared by all cases: it can't be changed")
+
+    _refuse: Any = _refused
+    __setitem__ = __delitem__ = __ior__ = update = pop = popitem = setdefault = clear = _refuse
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (dict(self),)
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,8 +79,17 @@ def _leaves(table: Mapping[str, Any], path: str, inherited: Leaf) -> Iterator[tu
             if "source" in marks and "assumed" not in marks:
                 marks["assumed"] = False
             spread = item.get("uncertainty")
-            yield where, replace(inherited, given=item["value"], uncertainty=spread, **marks)
+            given = _frozen(item["value"])
+            yield where, replace(inherited, given=given, uncertainty=spread, **marks)
         elif isinstance(item, Mapping):
             yield from _leaves(item, where + ".", inherited)
         else:
-            yield where, replace(inherited, given=item)
+            yield where, replace(inherited, given=_frozen(item))
+
+
+def _frozen(item: Any) -> Any:
+    if isinstance(item, list):
+        return tuple(map(_frozen, item))
+    if isinstance(item, dict):
+        return FrozenTable({key: _frozen(value) for key, value in item.items()})
+    return item

@@ -48,7 +48,7 @@ def mkl_library() -> ctypes.CDLL | None:
     for path in candidates or filter(None, [find_library("mkl_rt")]):
         try:
             loaded = ctypes.CDLL(path)
-            _ = loaded.pardiso, loaded.DftiCreateDescriptor
+            _ = loaded.pardiso, loaded.DftiCreateDescriptor, loaded.MKL_Set_Num_Threads_Local
         except (OSError, AttributeError):
             continue
         loaded.pardiso.restype = None
@@ -88,7 +88,6 @@ def pardiso_schur_complement(
     """Return the Schur complement on the ``retained`` unknowns (ascending), see ``core.sparse``."""
     system = _System(upper, kind)
     system.retained[retained] = 1
-    system.options[1] = 2
     system.options[35] = 1  # the complement, dense, in the place of the solution
     answer = np.zeros((retained.size, retained.size))
     system.call(_ANALYSE_AND_FACTORISE, np.zeros(system.retained.size), answer)
@@ -104,17 +103,17 @@ class _System:
         if library is None:
             raise MklError("MKL is not installed")
         self._pardiso = library.pardiso
+        self._set_threads = library.MKL_Set_Num_Threads_Local
         size = matrix.indptr.size - 1
         self.values = np.array(matrix.data, dtype=float)
         self.retained = np.zeros(size, dtype=np.int32)
         self.options = np.zeros(64, dtype=np.int32)
         self.options[0] = 1  # no defaults
         self.options[34] = 1  # indices from zero
-        # Systems on maps (2,000 to 24,000 unknowns under a sole) are ordered by minimum degree
-        # (options[1] = 0), those of bodies by nested dissection; general ones take the two-level
-        # factorization: up to 2.5 times as fast as nested dissection and the classic one.
-        self.options[1] = 2 if kind == "symmetric" else 0
-        self.options[23] = 10 if kind == "general" else 0
+        # Nested dissection and the classic factorization are right on any number of threads.
+        # Minimum degree (options[1] = 0) with the two-level factorization (options[23] = 10) is
+        # not: on two threads its solutions are wrong.
+        self.options[1] = 2
         self.options[9] = 10 if kind == "general" else 8  # perturb pivots below 10^-this
         self._handle = np.zeros(64, dtype=np.int64)
         self._rows = matrix.indptr.astype(np.int32)
@@ -135,7 +134,10 @@ class _System:
         self._phase.value = phase
         self._columns.value = right.shape[1] if right.ndim == 2 else 1
         error = self._error
+        # one thread: the same digits on every machine, and no threads that wait for each other
+        before = self._set_threads(1)
         self._pardiso(*self._before, _address(right), _address(answer), ctypes.byref(error))
+        self._set_threads(before)
         if error.value and phase != _RELEASE:
             raise MklError(f"PARDISO reported error {error.value}")
 

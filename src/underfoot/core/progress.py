@@ -2,12 +2,17 @@
 
 import sys
 import time
+from bisect import bisect_left
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Protocol
 
 FIRST_LINE = 2.0  # s: shorter work says nothing
 BETWEEN_LINES = 5.0  # s
+LEAST_DONE = 0.1
+"""Share of a stage that has to be done before the time left is estimated."""
+STEADY = 2.0
+"""Greatest ratio of the times of a stage's two halves at which its rate says what is left."""
 
 
 class Progress(Protocol):
@@ -32,20 +37,37 @@ def part(progress: Progress, low: float, high: float) -> Progress:
 
 
 class TimeLeft:
-    """Estimate of the time left in a stage, from the rate since the stage began."""
+    """Estimate of the time left, from the rate since the present stage began.
+
+    Known once a tenth of what was left as the stage began is done, and its two halves took times
+    that differ by a factor of two at most: work that stalls or whose rate changes has no estimate.
+    None is more than nine times what the stage has taken.
+    """
 
     def __init__(self) -> None:
         self._stage: str | None = None
-        self._began = (0.0, 0.0)
+        self._times: list[float] = []
+        self._fractions: list[float] = []
 
     def __call__(self, stage: str, fraction: float, now: float) -> float | None:
-        """Return the seconds left at the time ``now``, or None while nothing is known."""
-        if stage != self._stage or fraction < self._began[1]:
-            self._stage, self._began = stage, (now, fraction)
-        began, start = self._began
-        if fraction <= start:
+        """Return the seconds left at the time ``now``, or None while they can't be known."""
+        fraction = min(fraction, 1.0)
+        if stage != self._stage or fraction < self._fractions[-1]:
+            self._stage, self._times, self._fractions = stage, [], []
+        self._times.append(now)
+        self._fractions.append(fraction)
+        began, start = self._times[0], self._fractions[0]
+        done = fraction - start
+        if done < LEAST_DONE * (1.0 - start) or done <= 0.0:
             return None
-        return (now - began) * (1.0 - min(fraction, 1.0)) / (fraction - start)
+        after = bisect_left(self._fractions, start + 0.5 * done)
+        (t1, t2), (f1, f2) = (
+            each[after - 1 : after + 1] for each in (self._times, self._fractions)
+        )
+        first = t1 + (t2 - t1) * (start + 0.5 * done - f1) / (f2 - f1) - began
+        second = now - began - first
+        steady = max(first, second) <= STEADY * min(first, second)
+        return (now - began) * (1.0 - fraction) / done if steady else None
 
 
 @contextmanager
@@ -105,10 +127,11 @@ def _lines(title: str) -> Progress:
 
 
 def _left_text(seconds: float | None) -> str:
-    if seconds is None:
-        return ""
+    return "" if seconds is None else f"about {time_text(max(1.0, seconds))} left"
+
+
+def time_text(seconds: float) -> str:
+    """Return a time in the unit that people read."""
     if seconds < 90:
-        return f"about {max(1.0, seconds):.0f} s left"
-    if seconds < 5400:
-        return f"about {seconds / 60:.0f} min left"
-    return f"about {seconds / 3600:.1f} h left"
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

@@ -3,44 +3,19 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
-from functools import cache
-from importlib import metadata
-from pathlib import Path
 from typing import Any
 
-from .cache import content_hash
-
-
-def package_version(name: str) -> str:
-    """Return the version of a package, "unknown" where it is not recorded.
-
-    An application that was frozen, or a folder on the path, carries no record of versions.
-    """
-    try:
-        return metadata.version(name)
-    except metadata.PackageNotFoundError:
-        return "unknown"
+from .fourier import fourier_library
+from .identity import content_hash, package_version, program_hash
+from .sparse import back_end
+from .threads import threads_in_use
 
 
 def version() -> str:
     """Return the version of this package."""
     return package_version("underfoot")
-
-
-@cache
-def program_hash() -> str:
-    """Return a hash of the package's own text: numbers of another code are not ours."""
-    return files_hash((str(Path(__file__).parents[1]),))
-
-
-def files_hash(folders: Sequence[str]) -> str:
-    """Return a hash of the program and data files in folders."""
-    paths = (path for folder in folders for path in sorted(Path(folder).rglob("*")))
-    texts = (path for path in paths if path.suffix in (".py", ".toml", ".csv"))
-    return content_hash(*(path.read_text(encoding="utf-8", errors="replace") for path in texts))
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,15 +31,32 @@ class Provenance:
     created: str = ""
     objects: dict[str, str] = field(default_factory=dict)
     """slot: object given to ``run`` in place of the case's option"""
+    result_hash: str = ""
+    """Of all that made the numbers: the case, the grid, this program and its libraries."""
+    threads: int = 0
+    """Of the libraries of linear algebra; the numbers don't depend on it. 0: not recorded."""
 
     @classmethod
-    def now(cls, case_hash: str, *, closures: dict[str, str], **given: Any) -> Provenance:
-        """Return a provenance stamped with the present time and the versions in use."""
-        versions = {name: package_version(name) for name in ("underfoot", "numpy", "scipy")}
-        versions["python"] = platform.python_version()
-        created = datetime.now(UTC).isoformat(timespec="seconds")
-        return cls(case_hash, closures, versions=versions, created=created, **given)
+    def now(
+        cls, case_hash: str, *, grid: float, closures: dict[str, str], **given: Any
+    ) -> Provenance:
+        """Return a provenance stamped with the present time and the versions in use.
 
-    def as_dict(self) -> dict[str, Any]:
+        ``grid`` is the spacing (m) of the cells.
+        """
+        versions = {name: package_version(name) for name in ("underfoot", "numpy", "scipy")}
+        libraries = [versions["numpy"], versions["scipy"], back_end(), fourier_library()]
+        versions["python"] = platform.python_version()
+        return cls(
+            case_hash,
+            closures,
+            versions=versions,
+            created=datetime.now(UTC).isoformat(timespec="seconds"),
+            result_hash=content_hash(case_hash, grid, program_hash(), libraries)[:32],
+            threads=threads_in_use(),
+            **given,
+        )
+
+    def to_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
         return asdict(self)

@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 Kind = Literal["general", "symmetric", "positive definite"]
 BACK_ENDS = ("pardiso", "superlu")
 VARIABLE = "UNDERFOOT_SPARSE"
+LARGEST_RESIDUAL = 1e-8
+"""Backward error |A x - b| / (|A| |x| + |b|) above which a solution counts as wrong."""
 BATCH = 128  # unit loads solved at once for a Schur complement without MKL
 
 
@@ -123,7 +125,7 @@ def _inverse_block(upper: sp.csr_matrix, retained: NDArray[np.integer], kind: Ki
 
 
 class _Checked:
-    """Turns the back ends' failures into the package's error."""
+    """Turns the back ends' failures into the package's error; checks one solve a factorization."""
 
     def __init__(self, matrix: sp.csr_matrix, name: str, kind: Kind, where: str) -> None:
         self._name, self._where = name, where
@@ -134,6 +136,7 @@ class _Checked:
     def factorise(self, matrix: sp.csr_matrix) -> None:
         if not np.isfinite(matrix.data).all():
             raise _singular(self._where)
+        self._unchecked: sp.csr_matrix | None = matrix
         if self._name == "pardiso" and self._kind != "general":
             matrix = upper_triangle(matrix)
         try:
@@ -148,7 +151,20 @@ class _Checked:
 
     def solve(self, right: Array) -> Array:
         assert self._inner is not None
-        return self._inner.solve(right)
+        answer, matrix = self._inner.solve(right), self._unchecked
+        if matrix is not None:
+            self._unchecked = None
+            largest = abs(matrix).max() * np.abs(answer).max() + np.abs(right).max()
+            error = np.abs(matrix @ answer - right).max()
+            if not error <= LARGEST_RESIDUAL * largest:
+                raise ConvergenceError(
+                    f"a solution by {self._name} is wrong: its backward error is "
+                    f"{error / largest:.1e}, at most {LARGEST_RESIDUAL:.0e} is right",
+                    where=self._where,
+                    remedy="Check that each part is held or loaded, or choose the other solver: "
+                    f"{VARIABLE}={BACK_ENDS[1 - BACK_ENDS.index(self._name)]}",
+                )
+        return answer
 
 
 class _SuperLU:

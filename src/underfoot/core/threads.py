@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -10,18 +11,25 @@ import numpy as np
 
 @contextmanager
 def threads_limited(threads: int) -> Iterator[None]:
-    """Keep BLAS and OpenMP of this process at ``threads`` inside the block.
+    """Keep BLAS and OpenMP of this process at ``threads`` inside the block or decorated function.
 
-    Without it small matrix products take every core there is, whatever the caller asked for.
+    Without it small matrix products take every core there is, whatever the caller asked for, and
+    their digits depend on how many those are.
     """
     with _controller().limit(limits=threads):
         yield
+
+
+def threads_in_use() -> int:
+    """Return the number of threads of BLAS and OpenMP of this process."""
+    return max((library["num_threads"] for library in _controller().info()), default=1)
 
 
 @cache
 def _controller() -> Any:
     from threadpoolctl import ThreadpoolController
 
+    import_module("scipy.linalg")  # has a BLAS of its own: one that is loaded later has no limit
     return ThreadpoolController()
 
 

@@ -100,6 +100,9 @@ def to_si(given: object, unit: str, *, where: str) -> float:
     Errors:
         InputError: Unit missing, unknown or of another dimension; text that is no number; not
             finite.
+
+    >>> to_si("219 cP", "Pa*s", where="contaminant.viscosity")
+    0.219
     """
     example = _EXAMPLES.get(unit, f"1 {unit}")
     if isinstance(given, bool):
@@ -140,7 +143,11 @@ def to_si(given: object, unit: str, *, where: str) -> float:
 
 
 def display(value: float, unit: str, digits: int = 3) -> str:
-    """Return an SI value as short text in a unit people read, for example ``"219 cP"``."""
+    """Return an SI value as short text in a unit people read, for example ``"219 cP"``.
+
+    >>> display(0.219, "Pa*s")
+    '219 cP'
+    """
     if not math.isfinite(value):
         return "not a number"
     factor, name = display_unit(value, unit)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
+from .errors import DataError
 from .units import display
 
 
@@ -34,6 +35,11 @@ class SourcedValue:
         if self.uncertainty is not None and self.uncertainty < 0:
             raise ValueError(f"uncertainty {self.uncertainty} is negative")
 
+    def __float__(self) -> float:
+        if self.value is None:
+            raise DataError(f"was not determined: {self.reason}")
+        return self.value
+
     def __str__(self) -> str:
         if self.value is None:
             return f"not estimated ({self.reason})"
@@ -42,7 +48,7 @@ class SourcedValue:
             text += f" ± {display(self.uncertainty, self.unit, 2)}"
         return text + (" (assumed)" if self.assumed else "")
 
-    def as_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Any]:
         """Return plain data for JSON and CSV."""
         return {name: getattr(self, name) for name in self.__slots__}
 

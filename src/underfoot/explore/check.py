@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 from underfoot.compute.positions import run_cost
 from underfoot.core import InputError
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.progress import time_text
 
 from .plan import StudyPlan
 from .proposals import first_points
@@ -114,10 +115,3 @@ def study_check(plan: StudyPlan, most: int = MOST_BUILT) -> StudyCheck:
             except InputError as error:
                 reasons[str(error)] += 1
     return StudyCheck(plan, designs, cases, (low * cases, high * cases), built, dict(reasons))
-
-
-def time_text(seconds: float) -> str:
-    """Return a time in the unit that people read."""
-    if seconds < 90:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

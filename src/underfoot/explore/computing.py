@@ -17,10 +17,10 @@ from underfoot.compute.result import Result
 from underfoot.compute.run import run
 from underfoot.compute.sole import file_surface, sole_shape
 from underfoot.core import ConvergenceError, InputError, SourcedValue, Status
-from underfoot.core.provenance import program_hash
-from underfoot.core.threads import threads_limited
+from underfoot.core.identity import program_hash
 from underfoot.shoe import heel_surface
 
+from .plan import job_key
 from .record import Ending, Job, Record
 
 MEASURES = {
@@ -40,8 +40,13 @@ def computed(base: Case, job: Job) -> Record:
     found: dict[str, Any] = {}
     try:
         case = base.replace(job.changes)
-        with threads_limited(1):
-            result = run(case, quick=job.quick)
+        if job_key(case, job.quick) != job.key:
+            raise InputError(
+                "a file, the catalogue or the code of an option has changed since the "
+                "study set this case",
+                remedy="Run the study in a new folder",
+            )
+        result = run(case, quick=job.quick)
         found = _found(case, result, job.fields)
     except InputError as error:
         found = {"ending": Ending.INFEASIBLE, "reason": str(error)}

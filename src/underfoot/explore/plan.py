@@ -15,7 +15,7 @@ from scipy.stats import qmc
 from underfoot.case import Case
 from underfoot.case.quantity import Flag
 from underfoot.case.section import Section
-from underfoot.core import content_hash
+from underfoot.core import InputError, content_hash
 from underfoot.core.arrays import Array
 
 from .goals import AnyGoal, Condition, Requirement
@@ -158,9 +158,17 @@ class StudyPlan:
         quick, fields = self.method.quick if quick is None else quick, self.method.fields
         for state, draw in product(range(len(self.states)), range(len(self.draws))):
             changes = {**own, **self.draws[draw], **self.states[state].changes}
-            key = content_hash(self.base.hash, {k: _rounded(v) for k, v in changes.items()}, quick)
-            yield Job(key[:24], design, state, draw, batch, place, changes, quick, fields)
+            yield Job(
+                self._key(changes, quick), design, state, draw, batch, place, changes, quick, fields
+            )
+
+    def _key(self, changes: Mapping[str, Any], quick: bool) -> str:
+        try:
+            return job_key(self.base.replace(changes), quick)
+        except InputError:  # no case: its record will say why
+            return content_hash(self.base.hash, changes, quick)[:24]
 
 
-def _rounded(value: Any) -> Any:
-    return float(f"{value:.12g}") if isinstance(value, float) else value
+def job_key(case: Case, quick: bool) -> str:
+    """Return the key of a job: what decides its numbers."""
+    return content_hash(case.hash, quick)[:24]

@@ -13,8 +13,8 @@ import numpy as np
 
 from underfoot.case import unit_at
 from underfoot.core.arrays import Array, Mask
+from underfoot.core.identity import program_hash
 from underfoot.core.presentation import Presentable, Table, percent, quantity_text
-from underfoot.core.provenance import program_hash
 from underfoot.friction.propagation import probability_higher
 
 from .goals import AnyGoal, Goal, output_array

@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 from underfoot.core.presentation import Table
+from underfoot.core.progress import time_text
 
-from .check import time_text
 from .record import Ending
 from .result import StudyResult
 from .study import Study
@@ -49,6 +49,12 @@ class StudyStatus(StudyResult):
         return self.case_seconds / self.worker_seconds if self.worker_seconds else 0.0
 
     @cached_property
+    def _ended(self) -> int:
+        """Cases that ended since the processes began that are alive, or were."""
+        began = min((one["began"] for one in self._alive or self.sessions), default=self.now)
+        return sum(record.ended >= began for record in self.records.values())
+
+    @cached_property
     def per_minute(self) -> float:
         """Cases that end in a minute, over the processes that are alive, or were."""
         counted = self._alive or self.sessions
@@ -56,13 +62,12 @@ class StudyStatus(StudyResult):
             return 0.0
         began = min(one["began"] for one in counted)
         elapsed = max(one["ended"] or self.now for one in counted) - began
-        ended = sum(record.ended >= began for record in self.records.values())
-        return 60 * ended / max(elapsed, 1e-9)
+        return 60 * self._ended / max(elapsed, 1e-9)
 
     @property
     def seconds_left(self) -> float | None:
-        """Time left of the cases set so far, at that rate; None while nothing is known."""
-        known = self._alive and self.per_minute
+        """Time left of the cases set so far, at that rate; None before each worker ended one."""
+        known = self._alive and self._ended >= max(1, self.working)
         return 60 * self.endings[Ending.OPEN] / self.per_minute if known else None
 
     def headline(self) -> tuple[str, ...]:

@@ -87,7 +87,8 @@ class Store:
 
         Where the folder has another one its jobs are set aside; cases that both have stay finished.
         """
-        texts = {"base.toml": plan.base.to_toml(complete=True), "study.toml": plan.text}
+        base = f"{plan.base.to_toml(complete=True)}\n# hash: {plan.base.hash}\n"
+        texts = {"base.toml": base, "study.toml": plan.text}
         paths = {self.folder / name: text for name, text in texts.items()}
         if all(path.exists() and path.read_text("utf-8") == text for path, text in paths.items()):
             return

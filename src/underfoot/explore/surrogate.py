@@ -23,6 +23,7 @@ from underfoot.core import DataError, RangeError, display
 from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
 from underfoot.core.presentation import quantity_text
+from underfoot.core.threads import threads_limited
 
 from .inputs import Choice, Distribution, Input
 
@@ -133,6 +134,7 @@ class Surrogate:
         return float(self.values.mean()), float(self.values.std()) or 1.0
 
 
+@threads_limited(1)
 def fitted(
     name: str, unit: str, dimensions: Sequence[Dimension], points: Array, values: Array
 ) -> Surrogate:

@@ -1,5 +1,7 @@
 """Fluid film between sole and floor: Reynolds and cavitation, wedge, squeeze, soft EHL, regimes."""
 
+from .film_model import FilmModel as FilmModel
+from .film_model import NewtonianFilm as NewtonianFilm
 from .operator import Cavity as Cavity
 from .operator import Conductance as Conductance
 from .operator import FilmOperator as FilmOperator

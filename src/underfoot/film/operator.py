@@ -169,13 +169,20 @@ class Cavity:
     def __init__(self, pattern: Pattern, by_fraction: Array, mask: Mask) -> None:
         cells = self.cells = pattern.along[mask[pattern.along]]
         linked = pattern.columns[1, cells[:-1]] == cells[1:]
+        self._factorise(
+            linked * by_fraction[2, cells[1:]],
+            by_fraction[0, cells],
+            linked * by_fraction[1, cells[:-1]],
+        )
+
+    def _factorise(self, below: Array, own: Array, above: Array) -> None:
         # factorised once, for it is solved in each product; three rows of their own at the end, for
         # LAPACK's wrapper takes no fewer
-        below, own, above = np.zeros((3, cells.size + 3))
-        below[: linked.size] = linked * by_fraction[2, cells[1:]]
-        above[: linked.size] = linked * by_fraction[1, cells[:-1]]
-        own[:-3], own[-3:] = by_fraction[0, cells], 1.0
-        *self._factors, failed = dgttrf(below[:-1], own, above[:-1])
+        size = own.size
+        rows = np.zeros((3, size + 3))
+        rows[0, : below.size], rows[2, : above.size] = below, above
+        rows[1, :size], rows[1, size:] = own, 1.0
+        *self._factors, failed = dgttrf(rows[0, :-1], rows[1], rows[2, :-1])
         if failed:
             raise np.linalg.LinAlgError("a cavity that neither holds nor passes on liquid")
 
@@ -263,17 +270,25 @@ def shear_gap(a: Array, b: Array, of_a: Array, of_b: Array, series: FaceValue) -
 
 
 def upwind_blend(
-    a: Array, b: Array, shear: FaceValue, lean: Upwinding, *, from_a: bool
+    a: Array,
+    b: Array,
+    shear: FaceValue,
+    lean: Upwinding,
+    *,
+    from_a: bool,
+    steps: Mask | Literal[True] = True,
 ) -> FaceValue:
     """Return the shear gap drawn towards the upstream cell where the film is compliant.
 
     Central values wiggle where the gap answers to the pressure faster than the pressure flow can
     smooth it (cell Peclet number above 1). A rigid film keeps the series-exact gap, and so does a
     step in the sole, with no remainder: a channel 2 mm deep beside a film of 5 um would otherwise
-    feed the lug with a flow it doesn't have.
+    feed the lug with a flow it doesn't have. ``steps`` are the faces that may hold one: others know
+    the gap between their cells.
     """
     gap, by_a, by_b = shear
     smooth, slope = _smoothness(a, b)
+    smooth, slope = np.where(steps, smooth, 1.0), np.where(steps, slope, 0.0)
     weight = lean.strength * smooth
     excess = (a if from_a else b) + lean.correction - gap
     turn = lean.strength * slope * excess

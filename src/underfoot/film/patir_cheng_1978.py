@@ -52,6 +52,9 @@ def patir_cheng_pressure_factors(
 
     Gaussian heights, no deformation, contact as overlap: at H below 1 a soft rubber conforms and
     leaves other channels than this. Source: Patir and Cheng (1978) J. Lubr. Technol. 100:12-17.
+
+    >>> [round(float(each), 3) for each in patir_cheng_pressure_factors(6e-6, 2e-6)]
+    [0.832, 0.832]
     """
     ratio = np.maximum(
         positive_array(gap, "gap") / positive(rq, "rq"), RANGES["gap over roughness H"].low
@@ -72,6 +75,9 @@ def patir_cheng_mean_gap(gap: ArrayLike, rq: float) -> Array:
     What the walls carry and what the film stores is h_T, what resists pressure flow is
     phi_x h^3 / (12 eta): give ``Film`` the gap h_T and the factor phi (h / h_T)^3.
     Source: Patir and Cheng 1978 for Gaussian heights.
+
+    >>> round(float(patir_cheng_mean_gap(5e-6, 2e-6)) * 1e6, 3)
+    5.004
     """
     from scipy.special import erf
 

@@ -41,6 +41,9 @@ def patir_cheng_shear_factor(gap: ArrayLike, rq: float, *, anisotropy: float = 1
         rq, anisotropy: As ``patir_cheng_pressure_factors``; gamma of the rough wall.
 
     Source: Patir and Cheng (1979) J. Lubr. Technol. 101:220-229.
+
+    >>> round(float(patir_cheng_shear_factor(6e-6, 2e-6)), 3)
+    0.553
     """
     ratio = np.maximum(positive_array(gap, "gap") / positive(rq, "rq"), 0.5)
     gamma = checked_anisotropy(anisotropy)

@@ -70,6 +70,9 @@ def lubrication_by_lambda(lambda_ratio: float) -> Lubrication:
     Lambda is a smooth film over undeformed roughness (``lambda_ratio``). Rules of thumb from steel:
     soft asperities flatten under the film, so rubber runs on a full film at lambda below 3.
     Source: the report, text to Fig. 19.
+
+    >>> str(lubrication_by_lambda(0.5))
+    'boundary'
     """
     return _named(not_negative(lambda_ratio, "lambda_ratio"), LAMBDA_LIMITS)
 
@@ -78,6 +81,9 @@ def lubrication_by_load_share(fluid_share: float) -> Lubrication:
     """Return the regime by the fluid's share of the load: boundary below 0.1, full film above 0.9.
 
     The limits are assumed. ``fluid_share`` 0 to 1, from a coupled solution or ``fluid_load_share``.
+
+    >>> str(lubrication_by_load_share(0.5))
+    'mixed'
     """
     return _named(between(fluid_share, 0.0, 1.0, "fluid_share"), SHARE_LIMITS)
 
@@ -97,7 +103,11 @@ def fluid_load_share(film_thickness: ArrayLike, law: GapPressure, mean_pressure:
 
 
 def compare_regimes(lambda_ratio: float, fluid_share: float) -> RegimeComparison:
-    """Return the regime by lambda and by load share, and why they differ where they do."""
+    """Return the regime by lambda and by load share, and why they differ where they do.
+
+    >>> compare_regimes(0.5, 0.5).by_load_share
+    <Lubrication.MIXED: 'mixed'>
+    """
     first, second = lubrication_by_lambda(lambda_ratio), lubrication_by_load_share(fluid_share)
     given = (
         f"lambda {lambda_ratio:.2g} says {first}, the fluid's {fluid_share:.0%} of the load says "

@@ -80,6 +80,10 @@ def soft_ehl(
 
     Source: Hamrock and Dowson (1978) J. Lubr. Technol. 100:236-245; Eq. 18 of the report, whose
     printed W = w / (E' R') is not dimensionless.
+
+    >>> ball = {"load": 10.0, "radius": 0.01, "effective_modulus": 1e7}
+    >>> round(float(soft_ehl(viscosity=0.1, speed=0.5, **ball).central) * 1e6, 2)
+    5.47
     """
     if speed_is not in SPEEDS:
         raise unknown_name("speed", speed_is, SPEEDS, where="speed_is")
@@ -112,6 +116,9 @@ def effective_modulus(modulus: float, poisson_ratio: float = 0.5) -> float:
 
     2 / E' = (1 - nu1^2) / E1 + (1 - nu2^2) / E2 with E2 without limit. The report took E' = E:
     films 1.53 times as thick at nu = 0.5. Source: Hamrock and Dowson 1978.
+
+    >>> round(effective_modulus(5e6, 0.49))
+    13159626
     """
     return 2 * positive(modulus, "modulus") / (1 - checks.poisson_ratio(poisson_ratio) ** 2)
 
@@ -120,6 +127,9 @@ def radius_of_parabola(coefficient: float) -> float:
     """Return the reduced radius R' = 1 / (2 B) (m) of a profile h = B r^2, B in 1/m (Eq. 19, 20).
 
     ``trials.reduced_radius`` fits B to a recorded profile.
+
+    >>> radius_of_parabola(50.0)
+    0.01
     """
     return 1 / (2 * positive(coefficient, "coefficient"))
 
@@ -129,6 +139,9 @@ def lambda_ratio(film_thickness: ArrayLike, rq_first: float, rq_second: float) -
 
     ``film_thickness`` in m (any shape), roughnesses in m (one may be 0). Both roughnesses count as
     they were measured, undeformed.
+
+    >>> round(float(lambda_ratio(10e-6, 3e-6, 4e-6)), 3)
+    2.0
     """
     thickness = positive_array(film_thickness, "film_thickness", zero=True)
     first, second = not_negative(rq_first, "rq_first"), not_negative(rq_second, "rq_second")
@@ -165,6 +178,10 @@ def film_regime(
 
     Source: Hamrock and Dowson 1979; Esfahanian and Hamrock 1991, Tribol. Trans. 34:628-632
     (coefficients as in public lecture codes; 141 and 128 from memory).
+
+    >>> ball = {"load": 10.0, "radius": 0.01, "effective_modulus": 1e7}
+    >>> str(film_regime(viscosity=0.1, entrainment_speed=0.5, **ball)[0])
+    'isoviscous-elastic'
     """
     eta = positive(viscosity, "viscosity")
     u = positive(entrainment_speed, "entrainment_speed")

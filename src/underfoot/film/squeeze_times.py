@@ -30,6 +30,10 @@ def squeeze_time_disc(
 
     Rigid, smooth, parallel, fully flooded, no inertia; a soft sole traps a thicker pocket in its
     middle and takes longer to empty it. Source: Stefan 1874.
+
+    >>> pad = {"radius": 0.01, "load": 10.0, "start_gap": 1e-4, "end_gap": 1e-5}
+    >>> round(float(squeeze_time_disc(viscosity=0.1, **pad)), 3)
+    2.333
     """
     shape = 0.5 * math.pi * positive(radius, "radius") ** 4
     return _time(shape, viscosity, load, start_gap, end_gap)
@@ -51,6 +55,10 @@ def squeeze_time_rectangle(
     sum tanh(n pi a / 2b) / n^5 over odd n], a >= b. A disc has J = pi R^4 / 2.
 
     Source: Hays 1961 for the square plate; torsion after Saint-Venant (Timoshenko and Goodier).
+
+    >>> pad = {"length": 0.01, "width": 0.01, "load": 10.0}
+    >>> round(float(squeeze_time_rectangle(viscosity=0.1, **pad, start_gap=1e-4, end_gap=1e-5)), 3)
+    0.209
     """
     sides = positive(length, "length"), positive(width, "width")
     return _time(rectangle_torsion_constant(*sides), viscosity, load, start_gap, end_gap)
@@ -72,7 +80,11 @@ def squeeze_gap(
 
 
 def rectangle_torsion_constant(length: float, width: float) -> float:
-    """Return Saint-Venant's torsion constant J (m^4) of a rectangle; 0.1406 a^4 for a square."""
+    """Return Saint-Venant's torsion constant J (m^4) of a rectangle; 0.1406 a^4 for a square.
+
+    >>> round(rectangle_torsion_constant(0.02, 0.01) * 1e9, 3)
+    4.574
+    """
     a, b = max(length, width), min(length, width)
     n = np.arange(1, 2 * _TERMS, 2)
     series = float((np.tanh(0.5 * n * math.pi * a / b) / n**5.0).sum())

@@ -46,6 +46,10 @@ def tapered_wedge(
         leading_gap, trailing_gap: h1 > h0 > 0, m.
 
     Source: Reynolds 1886; separation after Michell 1905.
+
+    >>> wedge = {"length": 0.01, "width": 0.01, "leading_gap": 2e-4, "trailing_gap": 1e-4}
+    >>> round(tapered_wedge(viscosity=0.1, speed=1.0, **wedge).load, 4)
+    0.6928
     """
     h1 = positive(leading_gap, "leading_gap")
     h0 = positive(trailing_gap, "trailing_gap")
@@ -77,6 +81,9 @@ def side_leakage(length_over_width: float, taper: float) -> float:
 
     ``length_over_width`` l / b with l along the motion; ``taper`` m = (h1 - h0) / h0. 0.44 for a
     square pad. Method and source as ``tapered_wedge``.
+
+    >>> round(side_leakage(1.0, 1.0), 3)
+    0.436
     """
     ratio = positive(length_over_width, "length_over_width")
     modes = _modes(positive(taper, "taper"))
@@ -99,7 +106,11 @@ def wedge_film(
 
 
 def wedge_load_factor(taper: float) -> float:
-    """Return K(m) = [ln(1 + m) - 2 m / (2 + m)] / m^2, at most 0.02671 (m = 1.189)."""
+    """Return K(m) = [ln(1 + m) - 2 m / (2 + m)] / m^2, at most 0.02671 (m = 1.189).
+
+    >>> round(wedge_load_factor(1.0), 4)
+    0.0265
+    """
     m = positive(taper, "taper")
     if m < 1e-2:  # series: the bracket loses its digits
         return m / 12 * (1 - 1.5 * m + 1.65 * m**2 - 1.625 * m**3)

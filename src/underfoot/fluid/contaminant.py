@@ -90,6 +90,9 @@ def glycerol_water(
     The measured viscosity, where given, is what counts; the computed one then stands in its
     note, so that a disagreement is seen. ``fraction`` 0 to 1, ``temperature`` in K, ``basis``
     "mass" or "volume".
+
+    >>> glycerol_water(0.9, 293.15).viscosity.unit
+    'Pa*s'
     """
     computed = glycerol_water_viscosity(fraction, temperature, basis)
     label = f"glycerol {100.0 * fraction:g} % by {basis}, {temperature - 273.15:g} degC"

@@ -113,6 +113,9 @@ def adhesion_blocking(fluid: str) -> AdhesionBlocking:
 
     Raises:
         InputError: Another fluid: Eq. 26 has no rule from viscosity to alpha and beta.
+
+    >>> adhesion_blocking("water").alpha
+    4.3263
     """
     try:
         return BLOCKING[fluid]

@@ -80,6 +80,9 @@ def self_affine_scale(
     Raises:
         RangeError: A dividing wavelength that is not below the longest wave, a Hurst exponent
             outside 0 to 1.
+
+    >>> self_affine_scale(1e-5, rq=2e-6, longest_wave=1e-3).wavelength
+    1e-05
     """
     if not 0 < hurst < 1:
         raise RangeError(f"{hurst:g}", where="hurst", allowed="above 0, below 1")

@@ -2,9 +2,7 @@
 
 from .bs903_1950 import bs903_breaches as bs903_breaches
 from .bs903_1950 import youngs_modulus_bs903 as youngs_modulus_bs903
-from .compression import CompressionForces as CompressionForces
 from .compression import CompressionModuli as CompressionModuli
-from .compression import compression_forces as compression_forces
 from .compression import compression_moduli as compression_moduli
 from .curves import DynamicSweep as DynamicSweep
 from .curves import RelaxationCurve as RelaxationCurve

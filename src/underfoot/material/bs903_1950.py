@@ -25,6 +25,9 @@ def youngs_modulus_bs903(shore_a: ArrayLike) -> Any:
 
     Raises:
         RangeError: Hardness outside 0 to below 100.
+
+    >>> round(float(youngs_modulus_bs903(60.0)))
+    3489087
     """
     from scipy.special import erfinv  # reading a case needs no SciPy
 

@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from underfoot.core import DataError, InputError
+from underfoot.core import InputError
 
 SOURCE = "Grant report G.1.1, Eq. 13-16 (test method of its reference 39)"
 PRINTED_TRAVEL = 0.18
@@ -66,69 +65,3 @@ def compression_moduli(
     long = (asymptotic_force - force_2_percent) / (travel * thickness)
     to_modulus = 2.0 * thickness / area
     return CompressionModuli(short, short * to_modulus, long, long * to_modulus)
-
-
-@dataclass(frozen=True, slots=True)
-class CompressionForces:
-    """Forces read off a test, N, and the time from the peak to the end of the hold, s."""
-
-    force_2_percent: float
-    peak_force: float
-    asymptotic_force: float
-    hold_time: float
-    still_falling: float
-    """Fall of the force over the last tenth of the hold, relative to F_0 - F_inf."""
-
-
-def compression_forces(
-    time: ArrayLike, displacement: ArrayLike, force: ArrayLike, thickness: float
-) -> CompressionForces:
-    """Return F_0.02, F_0 and F_inf of a ramp and hold in compression.
-
-    F_0.02 is interpolated on the ramp at a displacement of 0.02 ``thickness`` (m); F_0 is the
-    largest force; F_inf the mean over the last tenth of the record after it. Unloading has to be
-    cut off. ``time`` s ascending, ``displacement`` m, ``force`` N, compression positive, (n,).
-
-    Raises:
-        DataError: Missing values, no hold after the peak, a ramp that does not pass 2 %.
-    """
-    t, d, f = (np.asarray(x, dtype=float) for x in (time, displacement, force))
-    if not (t.ndim == 1 and t.shape == d.shape == f.shape and t.size >= 10):
-        raise DataError(
-            f"{t.size} times, {d.size} displacements, {f.size} forces",
-            where="compression test",
-            allowed="the same number of each, ten or more",
-        )
-    if not (np.all(np.isfinite(t)) and np.all(np.isfinite(d)) and np.all(np.isfinite(f))):
-        raise DataError("values are missing", where="compression test")
-    if np.any(np.diff(t) <= 0.0):
-        raise DataError("time does not ascend", where="time")
-    peak = int(np.argmax(f))
-    if t.size - peak < 10:
-        raise DataError(
-            f"only {t.size - peak} readings after the peak force",
-            where="compression test",
-            remedy="The hold is missing: record until the force hardly falls",
-        )
-    ramp = d[: peak + 1]
-    level = 0.02 * thickness
-    above = np.flatnonzero(ramp >= level)
-    if above.size == 0 or above[0] == 0:
-        raise DataError(
-            f"the ramp from {ramp[0]:g} m to {ramp[-1]:g} m does not pass 2 % of {thickness:g} m",
-            where="displacement",
-        )
-    i = int(above[0])
-    share = (level - d[i - 1]) / (d[i] - d[i - 1])
-    last = t >= t[-1] - 0.1 * (t[-1] - t[peak])
-    asymptotic = float(f[last].mean())
-    slope = float(np.polyfit(t[last] - t[-1], f[last], 1)[0]) if last.sum() > 2 else 0.0
-    drop = float(f[peak]) - asymptotic
-    fall = -slope * float(t[last][-1] - t[last][0])
-    return CompressionForces(
-        float(f[i - 1] + share * (f[i] - f[i - 1])),
-        float(f[peak]),
-        asymptotic,
-        float(t[-1] - t[peak]),
-        fall / drop if drop > 0.0 else 0.0,
-    )

@@ -12,19 +12,31 @@ from .spectrum import RelaxationSpectrum
 
 
 def shear_modulus(youngs_modulus: Any, poisson_ratio: float) -> Any:
-    """Return G = E / (2 (1 + nu)), Pa; real or complex ``youngs_modulus``, any shape."""
+    """Return G = E / (2 (1 + nu)), Pa; real or complex ``youngs_modulus``, any shape.
+
+    >>> round(shear_modulus(5e6, 0.49))
+    1677852
+    """
     check_poisson_ratio(poisson_ratio)
     return youngs_modulus / (2.0 * (1.0 + poisson_ratio))
 
 
 def youngs_modulus_from_shear(shear: Any, poisson_ratio: float) -> Any:
-    """Return E = 2 G (1 + nu), Pa; real or complex ``shear``, any shape."""
+    """Return E = 2 G (1 + nu), Pa; real or complex ``shear``, any shape.
+
+    >>> round(youngs_modulus_from_shear(1e6, 0.49))
+    2980000
+    """
     check_poisson_ratio(poisson_ratio)
     return 2.0 * (1.0 + poisson_ratio) * shear
 
 
 def bulk_modulus(youngs_modulus: Any, poisson_ratio: float) -> Any:
-    """Return K = E / (3 (1 - 2 nu)), Pa; infinite for nu = 0.5."""
+    """Return K = E / (3 (1 - 2 nu)), Pa; infinite for nu = 0.5.
+
+    >>> round(bulk_modulus(5e6, 0.49))
+    83333333
+    """
     check_poisson_ratio(poisson_ratio)
     if poisson_ratio == 0.5:
         return np.full(np.shape(youngs_modulus), np.inf) if np.ndim(youngs_modulus) else np.inf
@@ -32,13 +44,21 @@ def bulk_modulus(youngs_modulus: Any, poisson_ratio: float) -> Any:
 
 
 def plane_strain_modulus(youngs_modulus: Any, poisson_ratio: float) -> Any:
-    """Return E* = E / (1 - nu^2), Pa: the modulus that contact problems see."""
+    """Return E* = E / (1 - nu^2), Pa: the modulus that contact problems see.
+
+    >>> round(plane_strain_modulus(5e6, 0.49))
+    6579813
+    """
     check_poisson_ratio(poisson_ratio)
     return youngs_modulus / (1.0 - poisson_ratio**2)
 
 
 def poisson_ratio_from_moduli(bulk: float, shear: float) -> float:
-    """Return nu = (3 K - 2 G) / (2 (3 K + G)) for positive moduli (Pa)."""
+    """Return nu = (3 K - 2 G) / (2 (3 K + G)) for positive moduli (Pa).
+
+    >>> round(poisson_ratio_from_moduli(2e9, 1e6), 5)
+    0.49975
+    """
     if not (np.isfinite(bulk) and np.isfinite(shear) and bulk > 0.0 and shear > 0.0):
         raise RangeError(
             f"K = {bulk:g} Pa, G = {shear:g} Pa", where="bulk, shear", allowed="positive moduli"

@@ -142,6 +142,9 @@ def report_elastomer(name: str) -> Elastomer:
 
     Raises:
         InputError: Another name.
+
+    >>> report_elastomer("rubber").poisson_ratio
+    0.499
     """
     if name not in SHEAR_CONSTANTS:
         raise unknown_name("material of the report", name, SHEAR_CONSTANTS)

@@ -37,6 +37,9 @@ def youngs_modulus_gent(shore_a: ArrayLike) -> Any:
 
     Raises:
         RangeError: Hardness outside 0 to below 100.
+
+    >>> round(youngs_modulus_gent(60.0))
+    3605073
     """
     hardness = checked_hardness(shore_a)
     modulus = 0.0981e6 * (56.0 + 7.62336 * hardness) / (0.137505 * (254.0 - 2.54 * hardness))
@@ -48,6 +51,9 @@ def shore_a_gent(youngs_modulus: ArrayLike) -> Any:
 
     Raises:
         RangeError: A modulus below that of Shore A 0 (0.157 MPa), or not finite.
+
+    >>> round(float(shore_a_gent(3.6e6)), 1)
+    60.0
     """
     modulus = np.asarray(youngs_modulus, dtype=float)
     lowest = 0.0981e6 * 56.0 / (0.137505 * 254.0)
@@ -62,5 +68,9 @@ def shore_a_gent(youngs_modulus: ArrayLike) -> Any:
 
 
 def gent_breaches(shore_a: ArrayLike) -> list[Breach]:
-    """Return whether the hardness leaves the range in which Gent's relation is usable."""
+    """Return whether the hardness leaves the range in which Gent's relation is usable.
+
+    >>> [str(one) for one in gent_breaches(95.0)][0].partition(":")[0]
+    'gent_1958'
+    """
     return breaches(NAME, RANGES, {"shore_a": shore_a})

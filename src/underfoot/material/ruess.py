@@ -29,6 +29,9 @@ def youngs_modulus_ruess(shore_a: ArrayLike) -> Any:
 
     Raises:
         RangeError: Hardness outside 0 to below 100.
+
+    >>> round(youngs_modulus_ruess(60.0))
+    5884370
     """
     hardness = checked_hardness(shore_a)
     return scalar_or_array(1e6 * 10.0 ** (0.0235 * hardness - 0.6403))

@@ -144,14 +144,14 @@ class Comparison(Presentable):
     def to_dict(self) -> dict[str, Any]:
         return {
             "ranking": [
-                {"letter": rank.letter, "name": rank.name, "cof": rank.cof.as_dict()}
+                {"letter": rank.letter, "name": rank.name, "cof": rank.cof.to_dict()}
                 | {"interval_95": rank.interval, "higher_than_next": rank.better_than_next}
                 for rank in self.ranking
             ],
             "quantities": [
                 {
                     "name": quantity.name,
-                    "values": [None if v is None else v.as_dict() for v in quantity.values],
+                    "values": [None if v is None else v.to_dict() for v in quantity.values],
                     "different_from_first": quantity.different,
                 }
                 for quantity in self.quantities
@@ -159,7 +159,7 @@ class Comparison(Presentable):
             "differences": [
                 {"path": path, "values": list(values)} for path, *values in self.differences
             ],
-            "results": [result.as_dict() for result in self.results],
+            "results": [result.to_dict() for result in self.results],
         }
 
     def data_tables(self) -> dict[str, Table]:

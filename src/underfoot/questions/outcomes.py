@@ -25,7 +25,6 @@ from underfoot.core.arrays import Array
 from underfoot.core.cache import Cache
 from underfoot.core.pool import available_processors, in_processes
 from underfoot.core.progress import part
-from underfoot.core.provenance import files_hash, program_hash
 
 if TYPE_CHECKING:
     from underfoot.case import Case
@@ -126,8 +125,8 @@ def outcomes(
         processes: Cases computed at the same time, each on one thread; None takes the cores, at
             most 4. With more than one, a script needs ``if __name__ == "__main__":`` around its
             work.
-        cached: Keep outcomes on disk and take them from there. An entry belongs to this code and
-            this catalogue: any change of either computes again.
+        cached: Keep outcomes on disk and take them from there. Any change of this
+            code computes again.
         progress: Receives the share of cases that are done; an exception it raises stops the work,
             and what is done stays in the cache.
 
@@ -135,7 +134,7 @@ def outcomes(
         InputError: As ``compute.run`` raises it for the first case whose parts don't fit.
     """
     store = Cache("outcomes-1")
-    keys = [_key(case, quick, maps) for case in cases]
+    keys = [content_hash(case.hash, quick, list(maps)) for case in cases]
     found: dict[str, Outcome] = {}
     waiting: dict[str, Case] = {}
     for key, case in zip(keys, cases, strict=True):
@@ -165,9 +164,3 @@ def _computed_alone(case: Case, *, quick: bool, maps: Sequence[str]) -> Outcome:
         status = Status.NOT_CONVERGED
         none = undetermined(case, status)
         return Outcome(case.name, case.hash, none, {}, status, str(error), (), (), 0.0)
-
-
-def _key(case: Case, quick: bool, maps: Sequence[str]) -> str:
-    return content_hash(
-        case.hash, quick, list(maps), program_hash(), files_hash(case.catalogue.folders)
-    )

@@ -150,8 +150,8 @@ class RiskAssessment(Presentable):
     def to_dict(self) -> dict[str, Any]:
         film_share = self.limit.film_share
         return {
-            "cof": self.outcome.scalars["cof"].as_dict(),
-            "slip_probability": self.outcome.scalars["slip_probability"].as_dict(),
+            "cof": self.outcome.scalars["cof"].to_dict(),
+            "slip_probability": self.outcome.scalars["slip_probability"].to_dict(),
             "limit": {
                 "kind": self.limit.kind,
                 "film_share": None if math.isnan(film_share) else film_share,

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from underfoot.core.threads import threads_limited
 from underfoot.film import Film, film_pressure
 from underfoot.fluid import glycerol_water_viscosity
 from underfoot.material import RelaxationSpectrum
@@ -36,6 +37,7 @@ class Check:
         return self.relative_error <= self.tolerance
 
 
+@threads_limited(1)
 def checks() -> list[Check]:
     """Compute every check, from film to contact to fluid."""
     glycerol = Check(

@@ -33,6 +33,9 @@ def hertz_point(force: float, radius: float, modulus: float) -> HertzContact:
     Parameters are the normal force (N, > 0), sphere radius (m) and plane-strain modulus (Pa).
     Valid for a << R, no adhesion, no friction.
     Source: Johnson (1985) Contact Mechanics, Eqs. 4.22 to 4.24.
+
+    >>> round(hertz_point(10.0, 0.01, 5e6).peak_pressure)
+    785020
     """
     _positive(force=force, radius=radius, modulus=modulus)
     a = (0.75 * force * radius / modulus) ** (1.0 / 3.0)
@@ -45,6 +48,9 @@ def hertz_line(line_force: float, radius: float, modulus: float) -> HertzContact
 
     ``line_force`` is the normal force per length (N/m, > 0). Valid for a << R, plane strain.
     Source: Johnson (1985) Contact Mechanics, Eqs. 4.43 to 4.45.
+
+    >>> round(hertz_line(1e3, 0.01, 5e6).half_width * 1e3, 3)
+    1.596
     """
     _positive(line_force=line_force, radius=radius, modulus=modulus)
     a = math.sqrt(4.0 * line_force * radius / (math.pi * modulus))
@@ -62,6 +68,9 @@ def sinusoid_full_contact_pressure(amplitude: float, wavelength: float, modulus:
 
     The surface is h(x) = a cos(2 pi x / lambda), peak to valley 2a.
     Source: Westergaard (1939) J. Appl. Mech. 6:A49; Johnson (1985) Eq. 13.7.
+
+    >>> round(sinusoid_full_contact_pressure(1e-6, 1e-4, 5e6))
+    157080
     """
     _positive(amplitude=amplitude, wavelength=wavelength, modulus=modulus)
     return math.pi * modulus * amplitude / wavelength
@@ -71,6 +80,9 @@ def sinusoid_contact_fraction(pressure: ArrayLike, full_contact_pressure: float)
     """Return the contact fraction 2 b / lambda = (2/pi) asin(sqrt(p/p*)), 1 beyond p*.
 
     Source: Westergaard (1939); Johnson (1985) Eq. 13.9: p/p* = sin^2(pi b / lambda).
+
+    >>> round(float(sinusoid_contact_fraction(0.5, 1.0)), 3)
+    0.5
     """
     ratio = _pressure_ratio(pressure, full_contact_pressure)
     return 2.0 / np.pi * np.arcsin(np.sqrt(np.minimum(ratio, 1.0)))
@@ -163,7 +175,11 @@ def sliding_checkerboard_cof(
 
 
 def half_space_compliance(wavenumber: ArrayLike, modulus: float) -> Array:
-    """Return 2 / (E* k): surface displacement per pressure of a wave on a half-space (m/Pa)."""
+    """Return 2 / (E* k): surface displacement per pressure of a wave on a half-space (m/Pa).
+
+    >>> round(float(half_space_compliance(1e3, 5e6)) * 1e9, 3)
+    0.4
+    """
     return 2.0 / (modulus * np.asarray(wavenumber, dtype=float))
 
 
@@ -176,6 +192,9 @@ def bonded_layer_compliance(
     q = k T. Limits: 2/(E* k) for k T >> 1; T (1+nu)(1-2nu)/(E (1-nu)) for k -> 0, nu < 1/2;
     k^2 T^3 / (3 G) for k -> 0, nu = 1/2. ``wavenumber`` k >= 0 (rad/m); at k = 0 the limit.
     Source: Bentall and Johnson (1968) Int. J. Mech. Sci. 10:637; Johnson (1985) section 5.8.
+
+    >>> round(float(bonded_layer_compliance(1e3, 0.01, 5e6, 0.49)) * 1e9, 3)
+    0.304
     """
     _positive(thickness=thickness, young_modulus=young_modulus)
     if not -1.0 < poisson_ratio <= 0.5:

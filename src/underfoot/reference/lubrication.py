@@ -32,6 +32,10 @@ def inclined_bearing_load(
 
     Source: Reynolds 1886; Hamrock, Schmid and Jacobson, Fundamentals of Fluid Film Lubrication
     (2004), fixed-incline slider.
+
+    >>> gaps = {"leading_gap": 2e-4, "trailing_gap": 1e-4}
+    >>> round(inclined_bearing_load(viscosity=0.1, speed=1.0, length=0.01, **gaps), 1)
+    158.9
     """
     m = leading_gap / trailing_gap - 1
     shape = (math.log1p(m) - 2 * m / (2 + m)) / m**2
@@ -64,6 +68,10 @@ def parabolic_bearing_load(
 
     x runs from the trailing edge, where the parabola has its vertex. dp/dx = 6 eta u (h - h*) / h^3
     with p = 0 at both ends, integrated by Gauss quadrature.
+
+    >>> gaps = {"leading_gap": 2e-4, "trailing_gap": 1e-4}
+    >>> round(parabolic_bearing_load(viscosity=0.1, speed=1.0, length=0.01, **gaps), 1)
+    172.2
     """
     h0, rise = trailing_gap, leading_gap - trailing_gap
     nodes, weights = np.polynomial.legendre.leggauss(200)
@@ -92,6 +100,10 @@ def step_bearing_load(
     ``leading_share`` l before the step and l0 after it.
 
     Source: Rayleigh 1918; Hamrock, Schmid and Jacobson 2004, parallel-step slider.
+
+    >>> gaps = {"leading_share": 0.72, "leading_gap": 2e-4, "trailing_gap": 1e-4}
+    >>> round(step_bearing_load(viscosity=0.1, speed=1.0, length=0.01, **gaps), 1)
+    204.3
     """
     before = leading_share * length
     after = length - before
@@ -144,6 +156,9 @@ def squeeze_disc_load(
     """Return the load (N) of a flat disc approaching a plane, F = 3 pi eta R^4 v / (2 h^3).
 
     Source: Stefan 1874; Hamrock, Schmid and Jacobson 2004, squeeze film between parallel discs.
+
+    >>> round(squeeze_disc_load(viscosity=0.1, radius=0.01, gap=1e-4, closing_speed=1e-3), 3)
+    4.712
     """
     return 1.5 * math.pi * viscosity * radius**4 * closing_speed / gap**3
 
@@ -165,6 +180,10 @@ def squeeze_disc_gap(
     """Return the gap (m) of a rigid disc sinking under a constant load after ``time`` (s).
 
     1 / h^2 = 1 / h_start^2 + 4 F t / (3 pi eta R^4): the load formula integrated.
+
+    >>> disc = {"viscosity": 0.1, "radius": 0.01, "start_gap": 1e-4, "load": 10.0}
+    >>> round(float(squeeze_disc_gap(0.02, **disc)) * 1e6, 1)
+    73.5
     """
     t = np.asarray(time, dtype=float)
     return (start_gap**-2 + 4 * load * t / (3 * math.pi * viscosity * radius**4)) ** -0.5

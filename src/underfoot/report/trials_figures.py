@@ -6,6 +6,7 @@ import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 COLOURS = {"accepted": "#0b6fa4", "caution": "#b36b00", "refused": "#a32020", "rejected": "#a32020"}
 _PER_PAGE, _ACROSS = 60, 6
 _SIZE = np.array([0.84, 0.72])  # of a tile in its cell of 1 x 1
-_CORNERS = np.array([(0, 0), (1, 0), (1, 1), (0, 1), (0, 0)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,88 +35,97 @@ class Tile:
     reason: str = ""
 
 
-def contact_sheets(
-    tiles: Sequence[Tile],
-    *,
-    x_range: tuple[float, float],
-    y_range: tuple[float, float],
-    title: str,
-    line: float | None = None,
-    line_label: str = "",
-) -> list[Figure]:
-    """Return pages of at most 60 tiles, all on the same two scales.
+_CELL = 140.0, 104.0  # of a tile with its label, in points of the drawing
+_POINTS = 90  # of a curve in a tile: more than its width can show
 
-    All curves of a page are drawn into one pair of axes: hundreds of trials take seconds.
+
+@dataclass(frozen=True, slots=True)
+class SheetPage:
+    """One page of a contact sheet as SVG text, with its file name (without ending)."""
+
+    name: str
+    svg: str
+
+
+def contact_sheets(sheet: Sheet) -> Iterator[SheetPage]:
+    """Yield pages of at most 60 tiles, all on the same two scales.
+
+    They are written as text: thousands of tiles take seconds, and a browser draws what is opened.
     """
-    pages = [tiles[i : i + _PER_PAGE] for i in range(0, len(tiles), _PER_PAGE)]
-    left, right, low, high = (f"{value:.3g}" for value in (*x_range, *y_range))
-    dashed = f"; dashed {line_label}" if line is not None else ""
+    pages = [sheet.tiles[i : i + _PER_PAGE] for i in range(0, len(sheet.tiles), _PER_PAGE)]
+    left, right, low, high = (f"{value:.3g}" for value in (*sheet.x_range, *sheet.y_range))
+    dashed = f"; dashed slip above {sheet.line:g} m/s" if sheet.line is not None else ""
     words = (
         f"each tile: {left} to {right} s across, {low} to {high} up{dashed}; "
         "blue accepted, orange caution, red rejected or refused, with the reason"
     )
-    figures = []
     for number, page in enumerate(pages, start=1):
-        figure = _page(page, np.array((x_range, y_range)).T, line)
-        head = title if len(pages) == 1 else f"{title} ({number} of {len(pages)})"
-        figure.text(0.02, 0.995, head, fontsize=10, va="top", weight="bold")
-        below = 1 - 0.24 / figure.get_figheight()
-        figure.text(0.02, below, words, fontsize=7, va="top", color="0.35")
-        figures.append(figure)
-    return figures
+        head = sheet.title if len(pages) == 1 else f"{sheet.title} ({number} of {len(pages)})"
+        tiles = [tile for _, tile in page]
+        yield SheetPage(f"sheet_{sheet.kind}_{number}", _page(tiles, sheet, head, words))
 
 
-def _page(tiles: Sequence[Tile], scale: np.ndarray, line: float | None) -> Figure:
-    """Draw the tiles; ``scale`` holds the lowest and the highest (x, y)."""
-    from matplotlib.collections import LineCollection
-    from matplotlib.figure import Figure
-
+def _page(tiles: Sequence[Tile], sheet: Sheet, head: str, words: str) -> str:
     across = min(_ACROSS, len(tiles))
     down = -(-len(tiles) // across)
-    figure = Figure(figsize=(1.75 * across + 0.5, 1.25 * down + 0.75))
-    axes = figure.add_axes((0.02, 0.02, 0.96, 1.0 - 0.62 / (1.25 * down + 0.75)))
-    axes.set(xlim=(-0.1, across), ylim=(-down - 0.04, 0.12))
-    axes.set_axis_off()
-    curves, colours, frames, levels = [], [], [], []
-    spots: dict[str, list[np.ndarray]] = {}
-
-    def placed(corner: np.ndarray, points: np.ndarray) -> np.ndarray:
-        return corner + _SIZE * np.clip((points - scale[0]) / (scale[1] - scale[0]), 0, 1)
-
+    size = np.array(_CELL) * _SIZE
+    low, high = np.array((sheet.x_range, sheet.y_range)).T
+    width, height = _CELL[0] * max(across, 4) + 24, _CELL[1] * down + 40
+    parts = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}" '
+        'font-family="sans-serif" font-size="7" fill="#333">',
+        _text(4, 10, head, 'font-size="11" font-weight="bold"'),
+        _text(4, 21, words, 'fill="#666"'),
+    ]
+    frames = []
     for i, tile in enumerate(tiles):
-        corner = np.array([i % across, -(i // across) - 0.9])
-        (left, bottom), (right, top) = corner, corner + _SIZE
-        frames.append(corner + _SIZE * _CORNERS)
-        colour = COLOURS.get(tile.verdict, "0.3")
-        if line is not None:
-            levels.append(placed(corner, np.column_stack((scale[:, 0], (line, line)))))
-        inside = np.isfinite(tile.y) & (tile.x >= scale[0, 0]) & (tile.x <= scale[1, 0])
-        if inside.any():
-            curves.append(placed(corner, np.column_stack((tile.x, tile.y))[inside]))
-            colours.append(colour)
-        for mark in np.array(tile.marks, dtype=float).reshape(-1, 2):
-            if np.isfinite(mark).all():
-                spots.setdefault(colour, []).append(placed(corner, mark))
-        axes.text(left, bottom + 0.81, _short(tile.label), fontsize=5.6, color=colour)
-        reason = "\n".join(textwrap.wrap(tile.reason, 30)[:4])
-        axes.text(left + 0.02, top - 0.04, reason, fontsize=4.8, color=colour, va="top")
-        remark = axes.text(right - 0.02, top - 0.04, tile.remark, fontsize=6.2, color="0.3")
-        remark.set(ha="right", va="top")
+        x, y = 20 + _CELL[0] * (i % across), 40 + _CELL[1] * (i // across)
+        colour = COLOURS.get(tile.verdict, "#444")
+        frames.append(f"M{x:.0f} {y:.0f}h{size[0]:.0f}v{size[1]:.0f}h-{size[0]:.0f}z")
+
+        def placed(points: np.ndarray, corner: tuple[float, float] = (x, y)) -> np.ndarray:
+            share = np.clip((points - low) / (high - low), 0, 1)
+            return np.array(corner) + size * np.column_stack((share[:, 0], 1 - share[:, 1]))
+
+        parts.append(f'<g fill="{colour}">' + _text(x, y - 3, _short(tile.label)))
+        inside = np.isfinite(tile.y) & (tile.x >= low[0]) & (tile.x <= high[0])
+        path = np.column_stack((tile.x, tile.y))[inside]
+        if len(path):
+            path = placed(path[:: -(-len(path) // _POINTS)])
+            parts.append(f'<path fill="none" stroke="{colour}" d="{_path(path)}"/>')
+        marks = np.array(tile.marks, dtype=float).reshape(-1, 2)
+        for cx, cy in placed(marks[np.isfinite(marks).all(axis=1)]):
+            parts.append(f'<circle cx="{cx:.1f}" cy="{cy:.1f}" r="1.8"/>')
+        for line, reason in enumerate(textwrap.wrap(tile.reason, 34)[:4]):
+            parts.append(_text(x + 3, y + 8 + 7 * line, reason, 'font-size="6"'))
+        if tile.remark:
+            end = 'text-anchor="end"'
+            parts.append(_text(x + size[0] - 3, y + 8, tile.remark, f'{end} fill="#333"'))
+        parts.append("</g>")
         if i % across == 0:
-            for value, at in zip(scale[:, 1], (bottom, top), strict=True):
-                axes.text(left - 0.015, at, f"{value:.3g}", fontsize=4.8, ha="right", va="center")
+            for value, at in ((high[1], y + 5), (low[1], y + size[1])):
+                parts.append(_text(x - 2, at, f"{value:.3g}", 'font-size="6" text-anchor="end"'))
         if i >= len(tiles) - across:
-            for value, at in zip(scale[:, 0], (left, right), strict=True):
-                axes.text(at, bottom - 0.02, f"{value:.3g} s", fontsize=4.8, ha="center", va="top")
-    for colour, places in spots.items():
-        axes.plot(*np.array(places).T, "o", color=colour, markersize=3)
-    for lines, style in (
-        (frames, {"colors": "0.85", "linewidths": 0.6}),
-        (levels, {"colors": "0.6", "linewidths": 0.6, "linestyles": "dashed"}),
-        (curves, {"colors": colours, "linewidths": 0.9}),
-    ):
-        axes.add_collection(LineCollection(lines, **style))
-    return figure
+            for value, at in ((low[0], x), (high[0], x + size[0])):
+                middle = 'font-size="6" text-anchor="middle"'
+                parts.append(_text(at, y + size[1] + 8, f"{value:.3g} s", middle))
+        if sheet.line is not None:
+            level = placed(np.column_stack(((low[0], high[0]), (sheet.line, sheet.line))))
+            parts.append(f'<path stroke="#999" stroke-dasharray="3 2" d="{_path(level)}"/>')
+    parts.append(f'<path fill="none" stroke="#ddd" d="{"".join(frames)}"/></svg>')
+    return "".join(parts)
+
+
+def _text(x: float, y: float, words: str, look: str = "") -> str:
+    return f'<text x="{x:.0f}" y="{y:.0f}" {look}>{escape(words)}</text>'
+
+
+def _path(points: np.ndarray) -> str:
+    """Return a path in steps of tenths: short text."""
+    tenths = np.round(10 * points).astype(int)
+    steps = np.diff(tenths, axis=0)
+    body = " ".join(f"{a:g} {b:g}" for a, b in (steps / 10).tolist())
+    return f"M{tenths[0, 0] / 10:g} {tenths[0, 1] / 10:g}l{body}"
 
 
 def _short(label: str) -> str:
@@ -139,12 +148,12 @@ class TrialFigure:
 
 
 def trial_figures(analysis: FolderAnalysis, *, details: int = 4) -> list[TrialFigure]:
-    """Return the figures of an analysis: the study, single trials in detail, contact sheets.
+    """Return the figures of an analysis: the study, single trials in detail.
 
     ``details`` is the number of single trials drawn: first those with cautions, then accepted ones.
     """
     single = [made for one in _chosen(analysis.files, details) for made in _details(one)]
-    return [*_study(analysis), *single, *_sheets(analysis)]
+    return [*_study(analysis), *single]
 
 
 def _chosen(files: Sequence[FileResult], details: int) -> list[FileResult]:
@@ -377,22 +386,6 @@ def sheets(files: Sequence[FileResult]) -> Iterator[Sheet]:
 
 
 _NO_CURVE = (np.empty(0), np.empty(0))
-
-
-def _sheets(analysis: FolderAnalysis) -> Iterator[TrialFigure]:
-    for sheet in sheets(analysis.files):
-        line, title = sheet.line, sheet.title
-        pages = contact_sheets(
-            [tile for _, tile in sheet.tiles],
-            x_range=sheet.x_range,
-            y_range=sheet.y_range,
-            title=title,
-            line=line,
-            line_label=f"slip above {line:g} m/s" if line is not None else "",
-        )
-        for number, page in enumerate(pages, start=1):
-            caption = f"Contact sheet, {title[0].lower()}{title[1:]}"
-            yield TrialFigure(f"sheet_{sheet.kind}_{number}", caption, page, "sheets")
 
 
 def _tile(key: str, one: FileResult, curve: Curve) -> tuple[Tile, float]:

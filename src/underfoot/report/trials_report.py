@@ -23,7 +23,7 @@ from underfoot.core.pool import in_processes
 from underfoot.core.progress import part
 
 from .html import embedded, environment, png
-from .trials_figures import TrialFigure, trial_figures
+from .trials_figures import SheetPage, TrialFigure, contact_sheets, sheets, trial_figures
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,14 +44,13 @@ def write_trials_report(
     folder: Path,
     *,
     details: int = 4,
-    vector: bool = True,
     processes: int | None = None,
     progress: Progress = silent,
 ) -> list[Path]:
     """Write report.html, trials.xlsx, tables/*.csv, figures/*.png and *.svg; return the paths.
 
-    ``details`` single trials are drawn in detail. With ``vector`` the figures of the study and of
-    single trials are written as SVG too. ``processes`` (by default the number of processors) draw.
+    ``details`` single trials are drawn in detail. Figures of the study and of single trials are
+    written as PNG and SVG, contact sheets as SVG. ``processes`` (by default one a processor) draw.
     """
     folder.mkdir(parents=True, exist_ok=True)
     written: list[Path] = []
@@ -75,29 +74,30 @@ def write_trials_report(
     for table in tables:
         write(f"tables/{table.name}.csv", csv_text(table, cautions.get(table.name, ())))
     figures = trial_figures(analysis, details=details)
+    pages = [page for sheet in sheets(analysis.files) for page in contact_sheets(sheet)]
+    for page in pages:
+        write(f"figures/{page.name}.svg", page.svg)
     jobs: list[tuple[Any, ...]] = [(tables, analysis.methods, folder / "trials.xlsx")]
-    jobs += [(one, folder / "figures", vector and one.chapter != "sheets") for one in figures]
+    jobs += [(one, folder / "figures") for one in figures]
     count = processes if len(jobs) >= _MANY else 1
     drawing = part(progress, 0.0, 0.95)
     for _, paths in sorted(in_processes(_written, jobs, count, progress=drawing, stage="drawing")):
         written += paths
     pictures = [(one, (folder / "figures" / f"{one.name}.png").read_bytes()) for one in figures]
-    write("report.html", trials_page(analysis, tables, pictures))
+    write("report.html", trials_page(analysis, tables, pictures, pages))
     progress("drawing", 1.0)
     return written
 
 
 def _written(job: tuple[Any, ...]) -> list[Path]:
-    """Write the spreadsheet (tables, methods, path) or a figure (figure, folder, SVG too)."""
+    """Write the spreadsheet (tables, methods, path) or a figure (figure, folder)."""
     if not isinstance(job[0], TrialFigure):
         write_spreadsheet(*job)
         return [job[2]]
-    one, folder, vector = job
-    paths = [folder / f"{one.name}.png"]
-    paths[0].write_bytes(png(one.figure, 110 if one.chapter == "sheets" else 130))
-    if vector:
-        paths.append(folder / f"{one.name}.svg")
-        _svg(one.figure, paths[1])
+    one, folder = job
+    paths = [folder / f"{one.name}{suffix}" for suffix in (".png", ".svg")]
+    paths[0].write_bytes(png(one.figure, 130))
+    _svg(one.figure, paths[1])
     return paths
 
 
@@ -109,10 +109,13 @@ def check_report_folder(folder: Path, *, overwrite: bool = False) -> None:
 
 
 def trials_page(
-    analysis: FolderAnalysis, all_tables: Sequence[Table], pictures: list[tuple[TrialFigure, bytes]]
+    analysis: FolderAnalysis,
+    all_tables: Sequence[Table],
+    pictures: list[tuple[TrialFigure, bytes]],
+    pages: Sequence[SheetPage] = (),
 ) -> str:
     """Return the page of an analysis as HTML text; it opens without a network."""
-    chapters: dict[str, list[dict[str, str]]] = {"study": [], "trials": [], "sheets": []}
+    chapters: dict[str, list[dict[str, str]]] = {"study": [], "trials": []}
     for one, picture in pictures:
         width = f"{5.3 * one.figure.get_figwidth():.1f}"
         chapters[one.chapter].append(
@@ -125,8 +128,10 @@ def trials_page(
         **study_parts(analysis),
         first=chapters["study"][:1],
         figures={**chapters, "study": chapters["study"][1:]},
-        files=_page_table(_on_page(tables["files"], noted), limit=10_000),
-        edits=_page_table(tables["edits"]) if "edits" in tables else None,
+        sheets=[page.svg for page in pages],
+        files=page_table(_on_page(tables["files"], noted), limit=10_000),
+        edits=page_table(tables["edits"]) if "edits" in tables else None,
+        doubts=page_table(tables["doubts"]) if "doubts" in tables else None,
     )  # fmt: skip
 
 
@@ -151,9 +156,9 @@ def study_parts(analysis: FolderAnalysis) -> dict[str, Any]:
         "lead": lead_sentence(analysis),
         "counts": Counter(one.verdict for one in analysis.files),
         "reasons": reasons.most_common(4),
-        "summary": None if summary is None else _page_table(_on_page(summary)),
-        "study": [_page_table(_on_page(table)) for table in study],
-        "findings": [_page_table(f.table) | {"cautions": f.cautions} for f in findings],
+        "summary": None if summary is None else page_table(_on_page(summary)),
+        "study": [page_table(_on_page(table)) for table in study],
+        "findings": [page_table(f.table) | {"cautions": f.cautions} for f in findings],
     }
 
 
@@ -247,7 +252,8 @@ def _compact(table: Table) -> Table:
 _LONG_TEXT = ("reasons", "reason", "cautions", "flags", "rejected because", "remark")
 
 
-def _page_table(table: Table, *, limit: int = _LONG) -> dict[str, Any]:
+def page_table(table: Table, *, limit: int = _LONG) -> dict[str, Any]:
+    """Return a table as a page shows it: filled columns, texts, long text below its row, notes."""
     rows = table.rows[:limit]
     # Columns that say nothing in any row are noise on a page; the spreadsheet keeps them.
     below = [i for i in table.filled() if table.columns[i] in _LONG_TEXT]
@@ -323,32 +329,37 @@ def csv_text(table: Table, cautions: Sequence[str] = ()) -> str:
 def write_spreadsheet(tables: Sequence[Table], methods: Sequence[str], path: Path) -> None:
     """Write all tables into one XLSX file, one sheet each, and the methods text on the first."""
     from openpyxl import Workbook
+    from openpyxl.cell import WriteOnlyCell
     from openpyxl.styles import Alignment, Font
     from openpyxl.utils import get_column_letter
 
-    book = Workbook()
-    first: Any = book.active
-    first.title = "methods"
+    book = Workbook(write_only=True)  # cells go to the file at once: a tenth of the memory
+
+    def styled(sheet: Any, text: str, **style: Any) -> Any:
+        cell = WriteOnlyCell(sheet, text)
+        for name, value in style.items():
+            setattr(cell, name, value)
+        return cell
+
+    first = book.create_sheet("methods")
     first.column_dimensions["A"].width = 110
+    wrapped = Alignment(wrap_text=True, vertical="top")
     for text in methods:
-        first.append([_safe(text)])
-        first.cell(first.max_row, 1).alignment = Alignment(wrap_text=True, vertical="top")
+        first.append([styled(first, _safe(text), alignment=wrapped)])
     used = {"methods"}
     for table in tables:
         sheet = book.create_sheet(_sheet_name(table.name, used))
-        sheet.append([table.title])
-        sheet.cell(1, 1).font = Font(bold=True, size=13)
-        sheet.append([_safe(name) for name in table.columns])
-        for cell in sheet[2]:
-            cell.font = Font(bold=True)
+        sheet.freeze_panes = "A3"
+        for i, name in enumerate(table.columns, start=1):
+            longest = max([len(name), *(len(_cell(row[i - 1])) for row in table.rows[:200])])
+            sheet.column_dimensions[get_column_letter(i)].width = min(longest + 2, _WIDEST)
+        sheet.append([styled(sheet, table.title, font=Font(bold=True, size=13))])
+        bold = Font(bold=True)
+        sheet.append([styled(sheet, _safe(name), font=bold) for name in table.columns])
         for row in table.rows:
             sheet.append([_number_or_text(value) for value in row])
         for note in table.notes:
             sheet.append([_safe(note)])
-        for i, name in enumerate(table.columns, start=1):
-            longest = max([len(name), *(len(_cell(row[i - 1])) for row in table.rows[:200])])
-            sheet.column_dimensions[get_column_letter(i)].width = min(longest + 2, _WIDEST)
-        sheet.freeze_panes = "A3"
     raw = io.BytesIO()
     book.save(raw)
     path.write_bytes(_without_dates(raw.getvalue()))

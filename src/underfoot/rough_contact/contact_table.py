@@ -16,7 +16,6 @@ from underfoot import core
 from underfoot.core.arrays import Array
 from underfoot.core.pool import in_processes
 from underfoot.core.presentation import Presentable, Table
-from underfoot.core.provenance import version
 from underfoot.surface import HeightMap
 
 from ._kernels.monotone import interpolated_grid
@@ -356,10 +355,10 @@ class _Part(NamedTuple):
 
     @property
     def key(self) -> str:
-        """Return the content key: program version, heights, loads, modulus at every frequency."""
+        """Return the content key: heights, loads, modulus at every frequency."""
         q = 2.0 * np.pi * np.fft.rfftfreq(self.heights.shape[0], self.spacing)
         young = modulus_function(self.modulus, q * self.speed)(q * self.speed)
-        return core.content_hash(version(), *self._replace(modulus=young))
+        return core.content_hash(*self._replace(modulus=young))
 
 
 def _column(part: _Part) -> dict[str, np.ndarray]:

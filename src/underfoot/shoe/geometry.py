@@ -12,6 +12,7 @@ from underfoot.core.checks import positive
 from ._kernels.regions import carried_on
 from .ball_joint import BallJoint
 from .cut_cells import CutCells
+from .row_cells import RowCells
 from .slits import Slits
 
 CELLS_REFUSED = 2.0
@@ -84,6 +85,8 @@ class SoleMap(_Areas):
         removed: Thickness of the land that wear has taken, m; None for a new sole.
         slits: Sipes narrower than two cells: land to the map; None where there are none.
         joint: Where the sole bends as it rolls; None: it stays straight.
+        columns: Cells along x in one spacing, 1 for square cells.
+        cells: Finer cells that the film is solved on; None: those of the map.
     """
 
     x: Array
@@ -100,6 +103,8 @@ class SoleMap(_Areas):
     removed: Array | None = None
     slits: Slits | None = None
     joint: BallJoint | None = None
+    columns: int = 1
+    cells: RowCells | None = field(default=None, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         self._check_shapes("sole", "clearance", "inside", "land", "tread_depth", "removed")

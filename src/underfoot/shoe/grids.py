@@ -26,9 +26,9 @@ _FAR = 1.0
 
 
 def heel_map(
-    heel: SoleShape, *, shoe_angle: float, spacing: float, padding: float = 0.004
+    heel: SoleShape, *, shoe_angle: float, spacing: float, padding: float = 0.004, columns: int = 1
 ) -> SoleMap:
-    """Return the heel, tilted by the shoe angle, on a grid of square cells in the floor's frame.
+    """Return the heel, tilted by the shoe angle, on a grid of cells in the floor's frame.
 
     A point (x, z) of the heel goes to x' = x cos a - z sin a, z' = x sin a + z cos a. The map
     follows the land surface exactly; a channel keeps its depth straight above the land it cuts.
@@ -40,6 +40,7 @@ def heel_map(
         spacing: Side of a cell, m. A channel or lug of fewer than 2 cells is refused, one of fewer
             than 4 is listed in ``SoleMap.breaches``.
         padding: Free margin around the plan form, m.
+        columns: Cells along x in one spacing: 1 makes square cells.
 
     Raises:
         InputError: Grid too coarse for the plan form, a channel or a lug; angle out of range.
@@ -56,9 +57,9 @@ def heel_map(
     margin = max(1, math.ceil(padding / spacing - 1e-9))
     count_x = math.ceil((ends[1] - rear) / spacing - 1e-9) + 2 * margin
     count_y = math.ceil(heel.width / spacing - 1e-9) + 2 * margin
-    x_floor = (np.arange(count_x) + 0.5 - margin) * spacing
+    x_floor = _centres(count_x, margin, spacing, columns)
     y = centred(count_y, spacing)
-    target, y_map = np.meshgrid(x_floor + rear, y, indexing="ij")
+    target, y_map = (np.asarray(each) for each in np.meshgrid(x_floor + rear, y, indexing="ij"))
     if sine == 0.0:
         x = target
     else:
@@ -88,6 +89,7 @@ def heel_map(
         land=land,
         tread_depth=np.where(land, tread_depth, 0.0),
         spacing=float(spacing),
+        columns=columns,
         outline=np.column_stack([along(rim[:, 0], rim[:, 1]) - rear, rim[:, 1]]),
         breaches=tuple(breaches_of_grid),
         cut=cut,
@@ -126,6 +128,11 @@ def _heel_slits(
 def _shown(sipes: Sipes, spacing: float) -> bool:
     """Return whether cells of ``spacing`` (m) show slits as channels."""
     return spacing <= sipes.width / CELLS_REFUSED * (1 + 1e-9)
+
+
+def _centres(count: int, margin: int, spacing: float, columns: int) -> Array:
+    """Return the centres along x of ``count`` spacings in ``columns`` cells each, m."""
+    return ((np.arange(count * columns, dtype=np.float64) + 0.5) / columns - margin) * spacing
 
 
 def _check_grid(
@@ -297,9 +304,14 @@ def heel_surface(heel: SoleShape, *, spacing: float) -> SoleSurface:
 
 
 def surface_map(
-    surface: SoleSurface, *, shoe_angle: float, spacing: float, padding: float = 0.004
+    surface: SoleSurface,
+    *,
+    shoe_angle: float,
+    spacing: float,
+    padding: float = 0.004,
+    columns: int = 1,
 ) -> SoleMap:
-    """Return the surface, tilted by the shoe angle, on square cells in the floor's frame.
+    """Return the surface, tilted by the shoe angle, on a grid of cells in the floor's frame.
 
     A point (x, z) of the sole goes to x' = x cos a - z sin a, z' = x sin a + z cos a. The map
     follows the land (bilinear between cells) exactly, of several points over one cell the lowest;
@@ -310,6 +322,7 @@ def surface_map(
         shoe_angle: a, rad, toe up positive, -30 to 60 deg.
         spacing: Side of a cell, m.
         padding: Free margin around the plan form, m.
+        columns: Cells along x in one spacing: 1 makes square cells.
 
     Raises:
         InputError: Grid too coarse for the plan form or for most of the channels; angle out of
@@ -328,7 +341,7 @@ def surface_map(
     count_x = math.ceil(float(outline[:, 0].max()) / spacing - 1e-9) + 2 * margin
     low, high = float(outline[:, 1].min()), float(outline[:, 1].max())
     count_y = math.ceil((high - low) / spacing - 1e-9) + 2 * margin
-    x = (np.arange(count_x, dtype=np.float64) + 0.5 - margin) * spacing
+    x = _centres(count_x, margin, spacing, columns)
     y = (low + high) / 2 + centred(count_y, spacing)
     clearance, origin = tilted_rows(
         (surface.x, surface.y), base, inside, (x + rear, y), cosine, sine
@@ -377,6 +390,7 @@ def surface_map(
         land=land,
         tread_depth=np.where(land, surface.tread_depth[cells], 0.0),
         spacing=float(spacing),
+        columns=columns,
         outline=outline,
         breaches=tuple(resolution_breaches(surface, spacing)),
         cut=cut,

@@ -53,7 +53,11 @@ MODELS: dict[str, Callable[[], SlipModel]] = {
 
 
 def slip_model(name: str) -> SlipModel:
-    """Return a published model by name; an unknown name is answered with the nearest one."""
+    """Return a published model by name; an unknown name is answered with the nearest one.
+
+    >>> slip_model("report_g6").name
+    'report_g6'
+    """
     if name not in MODELS:
         raise unknown_name("slip model", name, MODELS, where="risk.model")
     return MODELS[name]()

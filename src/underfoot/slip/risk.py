@@ -83,6 +83,9 @@ def slip_risk(
 
     Raises:
         InputError: ACOF not determined, negative or not finite.
+
+    >>> 0 < slip_risk(0.2).probability.value < 1
+    True
     """
     if not isinstance(acof, SourcedValue):
         if np.ndim(acof):
@@ -159,6 +162,9 @@ def needed_acof(
 
     Raises:
         InputError: A risk outside (0, 1), or one that not even no friction (or a COF of 5) reaches.
+
+    >>> round(needed_acof(0.05), 3)
+    0.218
     """
     from scipy.optimize import root_scalar  # heavy, and only this function needs it
 

@@ -11,4 +11,4 @@ from .sole_state import SolverSettings as SolverSettings
 from .solver import SoleContact as SoleContact
 from .solver import solve_sliding as solve_sliding
 from .stepping import SlidingSole as SlidingSole
-from .stepping import rolled_clearance as rolled_clearance
+from .stepping import rolled_sole as rolled_sole

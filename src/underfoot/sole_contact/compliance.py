@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -43,6 +43,7 @@ REACHED = 1e-3
 TREADED_SHARE = 0.5  # of the land that must be lugs for the tread to be modelled as lugs
 
 
+@runtime_checkable
 class Compliance(Protocol):
     """Linear map from surface pressure to surface deflection on one grid."""
 
@@ -64,9 +65,16 @@ class ConvolutionCompliance:
     """Sum of convolutions, each w * K(w * p) with an optional weight field w."""
 
     def __init__(
-        self, shape: tuple[int, int], parts: list[tuple[Array, Array | None]], symbol: Symbol
+        self,
+        shape: tuple[int, int],
+        parts: list[tuple[Array, Array | None]],
+        symbol: Symbol,
+        *,
+        modulus: float,
     ) -> None:
+        """``modulus`` (E / (1 - nu^2), Pa) is that of the half-space which short waves meet."""
         self._symbol = symbol
+        self._modulus = modulus
         centre = (shape[0] - 1, shape[1] - 1)
         self._parts: _Parts = []
         self._self = np.zeros(shape)
@@ -86,6 +94,12 @@ class ConvolutionCompliance:
         """Return the deflection over pressure (m/Pa) of a wave far from free edges."""
         return self._symbol(np.asarray(wavenumber, dtype=float))
 
+    @property
+    def short_waves(self) -> tuple[Array, float]:
+        """Weight (nx, ny) and modulus (Pa) of the half-space that short waves meet."""
+        sharpest = max(self._parts, key=lambda part: part[0].influence.max())[1]
+        return np.broadcast_to(sharpest, self._self.shape), self._modulus
+
     def apply(self, pressure: Array) -> Array:
         """Return the deflection (nx, ny) in m of a pressure field (nx, ny) in Pa."""
         return _summed(self._parts, pressure)
@@ -97,6 +111,7 @@ class ConvolutionCompliance:
         """
         part = object.__new__(ConvolutionCompliance)
         part._symbol, part._self = self._symbol, self._self[box]
+        part._modulus = self._modulus
         part._parts = [
             (
                 each.within(part._self.shape, dtype),
@@ -163,7 +178,10 @@ def half_space_compliance(
     influence = half_space_influence(shape, spacing, plane)
     longest = 2 * np.pi / (max(shape) * spacing)
     return ConvolutionCompliance(
-        shape, [(influence, None)], lambda k: 2 / (plane * np.maximum(k, 0.5 * longest))
+        shape,
+        [(influence, None)],
+        lambda k: 2 / (plane * np.maximum(k, 0.5 * longest)),
+        modulus=plane,
     )
 
 
@@ -231,10 +249,13 @@ def layered_compliance(
         _check_elastic(midsole_modulus, midsole_poisson_ratio)
         _check_positive(midsole_thickness, "midsole_thickness")
     elastic = {"modulus": modulus, "poisson_ratio": poisson_ratio}
+    plane = modulus / (1 - poisson_ratio**2)
     layer = partial(bonded_layer_symbol, **elastic, thickness=thickness)
     if not free_edges:
         plain = influence(lambda q: layer(q) + midsole(q))
-        return ConvolutionCompliance(shape, [(plain, None)], lambda q: layer(q) + midsole(q))
+        return ConvolutionCompliance(
+            shape, [(plain, None)], lambda q: layer(q) + midsole(q), modulus=plane
+        )
 
     depth = mean_lug_depth(sole)
     land = sole.inside & sole.land
@@ -253,6 +274,7 @@ def layered_compliance(
             shape,
             [(influence(rest), None), (block, plan_weight)],
             lambda q: rest(q) + footprint(q),
+            modulus=plane,
         )
 
     height = lug_height(sole)
@@ -277,7 +299,7 @@ def layered_compliance(
         short = influence(lambda q: (rest(q) + footprint(q)) * (1 - smooth(q)))
         parts.append((short, np.sqrt(bare)))
     return ConvolutionCompliance(
-        shape, parts, lambda q: (rest(q) + footprint(q)) * smooth(q) + lug(q)
+        shape, parts, lambda q: (rest(q) + footprint(q)) * smooth(q) + lug(q), modulus=plane
     )
 
 

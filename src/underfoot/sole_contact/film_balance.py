@@ -8,7 +8,14 @@ from functools import cached_property
 import numpy as np
 
 from underfoot.core.arrays import Array, Mask
-from underfoot.film import Cavity, FilmOperator, Pattern, film_operator, upwinding
+from underfoot.film.face_operator import (
+    FaceMatrix,
+    FaceOperator,
+    Faces,
+    RowCavity,
+    face_operator,
+)
+from underfoot.film.operator import Upwinding
 
 from .problem import Problem
 
@@ -17,14 +24,14 @@ SMALLEST_GAP = 2e-7  # m; the flow sees no thinner film (the pressure law does)
 
 @dataclass(frozen=True)
 class Linearisation:
-    """Coupled problem at one iterate, linear in total pressure and gap; (size,), (5, size).
+    """Coupled problem at one iterate, linear in total pressure and gap; (size,).
 
     full cell:       (A dp_f + T dtheta + B dh) / diagonal,   dp_f = dp + kappa dh
     other cells:     dp + kappa dh
     cavitated cell:  dtheta such that A dp_f + T dtheta + B dh = 0
     """
 
-    pattern: Pattern
+    faces: Faces
     stiffness: Array  # kappa = -dP/dh, Pa/m
     full: Mask
     film: FilmRows | None = None  # None where no cell holds film
@@ -32,9 +39,11 @@ class Linearisation:
     @cached_property
     def _matrices(self):
         assert self.film is not None
-        film, pattern = self.film, self.pattern
-        by_fields = pattern.pair.matrix(np.concatenate([film.by_pressure, film.by_gap]))
-        return by_fields, pattern.matrix(film.by_fraction)
+        film = self.film
+        by_fields = self.faces.pair.matrix(
+            np.concatenate([film.by_pressure.coefficients, film.by_gap.coefficients])
+        )
+        return by_fields, film.by_fraction.matrix()
 
     def residual(self, pressure: Array, gap: Array) -> Array:
         """Return what the rows become by a change of total pressure (Pa) and of gap (m)."""
@@ -49,16 +58,16 @@ class Linearisation:
 
 @dataclass(frozen=True, slots=True)
 class FilmRows:
-    """Mass balance of one iterate on the numbered cells: (size,), stencils (5, size)."""
+    """Mass balance of one iterate: (size,) of the unknowns, matrices of all cells."""
 
     full: Mask
     imbalance: Array  # m^3/s
     diagonal: Array  # condensed, m^3/(Pa s)
-    by_pressure: Array
-    by_fraction: Array
-    by_gap: Array
-    fraction: Array  # (nx, ny)
-    cavity: Cavity
+    by_pressure: FaceMatrix
+    by_fraction: FaceMatrix
+    by_gap: FaceMatrix
+    fraction: Array  # (cells,)
+    cavity: RowCavity
     error: float  # sum of imbalances over what the walls carry and the gaps store
 
 
@@ -68,105 +77,97 @@ class FilmBalance:
     ``film`` marks the cells that the pool reaches, ``content`` (m) is the liquid they hold at the
     start, when the gap is ``gap``. A step that ``leaps`` to what comes after a change takes the
     flow at its end: with the mean over the step (``Problem.conductance``) steps longer than the
-    memory of the film swing about the steady state.
+    memory of the film swing about the steady state. ``upstream`` is how far faces lean.
     """
 
     def __init__(
         self,
         problem: Problem,
-        pattern: Pattern,
+        faces: Faces,
         film: Mask,
         gap: Array,
         content: Array,
         duration: float,
         leaps: bool,
+        upstream: Upwinding,
     ) -> None:
-        self._problem, self._pattern, self._film = problem, pattern, film
+        self._problem, self._faces, self._film = problem, faces, film
         self._content = content
-        self._storage = problem.spacing**2 / duration * problem.cut.film_area
-        self._area = pattern.gather(problem.cut.film_area)
-        self._areas = pattern.neighbours_of(self._area, 1.0)
-        self._wet = pattern.gather(film)
-        self._give = pattern.gather(problem.compliance.self_compliance)
-        # upwinding from the gap at the start of the step: it stays out of the Newton matrix
-        start = np.clip(gap, SMALLEST_GAP, problem.largest_gap)
-        self._before = None if leaps else start
-        carried = 0.5 * abs(problem.wall_speed) * problem.spacing
-        self._lean = upwinding(
-            start,
-            carried * problem.compliance.self_compliance,
-            problem.conductance(start).value,
-            from_a=problem.wall_speed < 0,
-        )
+        self._storage = problem.spacing**2 / duration * problem.cells.film_area
+        self._share = problem.film_share
+        self._wet = film[: faces.size]
+        self._give = problem.compliance.self_compliance[: faces.size]
+        self._before = None if leaps else gap
+        self._upstream = upstream
 
     def rows(
         self, gap: Array, fluid: Array, stiffness: Array, full: Mask, faint: float
     ) -> FilmRows:
-        """Return the balance at a gap (nx, ny) and a fluid pressure (size,), Pa above the cavities.
+        """Return the balance at a gap (cells,) and a fluid pressure (size,), Pa above the cavities.
 
-        ``fluid`` is load per area of a whole cell, as are the columns by pressure. Which cells are
-        full is judged on the balance of those that were, ``full``.
+        ``fluid`` is load per area of a cell, as are the columns by pressure. Which cells are full
+        is judged on the balance of those that were, ``full``.
         """
-        pattern, wet, give = self._pattern, self._wet, self._give
-        problem = self._problem
-        bounded = np.clip(gap, SMALLEST_GAP, problem.largest_gap)
-        conductance = problem.conductance(bounded, self._before)
-        operator = film_operator(
-            bounded,
-            conductance,
-            conductance,
-            spacing=(problem.spacing, problem.spacing),
+        faces, wet, give, problem = self._faces, self._wet, self._give, self._problem
+        size = faces.size
+        operator = face_operator(
+            faces,
+            gap,
+            problem.conductance,
+            before=self._before,
+            limits=(SMALLEST_GAP, problem.largest_gap),
             speed=0.5 * problem.wall_speed,
             storage=self._storage,
-            upwinding=self._lean,
-            edges=(problem.cut.along[:-1], problem.cut.across[:, :-1]),
+            upstream=self._upstream,
         )
-        by_pressure = pattern.rows_of(operator.by_pressure)
-        by_pressure /= self._areas
-        by_fraction = pattern.rows_of(operator.by_fraction)
+        by_pressure = operator.by_pressure.columns(1 / self._share)
+        by_fraction = operator.by_fraction
 
         before = full
-        pressure, fraction, net, cavity = self._balance(operator, by_fraction, fluid, before)
-        by_gap = pattern.gather(operator.by_gap(pressure, fraction)[0])
-        diagonal = by_pressure[0] * (1 + stiffness * give) + np.abs(by_gap) * give
-        lacks = by_fraction[0] * (1 - pattern.gather(fraction))
+        pressure, fraction, net, cavity = self._balance(operator, fluid, before)
+        by_gap = operator.by_gap(pressure, fraction)
+        diagonal = by_pressure.own[:size] * (1 + stiffness * give)
+        diagonal += np.abs(by_gap.own[:size]) * give
+        lacks = by_fraction.own[:size] * (1 - fraction[:size])
         # at rest nothing flows and nothing is pressed: such a cell counts as full
         full = wet & (fluid - (net + lacks) / diagonal >= -faint)
         if (full != before).any():
-            pressure, fraction, net, cavity = self._balance(operator, by_fraction, fluid, full)
-        # where the gap is clipped the film does not follow the walls
-        free = pattern.neighbours_of(pattern.gather(bounded == gap))
-        overfull = by_fraction[0] * np.maximum(pattern.gather(fraction) - 1, 0.0)
+            pressure, fraction, net, cavity = self._balance(operator, fluid, full)
+            by_gap = operator.by_gap(pressure, fraction)
+        overfull = by_fraction.own[:size] * np.maximum(fraction[:size] - 1, 0.0)
         through = operator.carried(fraction)
-        carried = np.zeros_like(gap)
-        carried[:-1] += through
-        carried[1:] -= through
+        carried = np.bincount(faces.west, through, faces.count)
+        carried -= np.bincount(faces.east, through, faces.count)
         stored = self._storage * np.abs(operator.gap * fraction - self._content)
         wrong = np.where(full, np.abs(net), np.where(wet, overfull, 0.0)).sum()
+        moved = float((np.abs(carried) + stored)[self._film].sum()) + 1e-30
+        by_gap = by_gap.columns((operator.gap == gap) * 1.0)
         return FilmRows(
             full,
             net,
             diagonal,
             by_pressure,
             by_fraction,
-            free * pattern.rows_of(operator.by_gap(pressure, fraction)),
+            by_gap,
             fraction,
             cavity,
-            float(wrong) / (float((np.abs(carried) + stored)[self._film].sum()) + 1e-30),
+            float(wrong) / moved,
         )
 
     def _balance(
-        self, operator: FilmOperator, by_fraction: Array, fluid: Array, full: Mask
-    ) -> tuple[Array, Array, Array, Cavity]:
-        """Return pressure and liquid fraction (nx, ny), imbalance (size,) and cavity of a set."""
-        pattern, floor = self._pattern, self._problem.settings.cavity_pressure
+        self, operator: FaceOperator, fluid: Array, full: Mask
+    ) -> tuple[Array, Array, Array, RowCavity]:
+        """Return pressure and liquid fraction (cells,), imbalance (size,), cavity of a set."""
+        size, floor = self._faces.size, self._problem.settings.cavity_pressure
+        by_fraction = operator.by_fraction
         empty = self._wet & ~full
-        cavity = Cavity(pattern, by_fraction, empty)
-        pressure = pattern.scatter(full * (fluid / self._area) + floor * self._wet)
-        fraction = 1.0 - pattern.scatter(empty)
-        net = pattern.gather(operator.imbalance(pressure, fraction, self._content))
+        cavity = RowCavity(by_fraction, empty)
+        pressure, fraction = np.zeros((2, self._faces.count))
+        pressure[:size] = full * (fluid / self._share[:size]) + floor * self._wet
+        fraction += 1.0
+        fraction[:size] -= empty
+        net = operator.imbalance(pressure, fraction, self._content)[:size]
         filled = cavity.filled_by(-net)
-        fraction += pattern.scatter(filled)
+        fraction[:size] += filled
         # linear in the fraction
-        net += (by_fraction * pattern.neighbours_of(np.minimum(filled, 1.0))).sum(axis=0)
-        return pressure, fraction, net, cavity
+        return pressure, fraction, net + by_fraction.matrix() @ np.minimum(filled, 1.0), cavity

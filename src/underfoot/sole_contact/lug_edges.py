@@ -20,6 +20,8 @@ contact friction by 0.31 (root mean square), nearly all of it where the film set
 the sliding has no such edge.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -30,6 +32,8 @@ from underfoot.core.arrays import Array, Mask
 from underfoot.friction import FrictionLaw, FrictionParts
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
 from underfoot.shoe import SoleMap
+
+from .sole_state import CellState, SoleState
 
 INLET = 1.06
 NARROWEST = 0.1e-3
@@ -67,6 +71,10 @@ class LugEdges:
     height: Array
     edge: Array
     fed: Array
+
+    def on(self, cells: CellState) -> LugEdges:
+        """Return the lugs on finer cells."""
+        return replace(self, label=self.label.ravel()[cells.square], area=cells.area)
 
     def map(self, values: Array, outside: float) -> Array:
         """Return one value a lug as a map (nx, ny)."""
@@ -251,6 +259,10 @@ class EdgedLaw:
     modulus: float
     viscosity: float
     suction: float
+
+    def on(self, state: SoleState | CellState) -> EdgedLaw:
+        """Return the law on the cells of a state."""
+        return replace(self, edges=self.edges.on(state)) if isinstance(state, CellState) else self
 
     def lugs(self, contact_pressure: Array, speed: float, film_thickness: Array) -> LugFriction:
         """Return what the edges do at contact pressure (Pa), speed (m/s) and film (m), (nx, ny)."""

@@ -9,6 +9,8 @@ import numpy as np
 from scipy.ndimage import binary_dilation
 
 from underfoot.core.arrays import Array, Mask
+from underfoot.film.face_operator import leaning
+from underfoot.film.operator import Upwinding
 
 from .film_balance import SMALLEST_GAP
 from .newton import Cells, implicit_step
@@ -115,7 +117,7 @@ class March:
                 low = film | (problem.drained & (gap < self._pool_depth))
             near = gap < self._pool_depth + DEEP
             self._cells = _cells(problem, self._fit, self._cells, low, near)
-            self.counts.cells = max(self.counts.cells, self._cells.pattern.size)
+            self.counts.cells = max(self.counts.cells, self._cells.size)
             cells = self._cells
             attempt = implicit_step(
                 cells.problem(problem),
@@ -123,10 +125,11 @@ class March:
                 cells.state(self.state),
                 load=demand.load,
                 duration=duration,
-                film=film[cells.box],
-                content=self._content()[cells.box],
+                film=film[cells.numbers],
+                content=self._content()[cells.numbers],
                 tolerance=demand.tolerance,
                 leaps=demand.leaps,
+                upstream=self._upstream(problem, cells),
                 tick=tick,
             )
             self.counts.newton += attempt.newton
@@ -146,6 +149,26 @@ class March:
             if duration < self._shortest:
                 return 0.0
 
+    def _upstream(self, problem: Problem, cells: Cells) -> Upwinding | None:
+        """Return how far the faces of the cells lean upstream; None on a dry floor.
+
+        From the gap at the start of the step: so it stays out of the Newton matrix.
+        """
+        if problem.viscosity is None:
+            return None
+        rows = problem.cells
+        start = np.clip(self.state.gap, SMALLEST_GAP, problem.largest_gap)
+        carried = 0.5 * abs(problem.wall_speed) * rows.spacing * rows.width
+        lean = leaning(
+            rows,
+            start,
+            rows.width,
+            carried * problem.compliance.self_compliance,
+            problem.conductance(start).value,
+            backward=problem.wall_speed < 0,
+        )
+        return Upwinding(*(part[cells.x_faces] for part in lean))
+
     def _content(self) -> Array:
         """Return the liquid per area, m: of the film, and of the pool where it is undisturbed."""
         pool = np.clip(self.state.gap, SMALLEST_GAP, self._pool_depth)
@@ -161,7 +184,7 @@ def _film_mask(problem: Problem, gap: Array, pool_depth: float, before: Mask | N
     film &= problem.clearance < 0.5
     if problem.drained is not None:
         film &= ~problem.drained
-    film[[0, -1]] = film[:, [0, -1]] = False  # the rim of the grid is open to the surroundings
+    film &= ~problem.cells.at_rim  # open to the surroundings
     if not film.any():
         film = problem.clearance < problem.clearance.min() + 2e-5
     return film
@@ -172,12 +195,14 @@ def _cells(problem: Problem, fit: PoleFit, cells: Cells | None, low: Mask, near:
 
     ``near`` are those that may meet pool or floor within a step.
     """
-    mask = low | (np.asarray(binary_dilation(low, iterations=MARGIN), dtype=bool) & near)
+    squares = problem.cells
+    wide = binary_dilation(squares.sums(low.astype(float)) > 0, iterations=MARGIN)
+    mask = low | (squares.of(np.asarray(wide, dtype=bool)) & near)
     mask &= problem.clearance < 0.5
     if (
         cells is not None
         and not (low & ~cells.mask).any()
-        and cells.pattern.size < ROOM * np.count_nonzero(mask)
+        and cells.size < ROOM * np.count_nonzero(mask)
     ):
         return cells
     return Cells(mask, problem, fit)

@@ -9,6 +9,7 @@ import numpy as np
 
 from underfoot.core import InputError, Progress, Status, silent
 from underfoot.core.arrays import Array
+from underfoot.core.threads import threads_limited
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
 from underfoot.shoe.geometry import SoleMap
 
@@ -62,6 +63,7 @@ class MotionHistory:
             )
 
 
+@threads_limited(1)
 def solve_history(
     sole: SoleMap,
     compliance: Compliance,

@@ -4,7 +4,7 @@ Unknowns: the total pressure p of each cell of the wet region and the approach d
 fraction theta of cavitated cells follows from them by their own mass balance.
 
     h = G - d + C p,   p_f = p - P(h)
-    full cell:       R(p_f, theta, h) = 0,  theta = 1       R: ``underfoot.film.FilmOperator``
+    full cell:       R(p_f, theta, h) = 0,  theta = 1       R: ``underfoot.film.FaceOperator``
     cavitated cell:  p_f = p_cavity,  R(p_f, theta, h) = 0
     dry cell:        p_f = 0
     load:            sum p dA = F
@@ -27,9 +27,9 @@ from numpy.typing import NDArray
 
 from underfoot.core import ConvergenceError
 from underfoot.core.arrays import Array, Mask
-from underfoot.film import Pattern
+from underfoot.film.face_operator import Faces
+from underfoot.film.operator import Upwinding
 
-from .compliance import compliance_within
 from .film_balance import FilmBalance, Linearisation
 from .gmres import krylov_solution
 from .preconditioner import PoleFit, Preconditioner
@@ -40,7 +40,6 @@ STALE = 10  # GMRES iterations above which the next Newton step gets a new facto
 NEAR = 0.3  # share to which the last Newton step must have brought the residual for that
 FORCING = 0.3  # share of the residual to which GMRES solves, once the residual is small
 CYCLE = 0.05  # relative difference of balances two Newton steps apart that counts as none
-RIM = 2  # cells beside the wet ones that the upwinding of their faces looks at
 THIN = 2e-4  # m; steps are limited where the film is thinner
 
 
@@ -55,45 +54,75 @@ class Attempt:
 
 
 class Cells:
-    """The wet region: the box of the grid around it, its cells, sparsity and preconditioner.
+    """Cells that a step may change and those beside them: faces, compliance, preconditioner.
 
-    A step is solved on the box alone: its cost is that of what is wet, not of the sole.
+    A step is solved on these alone: its cost is that of what is wet, not of the sole. The first
+    ``size`` are unknowns, in the order of the whole sole; those beside them hold no pressure.
     """
 
     def __init__(self, mask: Mask, problem: Problem, fit: PoleFit) -> None:
-        self.mask = mask
-        rows, columns = (np.flatnonzero(mask.any(axis=axis)) for axis in (1, 0))
-        self.box = (
-            slice(max(int(rows[0]) - RIM, 0), int(rows[-1]) + RIM + 1),
-            slice(max(int(columns[0]) - RIM, 0), int(columns[-1]) + RIM + 1),
+        self.mask = mask  # (cells of the whole sole,)
+        whole = problem.cells
+        joined_x = mask[whole.west] | mask[whole.east]
+        joined_y = mask[whole.south] | mask[whole.north]
+        beside = np.zeros_like(mask)
+        for cells, joined in (
+            (whole.west, joined_x),
+            (whole.east, joined_x),
+            (whole.south, joined_y),
+            (whole.north, joined_y),
+        ):
+            beside[cells[joined]] = True
+        unknown = np.flatnonzero(mask)
+        self.numbers = np.concatenate([unknown, np.flatnonzero(beside & ~mask)])
+        self.size = unknown.size
+        number = np.full(mask.size, -1)
+        number[self.numbers] = np.arange(self.numbers.size)
+        self.x_faces = joined_x
+        self.faces = Faces(
+            self.numbers.size,
+            self.size,
+            whole.spacing,
+            number[whole.west[joined_x]],
+            number[whole.east[joined_x]],
+            whole.distance[joined_x],
+            whole.node[joined_x],
+            whole.lean[:, joined_x],
+            whole.rise[:, joined_x],
+            number[whole.south[joined_y]],
+            number[whole.north[joined_y]],
+            whole.overlap[joined_y],
+            whole.crossing[joined_y],
         )
-        self.pattern = Pattern(mask[self.box])
-        self._compliance = compliance_within(problem.compliance, self.box)
+        self._part = whole.part(self.numbers)
+        self._compliance = problem.compliance.within(self.numbers)
         # for directions of a Newton step: GMRES solves to 1e-3, balances are in double precision
-        self.direction = compliance_within(problem.compliance, self.box, np.float32)
-        scale = float(np.median(self.pattern.gather(self._compliance.self_compliance)))
-        self.preconditioner = Preconditioner(self.pattern, fit, scale, problem.spacing)
+        self.direction = problem.compliance.within(self.numbers, np.float32)
+        scale = float(np.median(self._compliance.self_compliance[: self.size]))
+        width = self._part.width[: self.size]
+        self.preconditioner = Preconditioner(self.faces, fit, scale, width)
 
     def problem(self, whole: Problem) -> Problem:
-        """Return the problem on the box."""
+        """Return the problem on these cells."""
         return replace(
             whole,
-            clearance=whole.clearance[self.box],
+            cells=self._part,
+            clearance=whole.clearance[self.numbers],
             compliance=self._compliance,
-            cut=whole.cut.part(self.box),
+            drained=None,
         )
 
     def state(self, whole: State) -> State:
-        """Return the state on the box."""
+        """Return the state on these cells."""
         names = ("pressure", "gap", "fluid", "contact", "cavitated", "fraction")
-        return replace(whole, **{name: getattr(whole, name)[self.box] for name in names})
+        return replace(whole, **{name: getattr(whole, name)[self.numbers] for name in names})
 
     def on_whole(self, state: State, problem: Problem) -> State:
-        """Return a state on the box as one on the whole grid, unloaded beside it."""
+        """Return a state on these cells as one of the whole sole, unloaded beside them."""
 
         def placed(values: NDArray[Any], beside: float = 0.0) -> NDArray[Any]:
             field = np.full(self.mask.shape, beside, dtype=values.dtype)
-            field[self.box] = values
+            field[self.numbers] = values
             return field
 
         pressure = placed(state.pressure)
@@ -119,27 +148,34 @@ def implicit_step(
     content: Array,
     tolerance: float,
     leaps: bool,
+    upstream: Upwinding | None,
     tick: Callable[[float], None],
 ) -> Attempt:
     """Return the state after ``duration`` under ``load``, if Newton finds it.
 
-    All are on the box of the cells. ``film`` marks the cells that the pool reaches, ``content`` (m)
+    All are on the cells given. ``film`` marks the cells that the pool reaches, ``content`` (m)
     is the liquid that they hold at the start, ``tolerance`` the largest relative imbalance; for
-    ``leaps`` see ``FilmBalance``; ``tick`` receives the residual of each Newton step.
+    ``leaps`` and ``upstream`` (None on a dry floor) see ``FilmBalance``; ``tick`` receives the
+    residual of each Newton step.
     """
-    pattern = cells.pattern
+    faces, size = cells.faces, cells.size
     area = problem.spacing**2
-    size = pattern.size
-    wet = pattern.gather(film)
-    floor = np.where(wet, problem.settings.cavity_pressure, 0.0)
-    floor = floor * pattern.gather(problem.cut.film_area)
-    land = pattern.gather(problem.cut.area)
+    width = problem.cells.width[:size]
+    wet = film[:size]
+    floor = np.where(wet, problem.settings.cavity_pressure, 0.0) * problem.film_share[:size]
+    land = problem.contact_share[:size]
     full = np.zeros(size, dtype=bool)
     balance = None
-    if problem.viscosity is not None:
-        full = wet & ~pattern.gather(start.cavitated)
-        balance = FilmBalance(problem, pattern, film, start.gap, content, duration, leaps)
-    pressure = np.where(pattern.mask, start.pressure, 0.0)
+    if upstream is not None:
+        full = wet & ~start.cavitated[:size]
+        balance = FilmBalance(problem, faces, film, start.gap, content, duration, leaps, upstream)
+
+    def padded(values: NDArray[Any], beside: float = 0.0) -> NDArray[Any]:
+        field = np.full(faces.count, beside, dtype=values.dtype)
+        field[:size] = values
+        return field
+
+    pressure = padded(start.pressure[:size])
     approach = start.approach
     gap = start.gap
     # a sole that rolls changes its clearance: Newton brings it in, or the guess cuts the floor
@@ -148,11 +184,12 @@ def implicit_step(
     change = np.inf
     solve, count = None, 0
     balances: list[float] = []
-    faint = 1e-9 * load / (size * area)
+    whole = float(width.sum())
+    faint = 1e-9 * load / (whole * area)
 
     for iteration in range(problem.settings.most_newton + 1):
-        local_gap = pattern.gather(gap)
-        total = pattern.gather(pressure)
+        local_gap = gap[:size]
+        total = pressure[:size]
         asperity = land * problem.law.pressure(local_gap)
         stiffness = land * problem.law.stiffness(local_gap)
         above = total - asperity - floor
@@ -162,9 +199,9 @@ def implicit_step(
             full = rows.full
             residual = np.where(full, rows.imbalance / rows.diagonal, above)
             imbalance = rows.error
-        shortage = load - float(pressure.sum()) * area
-        wrong = float(np.abs(np.where(full, np.minimum(above, 0.0), above)).sum())
-        lacking = pattern.gather(missing)
+        shortage = load - problem.load(pressure)
+        wrong = float(np.abs(np.where(full, np.minimum(above, 0.0), above)) @ width)
+        lacking = missing[:size]
         balances.append(max(imbalance, wrong * area / load, abs(shortage) / load))
         error = max(balances[-1], min(change, 1.0) * 0.1)
         error = max(error, 0.01 * float(np.abs(lacking).max()) / problem.decay)
@@ -175,16 +212,16 @@ def implicit_step(
                 pressure,
                 approach,
                 gap,
-                pattern.scatter(floor + np.where(full, above, 0.0)),
-                pattern.scatter(np.where(full, asperity, total - floor)),
-                film & ~pattern.scatter(full),
+                padded(floor + np.where(full, above, 0.0)),
+                padded(np.where(full, asperity, total - floor)),
+                film & ~padded(full),
                 np.ones_like(gap) if rows is None else np.minimum(rows.fraction, 1.0),
             )
             return attempt
         if iteration == problem.settings.most_newton or _hopeless(attempt.residuals):
             break
 
-        linear = Linearisation(pattern, stiffness, full, rows)
+        linear = Linearisation(faces, stiffness, full, rows)
         # a factorization serves the next step too while the sets and the stiffness settle
         near = len(attempt.residuals) > 1 and error < NEAR * attempt.residuals[-2]
         if solve is None or count > STALE or not near:
@@ -194,10 +231,10 @@ def implicit_step(
                 break
 
         def product(vector: Array, linear=linear) -> Array:
-            field = cells.direction.apply(pattern.scatter(vector[:-1].astype(np.float32)))
+            deflection = cells.direction.apply(padded(vector[:-1].astype(np.float32)))
             out = np.empty_like(vector)
-            out[:-1] = linear.residual(vector[:-1], pattern.gather(field) - vector[-1])
-            out[-1] = vector[:-1].sum() / size
+            out[:-1] = linear.residual(vector[:-1], deflection[:size] - vector[-1])
+            out[-1] = (vector[:-1] @ width) / whole
             return out
 
         right = -residual - linear.residual(np.zeros(size), lacking)
@@ -206,16 +243,16 @@ def implicit_step(
         step, count, _ = krylov_solution(
             product,
             solve,
-            np.append(right, shortage / (size * area)),
+            np.append(right, shortage / (whole * area)),
             tolerance=min(max(exact, FORCING * error), 30 * exact),
         )
         attempt.krylov += count
         attempt.newton += 1
         if not np.isfinite(step).all():
             break
-        delta = pattern.scatter(step[:-1])
+        delta = padded(step[:-1])
         rise = problem.compliance.apply(delta) - step[-1] + missing
-        share = _step_share(problem, local_gap, pattern.gather(rise))
+        share = _step_share(problem, local_gap, rise[:size])
         if _cycling(balances):
             share *= 0.5
         pressure = pressure + share * delta
@@ -223,7 +260,7 @@ def implicit_step(
         gap = gap + share * rise
         missing = (1 - share) * missing
         # a shortened step says nothing about how far the solution still is
-        change = float(np.abs(delta).sum()) * area / load if share == 1.0 else np.inf
+        change = problem.load(np.abs(delta)) / load if share == 1.0 else np.inf
     return attempt
 
 

@@ -17,7 +17,8 @@ import scipy.sparse as sp
 from underfoot.core import ConvergenceError
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.sparse import Factorization, factorization
-from underfoot.film import Pattern, SparseLayout
+from underfoot.film.face_operator import FaceMatrix, Faces
+from underfoot.film.operator import SparseLayout
 
 from .compliance import Compliance
 from .film_balance import Linearisation
@@ -79,62 +80,91 @@ class Preconditioner:
         dp = chi v + e - kappa dh
     """
 
-    def __init__(self, pattern: Pattern, fit: PoleFit, scale: float, spacing: float) -> None:
-        size = pattern.size
-        self.pattern = pattern
+    def __init__(self, faces: Faces, fit: PoleFit, scale: float, width: Array) -> None:
+        size = faces.size
+        self.faces, self.width = faces, width
         self.scale = scale
         self.local = fit.local
-        self.source = fit.strength * spacing**2 / scale  # of q, over dp
+        self.source = fit.strength * faces.spacing**2 / scale  # of q, over dp
+        screened = (fit.screening * faces.spacing) ** 2
         # beside the cells the field goes on as it decays along a line
-        screened = (fit.screening * spacing) ** 2
         decayed = math.sqrt(screened + screened**2 / 4) - screened / 2
-        inner = pattern.neighbours_of(np.ones(size))[1:].sum(axis=0)
-        self._screened = np.full((5, size), -1.0)
-        self._screened[0] = inner + (4 - inner) * decayed + screened
+        inner = (faces.ahead < size) & (faces.behind < size)
+        link = np.concatenate([1 / faces.distance, faces.overlap])
+        length = np.concatenate([np.ones(faces.west.size), faces.overlap])
+        own = np.zeros(faces.count)
+        rim = np.zeros(faces.count)
+        for cells in (faces.ahead, faces.behind):
+            own += np.bincount(cells, inner * link, faces.count)
+            rim += np.bincount(cells, inner * length, faces.count)
+        around = np.zeros(faces.count)
+        around[:size] = 2 + 2 * width - rim[:size]
+        own += np.maximum(around, 0.0) * decayed
+        own[:size] += screened * width
+        self._screened = FaceMatrix(faces, own, -link, -link)
         # rows of v (by v, by q) and of q (by q, by v), as ``factorise`` fills them
-        own, columns, beside = pattern.rows, pattern.columns, pattern.beside
+        rows, columns = faces.layout
+        rows = np.minimum(rows, size - 1)
+        numbers = np.arange(size)
         self._layout = SparseLayout(
-            np.concatenate([own, own, own + size, own[:1] + size]),
-            np.concatenate([columns, beside, beside, columns[:1]]),
+            np.concatenate([rows, rows, rows + size, numbers + size]),
+            np.concatenate(
+                [
+                    columns,
+                    np.where(columns < 0, -1, columns + size),
+                    np.where(columns < 0, -1, columns + size),
+                    numbers,
+                ]
+            ),
             (2 * size, 2 * size),
         )
         self._factors: Factorization | None = None
 
     def factorise(self, linear: Linearisation, backend: str | None) -> BorderedSolve:
         """Return the solver for a linearised problem."""
-        pattern, size = self.pattern, self.pattern.size
+        faces, size = self.faces, self.faces.size
+
+        def padded(values: Array) -> Array:
+            field = np.zeros(faces.count)
+            field[:size] = values
+            return field
+
         full, film = linear.full, linear.film
         yields = 1 / (1 + linear.stiffness * self.local)
         resisted = linear.stiffness * yields * self.scale
-        source = self.source * yields
-        balance, through = np.zeros((2, 5, size))
-        balance[0] = 1.0  # a dry cell: v = 0
+        source = self.source * yields * self.width
+        none = np.zeros(faces.ahead.size)
+        balance = FaceMatrix(faces, padded(np.ones(size)), none, none)  # a dry cell: v = 0
+        through = FaceMatrix(faces, np.zeros(faces.count), none, none)
         rows = np.zeros(size)
         if film is not None:
             cavity, wet = film.cavity.cells, full.copy()
             wet[cavity] = True
             # fraction in units of pressure: so that both kinds of column have the size of A
-            own, unit = film.by_fraction[0, cavity], np.zeros(size)
-            unit[cavity] = film.by_pressure[0, cavity] / np.where(own > 0, own, 1.0)
-            mixed = film.by_pressure * pattern.neighbours_of(full)
-            mixed += film.by_gap * pattern.neighbours_of(self.local * yields * full)
-            mixed += film.by_fraction * pattern.neighbours_of(unit)
-            scale = np.where(wet, np.abs(mixed[0]), 1.0)
-            balance = np.where(wet, mixed / scale, balance)
-            through = film.by_gap * pattern.neighbours_of(self.scale * yields) * (wet / scale)
+            own, unit = film.by_fraction.own[cavity], np.zeros(size)
+            unit[cavity] = film.by_pressure.own[cavity] / np.where(own > 0, own, 1.0)
+            mixed = film.by_pressure.columns(padded(full.astype(float)))
+            mixed = mixed.plus(film.by_gap.columns(padded(self.local * yields * full)))
+            mixed = mixed.plus(film.by_fraction.columns(padded(unit)))
+            scale = np.where(wet, np.abs(mixed.own[:size]), 1.0)
+            held = padded(wet / scale)
+            balance = mixed.rows(held)
+            balance.own[:size] += ~wet
+            through = film.by_gap.columns(padded(self.scale * yields)).rows(held)
             rows = full * film.diagonal / scale
-        screened = self._screened.copy()
-        screened[0] += self.source * resisted
-        blocks = np.concatenate([balance, through, screened, -(source * full)[None]])
-        matrix = self._layout.matrix(blocks)
+        screened = self._screened.coefficients
+        screened[:size] += self.source * resisted * self.width
+        blocks = (balance.coefficients, through.coefficients, screened, -(source * full))
+        matrix = self._layout.matrix(np.concatenate(blocks))
         if self._factors is None:
             self._factors = factorization(matrix, backend)
         else:
             self._factors.factorise(matrix)
-        column = -np.concatenate([through.sum(axis=0), self.source * resisted])
-        return BorderedSolve(
-            self, self._factors, full, yields, resisted, rows, pattern.matrix(through), column
+        by_field = through.matrix()
+        column = -np.concatenate(
+            [np.asarray(by_field.sum(axis=1)).ravel(), self.source * resisted * self.width]
         )
+        return BorderedSolve(self, self._factors, full, yields, resisted, rows, by_field, column)
 
 
 class BorderedSolve:
@@ -156,9 +186,11 @@ class BorderedSolve:
         self._yields, self._resisted = yields * full, resisted
         # what is due in a cell that is not full: of its pressure, of the gap and of the field
         self._due = yields * ~full
-        self._bent, self._source = layout.local / layout.scale * ~full, layout.source * self._due
+        self._bent = layout.local / layout.scale * ~full
+        self._source = layout.source * self._due * layout.width
+        self._width = layout.width / layout.width.sum()
         self._answer = self._pressure(factors.solve(column)) - resisted
-        self._pivot = float(self._answer.mean())
+        self._pivot = float(self._answer @ self._width)
         if self._pivot == 0.0 or not np.isfinite(self._pivot):
             raise ConvergenceError("the load does not depend on the approach", where="sole_contact")
 
@@ -169,7 +201,7 @@ class BorderedSolve:
         solved = self._factors.solve(np.concatenate([balance, self._source * due]))
         result = np.empty_like(right)
         plain = np.add(self._pressure(solved), self._due * due, out=result[:-1])
-        approach = (plain.sum() / plain.size - right[-1]) / self._pivot
+        approach = (plain @ self._width - right[-1]) / self._pivot
         plain -= approach * self._answer
         result[-1] = approach * self._scale
         return result

@@ -1,36 +1,55 @@
 """What is solved at one instant under the sole, and a solution of it."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 from underfoot.core.arrays import Array, Mask
 from underfoot.film import Conductance
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
-from underfoot.shoe.cut_cells import CutCells
+from underfoot.shoe.row_cells import RowCells
 
-from .compliance import Compliance
+from .row_compliance import RowCompliance
 from .sole_state import SolverSettings
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Problem:
-    """What does not change during a run; SI, arrays (nx, ny).
+    """What does not change during a run; SI, arrays (n,) of cells.
 
-    Pressures here and in ``State`` are loads of cells per area of a whole one: where an outline
-    cuts the cell, that of the contact is ``cut.area`` times the pressure at its centre, that of the
-    fluid ``cut.film_area`` times. ``SoleState`` has the pressures.
+    Pressures here and in ``State`` are loads of cells per area of the cell: where an outline cuts
+    it, that of the contact is ``contact_share`` times the pressure at its centre, that of the fluid
+    ``film_share`` times. ``SoleState`` has the pressures.
     """
 
+    cells: RowCells
     clearance: Array
-    spacing: float
-    compliance: Compliance
+    compliance: RowCompliance
     law: PressureGapLaw
     viscosity: float | None
     wall_speed: float
     largest_gap: float
     decay: float  # m, gap over which the asperity pressure falls by about e
     settings: SolverSettings
-    cut: CutCells
     drained: Mask | None = None  # cells with a slit that is a way out: no film, but contact
+
+    @property
+    def spacing(self) -> float:
+        """Side of a square cell, m."""
+        return self.cells.spacing
+
+    @cached_property
+    def contact_share(self) -> Array:
+        """Share of each cell on which the contact presses."""
+        return self.cells.area / self.cells.width
+
+    @cached_property
+    def film_share(self) -> Array:
+        """Share of each cell on which the fluid presses."""
+        return self.cells.film_area / self.cells.width
+
+    def load(self, pressure: Array) -> float:
+        """Return the load (N) of a pressure field."""
+        return float(pressure @ self.cells.width) * self.spacing**2
 
     def gap(self, pressure: Array, approach: float) -> Array:
         """Return the mean gap of a pressure field and an approach."""
@@ -48,6 +67,9 @@ class Problem:
         """
         assert self.viscosity is not None
         factor, slope = self.law.flow_factor(gap), self.law.flow_factor_slope(gap)
+        if self.settings.film is not None:
+            film = self.settings.film.flow_factor(gap, abs(self.wall_speed))
+            factor, slope = factor * film.value, slope * film.value + factor * film.slope
         if before is None:
             square = gap * gap / (12 * self.viscosity)
             return Conductance(factor * gap * square, (3 * factor + slope * gap) * square)

@@ -3,8 +3,12 @@
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from underfoot.core import Status
 from underfoot.core.arrays import Array, Mask
+from underfoot.film import FilmModel
 from underfoot.shoe.cut_cells import CutCells
 
 FAINT = 1.0
@@ -30,6 +34,7 @@ class SolverSettings:
         backend: Sparse factorization: "pardiso", "superlu" or None for the fastest installed.
         cavity_pressure: Pressure of ruptured film, Pa above that of the air, 0 or less: 0 where air
             finds its way in, down to -1e5 where nothing does (the default is the former).
+        film: How the film flows; None as a Newtonian fluid.
     """
 
     pool_depth: float = 0.6e-3
@@ -44,19 +49,42 @@ class SolverSettings:
     krylov_tolerance: float = 1e-3
     time_resolution: float = 8.0
     cavity_pressure: float = 0.0
+    film: FilmModel | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class CellState:
+    """Pressures and film on cells that are finer than the map's; arrays (n,), SI.
+
+    ``area`` and ``film_area`` are what a cell stands for in cells of the map, of contact and shear
+    and of the fluid's pressure; ``square`` is the flat index of the map's cell that it lies in.
+    """
+
+    contact_pressure: Array
+    fluid_pressure: Array
+    film_thickness: Array
+    wet: Mask
+    area: Array
+    film_area: Array
+    square: NDArray[np.intp]
+
+    @property
+    def areas(self) -> dict[str, Any]:
+        """What each cell stands for, as ``friction.cof`` and ``sampled_cof`` take it."""
+        return {"area": self.area, "film_area": self.film_area}
 
 
 @dataclass(frozen=True, slots=True)
 class SoleState:
     """Pressures and film under the sole at one instant; arrays (nx, ny), SI.
 
-    Pressures are those at the centres of cells. Of the area of a cell that an outline cuts, the
-    contact presses on ``cut.area`` and the fluid on ``cut.film_area``: loads are sums over these.
-    ``film_thickness`` is the mean gap, at most the pool depth; ``liquid_fraction`` the share of it
-    that holds liquid, below 1 where the film has ruptured. ``wet`` marks the film (cavitated cells
-    included, see ``cavitated``). ``approach`` is how far the rigid foot has come down since
-    the lowest point touched the floor. ``status`` other than CONVERGED: not a result, see
-    ``remedy``.
+    Pressures are those at the centres of cells, or means over the finer ``cells`` where such were
+    solved. Of the area of a cell that an outline cuts, the contact presses on ``cut.area`` and the
+    fluid on ``cut.film_area``: loads are sums over these. ``film_thickness`` is the mean gap, at
+    most the pool depth; ``liquid_fraction`` the share of it that holds liquid, below 1 where the
+    film has ruptured. ``wet`` marks the film (cavitated cells included, see ``cavitated``).
+    ``approach`` is how far the rigid foot has come down since the lowest point touched the floor.
+    ``status`` other than CONVERGED: not a result, see ``remedy``.
     """
 
     x: Array
@@ -69,6 +97,7 @@ class SoleState:
     wet: Mask
     cavitated: Mask
     cut: CutCells
+    cells: CellState | None
     approach: float
     normal_force: float
     speed: float
@@ -99,6 +128,11 @@ class SoleState:
         return self.fluid_pressure * self.cut.film_area + self.contact_pressure * self.cut.area
 
     @property
+    def finest(self) -> "SoleState | CellState":
+        """Pressures and film on the finest cells that were solved: what friction is summed on."""
+        return self.cells or self
+
+    @property
     def areas(self) -> dict[str, Any]:
-        """What each cell stands for, as ``friction.cof`` and ``sampled_cof`` take it."""
+        """What each cell of the map stands for, as ``friction.cof`` takes it."""
         return {"area": self.cut.area, "film_area": self.cut.film_area}

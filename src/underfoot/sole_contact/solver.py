@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from underfoot.core import ConvergenceError, Progress, silent
+from underfoot.core.threads import threads_limited
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
 from underfoot.shoe.geometry import SoleMap
 
@@ -34,6 +35,7 @@ class SoleContact(SoleState):
     instant: Bookmark
 
 
+@threads_limited(1)
 def solve_sliding(
     sole: SoleMap,
     compliance: Compliance,
@@ -125,6 +127,7 @@ def longest_step(stage: float, passing: float) -> float:
     return min(max(PIECES * passing, stage / FINEST), stage)
 
 
+@threads_limited(1)
 def solve_on(
     start: SoleContact,
     sole: SoleMap,

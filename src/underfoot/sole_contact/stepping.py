@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,16 +10,19 @@ from numpy.typing import NDArray
 from underfoot.core import ConvergenceError, InputError, Progress, Status, silent
 from underfoot.core.arrays import Array
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
-from underfoot.shoe.ball_joint import rolled_height
+from underfoot.shoe.ball_joint import BallJoint, rolled_height
 from underfoot.shoe.cut_cells import CutCells
 from underfoot.shoe.geometry import SoleMap
+from underfoot.shoe.row_cells import RowCells
+from underfoot.shoe.row_division import row_cells
 
 from ._solver_checks import check_demand, check_setup
 from .compliance import Compliance
 from .march import Counts, Demand, History, March
 from .preconditioner import pole_fit
 from .problem import Problem, State
-from .sole_state import SoleState, SolverSettings
+from .row_compliance import row_compliance
+from .sole_state import CellState, SoleState, SolverSettings
 
 FAR = 1.0  # m, clearance that stands for "outside the plan form"
 FIRST_STEP = 1 / 30  # of the rise time
@@ -106,21 +109,21 @@ class SlidingSole:
         self._map_angle = self._angle = shoe_angle
         self._time = self._load = self._largest_load = 0.0
         self._speed: float | None = None
-        clearance = _bounded(sole.clearance)
-        extent = max(clearance.shape) * sole.spacing
+        cells = sole.cells or row_cells(sole)
+        clearance = _bounded(cells.clearance)
+        extent = max(cells.shape) * sole.spacing
         decay, touch = asperity_scale(law, typical_force / (0.01 * extent**2))
         problem = Problem(
+            cells=cells,
             clearance=clearance,
-            spacing=sole.spacing,
-            compliance=compliance,
+            compliance=row_compliance(compliance, cells, sole.land & sole.inside),
             law=law,
             viscosity=viscosity,
             wall_speed=0.0,
             largest_gap=min(4 * settings.pool_depth, 5e-3),
             decay=decay,
             settings=settings,
-            cut=sole.cut or CutCells.none(clearance.shape),
-            drained=sole.slits and sole.slits.drained,
+            drained=None if sole.slits is None else cells.of(sole.slits.drained),
         )
         lift = settings.start_film if viscosity is not None else touch
         blank = np.zeros_like(clearance)
@@ -189,13 +192,13 @@ class SlidingSole:
         check_demand(1.0, normal_force, speed, None)
         self._speed = speed
         self._load = normal_force
-        area = self.sole.spacing**2
+        load = self._march.problem.load
         loading = 2 * self.settings.rise_time
 
         def settled(before: State, step: float) -> bool:
             after = self._march.state
-            change = float(np.abs(after.pressure - before.pressure).sum()) * area
-            moved = abs(float((after.fluid - before.fluid).sum())) * area
+            change = load(np.abs(after.pressure - before.pressure))
+            moved = abs(load(after.fluid - before.fluid))
             return (
                 self._time > loading
                 and step > STEADY_STEP * self._time
@@ -246,12 +249,12 @@ class SlidingSole:
         ``first_step`` (s) is the length of it. What the sole went through stays the other's.
         """
         _, state, film, _ = mark.march
-        march, shape = self._march, self.sole.clearance.shape
-        if state.pressure.shape != shape:
+        march = self._march
+        if state.pressure.shape != march.state.pressure.shape:
             raise InputError(
-                f"a state of {state.pressure.shape} cells",
+                f"a state of {state.pressure.size} cells",
                 where="take_over",
-                allowed=f"{shape}, those of this sole",
+                allowed=f"{march.state.pressure.size}, those of this sole",
             )
         march.state, march.film, march.step = state, film, first_step
         self._load, self._speed = mark.load, mark.speed
@@ -292,7 +295,6 @@ class SlidingSole:
         counts = march.counts
         most = most_steps or self.settings.most_time_steps
         before = counts.time_steps + counts.rejected
-        area = self.sole.spacing**2
         exact = self.settings.tolerance
         passed = max(exact, min(PASSED[0] * exact, PASSED[1]))
         while self._time < end * (1 - 1e-12):
@@ -324,7 +326,7 @@ class SlidingSole:
             self._load, self._speed, self._angle = ramp(self._time)
             history.time.append(self._time)
             history.load.append(self._load)
-            history.fluid_load.append(float(march.state.fluid.sum()) * area)
+            history.fluid_load.append(march.problem.load(march.state.fluid))
             history.approach.append(march.state.approach)
             history.residual.append(march.residuals[-1])
             history.speed.append(self._speed)
@@ -340,7 +342,9 @@ class SlidingSole:
         return time / (time + self.settings.rise_time) if end is None else min(time / end, 1.0)
 
     def _clearance(self, angle: float) -> Array:
-        return _bounded(rolled_clearance(self.sole, angle - self._map_angle))
+        return _bounded(
+            _rolled_cells(self.sole, angle - self._map_angle, self._march.problem.cells)
+        )
 
     def _check_stretch(self, angle: float) -> None:
         if self.sole.joint is not None:  # what is behind it leaves the floor
@@ -365,19 +369,38 @@ class SlidingSole:
             )
         status = Status.CONVERGED if done else Status.NOT_CONVERGED
         march, sole = self._march, self.sole
-        state, cut = march.state, march.problem.cut
+        state, problem = march.state, march.problem
+        cells, refined = problem.cells, sole.cells is not None
+        contact = np.maximum(state.contact, 0.0)  # negative only by what the tolerance leaves
+        fluid = np.maximum(state.fluid, self.settings.cavity_pressure * problem.film_share)
+        film_thickness = np.clip(state.gap, 0.0, self.settings.pool_depth)
+        on_land = (cells.land if refined else 1.0) * cells.width
+        areas = []
+        for area in (cells.area, cells.film_area):
+            land = cells.sums(area * on_land / cells.width)
+            areas.append(np.where(land > 0, land, 1.0))
+        film = cells.sums(march.film * cells.width)
+        finest = CellState(
+            contact_pressure=contact / problem.contact_share,
+            fluid_pressure=fluid / problem.film_share,
+            film_thickness=film_thickness,
+            wet=march.film,
+            area=cells.area,
+            film_area=cells.film_area,
+            square=cells.parent,
+        )
         return SoleState(
             x=sole.x,
             y=sole.y,
             spacing=sole.spacing,
-            # the solver's loads of cells; negative only by what the tolerance leaves
-            contact_pressure=np.maximum(state.contact, 0.0) / cut.area,
-            fluid_pressure=np.maximum(state.fluid / cut.film_area, self.settings.cavity_pressure),
-            film_thickness=np.clip(state.gap, 0.0, self.settings.pool_depth),
-            liquid_fraction=state.fraction,
-            wet=march.film & sole.inside,
-            cavitated=state.cavitated & march.film,
-            cut=cut,
+            contact_pressure=cells.sums(contact * cells.width) / areas[0],
+            fluid_pressure=cells.sums(fluid * cells.width) / areas[1],
+            film_thickness=cells.means(film_thickness, on_land),
+            liquid_fraction=cells.means(state.fraction, on_land),
+            wet=(film > 0) & sole.inside,
+            cavitated=cells.sums((state.cavitated & march.film) * cells.width) > 0.5 * film,
+            cut=replace(sole.cut or CutCells.none(cells.shape), area=areas[0], film_area=areas[1]),
+            cells=finest if refined else None,
             approach=state.approach,
             normal_force=self._load,
             speed=self._speed or 0.0,
@@ -389,15 +412,28 @@ class SlidingSole:
         )
 
 
-def rolled_clearance(sole: SoleMap, angle: float) -> Array:
-    """Return the clearance (nx, ny) in m of a sole rolled by ``angle`` (rad, toe up), inf outside.
+def rolled_clearance(x: Array, clearance: Array, roll: float, joint: BallJoint | None) -> Array:
+    """Return the clearance in m of a sole rolled by ``roll`` (rad, toe up), inf outside.
 
-    Of ``rolled_height``, the lowest put at 0. Cells stay with the sole.
+    Of ``rolled_height`` at places ``x`` (n,) with clearances (n, m), the lowest put at 0. Cells
+    stay with the sole.
     """
-    clearance = np.asarray(sole.clearance)
-    rolled = rolled_height(np.asarray(sole.x), clearance, angle, sole.joint)
+    rolled = rolled_height(x, np.where(np.isfinite(clearance), clearance, FAR), roll, joint)
     rolled = np.where(np.isfinite(clearance), rolled, np.inf)
     return rolled - rolled.min()
+
+
+def _rolled_cells(sole: SoleMap, roll: float, cells: RowCells) -> Array:
+    """Return the clearance (m) of the cells of a sole rolled by ``roll`` (rad)."""
+    x = sole.x[cells.parent // cells.shape[1]] + cells.offset * cells.spacing
+    return rolled_clearance(x, cells.clearance[:, None], roll, sole.joint).ravel()
+
+
+def rolled_sole(sole: SoleMap, roll: float) -> SoleMap:
+    """Return a sole rolled by ``roll`` (rad, toe up) from its map; cells stay with the sole."""
+    clearance = rolled_clearance(sole.x, sole.clearance, roll, sole.joint)
+    cells = sole.cells and replace(sole.cells, clearance=_rolled_cells(sole, roll, sole.cells))
+    return replace(sole, clearance=clearance, cells=cells)
 
 
 def asperity_scale(law: PressureGapLaw, pressure: float) -> tuple[float, float]:

@@ -2,7 +2,7 @@
 
 from .figure import Figure, Layer, Panel
 from .runner import Computed, Options, StudyResult, Table, run_all, run_study
-from .statements import STUDIES, Claim, Kind, Statement, Study, read_study, study
+from .statements import STUDIES, Claim, Kind, Statement, Study, read_study, studies, study
 from .summary import headline, read_results, summary_markdown, write_summary
 from .verdict import Judgement, Quantity, Verdict, counts, judge, judged
 
@@ -30,6 +30,7 @@ __all__ = [
     "read_study",
     "run_all",
     "run_study",
+    "studies",
     "study",
     "summary_markdown",
     "write_summary",

@@ -32,7 +32,6 @@ from underfoot.case import Case
 from underfoot.compute.run import run
 from underfoot.core import UnderfootError, content_hash
 from underfoot.core.arrays import Array
-from underfoot.core.provenance import program_hash
 
 from .figure import PRINTED, Figure, Panel, line, points
 from .runner import Computed, Options, Table, kept, part
@@ -153,11 +152,10 @@ def _compared(
     stands = [stand for one in sides for stand in (one.over, one.under)]
     stands += [stand for _, stand in shoes]
     cases = {case.hash: case for stand in stands for case in stand.cases}
-    keys = [content_hash(name, program_hash()) for name in cases]
     values: dict[str, Mapping[str, Any]] = {}
     runs = part(options.progress, 0.5, 1.0)
     work = kept(
-        "corpus_cases-1", whole_cof, list(cases.values()), keys, processes=options.processes
+        "corpus_cases-1", whole_cof, list(cases.values()), list(cases), processes=options.processes
     )
     for number, (case, arrays) in enumerate(work, start=1):
         runs("whole cases", number / len(cases))

@@ -15,9 +15,7 @@ from numpy.typing import NDArray
 from underfoot.calibrate.pair_readings import PairReading, calibrated_pair
 from underfoot.case import Case
 from underfoot.compute.slips import slips
-from underfoot.core import content_hash
 from underfoot.core.catalogue import Catalogue
-from underfoot.core.provenance import program_hash
 from underfoot.friction import FrictionLaw, PairContactLaw
 from underfoot.slip.dynamics import ReducedSole, SlipStudy
 from underfoot.trials.statistics.linear import all_subsets
@@ -72,7 +70,7 @@ def compute(options: Options) -> Computed:
     plan = [(shoe, grid) for grid in grids for shoe in COUNTS]
     cases = {(s, grid): slip_case(s, grid=grid, quick=options.quick) for s, grid in plan}
     if options.processes != 1:
-        keys = [content_hash(case.hash, program_hash()) for case in cases.values()]
+        keys = [case.hash for case in cases.values()]
         filled = kept("g5_filled-1", fill_cache, list(cases.values()), keys, processes=2)
         for number, _ in enumerate(filled):
             options.progress("full slips", 0.8 * (number + 1) / len(cases))

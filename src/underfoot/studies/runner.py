@@ -18,10 +18,10 @@ from underfoot.core.pool import in_processes
 from underfoot.core.presentation import Presentable
 from underfoot.core.presentation import Table as ShownTable
 from underfoot.core.progress import part as part
-from underfoot.core.provenance import program_hash
+from underfoot.core.registry import offered
 
 from .figure import Figure
-from .statements import STUDIES, Study, study
+from .statements import STUDIES, Study, studies, study
 from .verdict import Judgement, Quantity, Verdict, counts, judged, tables_by_kind
 
 
@@ -149,7 +149,7 @@ class StudyResult(Presentable):
         return {
             "study": self.study.name,
             "source": self.study.source,
-            "statements": [one.as_dict() for one in self.judgements],
+            "statements": [one.to_dict() for one in self.judgements],
             **computed,
             "errata": self.study.errata,
             "quick": self.quick,
@@ -172,7 +172,12 @@ def run_study(chosen: Study, options: Options) -> StudyResult:
     Raises:
         InputError: Settings for a study that has none.
     """
-    module = import_module(f"underfoot.studies.{chosen.name}")
+    ours = chosen.name in STUDIES
+    module: Any = (
+        import_module(f"underfoot.studies.{chosen.name}")
+        if ours
+        else offered("studies", chosen.name)
+    )
     if options.settings is not None and not hasattr(module, "Settings"):
         raise InputError(
             f"study {chosen.name} has no settings of its own",
@@ -180,7 +185,7 @@ def run_study(chosen: Study, options: Options) -> StudyResult:
             remedy="Leave out the options of g1",
         )
     store = Cache("studies-1")
-    key = content_hash(chosen.name, options.quick, options.seed, options.settings, program_hash())
+    key = content_hash(chosen.name, module.compute, options.quick, options.seed, options.settings)
     stored = store.load(key)
     if stored is not None:
         return StudyResult.from_dict(json.loads(str(stored["result"])))
@@ -195,14 +200,14 @@ def run_study(chosen: Study, options: Options) -> StudyResult:
 
 
 def run_all(
-    names: Sequence[str] = STUDIES, options: Options | None = None
+    names: Sequence[str] | None = None, options: Options | None = None
 ) -> Iterator[StudyResult]:
     """Yield every study's result; one that fails says why and does not stop the others.
 
     Raises:
         Cancelled: The receiver of progress raised it.
     """
-    options = options or Options()
+    options, names = options or Options(), studies() if names is None else names
     for number, name in enumerate(names):
         share = part(options.progress, number / len(names), (number + 1) / len(names))
         stage = named(share, name)

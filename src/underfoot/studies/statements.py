@@ -14,9 +14,12 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
 from importlib import resources
+from pathlib import Path
 from typing import Any
 
 from underfoot.core import InputError, to_si, unknown_name
+from underfoot.core.files import read_toml
+from underfoot.core.registry import offered, offers
 
 Z95 = 1.959963984540054
 KEYS = (
@@ -37,7 +40,7 @@ UNITS = {
     "deg": (math.pi / 180.0, "rad"),
 }
 """SI over a printed unit, and the SI unit."""
-STUDIES = ("g1", "g2", "g3", "g4", "g5", "g6", "calibration", "corpus")
+STUDIES = ("g2", "g3", "g4", "g5", "g6", "calibration", "corpus")
 
 
 class Kind(StrEnum):
@@ -141,12 +144,20 @@ class Study:
     figures: tuple[tuple[int, str, str, str], ...]
 
 
+def studies() -> tuple[str, ...]:
+    """Return the names of all studies: those of other packages, then ours."""
+    return (*sorted(offers("studies").keys() - set(STUDIES)), *STUDIES)
+
+
 @cache
 def study(name: str) -> Study:
     """Return a study by its name; an unknown name is answered with the nearest one."""
     chosen = name.strip().lower()
     if chosen not in STUDIES:
-        raise unknown_name("study", name, STUDIES)
+        module = offered("studies", chosen)
+        if module is None:
+            raise unknown_name("study", name, studies())
+        return read_study(chosen, read_toml(Path(module.STATEMENTS)))
     file = resources.files("underfoot") / "data" / "statements" / f"{chosen}.toml"
     return read_study(chosen, tomllib.loads(file.read_text(encoding="utf-8")))
 
@@ -200,8 +211,8 @@ def _check(study_name: str, statements: Sequence[Statement]) -> None:
             other, _, rest = one.of.partition(".")
             if not rest and one.of not in ids:
                 raise unknown_name("statement", one.of or "(none)", ids, where=f"{where}.of")
-            if rest and other not in STUDIES:
-                raise unknown_name("study", other, STUDIES, where=f"{where}.of")
+            if rest and other not in studies():
+                raise unknown_name("study", other, studies(), where=f"{where}.of")
         if one.kind is Kind.INDEPENDENT and one.quantity:
             if one.quantity in read:
                 raise InputError(

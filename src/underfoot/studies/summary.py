@@ -10,7 +10,7 @@ from pathlib import Path
 from underfoot.core import InputError
 
 from .runner import StudyResult
-from .statements import STUDIES
+from .statements import studies
 from .verdict import Verdict, counts, tables_by_kind
 
 
@@ -43,7 +43,7 @@ def figure_rows(
 
 def summary_markdown(results: Sequence[StudyResult]) -> str:
     """Return all statements as Markdown, as docs/studies/summary.md keeps it."""
-    missing = [name for name in STUDIES if name not in {r.study.name for r in results}]
+    missing = [name for name in studies() if name not in {r.study.name for r in results}]
     text = [
         "# Every printed statement beside ours",
         "",
@@ -86,7 +86,7 @@ def summary_markdown(results: Sequence[StudyResult]) -> str:
 
 def write_summary(results: Sequence[StudyResult], folder: Path) -> None:
     """Write summary.csv and summary.md into an existing folder."""
-    rows = [one.as_dict() for result in results for one in result.judgements]
+    rows = [one.to_dict() for result in results for one in result.judgements]
     with (folder / "summary.csv").open("w", newline="", encoding="utf-8-sig") as stream:
         writer = csv.DictWriter(stream, list(rows[0]) if rows else ["statement"])
         writer.writeheader()
@@ -102,7 +102,7 @@ def read_results(folder: Path) -> list[StudyResult]:
     InputError
         No study.json in the folder or its sub-folders.
     """
-    paths = [folder / name / "study.json" for name in STUDIES] + [folder / "study.json"]
+    paths = [folder / name / "study.json" for name in studies()] + [folder / "study.json"]
     texts = [path.read_text(encoding="utf-8") for path in paths if path.is_file()]
     if not texts:
         allowed = "a folder that `underfoot studies run --out` wrote"

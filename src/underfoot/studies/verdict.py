@@ -133,13 +133,13 @@ class Quantity:
         below = np.interp([low, high], self.quantiles, QUANTILES, left=0.0, right=1.0)
         return float(below[1] - below[0])
 
-    def as_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
         return asdict(self)
 
     @classmethod
     def from_dict(cls, content: Mapping[str, Any]) -> Quantity:
-        """Return the quantity that ``as_dict`` wrote."""
+        """Return the quantity that ``to_dict`` wrote."""
         return TypeAdapter(cls).validate_python(content)
 
 
@@ -154,7 +154,7 @@ class Judgement:
     probability: float | None
     reason: str
 
-    def as_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Any]:
         """Return plain data for JSON and CSV."""
         s = self.statement
         return {

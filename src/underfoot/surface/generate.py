@@ -16,6 +16,9 @@ def sinusoidal(
 
     Raises:
         InputError: Wavelength that does not fit into the length a whole number of times.
+
+    >>> sinusoidal(64, 1e-6, 2e-6, 32e-6).heights.shape
+    (64, 64)
     """
     nx, ny = _points(shape)
     _check_wave(nx, spacing, wavelength, "x")
@@ -42,6 +45,9 @@ def checkerboard(
     Raises:
         InputError: Wavelength that does not fit into both lengths a whole number of times, another
             form.
+
+    >>> checkerboard(64, 1e-6, 2e-6, 32e-6).heights.shape
+    (64, 64)
     """
     nx, ny = _points(shape)
     for n, name in ((nx, "x"), (ny, "y")):
@@ -137,6 +143,9 @@ def self_affine(
     Raises:
         RangeError, InputError: Wavelengths that the grid can't hold or in the wrong order, Hurst
             exponent outside 0 to 1.
+
+    >>> round(float(self_affine(64, 1e-6, 2e-6, 0.8, 64e-6, 4e-6, seed=1).heights.std()) * 1e6, 3)
+    2.0
     """
     turn = long_cutoff if roll_off is None else roll_off
     if not (np.isfinite(anisotropy) and anisotropy > 0.0):

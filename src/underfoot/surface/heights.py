@@ -249,6 +249,10 @@ def shortest_reliable_wavelength(surface: Heights) -> Resolution:
       curvature of the stylus, where its radius is known (criterion of Sanner et al., Appl. Surf.
       Sci. Adv. 7 (2022) 100190: shortest stencil from which on the largest negative second
       difference stays below 1 / (2 R)).
+
+    >>> from underfoot.surface import sinusoidal
+    >>> shortest_reliable_wavelength(sinusoidal(64, 1e-6, 1e-6, 32e-6)).wavelength
+    3.2e-05
     """
     known = surface.resolution
     limits = [_sampling(surface, POINTS_PER_WAVE if known is None else 2)]

@@ -335,6 +335,10 @@ def rms_slope(surface: HeightMap) -> float:
 
     Of a periodic map exactly, in Fourier space; of others by seven-point differences, for which
     the three outer rows serve as neighbours only.
+
+    >>> from underfoot.surface import sinusoidal
+    >>> round(rms_slope(sinusoidal(64, 1e-6, 1e-6, 32e-6)), 3)
+    0.139
     """
     z = surface.heights
     if surface.periodic:

@@ -1,8 +1,9 @@
 """Measurements: files to trials, trials to the numbers the field publishes."""
 
-from .axes import Axes, axes_of, axis_name, axis_vector, heel_candidates, heel_of
+from .axes import Axes, Ramp, axes_of, axis_name, axis_vector, heel_candidates, ramp_from
+from .belts import Belt
 from .describe import Description, described, described_file
-from .events import EditError, Stance, body_mass, body_weight, contacts, stances
+from .events import EditError, Stance, stances
 from .gait import (
     DEFINITIONS,
     RcofDefinition,
@@ -42,7 +43,15 @@ from .readers import (
     read_trial,
     read_trials,
 )
-from .signals import FILTERS, FORCE_FILTER, MARKER_FILTER, LowPass, low_passed, velocity
+from .signals import (
+    FILTERS,
+    FORCE_FILTER,
+    MARKER_FILTER,
+    LowPass,
+    contacts,
+    low_passed,
+    velocity,
+)  # fmt: skip
 from .slip_friction import ACOF_WINDOWS, available_friction, available_frictions, mean_friction
 from .slips import (
     HeelMotion,
@@ -56,18 +65,20 @@ from .slips import (
     slip_of,
 )
 from .trial import Channel, Edit, Event, Marker, Plate, PlateAccuracy, Trial, file_checksum, joined
+from .walkway import Walkway, body_mass, body_weight, walkway_of
 
 __all__ = [
-    "ACOF_WINDOWS", "DEFINITIONS", "FILTERS", "FORCE_FILTER", "MARKER_FILTER", "Axes", "Channel",
-    "Description", "Edit", "EditError", "Event", "Flag", "GaitContext", "HeelMotion", "LowPass",
-    "Marker", "Measurement", "Outcome", "OutcomeLimits", "Passage", "Plate", "PlateAccuracy",
-    "PlateColumns", "Profile", "Pulse", "PulseDefinition", "RcofDefinition", "RequiredFriction",
-    "SensorArrayReading", "Sheet", "Slip", "SlipCourse", "SlipDefinition", "Stance", "Trial",
-    "available_friction", "available_frictions", "axes_of", "axis_name", "axis_vector", "body_mass",
-    "body_weight", "contact_from_heel", "contacts", "described", "described_file", "file_checksum",
-    "finished_plate", "foot_angle", "gait_context", "heel_candidates", "heel_motion", "heel_of",
-    "heel_track", "joined", "low_passed", "mean_friction", "mean_of", "passages", "pressure_pulse",
-    "profile_from", "read_profile", "read_sheet", "read_trial", "read_trials", "required_friction",
+    "ACOF_WINDOWS", "DEFINITIONS", "FILTERS", "FORCE_FILTER", "MARKER_FILTER", "Axes", "Belt",
+    "Channel", "Description", "Edit", "EditError", "Event", "Flag", "GaitContext", "HeelMotion",
+    "LowPass", "Marker", "Measurement", "Outcome", "OutcomeLimits", "Passage", "Plate",
+    "PlateAccuracy", "PlateColumns", "Profile", "Pulse", "PulseDefinition", "Ramp",
+    "RcofDefinition", "RequiredFriction", "SensorArrayReading", "Sheet", "Slip", "SlipCourse",
+    "SlipDefinition", "Stance", "Trial", "Walkway", "available_friction", "available_frictions",
+    "axes_of", "axis_name", "axis_vector", "body_mass", "body_weight", "contact_from_heel",
+    "contacts", "described", "described_file", "file_checksum", "finished_plate", "foot_angle",
+    "gait_context", "heel_candidates", "heel_motion", "heel_track", "joined", "low_passed",
+    "mean_friction", "mean_of", "passages", "pressure_pulse", "profile_from", "ramp_from",
+    "read_profile", "read_sheet", "read_trial", "read_trials", "required_friction",
     "required_frictions", "sensor_array_reading", "sensor_rows", "slip", "slip_course", "slip_of",
-    "stance_curves", "stance_frictions", "stances", "velocity",
+    "stance_curves", "stance_frictions", "stances", "velocity", "walkway_of",
 ]  # fmt: skip

@@ -12,7 +12,7 @@ import numpy as np
 from underfoot.core import InputError, to_si, unknown_name
 
 from .plates import plate_axes
-from .trial import Marker, Plate, Trial
+from .trial import Plate, Trial
 
 PLATE_FRAMES = {
     "surface": "plates that measure normal and tangential to the walking surface",
@@ -202,8 +202,7 @@ def walking_direction(
     """Return the walking direction during a stance and how it was found.
 
     In this order: the override, the markers during the first half of the stance, the path of
-    the centre of pressure (heel to toe), the shear force (braking first, then driving). A centre
-    of pressure that moves against the shear's direction is carried by a treadmill's belt.
+    the centre of pressure (heel to toe), the shear force (braking first, then driving).
     """
     if walking:
         return Direction(_flat(axis_vector(walking, "walking"), up), DirectionSource.GIVEN, "given")
@@ -213,11 +212,8 @@ def walking_direction(
     if path is not None and speed > WALKING_SPEED:
         words = f"markers in this step ({speed:.2f} m/s)"
         return Direction(path / speed, DirectionSource.MARKERS, words)
-    step, swing = _pressure_path(plate, start, stop, up), _shear_swing(plate, start, stop, up)
+    step, swing = pressure_path(plate, start, stop, up), shear_swing(plate, start, stop, up)
     length, size = float(np.linalg.norm(step)), float(np.linalg.norm(swing))
-    if length > 0.2 and size > 10.0 and step @ swing < 0:
-        words = "shear force; the centre of pressure moves backward: a treadmill"
-        return Direction(swing / size, DirectionSource.TREADMILL, words)
     if path is not None:
         return Direction(words=f"the markers move at {speed:.2f} m/s only")
     if length > 0.05:
@@ -229,7 +225,8 @@ def walking_direction(
     return Direction(words="nothing tells it")
 
 
-def _pressure_path(plate: Plate, start: int, stop: int, up: np.ndarray) -> np.ndarray:
+def pressure_path(plate: Plate, start: int, stop: int, up: np.ndarray) -> np.ndarray:
+    """Return the way (3,) of the centre of pressure from the first to the last fifth (m)."""
     if plate.centre_of_pressure is None:
         return np.zeros(3)
     place = plate.centre_of_pressure[start:stop]
@@ -241,7 +238,8 @@ def _pressure_path(plate: Plate, start: int, stop: int, up: np.ndarray) -> np.nd
     return step - (step @ up) * up
 
 
-def _shear_swing(plate: Plate, start: int, stop: int, up: np.ndarray) -> np.ndarray:
+def shear_swing(plate: Plate, start: int, stop: int, up: np.ndarray) -> np.ndarray:
+    """Return the mean shear (3,) of the second half of a contact less that of the first (N)."""
     force = plate.force[start:stop]
     force = force[np.isfinite(force).all(axis=1)]
     half = len(force) // 2
@@ -280,12 +278,6 @@ def _by_side(trial: Trial, pattern: re.Pattern[str]) -> dict[str, list[str]]:
     for names in found.values():
         names.sort(key=lambda name: int(trial.markers[name].missing.sum()))
     return found
-
-
-def heel_of(trial: Trial, side: str, heels: Mapping[str, str] | None = None) -> Marker | None:
-    """Return the heel marker of a side, or None."""
-    names = heel_candidates(trial, heels)[side]
-    return trial.marker(names[0]) if names else None
 
 
 def _up(trial: Trial) -> tuple[np.ndarray, str]:

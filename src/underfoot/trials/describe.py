@@ -10,11 +10,12 @@ import numpy as np
 
 from underfoot.core import InputError, unknown_name
 
-from .axes import LEVEL, Axes, DirectionSource, Ramp, axes_of, axis_name, heel_candidates
+from .axes import LEVEL, Axes, DirectionSource, Ramp, axis_name, heel_candidates
 from .gait import DEFINITIONS, RcofDefinition, RequiredFriction, required_frictions
 from .measurement import mean_of
 from .readers import Profile, read_profile, read_trials
 from .trial import Edit, Plate, Trial, joined
+from .walkway import walkway_of
 
 _SHOWN = 12
 
@@ -169,11 +170,16 @@ def described(
     """
     profile = profile or Profile()
     definition = definition or DEFINITIONS["default"]
-    vertical, walking = vertical or profile.vertical, walking or profile.walking
-    axes = axes_of(trial, vertical=vertical, walking=walking, ramp=ramp)
-    steps = required_frictions(trial, definition, axes=axes, walking=walking, heels=profile.heels)
-    said = {**definition.conventions(), "surface": ramp.words}
-    return Description(trial, axes, heel_candidates(trial, profile.heels), tuple(steps), said)
+    walk = walkway_of(
+        trial,
+        vertical=vertical or profile.vertical,
+        walking=walking or profile.walking,
+        ramp=ramp,
+        heels=profile.heels,
+    )
+    steps = required_frictions(walk, definition)
+    said = {**definition.conventions(), "surface": walk.surfaces}
+    return Description(trial, walk.axes, heel_candidates(trial, profile.heels), tuple(steps), said)
 
 
 def described_file(

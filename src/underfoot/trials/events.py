@@ -1,20 +1,19 @@
 """Contacts with a force plate: begin and end, edits by hand, which of them are steps."""
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from underfoot.core import InputError, unknown_name
 
-from .axes import Axes, Direction, DirectionSource, axes_of, heel_candidates, walking_direction
+from .axes import Direction
 from .measurement import Flag
 from .plates import plate_axes, plate_named
-from .signals import runs
+from .signals import CONTACT_FORCE, contacts
 from .trial import Edit, Plate, Trial
+from .walkway import Walkway, walkway_of
 
-CONTACT_FORCE = 20.0  # N
 _UNKNOWN = Direction()
 
 
@@ -60,25 +59,6 @@ class Stance:
     def label(self) -> str:
         """Name of the step in tables."""
         return f"step {self.number} on {self.plate}"
-
-
-def contacts(
-    vertical: np.ndarray, rate: float, threshold: float = CONTACT_FORCE
-) -> list[tuple[int, int]]:
-    """Return (start, stop) of the stretches in which a plate is stood on, shape of samples.
-
-    A stretch begins where the vertical force (n,), N, passes ``threshold`` and counts when it
-    lasts 30 ms and reaches five times the threshold; interruptions below 20 ms are bridged.
-    """
-    loaded = np.nan_to_num(vertical, nan=0.0) > threshold
-    for start, stop in runs(~loaded):
-        if start > 0 and stop < len(loaded) and stop - start < 0.02 * rate:
-            loaded[start:stop] = True
-    return [
-        (start, stop)
-        for start, stop in runs(loaded)
-        if stop - start >= 0.03 * rate and np.nanmax(vertical[start:stop]) > 5.0 * threshold
-    ]
 
 
 TOGETHER = 0.1  # s; two contacts of a walk begin half a second apart
@@ -194,29 +174,10 @@ def _on_plate(contacts: list[Stance], at: int, edit: Edit) -> list[Stance]:
 
 _SHORTEST, _LONGEST = 0.35, 1.5  # s; runners are below, standing and two feet above
 _FOOT_LENGTH, _FOOT_WIDTH = 0.36, 0.14  # m, the most that the centre of pressure of one foot moves
-GRAVITY = 9.80665
 _OUTSIDE = 0.05  # m; the marker sits behind the shoe, so a heel at the edge is a little outside
-_STILL = 0.5  # s of quiet standing that give body weight
-_STILL_SD, _STILL_SHEAR = 0.015, 0.03  # of the weight; walking varies by 20 % and pushes by 15 %
 
 
-@dataclass(frozen=True, slots=True)
-class BodyWeight:
-    """Body weight (N) and where it comes from; ``standing`` when the record itself shows it."""
-
-    newtons: float
-    source: str
-    standing: bool = False
-
-
-def stances(
-    trial: Trial,
-    *,
-    axes: Axes | None = None,
-    walking: str | None = None,
-    heels: Mapping[str, str] | None = None,
-    threshold: float = CONTACT_FORCE,
-) -> list[Stance]:
+def stances(walk: Trial | Walkway, *, threshold: float = CONTACT_FORCE) -> list[Stance]:
     """Return every contact with every usable plate, each accepted or rejected with a reason.
 
     Rejected are contacts cut by the record, too short or too long, two that begin together (a
@@ -226,52 +187,46 @@ def stances(
 
     EditError: an edit names no contact, changes nothing or contradicts another.
     """
-    axes = axes or axes_of(trial)
+    walk = walkway_of(walk)
+    trial, up = walk.trial, walk.up
     plates = {plate.name: plate for plate in trial.plates if plate.usable}
     found: list[Stance] = []
     for plate in plates.values():
-        vertical = plate.force @ axes.up
+        vertical = plate.force @ up
         for start, stop in contacts(vertical, plate.rate, threshold):
             time = plate.start + np.array([start, stop]) / plate.rate
             peak = float(np.nanmax(vertical[start:stop]))
             found.append(Stance(plate.name, start, stop, float(time[0]), float(time[1]), peak))
     found.sort(key=lambda stance: stance.contact)
-    feet = {plate.name: _Feet(trial, plate, axes, heels) for plate in plates.values()}
+    feet = {plate.name: _Feet(walk, plate) for plate in plates.values()}
 
     def located(stance: Stance) -> Stance:
-        plate = plates[stance.plate]
-        way = walking_direction(trial, plate, stance.start, stance.stop, axes.up, walking)
+        way = walk.direction(plates[stance.plate], stance.start, stance.stop)
         stance = replace(stance, direction=way)
         if "side" in stance.by_hand:
-            return replace(stance, heel=feet[plate.name].heels.get(stance.side, ""))
-        side, heel = feet[plate.name].foot(stance)
+            return replace(stance, heel=walk.heels.get(stance.side, ""))
+        side, heel = feet[stance.plate].foot(stance)
         return replace(stance, side=side, heel=heel)
 
     found = [located(replace(stance, number=i)) for i, stance in enumerate(found, start=1)]
     if trial.edits:
-        found = edited_contacts(found, trial, axes.up)
+        found = edited_contacts(found, trial, up)
         found = [located(s) if s.by_hand and not s.reason else s for s in found]
-    weight, peaks = body_weight(trial, axes), [s.peak for s in found]
+    peaks = [s.peak for s in found]
     judged = []
     for stance in found:
         others = [s for s in found if s.plate != stance.plate and not s.reason]
-        plate = plates[stance.plate]
-        judge = (plate, stance, others, peaks, axes, feet[plate.name], weight)
-        judged.append(replace(stance, reason=stance.reason or _reason(*judge)))
+        reason = stance.reason or _reason(walk, stance, others, peaks, feet[stance.plate])
+        judged.append(replace(stance, reason=reason))
     return judged
 
 
 def _reason(
-    plate: Plate,
-    stance: Stance,
-    others: list[Stance],
-    peaks: list[float],
-    axes: Axes,
-    feet: "_Feet",
-    weight: BodyWeight | None,
+    walk: Walkway, stance: Stance, others: list[Stance], peaks: list[float], feet: "_Feet"
 ) -> str:
+    plate, weight = feet.plate, walk.weight
     part = plate.force[stance.start : stance.stop]
-    vertical = part @ axes.up
+    vertical = part @ walk.up
     if stance.start == 0 and "contact" not in stance.by_hand:
         return "begins before the record"
     if stance.stop == len(plate.force):
@@ -297,7 +252,7 @@ def _reason(
         times = f"{stance.peak / expected:.1f} times body weight" if weight else ""
         times = times or f"{ratio:.1f} times the mean"
         return f"peak {stance.peak:.0f} N, {times}: an impact, not a walking step"
-    two = _two_feet(plate, stance, axes, feet)
+    two = _two_feet(stance, feet)
     if two:
         return two
     outside = feet.outside(stance)
@@ -306,18 +261,20 @@ def _reason(
     if stance.walking is None:
         return f"no walking direction: {stance.direction.words}"
     # Walking up a slope, gravity along the surface hides the braking: it is sought horizontally.
-    along = part @ axes.ramp.gravity(axes.up, stance.walking)[1]
+    along = part @ walk.axes.ramp.gravity(walk.up, stance.walking)[1]
     braking = -float(np.minimum(along[: len(along) // 2], 0.0).sum()) / plate.rate
     if braking < 0.01 * stance.peak * stance.duration:
         return "no braking in its first half: not a heel-first step"
     return ""
 
 
-def no_contact_reason(trial: Trial, axes: Axes) -> str:
+def no_contact_reason(walk: Trial | Walkway) -> str:
     """Return why a trial has no contact with a force plate: which of four causes it is."""
+    walk = walkway_of(walk)
+    trial = walk.trial
     usable = [plate for plate in trial.plates if plate.usable]
     if usable:
-        peak = max(float(np.nanmax(plate.force @ axes.up, initial=0.0)) for plate in usable)
+        peak = max(float(np.nanmax(plate.force @ walk.up, initial=0.0)) for plate in usable)
         rates = ", ".join(sorted({f"{plate.rate:g} Hz" for plate in usable}))
         return (
             f"nobody steps on a force plate: the largest vertical force is {peak:.3g} N and a step "
@@ -334,65 +291,23 @@ def no_contact_reason(trial: Trial, axes: Axes) -> str:
     return "the file holds no force plate"
 
 
-def body_mass(trial: Trial) -> float | None:
-    """Return the subject's mass (kg) written in the trial's settings, or None."""
-    try:
-        return float(trial.settings["body mass (kg)"])
-    except (KeyError, ValueError):
-        return None
-
-
-def body_weight(trial: Trial, axes: Axes | None = None) -> BodyWeight | None:
-    """Return the body weight: from the mass in the settings, else from quiet standing, else None.
-
-    Quiet standing: half a second in which the vertical forces of all plates together vary by less
-    than 1.5 % and push across by less than 3 % (on plates that measure along a ramp of angle a:
-    across by the tangent of a, and the weight is normal force / cos a); the heaviest such level
-    counts.
-    """
-    mass = body_mass(trial)
-    if mass is not None:
-        return BodyWeight(mass * GRAVITY, f"{mass:g} kg")
-    axes = axes or axes_of(trial)
-    up, ramp = axes.up, axes.ramp
-    tilt = abs(ramp.angle) if ramp.plate_frame == "surface" else 0.0
-    usable = [plate for plate in trial.plates if plate.usable]
-    if not usable or len({(p.rate, len(p.force), p.start) for p in usable}) > 1:
-        return None
-    force = np.nan_to_num(np.sum([plate.force for plate in usable], axis=0))
-    count = round(_STILL * usable[0].rate)
-    if len(force) < 2 * count:
-        return None
-    normal = force @ up
-    across = force - np.outer(normal, up)
-    values = np.column_stack((normal, normal**2, across))
-    total = np.concatenate((np.zeros((1, 5)), np.cumsum(values, axis=0)))
-    rolling = (total[count:] - total[:-count]) / count
-    mean, squares = rolling[:, 0], rolling[:, 1]
-    spread = np.sqrt(np.maximum(squares - mean**2, 0.0))
-    push = np.abs(np.linalg.norm(rolling[:, 2:], axis=1) - mean * math.tan(tilt))
-    still = (mean > 200.0) & (spread < _STILL_SD * mean) & (push < _STILL_SHEAR * mean)
-    if not still.any():
-        return None
-    newtons = float(mean[still].max()) / math.cos(tilt)
-    return BodyWeight(newtons, "standing in this record", standing=True)
-
-
-def _two_feet(plate: Plate, stance: Stance, axes: Axes, feet: "_Feet") -> str:
+def _two_feet(stance: Stance, feet: "_Feet") -> str:
     if {"left", "right"} <= set(feet.on_plate(stance)):
         return "both heels are on the plate"
-    place, way = plate.centre_of_pressure, stance.direction
-    if place is None or way.vector is None or way.source is DirectionSource.TREADMILL:
+    plate, way, up = feet.plate, stance.walking, feet.up
+    if plate.centre_of_pressure is None or way is None:
         return ""
     part = slice(stance.start, stance.stop)
-    inside = place[part][plate.force[part] @ axes.up > 0.2 * stance.peak]
+    carried = np.outer(plate.time[part] - stance.contact, feet.surface(stance))
+    place = plate.centre_of_pressure[part] - carried
+    inside = place[plate.force[part] @ up > 0.2 * stance.peak]
     inside = inside[np.isfinite(inside).all(axis=1)]
     if len(inside) < 10:
         return ""
-    along = float(np.ptp(inside @ way.vector))
-    sideways = float(np.ptp(inside @ np.cross(axes.up, way.vector)))
+    along = float(np.ptp(inside @ way))
+    sideways = float(np.ptp(inside @ np.cross(up, way)))
     # A foot set down at an angle to the path lets the centre of pressure move across.
-    turning = 1.0 if feet.trial.markers else 0.5
+    turning = 1.0 if feet.walk.trial.markers else 0.5
     if along > _FOOT_LENGTH or sideways > _FOOT_WIDTH + 0.5 * along * turning:
         return (
             f"the centre of pressure moves {1e3 * along:.0f} mm along and {1e3 * sideways:.0f} mm "
@@ -404,17 +319,18 @@ def _two_feet(plate: Plate, stance: Stance, axes: Axes, feet: "_Feet") -> str:
 class _Feet:
     """The heels of a trial, the best-seen marker of each side, against one plate."""
 
-    def __init__(
-        self, trial: Trial, plate: Plate, axes: Axes, heels: Mapping[str, str] | None
-    ) -> None:
-        self.trial, self.plate, self.up = trial, plate, axes.up
-        self.heels = {s: names[0] for s, names in heel_candidates(trial, heels).items() if names}
-        self.markers = {side: trial.marker(name) for side, name in self.heels.items()}
+    def __init__(self, walk: Walkway, plate: Plate) -> None:
+        self.walk, self.plate, self.up = walk, plate, walk.up
+        self.markers = {side: walk.trial.marker(name) for side, name in walk.heels.items()}
         if plate.corners is not None:
             # In the plate's own axes: one that stands askew in the laboratory is no larger for it.
             self.own = plate_axes(plate.corners)[:, :2]
             self.middle = plate.corners.mean(axis=0)
             self.half = np.abs((plate.corners - self.middle) @ self.own).max(axis=0)
+
+    def surface(self, stance: Stance) -> np.ndarray:
+        """Velocity (3,) of the surface under a stance (m/s)."""
+        return self.walk.surface_velocity(self.plate.name, stance.contact)
 
     def beyond(self, places: np.ndarray) -> np.ndarray:
         """How far places (..., 3) lie beyond the plate's edges along its two axes (m)."""
@@ -431,7 +347,8 @@ class _Feet:
             inside = (time >= stance.contact) & (time <= stance.toe_off) & ~marker.missing
             inside &= (self.beyond(at) <= 0.02).all(axis=1)
             inside &= height < np.nanmin(height) + 0.06
-            speed = np.linalg.norm(np.gradient(at, 1.0 / marker.rate, axis=0), axis=1)
+            velocity = np.gradient(at, 1.0 / marker.rate, axis=0) - self.surface(stance)
+            speed = np.linalg.norm(velocity, axis=1)
             inside &= np.nan_to_num(speed, nan=9.0) < 0.8
             if inside.sum() >= 0.1 * marker.rate:
                 found[side] = int(inside.sum())
@@ -443,15 +360,15 @@ class _Feet:
         side = max(seen, key=lambda key: seen[key]) if seen else self.landing(stance)
         # Without corners: the heel nearest to where the centre of pressure begins.
         early = self.early(stance, max(5, (stance.stop - stance.start) // 5))
-        distance = 0.15
+        distance, end = 0.15, stance.contact + 0.2 * stance.duration
         for name, marker in self.markers.items() if not side and len(early) else ():
-            inside = (marker.time >= stance.contact) & (marker.time <= stance.contact + 0.2)
+            inside = (marker.time >= stance.contact) & (marker.time <= end)
             inside &= ~marker.missing
             if inside.any():
                 away = self.flat(np.median(marker.positions[inside], axis=0), early)
                 if away < distance:
                     side, distance = name, away
-        return (side, self.heels[side]) if side else ("unknown", "")
+        return (side, self.walk.heels[side]) if side else ("unknown", "")
 
     def early(self, stance: Stance, samples: int) -> np.ndarray:
         """Centres of pressure (n, 3) of the first samples of a stance, where there are any."""
@@ -483,7 +400,8 @@ class _Feet:
             if inside.sum() < 2:
                 continue
             stand = np.median(at[inside], axis=0)
-            speed = float(np.linalg.norm(np.ptp(at[inside], axis=0))) / 0.04
+            carried = np.outer(marker.time[inside] - stance.contact, self.surface(stance))
+            speed = float(np.linalg.norm(np.ptp(at[inside] - carried, axis=0))) / 0.04
             low = float(stand @ self.up - np.nanmin(at @ self.up)) < 0.06
             if speed < 0.8 and low and self.flat(stand, early) < _FOOT_LENGTH:
                 found = max(found, float(np.linalg.norm(np.maximum(self.beyond(stand), 0.0))))

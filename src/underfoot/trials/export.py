@@ -6,10 +6,11 @@ import numpy as np
 
 from underfoot.core import DataError
 
-from .events import Stance, body_mass
+from .c3d_writer import c3d_bytes
+from .events import Stance
 from .plates import plate_axes
-from .simulate.c3d_file import c3d_bytes
 from .trial import Plate, Trial
+from .walkway import body_mass
 
 
 def c3d_with_events(trial: Trial, found: Sequence[Stance]) -> bytes:

@@ -1,7 +1,6 @@
 """Required friction (RCOF) of a step, every convention named."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -10,14 +9,22 @@ import numpy as np
 from underfoot.core import DataError, InputError, unknown_name
 from underfoot.core.presentation import Presentable, Table
 
-from .axes import Axes, DirectionSource, axes_of
-from .events import Stance, body_weight, stances
+from .axes import Axes
+from .events import Stance, stances
+from .likelihood import impossible
 from .measurement import Flag, Measurement, remark
-from .plates import baseline_words, plate_axes, plate_named, up_from_normal
-from .plausibility import baseline_error, other_foot_flags, rcof_flags, step_flags
-from .signals import FILTERS, FORCE_FILTER, LowPass, low_passed
+from .plates import baseline_words, plate_axes, up_from_normal
+from .plausibility import (
+    baseline_error,
+    judged_features,
+    other_foot_flags,
+    rcof_flags,
+    step_flags,
+)  # fmt: skip
+from .signals import FILTERS, FORCE_FILTER, LowPass, low_passed_part
 from .slips import Outcome, Slip, slip_of
 from .trial import Plate, Trial
+from .walkway import Walkway, walkway_of
 
 PEAKS = {
     "largest-local-maximum": "largest local maximum",
@@ -143,12 +150,10 @@ class RequiredFriction(Presentable):
 
 
 def required_friction(
-    trial: Trial,
+    walk: Trial | Walkway,
     stance: Stance,
     definition: RcofDefinition | None = None,
     *,
-    axes: Axes | None = None,
-    heels: Mapping[str, str] | None = None,
     checked: bool = True,
 ) -> RequiredFriction:
     """Return the required friction (RCOF) of one stance: a peak of shear over normal force.
@@ -166,14 +171,13 @@ def required_friction(
     default is the grant report's (G.6.1) made unambiguous, see docs/physics/required_friction.md.
     """
     definition = definition or DEFINITIONS["default"]
-    axes = axes or axes_of(trial)
-    plate = plate_named(trial, stance.plate)
-    belt = stance.direction.source is DirectionSource.TREADMILL
+    walk = walkway_of(walk)
+    axes, weight, plate = walk.axes, walk.weight, walk.plate(stance.plate)
     said = {
         **definition.conventions(),
         "baseline": baseline_words(plate),
         "walking direction": stance.direction.words,
-        "surface": f"treadmill ({axes.ramp.words})" if belt else axes.ramp.words,
+        "surface": walk.surface(stance.plate, stance.contact),
     }
     slip: Slip | None = None
 
@@ -184,19 +188,22 @@ def required_friction(
     if not stance.accepted or stance.walking is None:
         return without(stance.reason or "no walking direction")
     if checked and stance.heel:
-        slip = slip_of(trial, stance, axes=axes, heels=heels)
+        slip = slip_of(walk, stance)
         if slip.slides:
             speed, way = slip.peak_speed.value or 0.0, 1e3 * (slip.distance.value or 0.0)
             return without(
                 f"the heel slides at {speed:.2f} m/s over {way:.0f} mm: the ratio is available "
                 "friction (ACOF), not required"
             )
-    weight = body_weight(trial, axes)
     gate = definition.gate
     if definition.gate_body_weight is not None:
         if weight is None:
             return without("the gate is a share of body weight and the mass is not known")
         gate = definition.gate_body_weight * weight.newtons
+    features = judged_features(walk, stance) if checked else {}
+    reason = impossible(features)
+    if reason:
+        return without(reason)
     surface = axes.ramp.surface(axes.up, stance.walking)
     try:
         curves = _curves(plate, stance, definition, surface)
@@ -218,7 +225,7 @@ def required_friction(
         flags += (remark(words),)
     uncertainty, parts = None, "not estimated"
     if checked:
-        flags += step_flags(trial, stance, axes, definition.filter, weight, heels)
+        flags += step_flags(walk, stance, definition.filter, features)
         flags += rcof_flags(value, axes.ramp)
         if slip is not None and slip.outcome is Outcome.MICROSLIP:
             flags += tuple(f for f in slip.peak_speed.flags if f.name == "speed against distance")
@@ -233,29 +240,19 @@ def required_friction(
 
 
 def required_frictions(
-    trial: Trial,
-    definition: RcofDefinition | None = None,
-    *,
-    axes: Axes | None = None,
-    walking: str | None = None,
-    heels: Mapping[str, str] | None = None,
+    walk: Trial | Walkway, definition: RcofDefinition | None = None
 ) -> list[RequiredFriction]:
     """Return the required friction of every stance of a trial, rejected ones with the reason."""
-    axes = axes or axes_of(trial, walking=walking)
-    found = stances(trial, axes=axes, walking=walking, heels=heels)
-    return stance_frictions(trial, found, definition, axes=axes, heels=heels)
+    walk = walkway_of(walk)
+    return stance_frictions(walk, stances(walk), definition)
 
 
 def stance_frictions(
-    trial: Trial,
-    found: list[Stance],
-    definition: RcofDefinition | None = None,
-    *,
-    axes: Axes,
-    heels: Mapping[str, str] | None = None,
+    walk: Trial | Walkway, found: list[Stance], definition: RcofDefinition | None = None
 ) -> list[RequiredFriction]:
     """Return the required friction of the stances given, each compared with the others."""
-    steps = [required_friction(trial, s, definition, axes=axes, heels=heels) for s in found]
+    walk = walkway_of(walk)
+    steps = [required_friction(walk, stance, definition) for stance in found]
     values = [(s.stance, s.measurement.value) for s in steps if s.measurement.value is not None]
     for i, step in enumerate(steps):
         own = step.measurement
@@ -296,10 +293,8 @@ def _curves(
     ``surface`` holds normal and forward tangent of the walking surface. The filter sees ``around``
     seconds of record before and after the stance.
     """
-    margin = int(min(around * plate.rate, len(plate.force)))
-    begin = max(0, stance.start - margin)
-    force = low_passed(plate.force[begin : stance.stop + margin], plate.rate, definition.filter)
-    force = force[stance.start - begin : stance.stop - begin]
+    part = stance.start, stance.stop, around
+    force = low_passed_part(plate.force, plate.rate, definition.filter, *part)
     up, forward = surface
     normal = force @ up
     shear = force - np.outer(normal, up)

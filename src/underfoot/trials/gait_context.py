@@ -2,18 +2,17 @@
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from .axes import Axes, marker_velocity, toe_candidates
 from .events import Stance
 from .measurement import Flag
-from .plates import plate_named
-from .signals import MARKER_FILTER, LowPass, bridged, low_passed
+from .signals import MARKER_FILTER, LowPass, bridged, low_passed, low_passed_part
 from .slips import OutcomeLimits, Slip, heel_motion
 from .trial import Marker, Trial
+from .walkway import Walkway, walkway_of
 
 FLAT = (0.3, 0.5)  # share of the stance in which the foot lies flat
 PERCENT = np.arange(101)
@@ -27,7 +26,8 @@ class GaitContext:
     ``walking_speed`` of the body during the stance; ``step_length`` along the walk and
     ``step_time`` since the other foot's contact; ``cadence`` 1 / step time (steps a second);
     ``foot_angle`` between sole and floor at contact, toe up positive; ``heel_speed`` of the heel
-    at contact, in the plane of the floor.
+    at contact, in the plane of the floor; ``belt_speed`` of a treadmill under the foot. On a belt
+    all of them are over the belt.
     """
 
     walking_speed: float | None = None
@@ -36,39 +36,43 @@ class GaitContext:
     cadence: float | None = None
     foot_angle: float | None = None
     heel_speed: float | None = None
+    belt_speed: float | None = None
 
 
-def gait_context(
-    trial: Trial,
-    stance: Stance,
-    found: Sequence[Stance],
-    axes: Axes,
-    heels: Mapping[str, str] | None = None,
-) -> GaitContext:
-    """Return the walk around one of the stances ``found`` in a trial."""
-    walk = marker_velocity(trial, stance.contact, stance.toe_off, axes.up)
-    length, time = _step(trial, stance, found)
-    angle = foot_angle(trial, stance, axes)
+def gait_context(walk: Trial | Walkway, stance: Stance, found: Sequence[Stance]) -> GaitContext:
+    """Return the walk around one of the stances ``found`` in a trial, as seen from its surface."""
+    walk = walkway_of(walk)
+    body = walk.body_velocity(stance.plate, stance.contact, stance.toe_off)
+    length, time = _step(walk, stance, found)
+    angle, belt = foot_angle(walk, stance), walk.belts.get(stance.plate)
     return GaitContext(
-        walking_speed=None if walk is None else _number(float(np.linalg.norm(walk))),
+        walking_speed=None if body is None else _number(float(np.linalg.norm(body))),
         step_length=length,
         step_time=time,
         cadence=1.0 / time if time else None,
         foot_angle=None if angle is None else _number(float(angle[1][0])),
-        heel_speed=heel_speed(trial, stance, axes),
+        heel_speed=heel_speed(walk, stance),
+        belt_speed=None if belt is None else belt.speed(stance.contact),
     )
 
 
-def heel_speed(trial: Trial, stance: Stance, axes: Axes) -> float | None:
+def heel_speed(walk: Trial | Walkway, stance: Stance) -> float | None:
     """Return the heel's speed at contact in the plane of the floor (m/s), None where unknown."""
-    if not stance.heel or trial.marker(stance.heel).times is not None:
+    walk = walkway_of(walk)
+    heel = _marker(walk, stance.heel, stance)
+    if heel is None or heel.times is not None:
         return None
-    motion = heel_motion(trial.marker(stance.heel), axes.up)
+    motion = heel_motion(heel, walk.up)
     return _number(float(np.interp(stance.contact, motion.time, motion.speed)))
 
 
+def _marker(walk: Walkway, name: str | None, stance: Stance) -> Marker | None:
+    """A marker as seen from the surface under a stance; None without a name."""
+    return walk.marker(name, stance.plate, stance.contact) if name else None
+
+
 def _step(
-    trial: Trial, stance: Stance, found: Sequence[Stance]
+    walk: Walkway, stance: Stance, found: Sequence[Stance]
 ) -> tuple[float | None, float | None]:
     """Return length and time since the contact of the other foot (0.25 to 1.5 s before)."""
     before = [
@@ -81,29 +85,32 @@ def _step(
         return None, None
     other = max(before, key=lambda one: one.contact)
     time = stance.contact - other.contact
-    if not (stance.heel and other.heel) or stance.walking is None:
+    heels = [(_marker(walk, one.heel, stance), one) for one in (other, stance)]
+    if stance.walking is None:
         return None, time
-    first, second = (_standing_place(trial.marker(one.heel), one) for one in (other, stance))
+    first, second = (_standing_place(heel, one) for heel, one in heels)
     return _number(float((second - first) @ stance.walking)), time
 
 
-def _standing_place(heel: Marker, stance: Stance) -> np.ndarray:
+def _standing_place(heel: Marker | None, stance: Stance) -> np.ndarray:
     """Median place (3,) of a heel between 10 and 40 % of its stance; NaN where it is not seen."""
+    if heel is None:
+        return np.full(3, np.nan)
     share = (heel.time - stance.contact) / max(stance.duration, 1e-9)
     inside = (share > 0.1) & (share < 0.4) & ~heel.missing
     return np.median(heel.positions[inside], axis=0) if inside.sum() > 2 else np.full(3, np.nan)
 
 
-def foot_angle(trial: Trial, stance: Stance, axes: Axes) -> tuple[np.ndarray, np.ndarray] | None:
+def foot_angle(walk: Trial | Walkway, stance: Stance) -> tuple[np.ndarray, np.ndarray] | None:
     """Return times (n,) from contact to toe off and the angle of sole and floor (rad), or None.
 
     From the line heel marker to toe marker of the same side, low-passed at 10 Hz, against its
     angle while the foot lies flat (30 to 50 % of stance).
     """
-    toes = toe_candidates(trial)[stance.side] if stance.side != "unknown" else []
-    if not (stance.heel and toes) or stance.walking is None:
+    walk = walkway_of(walk)
+    heel, toe = _marker(walk, stance.heel, stance), _toe(walk, stance.side, stance)
+    if heel is None or toe is None or stance.walking is None:
         return None
-    heel, toe = trial.marker(stance.heel), trial.marker(toes[0])
     if len(heel.positions) != len(toe.positions) or heel.rate != toe.rate or heel.times is not None:
         return None
     line, _ = bridged(toe.positions - heel.positions, round(0.1 * heel.rate))
@@ -113,7 +120,7 @@ def foot_angle(trial: Trial, stance: Stance, axes: Axes) -> tuple[np.ndarray, np
         return None
     if heel.rate > 2.3 * _FOOT_FILTER.cutoff:
         line = low_passed(line, heel.rate, _FOOT_FILTER)
-    tilt = np.unwrap(np.arctan2(line @ axes.up, line @ stance.walking))
+    tilt = np.unwrap(np.arctan2(line @ walk.up, line @ stance.walking))
     share = (time - stance.contact) / stance.duration
     flat = (share > FLAT[0]) & (share < FLAT[1])
     if not flat.any():
@@ -123,15 +130,16 @@ def foot_angle(trial: Trial, stance: Stance, axes: Axes) -> tuple[np.ndarray, np
 
 
 def stance_curves(
-    trial: Trial, stance: Stance, ratio: np.ndarray, low_pass: LowPass, axes: Axes
+    walk: Trial | Walkway, stance: Stance, ratio: np.ndarray, low_pass: LowPass
 ) -> dict[str, np.ndarray]:
     """Return forces (N) and ratio at 0, 1 ... 100 % of a stance, (101,) each.
 
     ``vertical`` (on a ramp: normal to it), ``braking`` (positive when the floor pushes backward),
     ``to the left``, ``ratio``.
     """
-    plate = plate_named(trial, stance.plate)
-    force = low_passed(plate.force, plate.rate, low_pass)[stance.start : stance.stop]
+    walk = walkway_of(walk)
+    plate, axes = walk.plate(stance.plate), walk.axes
+    force = low_passed_part(plate.force, plate.rate, low_pass, stance.start, stance.stop)
     walking = stance.walking if stance.walking is not None else np.zeros(3)
     normal, forward = axes.ramp.surface(axes.up, walking)
     curves = {
@@ -174,14 +182,14 @@ class SlipCourse:
 
 
 def slip_course(
-    trial: Trial, stance: Stance, one: Slip, axes: Axes, limits: OutcomeLimits | None = None
+    walk: Trial | Walkway, stance: Stance, one: Slip, limits: OutcomeLimits | None = None
 ) -> SlipCourse:
     """Return what happened around a slip (or a step without one)."""
-    limits = limits or OutcomeLimits()
-    body, why = _body(trial, one, axes)
-    toe = None if one.slides else _toe_way(trial, stance, axes)
-    trailing = _trailing_way(trial, stance, one, axes)
-    misstep = _misstep(trial, stance, axes)
+    walk, limits = walkway_of(walk), limits or OutcomeLimits()
+    body, why = _body(walk, one)
+    toe = None if one.slides else _toe_way(walk, stance)
+    trailing = _trailing_way(walk, stance, one)
+    misstep = _misstep(walk, stance)
     flags = []
     for name, way, words in (
         ("toe slip", toe, "the toe slides by {:.0f} mm: a toe slip"),
@@ -194,19 +202,19 @@ def slip_course(
     return SlipCourse(body, why, toe, trailing, misstep, tuple(flags))
 
 
-def _body(trial: Trial, one: Slip, axes: Axes) -> tuple[str, str]:
+def _body(walk: Walkway, one: Slip) -> tuple[str, str]:
     """Recovery or fall by the height of the pelvis's markers."""
     if not one.slides:
         return "", "no slide to recover from"
     markers = [
         marker
-        for name, marker in trial.markers.items()
+        for name, marker in walk.trial.markers.items()
         if _PELVIS.search(name.rsplit(":", 1)[-1].strip()) and marker.times is None
     ]
     if not markers:
         return "", "no marker of the pelvis"
     time = markers[0].time
-    heights = np.array([m.positions @ axes.up for m in markers if len(m.positions) == len(time)])
+    heights = np.array([m.positions @ walk.up for m in markers if len(m.positions) == len(time)])
     seen = np.isfinite(heights).any(axis=0)
     if not seen.any():
         return "", "no marker of the pelvis is seen"
@@ -225,33 +233,33 @@ def _body(trial: Trial, one: Slip, axes: Axes) -> tuple[str, str]:
     return "recovery", share
 
 
-def _toe_way(trial: Trial, stance: Stance, axes: Axes) -> float | None:
-    marker = _toe(trial, stance.side)
+def _toe_way(walk: Walkway, stance: Stance) -> float | None:
+    marker = _toe(walk, stance.side, stance)
     begin, end = (stance.contact + share * stance.duration for share in (0.4, 0.8))
-    return None if marker is None else _way(marker, begin, end, axes)
+    return None if marker is None else _way(marker, begin, end, walk.up)
 
 
-def _toe(trial: Trial, side: str) -> Marker | None:
-    toes = toe_candidates(trial)[side] if side != "unknown" else []
-    return trial.marker(toes[0]) if toes else None
+def _toe(walk: Walkway, side: str, stance: Stance) -> Marker | None:
+    return _marker(walk, None if side == "unknown" else walk.toes.get(side), stance)
 
 
-def _trailing_way(trial: Trial, stance: Stance, one: Slip, axes: Axes) -> float | None:
-    marker = _toe(trial, {"left": "right", "right": "left"}.get(stance.side, "unknown"))
+def _trailing_way(walk: Walkway, stance: Stance, one: Slip) -> float | None:
+    other = {"left": "right", "right": "left"}.get(stance.side, "unknown")
+    marker = _toe(walk, other, stance)
     if marker is None or not np.isfinite(one.end):
         return None
     # The trailing foot stands on its toe until it lifts.
-    height = marker.positions @ axes.up
+    height = marker.positions @ walk.up
     inside = (marker.time >= stance.contact) & (marker.time <= one.end)
     known = inside & np.isfinite(height)
     if known.sum() < 3:
         return None
     up = known & (height > np.nanmin(height[known]) + 0.03)
     end = float(marker.time[up][0]) if up.any() else one.end
-    return _way(marker, stance.contact, end, axes)
+    return _way(marker, stance.contact, end, walk.up)
 
 
-def _way(marker: Marker, begin: float, end: float, axes: Axes) -> float | None:
+def _way(marker: Marker, begin: float, end: float, up: np.ndarray) -> float | None:
     """Largest displacement (m) in the floor's plane from ``begin`` until ``end``."""
     if marker.times is not None:
         return None
@@ -261,15 +269,15 @@ def _way(marker: Marker, begin: float, end: float, axes: Axes) -> float | None:
     if len(path) < 30 or not np.isfinite(path).all() or marker.rate < 2.3 * MARKER_FILTER.cutoff:
         return None
     path = low_passed(path, marker.rate, MARKER_FILTER)
-    flat = path - np.outer(path @ axes.up, axes.up)
+    flat = path - np.outer(path @ up, up)
     inside = (time >= begin) & (time <= end)
     if inside.sum() < 2:
         return None
     return float(np.linalg.norm(flat[inside] - flat[inside][0], axis=1).max())
 
 
-def _misstep(trial: Trial, stance: Stance, axes: Axes) -> str:
-    angle = foot_angle(trial, stance, axes)
+def _misstep(walk: Walkway, stance: Stance) -> str:
+    angle = foot_angle(walk, stance)
     if angle is not None and angle[1][0] < _TOE_FIRST:
         return f"the toe comes down first ({np.degrees(angle[1][0]):.0f} deg)"
     return ""

@@ -17,7 +17,9 @@ class Flag:
 
     ``matters`` is True when the number needs caution: the step and its file are then no longer
     "accepted". ``measured`` and ``limit``, in ``unit``, are what was seen and what is allowed (None
-    where the check has no number); ``source`` says where the limit comes from.
+    where the check has no number); ``source`` says where the limit comes from. ``likelihood`` is
+    the share of sound recordings that lie as far out as this one (0 to 1), None where it is not
+    known.
     """
 
     name: str
@@ -27,6 +29,7 @@ class Flag:
     limit: float | None = None
     unit: str = ""
     source: str = ""
+    likelihood: float | None = None
 
     def __str__(self) -> str:
         return self.words

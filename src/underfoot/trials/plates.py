@@ -208,9 +208,8 @@ def up_from_normal(normal: np.ndarray) -> np.ndarray:
 
 
 def _upside_down(vertical: np.ndarray) -> bool:
-    centre = float(np.median(vertical))
-    above = float(np.percentile(vertical, 99.5)) - centre
-    below = centre - float(np.percentile(vertical, 0.5))
+    low, centre, high = np.percentile(vertical, (0.5, 50.0, 99.5)).tolist()
+    above, below = high - centre, centre - low
     if max(above, below) < _LOADED:
         return False
     # A plate loaded most of the time has its median in the load.

@@ -40,16 +40,13 @@ class Rule:
     note: str = ""
 
     def words(self) -> str:
-        """Return the rule in words, with its standing."""
+        """Return the rule in words."""
         unit = QUANTITIES[self.quantity]
         low, high = (None if v is None else display(v, unit) for v in (self.low, self.high))
         bounds = f"from {low} to {high}"
         if low is None or high is None:
             bounds = f"at most {high}" if low is None else f"at least {low}"
-        text = f"{self.quantity.replace('_', ' ')} {bounds}"
-        marks = [] if self.verified else ["from memory, not verified"]
-        marks += ["tolerance assumed"] if self.assumed else []
-        return text + (f" ({'; '.join(marks)})" if marks else "")
+        return f"{self.quantity.replace('_', ' ')} {bounds}"
 
     def broken_by(self, value: float) -> str:
         """Return why ``value`` breaks the rule, or nothing."""
@@ -107,14 +104,28 @@ class Protocol:
             [[r.quantity, r.low, r.high, r.severity] for r in self.rules],
         )
 
-    def assumptions(self) -> list[str]:
-        """Return the settings that no source stands behind, in words."""
-        found = []
-        for name, leaf in self.method.items():
-            if leaf.assumed or not leaf.verified:
-                why = leaf.note or ("assumed" if leaf.assumed else "from memory, not verified")
-                found.append(f"{name.replace('_', ' ')} = {leaf.given}: {why}")
-        return found
+    def standing(self) -> list[str]:
+        """Return what the source does not stand behind: not verified, or assumed; a sentence each.
+
+        Values with a source of their own are verified against it, and it is named.
+        """
+        settings = [(name.replace("_", " "), leaf) for name, leaf in self.method.items()]
+        settings += [(rule.quantity.replace("_", " "), rule) for rule in self.rules]
+        memory = [name for name, one in settings if not one.verified]
+        assumed = [
+            name + (f" ({one.note})" if one.note else "") for name, one in settings if one.assumed
+        ]
+        read: dict[str, list[str]] = {}
+        for name, one in settings:
+            if one.verified and not one.assumed and one.source not in ("", self.source):
+                read.setdefault(one.source, []).append(name)
+        found = [f"{', '.join(names)}: {source}." for source, names in read.items()]
+        if memory:
+            found.append(
+                f"Not verified against the text of {self.source}, which was not at hand: "
+                f"{', '.join(dict.fromkeys(memory))}."
+            )
+        return found + ([f"Assumed: {'; '.join(assumed)}."] if assumed else [])
 
 
 def protocol(name: str, folders: Iterable[Path | str] = ()) -> Protocol:

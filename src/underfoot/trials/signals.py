@@ -11,6 +11,7 @@ SHEAR_WARNING = 2.0  # N; above it the required friction moves by more than abou
 UNLOADED_LIMIT = 100.0  # N; a larger "offset" is a load that never left the plate
 _MINIMUM_SAMPLES = 50
 _MARGIN = 0.025  # s, kept away from a loaded stretch on both sides
+CONTACT_FORCE = 20.0  # N of vertical force; above it a plate is stood on
 _LOWEST, _HIGHEST = 8.0, 60.0  # N above the unloaded level at which a plate counts as loaded
 
 
@@ -65,16 +66,19 @@ def saturated(signal: np.ndarray, rate: float) -> bool:
     signal = signal[np.isfinite(signal)]
     if signal.size < 16:
         return False
-    rest = float(np.median(signal))
-    spread = float(np.percentile(np.abs(signal - rest), 90))
-    steps = np.abs(np.diff(signal))
-    quantum = float(steps[steps > 0].min(initial=np.inf))
     length, approach = max(16, round(0.02 * rate)), max(3, round(0.005 * rate))
     for extreme in (float(signal.max()), float(signal.min())):
-        height = abs(extreme - rest)
-        if height <= 0.2 * spread or extreme == 0.0:
+        at_extreme = signal == extreme
+        if extreme == 0.0 or np.count_nonzero(at_extreme) < length:
             continue
-        for start, stop in runs(signal == extreme):
+        rest = float(np.median(signal))
+        spread = float(np.percentile(np.abs(signal - rest), 90))
+        steps = np.abs(np.diff(signal))
+        quantum = float(steps[steps > 0].min(initial=np.inf))
+        height = abs(extreme - rest)
+        if height <= 0.2 * spread:
+            continue
+        for start, stop in runs(at_extreme):
             before = abs(signal[max(start - approach, 0)] - extreme)
             if stop - start >= length and before > max(0.01 * height, 3.0 * quantum):
                 return True
@@ -92,6 +96,25 @@ def runs(mask: np.ndarray) -> list[tuple[int, int]]:
     steps = np.diff(padded)
     starts, stops = np.flatnonzero(steps == 1), np.flatnonzero(steps == -1)
     return [(int(a), int(b)) for a, b in zip(starts, stops, strict=True)]
+
+
+def contacts(
+    vertical: np.ndarray, rate: float, threshold: float = CONTACT_FORCE
+) -> list[tuple[int, int]]:
+    """Return (start, stop) of the stretches in which a plate is stood on, shape of samples.
+
+    A stretch begins where the vertical force (n,), N, passes ``threshold`` and counts when it
+    lasts 30 ms and reaches five times the threshold; interruptions below 20 ms are bridged.
+    """
+    loaded = np.nan_to_num(vertical, nan=0.0) > threshold
+    for start, stop in runs(~loaded):
+        if start > 0 and stop < len(loaded) and stop - start < 0.02 * rate:
+            loaded[start:stop] = True
+    return [
+        (start, stop)
+        for start, stop in runs(loaded)
+        if stop - start >= 0.03 * rate and np.nanmax(vertical[start:stop]) > 5.0 * threshold
+    ]
 
 
 def _away_from_load(mask: np.ndarray, margin: int) -> np.ndarray:
@@ -167,7 +190,29 @@ def low_passed(values: np.ndarray, rate: float, low_pass: LowPass) -> np.ndarray
     if len(values) < 30:
         raise DataError(f"{len(values)} samples are too few to filter", allowed="30 or more")
     padding = min(len(values) - 1, max(15, round(rate / low_pass.cutoff)))
+    if order == 2:  # one section: the same filter in half the time
+        return signal.filtfilt(sections[0, :3], sections[0, 3:], values, axis=0, padlen=padding)
     return signal.sosfiltfilt(sections, values, axis=0, padlen=padding)
+
+
+def low_passed_part(
+    values: np.ndarray,
+    rate: float,
+    low_pass: LowPass,
+    start: int,
+    stop: int,
+    around: float = np.inf,
+) -> np.ndarray:
+    """Return samples ``start`` to ``stop`` of ``values`` (n, k), filtered in their surroundings.
+
+    The filter sees up to ``around`` seconds before and after, as far as no number is missing.
+    Errors as ``low_passed``.
+    """
+    margin = int(min(around * rate, len(values)))
+    lost = np.flatnonzero(~np.isfinite(values).all(axis=1))
+    begin = max(0, start - margin, *(lost[lost < start] + 1))
+    end = min(len(values), stop + margin, *lost[lost >= stop])
+    return low_passed(values[begin:end], rate, low_pass)[start - begin : stop - begin]
 
 
 @lru_cache(maxsize=64)

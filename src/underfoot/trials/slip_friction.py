@@ -13,7 +13,8 @@ from .gait import SHEARS
 from .measurement import Measurement, caution
 from .plates import baseline_words
 from .protocols import Protocol
-from .signals import LowPass, low_passed
+from .signals import LowPass, low_passed, runs
+from .tester_calibration import TesterCalibration
 from .trial import Channel, Plate, Trial
 
 ACOF_WINDOWS = (0.002, 0.05, 0.1, 0.2)  # s
@@ -135,7 +136,8 @@ class SlideFriction:
     """COF of one slide with its curves.
 
     ``time`` (s), ``normal``, ``shear`` (N) and ``ratio`` have shape (n,); ``window`` is
-    (begin, end) in s; ``facts`` maps rule quantities to what was measured (SI).
+    (begin, end) in s; ``facts`` maps rule quantities to what was measured (SI). ``onset`` is the
+    start of sliding (s), ``speed`` the sliding speed where it is known.
     """
 
     cof: Measurement
@@ -145,22 +147,56 @@ class SlideFriction:
     ratio: np.ndarray
     window: tuple[float, float]
     facts: Mapping[str, float]
+    onset: float | None = None
+    speed: Channel | None = None
 
 
-def slide_friction(trial: Trial, protocol: Protocol, axes: Axes | None = None) -> SlideFriction:
-    """Return the mean COF of a slide in the window its protocol sets.
+def slide_plate(trial: Trial, up: np.ndarray, record: TesterCalibration | None = None) -> Plate:
+    """Return the plate of a tester's log, its forces multiplied by the factors on record.
 
-    ``window_from = "force"``: from the first sample at the target force (grant report G.6);
-    ``"sliding"``: from the start of sliding, seen in a speed channel, else in a marker's path,
-    else in the rise of the shear force (half of its later level).
-
-    DataError: no usable force plate, no load, or no sliding.
+    DataError: no usable force plate.
     """
     plate = next((plate for plate in trial.plates if plate.usable), None)
     if plate is None:
         reasons = "; ".join(p.problem for p in trial.plates) or "the file holds no force plate"
         raise DataError(reasons, where=trial.name, remedy="Name the force columns in a profile")
+    if record is None:
+        return plate
+    normal = np.outer(plate.force @ up, up)
+    factors = (record.channel(name).factor for name in ("normal", "friction"))
+    return replace(plate, force=next(factors) * normal + next(factors) * (plate.force - normal))
+
+
+def calibrated(cof: Measurement, record: TesterCalibration | None) -> Measurement:
+    """Return a COF with the calibration it refers to, and its uncertainty added."""
+    if record is None:
+        words = "no record: the tester's gain is not in the uncertainty"
+        return replace(cof, conventions={**cof.conventions, "calibration": words})
+    said = {**cof.conventions, "calibration": record.words()}
+    error = None
+    if cof.value is not None and cof.uncertainty is not None:
+        parts = (record.channel(name).uncertainty for name in ("normal", "friction"))
+        error = math.hypot(cof.uncertainty, *(cof.value * part for part in parts))
+    return replace(cof, uncertainty=error, conventions=said)
+
+
+def slide_friction(
+    trial: Trial,
+    protocol: Protocol,
+    axes: Axes | None = None,
+    record: TesterCalibration | None = None,
+) -> SlideFriction:
+    """Return the mean COF of a slide in the window its protocol sets.
+
+    ``window_from = "force"``: from the first sample at the target force (grant report G.6);
+    ``"sliding"``: from the start of sliding, seen in a speed channel, else in a marker's path,
+    else in the rise of the shear force (half of its later level). Forces are those of the log times
+    the factors of the calibration ``record``.
+
+    DataError: no usable force plate, no load, or no sliding.
+    """
     up = (axes or axes_of(trial)).up
+    plate = slide_plate(trial, up, record)
     normal = plate.force @ up
     shear = np.linalg.norm(plate.force - np.outer(normal, up), axis=1)
     if not np.nanmax(normal, initial=0.0) > _TOUCHING:
@@ -208,7 +244,8 @@ def slide_friction(trial: Trial, protocol: Protocol, axes: Axes | None = None) -
     if onset is not None and len(touched):
         contact = plate.start + int(touched[0]) / plate.rate
         facts["static_contact_time"] = max(onset - contact, 0.0)
-    return SlideFriction(cof, plate.time, normal, shear, ratio, (begin, end), facts)
+    curves = plate.time, normal, shear, ratio
+    return SlideFriction(calibrated(cof, record), *curves, (begin, end), facts, onset, speed)
 
 
 def _sliding(
@@ -224,15 +261,19 @@ def _sliding(
         moving = moving[loaded[moving]]
         if len(moving):
             return float(speed.time[moving[0]]), how, speed
-    ratio = np.where(normal > _TOUCHING, shear / np.maximum(normal, _TOUCHING), 0.0)
+    # Mean over 10 ms: at a small load or COF the noise alone passes half of the level.
+    count = max(1, round(0.01 * plate.rate))
+    smooth = np.convolve(np.nan_to_num(shear), np.full(count, 1.0 / count), "same")
+    pressed = np.nan_to_num(normal) > max(_TOUCHING, 0.2 * float(np.nanpercentile(normal, 95)))
+    ratio = np.where(pressed, smooth / np.maximum(np.nan_to_num(normal), _TOUCHING), 0.0)
     loaded = normal > 0.9 * float(np.nanpercentile(normal, 95))
-    if loaded.sum() < 10:
+    level = float(np.median(ratio[loaded])) if loaded.sum() >= 10 else 0.0
+    stretches = runs(ratio > _ONSET * level) if level > 0 else []
+    if not stretches:
         return None, "", speed
-    level = float(np.median(ratio[loaded]))
-    rising = np.flatnonzero(ratio > _ONSET * level)
-    if not len(rising) or level <= 0:
-        return None, "", speed
-    return plate.start + int(rising[0]) / plate.rate, "shear at half of its later level", speed
+    start = max(stretches, key=lambda run: run[1] - run[0])[0]
+    words = "shear (mean over 10 ms) stays above half of its later level"
+    return plate.start + start / plate.rate, words, speed
 
 
 def _speed(trial: Trial) -> tuple[Channel | None, str]:

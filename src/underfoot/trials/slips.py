@@ -1,7 +1,6 @@
 """The heel marker's smoothed path and speed; a human slip: start, peak speed, distance, class."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import lru_cache
@@ -10,12 +9,11 @@ import numpy as np
 
 from underfoot.core import InputError, unknown_name
 
-from .axes import Axes, axes_of, heel_of, walking_direction
 from .events import Stance
 from .measurement import Flag, Measurement, caution
-from .plates import plate_named
 from .signals import MARKER_FILTER, LowPass, bridged, low_passed, runs
 from .trial import Marker, Trial
+from .walkway import Walkway, walkway_of
 
 PLANES = {"horizontal": "speed in the plane of the floor", "3d": "speed in three dimensions"}
 DERIVATIVES = {
@@ -105,12 +103,12 @@ def marker_jumps(positions: np.ndarray) -> np.ndarray:
     known = np.flatnonzero(np.isfinite(positions).all(axis=1) & ~jumps)
     if len(known) <= 2 * _AROUND:
         return jumps
+    from scipy.ndimage import median_filter
+
     path = positions[known]
-    windows = np.lib.stride_tricks.sliding_window_view(path, 2 * _AROUND + 1, axis=0)
-    middle = path[_AROUND:-_AROUND]
-    away = np.linalg.norm(middle - np.median(windows, axis=2), axis=1)
-    around = np.lib.stride_tricks.sliding_window_view(np.pad(away, _AROUND, mode="edge"), 7)
-    usual = 1.4826 * np.median(around, axis=1)
+    middle = median_filter(path, (2 * _AROUND + 1, 1))[_AROUND:-_AROUND]
+    away = np.linalg.norm(path[_AROUND:-_AROUND] - middle, axis=1)
+    usual = 1.4826 * median_filter(away, 2 * _AROUND + 1, mode="nearest")
     jumps[known[_AROUND:-_AROUND][away > np.maximum(_JUMP, 6.0 * usual)]] = True
     return jumps
 
@@ -122,7 +120,11 @@ def heel_motion(
 
     Frames that are not equally spaced and a filter that does not fit the rate are InputErrors.
     """
-    definition = definition or SlipDefinition()
+    return _motion(marker, tuple(up.tolist()), definition or SlipDefinition())
+
+
+@lru_cache(maxsize=4)  # several questions about a step ask for the motion of the same heel
+def _motion(marker: Marker, up: tuple[float, ...], definition: SlipDefinition) -> HeelMotion:
     if marker.times is not None:
         raise InputError("frames are not equally spaced", where="marker")
     jumps = marker_jumps(marker.positions)
@@ -168,9 +170,8 @@ def contact_from_heel(
     limit = float(np.nanpercentile(height, 1)) + 0.008
     before = round(0.4 * marker.rate)
     found: list[float] = []
-    for i in range(1, len(height) - 1):
-        if not (height[i - 1] > height[i] <= height[i + 1] and height[i] < limit):
-            continue
+    here = height[1:-1]
+    for i in 1 + np.flatnonzero((height[:-2] > here) & (here <= height[2:]) & (here < limit)):
         fallen = float(np.nanmax(height[max(0, i - before) : i])) - height[i]
         when = float(motion.time[i])
         if fallen > 0.03 and (not found or when - found[-1] > 0.3):
@@ -446,29 +447,26 @@ def _slip_start(motion: HeelMotion, begin: int, cutoff: float) -> tuple[float, f
 
 
 def slip_of(
-    trial: Trial,
+    walk: Trial | Walkway,
     stance: Stance,
     *,
-    axes: Axes | None = None,
     definition: SlipDefinition | None = None,
     limits: OutcomeLimits | None = None,
-    heels: Mapping[str, str] | None = None,
 ) -> Slip:
     """Return the slip after a contact with a force plate, by the heel of that foot.
 
-    A contact rejected as a step may still be a slip (a foot that slides off a plate is no clean
-    step): its reason is kept as a flag.
+    On a belt the heel's speed is that over the belt. A contact rejected as a step may still be a
+    slip (a foot that slides off a plate is no clean step): its reason is kept as a flag.
     """
-    axes = axes or axes_of(trial)
-    plate = plate_named(trial, stance.plate)
-    walking = stance.walking
+    walk = walkway_of(walk)
+    walking, up = stance.walking, walk.up
     if walking is None:
-        walking = walking_direction(trial, plate, stance.start, stance.stop, axes.up).vector
-    marker = trial.marker(stance.heel) if stance.heel else heel_of(trial, stance.side, heels)
+        walking = walk.direction(walk.plate(stance.plate), stance.start, stance.stop).vector
+    heel = stance.heel or walk.heels.get(stance.side)
+    marker = walk.marker(heel, stance.plate, stance.contact) if heel else None
     flags = (caution(f"not a clean step: {stance.reason}"),) if stance.reason else ()
-    up = axes.up
     if walking is not None:
-        up, walking = axes.ramp.surface(up, walking)  # a heel slides along the surface
+        up, walking = walk.axes.ramp.surface(up, walking)  # a heel slides along the surface
     return slip(
         marker, stance.contact, up=up, walking=walking, leaves=stance.toe_off,
         definition=definition, limits=limits, flags=flags,

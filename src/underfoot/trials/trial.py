@@ -40,7 +40,7 @@ class Channel:
         return _time(len(self.values), self.rate, self.start, self.times)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Marker:
     """Path of one motion-capture marker in the laboratory's axes.
 
@@ -61,7 +61,7 @@ class Marker:
     @property
     def missing(self) -> np.ndarray:
         """True where the marker was not seen, shape (n,)."""
-        return np.asarray(~np.isfinite(self.positions).all(axis=1))
+        return np.asarray(~np.isfinite(self.positions @ np.ones(3)))  # faster than all()
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,6 +133,8 @@ class Event:
     source: str = "found"
 
 
+MADE_UP = "underfoot trials simulate"
+"""The software that a made-up recording names."""
 EDITS = ("contact", "toe off", "exclude", "side", "plate")
 
 

@@ -12,6 +12,7 @@ from tempfile import TemporaryDirectory
 
 from underfoot.core import DataError, InputError, nearest_match
 from underfoot.core.optional import optional_module
+from underfoot.core.registry import offered
 
 from .cad import read_cad
 from .mesh import Mesh
@@ -80,7 +81,10 @@ def read_mesh(path: Path | str, unit: str = "auto") -> Mesh:
         if head.startswith(marks):
             return _of_text(path, encoding, unit)
     optional_module("numba", "cad", "Reading a sole from a file")
-    promised = SUFFIXES.get(path.suffix.lower())
+    ending = path.suffix.lower()
+    if ending not in SUFFIXES and (reader := offered("outsole_readers", ending[1:])):
+        return reader(path)
+    promised = SUFFIXES.get(ending)
     content = _format_of(head, path)
     if content is None and promised is None:
         raise InputError(

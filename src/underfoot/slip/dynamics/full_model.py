@@ -17,7 +17,7 @@ from underfoot.shoe.geometry import SoleMap
 from underfoot.sole_contact.compliance import Compliance
 from underfoot.sole_contact.lug_edges import EdgedLaw
 from underfoot.sole_contact.sole_state import SoleState, SolverSettings
-from underfoot.sole_contact.stepping import SlidingSole, rolled_clearance
+from underfoot.sole_contact.stepping import SlidingSole, rolled_sole
 
 from .motion import COLUMNS, STEP, Instant, SlipMotion, slip_motion
 from .sensors import MAP_X, MAP_Y, sensor_map
@@ -67,10 +67,12 @@ class SoleInstant:
         """Return the friction force at a sliding speed with pressures and film as they are, N."""
         state = self.state
         slow = max(speed, LOWEST_SPEED)
-        parts = self.law(state.contact_pressure, slow, state.film_thickness)
-        area, touching = state.cut.area, state.contact_pressure > 0
+        at = state.finest
+        law = self.law.on(at) if isinstance(self.law, EdgedLaw) else self.law
+        parts = law(at.contact_pressure, slow, at.film_thickness)
+        area, touching = at.areas["area"], at.contact_pressure > 0
         solid = ((parts.adhesion + parts.hysteresis) * area)[touching].sum()
-        viscous = (parts.viscous * area)[state.wet].sum() * (speed / slow)
+        viscous = (parts.viscous * area)[at.wet].sum() * (speed / slow)
         return float(solid + viscous) * state.spacing**2
 
 
@@ -78,8 +80,7 @@ class SoleFoot:
     """A fresh sole above the floor, at a walker's shoe angle."""
 
     def __init__(self, setting: Setting, shoe_angle: float, load: float = 500.0) -> None:
-        rolled = rolled_clearance(setting.sole, shoe_angle - setting.shoe_angle)
-        sole = replace(setting.sole, clearance=rolled)
+        sole = rolled_sole(setting.sole, shoe_angle - setting.shoe_angle)
         self._law = setting.edged or setting.friction
         self._sliding = SlidingSole(
             sole,

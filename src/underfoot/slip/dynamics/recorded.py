@@ -10,15 +10,14 @@ import numpy as np
 from underfoot.core import InputError
 from underfoot.core.arrays import Array
 from underfoot.core.constants import GRAVITY
-from underfoot.trials.axes import Axes, axes_of, marker_velocity
-from underfoot.trials.events import Stance, body_mass
+from underfoot.trials.events import Stance
 from underfoot.trials.gait import RcofDefinition, RequiredFriction, required_frictions
 from underfoot.trials.gait_context import FLAT, heel_speed
-from underfoot.trials.plates import plate_named
 from underfoot.trials.readers import read_trial
 from underfoot.trials.signals import low_passed
 from underfoot.trials.slips import HeelMotion, heel_motion
 from underfoot.trials.trial import Marker, Trial
+from underfoot.trials.walkway import Walkway, body_mass, walkway_of
 
 from .gait import LEAST_LOAD, GaitHistory
 
@@ -38,10 +37,10 @@ def recorded_histories(path: Path | str, *, mass: float | None = None) -> list[G
     Raises:
         InputError: No accepted step; the reasons are listed.
     """
-    trial = read_trial(Path(path))
-    steps = required_frictions(trial)
+    walk = walkway_of(read_trial(Path(path)))
+    steps = required_frictions(walk)
     histories = [
-        step_history(trial, step, mass=mass, name=f"{Path(path).stem} {step.stance.plate}")
+        step_history(walk, step, mass=mass, name=f"{Path(path).stem} {step.stance.plate}")
         for step in steps
         if step.measurement.value is not None
     ]
@@ -54,7 +53,11 @@ def recorded_histories(path: Path | str, *, mass: float | None = None) -> list[G
 
 
 def step_history(
-    trial: Trial, step: RequiredFriction, *, mass: float | None = None, name: str = ""
+    recording: Trial | Walkway,
+    step: RequiredFriction,
+    *,
+    mass: float | None = None,
+    name: str = "",
 ) -> GaitHistory:
     """Return one accepted step as a history: forces low-passed as for RCOF, 200 samples a second.
 
@@ -62,14 +65,14 @@ def step_history(
     same side), against its angle while the foot lies flat (30 to 50 % of stance). Heel velocity:
     ``heel_over_floor``.
     """
-    axes, stance = axes_of(trial), step.stance
+    walk, stance = walkway_of(recording), step.stance
     assert stance.walking is not None  # an RCOF has one
-    plate = plate_named(trial, stance.plate)
+    plate = walk.plate(stance.plate)
     force = low_passed(plate.force, plate.rate, RcofDefinition().filter)
     force = force[stance.start : stance.stop]
-    normal = np.maximum(force @ axes.up, 0.0)
-    shear = force - np.outer(force @ axes.up, axes.up)
-    own = mass or body_mass(trial)
+    normal = np.maximum(force @ walk.up, 0.0)
+    shear = force - np.outer(force @ walk.up, walk.up)
+    own = mass or body_mass(walk.trial)
     weight = own * GRAVITY if own else float(normal.mean()) * 2 * DUTY
     since = np.arange(len(normal)) / plate.rate
     size = np.linalg.norm(shear, axis=1) * np.where(shear @ stance.walking < 0, 1.0, -1.0)
@@ -81,21 +84,21 @@ def step_history(
         time,
         np.interp(time, since, normal / weight),
         np.interp(time, since, ratio),
-        _foot_angle(trial, stance, axes, time),
-        walking_speed=_walking_speed(trial, stance.contact, stance.toe_off, axes),
-        heel_speed=heel_speed(trial, stance, axes),
-        heel_velocity=_heel_velocity(trial, stance, axes, time),
+        _foot_angle(walk, stance, time),
+        walking_speed=_walking_speed(walk, stance),
+        heel_speed=heel_speed(walk, stance),
+        heel_velocity=_heel_velocity(walk, stance, time),
         source=how,
     )
 
 
-def _foot_angle(trial: Trial, stance: Stance, axes: Axes, time: Array) -> Array | None:
+def _foot_angle(walk: Walkway, stance: Stance, time: Array) -> Array | None:
     """Return the foot's angle at ``time`` since contact, where heel and toe are recorded."""
-    heel, toe = _heel_and_toe(trial, stance)
+    heel, toe = _heel_and_toe(walk, stance)
     if heel is None or toe is None:
         return None
     line = toe.positions - heel.positions
-    tilt = np.arctan2(line @ axes.up, line @ stance.walking)
+    tilt = np.arctan2(line @ walk.up, line @ stance.walking)
     share = (heel.time - stance.contact) / stance.duration
     flat = (share > FLAT[0]) & (share < FLAT[1])
     if not (flat.any() and np.isfinite(tilt[flat]).all()):
@@ -104,13 +107,13 @@ def _foot_angle(trial: Trial, stance: Stance, axes: Axes, time: Array) -> Array 
     return angle if np.isfinite(angle).all() else None
 
 
-def _heel_velocity(trial: Trial, stance: Stance, axes: Axes, time: Array) -> Array | None:
+def _heel_velocity(walk: Walkway, stance: Stance, time: Array) -> Array | None:
     """Return the heel's velocity over the floor at ``time``, where heel and toe are recorded."""
-    heel, toe = _heel_and_toe(trial, stance)
-    corners = plate_named(trial, stance.plate).corners
+    heel, toe = _heel_and_toe(walk, stance)
+    corners = walk.plate(stance.plate).corners
     if heel is None or toe is None or corners is None or stance.walking is None:
         return None
-    motion, up = heel_motion(heel, axes.up), axes.up
+    motion, up = heel_motion(heel, walk.up), walk.up
     level = corners.mean(axis=0) @ up
     own = heel_over_floor(motion, heel_motion(toe, up), up, stance.walking, level)
     velocity = np.interp(time + stance.contact, motion.time, own)
@@ -131,22 +134,26 @@ def heel_over_floor(
     return heel.velocity @ walking - falling * np.maximum(heel.position @ up - level, 0.0)
 
 
-def _heel_and_toe(trial: Trial, stance: Stance) -> tuple[Marker | None, Marker | None]:
-    heel = trial.marker(stance.heel) if stance.heel else None
-    toe = _toe_of(trial, stance.heel) if heel else None
+def _heel_and_toe(walk: Walkway, stance: Stance) -> tuple[Marker | None, Marker | None]:
+    """Return both markers as seen from the surface: on a belt, from the belt."""
+    toe_name = _toe_of(walk.trial, stance.heel) if stance.heel else None
+    heel, toe = (
+        walk.marker(name, stance.plate, stance.contact) if name else None
+        for name in (stance.heel, toe_name)
+    )
     same = heel is not None and toe is not None and len(toe.positions) == len(heel.positions)
     return heel, toe if same else None
 
 
-def _toe_of(trial: Trial, heel: str) -> Marker | None:
+def _toe_of(trial: Trial, heel: str) -> str | None:
     side = heel.strip()[0].lower()
     names = [n for n in trial.markers if _TOE.search(n) and n.strip()[0].lower() == side]
     names.sort(key=lambda n: (not n.lower().endswith("toe"), not n.lower().endswith("mt2")))
-    return trial.marker(names[0]) if names else None
+    return names[0] if names else None
 
 
-def _walking_speed(trial: Trial, begin: float, end: float, axes: Axes) -> float | None:
-    velocity = marker_velocity(trial, begin, end, axes.up)
+def _walking_speed(walk: Walkway, stance: Stance) -> float | None:
+    velocity = walk.body_velocity(stance.plate, stance.contact, stance.toe_off)
     if velocity is None or not np.isfinite(velocity).all():
         return None
     speed = float(np.linalg.norm(velocity))

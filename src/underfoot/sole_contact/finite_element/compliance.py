@@ -7,7 +7,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from underfoot.core import Cache, Progress, silent
-from underfoot.core.cache import content_hash
+from underfoot.core.identity import content_hash
+from underfoot.core.threads import threads_limited
 from underfoot.shoe.geometry import SoleMap
 
 from ..compliance import ConvolutionCompliance, layered_compliance
@@ -101,6 +102,7 @@ class OutsoleAndMidsole(TypedDict):
     midsole_poisson_ratio: NotRequired[float]
 
 
+@threads_limited(1)
 def finite_element_compliance(
     sole: SoleMap,
     *,

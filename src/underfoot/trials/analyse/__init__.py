@@ -9,5 +9,5 @@ from .folder import analyse_folder as analyse_folder
 from .folder import recording_results as recording_results
 from .study import Study as Study
 from .study import study_of as study_of
-from .study_tests import Finding as Finding
+from .tables import Finding as Finding
 from .tables import Table as Table

@@ -4,6 +4,7 @@ import csv
 import io
 import os
 import re
+import unicodedata
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ from typing import Any
 
 from underfoot.core import DataError, InputError, nearest_match, units
 
-from ..readers import SUFFIXES, Profile, read_profile
+from ..readers import Profile, read_profile, trial_suffixes
 from ..readers.sheet import is_workbook, workbook_rows
 from ..readers.text import decoded, is_number, name_and_unit, si_unit
 from .file_result import FileResult
@@ -82,7 +83,7 @@ def study_folder(
                 notes.append(f"{file}: in {table.name}, but there is no such file")
                 continue
             _add(own[members[label]], found, label)
-    _same_spelling(own, merge_spelling)
+    one_spelling(own, merge_spelling)
     recordings = tuple(
         Recording(label, tuple(group), noted)
         for label, group, noted in zip(labels, groups, own, strict=True)
@@ -111,6 +112,7 @@ def _groups(folder: Path) -> tuple[list[list[Path]], list[str]]:
     if not folder.is_dir():
         raise InputError(f"there is no folder {folder}", where="FOLDER")
     trials: list[Path] = []
+    suffixes = trial_suffixes()
     notes: list[str] = []
     for place, below, files in os.walk(folder):
         if REPORT_MARK in files and Path(place) != folder:
@@ -126,7 +128,7 @@ def _groups(folder: Path) -> tuple[list[list[Path]], list[str]]:
             if _NOT_TRIALS.match(path.stem) and ending not in (".c3d", ".trc"):
                 if not re.match("conditions|edits|truth|synthetic|session", name, re.IGNORECASE):
                     notes.append(f"{_label(path, folder)}: notes by its name, not a trial")
-            elif ending in SUFFIXES:
+            elif ending in suffixes:
                 trials.append(path)
             else:
                 notes.append(
@@ -134,7 +136,7 @@ def _groups(folder: Path) -> tuple[list[list[Path]], list[str]]:
                 )
     if not trials:
         raise InputError(
-            f"the folder {folder} holds no trial file", where="FOLDER", allowed=", ".join(SUFFIXES)
+            f"the folder {folder} holds no trial file", where="FOLDER", allowed=", ".join(suffixes)
         )
     markers = {_stem(path): path for path in trials if path.suffix.casefold() == ".trc"}
     partners = {p for p in trials if p.suffix.casefold() in _FORCES and _stem(p) in markers}
@@ -234,12 +236,17 @@ def _add(own: dict[str, Any], found: Mapping[str, Any], label: str) -> None:
         own[key] = value
 
 
-def _same_spelling(noted: Sequence[dict[str, Any]], merge: bool) -> None:
+def one_spelling(noted: Sequence[dict[str, Any]], merge: bool) -> None:
+    """Refuse a condition that is written in two ways, or take the usual one with ``merge``.
+
+    Spellings are one when they differ in capitals, blanks, "-", "_", accents (Müller, Mueller) or
+    leading zeros (S1, S01); those of a person also in the letters before the number (S01, 01).
+    """
     for key in dict.fromkeys(k for own in noted for k in own):
         spellings: dict[str, Counter[str]] = {}
         for own in noted:
             if isinstance(own.get(key), str):
-                plain = re.sub(r"[\s_-]+", "", own[key]).casefold()
+                plain = plain_spelling(own[key], person=key in PERSON)
                 spellings.setdefault(plain, Counter())[own[key]] += 1
         for counts in spellings.values():
             if len(counts) < 2:
@@ -255,6 +262,20 @@ def _same_spelling(noted: Sequence[dict[str, Any]], merge: bool) -> None:
             for own in noted:
                 if own.get(key) in counts:
                     own[key] = usual
+
+
+def plain_spelling(text: str, *, person: bool = False) -> str:
+    """Return a name without what spellings of one name differ in."""
+    plain = re.sub(r"[\s_-]+", "", text).casefold()
+    for letter, pair in {"ä": "ae", "ö": "oe", "ü": "ue", "ø": "oe", "å": "aa"}.items():
+        plain = plain.replace(letter, pair)
+    plain = unicodedata.normalize("NFKD", plain).encode("ascii", "ignore").decode() or plain
+    plain = re.sub(r"(?<!\d)(?<!\d[.,])0+(?=\d)", "", plain)
+    return (
+        re.sub(r"^(s|p|vp|subj?|subject|person|participant|proband|id)(?=\d)", "", plain)
+        if person
+        else plain
+    )
 
 
 def person_condition(files: Iterable[FileResult], preferred: str = "") -> str:

@@ -8,11 +8,11 @@ import numpy as np
 
 from underfoot.core import Progress, UnderfootError, silent
 
-from ..axes import axes_of
-from ..events import EditError, stances
-from ..gait import DEFINITIONS, required_friction, stance_frictions
+from ..events import EditError
+from ..gait import DEFINITIONS, required_friction, required_frictions
 from ..readers import Profile, read_trials
 from ..trial import Trial, joined
+from ..walkway import walkway_of
 from .conditions import profile_of, study_folder
 from .edit_table import edits_of
 from .tables import Cell, Table, mean_and_interval
@@ -54,14 +54,15 @@ def definition_tables(
 
 
 def _steps(trial: Trial, profile: Profile) -> list[tuple[Cell, ...]]:
-    axes = axes_of(trial, vertical=profile.vertical, walking=profile.walking)
-    found = stances(trial, axes=axes, walking=profile.walking, heels=profile.heels)
+    walk = walkway_of(
+        trial, vertical=profile.vertical, walking=profile.walking, heels=profile.heels
+    )
     rows: list[tuple[Cell, ...]] = []
-    for step in stance_frictions(trial, found, axes=axes, heels=profile.heels):
+    for step in required_frictions(walk):
         if step.measurement.value is None:
             continue
         values = [
-            required_friction(trial, step.stance, definition, axes=axes, checked=False)
+            required_friction(walk, step.stance, definition, checked=False)
             for definition in DEFINITIONS.values()
         ]
         rows.append((step.stance.label, step.verdict, *(v.measurement.value for v in values)))
@@ -75,7 +76,7 @@ def _summary(rows: Sequence[tuple[Cell, ...]]) -> Table:
         known = np.isfinite(values[:, i])
         numbers = values[known, i]
         change = numbers - values[known, 0]
-        mean, spread, *_ = mean_and_interval(numbers)
+        mean, spread, *_ = mean_and_interval(numbers, "rcof")
         changes = (
             (float(change.mean()), float(np.abs(change).max())) if len(change) else (None,) * 2
         )

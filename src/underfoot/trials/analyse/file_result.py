@@ -1,6 +1,7 @@
 """What one file gave: numbers, rules kept or broken, a verdict, and curves for the figures."""
 
 import math
+from array import array
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, Self
@@ -9,6 +10,7 @@ import numpy as np
 
 from ..measurement import Measurement
 from ..protocols import Protocol
+from ..tester_calibration import FAILED, TesterCalibration
 from ..trial import Trial
 
 ACCEPTED, CAUTION, REFUSED = "accepted", "caution", "refused"
@@ -48,7 +50,7 @@ class FileResult:
         return self.verdict != REFUSED
 
     def as_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
+        """Return plain data; curves are arrays of numbers, NaN where there is a gap."""
         return {one.name: getattr(self, one.name) for one in fields(self)}
 
     @classmethod
@@ -57,7 +59,7 @@ class FileResult:
         plain: dict[str, Any] = {
             key: tuple(v) if isinstance(v, list) else v for key, v in data.items()
         }
-        return cls(**plain)
+        return cls(**{**plain, "curves": _packed(plain.get("curves", {}))})
 
 
 class Draft:
@@ -87,9 +89,11 @@ class Draft:
         for key, values in series.items():
             if isinstance(values, np.ndarray):
                 step = max(1, math.ceil(len(values) / _POINTS))
-                out[key] = [_rounded(v) for v in np.asarray(values, dtype=float)[::step].tolist()]
+                out[key] = array("d", _rounded(np.asarray(values, dtype=float)[::step]))
+            elif isinstance(values, float):
+                out[key] = float(_rounded(np.array(values))) if math.isfinite(values) else None
             else:
-                out[key] = _rounded(values) if isinstance(values, float) else values
+                out[key] = values
         self.curves.setdefault(name, []).append(out)
 
     def finished(self, protocol: Protocol) -> FileResult:
@@ -117,6 +121,26 @@ def rates(trial: Trial, draft: Draft) -> None:
         draft.facts["marker_rate"] = float(next(iter(trial.markers.values())).rate)
 
 
-def _rounded(value: float) -> float | None:
-    """Seven digits are more than any instrument gives; NaN is not JSON."""
-    return float(f"{value:.7g}") if math.isfinite(value) else None
+def refer_to(record: TesterCalibration | None, draft: Draft) -> None:
+    """Note what the calibration record says of the day a file was made; a failed check refuses."""
+    for flag in () if record is None else record.flags(draft.conditions.get("date")):
+        (draft.refusals if flag.name == FAILED else draft.cautions).append(flag.words)
+
+
+def _rounded(values: np.ndarray) -> np.ndarray:
+    """Seven digits are more than any instrument gives."""
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        scale = 10.0 ** (6.0 - np.floor(np.log10(np.abs(values))))
+        rounded = np.round(values * scale) / scale
+    return np.where(np.isfinite(rounded), rounded, np.where(values == 0.0, 0.0, np.nan))
+
+
+def _packed(value: Any) -> Any:
+    """Return stored curves with their lists of numbers as arrays: a quarter of the memory."""
+    if isinstance(value, dict):
+        return {key: _packed(one) for key, one in value.items()}
+    if not isinstance(value, list):
+        return value
+    if value and all(one is None or type(one) is float for one in value):
+        return array("d", [math.nan if one is None else one for one in value])
+    return [_packed(one) for one in value]

@@ -15,6 +15,8 @@ from underfoot.core.provenance import version
 from ..events import EditError
 from ..protocols import Protocol
 from ..readers import Profile, read_trials, with_channels
+from ..tester_calibration import FILE as CALIBRATION
+from ..tester_calibration import read_calibration
 from ..trial import Edit, Trial, file_checksum, joined
 from .conditions import person_condition, profile_of, study_folder
 from .edit_table import edits_of
@@ -23,9 +25,10 @@ from .methods import methods_paragraphs
 from .readings import reading_results
 from .steps import STEP_KINDS, analysed_trial, check_ramp
 from .study import Study, study_of
+from .study_guard import Doubt, doubt_table, guarded_files, study_doubts
 from .tables import Table, curve_table, edit_table, file_table, measurement_table, step_tables
 
-_CODE = "3"  # raised when what a file gives changes, so that stored results are made again
+_CODE = "4"  # raised when what a file gives changes, so that stored results are made again
 _DIED = "the process that analysed it ended without an answer"
 
 
@@ -34,7 +37,8 @@ class FolderAnalysis:
     """Everything a folder gave.
 
     ``files`` are sorted by name; ``methods`` is the text for a paper; ``notes`` hold files left
-    aside and conditions without a file.
+    aside and conditions without a file; ``doubts`` are what the files say against each other, to
+    be read before the statistics.
     """
 
     protocol: Protocol
@@ -42,6 +46,7 @@ class FolderAnalysis:
     study: Study
     methods: tuple[str, ...]
     notes: tuple[str, ...]
+    doubts: tuple[Doubt, ...] = ()
 
     @property
     def person(self) -> str:
@@ -55,7 +60,9 @@ class FolderAnalysis:
         tests = (finding.table for finding in self.study.findings)
         found = (edit_table(files), *step_tables(files), curve_table(files))
         steps = (table for table in found if table is not None)
-        return (file_table(files), *self.study.tables, *tests, *steps, measurement_table(files))
+        first = [table for table in [doubt_table(self.doubts)] if table is not None]
+        last = measurement_table(files)
+        return (*first, file_table(files), *self.study.tables, *tests, *steps, last)
 
 
 def analyse_folder(
@@ -78,20 +85,22 @@ def analyse_folder(
 
     ``profile``: what columns, axes and markers are called; by default ``profile.toml`` in the
     folder. ``conditions``: what was noted about the files; by default ``conditions.csv`` or
-    ``.xlsx`` in the folder. ``names`` and ``merge_spelling``: pattern of file names and what
-    spellings count as one; see ``study_folder``. ``store``: folder that keeps the result of each
-    file: an interrupted run goes on where it stopped. ``processes``: number of processes; by
-    default the number of processors.
+    ``.xlsx`` in the folder; the calibration record of a tester is its ``calibration.toml``.
+    ``names`` and ``merge_spelling``: pattern of file names and what spellings count as one; see
+    ``study_folder``. ``store``: folder that keeps the result of each file: an interrupted run goes
+    on where it stopped. ``processes``: number of processes; by default the number of processors.
 
     InputError: no such folder, no trial file in it, a wrong profile, ramp or table of conditions.
     EditError: an edit by hand that names no step, changes nothing or contradicts another.
     """
     jobs, notes = _jobs(Path(folder), protocol, profile, conditions, names, merge_spelling, store)
     results = _run(jobs, processes or available_processors(), progress)
-    files = tuple(sorted((one for part in results for one in part), key=lambda one: one.file))
-    study = study_of(files, protocol)
+    files, doubts = guarded_files(results)
+    doubts += study_doubts(files, protocol)
+    out = {name for doubt in doubts if doubt.out for name in doubt.files}
+    study = study_of([one for one in files if one.file not in out or not one.usable], protocol)
     methods = tuple(methods_paragraphs(files, protocol, study, version()))
-    return FolderAnalysis(protocol, files, study, methods, notes)
+    return FolderAnalysis(protocol, tuple(files), study, methods, notes, tuple(doubts))
 
 
 def recording_results(
@@ -135,6 +144,10 @@ def _jobs(
     read, text = profile_of(folder, profile)
     columns = protocol.text("friction"), protocol.text("normal")
     read = with_channels(read, *columns, where=f"protocol {protocol.name}")
+    record = folder / CALIBRATION
+    if record.is_file():
+        read = replace(read, calibration=read_calibration(record))
+        text += record.read_text(encoding="utf-8-sig")
     edits = edits_of(folder, [recording.name for recording in study_files.recordings])
     base = content_hash(protocol.key, text and content_hash(text), version(), _CODE)
     jobs: list[tuple[Any, ...]] = [
@@ -177,7 +190,8 @@ def _job(job: tuple[Any, ...]) -> list[FileResult]:
     store.mkdir(parents=True, exist_ok=True)
     handle, part = tempfile.mkstemp(dir=store, suffix=".part")
     with os.fdopen(handle, "w", encoding="utf-8") as stream:
-        stream.write(json.dumps([one.as_dict() for one in results]))  # faster than json.dump
+        # faster than json.dump
+        stream.write(json.dumps([one.as_dict() for one in results], default=list))
     os.replace(part, path)
     return results
 
@@ -193,7 +207,7 @@ def _analysed(
 ) -> list[FileResult]:
     if protocol.kind == "readings":
         try:
-            return reading_results(name, files[0], checksum, noted, protocol)
+            return reading_results(name, files[0], checksum, noted, protocol, profile.calibration)
         except UnderfootError as error:
             return [FileResult(name, checksum, REFUSED, (str(error),), conditions=noted)]
     trials, refusals, notes = recording_trials(files, profile)

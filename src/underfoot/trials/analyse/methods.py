@@ -4,8 +4,8 @@ import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from ..events import CONTACT_FORCE
 from ..protocols import KINDS, Protocol
+from ..signals import CONTACT_FORCE
 from .file_result import CAUTION, MEAN_OF_STEPS, REFUSED, FileResult
 from .steps import protocol_ramp
 from .study import Study
@@ -36,8 +36,7 @@ def methods_paragraphs(
     if protocol.kind in ("gait", "human_slip"):
         paragraphs.append(_surface(files, protocol))
     if protocol.rules:
-        rules = "; ".join(rule.words() for rule in protocol.rules)
-        paragraphs.append(f"Rules checked on every trial: {rules}.")
+        paragraphs.append(_rules(files, protocol))
     if study.findings:
         titles = "; ".join(dict.fromkeys(finding.title for finding in study.findings))
         paragraphs.append(
@@ -45,10 +44,22 @@ def methods_paragraphs(
             "sum to zero."
         )
     paragraphs.append(_PLUS_MINUS)
-    assumed = protocol.assumptions()
-    if assumed:
-        paragraphs.append("Set here and not by the source: " + "; ".join(assumed) + ".")
-    return paragraphs
+    standing = " ".join(protocol.standing())
+    return [*paragraphs, *([f"Where settings come from: {standing}"] if standing else [])]
+
+
+def _rules(files: Sequence[FileResult], protocol: Protocol) -> str:
+    """Return the rules, and which of them could not be judged for lack of the quantity."""
+    text = f"Rules checked on every trial: {'; '.join(rule.words() for rule in protocol.rules)}."
+    usable = [one for one in files if one.usable]
+    for rule in protocol.rules:
+        lacking = sum(rule.quantity not in one.facts for one in usable)
+        if lacking and rule.quantity != "repeats":
+            name = rule.quantity.replace("_", " ")
+            text += (
+                f" Not judged in {lacking} of {len(usable)} files, which do not show it: {name}."
+            )
+    return text
 
 
 def _surface(files: Sequence[FileResult], protocol: Protocol) -> str:
@@ -62,15 +73,17 @@ def _surface(files: Sequence[FileResult], protocol: Protocol) -> str:
             if ramp.plate_frame == "horizontal"
             else "; body weight in standing is their normal force over the cosine of the angle."
         )
-    belts = sum(
-        m["name"] == "rcof" and m["conventions"].get("surface", "").startswith("treadmill")
+    speeds = [
+        step["belt_speed"]
         for one in files
-        for m in one.measurements
-    )
-    if belts:
+        for step in one.steps
+        if step.get("belt_speed") is not None and step["rcof"] is not None
+    ]
+    if speeds:
         text += (
-            f" {belts} contacts were on a treadmill, recognised by the centre of pressure that the "
-            "belt carries backward; its forces are those of steady walking only while the belt "
+            f" {len(speeds)} contacts were on treadmill belts at {min(speeds):.2f} to "
+            f"{max(speeds):.2f} m/s, found where standing feet are carried backward; heel speeds "
+            "are those over the belt. Its forces are those of steady walking only while the belt "
             "keeps its speed."
         )
     return text
@@ -129,11 +142,11 @@ _SENTENCES = {
     "final force": "The force at the end of the hold is the {final force}; {zero}.",
     "cof": (
         "COF is the {average} from {window} (sliding start: {sliding start}); shear: {shear}; "
-        "{filter}; baseline: {baseline}."
+        "{filter}; baseline: {baseline}; calibration: {calibration}."
     ),
     "cof from force": (
         "COF is the {average} in a window of {window}; shear: {shear}; {filter}; baseline: "
-        "{baseline}."
+        "{baseline}; calibration: {calibration}."
     ),
     "cof of a disk": "COF is {cof}, the {average} ({window}).",
 }

@@ -1,5 +1,6 @@
-"""Readings that a machine already made (pendulum, ramp, tribometers), and classes of floors."""
+"""Readings that a machine already made: pendulum, ramp, tribometers."""
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -8,13 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from underfoot.core import DataError, unknown_name
+from underfoot.core import DataError
 
 from ..measurement import Measurement, caution
 from ..protocols import Protocol
 from ..readers.text import is_number
-from .conditions import table_columns
-from .file_result import Draft, FileResult
+from ..tester_calibration import TesterCalibration
+from .conditions import one_spelling, table_columns
+from .file_result import Draft, FileResult, refer_to
+from .floor_classes import class_scheme
 
 QUANTITIES = {
     "ptv": ("ptv", "srv", "bpn", "pendulum test value", "pendulum", "pendelwert"),
@@ -24,98 +27,223 @@ QUANTITIES = {
         "slip index", "reibwert", "reibzahl", "gleitreibwert", "gleitreibungskoeffizient",
     ),
 }  # fmt: skip
+NOTED = {
+    "slider": ("slider", "rubber", "gleiter"),
+    "condition": ("condition", "contaminant", "fluid", "state", "zustand", "gleitmittel"),
+    "direction": ("direction", "richtung"),
+}
+"""What a protocol can ask to be noted, with the headings that say it."""
+_LABELS = (*NOTED["slider"], *NOTED["direction"], "operator", "laboratory", "sample", "date")
 _RUN = ("run", "type of run", "kind of run", "lauf")
 _ZERO = re.compile(r"zero|null", re.IGNORECASE)
 _CONDITIONING = re.compile(r"condition|warm|einlauf|vorlauf", re.IGNORECASE)
+_CHECK = re.compile(r"check|verif|pr(ü|ue)f", re.IGNORECASE)
+_DRY = re.compile(r"dry|trocken", re.IGNORECASE)
 _LARGEST = {"ptv": 150.0, "angle": 90.0, "cof": 3.0}
+_UNITS = {
+    "ptv": {"": 1.0, "1": 1.0, "ptv": 1.0, "srv": 1.0, "bpn": 1.0},
+    "angle": {"": 1.0, "deg": 1.0, "°": 1.0, "grad": 1.0, "rad": 180.0 / math.pi},
+    "cof": {"": 1.0, "1": 1.0, "-": 1.0, "%": 0.01},
+}
+# All readings in this range: another quantity or unit than the heading says.
+_MISTAKEN = {
+    "ptv": (0.0, 2.0, "a coefficient of friction? A pendulum reads whole numbers"),
+    "angle": (0.0, 1.6, "radians? Write angle (rad)"),
+    "cof": (1.2, 3.0, "wrong quantity or unit?"),
+}
+_SURFACES = {
+    "glass": {"96": (5, 10), "55": (5, 10)},
+    "lapping": {"96": (59, 64)},
+    "pavigr": {"96": (32, 36), "55": (13, 19)},
+}
+"""PTV that a pendulum must read on check surfaces, by slider. Source: UKSRG Guidelines, Issue 4.0
+(2016), as listed by the maker (munroinstruments.com, verifying the pendulum tester)."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Check:
+    """Mean of the readings on a check surface with one slider, and why it fails, or ""."""
+
+    slider: str
+    words: str
+    failed: bool
 
 
 def reading_results(
-    name: str, path: Path, checksum: str, noted: Mapping[str, Any], protocol: Protocol
+    name: str,
+    path: Path,
+    checksum: str,
+    noted: Mapping[str, Any],
+    protocol: Protocol,
+    record: TesterCalibration | None = None,
 ) -> list[FileResult]:
     """Return one result for each sample of a table of readings (one reading a row).
 
-    Every text column is a condition; rows that agree in all of them are readings of one sample.
-    A column "run" may say "zero" (the mean of these readings is taken off the sample's others)
-    or "conditioning" (left out). The protocol may leave out the first readings of each sample
-    (``conditioning``) and keep the last ones (``readings``). A table in which no column can be
-    recognised as readings, and impossible values, are a `DataError`.
+    Every text column is a condition; rows that agree in all of them are readings of one sample (of
+    one direction, with one slider). A column "run" may say "zero" (the mean of these readings is
+    taken off the sample's others), "conditioning" (left out) or "check" (a surface of known PTV: a
+    failed check refuses the readings of its slider). The protocol may leave out the first readings
+    (``conditioning``) where more than ``readings`` are given. A table in which no column can be
+    recognised as readings, impossible values and one condition in two spellings are a `DataError`
+    or `InputError`.
     """
     columns, lines = table_columns(path)
     cells = {head: column for head, _, column in columns}
+    units = {head: unit for head, unit, _ in columns}
     numbers = {
         head: column
         for head, column in cells.items()
         if any(column) and all(is_number(c.replace(",", ".")) for c in column if c)
     }
     column, quantity = _value_column(list(numbers), name, protocol)
+    unit = units[column].casefold()
+    if unit not in _UNITS[quantity]:
+        allowed = ", ".join(u for u in _UNITS[quantity] if u)
+        raise DataError(f'{column} is in "{units[column]}"', where=name, allowed=allowed)
     values = np.array([float(c.replace(",", ".")) if c else np.nan for c in numbers[column]])
+    values *= _UNITS[quantity][unit]
     top = _LARGEST[quantity]
     wrong = np.flatnonzero((values < (-0.1 * top)) | (values > top))
     if len(wrong):
         text = f"line {lines[wrong[0]]}: {column} is {values[wrong[0]]:g}"
         raise DataError(text, where=name, allowed=f"0 to {top:g}")
-    runs = next((cells[c] for c in cells if c.casefold() in _RUN), None)
+    runs = next((cells[c] for c in cells if c.casefold() in _RUN), [""] * len(values))
     texts = {
-        k: v
+        k.casefold(): v
         for k, v in cells.items()
         if k.casefold() not in _RUN
         and k != column
-        and (k not in numbers or k.casefold() in ("direction", "operator", "laboratory", "sample"))
+        and (k not in numbers or k.casefold() in _LABELS)
     }
+    one_spelling([{k: v[i] for k, v in texts.items() if v[i]} for i in range(len(values))], False)
+    checks: dict[tuple[str, str], list[int]] = {}
     rows: dict[tuple[str, ...], list[int]] = {}
-    for i in range(len(values)):
-        rows.setdefault(tuple(text[i] for text in texts.values()), []).append(i)
+    for i, run in enumerate(runs):
+        key = tuple(text[i] for text in texts.values())
+        if quantity == "ptv" and _CHECK.search(run):
+            checks.setdefault(
+                (_slider(dict(zip(texts, key, strict=True))), " ".join((run, *key))), []
+            ).append(i)
+        else:
+            rows.setdefault(key, []).append(i)
+    checked = [_check(name, *key, values[members]) for key, members in checks.items()]
     results = []
     for key, members in rows.items():
         label = ", ".join(part for part in key if part)
-        own = {k.casefold(): v for k, v in zip(texts, key, strict=True) if v}
+        own = {k: v for k, v in zip(texts, key, strict=True) if v}
         file = f"{name}: {label}" if label and len(rows) > 1 else name
         draft = Draft(file, {**noted, **own}, checksum)
-        words = [runs[i] if runs else "" for i in members]
-        _one_sample(draft, values[members], words, quantity, protocol)
+        refer_to(record, draft)
+        used = [c for c in checked if _slider(own) in ("", c.slider)]
+        draft.refusals += [c.words for c in used if c.failed]
+        said = "; ".join(c.words for c in used) or "none in the table"
+        _one_sample(draft, values[members], [runs[i] for i in members], quantity, protocol, said)
         results.append(draft.finished(protocol))
     return results
 
 
+def _slider(noted: Mapping[str, Any]) -> str:
+    text = " ".join(str(noted.get(name, "")) for name in NOTED["slider"])
+    return next((s for s in ("96", "55", "57") if s in text), text.strip())
+
+
+def _check(name: str, slider: str, words: str, values: np.ndarray) -> _Check:
+    surface = next((s for s in _SURFACES if s in words.casefold()), None)
+    if surface is None:
+        raise DataError(
+            f'a check on an unknown surface: "{words.strip()}"',
+            where=name,
+            allowed="float glass, lapping film, Pavigres tile",
+        )
+    mean = float(np.nanmean(values))
+    low, high = _SURFACES[surface].get(slider, (0, 0))
+    if not high:
+        return _Check(slider, f"{surface} read {mean:.1f} with an unknown slider", True)
+    failed = not low - 0.5 <= mean <= high + 0.5
+    text = f"slider {slider} on {surface} read {mean:.1f} ({low} to {high})"
+    return _Check(slider, f"check failed: {text}" if failed else text, failed)
+
+
 def _one_sample(
-    draft: Draft, values: np.ndarray, runs: Sequence[str], quantity: str, protocol: Protocol
+    draft: Draft,
+    values: np.ndarray,
+    runs: Sequence[str],
+    quantity: str,
+    protocol: Protocol,
+    checked: str,
 ) -> None:
     zero = np.array([bool(_ZERO.search(text)) for text in runs])
     first = np.array([bool(_CONDITIONING.search(text)) for text in runs])
     offset = float(np.nanmean(values[zero])) if np.isfinite(values[zero]).any() else 0.0
     counted = values[~zero & ~first & np.isfinite(values)]
-    drop = int(protocol.number("conditioning", "1", 0.0)) if not first.any() else 0
     last = int(protocol.number("readings", "1", 0.0))
-    readings = counted[drop:][-last:] if last else counted[drop:]
+    drop = 0 if first.any() else int(protocol.number("conditioning", "1", 0.0))
+    # A report prints the readings that count; a record sheet has those of conditioning too.
+    readings = counted[-last:] if last and len(counted) > last else counted
     draft.facts["repeats"] = float(len(readings))
     if not len(readings):
         draft.refusals.append("no reading is left after zero and conditioning runs")
         return
     flags = []
+    if last and len(counted) not in (last, last + drop):
+        several = f" or {last + drop} with the {drop} of conditioning" if drop else ""
+        words = (
+            f"{len(counted)} readings, {len(readings)} of them used; expected are {last}{several}"
+        )
+        flags.append(caution(words))
+    low, high, words = _MISTAKEN[quantity]
+    if low <= float(readings.min()) and float(readings.max()) < high and high > 0:
+        text = f"readings of {readings.min():g} to {readings.max():g}: {words}"
+        (draft.cautions if quantity == "cof" else draft.refusals).append(text)
+    widest = protocol.number("widest", "1", 0.0)
+    if widest and float(np.ptp(readings)) > widest:
+        flags.append(
+            caution(f"readings differ by {np.ptp(readings):g}, expected at most {widest:g}")
+        )
+    missing = [
+        asked
+        for asked in protocol.words("noted")
+        if not any(heading in draft.conditions for heading in NOTED.get(asked, (asked,)))
+    ]
+    if missing:
+        flags.append(caution(f"not noted: {', '.join(missing)}"))
     if quantity == "ptv" and abs(offset) > 1.0:
         flags.append(caution(f"the zero run reads {offset:.1f}: the pendulum was not at zero"))
     spread = float(readings.std(ddof=1)) if len(readings) > 1 else None
+    value, middle = float(readings.mean()) - offset, float(np.median(readings)) - offset
+    away = ", ".join(f"{v:g}" for v in counted[: len(counted) - len(readings)])
     conventions = {
-        "readings": f"mean of {len(readings)} of {len(values)}",
-        "left out": f"{int(first.sum()) + drop} conditioning, {int(zero.sum())} zero runs",
+        "readings": f"mean of {len(readings)} of {len(counted)}; median {middle:.4g}",
+        "left out": f"{int(first.sum())} conditioning, {int(zero.sum())} zero runs"
+        + (f"; before those that count: {away}" if away else ""),
         "zero": f"mean of the zero runs, {offset:.4g}, taken off" if zero.any() else "not measured",
     }
-    value = float(readings.mean()) - offset
+    if quantity == "ptv":
+        conventions["check surfaces"] = checked
+    part = protocol.number("calibration_uncertainty", "1", 0.0) * abs(value)
     scatter = (None, "a single reading has no scatter")
     if spread is not None:
-        scatter = (spread / float(np.sqrt(len(readings))), "")
-    unit = "deg" if quantity == "angle" else "1"
-    noted = (len(readings), tuple(flags), conventions, spread)
-    draft.add("sample", Measurement(quantity, value, unit, *scatter, *noted), main=quantity)
-    draft.curves["readings"] = [float(v) for v in readings - offset]
+        scatter = (math.hypot(spread / math.sqrt(len(readings)), part), "")
+        if part:
+            conventions["uncertainty"] = f"scatter of the mean and {part:.2g} of the calibration"
     name = protocol.text("classes")
     if name:
-        scheme = class_scheme(name)
+        state = " ".join(str(draft.conditions.get(key, "")) for key in NOTED["condition"])
+        scheme = class_scheme(name, dry=bool(_DRY.search(state)))
         if scheme.quantity != quantity:
             draft.cautions.append(f"{scheme.title} is about {scheme.quantity}, not {quantity}")
         else:
             draft.curves["class"] = scheme.class_of(value)
+            draft.curves["scheme"] = scheme.name
+            if scheme.class_of(middle) != scheme.class_of(value):
+                words = (
+                    f"{scheme.class_of(middle)} by the median, {scheme.class_of(value)} by the mean"
+                )
+                flags.append(caution(words))
+    unit = "deg" if quantity == "angle" else "1"
+    about = (len(readings), tuple(flags), conventions, spread)
+    draft.add("sample", Measurement(quantity, value, unit, *scatter, *about), main=quantity)
+    draft.curves["readings"] = [float(v) for v in readings - offset]
 
 
 def _value_column(names: list[str], where: str, protocol: Protocol) -> tuple[str, str]:
@@ -133,86 +261,3 @@ def _value_column(names: list[str], where: str, protocol: Protocol) -> tuple[str
         allowed=", ".join(names) or "a column of numbers",
         remedy='Name it in the protocol: column = "..."',
     )
-
-
-@dataclass(frozen=True, slots=True)
-class ClassScheme:
-    """Classes in rising order: (smallest value, name). Below the first there is no class.
-
-    ``quantity``: ``"ptv"`` (pendulum test value), ``"angle"`` (degrees), ``"cof"``. ``above``: True
-    where a value must exceed a limit, False where reaching it is enough. ``whole``: True where
-    readings are rounded to whole numbers first.
-    """
-
-    name: str
-    title: str
-    quantity: str
-    limits: tuple[tuple[float, str], ...]
-    source: str
-    above: bool = False
-    whole: bool = False
-
-    def class_of(self, value: float) -> str:
-        """Return the class of a value; ``"none"`` below the lowest."""
-        if self.whole:
-            value = float(round(value))
-        name = "none"
-        for limit, label in self.limits:
-            if value > limit or (value == limit and not self.above):
-                name = label
-        return name
-
-
-_MEMORY = "from memory, not verified against the text"
-SCHEMES: dict[str, ClassScheme] = {
-    scheme.name: scheme
-    for scheme in (
-        ClassScheme(
-            "uksrg_pendulum", "Slip potential by pendulum (UKSRG)", "ptv",
-            tuple((ptv, f"{risk} slip potential") for ptv, risk in
-                  ((0, "high"), (25, "moderate"), (36, "low"))),
-            f"UK Slip Resistance Group: 0-24 high, 25-35 moderate, 36 and more low; {_MEMORY}",
-            whole=True,
-        ),
-        ClassScheme(
-            "din_51130", "Shod ramp with oil (DIN 51130, EN 16165 annex B)", "angle",
-            ((6, "R9"), (10, "R10"), (19, "R11"), (27, "R12"), (35, "R13")),
-            "DIN 51130: R9 above 6 deg, R10 above 10, R11 above 19, R12 above 27, R13 above 35; "
-            + _MEMORY, above=True,
-        ),
-        ClassScheme(
-            "din_51097", "Barefoot ramp with soapy water (DIN 51097, EN 16165 annex A)", "angle",
-            ((12, "A"), (18, "B"), (24, "C")),
-            f"DIN 51097: A from 12 deg, B from 18, C from 24; {_MEMORY}",
-        ),
-        ClassScheme(
-            "dguv_tribometer", "Sliding friction of floors (DIN 51131, EN 16165 annex D)", "cof",
-            ((0, "unsafe"), (0.30, "conditionally safe"), (0.45, "safe")),
-            f"DGUV Information 208-041: below 0.30 unsafe, from 0.45 safe; {_MEMORY}",
-        ),
-        ClassScheme(
-            "ansi_a326_3", "Wet dynamic COF of tiles (ANSI A326.3, BOT-3000E)", "cof",
-            ((0, "below the limit"), (0.42, "at or above 0.42")),
-            f"ANSI A326.3: wet DCOF of 0.42 or greater for level interior floors; {_MEMORY}",
-        ),
-    )
-}  # fmt: skip
-
-
-def class_scheme(name: str) -> ClassScheme:
-    """Return a scheme of classes.
-
-    InputError: unknown name, with the nearest one.
-    """
-    if name not in SCHEMES:
-        raise unknown_name("scheme of classes", name, SCHEMES, where="classes")
-    return SCHEMES[name]
-
-
-def cof_of_pendulum(ptv: float) -> float:
-    """Return the COF of a pendulum test value, 3 PTV / (330 - PTV).
-
-    Range: PTV from 0 to 150. Source: the pendulum's energy balance (C. G. Giles, B. E. Sabey,
-    K. H. F. Cardew, Road Research Technical Paper 66, 1964; from memory, not verified).
-    """
-    return 3.0 * ptv / (330.0 - ptv)

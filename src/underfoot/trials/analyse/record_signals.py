@@ -7,12 +7,11 @@ import numpy as np
 
 from underfoot.core import UnderfootError
 
-from ..axes import heel_candidates
 from ..protocols import Protocol
 from ..readers import Profile
 from ..slips import heel_motion
 from ..trial import Trial
-from .steps import slip_definition, walk_axes
+from .steps import slip_definition, walkway
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,19 +69,18 @@ def record_signals(trial: Trial, protocol: Protocol, profile: Profile) -> Record
 
     A heel whose speed can't be had (frames not equally spaced) is left out.
     """
-    axes = walk_axes(trial, protocol, profile)
+    walk = walkway(trial, protocol, profile)
     force = {
-        plate.name: Signal(plate.name, plate.force @ axes.up, plate.rate, plate.start)
+        plate.name: Signal(plate.name, plate.force @ walk.up, plate.rate, plate.start)
         for plate in trial.plates
         if plate.usable
     }
     speed = {}
-    for side, names in heel_candidates(trial, profile.heels).items():
-        for name in names[:1]:
-            try:
-                motion = heel_motion(trial.marker(name), axes.up, slip_definition(protocol))
-            except UnderfootError:
-                continue
-            marker = trial.marker(name)
-            speed[side] = Signal(name, motion.speed, marker.rate, marker.start)
+    for side, name in walk.heels.items():
+        marker = trial.marker(name)
+        try:
+            motion = heel_motion(marker, walk.up, slip_definition(protocol))
+        except UnderfootError:
+            continue
+        speed[side] = Signal(name, motion.speed, marker.rate, marker.start)
     return RecordSignals(force, speed)

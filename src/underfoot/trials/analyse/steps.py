@@ -8,24 +8,26 @@ import numpy as np
 
 from underfoot.core import DataError, InputError, UnderfootError, unknown_name
 
-from ..axes import Axes, Ramp, axes_of
+from ..axes import Ramp, axes_of
 from ..events import Stance, no_contact_reason, stances
 from ..gait import DEFINITIONS, RcofDefinition, RequiredFriction, stance_frictions
 from ..gait_context import gait_context, slip_course, stance_curves
 from ..measurement import Measurement, mean_of
 from ..pin_on_disk import friction_point
-from ..plates import plate_named
 from ..pressure_map import pressure_scan
 from ..pressures import sensor_array_reading
-from ..protocols import Protocol
+from ..protocols import KINDS, Protocol
 from ..readers import Profile
 from ..relaxation_test import relaxation_reading
 from ..signals import LowPass
-from ..slip_friction import slide_friction
+from ..slip_friction import slide_friction, slide_plate
 from ..slips import OutcomeLimits, Slip, SlipDefinition, slip_of
+from ..tester_checks import log_kind, scan_flags, slide_flags
 from ..trial import Trial
+from ..walkway import Walkway, walkway_of
 from .edit_table import EDIT_COLUMNS, edit_log
-from .file_result import MEAN_OF_STEPS, Draft, rates
+from .file_result import MEAN_OF_STEPS, Draft, rates, refer_to
+from .person_measures import person_measures
 
 
 def analysed_trial(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
@@ -34,6 +36,7 @@ def analysed_trial(trial: Trial, draft: Draft, protocol: Protocol, profile: Prof
     An `UnderfootError` says what makes the whole file useless; single numbers that can't be
     measured are kept as "not estimated".
     """
+    _check_kind(trial, protocol, profile)
     if protocol.kind in STEP_KINDS:
         analysed_steps(trial, draft, protocol, profile)
         return
@@ -44,10 +47,35 @@ def analysed_trial(trial: Trial, draft: Draft, protocol: Protocol, profile: Prof
     _KINDS[protocol.kind](trial, draft, protocol, profile)
 
 
+def _check_kind(trial: Trial, protocol: Protocol, profile: Profile) -> None:
+    """Refuse a tester's slide as a walk, and a walk as a slide."""
+    steps = protocol.kind in STEP_KINDS
+    if not steps and protocol.kind != "slip_tester":
+        return
+    up = axes_of(trial, vertical=profile.vertical).up
+    kinds = {log_kind(plate, up) for plate in trial.plates if plate.usable} - {""}
+    if kinds == {"slide" if steps else "walk"}:
+        seen = "a slide of a slip tester" if steps else "a walking step"
+        other = "en_iso_13287 or a protocol of your tester" if steps else "level_walking"
+        raise DataError(
+            f"the forces are those of {seen}, and {protocol.name} is for {KINDS[protocol.kind]}",
+            where=trial.name,
+            remedy=f"Use --protocol {other}",
+        )
+
+
 def _slip_tester(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
-    found = slide_friction(trial, protocol, axes_of(trial, vertical=profile.vertical))
+    axes, record = axes_of(trial, vertical=profile.vertical), profile.calibration
+    found = slide_friction(trial, protocol, axes, record)
     rates(trial, draft)
-    draft.add("slide", found.cof, main="cof")
+    cof = found.cof
+    if cof.value is not None:
+        plate = slide_plate(trial, axes.up, record)
+        cof = replace(cof, flags=(*cof.flags, *slide_flags(found, plate, axes.up, record)))
+    else:
+        draft.refusals.append(f"no COF: {cof.reason}")
+    draft.add("slide", cof, main="cof")
+    refer_to(record, draft)
     draft.facts.update(found.facts)
     series = {key: getattr(found, key) for key in ("time", "normal", "shear", "ratio")}
     draft.curve("slide", **series, begin=found.window[0], end=found.window[1])
@@ -56,6 +84,8 @@ def _slip_tester(trial: Trial, draft: Draft, protocol: Protocol, profile: Profil
     name, position = next(iter(profile.sensors.items()))
     marker = next(iter(trial.markers.values()))
     sensor = trial.channel(name)
+    factor = record.channel("pressure").factor if record else 1.0
+    sensor = replace(sensor, values=factor * sensor.values)
     try:
         scan = pressure_scan(trial, sensor, marker, position=position)
     except DataError as error:
@@ -63,7 +93,8 @@ def _slip_tester(trial: Trial, draft: Draft, protocol: Protocol, profile: Profil
         return
     draft.cautions += list(scan.flags)
     highest = float(scan.pressure.max())
-    peak = Measurement("peak fluid pressure", highest, "Pa", scan.baseline_sd)
+    flags = scan_flags(scan, record)
+    peak = Measurement("peak fluid pressure", highest, "Pa", scan.baseline_sd, flags=flags)
     draft.add("scan", peak, main="scan_peak_pressure")
     stored = {
         f.name: getattr(scan, f.name) for f in fields(scan) if f.name not in ("trial", "flags")
@@ -172,11 +203,10 @@ def protocol_ramp(protocol: Protocol) -> Ramp:
     return Ramp(protocol.number("ramp", "rad", 0.0), protocol.text("plate_frame"))
 
 
-def walk_axes(trial: Trial, protocol: Protocol, profile: Profile) -> Axes:
-    """Return the axes in which a walk is analysed: profile, then recording; the protocol's ramp."""
-    return axes_of(
-        trial, vertical=profile.vertical, walking=profile.walking, ramp=protocol_ramp(protocol)
-    )
+def walkway(trial: Trial, protocol: Protocol, profile: Profile) -> Walkway:
+    """Return a trial on its walkway: what the profile gives, the protocol's ramp."""
+    given = {key: getattr(profile, key) for key in ("vertical", "walking", "heels")}
+    return walkway_of(trial, **given, ramp=protocol_ramp(protocol))
 
 
 def check_ramp(protocol: Protocol) -> None:
@@ -198,26 +228,26 @@ def analysed_steps(trial: Trial, draft: Draft, protocol: Protocol, profile: Prof
     applied an `EditError`.
     """
     analysis = {"gait": _gait, "human_slip": _human_slip}[protocol.kind]
-    axes = walk_axes(trial, protocol, profile)
-    analysis(_Walk(trial, draft, protocol, profile, axes))
+    walk = walkway(trial, protocol, profile)
+    analysis(_Walk(walk, draft, protocol, profile))
     if trial.edits:
         before = Draft(draft.file, draft.conditions)
-        analysis(_Walk(replace(trial, edits=()), before, protocol, profile, axes))
+        unedited = replace(walk, trial=replace(trial, edits=()))
+        analysis(_Walk(unedited, before, protocol, profile))
         draft.edits += edit_log(trial.edits, before.steps, draft.steps)
 
 
 class _Walk:
     """A recording with its contacts, analysed into a draft."""
 
-    def __init__(
-        self, trial: Trial, draft: Draft, protocol: Protocol, profile: Profile, axes: Axes
-    ) -> None:
-        self.trial, self.draft, self.axes = trial, draft, axes
+    def __init__(self, way: Walkway, draft: Draft, protocol: Protocol, profile: Profile) -> None:
+        self.way, self.trial, self.draft, self.axes = way, way.trial, draft, way.axes
         self.protocol, self.profile = protocol, profile
-        self.found = stances(trial, axes=axes, walking=profile.walking, heels=profile.heels)
+        self.found = stances(way)
         if not self.found:
-            raise DataError(no_contact_reason(trial, axes), where=trial.name)
-        rates(trial, draft)
+            raise DataError(no_contact_reason(way), where=self.trial.name)
+        rates(self.trial, draft)
+        draft.curves["person"] = person_measures(self.trial, self.found, self.axes)
 
 
 def _gait(walk: _Walk) -> None:
@@ -227,7 +257,7 @@ def _gait(walk: _Walk) -> None:
 
 
 def _human_slip(walk: _Walk) -> None:
-    draft, protocol, heels = walk.draft, walk.protocol, walk.profile.heels
+    draft, protocol = walk.draft, walk.protocol
     name = str(draft.conditions.get("slip plate") or protocol.text("slip_plate"))
     on_plate = [s for s in walk.found if not name or s.plate == name]
     if not on_plate:
@@ -252,9 +282,7 @@ def _human_slip(walk: _Walk) -> None:
     side = str(draft.conditions.get("side", "")).casefold()
     if side in ("left", "right") and "side" not in stance.by_hand:
         stance = replace(stance, side=side, heel="")
-    one = slip_of(
-        walk.trial, stance, axes=walk.axes, definition=definition, limits=limits, heels=heels
-    )
+    one = slip_of(walk.way, stance, definition=definition, limits=limits)
     _slip_numbers(walk, stance, one, limits)
     _ratio_curve(walk, stance, "slipping")
     if one.motion is not None:
@@ -277,7 +305,7 @@ def _human_slip(walk: _Walk) -> None:
 
 def _slip_numbers(walk: _Walk, stance: Stance, one: Slip, limits: OutcomeLimits) -> None:
     draft = walk.draft
-    course = slip_course(walk.trial, stance, one, walk.axes, limits)
+    course = slip_course(walk.way, stance, one, limits)
     item = f"slip on {stance.plate}"
     draft.add(item, one.start)
     draft.add(item, one.peak_speed, main="peak_slipping_speed")
@@ -348,9 +376,9 @@ def _sensors(walk: _Walk, one: Slip, walking: np.ndarray) -> None:
 
 def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
     """Add the RCOF of the chosen contacts."""
-    trial, draft, axes = walk.trial, walk.draft, walk.axes
+    draft, axes = walk.draft, walk.axes
     definition = rcof_definition(walk.protocol)
-    steps = stance_frictions(trial, chosen, definition, axes=axes, heels=walk.profile.heels)
+    steps = stance_frictions(walk.way, chosen, definition)
     values = []
     for step in steps:
         stance, own = step.stance, step.measurement
@@ -361,7 +389,7 @@ def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
             continue
         values.append(own)
         assert stance.walking is not None  # an RCOF has one
-        force = plate_named(trial, stance.plate).force[stance.start : stance.stop]
+        force = walk.way.plate(stance.plate).force[stance.start : stance.stop]
         series: dict[str, Any] = {
             "time": step.time - stance.contact, "ratio": step.ratio, "normal": step.normal,
             "along": force @ axes.ramp.surface(axes.up, stance.walking)[1],
@@ -370,7 +398,7 @@ def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
             "peak_time": step.peak_time - stance.contact, "peak": own.value,
         }  # fmt: skip
         draft.curve("steps", step=stance.label, **series, verdict=step.verdict)
-        curves = stance_curves(trial, stance, step.ratio, definition.filter, axes)
+        curves = stance_curves(walk.way, stance, step.ratio, definition.filter)
         draft.curve("normalised", step=stance.label, **curves)
     draft.facts["steps"] = float(len(values))
     draft.facts["steps_with_caution"] = float(sum(bool(own.caution_flags) for own in values))
@@ -381,7 +409,7 @@ def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
 
 def _ratio_curve(walk: _Walk, stance: Stance, kind: str) -> None:
     """Keep the plain ratio of a contact without a required friction: rejected, or slipping."""
-    plate, axes = plate_named(walk.trial, stance.plate), walk.axes
+    plate, axes = walk.way.plate(stance.plate), walk.axes
     force = plate.force[stance.start : stance.stop]
     up = axes.up if stance.walking is None else axes.ramp.surface(axes.up, stance.walking)[0]
     normal = force @ up
@@ -406,5 +434,5 @@ def _step_entry(
         "reason": reason or stance.reason or (own.reason if own and own.value is None else ""),
         "cautions": [] if own is None else [flag.words for flag in own.caution_flags],
         "by_hand": list(stance.by_hand),
-        **asdict(gait_context(walk.trial, stance, walk.found, walk.axes, walk.profile.heels)),
+        **asdict(gait_context(walk.way, stance, walk.found)),
     }

@@ -16,10 +16,12 @@ from ..stribeck_fit import METHODS as FIT_METHODS
 from ..stribeck_fit import master_curve, stribeck_fit
 from . import tables
 from .conditions import NUMBERS, person_condition
+from .field_statistics import agreement_findings, curve_findings
 from .file_result import FileResult
-from .readings import class_scheme, cof_of_pendulum
-from .study_tests import Finding, comparison_findings, persons_of, slip_findings, varying
-from .tables import Table, condition_table, quantity_name
+from .floor_classes import ClassScheme, class_scheme, cof_of_pendulum
+from .readings import NOTED
+from .study_tests import comparison_findings, persons_of, slip_findings, varying
+from .tables import Finding, Table, condition_table, quantity_name
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,7 +236,8 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
     labelled = [f for f in files if "cof" in f.main and all(k in f.conditions for k in keys)]
     factors = varying(labelled, keys)
     if keys and keys[0] in factors:
-        findings = comparison_findings("cof", [f.main["cof"] for f in labelled], factors)
+        values, margin = [f.main["cof"] for f in labelled], protocol.number("equivalence", "1", 0.0)
+        findings = comparison_findings("cof", values, factors, margin=margin)
     shown = tuple(table for table in made if table)
     return Study(shown, tuple(findings), {"maps": maps}, tuple(notes))
 
@@ -279,7 +282,9 @@ def _gait(files: list[FileResult], protocol: Protocol) -> Study:
     factors = {k: v for k, v in varying(with_rcof, everywhere).items() if len(set(v)) < several}
     numbers = tuple(dict.fromkeys(["rcof", *(name for f in files for name in f.main)]))
     persons = persons_of(with_rcof, person)
-    findings = comparison_findings("rcof", [f.main["rcof"] for f in with_rcof], factors, persons)
+    values, margin = [f.main["rcof"] for f in with_rcof], protocol.number("equivalence", "1", 0.0)
+    findings = comparison_findings("rcof", values, factors, persons, margin=margin)
+    findings += curve_findings(with_rcof, tuple(factors), person)
     table = condition_table(with_rcof, tuple(factors), numbers, person=person)
     made = [table] if table else []
     if len(factors) > 1:
@@ -316,52 +321,102 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
     keys = _keys(files, protocol.words("group")) or tuple(
         dict.fromkeys(k for f in files for k, v in f.conditions.items() if isinstance(v, str))
     )
-    name = protocol.text("classes")
-    scheme = class_scheme(name) if name else None
-    rows = []
+    rows, schemes = [], {}
     for f in files:
         m = f.measurements[0]
         low = high = None
         if m["spread"] is not None:
-            _, _, low, high = tables.mean_and_interval(f.curves["readings"])
+            _, _, low, high = tables.mean_and_interval(f.curves["readings"], quantity)
         cells: list[Any] = [f.file, *(f.conditions.get(k) for k in keys)]
-        cells += [m["n"], m["value"], m["spread"], low, high]
+        cells += [m["n"], m["value"], m["spread"], low, high, m["uncertainty"]]
         if quantity == "ptv":
-            cells.append(cof_of_pendulum(float(m["value"])))
-        if scheme is not None:
-            ends = {scheme.class_of(v) for v in (low, high) if v is not None}
-            own = scheme.class_of(float(m["value"]))
-            cells += [own, ", ".join(sorted(ends - {own})) or None]
+            cells += cof_of_pendulum(float(m["value"]), float(m["uncertainty"] or 0.0))
+        if "scheme" in f.curves:
+            scheme = schemes.setdefault(f.curves["scheme"], class_scheme(f.curves["scheme"]))
+            cells += _classes(scheme, m)
         rows.append(tuple(cells))
-    numbers = tables.number_columns(quantity)
+    numbers = [*tables.number_columns(quantity), "u"]
     columns = ["file", *keys, "readings", *numbers]
-    columns += ["COF from PTV"] if quantity == "ptv" else []
+    columns += ["COF from PTV", "u of COF"] if quantity == "ptv" else []
     notes = [
-        "SD and 95 % interval (t) of the readings of one sample: they hold repeatability only."
+        "SD and 95 % interval (t, on the logarithm): repeatability of one sample; u: standard "
+        "uncertainty, with the calibration where it is known."
     ]
-    if scheme is not None:
-        columns += ["class", "interval reaches"]
-        notes.append(f"Classes: {scheme.title}. {scheme.source[0].upper()}{scheme.source[1:]}.")
+    columns += ["class", "2 u reaches"] if schemes else []
+    notes += [f"Classes: {s.title}. {s.standing()}." for s in schemes.values()]
     spreads = [f.measurements[0]["uncertainty"] for f in files]
     places = max((tables.decimals_of(u) for u in spreads if u), default=2)
-    decimals = {**dict.fromkeys(numbers, places), "COF from PTV": 3}
+    decimals = {**dict.fromkeys(numbers, places), "COF from PTV": 3, "u of COF": 3}
     title = f"Samples, {quantity_name(quantity)}"
     made = [Table("samples", title, tuple(columns), tuple(rows), tuple(notes), decimals)]
+    made += _lowest(files, quantity, keys, places, int(protocol.number("directions", "1", 1.0)))
+    findings: list[Finding] = []
     for by in ("laboratory", "operator", "machine"):
-        made += _precision(files, by, quantity, keys)
-    return Study(tuple(made))
+        groups = _readings_by(files, by, keys)
+        made += _precision(groups, by, quantity, keys)
+        findings += agreement_findings(groups, by, quantity)
+    return Study(tuple(made), tuple(findings))
+
+
+def _readings_by(
+    files: Sequence[FileResult], by: str, keys: tuple[str, ...]
+) -> dict[tuple[str, ...], dict[str, list[float]]]:
+    """Return readings by the other conditions, and by laboratory, operator or machine."""
+    groups: dict[tuple[str, ...], dict[str, list[float]]] = {}
+    for f in files:
+        if by in f.conditions:
+            level = tuple(str(f.conditions.get(k, "")) for k in keys if k != by)
+            groups.setdefault(level, {})[str(f.conditions[by])] = f.curves["readings"]
+    return groups
+
+
+def _classes(scheme: ClassScheme, m: Mapping[str, Any]) -> tuple[str, str | None]:
+    """Return the class of a number and the others that twice its uncertainty reaches."""
+    value, wide = float(m["value"]), 2.0 * float(m["uncertainty"] or 0.0)
+    own = scheme.class_of(value)
+    others = {scheme.class_of(end) for end in (value - wide, value + wide)} - {own}
+    return own, ", ".join(sorted(others)) or None
+
+
+def _lowest(
+    files: Sequence[FileResult],
+    quantity: str,
+    keys: tuple[str, ...],
+    places: int,
+    directions: int,
+) -> list[Table]:
+    """Return each sample with all its directions and the lowest, which gives the class."""
+    heading = next((k for k in keys if k in NOTED["direction"]), "")
+    others = tuple(k for k in keys if k != heading)
+    rows = []
+    for level, members in tables.grouped(files, others).items() if heading else ():
+        values = {str(f.conditions.get(heading, "")): f.main[quantity] for f in members}
+        low = min(members, key=lambda f: f.main[quantity])
+        m, scheme = low.measurements[0], low.curves.get("scheme")
+        told = "; ".join(f"{name} {value:.{places}f}" for name, value in values.items())
+        lacking = f"{len(values)} of {directions}" if len(values) < directions else ""
+        numbers = (m["value"], m["uncertainty"])
+        classes = _classes(class_scheme(scheme), m) if scheme else (None, None)
+        rows.append((*level, told, low.conditions.get(heading), *numbers, *classes, lacking))
+    if not rows:
+        return []
+    name = quantity_name(quantity)
+    columns = (*others, "directions", "lowest", name, "u", "class", "2 u reaches",
+               "directions measured")  # fmt: skip
+    note = "The class of a sample is that of its lowest direction."
+    decimals = {name: places, "u": places}
+    title = f"Samples, lowest direction, {name}"
+    return [Table("lowest", title, columns, tuple(rows), (note,), decimals)]
 
 
 def _precision(
-    files: Sequence[FileResult], by: str, quantity: str, keys: tuple[str, ...]
+    groups: Mapping[tuple[str, ...], Mapping[str, Sequence[float]]],
+    by: str,
+    quantity: str,
+    keys: tuple[str, ...],
 ) -> list[Table]:
     """Return repeatability and reproducibility of each floor over laboratories or operators."""
-    groups: dict[tuple[str, ...], dict[str, list[float]]] = {}
     others = [k for k in keys if k != by]
-    for f in files:
-        if by in f.conditions:
-            level = tuple(str(f.conditions.get(k, "")) for k in others)
-            groups.setdefault(level, {})[str(f.conditions[by])] = f.curves["readings"]
     rows, tests = [], []
     for level, readings in groups.items():
         try:

@@ -1,8 +1,7 @@
 """The statistical tests of a study, each with its convention and what is doubtful about it."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any, Self, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -12,54 +11,21 @@ from .. import statistics
 from ..protocols import Protocol
 from ..statistics.logistic import METHODS, risk_curve
 from .conditions import person_condition
+from .field_statistics import (
+    corrected_p,
+    curve_findings,
+    effect_cells,
+    equivalence_findings,
+    multiplicity_findings,
+    person_columns,
+    prediction_finding,
+    rank_findings,
+    reliability_findings,
+)
 from .file_result import FileResult
-from .tables import Cell, Table, decimals_of, quantity_name
+from .tables import Cell, Finding, Table, decimals_of, finding, not_done, quantity_name
 
 _Fit = TypeVar("_Fit")
-
-
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """One test: what was asked, the table, and cautions.
-
-    Comparisons after Tukey name ``response`` and ``factor``; ``marks`` are the letters by level,
-    ``values`` the means of the persons (or the single values) by level.
-    """
-
-    name: str
-    title: str
-    table: Table
-    cautions: tuple[str, ...] = ()
-    response: str = ""
-    factor: str = ""
-    marks: Mapping[str, str] = field(default_factory=dict)
-    values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-
-    @classmethod
-    def of_anova(cls, found: statistics.AnovaTable, cautions: tuple[str, ...] = ()) -> Self:
-        """Return an analysis of variance as a finding."""
-        rows = tuple((r.term, r.sum_of_squares, r.df, r.f, r.p) for r in found.rows)
-        plain = "".join(c if c.isalnum() else "_" for c in found.model.response_name.casefold())
-        name = f"anova_{plain}_type_{found.ss_type}"
-        columns = ("term", "sum of squares", "df", "F", "p")
-        table = Table(name, found.title, columns, rows)
-        return cls(name, found.title, table, (*cautions, *found.warnings))
-
-
-def _finding(
-    name: str,
-    title: str,
-    columns: tuple[str, ...],
-    rows: Sequence[tuple[Cell, ...]],
-    note: str = "",
-    cautions: Sequence[str] = (),
-) -> Finding:
-    table = Table(name, title, columns, tuple(rows), (note,) if note else ())
-    return Finding(name, title, table, tuple(cautions))
-
-
-def _not_done(name: str, title: str, error: UnderfootError) -> Finding:
-    return _finding(name, title, ("not done",), ((error.what,),))
 
 
 def comparison_findings(
@@ -67,15 +33,23 @@ def comparison_findings(
     values: Sequence[float],
     factors: Mapping[str, Sequence[str]],
     persons: Sequence[str] = (),
+    *,
+    margin: float = 0.0,
 ) -> list[Finding]:
     """Return tests of factors on a response, and Tukey's comparisons of the levels.
 
     Where persons repeat, the mixed model of their means comes first (and repeated measures, when
     every person has every condition); Tukey's comparisons are then its. The analysis of variance
-    that takes trials as independent follows with a warning. Otherwise it stands alone.
+    that takes trials as independent follows with a warning. Otherwise it stands alone. Rank tests
+    follow where the scatter is not normal, tests of equivalence where there is a ``margin``, and
+    the reliability of repeated trials.
     """
+    repeated = reliability_findings(response, values, factors, persons)
     if not factors:
-        return []
+        return repeated
+    if margin:
+        repeated = [*equivalence_findings(response, values, factors, persons, margin), *repeated]
+    repeated = [*rank_findings(response, values, factors, persons), *repeated]
     warning = statistics.independence_warning(persons)
     name = quantity_name(response)
     findings, model = _mixed(response, values, factors, persons) if warning else ([], None)
@@ -86,12 +60,12 @@ def comparison_findings(
         )
     except UnderfootError as error:
         title = f"Analysis of variance of {name}"
-        return [*findings, _not_done(f"anova_{response}", title, error)]
+        return [*findings, not_done(f"anova_{response}", title, error), *repeated]
     if model is None and not any("empty cells" in text for text in table.warnings):
         model = table.model
     tukey = _tukey(response, model, values, factors, persons) if model is not None else []
     anova = Finding.of_anova(table, warning)
-    return [*findings, *tukey, anova] if warning else [anova, *tukey]
+    return [*findings, *tukey, anova, *repeated] if warning else [anova, *tukey, *repeated]
 
 
 def _crossed(
@@ -119,18 +93,28 @@ def _mixed(
             lambda terms: statistics.mixed_model(values, factors, persons, terms, name=name),
         )
     except UnderfootError as error:
-        return [_not_done(key, title, error)], None
+        return [not_done(key, title, error)], None
     note = (
         f"{model.persons} persons, {model.trials} trials; standard deviation between persons "
         f"{model.person_sd:.3g}, within {model.residual_sd:.3g}. Wald F tests, type III, degrees "
         "of freedom between and within persons."
     )
+    if model.within and model.residual_sd > 0:
+        spread = np.sqrt(2.0) * model.residual_sd
+        least = statistics.detectable_difference("paired", model.persons, spread)
+        half = statistics.persons_needed(
+            lambda n: statistics.power("paired", n, difference=least / 2, sd=spread)
+        )
+        note += (
+            f" So many persons find a difference of {least:.2g} between two conditions with 80 % "
+            f"power (paired t); half of it would take {half}."
+        )
     columns = ("term", "df", "df of error", "F", "p")
 
     def cells(tests: Sequence[statistics.AnovaRow]) -> list[tuple[Cell, ...]]:
         return [(row.term, row.df, row.error_df, row.f, row.p) for row in tests]
 
-    findings = [_finding(key, title, columns, cells(model.tests), note, model.warnings)]
+    findings = [finding(key, title, columns, cells(model.tests), note, model.warnings)]
     try:
         repeated = statistics.repeated_measures(values, factors, persons)
     except UnderfootError:
@@ -142,7 +126,7 @@ def _mixed(
             f"Greenhouse-Geisser epsilon {repeated.epsilon:.3f}, p corrected with it "
             f"{repeated.p_corrected:.4g}."
         )
-    more = _finding(f"repeated_{response}", title, columns, cells(repeated.rows), note)
+    more = finding(f"repeated_{response}", title, columns, cells(repeated.rows), note)
     return [*findings, more], model
 
 
@@ -164,22 +148,29 @@ def _tukey(
         try:
             comparisons = statistics.tukey_hsd(model, factor)
         except UnderfootError as error:
-            findings.append(_not_done(name, title, error))
+            findings.append(not_done(name, title, error))
             continue
         marks = statistics.letters(comparisons)
+        drawn = person_columns(values, levels, persons or range(len(values)))
         rows = tuple(
-            (c.first, c.second, c.difference, c.standard_error, c.low, c.high, c.p)
+            (c.first, c.second, c.difference, c.standard_error, c.low, c.high, c.p,
+             *effect_cells(drawn, c.first, c.second))
             for c in comparisons
-        )
-        columns = ("first", "second", "difference", "SE", "95 % low", "95 % high", "p adjusted")
+        )  # fmt: skip
+        columns = (
+            "first", "second", "difference", "SE", "95 % low", "95 % high", "p adjusted",
+            "Hedges' g", "g 95 % low", "g 95 % high",
+        )  # fmt: skip
         listed = ", ".join(f"{level} {mark}" for level, mark in marks.items())
-        note = f"Levels that share a letter do not differ at 0.05: {listed}."
+        note = (
+            f"Levels that share a letter do not differ at 0.05: {listed}. Hedges' g of the persons "
+            "who have both levels (difference over the SD of their differences), else over the "
+            "pooled SD; its interval is exact and holds one comparison."
+        )
         places = decimals_of(min(c.standard_error for c in comparisons))
-        table = Table(name, title, columns, rows, (note,), dict.fromkeys(columns[2:6], places))
-        means = statistics.person_means(values, {factor: levels}, persons or range(len(values)))
-        drawn: dict[str, dict[str, float]] = {}
-        for who, level, mean in zip(means.person, means.factors[factor], means.mean, strict=True):
-            drawn.setdefault(level, {})[who] = float(mean)
+        decimals = {name: 2 if "g" in name.split() or "'" in name else places
+                    for name in columns[2:] if name != "p adjusted"}  # fmt: skip
+        table = Table(name, title, columns, rows, (note,), decimals)
         findings.append(Finding(name, title, table, (), response, factor, marks, drawn))
     return findings
 
@@ -205,7 +196,10 @@ def slip_findings(
             if having:
                 values = [f.main[name] for f in having]
                 factors, persons = varying(having, keys), persons_of(having, person)
-                findings += comparison_findings(name, values, factors, persons)
+                margin = protocol.number("equivalence", "1", 0.0)
+                findings += comparison_findings(name, values, factors, persons, margin=margin)
+        findings += multiplicity_findings(findings)
+    findings += curve_findings(files, keys, person)
     if "logistic" in wanted:
         found, curves["risk"] = _logistic(judged, person)
         findings += found
@@ -239,7 +233,7 @@ def _fisher(files: Sequence[FileResult], key: str, person: str) -> Finding:
     try:
         found = statistics.fisher_exact(list(counts.values()))
     except UnderfootError as error:
-        return _not_done(name, title, error)
+        return not_done(name, title, error)
     rows = [(level, slips, none, slips / (slips + none)) for level, (slips, none) in counts.items()]
     note = f"Two-sided exact p = {found.p:.4g}, by enumeration of all tables with these margins."
     if found.p_error is not None:
@@ -253,7 +247,7 @@ def _fisher(files: Sequence[FileResult], key: str, person: str) -> Finding:
             f"{found.high:.3g})."
         )
     warning = statistics.independence_warning(persons_of(having, person))
-    return _finding(name, title, (key, "slips", "no slips", "share"), rows, note, warning)
+    return finding(name, title, (key, "slips", "no slips", "share"), rows, note, warning)
 
 
 def _t_tests(
@@ -281,9 +275,12 @@ def _t_tests(
                 continue
             rows.append((quantity_name(name), t.title, t.difference, t.t, t.df, t.p))
     if rows:
+        # rows come in pairs: Welch's test, on which the correction stands, then Student's
+        corrected = iter(corrected_p([row[-1] for row in rows if row[1].startswith("Welch")]))
+        rows = [(*row, next(corrected) if row[1].startswith("Welch") else None) for row in rows]
         title = f"t tests of {levels[0]} against {levels[1]} ({key})"
-        columns = ("quantity", "test", "difference (SI)", "t", "df", "p")
-        findings.insert(0, _finding(f"t_{key}", title, columns, rows))
+        columns = ("quantity", "test", "difference (SI)", "t", "df", "p", "p (Holm)")
+        findings.insert(0, finding(f"t_{key}", title, columns, rows))
     return findings
 
 
@@ -331,7 +328,9 @@ def _logistic(
         columns = ("method", "intercept", "slope", "95 % low", "95 % high", "p")
         note = "Intervals of the first lines are profile likelihoods, p from likelihood ratios."
         cautions = list(dict.fromkeys(cautions))
-        findings.append(_finding(f"logistic_{name}", title, columns, rows, note, cautions))
+        findings.append(finding(f"logistic_{name}", title, columns, rows, note, cautions))
+        told = prediction_finding(name, y, x, persons)
+        findings += [told] if told is not None else []
         if best is not None:
             reach = 0.1 * (max(x) - min(x))
             curve = risk_curve(best, np.linspace(min(x) - reach, max(x) + reach, 121))
@@ -357,13 +356,13 @@ def _line(files: Sequence[FileResult], curves: dict[str, Any], person: str) -> F
     try:
         line = statistics.regression_line(x, y)
     except UnderfootError as error:
-        return _not_done("line", title, error)
+        return not_done("line", title, error)
     curves["line"] = {"x": x, "y": y, "slope": line.slope, "intercept": line.intercept, "r": line.r}
     columns = ("r", "p", "slope (m/s per kPa)", "SE", "intercept (m/s)", "n")
     row = (line.r, line.p, line.slope, line.slope_error, line.intercept, line.n)
     note = "Trials whose heel crossed the sensor array."
     warning = statistics.independence_warning(persons_of(having, person))
-    return _finding("line", title, columns, [row], note, warning)
+    return finding("line", title, columns, [row], note, warning)
 
 
 def _subsets(files: Sequence[FileResult]) -> list[Finding]:
@@ -382,7 +381,7 @@ def _subsets(files: Sequence[FileResult]) -> list[Finding]:
                 pressure, {"SPRWD": [kind(r["row"]) for r in rows], **shared}
             )
         except UnderfootError as error:
-            return [_not_done("subsets", title, error)]
+            return [not_done("subsets", title, error)]
         made += [
             (" + ".join(s.predictors), label, s.adjusted_r_squared, s.r_squared, len(rows))
             for s in found
@@ -390,4 +389,4 @@ def _subsets(files: Sequence[FileResult]) -> list[Finding]:
     columns = ("variables", "SPRWD enters", "adjusted R^2", "R^2", "n")
     note = "Sensor passages of trials with a slip; ML is the distance without its sign."
     caution = "Nine sensors of one slip are not independent: p values would be too small."
-    return [_finding("subsets", title, columns, made, note, (caution,))]
+    return [finding("subsets", title, columns, made, note, (caution,))]

@@ -1,4 +1,4 @@
-"""Plain tables: what ends in CSV, spreadsheet and page."""
+"""Plain tables and findings: what ends in CSV, spreadsheet and page."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -6,6 +6,9 @@ from typing import Self
 
 import numpy as np
 
+from underfoot.core import UnderfootError
+
+from .. import statistics
 from ..gait_context import PERCENT
 from .conditions import NUMBERS, person_condition
 from .file_result import FileResult
@@ -39,6 +42,54 @@ class Table:
         """Return the table with the columns of these numbers alone."""
         rows = tuple(tuple(row[i] for i in keep) for row in self.rows)
         return replace(self, columns=tuple(self.columns[i] for i in keep), rows=rows)
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One test: what was asked, the table, and cautions.
+
+    Comparisons after Tukey name ``response`` and ``factor``; ``marks`` are the letters by level,
+    ``values`` the means of the persons (or the single values) by level.
+    """
+
+    name: str
+    title: str
+    table: Table
+    cautions: tuple[str, ...] = ()
+    response: str = ""
+    factor: str = ""
+    marks: Mapping[str, str] = field(default_factory=dict)
+    values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+
+    @classmethod
+    def of_anova(cls, found: statistics.AnovaTable, cautions: tuple[str, ...] = ()) -> Self:
+        """Return an analysis of variance as a finding."""
+        rows = tuple((r.term, r.sum_of_squares, r.df, r.f, r.p) for r in found.rows)
+        plain = "".join(c if c.isalnum() else "_" for c in found.model.response_name.casefold())
+        name = f"anova_{plain}_type_{found.ss_type}"
+        columns = ("term", "sum of squares", "df", "F", "p")
+        table = Table(name, found.title, columns, rows)
+        return cls(name, found.title, table, (*cautions, *found.warnings))
+
+
+def finding(
+    name: str,
+    title: str,
+    columns: tuple[str, ...],
+    rows: Sequence[tuple[Cell, ...]],
+    note: str = "",
+    cautions: Sequence[str] = (),
+    *,
+    decimals: Mapping[str, int] | None = None,
+) -> Finding:
+    """Return a finding from the rows of its table."""
+    table = Table(name, title, columns, tuple(rows), (note,) if note else (), decimals or {})
+    return Finding(name, title, table, tuple(cautions))
+
+
+def not_done(name: str, title: str, error: UnderfootError) -> Finding:
+    """Return the finding of a test that could not be done, with the reason."""
+    return finding(name, title, ("not done",), ((error.what,),))
 
 
 # Names that are not the key in words, units shown, and what an SI value is multiplied by for one.
@@ -207,21 +258,26 @@ def condition_table(
             if number == "slip":
                 trials = [x for v in values.values() for x in v]
                 cells += [float(np.mean(trials)) if trials else None]
-                cells += [sum(max(v) > 0 for v in values.values())]
+                counts = [(sum(v), len(v)) for v in values.values()]
+                ends = (
+                    statistics.share_interval(*zip(*counts, strict=True))
+                    if person and counts
+                    else None
+                )
+                cells += [*(ends or (None, None)), sum(max(v) > 0 for v in values.values())]
                 continue
-            mean, spread, low, high = mean_and_interval(
-                [float(np.mean(v)) for v in values.values()]
-            )
+            means = [float(np.mean(v)) for v in values.values()]
+            mean, spread, low, high = mean_and_interval(means, number)
             cells += [mean, spread, low, high]
             if spread:
                 errors.setdefault(number, []).append(spread / np.sqrt(len(values)))
         rows.append(tuple(cells))
     trials = "trials" if person or any(f.steps for f in usable) else "readings"
-    shares = ["share of trials with a slip", f"{unit} who slipped"]
+    shares = ["share of trials with a slip", "95 % from", "95 % to", f"{unit} who slipped"]
     named = (shares if number == "slip" else number_columns(number) for number in numbers)
     columns = (*keys, unit, trials, "steps", *(name for names in named for name in names))
     averaged = ", each person's trials averaged first." if person else "."
-    notes = [f"Mean, SD and 95 % interval (t) between {unit}{averaged}"]
+    notes = [f"Mean, SD and 95 % interval between {unit}{averaged} {INTERVALS}"]
     if not person and len(usable) > 1:
         notes.append(
             "No condition names the persons or samples: every file counts as one. Where files "
@@ -243,18 +299,22 @@ def number_columns(name: str) -> list[str]:
     return [heading(name), heading(name, "SD"), *ends]
 
 
-def mean_and_interval(values: Sequence[float] | np.ndarray) -> tuple[float | None, ...]:
-    """Return mean, SD and the 95 % interval of the mean; None where there are too few values."""
-    from scipy.stats import t
+INTERVALS = (
+    "Intervals: t on the logarithm of a mean that can't be negative (none from two values), on the "
+    "logit of a share."
+)
+_SIGNED = ("acof_minus_rcof", "slip_margin")
 
+
+def mean_and_interval(values: Sequence[float] | np.ndarray, name: str) -> tuple[float | None, ...]:
+    """Return mean, SD and the 95 % interval of the mean of a quantity; None from too few values."""
     if not len(values):
         return None, None, None, None
     mean = float(np.mean(values))
     if len(values) < 2:
         return mean, None, None, None
-    spread = float(np.std(values, ddof=1))
-    reach = float(t.ppf(0.975, len(values) - 1) * spread / np.sqrt(len(values)))
-    return mean, spread, mean - reach, mean + reach
+    ends = statistics.mean_interval(values, positive=name not in _SIGNED) or (None, None)
+    return mean, float(np.std(values, ddof=1)), *ends
 
 
 def counted_steps(one: FileResult) -> int:
@@ -278,6 +338,7 @@ STEP_NUMBERS = {
     "slip_distance": "m", "toe_slip": "m", "trailing_slip": "m", "contact": "s", "toe_off": "s",
     "stance_time": "s", "peak_force": "N", "walking_speed": "m/s", "step_length": "m",
     "step_time": "s", "cadence": "1/s", "foot_angle": "rad", "heel_speed": "m/s",
+    "belt_speed": "m/s",
 }  # fmt: skip
 _TEXTS = ("plate", "side", "verdict", "reason", "outcome", "slip_direction", "recovery_or_fall")
 _CURVES = ("vertical", "braking", "to the left", "ratio")

@@ -5,7 +5,7 @@ and reads truncated files as if they were whole. Sizes are checked before anythi
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -29,7 +29,9 @@ class C3DFile:
     """Contents of a C3D file in its own units.
 
     ``points`` (frames, points, 3) is NaN where not seen; ``analog`` (samples, channels) is
-    scaled; ``parameters`` maps GROUP to NAME to a list (or an array) of values.
+    scaled; ``parameters`` maps GROUP to NAME to a list (or an array) of values. ``rotations``
+    (frames, segments, 4, 4) are poses of segments, NaN where not known, ``rotation_rate`` in Hz.
+    ``notes`` tell what of the file is damaged and not needed.
     """
 
     points: np.ndarray
@@ -38,6 +40,9 @@ class C3DFile:
     analog_rate: float
     first_frame: int
     parameters: dict[str, dict[str, Any]]
+    notes: tuple[str, ...] = ()
+    rotations: np.ndarray = field(default_factory=lambda: np.empty((0, 0, 4, 4)))
+    rotation_rate: float = 0.0
 
     def numbers(self, group: str, name: str) -> np.ndarray:
         """Return a parameter as floats in the file's shape; empty when absent or text."""
@@ -82,33 +87,60 @@ def parse(data: bytes, where: str) -> C3DFile:
         )
     words = np.frombuffer(data, dtype=_ENDIAN[processor] + "u2", count=BLOCK // 2)
     scale, frame_rate = _floats(data[12:16] + data[20:24], processor)
-    parameters = _parameters(data, start, processor, where)
+    data_start = (int(words[8]) - 1) * BLOCK
+    parameters, notes = _parameters(data, start, data_start, processor, where)
     shell = C3DFile(np.empty(0), np.empty(0), 0.0, 0.0, 0, parameters)
     n_points, n_analog = int(words[1]), int(words[2])
-    first, last = _frame_range(words, shell)
     per_frame = int(words[9])
     channels = n_analog // per_frame if per_frame else 0
     if per_frame and channels * per_frame != n_analog:
         words = f"{n_analog} analog values a frame in {per_frame} samples can't be"
         raise DataError(words, where=where)
-    frames = last - first + 1
-    data_start = (int(words[8]) - 1) * BLOCK
     real = bool(scale < 0)
     width = 4 * n_points + n_analog
     size = 4 if real else 2
-    _check_size(len(data), data_start, frames, width * size, where)
+    used = int(shell.number("ROTATION", "USED"))
+    first, last = _frame_range(words, shell, (len(data) - data_start) // max(width * size, 1))
+    frames = last - first + 1
+    if width or not used > 0:
+        _check_size(len(data), data_start, frames, width * size, where)
     kind = "f4" if real else "i2"
-    if real and processor == _VAX:
+    if not width:
+        raw = np.empty(0)
+    elif real and processor == _VAX:
         raw = _floats(data[data_start : data_start + frames * width * 4], processor)
     else:
         raw = np.frombuffer(data, _ENDIAN[processor] + kind, frames * width, data_start)
-    raw = raw.reshape(frames, width)
+    raw = raw.reshape(frames if width else 0, width)
     with np.errstate(all="ignore"):  # damaged floats overflow; the sums are checked later
-        points = _points(raw[:, : 4 * n_points].reshape(frames, n_points, 4), float(scale), real)
-        samples = raw[:, 4 * n_points :].reshape(frames * per_frame, channels)
+        points = _points(raw[:, : 4 * n_points].reshape(len(raw), n_points, 4), float(scale), real)
+        samples = raw[:, 4 * n_points :].reshape(len(raw) * per_frame, channels)
         analog = _scaled_analog(samples, shell, real)
     point_rate, analog_rate = _rates(float(frame_rate), per_frame, shell, where)
-    return C3DFile(points, analog, point_rate, analog_rate, first, parameters)
+    poses, rate = _rotations(data, shell, used, frames, point_rate, processor, where)
+    read = points, analog, point_rate, analog_rate, first, parameters
+    return C3DFile(*read, tuple(notes), poses, rate)
+
+
+def _rotations(
+    data: bytes, shell: C3DFile, used: int, frames: int, rate: float, processor: int, where: str
+) -> tuple[np.ndarray, float]:
+    """Return the poses (frames, segments, 4, 4) of the ROTATION group: by columns, a mark each.
+
+    Source: C-Motion, ROTATION data type (as Theia writes it).
+    """
+    start = (int(shell.number("ROTATION", "DATA_START")) - 1) * BLOCK
+    if used <= 0 or start < BLOCK:
+        return np.empty((0, 0, 4, 4)), 0.0
+    ratio = shell.number("ROTATION", "RATIO") or shell.number("ROTATION", "RATE") / rate
+    count = frames * max(round(ratio), 1)
+    if start + count * used * 17 * 4 > len(data):
+        raise truncated(f"truncated: {count} frames of {used} rotations are not there", where)
+    raw = _floats(data[start : start + count * used * 68], processor).astype(float)
+    raw = raw.reshape(count, used, 17)
+    poses = raw[..., :16].reshape(count, used, 4, 4).swapaxes(2, 3).copy()
+    poses[(raw[..., 16] < 0) | ~(np.abs(raw) < _POSSIBLE).all(axis=2)] = np.nan
+    return poses, rate * max(round(ratio), 1)
 
 
 def _check_size(length: int, start: int, frames: int, width: int, where: str) -> None:
@@ -122,9 +154,16 @@ def _check_size(length: int, start: int, frames: int, width: int, where: str) ->
         raise truncated(words, where)
 
 
-def _frame_range(words: np.ndarray, shell: C3DFile) -> tuple[int, int]:
-    """Header words hold 16 bits; longer recordings put the range in parameters."""
+def _frame_range(words: np.ndarray, shell: C3DFile, whole: int) -> tuple[int, int]:
+    """Header words hold 16 bits; longer recordings put the range in parameters.
+
+    Where the header's range can't be, that of POINT:FRAMES counts, if just so many (``whole``, but
+    for the last block's padding) are there.
+    """
     first, last = int(words[3]), int(words[4])
+    stated = int(shell.number("POINT", "FRAMES")) % 65536
+    if 0 < stated <= whole and (last < first or whole < last - first + 1):
+        return max(first, 1), max(first, 1) + stated - 1
     names = ("ACTUAL_START_FIELD", "ACTUAL_END_FIELD")
     ends = [shell.whole_numbers("TRIAL", name).ravel(order="F") % 65536 for name in names]
     if ends[0].size == 2 and ends[1].size == 2:
@@ -176,11 +215,20 @@ def _padded(values: np.ndarray, n: int, fill: float) -> np.ndarray:
     return padded
 
 
-def _parameters(data: bytes, start: int, processor: int, where: str) -> dict[str, dict[str, Any]]:
+_NEEDED = ("POINT", "ANALOG", "FORCE_PLATFORM", "ROTATION")
+
+
+def _parameters(
+    data: bytes, start: int, data_start: int, processor: int, where: str
+) -> tuple[dict[str, dict[str, Any]], list[str]]:
+    """Return the parameters by group, and notes on damaged ones that no number depends on."""
     names: dict[int, str] = {}
     entries: list[tuple[int, str, Any]] = []
+    damaged: list[tuple[int, str, DataError]] = []
     blocks = data[start + 2]
-    end = min(len(data), start + BLOCK * blocks) if blocks else len(data)
+    # Some systems count too few blocks: the section ends where the data begin.
+    end = max(start + BLOCK * blocks, data_start) if blocks else len(data)
+    end = min(len(data), end)
     at = start + 4
     order = "little" if _ENDIAN[processor] == "<" else "big"
     while at + 4 <= end:
@@ -196,14 +244,22 @@ def _parameters(data: bytes, start: int, processor: int, where: str) -> dict[str
         if group < 0:
             names[-group] = name
         else:
-            entries.append((group, name, _value(data[link + 2 : end], processor, name, where)))
+            try:
+                entries.append((group, name, _value(data[link + 2 : end], processor, name, where)))
+            except DataError as error:
+                damaged.append((group, name, error))
         if following == 0:
             break
         at = link + following
     found: dict[str, dict[str, Any]] = {name: {} for name in names.values()}
     for group, name, value in entries:
         found.setdefault(names.get(group, f"GROUP {group}"), {}).setdefault(name, value)
-    return found
+    notes = []
+    for group, name, error in damaged:
+        if names.get(group) in _NEEDED and not name.startswith("DESCRIPTION"):
+            raise error
+        notes.append(f"{names.get(group, 'a group')}:{name} is left out, {error.what}")
+    return found, notes
 
 
 def _value(data: bytes, processor: int, name: str, where: str) -> Any:
@@ -252,7 +308,8 @@ def read_c3d(draft: Draft) -> Trial:
     """
     raw = parse(draft.data, draft.name)
     unit = (raw.texts("POINT", "UNITS") or [""])[0]
-    size = np.nanmedian(np.abs(raw.points)) if np.isfinite(raw.points).any() else 1000.0
+    places = raw.points if raw.points.size else raw.rotations[..., :3, 3]
+    size = np.nanmedian(np.abs(places)) if np.isfinite(places).any() else 1000.0
     unknown = f'unit of the markers "{unit}" is not known'
     scale = draft.length_unit(unit, float(size), unknown, "their size")
     draft.start = (raw.first_frame - 1) / raw.point_rate if raw.first_frame > 0 else 0.0
@@ -273,6 +330,15 @@ def read_c3d(draft: Draft) -> Trial:
     for i, name in enumerate(draft.names(labels, "marker")):
         if labels[i] not in computed:
             draft.marker(name, raw.points[:, i] * scale)
+    draft.rate = raw.rotation_rate
+    poses = raw.texts("ROTATION", "LABELS")
+    for i in range(raw.rotations.shape[1]):
+        name = (poses[i] if i < len(poses) else f"segment {i + 1}").removesuffix("_4X4")
+        if name not in draft.markers:
+            draft.marker(name, raw.rotations[:, i, :3, 3] * scale)
+    if raw.rotations.shape[1]:
+        draft.notes.append(f"origins of {raw.rotations.shape[1]} segments stand as markers")
+    draft.notes += raw.notes
     left_out = sum(label in computed for label in labels)
     if left_out:
         draft.notes.append(f"{left_out} points are computed angles, forces or powers: left out")
@@ -421,4 +487,7 @@ def _settings(raw: C3DFile) -> dict[str, str]:
     company = raw.texts("MANUFACTURER", "COMPANY")
     if company and company[0]:
         found["made by"] = company[0]
+    software = raw.texts("MANUFACTURER", "SOFTWARE")
+    if software and software[0]:
+        found["software"] = software[0]
     return found

@@ -11,6 +11,7 @@ from ..axes import axis_vector
 from ..plates import plate_axes, refused_plate, up_from_normal
 from ..trial import Trial
 from .draft import Draft
+from .formats import nearest_format
 from .profile import PlateColumns, Profile
 from .sheet import Sheet, sheet_from
 from .text import is_number, si_unit
@@ -21,6 +22,7 @@ _FORCE = re.compile(
 )
 _POINT = re.compile(r"^(?P<before>.*?)[ _.:]?(?P<axis>[xyz])$", re.I)
 _NOT_POINTS = re.compile(r"^(f|force|m|moment|torque|a|v|acc|gyro|cop|.*force|.*moment)$", re.I)
+_PREAMBLE = 2  # lines above the names of columns, from which a text has a format of its own
 _RATE = re.compile(r"rate|frequency|hz", re.I)
 
 
@@ -32,6 +34,12 @@ def read_columns(draft: Draft) -> Trial:
     """
     own = draft.profile
     sheet = sheet_from(draft.data, draft.name, own.sheet, own.delimiter, own.header_line)
+    above = [line for line in sheet.header if line.strip()]
+    if not own.name and not own.plates and not own.channels and len(above) > _PREAMBLE:
+        words = f"text of an unknown system: {len(above)} lines stand above the table"
+        remedy = "Name its columns in a profile, or export as C3D or as a plain table"
+        nearest = nearest_format(above)
+        raise DataError(words, where=draft.name, nearest=nearest, remedy=remedy)
     kinds = {b"PK\x03\x04": "XLSX table", b"\xd0\xcf\x11\xe0": "XLS table"}
     return trial_from_sheet(draft, sheet, kinds.get(draft.data[:4], "text table"))
 

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from underfoot.core import InputError, nearest_match, to_si
 
+from ..tester_calibration import TesterCalibration
 from ..trial import PlateAccuracy
 from .text import known_units, si_unit
 
@@ -40,7 +41,8 @@ class PlateColumns:
 class Profile:
     """What a profile file says; every part is optional.
 
-    See ``docs/guide/trials_reading.md`` for the file.
+    See ``docs/guide/trials_reading.md`` for the file. ``calibration`` is the record of the tester,
+    which stands in a file of its own.
     """
 
     name: str = ""
@@ -60,6 +62,7 @@ class Profile:
     body_mass: float | None = None
     sensors: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
     accuracy: PlateAccuracy | None = None
+    calibration: TesterCalibration | None = None
 
 
 def read_profile(path: Path) -> Profile:
@@ -95,7 +98,10 @@ def profile_from(data: Mapping[str, Any], *, where: str = "profile") -> Profile:
 
     return Profile(
         name=str(data.get("name", "")),
-        **{key: _text(file, key, where) for key in ("delimiter", "sheet", "time", "time_unit")},
+        delimiter=_text(file, "delimiter", where),
+        sheet=_text(file, "sheet", where),
+        time=_text(file, "time", where),
+        time_unit=_text(file, "time_unit", where),
         header_line=header,
         rate=_quantity(file, "rate", "Hz", f"{where}.file"),
         subtract_baseline=bool(file.get("subtract_baseline", True)),

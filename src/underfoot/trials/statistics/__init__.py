@@ -1,5 +1,13 @@
 """Statistics of the field's studies, each test named with its convention."""
 
+from .agreement import bland_altman as bland_altman
+from .agreement import intraclass_correlation as intraclass_correlation
+from .curves import paired_curve_test as paired_curve_test
+from .effects import detectable_difference as detectable_difference
+from .effects import effect_size as effect_size
+from .effects import equivalence as equivalence
+from .effects import persons_needed as persons_needed
+from .effects import power as power
 from .fisher import ExactTest as ExactTest
 from .fisher import fisher_exact as fisher_exact
 from .linear import AdjustedMean as AdjustedMean
@@ -34,10 +42,16 @@ from .mixed import independence_warning as independence_warning
 from .mixed import mixed_model as mixed_model
 from .mixed import person_means as person_means
 from .mixed import repeated_measures as repeated_measures
+from .prediction import person_bootstrap as person_bootstrap
+from .prediction import roc_area as roc_area
+from .prediction import slip_prediction as slip_prediction
+from .ranks import rank_test as rank_test
 from .samples import Line as Line
 from .samples import OutlierTest as OutlierTest
 from .samples import Precision as Precision
 from .samples import TTest as TTest
+from .samples import mean_interval as mean_interval
 from .samples import precision as precision
 from .samples import regression_line as regression_line
+from .samples import share_interval as share_interval
 from .samples import t_test as t_test

@@ -66,6 +66,58 @@ def t_test(
     return TTest(kind, *map(float, numbers))
 
 
+def mean_interval(
+    values: ArrayLike, *, positive: bool = False, confidence: float = 0.95
+) -> tuple[float, float] | None:
+    """Return the interval of a mean, or None from fewer than two values.
+
+    mean +- t SD / sqrt(n). ``positive``: of a quantity that can't be negative, on the logarithm of
+    the mean: mean exp(+- t SD / (mean sqrt(n))) (delta method), which stays above zero and is the
+    same for small scatter; None from two values, whose t of 12.7 spans decades.
+    """
+    from scipy.stats import t
+
+    x = np.asarray(values, dtype=float)
+    if len(x) < 2:
+        return None
+    mean = float(x.mean())
+    reach = float(t.ppf(0.5 + confidence / 2, len(x) - 1) * x.std(ddof=1) / np.sqrt(len(x)))
+    if not positive or mean <= 0:
+        return mean - reach, mean + reach
+    factor = float(np.exp(min(reach / mean, 700.0)))
+    return None if len(x) < 3 and reach > 0 else (mean / factor, mean * factor)
+
+
+def share_interval(
+    events: ArrayLike, trials: ArrayLike, *, confidence: float = 0.95
+) -> tuple[float, float] | None:
+    """Return the interval of a share, with persons as units; None from fewer than two persons.
+
+    On the logit with the variance between persons, sum (events - share trials)^2 k / (k - 1) / N^2
+    (ratio estimate), and t of k - 1. With no event or nothing else: exact (Clopper and Pearson)
+    for the number of persons.
+
+    ``events``, ``trials``: of each person, shape (k,).
+    """
+    from scipy.stats import t
+
+    e, n = np.asarray(events, dtype=float), np.asarray(trials, dtype=float)
+    k = len(e)
+    if k < 2:
+        return None
+    share, tail = float(e.sum() / n.sum()), 0.5 - confidence / 2
+    if share in (0.0, 1.0):
+        edge = tail ** (1.0 / k)
+        return (0.0, 1.0 - edge) if share == 0.0 else (edge, 1.0)
+    variance = float(((e - share * n) ** 2).sum()) * k / (k - 1) / float(n.sum()) ** 2
+    # never below that of independent trials: persons who happen to agree show nothing
+    variance = max(variance, share * (1.0 - share) / float(n.sum()))
+    reach = float(t.isf(tail, k - 1)) * np.sqrt(variance) / (share * (1.0 - share))
+    middle = np.log(share / (1.0 - share))
+    low, high = 0.5 * (1.0 + np.tanh(0.5 * (middle + reach * np.array((-1.0, 1.0)))))
+    return float(low), float(high)
+
+
 @dataclass(frozen=True, slots=True)
 class Line:
     """y = intercept + slope x with standard errors, Pearson's r, p and the residual sd."""

@@ -1,0 +1,192 @@
+"""What a case becomes before it is solved: its sole on a grid, the physics of its slots."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from underfoot.case import Case, Option
+from underfoot.case.context import Context
+from underfoot.core import InputError, Progress, content_hash, silent, unknown_name
+from underfoot.core.identity import attributes
+from underfoot.film import FilmModel, NewtonianFilm
+from underfoot.friction import FrictionLaw
+from underfoot.friction.film_shear import FilmShearLaw
+from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
+from underfoot.shoe import SoleMap
+from underfoot.slip.model import SlipModel
+from underfoot.sole_contact.compliance import Compliance
+from underfoot.sole_contact.lug_edges import EdgedLaw, lug_edges
+
+from .resolve import resolved, turned
+from .sole import sole_map
+
+PROTOCOLS: Mapping[str, type] = {
+    "friction": FrictionLaw,
+    "rough_contact": PressureGapLaw,
+    "compliance": Compliance,
+    "film": FilmModel,
+    "risk": SlipModel,
+}
+"""Slots that take an object of physics in place of an option, and what it must be able to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """A case on one grid, ready to be solved.
+
+    Attributes:
+        sole: Undeformed, on cells of ``spacing`` (m).
+        law: Local friction; ``local_law`` is the same with what the edges of the sole's lugs do.
+        film: None where no fluid builds up pressure.
+        objects: Slot: object that was given in place of the case's option.
+    """
+
+    case: Case
+    context: Context
+    spacing: float
+    sole: SoleMap
+    compliance: Compliance
+    asperities: PressureGapLaw
+    law: FrictionLaw
+    local_law: FrictionLaw | EdgedLaw
+    slip_model: SlipModel
+    film: FilmModel | None
+    objects: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def viscosity(self) -> float | None:
+        """Of the film, Pa s; None where no fluid builds up pressure."""
+        return None if self.film is None else self.film.viscosity
+
+    def law_on(self, sole: SoleMap) -> FrictionLaw | EdgedLaw:
+        """Return the local friction on another map of the sole."""
+        return edged_law(self.case, self.context, self.law, sole, self.asperities) or self.law
+
+    def compliance_on(self, sole: SoleMap, turn: float = 0.0) -> Compliance:
+        """Return the compliance on another map of the sole, whose shoe is turned by ``turn``."""
+        return self.case.compliance.build(turned(self.context, turn), sole)
+
+
+def prepared(
+    case: Case,
+    spacing: float,
+    objects: Mapping[str, Any] | None = None,
+    *,
+    geometry: tuple[SoleMap, Compliance] | None = None,
+    progress: Progress = silent,
+) -> Prepared:
+    """Return a case on cells of ``spacing`` (m).
+
+    Parameters:
+        objects: As ``case_and_objects`` returns them.
+        geometry: Sole and compliance, where they are known already.
+    """
+    objects = dict(objects or {})
+    context = resolved(case, progress)
+
+    def chosen(slot: str, build: Callable[[], Any]) -> Any:
+        return objects[slot] if slot in objects else with_members(slot, build(), f"{slot}.model")
+
+    film = objects["film"] if "film" in objects else case.film.build(context)
+    law = chosen("friction", lambda: case.friction.build(context))
+    if film is not None and not isinstance(film, NewtonianFilm):
+        law = FilmShearLaw(law, with_members("film", film, "film.model"))
+    sole = geometry[0] if geometry else sole_map(case, spacing, progress)
+    asperities = chosen("rough_contact", lambda: case.rough_contact.build(context))
+
+    def compliance() -> Compliance:
+        return geometry[1] if geometry else case.compliance.build(context, sole)
+
+    return Prepared(
+        case=case,
+        context=context,
+        spacing=spacing,
+        sole=sole,
+        compliance=chosen("compliance", compliance),
+        asperities=asperities,
+        law=law,
+        local_law=edged_law(case, context, law, sole, asperities) or law,
+        slip_model=chosen("risk", case.risk.build),
+        film=film,
+        objects=objects,
+    )
+
+
+def case_and_objects(case: Case, given: Mapping[str, Any]) -> tuple[Case, dict[str, Any]]:
+    """Return the case with the options among what is given by slot, and the objects of physics.
+
+    Raises:
+        InputError: A slot that is none, an object that lacks a member or holds nan.
+    """
+    objects: dict[str, Any] = {}
+    for slot, item in given.items():
+        if slot == "viscosity":
+            case = case.replace("contaminant.viscosity", item)
+        elif isinstance(item, str | Mapping | Option):
+            case = case.replace(slot, item)
+        elif slot not in PROTOCOLS:
+            raise unknown_name("slot", slot, (*PROTOCOLS, "viscosity"), where=f"run(..., {slot}=)")
+        else:
+            objects[slot] = checked_object(slot, item)
+    return case, objects
+
+
+def checked_object(slot: str, item: Any) -> Any:
+    """Return an object of physics; refuse one that lacks a member or holds nan."""
+    where = f"run(..., {slot}=)"
+    for name, value in attributes(with_members(slot, item, where)).items():
+        if isinstance(value, np.ndarray) and value.dtype.kind == "f" and np.isnan(value).any():
+            raise InputError(
+                f"{type(item).__name__}.{name} holds nan at {np.argwhere(np.isnan(value))[0]}",
+                where=where,
+                allowed="numbers",
+            )
+    return item
+
+
+def with_members(slot: str, item: Any, where: str) -> Any:
+    """Return an object of physics; refuse one that lacks a member of its slot's protocol."""
+    protocol = PROTOCOLS[slot]
+    if not isinstance(item, protocol):
+        names = [name for name in dir(protocol) if not name.startswith("_")]
+        missing = [name for name in names if not hasattr(item, name)]
+        raise InputError(
+            f"{type(item).__name__} is no {protocol.__name__}: it has no "
+            + ", ".join(missing or ["__call__"]),
+            where=where,
+            allowed=f"an object with {', '.join(names)}",
+        )
+    return item
+
+
+def case_hash(case: Case, objects: Mapping[str, Any]) -> str:
+    """Return the hash of a case with what was given in place of its options."""
+    return content_hash(case.hash, dict(objects))[:32] if objects else case.hash
+
+
+def object_texts(objects: Mapping[str, Any]) -> dict[str, str]:
+    """Return class, name and content of each object, by slot."""
+    return {
+        slot: f"{type(item).__module__}.{type(item).__qualname__} "
+        f"{getattr(item, 'name', '')} [{content_hash(item)[:12]}]"
+        for slot, item in objects.items()
+    }
+
+
+def edged_law(
+    case: Case, context: Context, law: FrictionLaw, sole: SoleMap, asperities: PressureGapLaw
+) -> EdgedLaw | None:
+    """Return the law with what the edges of lugs do; None without lugs or without a film."""
+    viscosity, film = context.viscosity_value, case.film
+    if viscosity is None or not getattr(film, "lug_edges", False):
+        return None
+    moulded, worn = getattr(case.shoe.tread, "edge_radius", 0.0), case.shoe.wear.edge_radius
+    edges = lug_edges(sole, moulded, worn_edge_radius=worn, forward=case.motion.forward)
+    if edges is None:
+        return None
+    suction = case.value("film.suction")
+    return EdgedLaw(law, edges, asperities, context.youngs_modulus, viscosity, suction)

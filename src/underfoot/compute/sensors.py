@@ -1,0 +1,42 @@
+"""What sensors in the floor read of a solved contact."""
+
+from underfoot.case import Case
+from underfoot.shoe import SoleMap
+from underfoot.sole_contact import SensorReading, floor_sensor_reading
+from underfoot.sole_contact.reading import BLIND
+from underfoot.sole_contact.sole_state import SoleState
+
+FILM_WORTH_SEEING = 0.01
+"""Share of the load on the film below which no caution about the sensor is given."""
+
+
+def scanned(
+    case: Case, sole: SoleMap, state: SoleState, *, viscosity: float | None, offsets: int = 11
+) -> SensorReading:
+    """Return what the scans of the case read under one state."""
+    return floor_sensor_reading(
+        sole.x,
+        sole.y,
+        state.fluid_pressure,
+        state.film_thickness,
+        inlet_diameter=case.sensor.inlet_diameter,
+        scan_spacing=case.sensor.scan_spacing,
+        scans=case.sensor.scans,
+        offsets=offsets,
+        compliance=case.sensor.compliance if viscosity and state.speed > 0 else 0.0,
+        viscosity=viscosity or 0.0,
+        speed=state.speed,
+    )
+
+
+def blind_sensor(case: Case, reading: SensorReading, state: SoleState) -> str:
+    """Return the caution about an inlet that cannot see the film; empty where it can."""
+    if reading.seen >= BLIND or state.fluid_load < FILM_WORTH_SEEING * (
+        state.fluid_load + state.contact_load
+    ):
+        return ""
+    return (
+        f"an inlet of {1e3 * case.sensor.inlet_diameter:.3g} mm sees {100 * reading.seen:.0f} % of "
+        "the load that the film carries: elsewhere its rim meets a channel or the film's end and "
+        "reads less than half. A low reading does not show that there is no film."
+    )

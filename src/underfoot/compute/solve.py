@@ -1,0 +1,141 @@
+"""Contact and film of a prepared case in time, with the friction and the readings at its end."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from underfoot.case import Case
+from underfoot.core import Progress, silent
+from underfoot.film import FilmModel, NewtonianFilm
+from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
+from underfoot.shoe import SoleMap
+from underfoot.sole_contact import SensorReading
+from underfoot.sole_contact.compliance import Compliance
+from underfoot.sole_contact.motion_history import solve_history
+from underfoot.sole_contact.sole_state import SoleState, SolverSettings
+from underfoot.sole_contact.solver import SoleContact, solve_sliding
+
+from .contact_friction import ContactFriction, contact_friction
+from .histories import Recorder
+from .positions import Place, TreadPositions, tread_positions
+from .prepare import Prepared
+from .sensors import scanned
+from .sole import sole_map
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """The contact of a prepared case at the end of its motion, and what was taken down on the way.
+
+    Attributes:
+        friction: Of the contact, as the tread lies.
+        sensor: What the scans of the floor read.
+    """
+
+    contact: SoleContact
+    recorder: Recorder
+    friction: ContactFriction
+    sensor: SensorReading
+
+
+def solved(parts: Prepared, progress: Progress = silent) -> Solution:
+    """Return the contact of a prepared case.
+
+    Raises:
+        ConvergenceError: Not even the first contact could be solved.
+    """
+    case, sole = parts.case, parts.sole
+    recorder = Recorder(case, parts.local_law, sole, parts.viscosity)
+    contact = solved_motion(
+        case,
+        sole,
+        parts.compliance,
+        parts.asperities,
+        parts.film,
+        watch=recorder,
+        progress=progress,
+    )
+    friction = contact_friction(case, parts.context, parts.local_law, sole, contact)
+    sensor = scanned(case, sole, contact, viscosity=parts.viscosity)
+    return Solution(contact, recorder, friction, sensor)
+
+
+def solved_on_quick_grid(
+    parts: Prepared, place: Place, *, finer: float = 1, progress: Progress = silent
+) -> tuple[SoleMap, SoleContact]:
+    """Return sole and contact with the tread at a place; ``finer``: ``solver_settings``."""
+    case, lying = parts.case, {"shift": place.shift, "direction": place.direction}
+    sole = sole_map(case, case.numerics.quick_grid_spacing, turn=place.turn, **lying)
+    compliance, more = parts.compliance_on(sole, place.turn), {"finer": finer, "progress": progress}
+    return sole, solved_motion(case, sole, compliance, parts.asperities, parts.film, **more)
+
+
+def averaged(
+    parts: Prepared, solution: Solution, *, quick: bool, progress: Progress = silent
+) -> TreadPositions | None:
+    """Return the numbers at more positions of the tread; None without one, or without a contact.
+
+    A compliance that was given holds for the position of the run alone.
+    """
+    if "compliance" in parts.objects or not solution.contact.status.usable:
+        return None
+
+    def at_place(_case: Case, place: Place, progress: Progress) -> tuple[SoleMap, SoleContact]:
+        return solved_on_quick_grid(parts, place, progress=progress)
+
+    return tread_positions(
+        parts.case,
+        parts.law_on,
+        parts.sole,
+        solution.contact,
+        at_place,
+        viscosity=parts.viscosity,
+        quick=quick,
+        progress=progress,
+    )
+
+
+def pool_depth(case: Case) -> float:
+    """Return the depth of the fluid on the floor, m; on a dry floor the default, unused."""
+    return 0.6e-3 if case.contaminant is None else case.contaminant.pool_depth
+
+
+def solver_settings(
+    case: Case, film: FilmModel | None = None, *, finer: float = 1
+) -> SolverSettings:
+    """Return how the contact of the case is solved, with ``finer`` times the steps in time."""
+    motion = case.motion
+    return SolverSettings(
+        time_resolution=SolverSettings().time_resolution * finer,
+        pool_depth=pool_depth(case),
+        start_film=motion.start_film,
+        rise_time=motion.force_rise_time,
+        end_time=motion.end_time,
+        steady=motion.to_steady_state,
+        tolerance=case.numerics.tolerance,
+        film=None if isinstance(film, NewtonianFilm) else film,
+    )
+
+
+def solved_motion(
+    case: Case,
+    sole: SoleMap,
+    compliance: Compliance,
+    asperities: PressureGapLaw,
+    film: FilmModel | None,
+    *,
+    finer: float = 1,
+    watch: Callable[[SoleState], None] | None = None,
+    progress: Progress = silent,
+) -> SoleContact:
+    """Return contact and film at the end of the case's motion; ``finer``: ``solver_settings``."""
+    motion, history, parts = case.motion, case.motion.build(), (sole, compliance, asperities)
+    common: dict[str, Any] = {
+        "viscosity": None if film is None else film.viscosity,
+        "settings": solver_settings(case, film, finer=finer),
+        "progress": progress,
+        "watch": watch,
+    }
+    if history is not None:
+        return solve_history(*parts, history, map_angle=motion.shoe_angle, **common)
+    return solve_sliding(*parts, speed=motion.speed, normal_force=motion.normal_force, **common)

@@ -1,0 +1,131 @@
+"""Doors for other packages: what they offer by entry point, each loaded alone and by its name.
+
+A package offers ``name = "module:attribute"`` in the entry-point group ``underfoot.DOOR``. Nothing
+is imported before it is asked for; what can't be loaded is told in one line and touches only who
+asked for it. ``docs/extending.md`` says what stands behind each door.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module, metadata
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from .errors import InputError
+
+PREFIX = "underfoot."
+WINGS = {("commands", "micro"): "underfoot-block", ("studies", "g1"): "underfoot-block"}
+"""Package of this project that offers a name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Offer:
+    """What a package offers behind a door."""
+
+    door: str
+    name: str
+    address: str
+    package: str
+
+    def __str__(self) -> str:
+        return f'{self.door} "{self.name}" of {self.package} ({self.address})'
+
+    def load(self) -> Any:
+        """Return what is offered; InputError in one line where it can't be had."""
+        try:
+            return loaded(self.address)
+        except InputError as error:
+            remedy = f"Mend or remove {self.package}"
+            raise InputError(f"{self}: {error.what}", remedy=remedy) from error
+
+    def folder(self) -> Path:
+        """Return the folder ``package:folder`` that an address names, without importing it.
+
+        Raises:
+            InputError: No such package or folder.
+        """
+        package, _, name = self.address.partition(":")
+        spec = find_spec(package.partition(".")[0])
+        for place in (spec and spec.submodule_search_locations) or ():
+            folder = Path(place, *package.split(".")[1:], name)
+            if folder.is_dir():
+                return folder
+        raise InputError(f"{self}: there is no such folder", allowed="package:folder")
+
+
+def loaded(address: str) -> Any:
+    """Return what stands at ``module:attribute``, or a module.
+
+    Raises:
+        InputError: It can't be imported, whatever the module raised.
+    """
+    module, _, name = address.partition(":")
+    try:
+        return getattr(import_module(module), name) if name else import_module(module)
+    except (Exception, SystemExit) as error:  # a package of others may raise anything
+        first = (str(error).strip().splitlines() or [""])[0]
+        raise InputError(
+            f'"{address}" can\'t be imported ({type(error).__name__}: {first:.200})',
+            allowed="module:Name of a module on Python's path",
+            remedy="Set PYTHONPATH to the folder of the module",
+        ) from error
+
+
+def offers(door: str) -> dict[str, Offer]:
+    """Return what other packages offer behind a door, by name; nothing is imported."""
+    return {offer.name: offer for offer in all_offers() if offer.door == door}
+
+
+def offered(door: str, name: str, check: Callable[[Any], str] = lambda _item: "") -> Any:
+    """Return what is offered by a name; None where nobody does, nor a wing of this project.
+
+    ``check`` says what is wrong with an object, "" for nothing.
+
+    Raises:
+        InputError: Two packages offer it, it can't be imported, ``check`` says so, or a wing that
+            would offer it is not installed.
+    """
+    chosen = [offer for offer in all_offers() if (offer.door, offer.name) == (door, name)]
+    if len(chosen) > 1:
+        raise InputError(
+            f'two packages offer the {door} "{name}": ' + " and ".join(map(str, chosen)),
+            remedy="Remove one of them",
+        )
+    for offer in chosen:
+        item = offer.load()
+        if wrong := check(item):
+            raise InputError(f"{offer} {wrong}", remedy=f"Mend or remove {offer.package}")
+        return item
+    if wing := WINGS.get((door, name)):
+        raise InputError(
+            f"{name} comes with the package {wing}",
+            remedy=f"pip install {wing} (wings/ in the source)",
+        )
+    return None
+
+
+def broken_offers() -> Iterator[str]:
+    """Yield a line for each offer that can't be loaded; this imports all but catalogues."""
+    for offer in all_offers():
+        if offer.door == "catalogues":
+            continue
+        try:
+            offered(offer.door, offer.name)
+        except InputError as error:
+            yield error.what
+
+
+@cache
+def all_offers() -> tuple[Offer, ...]:
+    """Return what the packages on Python's path offer; ``all_offers.cache_clear`` looks again."""
+    found = {
+        Offer(entry.group.removeprefix(PREFIX), entry.name, entry.value, each.name or "a package")
+        for each in metadata.distributions()
+        for entry in each.entry_points
+        if entry.group.startswith(PREFIX)
+    }
+    return tuple(sorted(found, key=str))

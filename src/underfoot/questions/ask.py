@@ -1,0 +1,30 @@
+"""Questions that other packages ask of a case."""
+
+from typing import Any
+
+from underfoot.case import Case
+from underfoot.core import InputError, unknown_name
+from underfoot.core.presentation import Presentable
+from underfoot.core.registry import offered, offers
+
+
+def ask(question: str, case: Case, **settings: Any) -> Presentable:
+    """Return what another package answers to its question (``underfoot.questions``) of a case.
+
+    Parameters:
+        question: Its name.
+        settings: For the package: ``quick``, ``processes``, ``progress`` from the command line.
+
+    Raises:
+        InputError: Nobody offers it, its package is broken, or the answer can't be shown.
+    """
+    function = offered("questions", question)
+    if function is None:
+        raise unknown_name("question", question, offers("questions"), where="question")
+    answer = function(case, **settings)
+    if not isinstance(answer, Presentable):
+        raise InputError(
+            f"{offers('questions')[question]} answers with {type(answer).__name__}",
+            allowed="an object derived from underfoot.core.presentation.Presentable",
+        )
+    return answer

@@ -1,0 +1,216 @@
+"""The calibration record of a slip tester: factors with uncertainty, daily checks, noise."""
+
+import datetime
+import re
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from underfoot.core import InputError, nearest_match, to_si
+from underfoot.core.files import read_toml
+
+from .measurement import Flag
+
+FILE = "calibration.toml"
+FAILED = "check failed"
+CHANNELS = {"normal": "N", "friction": "N", "pressure": "Pa"}
+_GRAVITY = (
+    9.80665  # m/s2; the local one differs by up to 0.3 %, and cancels in friction over normal
+)
+_CROSSTALK = 0.01  # friction over weight that a check may read; assumed
+_KEYS = {
+    "tester": ("name", "certificate", "date", "valid_until", "tolerance"),
+    "channel": ("reference", "reading", "uncertainty", "range", "noise"),
+    "check": ("date", "channel", "reference", "reading"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelCalibration:
+    """What a channel's reading is multiplied by, and what is known of the channel (SI).
+
+    ``factor`` is reference over reading, fitted through the points after their zero;
+    ``uncertainty`` is its relative standard uncertainty: that of the masses and the scatter of the
+    points. ``highest`` is the largest reference, ``range`` the channel's full scale, ``noise`` the
+    standard deviation of the unloaded channel; None where the record does not say.
+    """
+
+    factor: float
+    uncertainty: float
+    highest: float
+    range: float | None = None
+    noise: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class DailyCheck:
+    """A check with a known mass: relative ``error`` after calibration.
+
+    ``channel`` "crosstalk" is the friction channel under a mass that only presses: its error is
+    the friction read over the weight.
+    """
+
+    date: datetime.date
+    channel: str
+    error: float
+    allowed: float
+    words: str
+
+
+@dataclass(frozen=True, slots=True)
+class TesterCalibration:
+    """The calibration record that every reading of a tester refers to."""
+
+    name: str
+    certificate: str
+    date: datetime.date
+    valid_until: datetime.date | None
+    tolerance: float
+    channels: Mapping[str, ChannelCalibration] = field(default_factory=dict)
+    checks: tuple[DailyCheck, ...] = ()
+
+    def channel(self, name: str) -> ChannelCalibration:
+        """Return the calibration of a channel; the factor is 1 where the record has none."""
+        return self.channels.get(name, ChannelCalibration(1.0, 0.0, np.inf))
+
+    def words(self) -> str:
+        """Return certificate, date and factors in words."""
+        factors = (
+            f"{name} x {c.factor:.4f} (u {100 * c.uncertainty:.2g} %)"
+            for name, c in self.channels.items()
+        )
+        return f"{self.name}, {self.certificate} of {self.date}: {', '.join(factors)}"
+
+    def flags(self, noted: object) -> tuple[Flag, ...]:
+        """Return what the record says against a reading of the day ``noted`` with it.
+
+        A check of the day outside the tolerance is named ``FAILED``: the reading is not to be used.
+        """
+        if noted in (None, ""):
+            words = "no date is noted: calibration and daily check can't be referred to"
+            return (Flag("calibration", words),)
+        day = day_of(noted, where='condition "date"')
+        if not self.date <= day <= (self.valid_until or day):
+            end = f" to {self.valid_until}" if self.valid_until else ""
+            return (Flag("calibration", f"tested {day}, the calibration holds {self.date}{end}"),)
+        that_day = [check for check in self.checks if check.date == day]
+        failed = [check for check in that_day if abs(check.error) > check.allowed]
+        if failed:
+            worst = max(failed, key=lambda check: abs(check.error))
+            words = f"the check of {day} failed: {'; '.join(check.words for check in failed)}"
+            return (Flag(FAILED, words, True, worst.error, worst.allowed, "1"),)
+        missing = {check.channel for check in self.checks} - {c.channel for c in that_day}
+        if missing:
+            return (Flag("calibration", f"no check of {', '.join(sorted(missing))} on {day}"),)
+        return ()
+
+
+def read_calibration(path: Path) -> TesterCalibration:
+    """Return the calibration record in a TOML file.
+
+    ``[tester]``: name, certificate, date, valid_until, tolerance of the daily check ("2 %" by
+    default, assumed). ``[channels.NAME]`` (normal, friction, pressure): reference and
+    reading as lists of equal length, a mass or a force each ("20 kg", "196 N"), their relative
+    standard ``uncertainty``, ``range``, ``noise``. ``[[checks]]``: date, channel, reference,
+    reading. Readings are what the log shows: they are multiplied by the factor found.
+
+    InputError: not TOML, an unknown key or channel, a wrong date, points that are no calibration.
+    """
+    where = path.name
+    data = read_toml(path)
+    _known(data, ("tester", "channels", "checks"), where)
+    tester, named = data.get("tester", {}), data.get("channels", {})
+    _known(tester, _KEYS["tester"], f"{where}, tester")
+    _known(named, CHANNELS, f"{where}, channels")
+    end = tester.get("valid_until")
+    record = TesterCalibration(
+        str(tester.get("name", "tester")),
+        f"certificate {tester['certificate']}" if "certificate" in tester else "calibration",
+        day_of(tester.get("date", ""), where=f"{where}, date"),
+        None if end is None else day_of(end, where=f"{where}, valid_until"),
+        to_si(tester.get("tolerance", "2 %"), "1", where=f"{where}, tolerance"),
+        {n: _channel(part, CHANNELS[n], f"{where}, channels.{n}") for n, part in named.items()},
+    )
+    parts = enumerate(data.get("checks", []), start=1)
+    return replace(
+        record, checks=tuple(_check(part, record, f"{where}, check {i}") for i, part in parts)
+    )
+
+
+def day_of(given: object, *, where: str) -> datetime.date:
+    """Return a date written as 2026-03-05 or 05.03.2026; anything else is an `InputError`."""
+    if isinstance(given, datetime.date):
+        return given.date() if isinstance(given, datetime.datetime) else given
+    text = re.sub(r"^(\d{1,2})\.(\d{1,2})\.(\d{4})$", r"\3-\2-\1", str(given).strip())
+    try:
+        year, month, day = map(int, text.split("-"))
+        return datetime.date(year, month, day)
+    except ValueError:
+        allowed = "as 2026-03-05 or 05.03.2026"
+        raise InputError(f'"{given}" is no date', where=where, allowed=allowed) from None
+
+
+def _known(part: Any, allowed: Collection[str], where: str) -> None:
+    if not isinstance(part, Mapping):
+        raise InputError(f"{part!r} is not a table", where=where)
+    for key in part:
+        if key not in allowed:
+            near = nearest_match(str(key), allowed)
+            raise InputError(
+                f'unknown key "{key}"', where=where, allowed=", ".join(allowed), nearest=near
+            )
+
+
+def _channel(part: Any, unit: str, where: str) -> ChannelCalibration:
+    _known(part, _KEYS["channel"], where)
+    points = [part.get(key, []) for key in ("reference", "reading")]
+    if not all(isinstance(p, list) for p in points) or len(points[0]) != len(points[1]):
+        raise InputError("reference and reading are lists of equal length", where=where)
+    reference, reading = (np.array([_size(p, unit, where) for p in side]) for side in points)
+    if len(reference) < 2 or not np.ptp(reading) > 0 or not np.ptp(reference) > 0:
+        raise InputError("two different points at least are a calibration", where=where)
+    if "uncertainty" not in part:
+        allowed = 'relative, standard: uncertainty = "0.2 %"'
+        raise InputError("the references have no uncertainty", where=where, allowed=allowed)
+    own = to_si(part["uncertainty"], "1", where=f"{where}.uncertainty")
+    # Reference = factor (reading - zero): the zero is taken off in every log.
+    x, y = reading - reading.mean(), reference - reference.mean()
+    factor = float(x @ y / (x @ x))
+    left = y - factor * x
+    free = max(len(x) - 2, 1)
+    scatter = float(np.sqrt(left @ left / free / (x @ x))) / abs(factor)
+    if not factor > 0 or float(np.abs(left).max()) > 0.05 * float(reference.max()):
+        raise InputError("the points do not lie on a rising line within 5 %", where=where)
+    full, noise = (
+        to_si(part[key], unit, where=f"{where}.{key}") if key in part else None
+        for key in ("range", "noise")
+    )
+    return ChannelCalibration(
+        factor, float(np.hypot(own, scatter)), float(reference.max()), full, noise
+    )
+
+
+def _size(given: object, unit: str, where: str) -> float:
+    """Return a force or pressure; a mass counts with its weight."""
+    if unit == "N" and isinstance(given, str) and re.search(r"[\d ](k?g)$", given.strip()):
+        return to_si(given, "kg", where=where) * _GRAVITY
+    return to_si(given, unit, where=where)
+
+
+def _check(part: Any, record: TesterCalibration, where: str) -> DailyCheck:
+    _known(part, _KEYS["check"], where)
+    name = str(part.get("channel", ""))
+    _known({name: 0}, (*CHANNELS, "crosstalk"), where)
+    aside = name == "crosstalk"
+    unit = CHANNELS.get(name, "N")
+    weight, reading = (_size(part.get(key), unit, where) for key in ("reference", "reading"))
+    if not weight > 0:
+        raise InputError("a check needs a mass or force above 0", where=where)
+    share = reading * record.channel("friction" if aside else name).factor / weight
+    error, allowed = (share, _CROSSTALK) if aside else (share - 1.0, record.tolerance)
+    words = f"{name} {part['reading']} for {part['reference']} ({100 * error:+.1f} %)"
+    day = day_of(part.get("date", ""), where=f"{where}, date")
+    return DailyCheck(day, name, error, allowed, words)

@@ -1,0 +1,124 @@
+"""The screen by likelihood: the same on both sides, right by mechanics, silent on sound steps."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from underfoot.trials import finished_plate, read_trial, required_frictions, walkway_of
+from underfoot.trials.likelihood import (
+    UNLIKELY,
+    Reference,
+    impossible,
+    references,
+    unlikely_flags,
+)
+from underfoot.trials.step_features import step_features
+
+DATA = Path(__file__).parents[1] / "data" / "trials"
+SOUND = ["biomechzoo/HC030A05.c3d", "bmc/Gait.c3d", "kineticstoolkit/c3d_sample.c3d"]
+
+
+def _changed(trial, change):
+    """The trial with ``change`` (force, up) on the raw forces of its plates."""
+    up = walkway_of(trial).up
+    plates = tuple(
+        finished_plate(
+            p.name, change(p.force, up), rate=p.rate, start=p.start, up=up, corners=p.corners,
+            centre_of_pressure=p.centre_of_pressure,
+        )
+        for p in trial.plates
+    )  # fmt: skip
+    return replace(trial, plates=plates)
+
+
+def _shear(trial, factor):
+    def change(force, up):
+        normal = np.outer(force @ up, up)
+        return normal + factor * (force - normal)
+
+    return _changed(trial, change)
+
+
+def test_likelihood_is_students_of_a_new_step_and_the_same_on_both_sides():
+    one = Reference("x", 0.8, 0.05, 8, 16, False, True, "", "")
+    reach = stats.t(15).isf(UNLIKELY / 2) * 0.05 * np.sqrt(1 + 1 / 8)
+    assert one.likelihood(0.8 + reach) == pytest.approx(UNLIKELY, rel=1e-9)
+    assert one.likelihood(0.8 - reach) == pytest.approx(UNLIKELY, rel=1e-9)
+    assert one.limit(0.9) == pytest.approx(0.8 + reach)
+    assert one.limit(0.1) == pytest.approx(0.8 - reach)
+    for value in (0.8 + 1.01 * reach, 0.8 - 1.01 * reach):
+        (flag,) = [f for f in unlikely_flags({"x": value}, (one,)) if f.matters]
+        assert flag.likelihood < UNLIKELY
+        assert flag.measured == pytest.approx(value)
+
+
+@pytest.mark.parametrize("name", SOUND)
+def test_sound_recorded_steps_are_accepted(name):
+    assert {step.verdict for step in required_frictions(read_trial(DATA / name))} == {"accepted"}
+
+
+@pytest.mark.parametrize("name", SOUND)
+@pytest.mark.parametrize("factor", [0.4, 0.5, 2.0])
+def test_a_gain_of_the_shear_is_noticed_on_both_sides(name, factor):
+    """No mass is needed: the force no longer points to the pelvis."""
+    steps = required_frictions(_shear(read_trial(DATA / name), factor))
+    assert steps
+    assert all(step.verdict != "accepted" for step in steps)
+
+
+def test_the_force_points_to_the_pelvis_and_the_mass_follows_from_its_acceleration():
+    """Mechanics on a real walk of 45.8 kg: the features follow the gain of the channels."""
+    trial = read_trial(DATA / SOUND[0])
+    features, halved = (
+        step_features(walk := walkway_of(t), required_frictions(walk)[0].stance)
+        for t in (trial, _changed(trial, lambda f, up: f - 0.3 * np.outer(f @ up, up)))
+    )
+    assert np.exp(features["mass by acceleration"]) == pytest.approx(1.0, abs=0.05)
+    assert 0.65 < features["slope of the force line"] < 0.95
+    ratio = np.exp(halved["mass by acceleration"] - features["mass by acceleration"])
+    assert ratio == pytest.approx(0.7, abs=0.01)
+    slope = halved["slope of the force line"] / features["slope of the force line"]
+    assert slope == pytest.approx(1 / 0.7, rel=0.01)
+
+
+def test_an_impossible_step_is_rejected_with_the_reason():
+    known = references()
+    slope = next(one for one in known if one.feature == "slope of the force line")
+    assert slope.bound
+    assert not impossible({slope.feature: slope.mean})
+    words = impossible({slope.feature: slope.mean + 12 * slope.sd})
+    assert "is impossible" in words
+    (first, *_) = required_frictions(_shear(read_trial(DATA / SOUND[0]), 4.0))
+    assert first.verdict == "rejected"
+    assert "impossible" in first.measurement.reason
+
+
+def test_what_cannot_be_judged_is_said():
+    trial = read_trial(DATA / "bmc" / "Gait.c3d")
+    bare = required_frictions(replace(trial, markers={}))[0].measurement
+    words = [flag.words for flag in bare.flags if not flag.matters]
+    assert any("body mass" in text and "can't be judged" in text for text in words)
+    assert any("pelvis markers" in text for text in words)
+
+
+def test_a_turn_is_unlikely_as_a_straight_step():
+    (turn,) = required_frictions(read_trial(DATA / "biomechzoo" / "HC036A23.c3d"))
+    assert "sideways ratio" in {flag.name for flag in turn.measurement.caution_flags}
+
+
+@pytest.mark.parametrize("rate", [25.0, 100.0])
+def test_forces_drawn_out_on_lines_are_noticed(rate):
+    trial = read_trial(DATA / SOUND[0])
+
+    def drawn(force, up):
+        time = np.arange(len(force)) / 1000.0
+        knots = np.arange(0.0, time[-1], 1.0 / rate)
+        return np.column_stack(
+            [np.interp(time, knots, np.interp(knots, time, column)) for column in force.T]
+        )
+
+    for step in required_frictions(_changed(trial, drawn)):
+        assert "samples drawn out" in {flag.name for flag in step.measurement.caution_flags}

@@ -1,0 +1,66 @@
+"""Type I error of the tests of a study: 4 to 6 % of 1,000 studies without a difference."""
+
+import numpy as np
+import pytest
+
+from underfoot.trials.statistics import (
+    equivalence,
+    mixed_model,
+    paired_curve_test,
+    rank_test,
+    roc_area,
+)
+
+pytestmark = pytest.mark.slow
+STUDIES = 1000
+PERSONS, LEVELS = 12, ("a", "b", "c")
+
+
+def share(one, seed):
+    rng = np.random.default_rng(seed)
+    return np.mean([one(rng) for _ in range(STUDIES)])
+
+
+def study(rng, levels=LEVELS, trials=3):
+    person = rng.normal(0.2, 0.02, PERSONS)
+    rows = [(w, lv) for w in range(PERSONS) for lv in levels for _ in range(trials)]
+    own = {key: rng.normal(0, 0.006) for key in set(rows)}
+    values = [person[w] + own[w, lv] + rng.normal(0, 0.008) for w, lv in rows]
+    return values, [lv for _, lv in rows], [w for w, _ in rows]
+
+
+def mixed(rng):
+    values, levels, who = study(rng)
+    return mixed_model(values, {"shoe": levels}, who).tests[0].p < 0.05
+
+
+def friedman(rng):
+    return rank_test(*study(rng)).p < 0.05
+
+
+def equal_at_the_margin(rng):
+    a, b = rng.normal(0.02, 0.01, 20), rng.normal(0, 0.01, 20)
+    return equivalence(a, b, 0.02, kind="paired").not_higher < 0.05
+
+
+def curves(rng):
+    from scipy.ndimage import gaussian_filter1d
+
+    a, b = gaussian_filter1d(rng.normal(size=(2, PERSONS, 301)), 8, axis=2)[:, :, 100:201]
+    return bool(paired_curve_test(a, b).clusters)
+
+
+def area(rng):
+    who = np.repeat(np.arange(40), 3)
+    y = (rng.random(120) < 0.2 + 0.5 * (rng.random(40) < 0.5)[who]).astype(int)
+    found = roc_area(y, rng.normal(size=120) + rng.normal(size=40)[who], who)
+    return not found.low < 0.5 < found.high
+
+
+@pytest.mark.parametrize(
+    ("one", "seed"), [(mixed, 1), (friedman, 2), (equal_at_the_margin, 3), (curves, 4), (area, 5)]
+)
+def test_type_one_error(one, seed):
+    found = share(one, seed)
+    print(f"\n{one.__name__}: {100 * found:.1f} %")
+    assert 0.04 <= found <= 0.06
