@@ -238,8 +238,8 @@ def test_a_dask_cluster_that_loses_a_worker_and_then_its_scheduler(finished, tmp
     try:
         with subprocess.Popen(run, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as master:
             until(lambda: len(numbers(store)) >= 1)
-            for process in psutil.Process(workers[0].pid).children():
-                process.kill()  # the nanny starts another
+            for child in psutil.Process(workers[0].pid).children():
+                child.kill()  # the nanny starts another
             until(lambda: len(numbers(store)) >= 2)
             scheduler.kill()
             _, said = master.communicate(timeout=120)
@@ -248,9 +248,9 @@ def test_a_dask_cluster_that_loses_a_worker_and_then_its_scheduler(finished, tmp
         assert "Finished cases are kept" in said
         assert "Traceback" not in said
     finally:
-        for process in (scheduler, *workers):
-            process.kill()
-            process.wait()
+        for started in (scheduler, *workers):
+            started.kill()
+            started.wait()
     process("study", "run", folder / "heel.toml", "--out", "x", folder=tmp_path)
     assert numbers(store) == numbers(folder / "out" / "heel")
 

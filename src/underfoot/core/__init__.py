@@ -50,6 +50,8 @@ _HOMES = {
     "SourcedValue": ".values",
 }
 
+__all__ = [*_HOMES]  # pyright: ignore[reportUnsupportedDunderAll]
+
 
 def __getattr__(name: str) -> Any:
     # what a command imports to print its help stays light: no arrays, no units

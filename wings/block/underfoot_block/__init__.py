@@ -50,6 +50,8 @@ _HOMES = {
     "MicroResult": ".result",
 }
 
+__all__ = [*_HOMES]  # pyright: ignore[reportUnsupportedDunderAll]
+
 
 def __getattr__(name: str) -> Any:
     # finite elements and numba are loaded when they are used: the wing's command is in the help
