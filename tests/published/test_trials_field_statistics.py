@@ -1,5 +1,7 @@
 """Reliability, agreement, effects, power, prediction and curves: published numbers, libraries."""
 
+from itertools import combinations_with_replacement, permutations, product
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -23,6 +25,7 @@ from underfoot.trials.statistics import (
     slip_prediction,
 )
 from underfoot.trials.statistics.curves import _tail
+from underfoot.trials.statistics.ranks import _exact_p
 
 # Shrout and Fleiss 1979, Table 2: six targets, four judges.
 JUDGES = [[9, 2, 5, 8], [6, 1, 3, 2], [8, 4, 6, 8], [7, 1, 2, 6], [10, 5, 6, 9], [6, 2, 4, 7]]
@@ -238,17 +241,41 @@ def test_curves_beside_spm1d():
 
 def test_rank_tests_are_scipys():
     rng = np.random.default_rng(8)
-    values = rng.exponential(size=(9, 3))
-    who = np.repeat(np.arange(9), 3)
-    levels = ["a", "b", "c"] * 9
-    three = rank_test(values.ravel(), levels, who)
-    assert three.p == pytest.approx(stats.friedmanchisquare(*values.T).pvalue)
+    many = rng.exponential(size=(45, 3))
+    three = rank_test(many.ravel(), ["a", "b", "c"] * 45, np.repeat(np.arange(45), 3))
+    assert three.p == pytest.approx(stats.friedmanchisquare(*many.T).pvalue)
+    values = many[:9]
     two = rank_test(values[:, :2].ravel(), ["a", "b"] * 9, np.repeat(np.arange(9), 2))
     assert two.p == pytest.approx(stats.wilcoxon(values[:, 0], values[:, 1]).pvalue)
     apart = rank_test(values[:, 0], ["a"] * 4 + ["b"] * 5)
     assert apart.p == pytest.approx(stats.mannwhitneyu(values[:4, 0], values[4:, 0]).pvalue)
     with pytest.raises(DataError, match="five or more"):
         rank_test(values[:3, :2].ravel(), ["a", "b"] * 3, np.repeat(np.arange(3), 2))
+
+
+@pytest.mark.parametrize(
+    ("sums", "statistic", "p"),
+    [  # Friedman 1937, Table V (three levels) and VI (four), as Siegel 1956, Table N, prints them
+        ((5, 11, 8), 4.5, 0.125), ((4, 8, 12), 8.0, 0.0046),
+        ((5, 10, 15), 10.0, 0.00077), ((6, 11, 13), 5.2, 0.093), ((6, 10, 14), 6.4, 0.039),
+    ],
+)  # fmt: skip
+def test_friedman_of_published_tables(sums, statistic, p):
+    persons = sum(sums) // 6
+    rows = next(
+        rows
+        for rows in combinations_with_replacement(list(permutations((1, 2, 3))), persons)
+        if tuple(map(sum, zip(*rows, strict=True))) == sums
+    )
+    assert _exact_p(np.array(rows, float)) == pytest.approx(p, abs=5e-4)
+    assert stats.friedmanchisquare(*zip(*rows, strict=True)).statistic == pytest.approx(statistic)
+
+
+def test_friedman_with_ties_counts_every_order():
+    ranks = np.array([[1, 2.5, 2.5], [1, 2, 3], [1.5, 1.5, 3], [2, 2, 2], [1, 3, 2]])
+    spread = (ranks.sum(axis=0) ** 2).sum()
+    tables = [np.sum(rows, axis=0) for rows in product(*map(permutations, ranks.tolist()))]
+    assert _exact_p(ranks) == np.mean([(sums**2).sum() >= spread for sums in tables])
 
 
 def test_intervals_stay_where_the_quantity_can_be():

@@ -1,4 +1,8 @@
-"""Type I error of the tests of a study: 4 to 6 % of 1,000 studies without a difference."""
+"""Type I error of the tests of a study: of 1,000 studies without a difference, at 5 %.
+
+Within 1 % of what is exact: 5 %, and 3.8 % for Friedman's test of 12 persons at three levels, whose
+rank sums leave no step between 3.8 % (chi squared 6.5) and 5.1 % (6.17).
+"""
 
 import numpy as np
 import pytest
@@ -58,9 +62,16 @@ def area(rng):
 
 
 @pytest.mark.parametrize(
-    ("one", "seed"), [(mixed, 1), (friedman, 2), (equal_at_the_margin, 3), (curves, 4), (area, 5)]
+    ("one", "seed", "exact"),
+    [
+        (mixed, 1, 0.05),
+        (friedman, 2, 0.0381),
+        (equal_at_the_margin, 3, 0.05),
+        (curves, 4, 0.05),
+        (area, 5, 0.05),
+    ],
 )
-def test_type_one_error(one, seed):
+def test_type_one_error(one, seed, exact):
     found = share(one, seed)
     print(f"\n{one.__name__}: {100 * found:.1f} %")
-    assert 0.04 <= found <= 0.06
+    assert abs(found - exact) <= 0.01

@@ -1,7 +1,9 @@
 """Rank tests of persons' means, for quantities whose scatter is not normal."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import permutations
 from typing import Any
 
 import numpy as np
@@ -10,6 +12,8 @@ from numpy.typing import ArrayLike
 from underfoot.core import DataError
 
 from .mixed import person_means
+
+EXACT_TABLES = 2000  # persons ** (levels - 1) up to which Friedman's p is counted (a second)
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +33,9 @@ def rank_test(
 
     Wilcoxon's signed ranks and Friedman's test where every person has every level (those who do
     not are left out), Mann and Whitney's and Kruskal and Wallis's where nobody has two. Trials of
-    a person are averaged first.
+    a person are averaged first. Friedman's p is exact for few persons and levels (three levels: 44
+    persons, four: 12, five: 6), where chi squared would find 5.8 % of twelve-person studies without
+    a difference significant at 5 %; beyond, chi squared.
 
     ``response``: shape (n,). ``levels``: condition of each row. ``person``: whose each row is;
     each its own without.
@@ -64,4 +70,27 @@ def rank_test(
         found, name = stats.wilcoxon(whole[:, 0], whole[:, 1]), "Wilcoxon signed ranks W"
     else:
         found, name = stats.friedmanchisquare(*whole.T), "Friedman chi squared"
+        if len(whole) ** (len(names) - 1) <= EXACT_TABLES:
+            p = _exact_p(stats.rankdata(whole, axis=1))
+            return RankTest(name, float(found.statistic), p, len(whole))
     return RankTest(name, float(found.statistic), float(found.pvalue), len(whole))
+
+
+def _exact_p(ranks: np.ndarray) -> float:
+    """Return the chance that rank sums spread as far when each person's ranks are shuffled.
+
+    Counts the tables of all orders within rows, shape (persons, levels), ties kept. Sums are held
+    twice (ties are halves) and sorted: the columns of a shuffled table can change places.
+    """
+    rows = [sorted(row) for row in (2 * ranks).astype(int).tolist()]
+    tables = Counter({(0,) * ranks.shape[1]: 1})
+    for row in rows:
+        orders = Counter(permutations(row))
+        longer: Counter[tuple[int, ...]] = Counter()
+        for sums, ways in tables.items():
+            for order, times in orders.items():
+                longer[tuple(sorted(map(int.__add__, sums, order)))] += ways * times
+        tables = longer
+    spread = sum(total**2 for total in (2 * ranks).sum(axis=0).astype(int).tolist())
+    far = sum(ways for sums, ways in tables.items() if sum(s**2 for s in sums) >= spread)
+    return far / tables.total()
