@@ -16,7 +16,7 @@ from .axes import LEVEL, DirectionSource, Ramp
 from .events import Stance
 from .likelihood import unlikely_flags
 from .measurement import Flag, remark
-from .signals import LowPass, contacts, longest_run, low_passed, low_passed_part, runs
+from .signals import CONTACT_FORCE, LowPass, contacts, longest_run, low_passed, low_passed_part, runs
 from .slips import contact_from_heel, marker_jumps
 from .step_features import step_features
 from .trial import MADE_UP, Plate
@@ -74,6 +74,11 @@ DRIFT = Limit(
 VIBRATION = Limit(
     "vibration", 0.01, "1", "two standard deviations of the unloaded, filtered shear in RCOF"
 )
+SHEAR_BEFORE = Limit(
+    "shear before contact", 0.004, "1",
+    "shear over the mean force of the stance; up to 0.002 in 16 recorded steps, up to 0.007 after",
+)  # fmt: skip
+SHEAR_AFTER = Limit("shear after toe off", 0.01, "1", SHEAR_BEFORE.source)
 FILTERED = Limit(
     "already filtered", 0.01, "1",
     "forces at 50 to 100 Hz over those at 10 to 30 Hz: 0.05 and more in 18 unfiltered real steps, "
@@ -89,6 +94,7 @@ CLIMB = Limit("climb", 0.15, "m/s")
 PLATE_HEIGHT = Limit("plate height", 0.03, "m")
 FAST = Limit("walking speed", 2.2, "m/s", "people run above 2.0 to 2.1 m/s (textbook value)")
 LATE = Limit("forces against markers", 0.06, "s")
+_OUTSIDE = 0.004, 0.04  # s from contact or toe off in which nothing loads the plate
 _QUIET = 0.2  # s of unloaded record looked at before and after a step
 _MARGIN = 0.025  # s away from the load
 
@@ -300,6 +306,32 @@ def _level_flags(plate: Plate, stance: Stance, up: np.ndarray, low_pass: LowPass
     noise = unloaded_noise(plate, up, low_pass)
     words = f"the unloaded plate swings by {noise:.1f} N (standard deviation): vibration"
     yield from VIBRATION.above(2.0 * noise / normal, words)
+    before, after = _shear_outside(plate, stance, up)
+    late = "the shear was shifted or filtered by itself"
+    words = f"shear of {100 * before:.1f} % of the mean force before the foot is down: {late}"
+    yield from SHEAR_BEFORE.above(before, words)
+    words = f"shear of {100 * after:.1f} % of the mean force after the foot has left: {late}"
+    yield from SHEAR_AFTER.above(after, words)
+
+
+def _shear_outside(plate: Plate, stance: Stance, up: np.ndarray) -> tuple[float, float]:
+    """Mean shear just before and just after a stance, against further away, over its mean force.
+
+    Where another load is near, or the record ends, there is nothing to compare: 0.
+    """
+    near, far = (round(time * plate.rate) for time in _OUTSIDE)
+    near = max(1, near)
+    mean = float((plate.force[stance.start : stance.stop] @ up).mean())
+    found = []
+    for values in (plate.force[: stance.start][::-1], plate.force[stance.stop :]):
+        close, away = values[near:far], values[far + near : 4 * far]
+        quiet = len(close) > 5 and len(away) > 10 and np.abs(away @ up).max() < CONTACT_FORCE
+        if not quiet:
+            found.append(0.0)
+            continue
+        push = close.mean(axis=0) - away.mean(axis=0)
+        found.append(float(np.linalg.norm(push - (push @ up) * up)) / mean)
+    return found[0], found[1]
 
 
 def unloaded_noise(plate: Plate, up: np.ndarray, low_pass: LowPass) -> float:

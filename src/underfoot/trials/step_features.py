@@ -10,6 +10,7 @@ from .signals import LowPass, low_passed, low_passed_part
 from .walkway import GRAVITY, Walkway
 
 _PELVIS = re.compile(r"asis?$|psis?$|sacr(um)?$|v?sac$", re.IGNORECASE)
+_PENDULUM = 0.8  # slope of the force line of recorded steps in the plane of walking
 _SINGLE = (0.18, 0.82)  # share of the stance in which the other foot swings
 _SLOW = LowPass(cutoff=20.0)
 _BODY = LowPass(cutoff=6.0)
@@ -33,8 +34,8 @@ def step_features(walk: Walkway, stance: Stance) -> dict[str, float]:
     force = low_passed_part(plate.force, rate, low_pass, stance.start, stance.stop)
     normal, along, beside = (force @ axis for axis in (up, forward, across))
     found = _shapes(normal, along, beside)
-    found |= _samples(raw @ up, raw @ forward, rate, float(normal.mean()))
-    found |= _force_line(walk, stance)
+    found |= _samples(raw @ up, raw @ forward, raw @ across, rate, float(normal.mean()))
+    found |= _force_line(walk, stance, across)
     return {name: value for name, value in found.items() if math.isfinite(value)}
 
 
@@ -74,18 +75,15 @@ def _shapes(normal: np.ndarray, along: np.ndarray, beside: np.ndarray) -> dict[s
     }
 
 
-def _samples(normal: np.ndarray, along: np.ndarray, rate: float, mean: float) -> dict[str, float]:
-    """Spectrum, bumps and onsets of the unfiltered forces (n,) over one stance."""
+def _samples(
+    normal: np.ndarray, along: np.ndarray, beside: np.ndarray, rate: float, mean: float
+) -> dict[str, float]:
+    """Bumps and onsets of the unfiltered forces (n,) over one stance."""
     found = {}
     count = len(normal)
-    for name, values in (("normal", normal), ("shear", along)):
-        part = values[: count // 2]
-        line = np.linspace(part[0], part[-1], len(part))
-        power = np.abs(np.fft.rfft((part - line) * np.hanning(len(part)))) ** 2
-        frequency = np.fft.rfftfreq(len(part), 1.0 / rate)
-        fast, slow = (frequency > 12.0) & (frequency < 40.0), (frequency > 2.0) & (frequency < 9.0)
-        found[f"spectrum of the {name}"] = 0.5 * math.log(power[fast].sum() / power[slow].sum())
-        if rate > 150.0:
+    if rate > 150.0:
+        forces = {"normal": normal, "shear": along, "sideways force": beside}
+        for name, values in forces.items():
             rough = np.abs(values - low_passed(values, rate, LowPass(cutoff=25.0))) / mean
             for part_name, begin, end in (("landing", 0.02, 0.15), ("flat foot", 0.15, 0.85)):
                 top = float(rough[round(begin * count) : round(end * count)].max())
@@ -100,29 +98,34 @@ def _samples(normal: np.ndarray, along: np.ndarray, rate: float, mean: float) ->
     return found
 
 
-def _force_line(walk: Walkway, stance: Stance) -> dict[str, float]:
+def _force_line(walk: Walkway, stance: Stance, across: np.ndarray) -> dict[str, float]:
     """How the force points from the centre of pressure to the pelvis while one foot stands.
 
     In walking the force passes near the body's centre: shear over normal = slope x (pelvis ahead of
-    the centre of pressure over its height above it) + offset. The vertical force over g plus the
-    pelvis's vertical acceleration is the mass.
+    the centre of pressure over its height above it) + offset; sideways (``across``) with the slope
+    of the plane of walking. The vertical force over g plus the pelvis's vertical acceleration is
+    the mass.
     """
     plate = walk.plate(stance.plate)
-    markers = [
-        walk.marker(name, stance.plate, stance.contact)
+    pelvis = {
+        walk.marker(name, stance.plate, stance.contact): own[0].lower()
         for name in walk.trial.markers
-        if _PELVIS.search(name.rsplit(":", 1)[-1].strip())
-    ]
-    markers = [one for one in markers if one.times is None and not one.missing.all()]
+        if _PELVIS.search(own := name.rsplit(":", 1)[-1].strip())
+    }
+    pelvis = {m: side for m, side in pelvis.items() if m.times is None and not m.missing.all()}
+    markers = list(pelvis)
     begin, end = (stance.start + round(s * (stance.stop - stance.start)) for s in _SINGLE)
     if len(markers) < 2 or stance.walking is None or markers[0].rate < 40.0:
         return {}
     time = plate.time[begin:end]
     near = (markers[0].time > time[0] - 0.3) & (markers[0].time < time[-1] + 0.3)
     paths = np.array([one.positions[near] for one in markers])
-    whole = paths[np.isfinite(paths).all(axis=(1, 2))]
+    seen = np.isfinite(paths).all(axis=(1, 2))
+    whole = paths[seen]
     if len(whole) < 2 or whole.shape[1] < 30:
         return {}
+    sides = [side for side, there in zip(pelvis.values(), seen, strict=True) if there]
+    balanced = sides.count("l") == sides.count("r")
     rate, frames = markers[0].rate, markers[0].time[near]
     body = low_passed(whole.mean(axis=0), rate, _BODY)
     rise = np.gradient(np.gradient(body @ walk.up, 1.0 / rate), 1.0 / rate)
@@ -137,11 +140,15 @@ def _force_line(walk: Walkway, stance: Stance) -> dict[str, float]:
     carried = np.outer(time - stance.contact, walk.surface_velocity(plate.name, stance.contact))
     place = np.column_stack([np.interp(time, frames, body[:, i]) for i in range(3)])
     arm = place - (plate.centre_of_pressure[begin:end] - carried)
-    geometry, ratio = (arm @ stance.walking) / (arm @ walk.up), (force @ stance.walking) / normal
+    height = arm @ walk.up
+    geometry, ratio = (arm @ stance.walking) / height, (force @ stance.walking) / normal
     if not np.isfinite(geometry).all() or np.ptp(geometry) < 0.05:
         return found
     slope, offset = np.polyfit(geometry, ratio, 1)
     left = ratio - slope * geometry - offset
+    if balanced:
+        beside = (force @ across) / normal - _PENDULUM * (arm @ across) / height
+        found["sideways offset of the force line"] = float(beside.mean())
     return found | {
         "slope of the force line": float(slope),
         "offset of the force line": float(offset),
