@@ -109,6 +109,32 @@ def test_a_turn_is_unlikely_as_a_straight_step():
     assert "sideways ratio" in {flag.name for flag in turn.measurement.caution_flags}
 
 
+@pytest.mark.parametrize(
+    ("late", "name"), [(30, "shear after toe off"), (-8, "shear before contact")]
+)
+def test_shear_where_nothing_loads_the_plate_is_noticed(late, name):
+    trial = read_trial(DATA / SOUND[0])
+
+    def shifted(force, up):
+        normal = np.outer(force @ up, up)
+        return normal + np.roll(force - normal, late, axis=0)
+
+    for step in required_frictions(_changed(trial, shifted)):
+        assert name in {flag.name for flag in step.measurement.caution_flags}
+
+
+def test_the_sideways_line_to_the_pelvis_sees_crosstalk():
+    """By mechanics: a share of the normal force that appears sideways moves it by itself."""
+    trial = read_trial(DATA / SOUND[0])
+    offsets = [
+        step_features(walk := walkway_of(t), required_frictions(walk)[0].stance)[
+            "sideways offset of the force line"
+        ]
+        for t in (trial, _changed(trial, lambda f, up: f + np.outer(f @ up, [0.05, 0.0, 0.0])))
+    ]
+    assert abs(offsets[1] - offsets[0]) == pytest.approx(0.05, abs=0.002)
+
+
 @pytest.mark.parametrize("rate", [25.0, 100.0])
 def test_forces_drawn_out_on_lines_are_noticed(rate):
     trial = read_trial(DATA / SOUND[0])

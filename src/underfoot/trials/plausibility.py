@@ -16,7 +16,15 @@ from .axes import LEVEL, DirectionSource, Ramp
 from .events import Stance
 from .likelihood import unlikely_flags
 from .measurement import Flag, remark
-from .signals import CONTACT_FORCE, LowPass, contacts, longest_run, low_passed, low_passed_part, runs
+from .signals import (
+    CONTACT_FORCE,
+    LowPass,
+    contacts,
+    longest_run,
+    low_passed,
+    low_passed_part,
+    runs,
+)
 from .slips import contact_from_heel, marker_jumps
 from .step_features import step_features
 from .trial import MADE_UP, Plate

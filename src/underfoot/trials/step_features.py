@@ -120,11 +120,11 @@ def _force_line(walk: Walkway, stance: Stance, across: np.ndarray) -> dict[str, 
     time = plate.time[begin:end]
     near = (markers[0].time > time[0] - 0.3) & (markers[0].time < time[-1] + 0.3)
     paths = np.array([one.positions[near] for one in markers])
-    seen = np.isfinite(paths).all(axis=(1, 2))
+    seen = np.flatnonzero(np.isfinite(paths).all(axis=(1, 2)))
     whole = paths[seen]
     if len(whole) < 2 or whole.shape[1] < 30:
         return {}
-    sides = [side for side, there in zip(pelvis.values(), seen, strict=True) if there]
+    sides = [list(pelvis.values())[i] for i in seen]
     balanced = sides.count("l") == sides.count("r")
     rate, frames = markers[0].rate, markers[0].time[near]
     body = low_passed(whole.mean(axis=0), rate, _BODY)
