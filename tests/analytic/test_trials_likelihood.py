@@ -110,7 +110,7 @@ def test_a_turn_is_unlikely_as_a_straight_step():
 
 
 @pytest.mark.parametrize(
-    ("late", "name"), [(30, "shear after toe off"), (-8, "shear before contact")]
+    ("late", "name"), [(30, "shear after toe off"), (-20, "shear before contact")]
 )
 def test_shear_where_nothing_loads_the_plate_is_noticed(late, name):
     trial = read_trial(DATA / SOUND[0])
