@@ -289,7 +289,7 @@ def test_on_a_telephone_it_fits_and_follows_two_fingers(page):
 @pytest.mark.browser
 def test_the_sole_is_printed_with_the_page(page):
     with opened(page) as tab:
-        limit = "new Promise((done) => setTimeout(() => done(true), 600))"
+        limit = "new Promise((done) => setTimeout(() => done(true), 2000))"
         tab.value(limit)  # pictures for the printer are made when the sole rests
         pdf = base64.b64decode(tab.call("Page.printToPDF", printBackground=True)["data"])
         size = tab.value("(() => { const c = document.querySelector('canvas'); return c.width })()")

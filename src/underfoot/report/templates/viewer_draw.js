@@ -13,14 +13,14 @@ void main() {
 const FRAGMENT = `#version 300 es
 precision highp float; precision highp sampler2D;
 in vec3 world; in vec2 at; flat in float sort; out vec4 colour;
-uniform sampler2D field, form, colours; uniform vec3 light, rubber, line; uniform vec2 limits;
+uniform sampler2D cells, colours; uniform vec3 light, rubber, line; uniform vec2 limits;
 uniform vec4 computed; uniform bool logarithmic, picking; uniform float spacing;
 const float NONE = -1e29;
 void main() {
-  ivec2 own = ivec2(at);
+  ivec2 own = ivec2(at), size = textureSize(cells, 0).yx;
   if (picking) {
     if (sort > 2.5) discard;
-    int n = own.x * textureSize(form, 0).x + own.y + 1;
+    int n = own.x * size.y + own.y + 1;
     colour = vec4(float(n & 255), float((n >> 8) & 255), float((n >> 16) & 255), 255.0) / 255.0;
     return;
   }
@@ -29,22 +29,19 @@ void main() {
   float shade = abs(dot(normal, light));
   bool solved = all(greaterThanEqual(at, computed.xy)) && all(lessThan(at, computed.zw));
   vec3 base = mix(line, rubber, solved ? 1.0 : 0.4) * (sort > 1.5 ? 0.8 : sort > 0.5 ? 0.7 : 1.0);
-  ivec2 last = textureSize(field, 0).yx - 1;
-  vec2 mine = texelFetch(form, own.yx, 0).rg;
-  float value = texelFetch(field, own.yx, 0).r;
-  if (sort < 0.5 && value > NONE) {
+  vec3 mine = texelFetch(cells, own.yx, 0).rgb; // height, land, value
+  if (sort < 0.5 && mine.b > NONE) {
     // smooth between cells of the same level, never across the wall of a lug
     vec2 p = at - 0.5, f = fract(p);
     float sum = 0.0, weight = 0.0;
     for (int k = 0; k < 4; k++) {
-      ivec2 step = ivec2(k >> 1, k & 1), c = clamp(ivec2(floor(p)) + step, ivec2(0), last);
-      vec2 form_there = texelFetch(form, c.yx, 0).rg;
-      float there = texelFetch(field, c.yx, 0).r;
+      ivec2 step = ivec2(k >> 1, k & 1), c = clamp(ivec2(floor(p)) + step, ivec2(0), size - 1);
+      vec3 there = texelFetch(cells, c.yx, 0).rgb;
       float w = (step.x == 1 ? f.x : 1.0 - f.x) * (step.y == 1 ? f.y : 1.0 - f.y);
-      bool same = form_there.g == mine.g && abs(form_there.r - mine.r) < 2.0 * spacing;
-      if (there > NONE && same) { sum += w * there; weight += w; }
+      bool same = there.g == mine.g && abs(there.r - mine.r) < 2.0 * spacing;
+      if (there.b > NONE && same) { sum += w * there.b; weight += w; }
     }
-    value = weight > 1e-4 ? sum / weight : value;
+    float value = weight > 1e-4 ? sum / weight : mine.b;
     float t = logarithmic ? log(value / limits.x) / log(limits.y / limits.x)
                           : (value - limits.x) / (limits.y - limits.x);
     base = texture(colours, vec2((clamp(t, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5)).rgb;
@@ -98,7 +95,7 @@ class Drawing {
     this.program = program(gl);
     gl.useProgram(this.program);
     this.place = {};
-    for (const name of ["camera", "plane", "stretch", "field", "form", "colours", "load", "computed", "light", "rubber", "line", "limits", "logarithmic", "picking", "spacing"]) {
+    for (const name of ["camera", "plane", "stretch", "cells", "colours", "load", "computed", "light", "rubber", "line", "limits", "logarithmic", "picking", "spacing"]) {
       this.place[name] = gl.getUniformLocation(this.program, name);
     }
     this.shape();
@@ -107,7 +104,7 @@ class Drawing {
     this.grid = this.buffer(lines, null);
     this.pointer = this.buffer(arrow, null);
     this.tables = {};
-    for (const [name, bytes] of Object.entries(colours)) this.tables[name] = this.texture(2, gl.RGB8, gl.RGB, gl.UNSIGNED_BYTE, bytes, 256, 1);
+    for (const [name, bytes] of Object.entries(colours)) this.tables[name] = this.texture(1, gl.RGB8, gl.RGB, gl.UNSIGNED_BYTE, bytes, 256, 1);
     gl.enable(gl.DEPTH_TEST);
   }
 
@@ -118,9 +115,8 @@ class Drawing {
     this.count = mesh.faces.length;
     this.top = mesh.top;
     this.sole = this.buffer(mesh.points, mesh.faces);
-    const form = new Float32Array(pane.nx * pane.ny * 2);
-    pane.height.forEach((h, k) => { form[2 * k] = Number.isNaN(h) ? -1e30 : h; form[2 * k + 1] = pane.land[k]; });
-    this.form = this.texture(1, gl.RG32F, gl.RG, gl.FLOAT, form, pane.ny, pane.nx, this.form);
+    this.cells = new Float32Array(pane.nx * pane.ny * 3); // height, land, value: one look-up each
+    pane.height.forEach((h, k) => this.cells.set([Number.isNaN(h) ? -1e30 : h, pane.land[k]], 3 * k));
   }
 
   buffer(points, faces) {
@@ -151,9 +147,10 @@ class Drawing {
   }
 
   show(values, quantity) {
-    const gl = this.gl, data = values.map((v) => (Number.isNaN(v) ? -1e30 : v));
+    const { gl, cells, pane } = this;
     this.values = values; this.quantity = quantity;
-    this.field = this.texture(0, gl.R32F, gl.RED, gl.FLOAT, data, this.pane.ny, this.pane.nx, this.field);
+    values.forEach((v, k) => { cells[3 * k + 2] = Number.isNaN(v) ? -1e30 : v; });
+    this.field = this.texture(0, gl.RGB32F, gl.RGB, gl.FLOAT, cells, pane.ny, pane.nx, this.field);
   }
 
   resize() {
@@ -182,11 +179,11 @@ class Drawing {
     gl.uniform2f(at.limits, q.low, q.high);
     gl.uniform1i(at.logarithmic, q.log ? 1 : 0);
     gl.uniform1i(at.picking, picking ? 1 : 0);
-    [[0, this.field], [1, this.form], [2, this.tables[q.colours]]].forEach(([unit, texture]) => {
+    [[0, this.field], [1, this.tables[q.colours]]].forEach(([unit, texture]) => {
       gl.activeTexture(gl.TEXTURE0 + unit);
       gl.bindTexture(gl.TEXTURE_2D, texture);
     });
-    gl.uniform1i(at.field, 0); gl.uniform1i(at.form, 1); gl.uniform1i(at.colours, 2);
+    gl.uniform1i(at.cells, 0); gl.uniform1i(at.colours, 1);
     gl.bindVertexArray(this.sole);
     gl.drawElements(gl.TRIANGLES, this.count, gl.UNSIGNED_INT, 0);
     if (picking) return;

@@ -88,7 +88,7 @@ async function startViewer(root) {
       });
       // a canvas of WebGL prints empty: pictures of what is seen lie ready for the printer
       clearTimeout(printing);
-      printing = setTimeout(keepForPrint, 400);
+      printing = setTimeout(keepForPrint, 1500);
     });
   }
 
