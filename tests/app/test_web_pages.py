@@ -144,12 +144,13 @@ def test_the_answer_then_previews_then_the_full_run(app):
         slider.focus()
         asked = "document.querySelector('.sliders').dataset.asked"
         took = []
-        for number in range(8):
-            page.keyboard.press("ArrowLeft")
-            page.wait_for_function(f"Number({asked} || 0) > {number}")
-            took.append(float(page.evaluate("document.querySelector('.sliders').dataset.took")))
-        print(f"slider to new picture, ms: {[round(each) for each in took]}")
-        assert min(took) < 500  # the least disturbed by what else the machine computes
+        with Cost() as cost:
+            for number in range(8):
+                page.keyboard.press("ArrowLeft")
+                page.wait_for_function(f"Number({asked} || 0) > {number}")
+                took.append(float(page.evaluate("document.querySelector('.sliders').dataset.took")))
+        print(f"slider to new picture, ms: {[round(each) for each in took]}; {cost}")
+        assert min(min(took) / 1e3, cost.cpu / len(took)) < 0.5
         assert page.locator("[data-live=preview]").inner_text().startswith("Preview: COF 0.")
         page.get_by_text("the full run differs by").wait_for()
         page.get_by_role("button", name="Keep it as a variant").click()

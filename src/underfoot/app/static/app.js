@@ -84,7 +84,7 @@ function showTexts(texts) {
 // none is lost to who goes on quickly, else after a moment.
 function askLive(id, address, soleId, keep) {
   const root = document.getElementById(id), inputs = [...(root?.querySelectorAll("input[type=range]") || [])];
-  let asked = "{}", settled = "{}", busy = false, telling = false, resting = 0;
+  let asked = "{}", settled = "{}", busy = false, telling = false, held = false, resting = 0;
   const value = (input) => {
     if (!input.dataset.moved) return Number(input.dataset.given);
     return input.dataset.log ? 10 ** Number(input.value) : Number(input.value);
@@ -118,6 +118,12 @@ function askLive(id, address, soleId, keep) {
       root.dataset.asked = String(Number(root.dataset.asked || 0) + 1);
     }
     busy = false;
+    later();
+  }
+  // Where nothing is kept, half a second after the last answer to a slider that was let go.
+  function later() {
+    clearTimeout(resting);
+    if (!keep && !held && !busy) resting = setTimeout(rest, 500);
   }
   async function rest() { // one at a time, in order
     if (telling) return;
@@ -132,7 +138,7 @@ function askLive(id, address, soleId, keep) {
   if (keep) addEventListener("pagehide", () => { if (values() !== settled) send(values(), true); });
   for (const input of inputs) {
     show(input);
-    input.addEventListener("input", () => { input.dataset.moved = "yes"; clearTimeout(resting); show(input); ask(); });
-    input.addEventListener("change", () => { if (keep) rest(); else { clearTimeout(resting); resting = setTimeout(rest, 500); } });
+    input.addEventListener("input", () => { input.dataset.moved = "yes"; held = true; clearTimeout(resting); show(input); ask(); });
+    input.addEventListener("change", () => { held = false; if (keep) rest(); else later(); });
   }
 }
