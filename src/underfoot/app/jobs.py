@@ -26,7 +26,7 @@ TICK = 0.01
 """s between two looks at a process that computes."""
 GRACE = 0.25
 """s that a cancelled job has to end by itself before its process is killed."""
-PATIENT = 10
+PATIENT = 5
 """Niceness of full runs: sliders move meanwhile."""
 WAITING, RUNNING, DONE = "waiting", "running", "done"
 STOPPED, FAILED, INTERRUPTED = "stopped", "failed", "interrupted"
