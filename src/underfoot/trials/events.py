@@ -316,17 +316,23 @@ def _two_feet(stance: Stance, feet: "_Feet") -> str:
     return ""
 
 
+def _beyond(places: np.ndarray, corners: np.ndarray | None) -> np.ndarray:
+    """How far places (..., 3) lie beyond a plate's edges along its own two axes (m).
+
+    One that stands askew in the laboratory is no larger for it.
+    """
+    assert corners is not None
+    own, middle = plate_axes(corners)[:, :2], corners.mean(axis=0)
+    return np.abs((places - middle) @ own) - np.abs((corners - middle) @ own).max(axis=0)
+
+
 class _Feet:
     """The heels of a trial, the best-seen marker of each side, against one plate."""
 
     def __init__(self, walk: Walkway, plate: Plate) -> None:
         self.walk, self.plate, self.up = walk, plate, walk.up
         self.markers = {side: walk.trial.marker(name) for side, name in walk.heels.items()}
-        if plate.corners is not None:
-            # In the plate's own axes: one that stands askew in the laboratory is no larger for it.
-            self.own = plate_axes(plate.corners)[:, :2]
-            self.middle = plate.corners.mean(axis=0)
-            self.half = np.abs((plate.corners - self.middle) @ self.own).max(axis=0)
+        self.others = [p.corners for p in walk.trial.plates if p.usable and p is not plate]
 
     def surface(self, stance: Stance) -> np.ndarray:
         """Velocity (3,) of the surface under a stance (m/s)."""
@@ -334,7 +340,13 @@ class _Feet:
 
     def beyond(self, places: np.ndarray) -> np.ndarray:
         """How far places (..., 3) lie beyond the plate's edges along its two axes (m)."""
-        return np.abs((places - self.middle) @ self.own) - self.half
+        return _beyond(places, self.plate.corners)
+
+    def over(self, places: np.ndarray) -> np.ndarray:
+        """Mask of places (n, 3) over the plate, up to 20 mm beyond where no other plate lies."""
+        beyond = self.beyond(places).max(axis=1)
+        elsewhere = [_beyond(places, c).max(axis=1) <= 0.0 for c in self.others if c is not None]
+        return (beyond <= 0.0) | ((beyond <= 0.02) & ~np.any(elsewhere, axis=0))
 
     def on_plate(self, stance: Stance) -> dict[str, int]:
         """Frames of the sides whose heel stays over the plate, low and slow, for 100 ms."""
@@ -345,7 +357,7 @@ class _Feet:
             if not np.isfinite(height).any():
                 continue
             inside = (time >= stance.contact) & (time <= stance.toe_off) & ~marker.missing
-            inside &= (self.beyond(at) <= 0.02).all(axis=1)
+            inside &= self.over(at)
             inside &= height < np.nanmin(height) + 0.06
             velocity = np.gradient(at, 1.0 / marker.rate, axis=0) - self.surface(stance)
             speed = np.linalg.norm(velocity, axis=1)
