@@ -36,6 +36,7 @@ CROSSTALK = Limit("crosstalk", 0.01, "1", "friction over normal force before sli
 NOISE = Limit("noise", 2.5, "1", "noise of the unloaded channel over that on record; assumed")
 LOW_PRESSURE = Limit("pressure", 1000.0, "Pa", "the report's smallest peak is 2 kPa; assumed")
 _REVERSED = 0.25  # smaller over larger impulse along the shear: a step brakes, then drives
+_STUCK = 0.9  # of the loaded samples at the largest value, none above: a normal force swings
 _STEADY = 0.5  # share of the contact within 5 % of its median force: a step has two humps
 
 
@@ -192,7 +193,10 @@ class _Slide:
             fine = fine and not coarse
             seen = self.force[self.inside, i] if coarse else values
             ends = max(float(np.mean(seen == end)) for end in (values.max(), values.min()))
-            if len(part) > 2 and ends * len(seen) >= 5 and (not coarse or (carries and ends > 0.5)):
+            stuck = float(np.mean(values == values.max()))
+            ends = stuck if coarse and i == upward and stuck > _STUCK else ends
+            scatters = len(part) > 2 or ends > _STUCK
+            if scatters and ends * len(seen) >= 5 and (not coarse or (carries and ends > 0.5)):
                 words = f"{100 * ends:.0f} % of the samples along {name} lie at their extreme"
                 yield from CLIPPED.above(ends, words)
             if coarse:
