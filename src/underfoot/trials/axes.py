@@ -184,12 +184,14 @@ def marker_velocity(
     """
     found = []
     for marker in trial.markers.values():
-        time = marker.time
-        inside = np.flatnonzero(~marker.missing & (time >= begin) & (time <= end))
-        if len(inside) < 3 or time[inside[-1]] - time[inside[0]] < 0.05:
+        part = marker.between(begin, end)
+        seen = np.flatnonzero(~part.missing)
+        if len(seen) < 3:
             continue
-        step = marker.positions[inside[-1]] - marker.positions[inside[0]]
-        found.append(step / (time[inside[-1]] - time[inside[0]]))
+        first, last = seen[0], seen[-1]
+        lasting = part.time[last] - part.time[first]
+        if lasting >= 0.05:
+            found.append((part.positions[last] - part.positions[first]) / lasting)
     if len(found) < 3:
         return None
     middle = np.median(found, axis=0)

@@ -316,14 +316,16 @@ def _two_feet(stance: Stance, feet: "_Feet") -> str:
     return ""
 
 
-def _beyond(places: np.ndarray, corners: np.ndarray | None) -> np.ndarray:
-    """How far places (..., 3) lie beyond a plate's edges along its own two axes (m).
+class _Edges:
+    """The edges of a plate in its own axes: one that stands askew is no larger for it."""
 
-    One that stands askew in the laboratory is no larger for it.
-    """
-    assert corners is not None
-    own, middle = plate_axes(corners)[:, :2], corners.mean(axis=0)
-    return np.abs((places - middle) @ own) - np.abs((corners - middle) @ own).max(axis=0)
+    def __init__(self, corners: np.ndarray) -> None:
+        self.own, self.middle = plate_axes(corners)[:, :2], corners.mean(axis=0)
+        self.half = np.abs((corners - self.middle) @ self.own).max(axis=0)
+
+    def beyond(self, places: np.ndarray) -> np.ndarray:
+        """How far places (..., 3) lie beyond the edges along the plate's two axes (m)."""
+        return np.abs((places - self.middle) @ self.own) - self.half
 
 
 class _Feet:
@@ -332,32 +334,37 @@ class _Feet:
     def __init__(self, walk: Walkway, plate: Plate) -> None:
         self.walk, self.plate, self.up = walk, plate, walk.up
         self.markers = {side: walk.trial.marker(name) for side, name in walk.heels.items()}
-        self.others = [p.corners for p in walk.trial.plates if p.usable and p is not plate]
+        others = (p.corners for p in walk.trial.plates if p.usable and p is not plate)
+        self.edges = None if plate.corners is None else _Edges(plate.corners)
+        self.others = [_Edges(corners) for corners in others if corners is not None]
+        self.seen: dict[tuple[float, float], dict[str, int]] = {}
 
     def surface(self, stance: Stance) -> np.ndarray:
         """Velocity (3,) of the surface under a stance (m/s)."""
         return self.walk.surface_velocity(self.plate.name, stance.contact)
 
-    def beyond(self, places: np.ndarray) -> np.ndarray:
-        """How far places (..., 3) lie beyond the plate's edges along its two axes (m)."""
-        return _beyond(places, self.plate.corners)
-
-    def over(self, places: np.ndarray) -> np.ndarray:
+    def over(self, edges: _Edges, places: np.ndarray) -> np.ndarray:
         """Mask of places (n, 3) over the plate, up to 20 mm beyond where no other plate lies."""
-        beyond = self.beyond(places).max(axis=1)
-        elsewhere = [_beyond(places, c).max(axis=1) <= 0.0 for c in self.others if c is not None]
-        return (beyond <= 0.0) | ((beyond <= 0.02) & ~np.any(elsewhere, axis=0))
+        beyond = edges.beyond(places).max(axis=1)
+        inside = beyond <= 0.02
+        beside = np.flatnonzero(inside & (beyond > 0.0))
+        for other in self.others if len(beside) else ():
+            inside[beside] &= other.beyond(places[beside]).max(axis=1) > 0.0
+        return inside
 
     def on_plate(self, stance: Stance) -> dict[str, int]:
         """Frames of the sides whose heel stays over the plate, low and slow, for 100 ms."""
-        found: dict[str, int] = {}
-        for side, marker in self.markers.items() if self.plate.corners is not None else ():
+        span = stance.contact, stance.toe_off
+        if span in self.seen or self.edges is None:
+            return self.seen.get(span, {})
+        found = self.seen[span] = {}
+        for side, marker in self.markers.items():
             time, at = marker.time, marker.positions
             height = at @ self.up
             if not np.isfinite(height).any():
                 continue
             inside = (time >= stance.contact) & (time <= stance.toe_off) & ~marker.missing
-            inside &= self.over(at)
+            inside &= self.over(self.edges, at)
             inside &= height < np.nanmin(height) + 0.06
             velocity = np.gradient(at, 1.0 / marker.rate, axis=0) - self.surface(stance)
             speed = np.linalg.norm(velocity, axis=1)
@@ -402,7 +409,7 @@ class _Feet:
         40 ms from contact.
         """
         early = self.early(stance, max(5, round(0.05 * self.plate.rate)))
-        if self.plate.corners is None or not len(early) or self.on_plate(stance):
+        if self.edges is None or not len(early) or self.on_plate(stance):
             return 0.0
         found = 0.0
         for marker in self.markers.values():
@@ -416,19 +423,19 @@ class _Feet:
             speed = float(np.linalg.norm(np.ptp(at[inside] - carried, axis=0))) / 0.04
             low = float(stand @ self.up - np.nanmin(at @ self.up)) < 0.06
             if speed < 0.8 and low and self.flat(stand, early) < _FOOT_LENGTH:
-                found = max(found, float(np.linalg.norm(np.maximum(self.beyond(stand), 0.0))))
+                found = max(found, float(np.linalg.norm(np.maximum(self.edges.beyond(stand), 0.0))))
         return found
 
     def landing(self, stance: Stance) -> str:
         """Side of the lower of the heels low over the plate at contact: a slipping heel is fast."""
         best, lowest = "", 0.06
-        for side, marker in self.markers.items() if self.plate.corners is not None else ():
+        for side, marker in self.markers.items() if self.edges else ():
             near = np.abs(marker.time - stance.contact) < max(0.03, 1.0 / marker.rate)
             near &= ~marker.missing
             if not near.any():
                 continue
             place = np.median(marker.positions[near], axis=0)
             lift = float(place @ self.up - np.nanmin(marker.positions @ self.up))
-            if lift < lowest and (self.beyond(place) <= 0.1).all():
+            if self.edges and lift < lowest and (self.edges.beyond(place) <= 0.1).all():
                 best, lowest = side, lift
         return best

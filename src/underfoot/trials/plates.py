@@ -31,12 +31,17 @@ def plate_axes(corners: np.ndarray) -> np.ndarray:
         raise DataError("the plate's corners are missing")
     x = corners[0] - corners[1] + corners[3] - corners[2]
     y = corners[0] - corners[3] + corners[1] - corners[2]
-    z = np.cross(x, y)
+    z = _cross(x, y)
     lengths = np.linalg.norm(x), np.linalg.norm(y), np.linalg.norm(z)
     if min(lengths[:2]) < 0.02 or lengths[2] < 0.1 * lengths[0] * lengths[1]:
         raise DataError("the plate's corners enclose no area")
     x, z = x / lengths[0], z / lengths[2]
-    return np.column_stack((x, np.cross(z, x), z))
+    return np.column_stack((x, _cross(z, x), z))
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Cross product of two vectors (3,); numpy's takes ten times as long for one."""
+    return a[[1, 2, 0]] * b[[2, 0, 1]] - a[[2, 0, 1]] * b[[1, 2, 0]]
 
 
 def ordered_corners(corners: np.ndarray) -> tuple[np.ndarray, bool]:
@@ -128,7 +133,7 @@ def finished_plate(
     """
     force = np.array(force, dtype=float)
     seen = list(flags)
-    lost = ~np.isfinite(force).all(axis=1)
+    lost = ~np.isfinite(force @ np.ones(3))  # faster than all()
     if lost.any():
         seen.append(Flag("missing samples", f"{int(lost.sum())} samples without a number"))
     vertical = force @ up
@@ -152,8 +157,8 @@ def finished_plate(
     else:
         words = "baseline not subtracted: the plate is never unloaded for long enough"
         seen.append(Flag("baseline", words))
-    channels = force if raw is None else raw
-    cut = any(saturated(channels[:, i], rate) for i in range(channels.shape[1]))
+    channels = np.ascontiguousarray((force if raw is None else raw).T)
+    cut = any(saturated(channel, rate) for channel in channels)
     if cut:
         seen.append(Flag("saturated", "saturated: a channel stays at its extreme value"))
     peak = float(np.nanmax(np.abs(force @ up), initial=0.0))

@@ -106,7 +106,7 @@ def contacts(
     A stretch begins where the vertical force (n,), N, passes ``threshold`` and counts when it
     lasts 30 ms and reaches five times the threshold; interruptions below 20 ms are bridged.
     """
-    loaded = np.nan_to_num(vertical, nan=0.0) > threshold
+    loaded = vertical > threshold  # not where the number is missing
     for start, stop in runs(~loaded):
         if start > 0 and stop < len(loaded) and stop - start < 0.02 * rate:
             loaded[start:stop] = True
@@ -190,9 +190,16 @@ def low_passed(values: np.ndarray, rate: float, low_pass: LowPass) -> np.ndarray
     if len(values) < 30:
         raise DataError(f"{len(values)} samples are too few to filter", allowed="30 or more")
     padding = min(len(values) - 1, max(15, round(rate / low_pass.cutoff)))
-    if order == 2:  # one section: the same filter in half the time
-        return signal.filtfilt(sections[0, :3], sections[0, 3:], values, axis=0, padlen=padding)
-    return signal.sosfiltfilt(sections, values, axis=0, padlen=padding)
+    if order > 2:
+        return signal.sosfiltfilt(sections, values, axis=0, padlen=padding)
+    # One section: the numbers of scipy's filtfilt in half its time, the rest state kept.
+    begin, end = values[padding:0:-1], values[-2 : -padding - 2 : -1]
+    out = np.concatenate((2 * values[0] - begin, values, 2 * values[-1] - end))
+    rest = _rest(order, cutoff, rate).reshape((2,) + (1,) * (values.ndim - 1))
+    for _ in range(2):
+        out = signal.lfilter(sections[0, :3], sections[0, 3:], out, axis=0, zi=rest * out[0])[0]
+        out = out[::-1]
+    return out[padding:-padding]
 
 
 def low_passed_part(
@@ -209,7 +216,7 @@ def low_passed_part(
     Errors as ``low_passed``.
     """
     margin = int(min(around * rate, len(values)))
-    lost = np.flatnonzero(~np.isfinite(values).all(axis=1))
+    lost = np.flatnonzero(~np.isfinite(values @ np.ones(values.shape[1])))
     begin = max(0, start - margin, *(lost[lost < start] + 1))
     end = min(len(values), stop + margin, *lost[lost >= stop])
     return low_passed(values[begin:end], rate, low_pass)[start - begin : stop - begin]
@@ -221,6 +228,15 @@ def _sections(order: int, cutoff: float, rate: float) -> np.ndarray:
     from scipy import signal
 
     return np.asarray(signal.butter(order, cutoff, fs=rate, output="sos"))
+
+
+@lru_cache(maxsize=64)
+def _rest(order: int, cutoff: float, rate: float) -> np.ndarray:
+    """State (2,) of the section of a second-order filter after a long unit input."""
+    from scipy import signal
+
+    sections = _sections(order, cutoff, rate)
+    return np.asarray(signal.lfilter_zi(sections[0, :3], sections[0, 3:]))
 
 
 def velocity(positions: np.ndarray, rate: float, low_pass: LowPass) -> np.ndarray:

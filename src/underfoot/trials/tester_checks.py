@@ -48,14 +48,14 @@ def log_kind(plate: Plate, up: np.ndarray) -> str:
     """
     normal = plate.force @ up
     level = float(np.nanpercentile(normal, 99)) if len(normal) else 0.0
-    loaded = np.nan_to_num(normal) > 0.2 * level
+    loaded = normal > 0.2 * level
     if level < 50.0 or loaded.sum() < 20:
         return ""
     first = max(runs(loaded), key=lambda run: run[1] - run[0])
     part = np.nan_to_num(plate.force[first[0] : first[1]])
     normal = part @ up
     shear = part - np.outer(normal, up)
-    axis = np.linalg.svd(shear, full_matrices=False)[2][0]
+    axis = np.linalg.eigh(shear.T @ shear)[1][:, -1]
     along = shear @ axis
     impulses = sorted((float(along[along > 0].sum()), -float(along[along < 0].sum())))
     back = impulses[0] / impulses[1] if impulses[1] > 0 else 0.0

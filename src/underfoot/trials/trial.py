@@ -1,8 +1,10 @@
 """One recording as read: channels, plates, markers, events, where it came from, its edits."""
 
 import hashlib
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Self, TypeVar
 
@@ -57,6 +59,14 @@ class Marker:
     def time(self) -> np.ndarray:
         """Time of each frame (s), shape (n,)."""
         return _time(len(self.positions), self.rate, self.start, self.times)
+
+    def between(self, begin: float, end: float) -> "Marker":
+        """Return the marker in the frames between two times (s), both included."""
+        if self.times is None and math.isinf(begin) and math.isinf(end):
+            return self
+        inside = np.flatnonzero((self.time >= begin) & (self.time <= end))
+        rows = slice(inside[0], inside[-1] + 1) if len(inside) else slice(0, 0)
+        return Marker(self.positions[rows], self.rate, times=self.time[rows])
 
     @property
     def missing(self) -> np.ndarray:
@@ -286,4 +296,11 @@ def _folded(name: str) -> str:
 
 
 def _time(n: int, rate: float, start: float, times: np.ndarray | None) -> np.ndarray:
-    return start + np.arange(n) / rate if times is None else times
+    return _even_times(n, rate, start) if times is None else times
+
+
+@lru_cache(maxsize=64)  # asked for hundreds of times a recording
+def _even_times(n: int, rate: float, start: float) -> np.ndarray:
+    times = start + np.arange(n) / rate
+    times.setflags(write=False)
+    return times
