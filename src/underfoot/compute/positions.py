@@ -20,25 +20,19 @@ from .contact_friction import friction_sums
 from .cost import cost
 from .numbers import scalars
 from .sensors import scanned
-from .sole import file_surface
+from .sole import file_periods, file_surface
 
 ANGLE_BAND = math.radians(1)
 """The shoe angle lies evenly within this of the case's, rad; assumed."""
-DIRECTION_BAND = math.radians(3)
-"""The same of the sliding direction against a sole from a file, rad; assumed."""
 HELD = "spread of the friction law, its inputs and the position of the tread"
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a tread lies: its pattern shifted by (x, y), m, the shoe turned by ``turn``, rad.
-
-    A sole from a file is turned by ``direction`` (rad, anticlockwise seen from above) instead.
-    """
+    """Where a tread lies: its pattern shifted by (x, y), m, the shoe turned by ``turn``, rad."""
 
     shift: tuple[float, float] = (0.0, 0.0)
     turn: float = 0.0
-    direction: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,13 +43,11 @@ class TreadPositions:
         places: Of the pattern and the shoe.
         values: Name of a result's scalar: its value at each place, SI, on the grid of the run.
         left_out: Number of positions that did not converge.
-        coarse: Sole and contact at the case's own place on the quick grid, where they were solved.
     """
 
     places: tuple[Place, ...]
     values: Mapping[str, Array]
     left_out: int
-    coarse: tuple[SoleMap, SoleContact] | None
 
     def factors(self, name: str) -> Array:
         """Return the scalar at each place over that at the case's own; 1 where that is 0."""
@@ -116,21 +108,19 @@ class TreadPositions:
         failed = f"{self.left_out} did not converge and are left out" if self.left_out else ""
         if len(self.places) == 1:
             return {"tread_position": f"as the case describes it; {failed} of the average"}
+        cof, load = (float(self.values[name][0]) for name in ("cof", "fluid_load"))
         return {
             "tread_position": f"COF {self._range('cof')}, load on the film "
             f"{self._range('fluid_load', 'N')} over {len(self.places)} positions of the tread. "
-            "Numbers are means over them; maps and histories show the position that the case "
-            "describes" + (f"; {failed}" if failed else "")
+            f"Numbers are means over them; maps and histories show the position that the case "
+            f"describes (COF {display(cof, '1')}, {display(load, 'N')} on the film)"
+            + (f"; {failed}" if failed else "")
         }
 
     def assumptions(self) -> tuple[str, ...]:
-        """Return the bands of shoe angle and sliding direction, where they were used."""
+        """Return the band of the shoe angle, where it was used."""
         angle = any(place.turn for place in self.places)
-        direction = any(place.direction for place in self.places)
-        return (
-            *("motion.shoe_angle: ±1 deg over the positions of the tread",) * angle,
-            *("sliding direction: ±3 deg over the positions of the tread",) * direction,
-        )
+        return ("motion.shoe_angle: ±1 deg over the positions of the tread",) * angle
 
     def fields(self) -> dict[str, Any]:
         """Return the variables of a data set: where the positions are, COF and load there."""
@@ -140,12 +130,10 @@ class TreadPositions:
 
         shift = np.array([place.shift for place in self.places])
         turn = [place.turn for place in self.places]
-        direction = [place.direction for place in self.places]
         return {
             "position_shift_x": at(shift[:, 0], "m", "shift of the tread's pattern, forward"),
             "position_shift_y": at(shift[:, 1], "m", "shift of the tread's pattern, across"),
             "position_turn": at(turn, "rad", "change of the shoe angle"),
-            "position_direction": at(direction, "rad", "change of the sliding direction"),
             "position_cof": at(self.values["cof"], "1", "coefficient of friction"),
             "position_fluid_load": at(self.values["fluid_load"], "N", "load carried by the fluid"),
         }
@@ -180,28 +168,12 @@ def _golden_step(count: int) -> int:
     return min(steps, key=lambda step: abs(step - golden))
 
 
-def file_places(count: int) -> tuple[Place, ...]:
-    """Return ``count`` places of a sole that can't be shifted under itself; the first at rest.
-
-    The others lie evenly on an ellipse of shoe angle and sliding direction, with the variance of
-    an even spread over both bands.
-    """
-    found = [Place()]
-    for k in range(count - 1):
-        around = 2 * math.pi * k / (count - 1)
-        reach = math.sqrt(2 * count / (3 * (count - 1)))
-        turn = reach * math.cos(around)
-        direction = round(reach * math.sin(around), 12)  # half way round is at rest, not next to it
-        found.append(Place((0.0, 0.0), ANGLE_BAND * turn, DIRECTION_BAND * direction))
-    return tuple(found)
-
-
 def tread_positions(
     case: Case,
     law_on: Callable[[SoleMap], FrictionLaw | EdgedLaw],
     sole: SoleMap,
     contact: SoleContact,
-    solve: Callable[[Case, Place, Progress], tuple[SoleMap, SoleContact]],
+    solve: Callable[[Place, Progress], tuple[SoleMap, SoleContact]],
     *,
     viscosity: float | None,
     quick: bool,
@@ -209,69 +181,45 @@ def tread_positions(
 ) -> TreadPositions | None:
     """Return the numbers of a run at more positions of its tread; None without a tread.
 
-    ``law_on`` returns the local friction on a sole. ``solve`` returns sole and contact of a case
-    at a place on the quick grid; what it gives becomes a value on the run's own grid by
-    ``on_own_grid``.
+    ``law_on`` returns the local friction on a sole, ``solve`` sole and contact at a place on the
+    grid of ``sole``.
     """
     count = position_count(case, quick=quick)
     if count == 1:
         return None
     tread = _tread(case)
-    lying = file_places(count) if tread is None else places(tread.periods, count)
-    own = place_numbers(case, law_on(sole), sole, contact, viscosity)
-    kept = [(Place(), own)] if quick else []
-    coarse = None
-    for k, place in list(enumerate(lying))[len(kept) :]:
+    lying = places(file_periods(case) if tread is None else tread.periods, count)
+    kept = [(Place(), place_numbers(case, law_on(sole), sole, contact, viscosity))]
+    for k, place in list(enumerate(lying))[1:]:
         try:
-            there = solve(case, place, _stage(progress, k, count))
+            there = solve(place, _stage(progress, k, count))
         except ConvergenceError:
             continue
         if there[1].status.usable:
             kept.append((place, place_numbers(case, law_on(there[0]), *there, viscosity)))
-            coarse = there if k == 0 else coarse
-    if not kept or kept[0][0] != Place():  # nowhere to compare the two grids
-        kept, coarse = [(Place(), own)], None
-    values = {
-        name: on_own_grid(value, np.array([numbers[name] for _, numbers in kept]))
-        for name, value in own.items()
-    }
-    values["cof"] = values["cof_adhesion"] + values["cof_hysteresis"] + values["cof_viscous"]
-    return TreadPositions(tuple(place for place, _ in kept), values, count - len(kept), coarse)
-
-
-def on_own_grid(own: float, quick: Array) -> Array:
-    """Return the values ``quick`` (n,) of another grid as they would be on the run's own.
-
-        v_k = q_k + (v_0 - q_0) min(1, q_k / q_0)
-
-    What the grids differ by at the first place, where ``own`` is v_0; in proportion where a value
-    is smaller there, so that nothing becomes negative.
-    """
-    share = np.divide(quick, quick[0], out=np.ones_like(quick), where=quick < quick[0])
-    return quick + (own - quick[0]) * share
+    values = {name: np.array([numbers[name] for _, numbers in kept]) for name in kept[0][1]}
+    return TreadPositions(tuple(place for place, _ in kept), values, count - len(kept))
 
 
 def position_count(case: Case, *, quick: bool) -> int:
     """Return over how many positions of its tread a run averages; 1 for a sole without.
 
-    On the quick grid half as many, of a sole from a file at least 3 (its own and a pair).
+    On the quick grid half as many.
     """
-    count = case.numerics.tread_positions
-    if case.shoe.outsole is not None:
-        lugs = float(file_surface(case).tread_depth.max()) > 0
-        return (max(math.ceil(count / 2), min(count, 3)) if quick else count) if lugs else 1
-    count = count if _tread(case) else 1
+    if case.shoe.outsole is None:
+        treaded = _tread(case) is not None
+    else:
+        treaded = float(file_surface(case).tread_depth.max()) > 0
+    count = case.numerics.tread_positions if treaded else 1
     return math.ceil(count / 2) if quick else count
 
 
 def run_cost(case: Case, *, quick: bool) -> Cost:
     """Return what a run will take, all positions of the tread together."""
-    coarse = cost(case, case.numerics.quick_grid_spacing)
-    own = coarse if quick else cost(case, case.numerics.grid_spacing)
-    count = position_count(case, quick=quick)
-    more = count - 1 if quick or count == 1 else count
-    low, high = (a + more * b for a, b in zip(own.seconds, coarse.seconds, strict=True))
-    return replace(own, seconds=(low, high))
+    numerics = case.numerics
+    one = cost(case, numerics.quick_grid_spacing if quick else numerics.grid_spacing)
+    low, high = (position_count(case, quick=quick) * seconds for seconds in one.seconds)
+    return replace(one, seconds=(low, high))
 
 
 def _tread(case: Case) -> Tread | None:

@@ -21,7 +21,7 @@ from .positions import Place, TreadPositions
 from .prepare import Prepared
 from .sensors import blind_sensor, scanned
 from .sole import overload_breaches
-from .solve import Solution, solved_on_quick_grid
+from .solve import Solution, solved_at
 from .summary import FILM_MATTERS
 
 RESOLVED = 16
@@ -132,12 +132,12 @@ def _grid_checked(
     case, viscosity = parts.case, parts.viscosity
     columns = max(RESOLVED, case.numerics.cells_along)
     resolved = replace(parts, case=case.replace("numerics.cells_along", columns))
-    place: dict[str, Any] = {"place": Place(), "progress": progress}
     spacing = case.numerics.quick_grid_spacing
+    place: dict[str, Any] = {"place": Place(), "spacing": spacing, "progress": progress}
     cells = f"cells of {display(spacing, 'm')}, {columns} along the sliding"
-    on_cells = [solved_on_quick_grid(resolved, **place)]
+    on_cells = [solved_at(resolved, **place)]
     if viscosity is not None:  # a dry contact has no memory: its steps are not steps in time
-        on_cells.append(solved_on_quick_grid(resolved, **place, finer=2))
+        on_cells.append(solved_at(resolved, **place, finer=2))
     if not all(contact.status.usable for _, contact in on_cells):
         failed = f"not estimated: a march on {cells} did not converge"
         return values, {**labels, "grid_error": failed}

@@ -58,10 +58,8 @@ def run(
     parts = prepared(case, spacing, given, progress=progress)
     moments.append(time.perf_counter())
     count = position_count(case, quick=quick)
-    first = 1.0 / (count if quick or count == 1 else count + 1)  # on the quick grid one of them
-    solution = solved(parts, part(progress, 0.0, first))
-    further = progress if quick else part(progress, first, 1.0)
-    positions = averaged(parts, solution, quick=quick, progress=further)
+    solution = solved(parts, part(progress, 0.0, 1.0 / count))
+    positions = averaged(parts, solution, quick=quick, progress=progress)
     moments.append(time.perf_counter())
     reading = readings(parts, solution, positions, quick=quick, progress=progress)
     moments.append(time.perf_counter())

@@ -36,10 +36,11 @@ from underfoot.core import (
     display,
     silent,
 )
-from underfoot.shoe import SoleMap, SoleSurface, heel_map, rotated_surface, surface_map
+from underfoot.shoe import SoleMap, SoleSurface, heel_map, surface_map
 from underfoot.shoe.ball_joint import PLACE, BallJoint
 from underfoot.shoe.row_division import row_cells
 from underfoot.shoe.shape import SoleShape
+from underfoot.shoe.tread_shift import moved_tread, tread_periods
 from underfoot.shoe.worn import ArchardStep, WornMap, archard_wear, worn_surface
 from underfoot.sole_contact.edge_peak import MOST_OVERLOADED, overloaded_share
 from underfoot.sole_contact.slits import loaded_slits
@@ -87,16 +88,14 @@ def sole_map(
     *,
     shift: tuple[float, float] = (0.0, 0.0),
     turn: float = 0.0,
-    direction: float = 0.0,
 ) -> SoleMap:
     """Return the tilted sole of the case on a grid of ``spacing`` (m).
 
-    ``shift`` (x, y; m) moves the tread's pattern under a parametric sole, ``direction`` (rad,
-    anticlockwise seen from above) turns a sole from a file against the sliding; ``turn`` (rad) adds
-    to the shoe angle of both. Wear stays where it is.
+    ``shift`` (x, y; m) moves the tread under the sole, ``turn`` (rad) adds to the shoe angle. Wear
+    stays where it is.
     """
     if case.shoe.outsole is not None:
-        return file_sole_map(case, spacing, turn=turn, direction=direction)
+        return file_sole_map(case, spacing, shift=shift, turn=turn)
     shape = sole_shape(case, progress)
     if shape.tread is not None and any(shift):
         shape = cast("SoleShape", replace(cast("Any", shape), tread=shape.tread.moved(shift)))
@@ -237,6 +236,11 @@ def _dry_contact(
 
 def file_outsole(case: Case) -> "FileOutsole":
     """Return the outsole in the file of the case, as the case says it is to be read."""
+    return _read(*_file_key(case))
+
+
+def _file_key(case: Case) -> "tuple[str, str, FileSettings]":
+    """Return path, checksum and settings of the case's outsole file."""
     outsole = case.shoe.outsole
     if outsole is None:
         raise InputError("the case has no outsole file", where="shoe.outsole.file")
@@ -248,7 +252,7 @@ def file_outsole(case: Case) -> "FileOutsole":
     from underfoot.shoe.files import FileSettings
 
     settings = FileSettings(**given, spacing=outsole.map_spacing)
-    return _read(outsole.file, outsole.sha256 or "", settings)
+    return outsole.file, outsole.sha256 or "", settings
 
 
 @lru_cache(maxsize=4)
@@ -260,25 +264,40 @@ def _read(path: str, checksum: str, settings: "FileSettings") -> "FileOutsole":
         return outsole_from_file(file, settings)
 
 
-def file_surface(case: Case) -> SoleSurface:
-    """Return the bottom of the case's outsole file, worn as the case says."""
+@lru_cache(maxsize=4)
+def _periods(path: str, checksum: str, settings: "FileSettings") -> NDArray[np.float64]:
+    return tread_periods(_read(path, checksum, settings).surface)
+
+
+def file_periods(case: Case) -> NDArray[np.float64]:
+    """Return the periods (n, 2) of the tread in the case's outsole file, m; ``tread_periods``."""
+    return _periods(*_file_key(case))
+
+
+def file_surface(case: Case, shift: tuple[float, float] = (0.0, 0.0)) -> SoleSurface:
+    """Return the bottom of the case's outsole file, worn as the case says.
+
+    ``shift`` (x, y; m) moves its tread before it is worn.
+    """
     surface, wear = file_outsole(case).surface, case.shoe.wear
+    if any(shift):
+        surface = moved_tread(surface, shift, file_periods(case))
     removed = wear.build() if wear.depth > 0 else None
     return surface if removed is None else worn_surface(surface, removed)
 
 
 def file_sole_map(
-    case: Case, spacing: float, *, turn: float = 0.0, direction: float = 0.0
+    case: Case, spacing: float, *, shift: tuple[float, float] = (0.0, 0.0), turn: float = 0.0
 ) -> SoleMap:
     """Return the tilted outsole of the case's file on the solver's grid, trimmed to its reach.
 
-    ``turn`` (rad) adds to the shoe angle, ``direction`` turns the sole over the floor.
+    ``shift`` (x, y; m) moves its tread, ``turn`` (rad) adds to the shoe angle.
 
     Raises:
         InputError: Channels below the grid, a region or unit that doesn't fit, tread deeper than
             the outsole, nothing under the load.
     """
-    surface = rotated_surface(file_surface(case), direction)
+    surface = file_surface(case, shift)
     thickness = case.shoe.sole.outsole_thickness
     deepest = float(np.max(surface.tread_depth))
     if deepest >= thickness:

@@ -60,12 +60,20 @@ def solved(parts: Prepared, progress: Progress = silent) -> Solution:
     return Solution(contact, recorder, friction, sensor)
 
 
-def solved_on_quick_grid(
-    parts: Prepared, place: Place, *, finer: float = 1, progress: Progress = silent
+def solved_at(
+    parts: Prepared,
+    place: Place,
+    spacing: float,
+    *,
+    finer: float = 1,
+    progress: Progress = silent,
 ) -> tuple[SoleMap, SoleContact]:
-    """Return sole and contact with the tread at a place; ``finer``: ``solver_settings``."""
-    case, lying = parts.case, {"shift": place.shift, "direction": place.direction}
-    sole = sole_map(case, case.numerics.quick_grid_spacing, turn=place.turn, **lying)
+    """Return sole and contact with the tread at a place, on cells of ``spacing`` (m).
+
+    ``finer``: ``solver_settings``.
+    """
+    case = parts.case
+    sole = sole_map(case, spacing, shift=place.shift, turn=place.turn)
     compliance, more = parts.compliance_on(sole, place.turn), {"finer": finer, "progress": progress}
     return sole, solved_motion(case, sole, compliance, parts.asperities, parts.film, **more)
 
@@ -80,8 +88,8 @@ def averaged(
     if "compliance" in parts.objects or not solution.contact.status.usable:
         return None
 
-    def at_place(_case: Case, place: Place, progress: Progress) -> tuple[SoleMap, SoleContact]:
-        return solved_on_quick_grid(parts, place, progress=progress)
+    def at_place(place: Place, progress: Progress) -> tuple[SoleMap, SoleContact]:
+        return solved_at(parts, place, parts.spacing, progress=progress)
 
     return tread_positions(
         parts.case,

@@ -5,7 +5,6 @@ from .geometry import SoleSurface as SoleSurface
 from .grids import heel_map as heel_map
 from .grids import heel_surface as heel_surface
 from .grids import place_on_floor as place_on_floor
-from .grids import rotated_surface as rotated_surface
 from .grids import surface_map as surface_map
 from .shape import Facet as Facet
 from .shape import Flat as Flat

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -417,39 +416,6 @@ def _signed_distance(
         )
 
     return at
-
-
-def rotated_surface(surface: SoleSurface, angle: float) -> SoleSurface:
-    """Return the surface turned by ``angle`` (rad, anticlockwise seen from above) over the floor.
-
-    About the middle of its plan form; each cell takes the heights of the nearest cell before.
-    """
-    if angle == 0.0:
-        return surface
-    cosine, sine = math.cos(angle), math.sin(angle)
-    middle = (surface.outline.min(axis=0) + surface.outline.max(axis=0)) / 2
-    outline = (surface.outline - middle) @ np.array([[cosine, sine], [-sine, cosine]])
-    shift = outline.min(axis=0)[0]
-    outline[:, 0] -= shift
-    half = np.abs(outline[:, 1]).max()
-    x = (np.arange(math.ceil(outline[:, 0].max() / surface.spacing)) + 0.5) * surface.spacing
-    y = centred(math.ceil(2 * half / surface.spacing), surface.spacing)
-    there_x, there_y = np.meshgrid(x + shift, y, indexing="ij")
-    at_x = middle[0] + there_x * cosine + there_y * sine
-    at_y = middle[1] + there_y * cosine - there_x * sine
-    cells = _cells(surface, at_x, at_y)
-    away = np.hypot(at_x - surface.x[cells[0]], at_y - surface.y[cells[1]])
-    inside = surface.inside[cells] & (away < surface.spacing)
-    return replace(
-        surface,
-        x=x,
-        y=y,
-        height=np.where(inside, surface.height[cells], np.nan),
-        land=inside & surface.land[cells],
-        tread_depth=np.where(inside, surface.tread_depth[cells], 0.0),
-        outline=outline,
-        base=np.where(inside, surface.land_base[cells], np.nan),
-    )
 
 
 def _cells(surface: SoleSurface, x: Array, y: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

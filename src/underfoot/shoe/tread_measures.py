@@ -36,6 +36,7 @@ _ROUNDED = (0.25, 3.0)  # slope of a rounded edge: no floor of a channel, no wal
 _SLOPE_REACH = 0.5e-3  # m
 _GRAZED = (2e-3, 0.12)  # m from the rim, slope of the floor there
 _FINE = 0.4e-3  # m
+_REACHED = 30e-6  # m
 _MOST_NOISE = 0.1e-3  # m: to begin with
 WIDEST_SIPE = 1.2e-3
 """A channel narrower than this is a slit, m."""
@@ -113,6 +114,18 @@ def tread_map(
     floor = floor_depth(depth, channel)
     lugs = np.where(land & ~far, floor[nearest_true(channel)], 0.0)
     return TreadMap(land, lugs, base, level, noise)
+
+
+def reached_by_floor(height: Array, land: Mask, spacing: float) -> Mask:
+    """Return the land that a nearly flat floor reaches: not the rounded edges of lugs.
+
+    What stands no more than max(30 um, 6 sigma) over the base of ``tread_map``.
+    """
+    rolled = rolled_base(height, spacing, ROLLING_RADIUS, STEEPEST_RIM)
+    above = np.minimum(height - rolled, _rounded_rim(height, spacing))
+    noise = height_noise(np.where(land, height, np.nan))
+    with np.errstate(invalid="ignore"):
+        return land & (above <= max(_REACHED, NOISE_FACTOR * noise))
 
 
 def _rounded_rim(height: Array, spacing: float) -> Array:

@@ -91,7 +91,7 @@ def carried_on(height: Array, land: Mask) -> Array:
     fallback = height[nearest_true(land)]
     total, weights = np.zeros_like(height), np.zeros_like(height)
     for axis in (0, 1):
-        value, gap = _between_land(np.moveaxis(height, axis, 0), np.moveaxis(land, axis, 0))
+        value, gap = between_land(np.moveaxis(height, axis, 0), np.moveaxis(land, axis, 0))
         known = np.isfinite(value)
         weight = np.where(known, 1.0 / np.maximum(gap, 1.0), 0.0)
         total += np.moveaxis(np.where(known, value, 0.0) * weight, 0, axis)
@@ -100,7 +100,7 @@ def carried_on(height: Array, land: Mask) -> Array:
     return np.where(inside, np.where(land, height, filled), np.nan)
 
 
-def _between_land(height: Array, land: Mask) -> tuple[Array, Array]:
+def between_land(height: Array, land: Mask) -> tuple[Array, Array]:
     """Return the linear value between the land before and after along axis 0, and their gap."""
     count = height.shape[0]
     index = np.arange(count)[:, None] * np.ones_like(height)
