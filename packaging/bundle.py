@@ -29,11 +29,11 @@ def make() -> None:
         f"--workpath={ROOT / 'build'}",
         f"--specpath={ROOT / 'build'}",
     ]
-    options += [
-        "--collect-submodules=underfoot",
-        "--collect-submodules=underfoot_readers",
-        "--collect-submodules=underfoot_simulator",
-    ]
+    options += ["--collect-submodules=underfoot"]
+    for wing in sorted((ROOT / "wings").iterdir()):
+        options += [f"--collect-submodules=underfoot_{wing.name}"]
+        options += [f"--collect-data=underfoot_{wing.name}"]
+        options += [f"--copy-metadata=underfoot-{wing.name}"]
     options += ["--collect-data=underfoot"]
     options += ["--collect-data=nicegui", "--recursive-copy-metadata=underfoot"]
     options += [f"--exclude-module={name}" for name in LEFT_OUT]

@@ -13,6 +13,7 @@ from typing import Any, Self
 from underfoot.core import InputError, Progress, silent
 from underfoot.core.files import whole_folder
 from underfoot.core.progress import part
+from underfoot.core.registry import offered
 from underfoot.report.trials_figures import Tile, sheets
 from underfoot.report.trials_report import (
     STORE,
@@ -39,7 +40,6 @@ from underfoot.trials.analyse.record_signals import record_signals
 from underfoot.trials.analyse.tables import quantity_name, scaled, shown_unit
 from underfoot.trials.protocols import Protocol, protocol, protocol_names
 from underfoot.trials.trial import Edit
-from underfoot_simulator import simulated_folder
 
 from .trials_plots import record_plot, run_plot, step_plot, tile_svg
 
@@ -104,6 +104,7 @@ def protocols(*, progress: Progress = silent) -> dict[str, str]:
 
 def example(folder: str, *, progress: Progress = silent) -> None:
     """Make a folder of made-up slips with known truth."""
+    simulated_folder = offered("simulators", "simulate")
     with whole_folder(Path(folder)) as made:
         simulated_folder("slips", made, count=6, progress=progress)
 

@@ -154,8 +154,9 @@ def simulate(
     """Write made-up measurements with known truth, to try the analysis out; clearly synthetic."""
     from underfoot.core.files import whole_folder
     from underfoot.core.progress import bar
-    from underfoot_simulator import simulated_folder
+    from underfoot.core.registry import offered
 
+    simulated_folder = offered("simulators", "simulate")
     with bar("writing made-up trials") as progress, whole_folder(out, overwrite=overwrite) as made:
         paths = simulated_folder(kind, made, count=count, seed=seed, progress=progress)
     say(

@@ -18,7 +18,12 @@ from typing import Any
 from .errors import InputError
 
 PREFIX = "underfoot."
-WINGS = {("commands", "micro"): "underfoot-block", ("studies", "g1"): "underfoot-block"}
+WINGS = {
+    ("commands", "micro"): "underfoot-block",
+    ("studies", "g1"): "underfoot-block",
+    ("simulators", "simulate"): "underfoot-simulator",
+    ("trial_formats", "readers"): "underfoot-readers",
+}
 """Package of this project that offers a name."""
 
 
@@ -103,7 +108,7 @@ def offered(door: str, name: str, check: Callable[[Any], str] = lambda _item: ""
     if wing := WINGS.get((door, name)):
         raise InputError(
             f"{name} comes with the package {wing}",
-            remedy=f"pip install {wing} (wings/ in the source)",
+            remedy=f"pip install {wing} (in the source: ./wings/{wing.partition('-')[2]})",
         )
     return None
 

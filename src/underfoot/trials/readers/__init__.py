@@ -9,7 +9,15 @@ from underfoot.core.registry import offered
 
 from ..trial import Trial
 from .draft import Draft
-from .formats import TABLE, TrialReader, file_format, nearest_format, trial_readers, trial_suffixes
+from .formats import (
+    TABLE,
+    TrialReader,
+    file_format,
+    missing_readers,
+    nearest_format,
+    trial_readers,
+    trial_suffixes,
+)
 from .profile import PlateColumns, Profile, profile_from, read_profile, with_channels
 from .sheet import Sheet, read_sheet
 
@@ -63,6 +71,7 @@ def read_trials(
         trials = reader(draft)
     except UnderfootError as error:
         error.where = error.where or path.name
+        error.remedy = f"{error.remedy or ''} {missing_readers()}".strip() or None
         raise
     except (ValueError, IndexError, KeyError, TypeError, ArithmeticError, MemoryError) as error:
         # Damaged files break assumptions in ways no check foresees; the user gets one kind of

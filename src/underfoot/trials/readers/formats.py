@@ -1,25 +1,24 @@
 """The table of file formats: how each is recognised, and what reads it.
 
 A reader is one function and one entry. The core reads C3D and plain tables; all other formats
-stand in the wing ``underfoot_readers`` (its ``READERS``); other packages add theirs by the door
-``trial_readers`` (``docs/extending.md``).
+enter by the registry, those of the wing ``underfoot_readers`` as a whole (``trial_formats``), those
+of others one by one (``trial_readers``, ``docs/extending.md``).
 """
 
 import re
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import lru_cache
 from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from underfoot.core import DataError
+from underfoot.core import DataError, InputError
+from underfoot.core.registry import offered, offers
 
 from .text import utf16_of
-
-WINGS = ("underfoot_readers",)
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +54,7 @@ class TrialReader:
         return getattr(import_module(module), name)(draft)
 
 
-_HERE = "underfoot.trials.readers."
+_DOOR, _HERE = "trial_formats", "underfoot.trials.readers."
 C3D = TrialReader("C3D", _HERE + "c3d:read_c3d", suffixes=(".c3d",))
 TABLE = TrialReader(
     "table", _HERE + "columns:read_columns", magic=(b"PK\x03\x04", b"\xd0\xcf\x11\xe0"),
@@ -65,9 +64,21 @@ TABLE = TrialReader(
 
 @lru_cache(maxsize=1)
 def trial_readers() -> tuple[TrialReader, ...]:
-    """Return the readers of the wings that are here."""
-    found = (find_spec(wing) and import_module(wing).READERS for wing in WINGS)
-    return tuple(reader for readers in found if readers for reader in readers)
+    """Return the readers of the packages that are here and can be loaded."""
+    found: list[TrialReader] = []
+    for name in offers(_DOOR):
+        with suppress(InputError):  # told by underfoot doctor; files of other formats are read
+            found += offered(_DOOR, name)
+    return tuple(found)
+
+
+def missing_readers() -> str:
+    """Return what to do where the wing of readers is not here, "" where it is."""
+    try:
+        offered(_DOOR, "readers")
+    except InputError as error:
+        return f"For formats of other makers: {error.remedy}"
+    return ""
 
 
 def trial_suffixes() -> tuple[str, ...]:
