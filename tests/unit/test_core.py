@@ -125,3 +125,10 @@ def test_a_link_to_a_folder_is_followed(tmp_path):
     with_content(link)
     assert link.is_symlink()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["link", "real"]
+
+
+def test_an_old_name_answers_and_warns_at_the_line_that_calls():
+    value = SourcedValue(1.5, "Pa s", "a table", 0.1)
+    with pytest.warns(FutureWarning, match=r"SourcedValue.as_dict is to_dict now.* in 0.3") as told:
+        assert value.as_dict() == value.to_dict()
+    assert told[0].filename == __file__

@@ -164,3 +164,17 @@ def imported_names(node):
         return [node.module]
     called = isinstance(node, ast.Call) and getattr(node.func, "id", "") == "optional_module"
     return [node.args[0].value] if called else []
+
+
+def test_one_version_stands_everywhere():
+    version = tomllib.loads((REPOSITORY / "pyproject.toml").read_text())["project"]["version"]
+    for wing in (REPOSITORY / "wings").glob("*/pyproject.toml"):
+        assert tomllib.loads(wing.read_text())["project"]["version"] == version, wing
+    assert f"\nversion: {version}\n" in (REPOSITORY / "CITATION.cff").read_text()
+    assert re.search(rf"^## {re.escape(version)} ", (REPOSITORY / "CHANGELOG.md").read_text(), re.M)
+
+
+def test_the_map_for_contributors_names_every_room():
+    told = (REPOSITORY / "CONTRIBUTING.md").read_text().split("```")[1]
+    rooms = {path.parent.name for path in (SOURCE / "underfoot").glob("*/__init__.py")}
+    assert rooms - {"data"} <= set(re.findall(r"\w+", told))

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
+from .deprecation import renamed
 from .errors import DataError
 from .units import display
 
@@ -51,6 +52,8 @@ class SourcedValue:
     def to_dict(self) -> dict[str, Any]:
         """Return plain data for JSON and CSV."""
         return {name: getattr(self, name) for name in self.__slots__}
+
+    as_dict = renamed("as_dict", "to_dict", gone="0.3")
 
     def scaled(self, factor: float) -> "SourcedValue":
         """Return the value, its uncertainty and its interval times a factor, 0 or more."""

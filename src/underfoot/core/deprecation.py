@@ -1,0 +1,25 @@
+"""Old names that still answer: for one minor version, with a warning that names the new one.
+
+The policy stands in ``CONTRIBUTING.md``; the names that answer so, in ``CHANGELOG.md``.
+"""
+
+from collections.abc import Callable
+from typing import Any
+from warnings import warn
+
+
+def renamed(old: str, new: str, *, gone: str) -> Callable[..., Any]:
+    """Return a method for a class to keep as ``old``: it warns and answers as its method ``new``.
+
+    ``gone``: version without the old name. The warning is a FutureWarning, which people see who
+    only run a script, and points at the line that calls.
+    """
+
+    def answer(self: Any, *arguments: Any, **options: Any) -> Any:
+        words = f"{type(self).__name__}.{old} is {new} now; the old name goes in {gone}"
+        warn(words, FutureWarning, stacklevel=2)
+        return getattr(self, new)(*arguments, **options)
+
+    answer.__name__ = old
+    answer.__doc__ = f"Old name of ``{new}``, until {gone}."
+    return answer
