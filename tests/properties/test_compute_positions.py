@@ -14,6 +14,7 @@ from underfoot.compute.positions import (
     places,
     position_count,
     run_cost,
+    shoe_angles,
 )
 from underfoot.compute.run import run
 from underfoot.compute.sole import sole_map
@@ -154,7 +155,9 @@ def test_the_offset_of_a_case_moves_the_pattern_with_its_sipes(bars):
 def test_the_number_of_positions_is_a_field_with_a_range(bars):
     assert position_count(bars, quick=False) == 4
     assert position_count(bars, quick=True) == 2
-    assert position_count(bars.replace("shoe.tread", {"pattern": "none"}), quick=False) == 1
+    plain = bars.replace("shoe.tread", {"pattern": "none"})
+    assert position_count(plain, quick=False) == position_count(plain, quick=True) == 3
+    assert position_count(plain.replace("numerics.tread_positions", 1), quick=False) == 1
     for wrong in (0, 65, 2.5):
         with pytest.raises(CaseError, match="tread_positions"):
             bars.replace("numerics.tread_positions", wrong)
@@ -168,15 +171,43 @@ def test_an_averaged_run_is_estimated_at_as_many_marches_as_it_takes(bars):
         assert more.memory == one.memory
 
 
-def test_a_sole_without_tread_does_not_change(worn_shoe_case, worn_shoe_result):
-    alone = run(worn_shoe_case.replace("numerics.tread_positions", 1))
-    assert worn_shoe_case.numerics.tread_positions > 1
-    for name, one in worn_shoe_result.scalars.items():
-        assert alone.scalars[name] == one, name
-    assert alone.labels == worn_shoe_result.labels
-    assert alone.assumptions == worn_shoe_result.assumptions
-    assert set(alone.fields) == set(worn_shoe_result.fields)
-    assert "position_cof" not in alone.fields
+def test_a_sole_without_tread_holds_a_degree_of_angle_in_its_interval(worn_shoe_case):
+    alone = run(worn_shoe_case.replace("numerics.tread_positions", 1), quick=True)
+    found = run(worn_shoe_case, quick=True)
+    for name, one in alone.scalars.items():
+        if name != "slip_probability":  # of the draws
+            assert found.value(name) == one.value, name
+    angles = [ANGLE_BAND * part / math.sqrt(2) for part in (1, -1)]
+    turned = [
+        run(
+            worn_shoe_case.replace(
+                {
+                    "motion.shoe_angle": worn_shoe_case.motion.shoe_angle + turn,
+                    "numerics.tread_positions": 1,
+                }
+            ),
+            quick=True,
+        )
+        for turn in angles
+    ]
+    cof = [one.value("cof") for one in (alone, *turned)]
+    assert found.value("cof_shoe_angle") == pytest.approx(float(np.std(cof)), rel=1e-9)
+    factors = np.array(cof) / cof[0]
+    draws, before = found.fields["cof_draws"].values, alone.fields["cof_draws"].values
+    assert draws[::3] == pytest.approx(before[::3], rel=1e-12)
+    for k, factor in enumerate(factors):  # the draws take the angles in turn, part by part
+        assert draws[k::3].mean() / before[k::3].mean() == pytest.approx(factor, rel=0.15)
+    assert "shoe angle" in found.labels["cof_spread_from"]
+    assert "-0.7 to +0.7 deg" in found.labels["shoe_angle"]
+    assert any("shoe_angle: ±1 deg in the interval" in line for line in found.assumptions)
+    assert "position_cof" not in found.fields
+
+
+def test_the_shoe_angles_have_the_variance_of_an_even_band():
+    turns = np.array([place.turn for place in shoe_angles()])
+    assert turns[0] == 0.0
+    assert turns.mean() == pytest.approx(0.0, abs=1e-15)
+    assert np.mean(turns**2) == pytest.approx(ANGLE_BAND**2 / 3)
 
 
 @pytest.mark.parametrize("quick", [pytest.param(False, marks=pytest.mark.slow), True])

@@ -39,6 +39,7 @@ _INPUTS = {
     "pair": "difference between pairs",
     "model": "the law itself",
     "tread_position": "position of the tread",
+    "shoe_angle": "shoe angle",
     "film load": "load on the film",
     "suction": "suction behind the edges of lugs",
 }
@@ -173,6 +174,8 @@ def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
     held = "film thickness as computed"
     if "tread_position" in sampled.share:
         held = "contact and film at each position of the tread in turn"
+    if "shoe_angle" in sampled.share:
+        held = "contact and film at each shoe angle in turn"
     drawn = f"{sampled.cof.size} draws, seed {sampled.seed}; {held}"
     return {"cof_spread_from": ", ".join(parts), "cof_spread_how": drawn}
 

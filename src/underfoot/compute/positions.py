@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -23,8 +23,8 @@ from .sensors import scanned
 from .sole import file_periods, file_surface
 
 ANGLE_BAND = math.radians(1)
-"""The shoe angle lies evenly within this of the case's, rad; assumed."""
-HELD = "spread of the friction law, its inputs and the position of the tread"
+"""The shoe angle lies evenly within this of the case's, rad; assumed: how well an upper is held."""
+_HELD = "spread of the friction law, its inputs and the"
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,9 +45,18 @@ class TreadPositions:
         left_out: Number of positions that did not converge.
     """
 
+    origin: ClassVar[str] = "tread_position"
+    held: ClassVar[str] = "position of the tread"
+    several: ClassVar[str] = "positions of the tread"
+    within: ClassVar[str] = "over the positions of the tread"
+
     places: tuple[Place, ...]
     values: Mapping[str, Array]
     left_out: int
+
+    def answer(self, name: str) -> float:
+        """Return the scalar of the result: its mean over the places."""
+        return float(self.values[name].mean())
 
     def factors(self, name: str) -> Array:
         """Return the scalar at each place over that at the case's own; 1 where that is 0."""
@@ -59,10 +68,7 @@ class TreadPositions:
     ) -> tuple[FrictionCoefficients, SampledCof | None]:
         """Return COF and its draws over the positions, which the draws take in turn."""
         values = {name: values for name, values in self.values.items() if name.startswith("cof")}
-        new = {
-            name: replace(getattr(friction, name), value=float(each.mean()))
-            for name, each in values.items()
-        }
+        new = {name: replace(getattr(friction, name), value=self.answer(name)) for name in values}
         if sampled is not None:
             law, own = float(np.var(sampled.cof)), float(np.var(values["cof"]))
             at = np.arange(sampled.cof.size) % len(self.places)
@@ -73,14 +79,14 @@ class TreadPositions:
             }
             draws["cof"] = draws["adhesion"] + draws["hysteresis"] + draws["viscous"]
             share = {name: each * law / (law + own) for name, each in sampled.share.items()}
-            share["tread_position"] = own / (law + own)
+            share[self.origin] = own / (law + own)
             sampled = replace(sampled, share=share, **draws)
             for name, value in new.items():
                 if value.uncertainty is not None:  # what the law leaves open stays open
                     new[name] = sampled.sourced(name.removeprefix("cof_"), value)
-            new["cof"] = replace(new["cof"], note=HELD)
-        load = float(self.values["fluid_load"].mean())
-        force = float(values["cof"].mean()) * friction.normal_force
+            new["cof"] = replace(new["cof"], note=f"{_HELD} {self.held}")
+        load = self.answer("fluid_load")
+        force = self.answer("cof") * friction.normal_force
         return replace(friction, **new, fluid_load=load, friction_force=force), sampled
 
     def averaged(self, numbers: Mapping[str, SourcedValue]) -> dict[str, SourcedValue]:
@@ -88,16 +94,16 @@ class TreadPositions:
         found = dict(numbers)
         if len(self.places) == 1:
             return found
-        for name, values in self.values.items():
+        for name in self.values:
             if not name.startswith("cof"):
-                found[name] = replace(numbers[name], value=float(values.mean()))
-        over = f"over {len(self.places)} positions of the tread"
+                found[name] = replace(numbers[name], value=self.answer(name))
+        over = f"over {len(self.places)} {self.several}"
         found["fluid_load"] = replace(
             found["fluid_load"], note=f"{self._range('fluid_load', 'N')} {over}"
         )
-        found["cof_tread_position"] = SourcedValue(
+        found[f"cof_{self.origin}"] = SourcedValue(
             float(np.std(self.values["cof"])),
-            source="contact and film at other positions of the tread",
+            source=f"contact and film at another {self.held}",
             reason="itself a standard deviation",
             note=f"{self._range('cof')} {over}",
         )
@@ -120,7 +126,7 @@ class TreadPositions:
     def assumptions(self) -> tuple[str, ...]:
         """Return the band of the shoe angle, where it was used."""
         angle = any(place.turn for place in self.places)
-        return ("motion.shoe_angle: ±1 deg over the positions of the tread",) * angle
+        return (f"motion.shoe_angle: ±1 deg {self.within}",) * angle
 
     def fields(self) -> dict[str, Any]:
         """Return the variables of a data set: where the positions are, COF and load there."""
@@ -141,6 +147,43 @@ class TreadPositions:
     def _range(self, name: str, unit: str = "1") -> str:
         values = self.values[name]
         return f"{display(values.min(), unit)} to {display(values.max(), unit)}"
+
+
+class ShoeAngles(TreadPositions):
+    """Numbers of a run of a sole without lugs at its own shoe angle and beside it.
+
+    The result is that at the own angle; its draws take the angles in turn.
+    """
+
+    origin = "shoe_angle"
+    held = "shoe angle"
+    several = "shoe angles"
+    within = "in the interval of COF"
+
+    def answer(self, name: str) -> float:
+        """Return the scalar at the case's own shoe angle."""
+        return float(self.values[name][0])
+
+    def labels(self) -> dict[str, str]:
+        """Return what the interval holds in words."""
+        if len(self.places) == 1:
+            return {}
+        least, most = (math.degrees(bound([p.turn for p in self.places])) for bound in (min, max))
+        return {
+            "shoe_angle": f"COF {self._range('cof')}, load on the film "
+            f"{self._range('fluid_load', 'N')} from {least:.1f} to +{most:.1f} deg beside the "
+            "case's angle, which the interval of COF holds"
+        }
+
+    def fields(self) -> dict[str, Any]:
+        """Return nothing: the angles are three."""
+        return {}
+
+
+def shoe_angles() -> tuple[Place, ...]:
+    """Return the case's own shoe angle and one on each side, of the variance of ``ANGLE_BAND``."""
+    turn = ANGLE_BAND / math.sqrt(2)
+    return Place(), Place(turn=turn), Place(turn=-turn)
 
 
 def places(periods: Array, count: int) -> tuple[Place, ...]:
@@ -179,7 +222,9 @@ def tread_positions(
     quick: bool,
     progress: Progress = silent,
 ) -> TreadPositions | None:
-    """Return the numbers of a run at more positions of its tread; None without a tread.
+    """Return the numbers of a run at more positions of its tread, or shoe angles without a tread.
+
+    None where the case asks for one position.
 
     ``law_on`` returns the local friction on a sole, ``solve`` sole and contact at a place on the
     grid of ``sole``.
@@ -187,8 +232,12 @@ def tread_positions(
     count = position_count(case, quick=quick)
     if count == 1:
         return None
-    tread = _tread(case)
-    lying = places(file_periods(case) if tread is None else tread.periods, count)
+    if _treaded(case):
+        tread = _tread(case)
+        lying = places(file_periods(case) if tread is None else tread.periods, count)
+        kind = TreadPositions
+    else:
+        lying, kind = shoe_angles(), ShoeAngles
     kept = [(Place(), place_numbers(case, law_on(sole), sole, contact, viscosity))]
     for k, place in list(enumerate(lying))[1:]:
         try:
@@ -198,20 +247,26 @@ def tread_positions(
         if there[1].status.usable:
             kept.append((place, place_numbers(case, law_on(there[0]), *there, viscosity)))
     values = {name: np.array([numbers[name] for _, numbers in kept]) for name in kept[0][1]}
-    return TreadPositions(tuple(place for place, _ in kept), values, count - len(kept))
+    return kind(tuple(place for place, _ in kept), values, count - len(kept))
 
 
 def position_count(case: Case, *, quick: bool) -> int:
-    """Return over how many positions of its tread a run averages; 1 for a sole without.
+    """Return at how many positions of its tread, or shoe angles, a run is solved.
 
-    On the quick grid half as many.
+    On the quick grid half as many positions.
     """
-    if case.shoe.outsole is None:
-        treaded = _tread(case) is not None
-    else:
-        treaded = float(file_surface(case).tread_depth.max()) > 0
-    count = case.numerics.tread_positions if treaded else 1
+    count = case.numerics.tread_positions
+    if count == 1:
+        return 1
+    if not _treaded(case):
+        return len(shoe_angles())
     return math.ceil(count / 2) if quick else count
+
+
+def _treaded(case: Case) -> bool:
+    if case.shoe.outsole is None:
+        return _tread(case) is not None
+    return float(file_surface(case).tread_depth.max()) > 0
 
 
 def run_cost(case: Case, *, quick: bool) -> Cost:

@@ -103,6 +103,7 @@ def _remarks(parts: Prepared, solution: Solution, more: dict[str, str]) -> dict[
         else slit_words(slits, giving=giving),
         "cof_spread_basis": getattr(parts.law, "spread_basis", ""),
         "tread_position": "",
+        "shoe_angle": "",
         "overload": "",
         "instant": _last_instant(case),
         "edge_peak": peak.remark,

@@ -81,7 +81,7 @@ def solved_at(
 def averaged(
     parts: Prepared, solution: Solution, *, quick: bool, progress: Progress = silent
 ) -> TreadPositions | None:
-    """Return the numbers at more positions of the tread; None without one, or without a contact.
+    """Return the numbers at more positions of the tread or shoe angles; None without a contact.
 
     A compliance that was given holds for the position of the run alone.
     """

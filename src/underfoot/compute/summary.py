@@ -19,6 +19,7 @@ GAIN_MATTERS = 1.1
 QUANTITIES: Mapping[str, tuple[str, str]] = {
     "cof": ("Coefficient of friction", ""),
     "cof_tread_position": ("  spread over tread positions", ""),
+    "cof_shoe_angle": ("  spread over a degree of shoe angle", ""),
     "cof_adhesion": ("  from adhesion", ""),
     "cof_hysteresis": ("  from hysteresis", ""),
     "cof_viscous": ("  from shearing the fluid", ""),
@@ -39,6 +40,7 @@ LUGS_SHOWN = 6
 LABELS = {
     "cof_spread_from": "Uncertainty of the COF",
     "tread_position": "Tread position",
+    "shoe_angle": "Shoe angle",
     "grid_error": "Discretisation error",
     "edge_peak": "Caution on pressures",
     "drainage": "Drainage",
