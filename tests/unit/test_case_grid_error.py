@@ -59,6 +59,7 @@ def test_a_run_tells_of_grid_and_steps(name):
     case = Case.load(EXAMPLES / f"work_shoe_{name}.toml").replace(
         {
             "numerics.grid_check": True,
+            "numerics.tread_positions": 1,
             "numerics.grid_spacing": "1 mm",
             "numerics.quick_grid_spacing": "1.2 mm",
         }
