@@ -71,8 +71,12 @@ SCHEMES: dict[str, ClassScheme] = {
         ),
         ClassScheme(
             "dguv_tribometer", "Sliding friction of floors", "cof",
-            ((0, "unsafe"), (0.30, "conditionally safe"), (0.45, "safe")),
-            "DGUV Information 208-041: below 0.30 unsafe, from 0.45 safe",
+            ((0, "not sufficiently slip resistant"), (0.30, "conditionally safe"), (0.45, "safe")),
+            "DGUV Information 208-041, 4.3: below 0.30 not sufficiently slip resistant, unless the "
+            "floor has the R group that ASR A1.5/1,2 asks for and differs by less than 10 % from "
+            "its measurement when new; from 0.45 safe",
+            "arbeitssicherheit.de, DGUV Information 208-041, 4.3, for 0.30; 0.45 from memory, not "
+            "verified",
         ),
         ClassScheme(
             "ansi_a326_3", "Wet dynamic COF, product use", "cof",
