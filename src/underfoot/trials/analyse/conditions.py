@@ -21,6 +21,10 @@ from .file_result import FileResult
 NAMES = ("conditions.csv", "conditions.xlsx")
 REPORT_MARK = "analysis.txt"  # stands in the folder of a report, which holds no trials
 PERSON = ("subject", "person", "participant", "proband", "volunteer", "vp", "id")
+FILE = ("file", "filename", "file name", "datei", "dateiname")
+MASS = ("mass", "body mass", "weight", "body weight", "masse", "körpermasse", "gewicht",
+        "körpergewicht")  # fmt: skip
+_BODIES = 10.0, 300.0  # kg
 # Names of conditions that number trials: never factors of a test.
 NUMBERS = ("n", "no", "nr", "trial", "number", "rep", "repeat", "repetition", "run", "take")
 _NOT_TRIALS = re.compile(
@@ -77,12 +81,22 @@ def study_folder(
         _add(noted, found, label)
     members = {_label(p, folder): i for i, group in enumerate(groups) for p in group}
     for table, below in _tables(folder, conditions):
-        for file, found in conditions_of(below, table).items():
+        described = conditions_of(below, table)
+        absent = []
+        for file, found in described.items():
             label = named_file(file, list(members), _label(below, folder))
             if label is None:
-                notes.append(f"{file}: in {table.name}, but there is no such file")
+                absent.append(file)
                 continue
             _add(own[members[label]], found, label)
+        if absent and len(absent) == len(described):
+            raise InputError(
+                f'none of its {len(absent)} files is in the folder, the first is "{absent[0]}"',
+                where=table.name,
+                allowed=", ".join(sorted(members)[:3]) + " ...",
+                nearest=nearest_match(absent[0], members),
+            )
+        notes += [f"{file}: in {table.name}, but there is no such file" for file in absent]
     one_spelling(own, merge_spelling)
     recordings = tuple(
         Recording(label, tuple(group), noted)
@@ -94,13 +108,21 @@ def study_folder(
 def named_file(name: str, labels: Sequence[str], below: str = ".") -> str | None:
     """Return the one file that a table names, by its path or its bare name; None if absent.
 
-    A bare name that stands for several files is an `InputError`.
+    Capitals don't matter, and the ending may be left out. A name that stands for several files is
+    an `InputError`.
     """
     plain = name.replace("\\", "/")
-    inside = plain if below in (".", "") else f"{below}/{plain}"
-    if inside in labels:
-        return inside
-    same = [label for label in labels if label.rsplit("/", 1)[-1] == plain]
+    if plain in labels:
+        return plain
+    plain = plain.casefold()
+    inside = plain if below in (".", "") else f"{below.casefold()}/{plain}"
+    folded = {label: label.casefold() for label in labels}
+    own = {label: text.rsplit("/", 1)[-1] for label, text in folded.items()}
+    bare = {label: text.rsplit(".", 1)[0] for label, text in own.items()}
+    for wanted, known in ((inside, folded), (plain, own), (plain, bare)):
+        same = [label for label, text in known.items() if text == wanted]
+        if same:
+            break
     if len(same) > 1:
         text = f'"{name}" names {len(same)} files: {", ".join(same[:4])}'
         raise InputError(text, where="file", remedy="Write the folder too")
@@ -295,8 +317,10 @@ def conditions_of(folder: Path, table: Path | None = None) -> dict[str, dict[str
     path = table or next((folder / name for name in NAMES if (folder / name).is_file()), None)
     if path is None:
         return {}
-    cells = {name.casefold(): (unit, own) for name, unit, own in table_columns(path)[0]}
-    if "file" not in cells:
+    found, lines = table_columns(path)
+    cells = {name.casefold(): (unit, own) for name, unit, own in found}
+    files = next((name for name in FILE if name in cells), "")
+    if not files:
         raise InputError(
             'the table of conditions has no column "file"',
             where=path.name,
@@ -305,12 +329,14 @@ def conditions_of(folder: Path, table: Path | None = None) -> dict[str, dict[str
         )
     # A person called 1, 2, 3 is a name, not a number.
     columns = {
-        name: own if name in PERSON else _column(own, unit, path.name, name)
+        name: own if name in PERSON else _column(own, unit, lines, path.name, name)
         for name, (unit, own) in cells.items()
-        if name != "file"
+        if name != files
     }
+    if not any(cells[files][1]):
+        raise InputError("the table of conditions has no row with a file", where=path.name)
     noted: dict[str, dict[str, Any]] = {}
-    for number, file in enumerate(cells["file"][1]):
+    for number, file in enumerate(cells[files][1]):
         if not file:
             continue
         if file in noted:
@@ -322,10 +348,22 @@ def conditions_of(folder: Path, table: Path | None = None) -> dict[str, dict[str
 def table_columns(path: Path) -> tuple[list[tuple[str, str, list[str]]], list[int]]:
     """Return (heading, unit, cells) of each column of a table, and the line number of each row.
 
-    Empty lines and columns without a heading are left out; the first line holds the headings.
+    Empty lines and columns without a heading are left out; the first line holds the headings. A
+    row with more cells than headings, and two columns of one name, are an `InputError`.
     """
     rows = [(line, row) for line, row in enumerate(table_rows(path), start=1) if any(row)]
     heads = [name_and_unit(cell) for cell in rows[0][1]] if rows else []
+    for line, row in rows[1:]:
+        if any(row[len(heads) :]):
+            raise InputError(
+                f"line {line} has {len(row)} cells, the headings are {len(heads)}",
+                where=path.name,
+                remedy='A comma within a cell ("0,45") needs quotes, or semicolons between cells',
+            )
+    folded = [name.casefold() for name, _ in heads if name]
+    twice = next((name for name in folded if folded.count(name) > 1), "")
+    if twice:
+        raise InputError(f'two columns are called "{twice}"', where=path.name)
     columns = [
         (name, unit, [row[i] if i < len(row) else "" for _, row in rows[1:]])
         for i, (name, unit) in enumerate(heads)
@@ -366,12 +404,34 @@ def table_delimiter(text: str) -> str:
     return max(",;\t", key=text.split("\n", 1)[0].count)
 
 
-def _column(cells: list[str], unit: str, where: str, name: str) -> list[Any]:
+def _column(cells: list[str], unit: str, lines: Sequence[int], where: str, name: str) -> list[Any]:
     plain = [cell.replace(",", ".") if cell.count(",") == 1 else cell for cell in cells]
-    if not any(plain) or not all(is_number(cell) for cell in plain if cell):
+    bad = [i for i, cell in enumerate(plain) if cell and not is_number(cell)]
+    if bad and (name in MASS or si_unit(unit)):
+        raise InputError(
+            f'line {lines[bad[0]]}: {name} is "{cells[bad[0]]}"',
+            where=where,
+            allowed="a number; its unit stands in the heading, as in mass (kg)",
+        )
+    if bad or not any(plain):
         return list(cells)
     factor, offset = _to_si(unit, f"{where}, column {name}")
-    return [float(cell) * factor + offset if cell else None for cell in plain]
+    values = [float(cell) * factor + offset if cell else None for cell in plain]
+    low, high = _BODIES
+    for i, value in enumerate(values if name in MASS else ()):
+        if value is not None and not low <= value <= high:
+            raise InputError(
+                f'line {lines[i]}: {name} is "{cells[i]}"',
+                where=where,
+                allowed=f"{low:g} to {high:g} kg",
+                remedy="Write the unit in the heading: mass (kg), mass (lb)",
+            )
+    return values
+
+
+def body_mass_noted(noted: Mapping[str, Any]) -> float | None:
+    """Return the person's mass (kg) among the conditions of a file, or None."""
+    return next((float(noted[k]) for k in MASS if isinstance(noted.get(k), float)), None)
 
 
 def _to_si(unit: str, where: str) -> tuple[float, float]:

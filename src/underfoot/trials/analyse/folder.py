@@ -18,7 +18,8 @@ from ..readers import Profile, read_trials, with_channels
 from ..tester_calibration import FILE as CALIBRATION
 from ..tester_calibration import read_calibration
 from ..trial import Edit, Trial, file_checksum, joined
-from .conditions import person_condition, profile_of, study_folder
+from ..walkway import body_mass
+from .conditions import body_mass_noted, person_condition, profile_of, study_folder
 from .edit_table import edits_of
 from .file_result import REFUSED, Draft, FileResult
 from .methods import methods_paragraphs
@@ -28,7 +29,8 @@ from .study import Study, study_of
 from .study_guard import Doubt, doubt_table, guarded_files, study_doubts
 from .tables import Table, curve_table, edit_table, file_table, measurement_table, step_tables
 
-_CODE = "4"  # raised when what a file gives changes, so that stored results are made again
+_CODE = "5"  # raised when what a file gives changes, so that stored results are made again
+_OTHER_MASS = 0.1  # relative; shoes and clothes weigh less
 _DIED = "the process that analysed it ended without an answer"
 
 
@@ -217,9 +219,12 @@ def _analysed(
     if protocol.kind not in STEP_KINDS:
         _check_whole_edits(edits, len(trials), protocol)
     results = []
-    mass = noted.get("mass")
+    mass = body_mass_noted(noted)
     for number, trial in enumerate(trials, start=1):
-        if isinstance(mass, float):
+        own = body_mass(trial)
+        if mass is not None:
+            if own and abs(own / mass - 1.0) > _OTHER_MASS:
+                notes.append(f"mass {mass:g} kg by the conditions, {own:g} kg in the recording")
             trial = replace(trial, settings={**trial.settings, "body mass (kg)": f"{mass:g}"})
         steps = protocol.kind in STEP_KINDS
         trial = trial.with_edits(*(edit for edit in edits if steps or edit.step == number))

@@ -39,7 +39,7 @@ _ZERO = re.compile(r"zero|null", re.IGNORECASE)
 _CONDITIONING = re.compile(r"condition|warm|einlauf|vorlauf", re.IGNORECASE)
 _CHECK = re.compile(r"check|verif|pr(ü|ue)f", re.IGNORECASE)
 _DRY = re.compile(r"dry|trocken", re.IGNORECASE)
-_LARGEST = {"ptv": 150.0, "angle": 90.0, "cof": 3.0}
+_LARGEST = {"ptv": 150.0, "angle": 45.0, "cof": 3.0}  # no ramp goes beyond 45 deg
 _UNITS = {
     "ptv": {"": 1.0, "1": 1.0, "ptv": 1.0, "srv": 1.0, "bpn": 1.0},
     "angle": {"": 1.0, "deg": 1.0, "°": 1.0, "grad": 1.0, "rad": 180.0 / math.pi},
@@ -51,6 +51,7 @@ _MISTAKEN = {
     "angle": (0.0, 1.6, "radians? Write angle (rad)"),
     "cof": (1.2, 3.0, "wrong quantity or unit?"),
 }
+_SLIDERS = {"fours": "96", "4s": "96", "trl": "55", "trrl": "55"}
 _SURFACES = {
     "glass": {"96": (5, 10), "55": (5, 10)},
     "lapping": {"96": (59, 64)},
@@ -95,7 +96,7 @@ def reading_results(
         for head, column in cells.items()
         if any(column) and all(is_number(c.replace(",", ".")) for c in column if c)
     }
-    column, quantity = _value_column(list(numbers), name, protocol)
+    column, quantity = _value_column(list(numbers), name, protocol, cells, lines)
     unit = units[column].casefold()
     if unit not in _UNITS[quantity]:
         allowed = ", ".join(u for u in _UNITS[quantity] if u)
@@ -143,8 +144,9 @@ def reading_results(
 
 
 def _slider(noted: Mapping[str, Any]) -> str:
-    text = " ".join(str(noted.get(name, "")) for name in NOTED["slider"])
-    return next((s for s in ("96", "55", "57") if s in text), text.strip())
+    text = " ".join(str(noted.get(name, "")) for name in NOTED["slider"]).strip()
+    known = next((s for s in ("96", "55", "57") if s in text), "")
+    return known or _SLIDERS.get(re.sub(r"[\s_-]|slider", "", text.casefold()), text)
 
 
 def _check(name: str, slider: str, words: str, values: np.ndarray) -> _Check:
@@ -207,10 +209,14 @@ def _one_sample(
     ]
     if missing:
         flags.append(caution(f"not noted: {', '.join(missing)}"))
+    if quantity == "ptv" and _slider(draft.conditions) not in ("", "96", "55", "57"):
+        flags.append(caution(f'unknown slider "{_slider(draft.conditions)}": 96 or 55?'))
     if quantity == "ptv" and abs(offset) > 1.0:
         flags.append(caution(f"the zero run reads {offset:.1f}: the pendulum was not at zero"))
     spread = float(readings.std(ddof=1)) if len(readings) > 1 else None
     value, middle = float(readings.mean()) - offset, float(np.median(readings)) - offset
+    if value < 0.0 or (value == 0.0 and quantity == "cof"):
+        draft.refusals.append(f"a mean of {value:g}: no floor reads that; sign, zero or decimals?")
     away = ", ".join(f"{v:g}" for v in counted[: len(counted) - len(readings)])
     conventions = {
         "readings": f"mean of {len(readings)} of {len(counted)}; median {middle:.4g}",
@@ -246,18 +252,35 @@ def _one_sample(
     draft.curves["readings"] = [float(v) for v in readings - offset]
 
 
-def _value_column(names: list[str], where: str, protocol: Protocol) -> tuple[str, str]:
+def _value_column(
+    names: list[str],
+    where: str,
+    protocol: Protocol,
+    cells: Mapping[str, Sequence[str]],
+    lines: Sequence[int],
+) -> tuple[str, str]:
     quantity, named = protocol.text("quantity"), protocol.text("column")
     folded = {name.casefold().strip(): name for name in names}
     if named and named.casefold() in folded:
         return folded[named.casefold()], quantity or "cof"
+    remedy = 'Name it in the protocol: column = "..."'
     for candidate in (quantity,) if quantity else QUANTITIES:
-        column = next((folded[n] for n in QUANTITIES[candidate] if n in folded), None)
-        if column and not named:
-            return column, candidate
+        for head, column in cells.items():
+            if head.casefold() not in QUANTITIES[candidate] or head in names:
+                continue
+            bad = [i for i, c in enumerate(column) if c and not is_number(c.replace(",", "."))]
+            if bad:
+                text = f'line {lines[bad[0]]}: {head} is "{column[bad[0]]}"'
+                raise DataError(text, where=where, allowed="a number alone, or nothing")
+        found = [folded[n] for n in QUANTITIES[candidate] if n in folded]
+        if len(found) > 1:
+            text = f"several columns of readings: {', '.join(found)}"
+            raise DataError(text, where=where, remedy=remedy)
+        if found and not named:
+            return found[0], candidate
     raise DataError(
         "no column of readings was recognised",
         where=where,
         allowed=", ".join(names) or "a column of numbers",
-        remedy='Name it in the protocol: column = "..."',
+        remedy=remedy,
     )

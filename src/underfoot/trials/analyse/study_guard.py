@@ -9,14 +9,13 @@ from typing import Any
 import numpy as np
 
 from ..protocols import Protocol
-from .conditions import NUMBERS, PERSON, person_condition, plain_spelling
+from .conditions import MASS, NUMBERS, PERSON, person_condition, plain_spelling
 from .file_result import REFUSED, FileResult
 from .person_measures import FORCE, HEIGHT
 from .tables import Table, grouped
 
 _BODY = {
-    "mass": 0.05, "body mass": 0.05, "weight": 0.05, "body weight": 0.05, "height": 0.02,
-    "body height": 0.02, "sex": 0.0, "gender": 0.0,
+    **dict.fromkeys(MASS, 0.05), "height": 0.02, "body height": 0.02, "sex": 0.0, "gender": 0.0
 }  # fmt: skip
 """Conditions that a person keeps, and how far they may differ (relative)."""
 _LEAST, _SCATTERS = 0.02, 6.0
