@@ -23,6 +23,8 @@ BESIDE = 0.25
 BEND = 0.02
 """Change of the sole's slope from one finest cell to the next that counts as a corner: a rounding
 of 3 mm."""
+STRAIGHT = 0.1
+"""Share of the turn at a corner by which the lines on both sides of it may bend."""
 FLAT = 1e-9
 """Change of slope below which two lines are one."""
 
@@ -154,26 +156,32 @@ def _faces_along(
     centre = first + 0.5 * width  # in finest cells
     way = centre[east] - centre[west]
     # heights and slopes of the finest cells next to the face, where these belong to one surface
-    near = [np.clip(border + k, 0, last) for k in (-2, -1, 0, 1)]
+    near = [np.clip(border + k, 0, last) for k in (-3, -2, -1, 0, 1, 2)]
     values = [clearance[k, at] for k in near]
     status = [land[k, at] for k in near]
     outside = [~fine.inside[k, at] for k in near]
     with np.errstate(invalid="ignore"):
-        slopes = []
-        for beyond, own in ((0, 1), (3, 2)):
-            smooth = (status[beyond] == status[own]) & ~outside[beyond] & ~outside[own]
-            rise = (values[own] - values[beyond]) if own == 1 else (values[beyond] - values[own])
-            slopes.append(np.where(smooth, rise, 0.0))
-        left, right = slopes  # per finest cell
-        same = (status[1] == status[2]) & (outside[1] == outside[2])
+
+        def slope_on(one: int, own: int) -> Array:  # per finest cell, beside cell ``own``
+            smooth = (status[one] == status[own]) & ~outside[one] & ~outside[own]
+            return np.where(smooth, (values[own] - values[one]) / (own - one), 0.0)
+
+        left, right = slope_on(1, 2), slope_on(4, 3)
+        # a corner lies between the two cells where both sides go on straight; next to them it
+        # bends one slope alone, and the sole between them is the straight line
+        turn = right - left
+        straight = np.abs(slope_on(0, 1) - left) <= STRAIGHT * np.abs(turn)
+        straight &= np.abs(slope_on(5, 4) - right) <= STRAIGHT * np.abs(turn)
+        bent = straight & (np.abs(turn) > FLAT)
+        same = (status[2] == status[3]) & (outside[2] == outside[3])
         to_border = border - centre[west]
         # where the line of the west meets that of the east, in finest cells from the west's centre
-        from_west = values[1] + left * 0.5 - left * to_border  # at the west's centre
-        from_east = values[2] - right * 0.5 + right * (way - to_border)  # at the east's centre
-        turn = right - left
-        meet = (from_west - from_east + right * way) / np.where(np.abs(turn) > FLAT, turn, np.inf)
-        meet = np.where((meet > 0) & (meet < way) & (np.abs(turn) > FLAT), meet, to_border)
-        along = np.full(border.shape, 0.5) if fine.cut is None else fine.cut.along[near[1], at]
+        from_west = values[2] + left * 0.5 - left * to_border  # at the west's centre
+        from_east = values[3] - right * 0.5 + right * (way - to_border)  # at the east's centre
+        meet = (from_west - from_east + right * way) / np.where(bent, turn, np.inf)
+        bent &= (meet > 0) & (meet < way)
+        meet = np.where(bent, meet, to_border)
+        along = np.full(border.shape, 0.5) if fine.cut is None else fine.cut.along[near[2], at]
         rim = border - 0.5 + along - centre[west]
         node = np.where(same & (columns > 1), meet, rim)
         share = node / way
@@ -183,12 +191,12 @@ def _faces_along(
         line += np.where(lean > 0, lean * height[east], 0.0)
         seen = np.stack(
             [
-                values[1] + left * (0.5 + node - to_border),
-                values[2] - right * (0.5 + to_border - node),
+                values[2] + left * (0.5 + node - to_border),
+                values[3] - right * (0.5 + to_border - node),
             ]
         )
         mean = 0.5 * (seen[0] + seen[1])
-        rise = np.where(same, mean, seen) - line
+        rise = np.where(same & ~bent, 0.0, np.where(same, mean, seen) - line)
     rise = np.where(np.isfinite(rise) & (columns > 1), rise, 0.0)
     return {
         "west": west,
