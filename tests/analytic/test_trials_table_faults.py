@@ -141,6 +141,14 @@ def test_the_persons_mass_is_found_in_any_spreadsheet(case, tmp_path):
     assert len(found) == 3
 
 
+def test_the_table_of_a_report_in_the_folder_is_none_of_conditions(tmp_path):
+    report = tmp_path / "report"
+    report.mkdir()
+    (report / "analysis.txt").touch()
+    (report / "conditions.csv").write_text("persons,trials\n1,2")
+    assert noted(tmp_path, conditions().encode())["shoe"] == "hard"
+
+
 @pytest.mark.parametrize(("mass", "verdict"), [("45.8", "accepted"), ("60", "caution")])
 def test_the_mass_of_the_conditions_is_used(mass, verdict, tmp_path):
     (tmp_path / WALK.name).symlink_to(WALK)

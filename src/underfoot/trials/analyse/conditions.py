@@ -242,6 +242,9 @@ def _tables(folder: Path, given: Path | None) -> list[tuple[Path, Path]]:
         return [(given, folder)]
     tables = []
     for place, below, files in os.walk(folder):
+        if REPORT_MARK in files and Path(place) != folder:
+            below.clear()  # a report has a table of its own called so
+            continue
         below[:] = sorted(name for name in below if not name.startswith("."))
         tables += [(Path(place) / name, Path(place)) for name in NAMES if name in files][:1]
     return tables
