@@ -295,3 +295,11 @@ def test_bad_input_names_its_place(call, where):
 def test_anisotropy_beyond_the_table():
     with pytest.raises(RangeError, match="1/9 to 9"):
         patir_cheng_shear_factor(1e-6, 1e-6, anisotropy=20.0)
+
+
+def test_patir_cheng_factors_are_linear_in_the_logarithm_of_gamma():
+    def along(gamma):
+        return float(patir_cheng_pressure_factors(3e-6, 1e-6, anisotropy=gamma)[0])
+
+    assert along(math.sqrt(3)) == pytest.approx((along(1) + along(3)) / 2)
+    assert along(math.sqrt(18)) == pytest.approx((along(3) + along(6)) / 2)

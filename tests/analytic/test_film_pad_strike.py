@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from underfoot.core import InputError
 from underfoot.film import Strike, touch_time
@@ -42,3 +43,45 @@ def test_a_pad_in_honey_floats_and_nonsense_is_refused():
     assert touch_time(replace(PAD, viscosity=500.0), ROUGH) == math.inf
     with pytest.raises(InputError, match="rib"):
         touch_time(replace(PAD, rib=0.0), ROUGH)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"pool": 3e-3, "depth": 0.5e-3, "groove": 1e-3},  # the grooves fill early
+        {"pool": 3e-3, "depth": 0.5e-3, "groove": 1e-3, "viscosity": 30e-3},  # and are laminar
+        {"groove": 20e-3, "depth": 9e-3, "speed": 1.0},  # they never fill: squeeze and inertia
+    ],
+)
+def test_the_equation_of_the_docstring_integrated_anew(changes):
+    strike = replace(PAD, **changes)
+    area, land = strike.side**2, strike.rib / (strike.rib + strike.groove)
+    count = strike.side / (strike.rib + strike.groove)
+
+    def squeeze(gap, speed):
+        creeping = strike.viscosity * speed * strike.rib**2 / gap**3
+        return land * (creeping + strike.density * (speed * strike.rib / 2 / gap) ** 2 / 6)
+
+    def grooves(gap, speed):
+        if strike.pool - gap < strike.depth * (1 - land):
+            return 0.0
+        high = strike.depth + gap
+        u = speed * area / count / (2 * strike.groove * high)  # half leaves by either end
+        diameter = 4 * strike.groove * high / (2 * (strike.groove + high))  # 4 area / perimeter
+        reynolds = max(strike.density * u * diameter / strike.viscosity, 1.0)
+        friction = max(64 / reynolds, 0.3 / reynolds**0.25)
+        return strike.density * u**2 * (1 / 4 + friction * strike.side / (24 * diameter))
+
+    def change(_, state):
+        gap, speed = state
+        speed = max(speed, 0.0)
+        pressure = squeeze(gap, speed) + land * float(ROUGH(gap)) + grooves(gap, speed)
+        return [-speed, (strike.load - area * pressure) / strike.mass]
+
+    def half(_, state):
+        return area * land * float(ROUGH(state[0])) - strike.load / 2
+
+    half.terminal = True
+    start = [strike.pool, strike.speed]
+    solved = solve_ivp(change, (0, 1), start, "BDF", events=half, rtol=1e-7, atol=[1e-10, 1e-8])
+    assert touch_time(strike, ROUGH) == pytest.approx(solved.t_events[0][0], rel=2e-3)

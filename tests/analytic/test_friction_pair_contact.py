@@ -1,11 +1,20 @@
 """Contact friction of a pair: its limits and signs, and what the fit recovers."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 from underfoot.calibrate.corpus import Condition, Reading, Span
-from underfoot.calibrate.pair_law import fitted, law_named, scored
-from underfoot.friction.pair_contact import PairConstants, contact_terms
+from underfoot.calibrate.pair_law import _covariance, fitted, law_named, scored
+from underfoot.friction.pair_contact import (
+    FULL_CONTACT,
+    Pair,
+    PairConstants,
+    PairDraws,
+    contact_terms,
+)
 
 ONE = PairConstants(*(np.array([value]) for value in (0.10, 0.08, 0.35, 8e-4, 0.8, 1.2, 0.15)))
 PAIR = {"viscosity": 5e-3, "speed": 0.3, "sole_rq": 8e-6, "floor_rq": 2e-6, "shore_a": 60.0}
@@ -83,3 +92,64 @@ def test_a_bound_scores_by_the_probability_beyond_it():
     score = scored(draws, [row])
     assert np.exp(score.log_density[0]) == pytest.approx(0.5, abs=0.03)
     assert score.error[0] == pytest.approx(0.0, abs=0.03)
+
+
+def test_skewed_draws_score_by_mean_and_spread_and_err_by_their_median():
+    draws = np.log([[0.1], [0.1], [0.1], [0.8]])
+    score = scored(draws, [made_up("lab", 1e-3, 0.2)])
+    expected = norm.logpdf(np.log(0.2), draws.mean(), draws.std())
+    assert score.log_density[0] == pytest.approx(expected)
+    assert score.error[0] == pytest.approx(np.log(2))
+
+
+def test_readings_of_a_source_share_laboratory_pair_and_dry_part():
+    spread = np.array([[0.3, 0.2, 0.1, 0.5]])
+    weight, noise = np.array([[1.0, 0.4]]), np.array([[0.01, 0.02]])
+    for same in (0.0, 1.0):
+        found = _covariance(spread, weight, np.array([[1.0, same], [same, 1.0]]), noise)[0]
+        assert found[0, 1] == found[1, 0] == pytest.approx(0.09 + 0.04 * same + 0.25 * 0.4)
+        assert found[0, 0] == pytest.approx(0.09 + 0.04 + 0.25 + 0.01)
+        assert found[1, 1] == pytest.approx(0.09 + 0.04 + 0.25 * 0.16 + 0.02)
+
+
+def test_hardness_acts_on_adhesion_and_hysteresis_alike():
+    soft, hard = (contact_terms(ONE, {**PAIR, "shore_a": a}, family="oil") for a in (50.0, 75.0))
+    ratios = [(a / b).item() for a, b in zip(soft[:3], hard[:3], strict=True)]
+    assert ratios == pytest.approx([ratios[0]] * 3)
+    assert ratios[0] > 1.05
+
+
+def test_sole_and_floor_make_one_roughness():
+    one, other = (
+        contact_terms(ONE, {**PAIR, "sole_rq": a, "floor_rq": b}, family="oil")[3]
+        for a, b in ((3e-6, 7e-6), (7e-6, 3e-6))
+    )
+    assert one == pytest.approx(other)
+
+
+COUNT = 4000
+DRAWS = PairDraws(
+    PairConstants(*(np.full(COUNT, getattr(ONE, name).item()) for name in ONE.__slots__)),
+    np.full(COUNT, 0.3), np.full(COUNT, 0.5), np.full(COUNT, 0.1),
+)  # fmt: skip
+KNOWN = Pair(60.0, (8e-6, 8e-6), (2e-6, 2e-6), "aqueous")
+
+
+def test_errors_of_laboratory_dry_part_and_pair_have_their_own_spread_and_draws():
+    drawn = KNOWN.drawn(DRAWS, 3)
+    errors = np.log([drawn[name] for name in ("laboratory", "dry", "pair")])
+    assert errors.std(axis=1) == pytest.approx([0.3, 0.5, 0.1], rel=0.02)
+    assert np.abs(np.corrcoef(errors) - np.eye(3)).max() < 0.05
+
+
+def test_hardness_and_roughness_that_are_not_known_are_drawn():
+    exact = KNOWN.drawn(DRAWS, 3)["film"]
+    assert np.ptp(exact) == 0.0
+    spread = replace(KNOWN, shore_a_deviation=3.0, polymer="P").drawn(DRAWS, 3)["film"]
+    one_more = replace(KNOWN, shore_a=63.0).drawn(DRAWS, 3)["film"][0]
+    slope = np.log(exact[0] / one_more)
+    assert np.log(spread).std() == pytest.approx(slope, rel=0.03)
+    dry = replace(KNOWN, family="dry", sole_rq=(1e-12, 1e-12), floor_rq=(1e-6, 100e-6))
+    rq = dry.drawn(DRAWS, 3)["full_contact"] / FULL_CONTACT
+    quartiles = np.quantile(rq, [0.25, 0.5, 0.75])
+    assert quartiles == pytest.approx([1e-6 * 100**share for share in (0.25, 0.5, 0.75)], rel=0.01)

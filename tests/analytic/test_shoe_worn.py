@@ -16,6 +16,7 @@ from underfoot.shoe.worn import (
     walking,
     wear_measures,
 )
+from underfoot.shoe.worn.archard import pressure_on_sole
 
 HEEL = Heel(
     length=0.06,
@@ -166,3 +167,53 @@ def test_a_worn_patch_below_the_measuring_cell_is_measured():
     for spacing in (0.5e-3, 1e-3):
         found = wear_measures(bulged, spacing=spacing).worn_patch_area
         assert found == pytest.approx(strip, rel=0.5)
+
+
+def peaked(shape, angle):
+    sole = heel_map(shape, shoe_angle=angle, spacing=1e-3)
+    return sole, np.where(sole.land, 2e5 * (1 + sole.x[:, None] / 0.06), 0.0)
+
+
+def test_wear_ends_at_the_depth_asked_for_in_steps_of_the_size_asked_for():
+    met = []
+
+    def seen(shape, angle):
+        met.append(angle)
+        return uniform(2e5)(shape, angle)
+
+    kind = {"wear_rate": 1e-12, "spacing": 2e-3, "angles": [0.1]}
+    archard_wear(HEEL, depth=1e-3, contact=seen, step=0.25e-3, **kind)
+    assert len(met) == 4
+    found = archard_wear(HEEL, depth=0.3e-3, contact=peaked, **kind)
+    assert found.worn.depth == pytest.approx(0.3e-3, rel=1e-6)
+
+
+def test_the_same_angle_twice_is_that_angle_and_no_contact_is_refused():
+    kind = {"depth": 0.5e-3, "wear_rate": 1e-12, "spacing": 2e-3}
+    once, twice = (
+        archard_wear(HEEL, contact=uniform(2e5), angles=[0.1] * n, **kind) for n in (1, 2)
+    )
+    assert twice.sliding_distance == pytest.approx(once.sliding_distance)
+    with pytest.raises(InputError, match="nowhere touches"):
+        archard_wear(HEEL, contact=uniform(0.0), angles=[0.1], **kind)
+
+
+def test_pressure_is_read_where_a_node_of_the_tilted_sole_lies():
+    """x' = x cos a - z sin a + origin: a pressure linear along the floor is met to 1 %."""
+    tilt, bevel = 0.3, replace(HEEL, tread=None)
+    sole = heel_map(bevel, shoe_angle=tilt, spacing=1e-3)
+    pressure = np.where(sole.land, 1e5 * (1 + sole.x[:, None] / 0.06), 0.0)
+    x, y = np.linspace(0.012, 0.045, 12), np.array([0.0])
+    z, start = bevel.land_height(x, 0 * x), bevel.land_height(np.zeros(1), np.zeros(1))[0]
+    assert np.ptp(z) > 1e-3
+    lies = x * math.cos(tilt) - (z - start) * math.sin(tilt)
+    found = pressure_on_sole(bevel, sole, pressure, tilt, x, y)[:, 0]
+    assert found == pytest.approx(1e5 * (1 + lies / 0.06), rel=0.01)
+
+
+def test_pressure_is_carried_across_a_wide_channel():
+    wide = replace(HEEL, tread=Tread("transverse", 8e-3, 14e-3, 2e-3))
+    sole = heel_map(wide, shoe_angle=0.1, spacing=1e-3)
+    pressure = np.where(sole.land, 2e5, 0.0)
+    x = np.linspace(0.01, 0.05, 41)
+    assert pressure_on_sole(wide, sole, pressure, 0.1, x, np.array([0.0])) == pytest.approx(2e5)

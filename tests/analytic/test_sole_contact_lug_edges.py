@@ -9,6 +9,7 @@ from underfoot.case import Case
 from underfoot.compute.run import run
 from underfoot.compute.sole import sole_map
 from underfoot.rough_contact import ExponentialLaw
+from underfoot.shoe import SoleMap
 from underfoot.sole_contact import lug_edges as module
 from underfoot.sole_contact.lug_edges import LugEdges, lug_edges, lug_friction
 
@@ -178,3 +179,17 @@ def test_wear_makes_the_edges_of_the_lugs_that_it_meets():
         for edges in (before, after)
     ]
     assert lifted[1] > lifted[0]
+
+
+@pytest.mark.parametrize(("forward", "fed"), [(True, 1.0), (False, 0.0)])
+def test_a_lug_is_fed_by_the_groove_that_it_slides_into(forward, fed):
+    """One lug across the sole, the groove before it (x up), the rim behind it."""
+    rows = np.arange(10)[:, None] + np.zeros(4)
+    inside, land = rows > 0, (rows > 0) & (rows < 5)
+    depth = np.where(land, 3e-3, 0.0)
+    x, y = 1e-3 * np.arange(10), 1e-3 * np.arange(4)
+    sole = SoleMap(x, y, np.where(inside, 0.0, np.inf), inside, land, depth, 1e-3, np.zeros((4, 2)))
+    edges = lug_edges(sole, 0.0, worn_edge_radius=WORN, forward=forward)
+    assert edges.fed == pytest.approx([fed])
+    assert edges.length == pytest.approx([4e-3])
+    assert edges.width == pytest.approx([4e-3])

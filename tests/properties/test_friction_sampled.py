@@ -16,6 +16,8 @@ from underfoot.friction import (
     sampled_cof,
     self_affine_scale,
 )
+from underfoot.friction.propagation import named_shares, probability_higher
+from underfoot.friction.sampled_cof import VACUUM
 
 SCALE = self_affine_scale(2.5e-6, rq=8.3e-6, longest_wave=0.8e-3)
 SPREAD = {"modulus_deviation": 0.5e6, "roughness_deviation": 0.1}
@@ -120,3 +122,66 @@ def test_a_wide_spread_is_drawn_log_normal_with_the_same_mean_and_deviation():
     assert drawn.mean() == pytest.approx(2.0, rel=5e-3)
     assert np.log(drawn).std() == pytest.approx(np.sqrt(np.log1p(0.36)), rel=5e-3)
     assert wide.deviation == pytest.approx(1.2, rel=0.03)
+
+
+EXACT = BoundaryLaw(SourcedValue(0.4, "1", "", 1e-9), SourcedValue(0.1, "1", "", 1e-9))
+
+
+def drawn_cof(**options):
+    contact, fluid, film, wet = sole(5)
+    return sampled_cof(EXACT, contact, fluid, film, speed=0.3, wet=wet, **options)
+
+
+def test_the_error_of_the_film_load_spreads_the_odds_of_the_contact():
+    """Odds F / (W - F) times exp(z), z normal: contact carries 1 / (c + (1 - c) exp z) of c."""
+    contact, fluid, *_ = sole(5)
+    carried = contact.sum() / (contact + fluid).sum()
+    plain, spread = drawn_cof(samples=500), drawn_cof(film_error=0.5, samples=500)
+    solid = (spread.adhesion + spread.hysteresis) / (plain.adhesion + plain.hysteresis).mean()
+    z = np.log((1 / solid - carried) / (1 - carried))
+    assert z.std() == pytest.approx(0.5, rel=0.03)
+    assert z.mean() == pytest.approx(0.0, abs=0.01)
+    assert spread.adhesion + spread.hysteresis + spread.viscous == pytest.approx(spread.cof)
+
+
+def test_one_sole_has_one_error_of_its_film_load():
+    first, again, other = (drawn_cof(film_error=0.5, sole=s).cof for s in ("a", "a", "b"))
+    assert np.array_equal(first, again)
+    assert abs(np.corrcoef(first, other)[0, 1]) < 0.2
+
+
+def test_suction_that_is_known_changes_no_draw_and_a_wide_one_stays_below_a_vacuum():
+    plain = drawn_cof().cof
+    known = drawn_cof(suction=(SourcedValue(5e4, "Pa", "", 1e-3), 0.3)).cof
+    assert known == pytest.approx(plain, rel=1e-6)
+    contact_part = drawn_cof()
+    solid = contact_part.adhesion + contact_part.hysteresis
+    wide = drawn_cof(suction=(SourcedValue(5e4, "Pa", "", 2e5), 0.3))
+    ratio = (wide.adhesion + wide.hysteresis) / solid.mean()
+    assert ratio.min() >= 0.7 - 1e-6
+    assert ratio.max() <= 1 + 0.3 * (VACUUM / 5e4 - 1) + 1e-6
+    assert ratio.max() > 1.1
+    assert wide.adhesion.std() / wide.adhesion.mean() == pytest.approx(
+        ratio.std() / ratio.mean(), rel=0.05
+    )  # both parts in proportion
+
+
+def test_draws_of_two_inputs_are_normal_independent_and_give_the_interval():
+    inputs = {name: SourcedValue(10.0, "1", "", 1.0) for name in "ab"}
+    found = propagated(lambda values: values["a"], inputs, samples=4000)
+    drawn = np.array([found.drawn[name] for name in "ab"])
+    assert drawn.mean(axis=1) == pytest.approx([10.0, 10.0], abs=1e-3)
+    assert drawn.std(axis=1) == pytest.approx([1.0, 1.0], rel=5e-3)
+    assert abs(np.corrcoef(drawn)[0, 1]) < 0.05
+    assert (found.low, found.high) == pytest.approx((10 - 1.96, 10 + 1.96), abs=0.01)
+    a, b = (named_shares(1, name, 1000) for name in "ab")
+    assert abs(np.corrcoef(a, b)[0, 1]) < 0.1
+    assert np.array_equal(a, named_shares(1, "a", 1000))
+
+
+def test_the_chance_that_one_value_is_higher():
+    apart = probability_higher((1.0, 0.6, None), (0.0, 0.8, None), shared=False)
+    assert apart == pytest.approx(0.8413, abs=1e-4)  # one standard deviation of the difference
+    ties = np.array([1.0, 2.0, 3.0, 4.0]), np.array([1.0, 2.0, 2.0, 5.0])
+    both = probability_higher((0.0, 1.0, ties[0]), (0.0, 1.0, ties[1]), shared=True)
+    assert both == pytest.approx(0.25 + 0.5 * 0.5)

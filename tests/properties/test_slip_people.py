@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.stats import truncnorm
 
 from slip_floors import Floor, dry_sole, slippery_sole
 from underfoot.case import Case
@@ -241,3 +242,26 @@ def test_the_share_who_slip_holds_the_spread_of_the_contact_friction():
     weights = np.bincount(study.by_friction.nearest, minlength=len(shares)) / 1000
     drawn = study.by_friction.means("slipped", 60)
     assert drawn.mean() == pytest.approx(weights @ shares, abs=0.01)
+
+
+def test_each_person_has_a_brake_time_of_their_own():
+    spread = Population().brake_time
+    times = np.array([w.brake_time for w in Population(subjects=400).walkers()])
+    exact = truncnorm(*((np.array([spread.low, spread.high]) - spread.mean) / spread.sd))
+    assert times.mean() == pytest.approx(spread.mean + spread.sd * exact.mean(), rel=0.05)
+    assert times.std() == pytest.approx(spread.sd * exact.std(), rel=0.1)
+
+
+def test_a_walker_is_slowed_stretched_and_turned_as_said():
+    history = next(h for h in HISTORIES if h.foot_angle is not None)
+    walker = Walker(history, heel_brake="constant", brake_time=0.01, recorded_angle=True)
+    assert walker.moving_mass == pytest.approx(70.0 * 0.114)
+    times = np.array([0.0, 0.01, 0.02])
+    speeds = walker.heel_speed * np.exp(-np.arange(3.0))
+    assert walker.dry_speed(times) == pytest.approx(speeds)
+    leaning = replace(history, foot_angle=history.foot_angle + 0.2)
+    for each in (history, leaning):  # the fall counts, not where it began
+        angle = replace(walker, history=each).demands(times)[2]
+        assert angle[0] == pytest.approx(walker.shoe_angle)
+    slow, fast = (replace(walker, walking_speed=v).step.duration for v in (1.0, 2.0))
+    assert slow == pytest.approx(2 * fast)

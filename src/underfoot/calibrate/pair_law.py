@@ -234,6 +234,17 @@ class PairPosterior:
         return mean + shared[:, None] + own + readings
 
 
+def _covariance(spread: Array, weight: Array, same_pair: Array, noise: Array) -> Array:
+    """Return the covariance of ln COF of one source, (draws, rows, rows).
+
+    ``spread`` (draws, 4) are standard deviations of laboratory, pair, reading (in ``noise``) and
+    dry-like part, which counts by ``weight`` (draws, rows); ``noise`` (draws, rows) is a variance.
+    """
+    laboratory, pair, _, dry = (spread.T[..., None, None]) ** 2
+    shared = laboratory + dry * weight[:, :, None] * weight[:, None, :] + pair * same_pair
+    return shared + noise[:, :, None] * np.eye(noise.shape[1])
+
+
 def fitted(
     law: PairLaw, conditions: Sequence[Condition], *, steps: int = 1500, seed: int = 0
 ) -> PairPosterior:
@@ -271,14 +282,7 @@ def fitted(
         observed[:, latent] = hidden
         noise = rows.error**2 + variance + spread[:, 2:3] ** 2
         for group, same in zip(rows.groups, rows.same_pair, strict=True):
-            w = weight[:, group]
-            covariance = (
-                spread[:, 0, None, None] ** 2
-                + spread[:, 3, None, None] ** 2 * w[:, :, None] * w[:, None, :]
-                + spread[:, 1, None, None] ** 2 * same
-                + noise[:, group, None] * np.eye(group.size)
-            )
-            lower = np.linalg.cholesky(covariance)
+            lower = np.linalg.cholesky(_covariance(spread, weight[:, group], same, noise[:, group]))
             rest = (observed - mean)[:, group]
             scaled = np.linalg.solve(lower, rest[:, :, None])[:, :, 0]
             value -= 0.5 * (scaled**2).sum(axis=1)

@@ -196,9 +196,11 @@ def _smoothed(
 def _half_window(rate: float, cutoff: float) -> int:
     """Half window of a 3rd-order Savitzky-Golay filter with this -3 dB cutoff.
 
+    M = ((N + 1) / f + 4.6) / 3.2, f the cutoff over half the rate. N = 2: on a symmetric window
+    the cubic smoother is the quadratic one. Within 5 % from M = 13 to 30, 17 % at M = 6.
     Source: Schafer 2011, IEEE Signal Processing Magazine 28(4):111, Eq. 12.
     """
-    return max(2, round((4.0 * rate / (2.0 * cutoff) + 4.6) / 3.2))
+    return max(2, round((3.0 * rate / (2.0 * cutoff) + 4.6) / 3.2))
 
 
 @lru_cache(maxsize=16)
