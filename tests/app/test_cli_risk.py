@@ -70,6 +70,9 @@ def test_changes_fit_the_case() -> None:
     names = {change.name for change in possible_changes(treaded)}
     assert "wider_channels" in names
     assert not names & {"new_tread", "rinse", "dilute"}
+    oily = {change.name for change in possible_changes(worn.replace({"contaminant": "canola_oil"}))}
+    assert "rinse" not in oily  # water takes no oil off a floor
+    assert "dilute" in oily
     for case in (worn, treaded):
         for change in possible_changes(case):
             assert case.replace(change.values) != case

@@ -29,7 +29,7 @@ def test_a_dry_floor_needs_no_film(tmp_path):
     out = tmp_path / "out"
     found = slip(DRY, "--subjects", 12, "--out", out, ask=process)
     assert "0 of 12 walkers slip" in found.stdout
-    assert "The floor is dry" in found.stdout
+    assert "The case has no fluid" in found.stdout
     rows = list(csv.DictReader((out / "subjects.csv").read_text().splitlines()))
     assert len(rows) == 12
     assert {row["outcome"] for row in rows} == {"no slip"}

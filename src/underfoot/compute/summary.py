@@ -94,7 +94,7 @@ class FrictionLimit:
 
     def __str__(self) -> str:
         if self.kind == "dry":
-            return "The floor is dry: the friction of the dry pair is the limit."
+            return "The case has no fluid: the friction of the pair, as given, is the limit."
         limit = "the limit is the adhesion that the fluid blocks where the surfaces touch."
         if self.kind == "film":
             limit = (

@@ -63,7 +63,7 @@ def _possible_changes(case: Case) -> Iterator[Change]:
         action = f"a floor of Rq {ROUGH_FLOOR_RQ * 1e6:.0f} µm (as a rough ceramic tile)"
         yield Change("rougher_floor", action, "floor", {"floor.roughness.rq": ROUGH_FLOOR_RQ})
     viscosity = case.value("contaminant.viscosity") or 0.0
-    if viscosity >= THIN:
+    if viscosity >= THIN and case.value("contaminant.family") != "oil":  # water spreads oil
         action = "rinse the contaminant away with water"
         yield Change("rinse", action, "cleaning", {"contaminant": "water"})
     if viscosity >= 5 * THIN:

@@ -72,7 +72,7 @@ class SlipPopulation(Presentable):
                 "One walker has no spread, so no interval.",
             )
         share, low, high = study.slipped()
-        floor = "" if self.wet else " The floor is dry: no film."
+        floor = "" if self.wet else " The case has no fluid: no film."
         return (
             f"{round(share * count)} of {count} walkers slip (heel faster than 0.2 m/s): "
             f"{percent(share)} (95 %: {percent(low)} to {percent(high)}).",

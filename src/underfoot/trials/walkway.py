@@ -63,7 +63,7 @@ def body_weight(trial: Trial, axes: Axes | None = None) -> BodyWeight | None:
         return None
     force = np.nan_to_num(np.sum([plate.force for plate in usable], axis=0))
     count = round(_STILL * usable[0].rate)
-    if len(force) < 2 * count:
+    if count < 5 or len(force) < 2 * count:
         return None
     normal = force @ up
     across = force - np.outer(normal, up)
