@@ -10,6 +10,7 @@ from scipy.optimize import brentq, minimize_scalar
 from film_between_walls import film_in_time, solved_film
 from underfoot.core import InputError
 from underfoot.core.sparse import back_ends
+from underfoot.film import Film, film_pressure
 
 LENGTH, H0, ETA, SPEED = 0.01, 10e-6, 0.1, 0.5
 
@@ -399,3 +400,31 @@ def test_times_must_rise(times):
     )
     with pytest.raises(InputError, match="times"):
         next(steps)
+
+
+@pytest.mark.parametrize(
+    ("shape", "cells", "phase"),
+    [("cosine", 320, 0.0), ("cosine", 512, 0.25), ("straight", 400, 0.0), ("straight", 512, 0.75)],
+)
+def test_a_film_that_forms_again_on_a_face_settles(shape, cells, phase):
+    """Two wedges in a row: rupture between them, and a front that lies between two cells."""
+    spacing = 0.04 / cells
+    place = 2 * (np.arange(cells + 2) - 0.5 + phase) / cells
+    if shape == "cosine":
+        gap = 20e-6 * (1 + 0.6 * np.cos(2 * np.pi * place))
+    else:
+        gap = 15e-6 + 20e-6 * np.abs(2 * (place % 1) - 1)
+    loads = []
+    for wider in (1.0, 1.0 + 1e-7):  # the front lies next to the face there
+        film = Film(
+            np.repeat(wider * gap[:, None], 3, axis=1),
+            spacing,
+            viscosity=0.2,
+            speed=0.7,
+            mask=np.pad(np.ones((cells, 3), dtype=bool), ((1, 1), (0, 0))),
+        )
+        solved = film_pressure(film)
+        assert solved.mass_residual < 1e-8
+        assert solved.cavitated.any()
+        loads.append(solved.load)
+    assert loads[0] == pytest.approx(loads[1], rel=1e-5)

@@ -21,6 +21,9 @@ OPEN = 100.0
 """Gap of the open surroundings over the largest gap of the film."""
 ROUNDING = 1e-13
 """Pressures and fractions that miss their bound by less, in units of flow, count as meeting it."""
+STALLED = 1e-9
+"""The same once sets gain nothing: where a film forms again on a face, rounding alone tells whether
+the cell beside it is full at pressure 0."""
 PATIENCE = 8
 """Sets tried without fewer wrong cells before only half of them are exchanged."""
 MOST_SETS = 400
@@ -275,7 +278,8 @@ class _FilmSolver:
             rows = pattern.matrix(np.where(of_full, by_pressure, by_flow))
             right = known - np.where(of_full, by_fraction, 0.0).sum(axis=0)
             flows = self._solution(rows, right)
-            slack = max(ROUNDING * carry.max(), 4e-16 * float(np.abs(flows).max()))
+            settled = STALLED if partly else ROUNDING
+            slack = max(settled * carry.max(), 4e-16 * float(np.abs(flows).max()))
             wrong = np.where(is_full, (flows < -slack) & ~always_full, flows > carry + slack)
             count = int(np.count_nonzero(wrong))
             if count == 0:

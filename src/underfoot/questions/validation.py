@@ -1,19 +1,37 @@
-"""Cases with a known exact answer, computed with the same code as every run.
+"""Cases with a known answer, computed with the same code as every run.
 
-The closed forms stand in ``underfoot.reference``; here the solvers are held against them.
+The closed forms stand in ``underfoot.reference``; here the solvers are held against them. A ball, a
+lug, a squeezed lug, the inlet of a worn heel and a heel on two grids go through the solver of
+soles; film and rough contact have checks of their own.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from underfoot.case import Case
+from underfoot.compute.prepare import prepared
+from underfoot.compute.solve import solved_motion
+from underfoot.core import ConvergenceError
+from underfoot.core.arrays import Array, Mask
 from underfoot.core.threads import threads_limited
 from underfoot.film import Film, film_pressure
 from underfoot.fluid import glycerol_water_viscosity
 from underfoot.material import RelaxationSpectrum
 from underfoot.reference import contact, lubrication
 from underfoot.rough_contact import steady_sliding
+from underfoot.rough_contact.pressure_gap_law import ExponentialLaw
+from underfoot.shoe import SoleMap
+from underfoot.shoe.row_division import row_cells
+from underfoot.sole_contact import half_space_compliance, solve_sliding
+from underfoot.sole_contact.solver import SoleContact, SolverSettings
+
+SOFT_FILM = 100.0, 0.04088
+"""Load parameter M of a ball on a soft film and its film under the centre, h R / a^2, by another
+solver extrapolated from 18, 27 and 36 cells in a radius (docs/physics/coupled_contact.md)."""
+_SMOOTH = 1e-7  # m, of asperities that do not matter
+_RIGID = 1e13  # Pa
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +57,11 @@ class Check:
 
 @threads_limited(1)
 def checks() -> list[Check]:
-    """Compute every check, from film to contact to fluid."""
+    """Compute every check, from soles to film to contact to fluid.
+
+    Raises:
+        ConvergenceError: A sole whose contact did not converge.
+    """
     glycerol = Check(
         "glycerol 50 % by mass at 25 degC, viscosity (Pa s)",
         glycerol_water_viscosity(0.5, 298.15, "mass"),
@@ -47,8 +69,213 @@ def checks() -> list[Check]:
         0.01,
         "Cheng 2008, table",
     )
-    solved = (inclined_bearing, squeeze_disc, hertz, westergaard, sliding_sinusoid)
-    return [*(check() for check in solved), glycerol]
+    soles = (soft_ball, pressed_lug, squeezed_lug, inlet_of_a_worn_heel, heel_on_two_grids)
+    parts = (inclined_bearing, squeeze_disc, hertz, westergaard, sliding_sinusoid)
+    return [*(check() for check in (*soles, *parts)), glycerol]
+
+
+def soft_ball() -> Check:
+    """Film under a soft ball that slides on a full film of the load parameter M.
+
+    M = F / (E' R^2) (eta V / (E' R))^(-3/4), E' = 2 E / (1 - nu^2).
+    """
+    radius, modulus, ratio, viscosity, speed, cells = 20e-3, 3e6, 0.49, 0.219, 0.7, 12
+    plane = modulus / (1 - ratio**2)
+    number, exact = SOFT_FILM
+    force = number * (viscosity * speed / (2 * plane * radius)) ** 0.75 * 2 * plane * radius**2
+    size = contact.hertz_point(force, radius, plane).half_width
+    behind, ahead, aside = (round(reach * cells) for reach in (1.7, 2.6, 1.8))
+    x = np.arange(-behind, ahead + 1, dtype=np.float64) * (size / cells)
+    y = np.arange(-aside, aside + 1, dtype=np.float64) * (size / cells)
+    sole = _sole(x, y, (x[:, None] ** 2 + y**2) / (2 * radius))
+    body = half_space_compliance(
+        sole.clearance.shape, sole.spacing, modulus=modulus, poisson_ratio=ratio
+    )
+    solved = solve_sliding(
+        sole,
+        body,
+        ExponentialLaw(modulus, ratio, 2e-8),
+        viscosity=viscosity,
+        speed=speed,
+        normal_force=force,
+        settings=SolverSettings(pool_depth=1.0, start_film=2e-5, steady=True),
+    )
+    central = _usable(solved).film_thickness[np.argmin(np.abs(x)), np.argmin(np.abs(y))]
+    return Check(
+        "sole solver: soft ball on a film, film under its centre (h R / a^2)",
+        float(central) * radius / size**2,
+        exact,
+        0.02,
+        "stored reference; Hamrock and Dowson 1978 within 12 %",
+    )
+
+
+def pressed_lug() -> Check:
+    """Approach of a dry round lug with a sharp edge: the flat punch, F / (2 a E*)."""
+    radius, modulus, ratio, force, cells = 8e-3, 4e6, 0.5, 200.0, 48
+    place, inside, radius = _disc(radius, 2.6 * radius / cells, cells)
+    sole = _sole(place, place, np.where(inside, 0.0, np.inf))
+    body = half_space_compliance(inside.shape, sole.spacing, modulus=modulus, poisson_ratio=ratio)
+    solved = solve_sliding(
+        sole,
+        body,
+        ExponentialLaw(modulus, ratio, _SMOOTH),
+        viscosity=None,
+        speed=0.3,
+        normal_force=force,
+    )
+    return Check(
+        "sole solver: lug with a sharp edge, approach (m)",
+        _usable(solved).approach,
+        force * (1 - ratio**2) / (2 * radius * modulus),
+        0.02,
+        "Boussinesq 1885, flat punch",
+    )
+
+
+def squeezed_lug() -> Check:
+    """Film under a rigid round lug that a constant load presses through it."""
+    viscosity, force, start, rise, end, cells = 0.2, 20.0, 100e-6, 1e-4, 2e-2, 33
+    place, inside, radius = _disc(8e-3, 8e-3 / 14, cells)
+    solved = solve_sliding(
+        _sole(place, place, np.where(inside, 0.0, np.inf)),
+        half_space_compliance(inside.shape, 8e-3 / 14, modulus=_RIGID, poisson_ratio=0.0),
+        ExponentialLaw(1e6, 0.5, _SMOOTH),
+        viscosity=viscosity,
+        speed=0.0,
+        normal_force=force,
+        settings=SolverSettings(start_film=start, rise_time=rise, end_time=end, pool_depth=1e-3),
+    )
+    given = {"viscosity": viscosity, "radius": radius, "start_gap": start, "load": force}
+    return Check(
+        "sole solver: squeezed lug, film after 20 ms (m)",
+        float(_usable(solved).film_thickness[cells // 2, cells // 2]),
+        float(lubrication.squeeze_disc_gap(end - rise / 2, **given)),
+        0.01,
+        "Stefan 1874",
+    )
+
+
+def inlet_of_a_worn_heel(corner: float = 30.3e-3) -> Check:
+    """Film under a rigid facet that lies flat, with an inlet of 10 deg, on cells fine along it.
+
+    A plane strip: what flows across is left out. ``corner`` (m) is where the inlet begins.
+    """
+    spacing, columns, film, slope = 1e-3, 16, 15e-6, math.tan(math.radians(10))
+    viscosity, speed, pool = 0.219, 0.7, 0.6e-3
+    load = _strip_load(film, corner, slope, pool, viscosity=viscosity, speed=speed)
+    square, fine = (_strip(corner, slope, spacing, each) for each in (1, columns))
+    none, empty = np.zeros(0, dtype=np.intp), np.zeros(0)
+    cells = replace(row_cells(square, fine), south=none, north=none, overlap=empty, crossing=empty)
+    solved = solve_sliding(
+        replace(square, cells=cells),
+        half_space_compliance(cells.shape, spacing, modulus=_RIGID, poisson_ratio=0.0),
+        ExponentialLaw(1e6, 0.5, _SMOOTH),
+        viscosity=viscosity,
+        speed=speed,
+        normal_force=spacing * load,
+        settings=SolverSettings(pool_depth=pool, start_film=1e-4, steady=True),
+    )
+    middle = int(np.searchsorted(square.x, corner / 2))
+    return Check(
+        "sole solver: rigid worn heel (plane strip), film under its facet (m)",
+        float(_usable(solved).film_thickness[middle, 1]),
+        film,
+        0.02,
+        "Reynolds 1886, closed form",
+    )
+
+
+def heel_on_two_grids() -> Check:
+    """Load on the film of an untreaded work shoe in glycerol on cells of 1.5 mm and of 1 mm."""
+    case = Case(
+        shoe="work_shoe_untreaded",
+        floor="vinyl_g4",
+        contaminant="glycerol_90pct",
+        motion="slip_tester_g4",
+        numerics={"cells_along": 16},
+    )
+    coarse, fine = (
+        _usable(solved_motion(case, p.sole, p.compliance, p.asperities, p.film)).fluid_load
+        for p in (prepared(case, spacing) for spacing in (1.5e-3, 1e-3))
+    )
+    return Check(
+        "sole solver: untreaded heel in glycerol, load on the film (N)",
+        coarse,
+        fine,
+        0.05,
+        "the same heel on finer cells",
+    )
+
+
+def _usable(solved: SoleContact) -> SoleContact:
+    if not solved.status.usable:
+        raise ConvergenceError(
+            f"a check did not converge: {solved.status}",
+            history=solved.residuals,
+            where="validate",
+            remedy=solved.remedy,
+        )
+    return solved
+
+
+def _sole(x: Array, y: Array, clearance: Array, columns: int = 1) -> SoleMap:
+    """Return the sole of a clearance (m), inf beside it."""
+    land = np.isfinite(clearance)
+    return SoleMap(
+        x=x,
+        y=y,
+        clearance=clearance,
+        inside=land,
+        land=land,
+        tread_depth=np.zeros_like(clearance),
+        spacing=float(y[1] - y[0]),
+        outline=np.zeros((2, 2)),
+        columns=columns,
+    )
+
+
+def _disc(radius: float, spacing: float, cells: int) -> tuple[Array, Mask, float]:
+    """Return centres, cells within the radius (m), and the radius of their area, m."""
+    place = (np.arange(cells, dtype=np.float64) - (cells - 1) / 2) * spacing
+    inside = np.hypot(place[:, None], place) < radius
+    return place, inside, math.sqrt(np.count_nonzero(inside) / math.pi) * spacing
+
+
+def _strip(corner: float, slope: float, spacing: float, columns: int) -> SoleMap:
+    """Return one row of cells from 2 spacings behind a flat facet to its inlet and beyond."""
+    count = math.ceil(corner / spacing) + 10
+    x = ((np.arange(count * columns) + 0.5) / columns - 2) * spacing
+    clearance = np.full((x.size, 3), np.inf)
+    clearance[:, 1] = np.where(x < 0, np.inf, slope * np.maximum(x - corner, 0.0))
+    return _sole(x, np.array([-1.0, 0.0, 1.0]) * spacing, clearance, columns)
+
+
+def _strip_load(
+    film: float, corner: float, slope: float, pool: float, *, viscosity: float, speed: float
+) -> float:
+    """Return the load per width (N/m) of a facet and its inlet up to the depth of the pool, m.
+
+    dp/dx = 6 eta V (h_0 - h) / h^3 from p = 0 at the rear, x = 0, with h_0 such that p = 0 where h
+    is the pool's depth.
+    """
+    squares = corner / film**2 + (1 / film - 1 / pool) / slope  # of 1 / h
+    cubes = corner / film**3 + (1 / film**2 - 1 / pool**2) / (2 * slope)
+    still = squares / cubes
+    # the load is the moment of the pressure's slope about the rear, int p dx = -int x dp/dx dx;
+    # with x = corner + (h - film) / slope, dx = dh / slope in the inlet
+    origin = corner - film / slope
+
+    def inlet(power: int) -> float:
+        """Return int h^-power dh from the facet to the pool."""
+        if power == 1:
+            return math.log(pool / film)
+        return (film ** (1 - power) - pool ** (1 - power)) / (power - 1)
+
+    moment = 0.5 * corner**2 * (still - film) / film**3
+    moment += (still * inlet(3) - inlet(2)) * origin / slope
+    moment += (still * inlet(2) - inlet(1)) / slope**2
+    return -6 * viscosity * speed * moment
 
 
 def inclined_bearing() -> Check:
