@@ -183,6 +183,16 @@ def test_crossed_corners_are_put_in_order(order):
 # ------------------------------------------------------------------------------ files
 
 
+def test_a_plate_with_crossed_corners_lies_as_the_others_of_its_file():
+    """Mean forces by the maker's own export of the recording (biomdp, the same name, .txt)."""
+    trial = read_trial(DATA / "biomdp" / "kistler_DJ_2plates.c3d", subtract_baseline=False)
+    for plate, mean in zip(
+        trial.plates, [(-2.314, 3.763, 357.763), (1.336, -6.376, 231.456)], strict=True
+    ):
+        assert plate.force.mean(axis=0) == pytest.approx(mean, abs=0.5)
+    assert [any("crossed" in f.words for f in p.flags) for p in trial.plates] == [False, True]
+
+
 def test_more_markers_than_announced_are_read(tmp_path):
     """28 tracked and further virtual markers: NumMarkers counts the tracked ones."""
     text = (DATA / "bmc" / "walk1.trc").read_text().splitlines()

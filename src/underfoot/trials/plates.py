@@ -44,12 +44,12 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return a[[1, 2, 0]] * b[[2, 0, 1]] - a[[2, 0, 1]] * b[[1, 2, 0]]
 
 
-def ordered_corners(corners: np.ndarray) -> tuple[np.ndarray, bool]:
+def ordered_corners(corners: np.ndarray, *, down: bool = True) -> tuple[np.ndarray, bool]:
     """Return the corners (4, 3) in the format's order, and True when they had to be re-ordered.
 
     Some systems write them crossed (1, 2, 4, 3). Corner 1 keeps its place, the one farthest from
     it becomes corner 3, and of the other two that one becomes corner 2 which makes the plate's z
-    axis point into the floor.
+    axis point into the floor (``down``), or out of it where the file's other plates do so.
     """
     if corners.shape != (4, 3) or not np.isfinite(corners).all():
         return corners, False
@@ -63,7 +63,7 @@ def ordered_corners(corners: np.ndarray) -> tuple[np.ndarray, bool]:
             z = plate_axes(order)[:, 2]
         except DataError:
             continue
-        if z[int(np.argmax(np.abs(z)))] < 0:
+        if (z[int(np.argmax(np.abs(z)))] < 0) == down:
             return order, True
     return corners, False
 

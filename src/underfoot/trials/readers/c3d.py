@@ -383,8 +383,9 @@ def _plate(draft: Draft, raw: C3DFile, index: int, units: list[str], scale: floa
             raise DataError(f"it names channel {int(columns.max()) + 1} of {most}")
         if columns.min() < 0:
             raise DataError("it names a channel below 1")
-        corners = _of_plate(raw.numbers("FORCE_PLATFORM", "CORNERS"), index, "CORNERS", 2, (3, 4)).T
-        corners, crossed = plates.ordered_corners(corners * scale)
+        places = raw.numbers("FORCE_PLATFORM", "CORNERS")
+        corners = _of_plate(places, index, "CORNERS", 2, (3, 4)).T * scale
+        corners, crossed = plates.ordered_corners(corners, down=_z_points_down(places))
         flag = Flag("corners", "its corners come in crossed order: re-ordered")
         axes = plates.plate_axes(corners)
         origin = _of_plate(raw.numbers("FORCE_PLATFORM", "ORIGIN"), index, "ORIGIN", 1) * scale
@@ -421,6 +422,21 @@ def _plate(draft: Draft, raw: C3DFile, index: int, units: list[str], scale: floa
     except DataError as error:
         reason = error.what + (f" ({error.allowed})" if error.allowed else "")
         draft.plates.append(plates.refused_plate(name, reason, rate=raw.analog_rate, kind=words))
+
+
+def _z_points_down(places: np.ndarray) -> bool:
+    """Whether the z axes of the plates (3, 4, n) with corners in order point into the floor.
+
+    So they do by the format, and where no plate tells it.
+    """
+    for corners in np.moveaxis(places, -1, 0) if places.ndim == 3 else ():
+        try:
+            if not plates.ordered_corners(corners.T)[1]:
+                z = plates.plate_axes(corners.T)[:, 2]
+                return bool(z[int(np.argmax(np.abs(z)))] < 0)
+        except DataError:
+            continue
+    return True
 
 
 def _in_si(
