@@ -95,6 +95,10 @@ class Cells:
             whole.crossing[joined_y],
         )
         self._part = whole.part(self.numbers)
+        self._mirror = None
+        if problem.mirror is not None:
+            across = number[problem.mirror[self.numbers]]
+            self._mirror = across if (across >= 0).all() else None
         self._compliance = problem.compliance.within(self.numbers)
         # for directions of a Newton step: GMRES solves to 1e-3, balances are in double precision
         self.direction = problem.compliance.within(self.numbers, np.float32)
@@ -110,6 +114,7 @@ class Cells:
             clearance=whole.clearance[self.numbers],
             compliance=self._compliance,
             drained=None,
+            mirror=self._mirror,
         )
 
     def state(self, whole: State) -> State:
@@ -129,7 +134,7 @@ class Cells:
         return State(
             pressure,
             state.approach,
-            problem.gap(pressure, state.approach),
+            problem.symmetric(problem.gap(pressure, state.approach)),
             placed(state.fluid),
             placed(state.contact),
             placed(state.cavitated),
@@ -250,8 +255,9 @@ def implicit_step(
         attempt.newton += 1
         if not np.isfinite(step).all():
             break
-        delta = padded(step[:-1])
-        rise = problem.compliance.apply(delta) - step[-1] + missing
+        # rounding grows where a film under soft rubber is hardly unique: the image tells it
+        delta = problem.symmetric(padded(step[:-1]))
+        rise = problem.symmetric(problem.compliance.apply(delta) - step[-1] + missing)
         share = _step_share(problem, local_gap, rise[:size])
         if _cycling(balances):
             share *= 0.5

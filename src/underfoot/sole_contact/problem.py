@@ -3,13 +3,18 @@
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from underfoot.core.arrays import Array, Mask
 from underfoot.film import Conductance
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
-from underfoot.shoe.row_cells import RowCells
+from underfoot.shoe.row_cells import Indices, RowCells
 
 from .row_compliance import RowCompliance
 from .sole_state import SolverSettings
+
+_SAME_HEIGHT = 1e-9  # m
+_SAME = 1e-6
 
 
 @dataclass(frozen=True)
@@ -31,6 +36,7 @@ class Problem:
     decay: float  # m, gap over which the asperity pressure falls by about e
     settings: SolverSettings
     drained: Mask | None = None  # cells with a slit that is a way out: no film, but contact
+    mirror: Indices | None = None  # the cell across of each, where sole and body are symmetric
 
     @property
     def spacing(self) -> float:
@@ -54,6 +60,10 @@ class Problem:
     def gap(self, pressure: Array, approach: float) -> Array:
         """Return the mean gap of a pressure field and an approach."""
         return self.clearance - approach + self.compliance.apply(pressure)
+
+    def symmetric(self, values: Array) -> Array:
+        """Return the mean of values and their mirror image; as they are where no mirror is."""
+        return values if self.mirror is None else 0.5 * (values + values[self.mirror])
 
     def conductance(self, gap: Array, before: Array | None = None) -> Conductance:
         """Return what lets the fluid flow between rough walls at a gap, or as a mean over a step.
@@ -90,3 +100,28 @@ class State:
     contact: Array  # Pa
     cavitated: Mask
     fraction: Array  # share of the gap that holds liquid, 1 outside the film
+
+
+def mirror_across(problem: Problem) -> Indices | None:
+    """Return the mirror image of each cell across the sliding; None where the sole is none.
+
+    Measured: heights, areas and what deflects under a random pressure are those of the image.
+    """
+    cells, (_, ny) = problem.cells, problem.cells.shape
+    i, j = np.divmod(cells.parent, ny)
+    place = np.round(cells.offset, 9)
+    image = np.empty(cells.size, dtype=np.intp)
+    image[np.lexsort((place, j, i))] = np.lexsort((place, ny - 1 - j, i))
+    where = np.stack([i, j, place, cells.land])
+    there = np.stack([i, ny - 1 - j, place, cells.land])
+    if not np.array_equal(where[:, image], there):
+        return None
+    parts = [cells.width, cells.area, cells.film_area, problem.clearance * (_SAME / _SAME_HEIGHT)]
+    if problem.drained is not None:
+        parts.append(problem.drained.astype(float))
+    if any(np.abs(part - part[image]).max() > _SAME for part in parts):
+        return None
+    pressure = np.random.default_rng(0).random(cells.size) * cells.land
+    risen = problem.compliance.apply(pressure)
+    turned = problem.compliance.apply(pressure[image])[image]
+    return image if np.abs(risen - turned).max() <= _SAME * np.abs(risen).max() else None

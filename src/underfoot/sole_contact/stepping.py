@@ -20,7 +20,7 @@ from ._solver_checks import check_demand, check_setup
 from .compliance import Compliance
 from .march import Counts, Demand, History, March
 from .preconditioner import pole_fit
-from .problem import Problem, State
+from .problem import Problem, State, mirror_across
 from .row_compliance import row_compliance
 from .sole_state import CellState, SoleState, SolverSettings
 
@@ -125,6 +125,7 @@ class SlidingSole:
             settings=settings,
             drained=None if sole.slits is None else cells.of(sole.slits.drained),
         )
+        problem = replace(problem, mirror=mirror_across(problem))
         lift = settings.start_film if viscosity is not None else touch
         blank = np.zeros_like(clearance)
         self._march = March(
