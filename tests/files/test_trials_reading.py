@@ -13,7 +13,8 @@ from underfoot.core import DataError, InputError
 from underfoot.trials import profile_from, read_profile, read_sheet, read_trial, read_trials
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
-C3D = sorted(DATA.rglob("*.c3d"))
+# ezc3d takes crossed corners (biomdp) as they are.
+C3D = sorted(p for p in DATA.rglob("*.c3d") if p.parent.name != "biomdp")
 VISCOELASTIC = Path(__file__).parents[1] / "data" / "viscoelastic" / "pyvisco"
 
 

@@ -184,7 +184,7 @@ def test_crossed_corners_are_put_in_order(order):
 
 
 def test_a_plate_with_crossed_corners_lies_as_the_others_of_its_file():
-    """Mean forces by the maker's own export of the recording (biomdp, the same name, .txt)."""
+    """Mean forces as the maker's own text of the recording is read (biomdp, the same name)."""
     trial = read_trial(DATA / "biomdp" / "kistler_DJ_2plates.c3d", subtract_baseline=False)
     for plate, mean in zip(
         trial.plates, [(-2.314, 3.763, 357.763), (1.336, -6.376, 231.456)], strict=True
