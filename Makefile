@@ -8,7 +8,7 @@ READY := $(VENV)/.ready
 PYTEST := $(BIN)/pytest -n 2 --dist
 SEED := $(or $(SEED),$(shell od -An -N4 -tu4 /dev/urandom | tr -d " "))
 
-.PHONY: run app check test test-slow fuzz test-install chromium bundle bundle-check bench validate docs clean help
+.PHONY: run app check test test-quick test-slow fuzz test-install chromium bundle bundle-check bench validate docs clean help
 
 run: $(READY)  ## the main job: a worn work shoe on a floor with glycerol
 	$(BIN)/underfoot run examples/work_shoe_untreaded_glycerol.toml --out out/work_shoe_untreaded_glycerol --overwrite
@@ -22,7 +22,9 @@ check: $(READY)  ## ruff, pyright, import-linter (a minute)
 	$(BIN)/pyright
 	$(BIN)/lint-imports
 
-test: check  ## static checks, then every test that is not slow (minutes)
+test: check test-quick  ## static checks, then every test that is not slow (minutes)
+
+test-quick: $(READY)  ## every test that is not slow
 	$(PYTEST) worksteal -m "not slow"
 
 fuzz: $(READY)  ## Hypothesis with examples that no run had before; SEED=N repeats a run

@@ -29,7 +29,9 @@ class Plot(SphinxDirective):
     option_spec = {"alt": directives.unchanged_required}  # noqa: RUF012
 
     def run(self) -> list[nodes.Node]:
-        """Return the image."""
+        """Return the image, or nothing where figures are not to be drawn (``-D draw=0``)."""
+        if not self.config.draw:
+            return []
         matplotlib.use("Agg")
         from matplotlib import pyplot
 
@@ -49,4 +51,5 @@ class Plot(SphinxDirective):
 def setup(app):
     """Called by Sphinx."""
     app.add_directive("plot", Plot)
+    app.add_config_value("draw", True, "env", bool)
     return {"parallel_read_safe": True}

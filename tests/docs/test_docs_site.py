@@ -15,7 +15,9 @@ DOCS = ROOT / "docs"
 
 @pytest.mark.slow
 def test_the_documentation_is_read_without_a_warning(tmp_path):
+    # the figures are drawn by test_docs_pages.py
     command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "dummy"]
+    command += ["-D", "draw=0"]
     done = subprocess.run(
         [*command, str(DOCS), str(tmp_path)],
         capture_output=True,
