@@ -90,7 +90,7 @@ SURVIVORS = (
            "(gamma - low) / (high - low)"),
     Mutant("film", STRIKE, "hydraulic = 2 * strike.groove", "hydraulic = strike.groove"),
     Mutant("film", STRIKE, "out**2 / 6", "out**2 / 2"),
-    Mutant("trials", SLIPS, "+ 4.6) / 3.2", "- 4.6) / 3.2"),
+    Mutant("trials", SLIPS, "cutoff) + 4.6)", "cutoff) - 4.6)"),
 )  # fmt: skip
 OTHERS = (
     Mutant("draws", SAMPLED, "np.exp(values.get(FILM, 0.0))",

@@ -25,7 +25,7 @@ from underfoot.friction import (
 from underfoot.friction.law import PIN_PRESSURE, FrictionLaw
 from underfoot.friction.pair_contact import HIGHEST_WET, ROUGHNESS, PairConstants
 from underfoot.rough_contact.contact_table import QUANTITIES, ContactTable
-from underfoot.studies.corpus import readings
+from underfoot_studies.corpus import readings
 
 TILE = Pair(shore_a=65, sole_rq=(8e-6, 8e-6), floor_rq=(3e-6, 3e-6), family="aqueous")
 KNOWN = {"film": 0.1, "hysteresis": 0.04, "dry": 0.3, "kappa": 1e-3, "laboratory": 1.0, "pair": 1.0}

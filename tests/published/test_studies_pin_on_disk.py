@@ -3,22 +3,20 @@
 import numpy as np
 import pytest
 
-from underfoot.calibrate import (
-    CofPoints,
-    blind_test,
-    calibrated_mechanism,
-    compare_mechanisms,
-    fluid_points,
-    mechanism,
-    pin_on_disk,
-    predicted,
-    roughness_series,
-)
+from underfoot.calibrate import CofPoints, fluid_points, pin_on_disk, roughness_series
 from underfoot.case.friction import RIVAL_DEVIATION, measured_fluids
 from underfoot.core import InputError
 from underfoot.core.catalogue import Catalogue
 from underfoot.friction import ONE_CURVE, OWN_BOUNDARY
-from underfoot.studies import Kind, Options, g2, g3, judged, study
+from underfoot.studies import Kind, Options, judged, study
+from underfoot_studies import g2, g3
+from underfoot_studies.mechanisms import (
+    blind_test,
+    calibrated_mechanism,
+    compare_mechanisms,
+    mechanism,
+    predicted,
+)
 
 CATALOGUE = Catalogue.load()
 PIN = pin_on_disk(CATALOGUE)

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from underfoot.calibrate.corpus import corpus, read_source
-from underfoot.calibrate.corpus_cases import contrasts, stand, verdict, whole_shoe_stands
+from underfoot_studies.corpus_cases import contrasts, stand, verdict, whole_shoe_stands
 
 BLOCK = {"device": "block", "fluid": "water"}
 

@@ -5,14 +5,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from underfoot.calibrate.identifiability import (
+from underfoot.core import InputError
+from underfoot_studies.identifiability import (
     Fixed,
     chi_square,
     limit,
     model_error,
     profile,
 )
-from underfoot.core import InputError
 
 GRID = np.linspace(-3.0, 5.0, 801)
 

@@ -7,7 +7,6 @@ import pytest
 
 from underfoot.core import InputError
 from underfoot.studies import (
-    STUDIES,
     Kind,
     Quantity,
     Verdict,
@@ -15,6 +14,7 @@ from underfoot.studies import (
     judge,
     judged,
     read_study,
+    studies,
     study,
 )
 from underfoot.studies.verdict import grid_value
@@ -273,7 +273,7 @@ def test_quantities_survive_their_file():
     assert other.probability(0.5, 2.0) == one.probability(0.5, 2.0)
 
 
-@pytest.mark.parametrize("name", STUDIES)
+@pytest.mark.parametrize("name", studies())
 def test_packaged_statements_are_complete(name):
     chosen = study(name)
     assert chosen.title

@@ -21,6 +21,10 @@ PREFIX = "underfoot."
 WINGS = {
     ("commands", "micro"): "underfoot-block",
     ("studies", "g1"): "underfoot-block",
+    **{
+        ("studies", name): "underfoot-studies"
+        for name in ("g2", "g3", "g4", "g5", "g6", "calibration", "corpus")
+    },
     ("simulators", "simulate"): "underfoot-simulator",
     ("trial_formats", "readers"): "underfoot-readers",
 }
@@ -95,6 +99,9 @@ def offered(door: str, name: str, check: Callable[[Any], str] = lambda _item: ""
             would offer it is not installed.
     """
     chosen = [offer for offer in all_offers() if (offer.door, offer.name) == (door, name)]
+    wing = WINGS.get((door, name))
+    if wing:  # our name stays ours
+        chosen = [offer for offer in chosen if offer.package == wing]
     if len(chosen) > 1:
         raise InputError(
             f'two packages offer the {door} "{name}": ' + " and ".join(map(str, chosen)),
@@ -105,7 +112,7 @@ def offered(door: str, name: str, check: Callable[[Any], str] = lambda _item: ""
         if wrong := check(item):
             raise InputError(f"{offer} {wrong}", remedy=f"Mend or remove {offer.package}")
         return item
-    if wing := WINGS.get((door, name)):
+    if wing:
         raise InputError(
             f"{name} comes with the package {wing}",
             remedy=f"pip install {wing} (in the source: ./wings/{wing.partition('-')[2]})",

@@ -2,12 +2,11 @@
 
 from .figure import Figure, Layer, Panel
 from .runner import Computed, Options, StudyResult, Table, run_all, run_study
-from .statements import STUDIES, Claim, Kind, Statement, Study, read_study, studies, study
+from .statements import Claim, Kind, Statement, Study, read_study, studies, study
 from .summary import headline, read_results, summary_markdown, write_summary
 from .verdict import Judgement, Quantity, Verdict, counts, judge, judged
 
 __all__ = [
-    "STUDIES",
     "Claim",
     "Computed",
     "Figure",

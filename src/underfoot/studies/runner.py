@@ -6,7 +6,6 @@ import json
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from importlib import import_module
 from typing import Any, ClassVar
 
 import numpy as np
@@ -21,7 +20,7 @@ from underfoot.core.progress import part as part
 from underfoot.core.registry import offered
 
 from .figure import Figure
-from .statements import STUDIES, Study, studies, study
+from .statements import Study, studies, study
 from .verdict import Judgement, Quantity, Verdict, counts, judged, tables_by_kind
 
 
@@ -172,12 +171,7 @@ def run_study(chosen: Study, options: Options) -> StudyResult:
     Raises:
         InputError: Settings for a study that has none.
     """
-    ours = chosen.name in STUDIES
-    module: Any = (
-        import_module(f"underfoot.studies.{chosen.name}")
-        if ours
-        else offered("studies", chosen.name)
-    )
+    module: Any = offered("studies", chosen.name)
     if options.settings is not None and not hasattr(module, "Settings"):
         raise InputError(
             f"study {chosen.name} has no settings of its own",

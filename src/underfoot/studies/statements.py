@@ -1,25 +1,24 @@
 """Printed statements as data: what a publication says, and what counts as agreeing with it.
 
-``data/statements/STUDY.toml`` holds one table for each statement. Its accepted interval follows
-from what is printed (digits, scatter, number of persons) and is fixed before anything is computed.
+``STUDY.toml`` beside the module of a study holds one table for each statement. Its accepted
+interval follows from what is printed (digits, scatter, number of persons) and is fixed before
+anything is computed.
 """
 
 from __future__ import annotations
 
 import math
 import re
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.files import read_toml
-from underfoot.core.registry import offered, offers
+from underfoot.core.registry import WINGS, offered, offers
 
 Z95 = 1.959963984540054
 KEYS = (
@@ -40,7 +39,6 @@ UNITS = {
     "deg": (math.pi / 180.0, "rad"),
 }
 """SI over a printed unit, and the SI unit."""
-STUDIES = ("g2", "g3", "g4", "g5", "g6", "calibration", "corpus")
 
 
 class Kind(StrEnum):
@@ -145,21 +143,20 @@ class Study:
 
 
 def studies() -> tuple[str, ...]:
-    """Return the names of all studies: those of other packages, then ours."""
-    return (*sorted(offers("studies").keys() - set(STUDIES)), *STUDIES)
+    """Return the names of all studies: ours in their order, then those of other packages."""
+    ours = [name for door, name in WINGS if door == "studies"]
+    there = offers("studies")
+    return (*(name for name in ours if name in there), *sorted(there.keys() - set(ours)))
 
 
 @cache
 def study(name: str) -> Study:
     """Return a study by its name; an unknown name is answered with the nearest one."""
     chosen = name.strip().lower()
-    if chosen not in STUDIES:
-        module = offered("studies", chosen)
-        if module is None:
-            raise unknown_name("study", name, studies())
-        return read_study(chosen, read_toml(Path(module.STATEMENTS)))
-    file = resources.files("underfoot") / "data" / "statements" / f"{chosen}.toml"
-    return read_study(chosen, tomllib.loads(file.read_text(encoding="utf-8")))
+    module = offered("studies", chosen)
+    if module is None:
+        raise unknown_name("study", name, studies())
+    return read_study(chosen, read_toml(Path(module.STATEMENTS)))
 
 
 def read_study(name: str, content: Mapping[str, Any]) -> Study:

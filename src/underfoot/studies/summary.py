@@ -49,7 +49,7 @@ def summary_markdown(results: Sequence[StudyResult]) -> str:
         "",
         "Written by `underfoot studies run all`. Counted are independent statements: each reading "
         "once, nothing that a parameter was chosen on, no comparison of the report with itself. "
-        "What an agreement needs is fixed in `src/underfoot/data/statements` before anything is "
+        "What an agreement needs is fixed in `wings/` before anything is "
         "computed.",
         "",
         "| study | " + " | ".join(str(verdict) for verdict in Verdict) + " |",

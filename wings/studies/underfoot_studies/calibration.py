@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from underfoot.calibrate import identifiability
-from underfoot.calibrate.identifiability import Fixed, Profile, chi_square, model_error, profile
 from underfoot.case.friction import measured_fluids
 from underfoot.compute.slips import slips
 from underfoot.core import Progress, silent
@@ -21,13 +20,17 @@ from underfoot.questions.outcomes import outcomes
 from underfoot.questions.sensitivity import OPEN_INPUTS
 from underfoot.questions.slips import BANDS
 from underfoot.slip.dynamics import ReducedSole, SlipStudy, judged
+from underfoot.studies.figure import OURS, PRINTED, Figure, Layer, Panel, level, line
+from underfoot.studies.runner import Computed, Options, Table, part
+from underfoot.studies.verdict import Quantity
 
-from .figure import OURS, PRINTED, Figure, Layer, Panel, level, line
+from . import identifiability
 from .g4 import LOAD, PEAK, Condition, printed
 from .g5 import slip_case
 from .g6 import precision_of_published
-from .runner import Computed, Options, Table, part
-from .verdict import Quantity
+from .identifiability import Fixed, Profile, chi_square, model_error, profile
+
+STATEMENTS = Path(__file__).with_name("calibration.toml")
 
 Array = NDArray[np.float64]
 FACETS = (8.0, 9.0, 10.0, 11.0, 12.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,10 +13,11 @@ from underfoot.fluid import BLOCKING
 from underfoot.friction import self_affine_scale
 from underfoot.friction.asperity_ehl import STYLUS_RESOLUTION
 from underfoot.material import youngs_modulus_gent
+from underfoot.studies.figure import Figure, Panel, grouped_bars
+from underfoot.studies.runner import Computed, Options, Table
+from underfoot.studies.verdict import Quantity
 
-from .figure import Figure, Panel, grouped_bars
-from .runner import Computed, Options, Table
-from .verdict import Quantity
+STATEMENTS = Path(__file__).with_name("g3.toml")
 
 SOLES = {
     "polyurethane": "polyurethane_40a",

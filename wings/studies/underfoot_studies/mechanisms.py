@@ -10,10 +10,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from underfoot.calibrate.least_squares import Calibration, Parameter, calibrated
+from underfoot.calibrate.stribeck_points import (
+    CofPoints,
+    Pin,
+    fluid_points,
+    pin_on_disk,
+    roughness_series,
+)
 from underfoot.core import InputError, unknown_name
-
-from .least_squares import Calibration, Parameter, calibrated
-from .stribeck_points import CofPoints, Pin, fluid_points, pin_on_disk, roughness_series
 
 if TYPE_CHECKING:
     from underfoot.core.catalogue import Catalogue

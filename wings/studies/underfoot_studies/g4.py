@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,11 +20,22 @@ from underfoot.core.catalogue import Catalogue
 from underfoot.questions.outcomes import Outcome, outcomes
 from underfoot.questions.sampled import sampled
 from underfoot.questions.sensitivity import OpenInput, Sensitivity, open_inputs, sensitivity
+from underfoot.studies.figure import (
+    OURS,
+    PRINTED,
+    SECOND,
+    Figure,
+    Layer,
+    Panel,
+    level,
+    line,
+    points,
+)
+from underfoot.studies.runner import Computed, Options, Table, part
+from underfoot.studies.verdict import Quantity
 from underfoot.trials.statistics import analysis_of_variance
 
-from .figure import OURS, PRINTED, SECOND, Figure, Layer, Panel, level, line, points
-from .runner import Computed, Options, Table, part
-from .verdict import Quantity
+STATEMENTS = Path(__file__).with_name("g4.toml")
 
 KINDS = ("work", "athletic")
 TREADS = ("untreaded", "half_tread", "full_tread")

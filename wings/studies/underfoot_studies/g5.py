@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations, cycle, pairwise
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -18,12 +19,14 @@ from underfoot.compute.slips import slips
 from underfoot.core.catalogue import Catalogue
 from underfoot.friction import FrictionLaw, PairContactLaw
 from underfoot.slip.dynamics import ReducedSole, SlipStudy
+from underfoot.studies.figure import GREY, OURS, PRINTED, SECOND, Figure, Panel, line, points
+from underfoot.studies.runner import Computed, Options, Table, kept, named, part
+from underfoot.studies.verdict import Quantity
 from underfoot.trials.statistics.linear import all_subsets
 
-from .figure import GREY, OURS, PRINTED, SECOND, Figure, Panel, line, points
 from .g6 import PRINTED_ACOF, SOLES, sole_case
-from .runner import Computed, Options, Table, kept, named, part
-from .verdict import Quantity
+
+STATEMENTS = Path(__file__).with_name("g5.toml")
 
 Array = NDArray[np.float64]
 COUNTS = {"untreaded": 11, "treaded": 6}

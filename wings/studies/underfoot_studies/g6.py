@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,11 +24,12 @@ from underfoot.questions.outcomes import Outcome, outcomes
 from underfoot.slip import ADULTS_LEVEL_WALKING as ADULTS
 from underfoot.slip import MODELS, ReportG6, slip_model
 from underfoot.slip.dynamics import cof_table, slip_study
+from underfoot.studies.figure import PRINTED, Figure, Layer, Panel, grouped_bars, line, points
+from underfoot.studies.runner import Computed, Options, Table, part
+from underfoot.studies.verdict import Quantity
 from underfoot.trials.statistics.logistic import logistic_regression, risk_curve
 
-from .figure import PRINTED, Figure, Layer, Panel, grouped_bars, line, points
-from .runner import Computed, Options, Table, part
-from .verdict import Quantity
+STATEMENTS = Path(__file__).with_name("g6.toml")
 
 Array = NDArray[np.float64]
 SOLES: dict[str, float] = {"hard": 70.0, "medium": 60.0, "soft": 50.0}

@@ -5,18 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from underfoot.calibrate.corpus import Condition, Reading, corpus
-from underfoot.calibrate.corpus_cases import (
-    Contrast,
-    Stand,
-    contrasts,
-    verdict,
-    whole_shoe_stands,
-)
 from underfoot.calibrate.pair_law import (
     LAWS,
     CorpusScore,
@@ -32,10 +26,19 @@ from underfoot.case import Case
 from underfoot.compute.run import run
 from underfoot.core import UnderfootError, content_hash
 from underfoot.core.arrays import Array
+from underfoot.studies.figure import PRINTED, Figure, Panel, line, points
+from underfoot.studies.runner import Computed, Options, Table, kept, part
+from underfoot.studies.verdict import Quantity
 
-from .figure import PRINTED, Figure, Panel, line, points
-from .runner import Computed, Options, Table, kept, part
-from .verdict import Quantity
+from .corpus_cases import (
+    Contrast,
+    Stand,
+    contrasts,
+    verdict,
+    whole_shoe_stands,
+)
+
+STATEMENTS = Path(__file__).with_name("corpus.toml")
 
 STEPS, QUICK_STEPS = 600, 150
 """Of the sampler's walkers."""

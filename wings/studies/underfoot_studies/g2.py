@@ -4,28 +4,41 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from underfoot.calibrate import (
-    CALIBRATION_FLUID,
-    BlindTest,
-    CofPoints,
-    MechanismComparison,
-    Pin,
-    calibrated_mechanism,
-    compare_mechanisms,
-    predicted,
-)
+from underfoot.calibrate import CofPoints, Pin
 from underfoot.core import SourcedValue, display
 from underfoot.core.catalogue import Catalogue
 from underfoot.friction import BoundaryFriction, Propagated, propagated, stribeck_cof, viscous_decay
 from underfoot.reference import soft_ehl_film
+from underfoot.studies.figure import (
+    COLOURS,
+    GREY,
+    MARKERS,
+    OURS,
+    PRINTED,
+    Figure,
+    Layer,
+    Panel,
+    line,
+    points,
+)
+from underfoot.studies.runner import Computed, Options, Table
+from underfoot.studies.verdict import Quantity
 
-from .figure import COLOURS, GREY, MARKERS, OURS, PRINTED, Figure, Layer, Panel, line, points
-from .runner import Computed, Options, Table
-from .verdict import Quantity
+from .mechanisms import (
+    CALIBRATION_FLUID,
+    BlindTest,
+    MechanismComparison,
+    calibrated_mechanism,
+    compare_mechanisms,
+    predicted,
+)
+
+STATEMENTS = Path(__file__).with_name("g2.toml")
 
 LABELS: dict[str, str] = {
     "water_g2": "water",
@@ -158,7 +171,7 @@ def master_curve(
     """Return Fig. 16's one curve of viscosity x speed (Pa m) fitted to all fluids, and its fit."""
     from scipy.optimize import isotonic_regression
 
-    from underfoot.calibrate import mechanism
+    from .mechanisms import mechanism
 
     chosen = mechanism("asperity_ehl")
     fit = calibrated_mechanism(chosen, tuple(chosen_points), pin)
