@@ -172,3 +172,16 @@ def test_film_and_friction_of_an_untreaded_heel_do_not_depend_on_the_spacing(sho
     coarse, fine = numbers(case, 1 * MM), numbers(case, 0.7 * MM)
     assert coarse["fluid_load"] == pytest.approx(fine["fluid_load"], rel=0.03)
     assert coarse["cof"] == pytest.approx(fine["cof"], rel=0.04)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("shoe", ["work", "athletic"])
+def test_film_and_friction_of_an_untreaded_heel_converge_with_the_cells_along(shoe):
+    """8, 16, 32 cells in a spacing: at least the first order; 16 leave what a result may miss."""
+    case = Case.load(EXAMPLES / f"{shoe}_shoe_untreaded_glycerol.toml")
+    found = [numbers(case.replace("numerics.cells_along", n), 1 * MM) for n in (8, 16, 32)]
+    for name, most in (("fluid_load", 0.05), ("cof", 0.02)):
+        eighth, own, finer = (each[name] for each in found)
+        assert own == pytest.approx(finer, rel=most)
+        settled = abs(eighth - finer) < 0.005 * finer
+        assert settled or abs(own - finer) < 0.6 * abs(eighth - own)

@@ -162,6 +162,22 @@ def overload_words(overload: Sequence[Breach]) -> str:
     )
 
 
+def no_result_words(contact: SoleContact, overload: Sequence[Breach]) -> str:
+    """Return what was under the sole where a march ended without a result."""
+    share = contact.fluid_load / contact.normal_force if contact.normal_force else 0.0
+    film = f"the film carried {share:.0%} of {display(contact.normal_force, 'N')}"
+    where = f"the march stopped at {display(contact.time, 's')}, where {film}"
+    if overload:
+        crushed = f"{overload[0].high:.0%} of the load rests on pressures above the modulus"
+        return (
+            f"lugs crushed: {crushed} of the rubber; {where}. More land, less load or a harder "
+            "compound"
+        )
+    if share > SHARE_LIMITS[1]:
+        return f"the sole floats and tips from one film to another: {where}"
+    return f"film and contact change places faster than steps in time can follow: {where}"
+
+
 def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
     """Return in words which inputs the spread of COF comes from, and how it was sampled."""
     if sampled is None:

@@ -64,7 +64,8 @@ def readings(
     overload = overload_breaches(contact, parts.context.youngs_modulus)
     if not contact.status.usable:
         nothing = numbers.undetermined(case, contact.status)
-        return Reading(nothing, {}, solution.friction.sampled, overload)
+        labels = {"no_result": numbers.no_result_words(contact, overload)}
+        return Reading(nothing, labels, solution.friction.sampled, overload)
     friction, sampled = solution.friction.sums, solution.friction.sampled
     if positions:
         friction, sampled = positions.friction(friction, sampled)

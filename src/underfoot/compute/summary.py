@@ -119,7 +119,8 @@ def headline(
 ) -> tuple[str, ...]:
     """Return the answer in a few sentences: COF and what spoils it, film, slip probability."""
     if not status.usable:
-        return (f"No result: {status}. {status.remedy}",)
+        reason = f" ({labels['no_result']})" if "no_result" in labels else ""
+        return (f"No result: {status}{reason}. {status.remedy}",)
     cof = scalars["cof"]
     text = value_text("cof", cof)
     if cof.uncertainty is not None:
