@@ -123,6 +123,21 @@ def test_shear_where_nothing_loads_the_plate_is_noticed(late, name):
         assert name in {flag.name for flag in step.measurement.caution_flags}
 
 
+def test_samples_missing_without_a_trace_are_noticed():
+    trial = read_trial(DATA / SOUND[0])
+
+    def lost(force, up):
+        out = force.copy()
+        for plate in trial.plates:
+            if np.array_equal(plate.force, force):
+                at = int(np.flatnonzero(force @ up > 20.0)[0]) + 40
+                out[at:-30] = force[at + 30 :]
+        return out
+
+    for step in required_frictions(_changed(trial, lost)):
+        assert "step of the forces" in {flag.name for flag in step.measurement.caution_flags}
+
+
 def test_the_sideways_line_to_the_pelvis_sees_crosstalk():
     """By mechanics: a share of the normal force that appears sideways moves it by itself."""
     trial = read_trial(DATA / SOUND[0])

@@ -72,6 +72,10 @@ SHORT_STANCE = Limit("stance time", 0.45, "s")
 REST_JUMP = Limit("jump from rest", 0.2, "1")
 SHEAR_SPIKE = Limit("spike", 30.0, "N")
 NORMAL_SPIKE = Limit("spike", 120.0, "N")
+STEP = Limit(
+    "step of the forces", 0.03, "1",
+    "beyond the steps of 3 ms to both sides, over the mean force; up to 0.011 in 16 recorded steps",
+)  # fmt: skip
 HELD = Limit("held samples", 0.004, "s")
 STRAIGHT = Limit("straight lines", 0.03, "s", "up to 0.021 s in 16 recorded steps")
 DRAWN = Limit("samples drawn out", 0.006, "s", "forces need 150 samples a second and more")
@@ -210,6 +214,9 @@ def _sample_flags(plate: Plate, stance: Stance, up: np.ndarray) -> Iterator[Flag
         size, limit = max(spikes, key=lambda pair: pair[0])
         yield limit.flag(size, f"a spike of {size:.0f} N lasts three samples at most")
     inner = slice(margin, len(part) - margin)
+    step = _step(part[inner], rate) / max(float(normal[inner].mean()), 1.0)
+    words = f"the forces step by {100 * step:.0f} % of their mean in one sample: samples missing?"
+    yield from STEP.above(step, words)
     still = (np.diff(part[inner], axis=0) == 0.0).all(axis=1) & (normal[inner][1:] > 50.0)
     held = longest_run(still) + 1
     if held >= 4 and held / rate >= HELD.value:
@@ -253,6 +260,21 @@ def _spike(values: np.ndarray, rate: float) -> float:
     before, after = here - values[: -2 * reach], here - values[2 * reach :]
     out = np.where(before * after > 0, np.minimum(np.abs(before), np.abs(after)), 0.0)
     return float(out.max(initial=0.0))
+
+
+def _step(force: np.ndarray, rate: float) -> float:
+    """Largest step (N) of forces (n, 3) beyond the largest ones of 3 ms to both sides.
+
+    The first and last 2 % are the foot's own.
+    """
+    reach, edge = max(2, round(0.003 * rate)), len(force) // 50
+    steps = np.abs(np.diff(force[edge : len(force) - edge], axis=0))
+    if len(steps) < 2 * reach + 1:
+        return 0.0
+    windows = np.lib.stride_tricks.sliding_window_view(steps, reach, axis=0).max(axis=2)
+    around = np.maximum(windows[: -reach - 1], windows[reach + 1 :])
+    beyond = np.maximum(steps[reach:-reach] - around, 0.0)
+    return float(np.linalg.norm(beyond, axis=1).max())
 
 
 def _high_share(force: np.ndarray, rate: float) -> float:
