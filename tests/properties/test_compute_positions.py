@@ -268,3 +268,38 @@ def test_a_place_that_does_not_converge_is_said():
     )
     assert "3 did not converge" in positions.labels()["tread_position"]
     assert positions.factors("cof").tolist() == [1.0]
+
+
+@pytest.mark.slow
+def test_a_tread_drawn_at_other_places_in_a_file_has_nearly_the_same_mean(tmp_path):
+    """As drawn COF differs by 23 % and film load by a factor of four (docs, coupled contact)."""
+    from underfoot.shoe import Facet, Heel
+    from underfoot.shoe.parametric import write_sole
+
+    drawn, mean = [], []
+    for offset in (0.0, 4 * MM, 8 * MM):
+        heel = Heel(
+            length=60 * MM,
+            width=66 * MM,
+            rear_radius=28 * MM,
+            outsole_thickness=25 * MM,
+            edge_radius=2 * MM,
+            profile=Facet(math.radians(10), 30 * MM),
+            tread=Tread("transverse", 6 * MM, 4 * MM, 3.5 * MM, offset=(offset, 0.0)),
+        )
+        file = tmp_path / f"bars_{offset * 1e3:.0f}.stl"
+        write_sole(heel, file)
+        case = Case(
+            shoe={"from": "work_shoe_full_tread", "outsole": {"file": str(file)}},
+            floor="vinyl_g4",
+            contaminant="glycerol_90pct",
+            motion="slip_tester_g4",
+        )
+        result = run(case.replace("numerics.tread_positions", 8), quick=True)
+        assert result.fields.position_shift_x.values[1] == pytest.approx(2.5 * MM, abs=0.1 * MM)
+        mean.append((result.value("cof"), result.value("fluid_load")))
+        drawn.append(
+            [float(result.fields[f"position_{name}"][0]) for name in ("cof", "fluid_load")]
+        )
+        assert "describes (COF" in result.labels["tread_position"]
+    assert (np.ptp(mean, axis=0) < 0.25 * np.ptp(drawn, axis=0)).all()
