@@ -20,6 +20,8 @@ from underfoot_block import (
 from underfoot_block._kernels import loops, names
 from underfoot_block.assembly import Assembly, assembled
 
+pytestmark = pytest.mark.slow  # the element loops are compiled on their first use, 20 s each
+
 G, NU = 1.0e6, 0.45
 ELASTIC = MicroMaterial.from_poisson(RelaxationSpectrum(G), NU, density=1000.0)
 ROUGH = MicroSurface.checkerboard(35.1e-6, 0.5e-3)
@@ -77,7 +79,6 @@ def test_element_loops_are_made_once_and_never_meet_old_machine_code(tmp_path, m
     assert loops.element_loops.__wrapped__().__file__ != str(path)
 
 
-@pytest.mark.slow  # compiles anew
 def test_element_loops_without_any_cache_folder_work_and_say_so(tmp_path, monkeypatch):
     (tmp_path / "__pycache__").write_text("a file where the folder should be")
     monkeypatch.setattr(loops, "HERE", tmp_path)

@@ -86,6 +86,7 @@ def test_sliding_soft_film_is_that_of_the_reference(load):
     assert solved.fluid_pressure.max() == pytest.approx(hertz.peak_pressure, rel=0.02)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("load", reference.LOADS[:2])
 def test_stored_films_are_recomputed(load):
     stored = reference.table()[load][1]

@@ -134,6 +134,7 @@ EXPLICIT = (
 )
 
 
+@pytest.mark.slow
 def test_an_explicit_run_goes_on_where_it_was_stopped(run, small, tmp_path, monkeypatch):
     monkeypatch.setenv("UNDERFOOT_CACHE", str(tmp_path / "cache"))
     small.write_text(EXPLICIT, encoding="utf-8")

@@ -19,6 +19,8 @@ from underfoot_block import (
 from underfoot_block.assembly import Assembly, assembled
 from underfoot_block.march import BlockMarch
 
+pytestmark = pytest.mark.slow  # the element loops are compiled on their first use, 20 s each
+
 G, NU, LENGTH = 1.0e6, 0.45, 0.4e-3
 MATERIAL = MicroMaterial.from_poisson(RelaxationSpectrum(G), NU)
 
@@ -47,7 +49,6 @@ def pressed(
     return assembly, gap
 
 
-@pytest.mark.slow
 def test_full_contact_stiffness_of_a_wave_is_that_of_the_half_space():
     """p = |q| E* u / 2 (Johnson 1985, 13.2): second order in the element size."""
     wave = 2.0 * math.pi * math.sqrt(2.0) / LENGTH
@@ -104,7 +105,6 @@ def test_gap_converges_with_the_penalty():
     assert 0.0 < (third - second) / (third - first) < 1.0 / 3.0
 
 
-@pytest.mark.slow
 def test_sliding_friction_and_area_against_the_half_space():
     """Two relaxation terms, 24 elements a wavelength: within 5 % of the FFT solver.
 

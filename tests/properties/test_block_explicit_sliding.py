@@ -20,6 +20,8 @@ from underfoot_block import (
 from underfoot_block.assembly import assembled, mass_scaling_error
 from underfoot_block.result import EDGE_EXCESS, edge_excess_area
 
+pytestmark = pytest.mark.slow  # the element loops are compiled on their first use, 20 s each
+
 # The grant report's block, rubber and roughness (G.1.1, Tables 1 and 2) with nu = 0.45: K low for
 # speed, on a coarser mesh.
 REPORT = RelaxationSpectrum(0.44e6, np.array([0.15e6]), np.array([40.0]))
@@ -36,7 +38,6 @@ def report_slide() -> MicroResult:
     return explicit_sliding(BLOCK, FLOOR, RUBBER, FAST)
 
 
-@pytest.mark.slow
 def test_report_material_has_no_hysteresis_friction(report_slide: MicroResult):
     means = report_slide.averages
     assert means is not None
@@ -197,7 +198,6 @@ def test_mass_is_scaled_within_both_bounds():
     assert any(breach.quantity == "COF of scaled inertia" for breach in result.breaches)
 
 
-@pytest.mark.slow
 def test_friction_of_scaled_inertia_stays_within_its_bound():
     """Loss-free neolite: what the lower nodes lose as they meet the floor, energies and all."""
     neolite = MicroMaterial.from_poisson(RelaxationSpectrum(30e6), 0.49)
