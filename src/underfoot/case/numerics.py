@@ -19,10 +19,11 @@ class Numerics(Section):
         0.6 * _mm, "0.6 mm", "four cells in the narrowest channel of the report"
     )
     quick_grid_spacing: Spacing = default(1.0 * _mm, "1 mm", "for a first look")
-    cells_along: Literal[1, 2, 4, 8, 16, 32] = default(
-        1,
-        1,
-        "cells along the sliding in one spacing, beside rims and corners; 1 for square cells alone",
+    cells_along: Literal["auto", 1, 2, 4, 8, 16, 32] = default(
+        "auto",
+        "auto",
+        "cells along the sliding in one spacing, beside rims and corners; 1 for square cells "
+        "alone; auto: 8 under a sole without tread in a fluid, else 1",
     )
     seed: Annotated[int, Field(ge=0, le=2**31, strict=True)] = default(
         0, 0, "of the draws behind the intervals; the same seed gives the same numbers"

@@ -1,7 +1,7 @@
 """The named numbers of a result, each with its spread or the reason why there is none."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from underfoot.case import Case
-from underfoot.core import Breach, SourcedValue, Status, content_hash, display
+from underfoot.core import Breach, SourcedValue, Status, content_hash
 from underfoot.film import SHARE_LIMITS, lubrication_by_load_share
 from underfoot.friction import FrictionCoefficients, SampledCof
 from underfoot.slip import RcofPopulation, SlipModel, SlipRisk, slip_risk
@@ -40,6 +40,7 @@ _INPUTS = {
     "model": "the law itself",
     "tread_position": "position of the tread",
     "shoe_angle": "shoe angle",
+    "numerical": "grid",
     "film load": "load on the film",
     "suction": "suction behind the edges of lugs",
 }
@@ -52,9 +53,10 @@ GRID_NAMES: tuple[str, ...] = (
     "cof",
     "fluid_load",
     "fluid_load_sensor",
+    "peak_fluid_pressure",
     "peak_fluid_pressure_sensor",
 )
-"""Numbers that errors of grid and steps in time are estimated for."""
+"""Numbers whose numerical error is estimated."""
 
 
 def scalars(
@@ -84,7 +86,7 @@ def scalars(
         "cof_hysteresis": friction.cof_hysteresis,
         "cof_viscous": friction.cof_viscous,
         "normal_force": case.sourced("motion.normal_force"),
-        "fluid_load": computed(contact.fluid_load, "N"),
+        "fluid_load": _film_load(computed(contact.fluid_load, "N"), contact.normal_force),
         "fluid_load_sensor": sensor.load,
         "peak_fluid_pressure": computed(float(contact.fluid_pressure.max()), "Pa"),
         "peak_fluid_pressure_sensor": sensor.peak_pressure,
@@ -95,6 +97,19 @@ def scalars(
         "slip_probability": probability,
     }
     return numbers, risk
+
+
+def _film_load(load: SourcedValue, normal_force: float) -> SourcedValue:
+    """Return the load on the film with the model's error, ``FILM_ERROR``."""
+    share = (load.value or 0.0) / normal_force
+    if not 0 < share < 1:
+        return load
+    low, high = (
+        normal_force * share / (share + (1 - share) * math.exp(turn * FILM_ERROR))
+        for turn in (1.96, -1.96)
+    )
+    deviation = FILM_ERROR * normal_force * share * (1 - share)
+    return replace(load, uncertainty=deviation, interval=(low, high), reason="")
 
 
 def slip_probability(
@@ -229,63 +244,8 @@ def sole_name(case: Case) -> str:
 
 def readings(contact: SoleContact, cof: float, sensor: SensorReading) -> dict[str, float]:
     """Return the numbers that errors of grid and steps in time are estimated for."""
-    values = cof, contact.fluid_load, sensor.load.value or 0.0, sensor.peak_pressure.value or 0.0
+    values = (
+        *(cof, contact.fluid_load, sensor.load.value or 0.0),
+        *(float(contact.fluid_pressure.max()), sensor.peak_pressure.value or 0.0),
+    )
     return dict(zip(GRID_NAMES, values, strict=True))
-
-
-def grid_errors(plain: Mapping[str, float], resolved: Mapping[str, float]) -> dict[str, float]:
-    """Return by how much the run's cells differ from cells that resolve rims and corners."""
-    return {name: abs(plain[name] - resolved[name]) for name in GRID_NAMES}
-
-
-def step_errors(own: Mapping[str, float], finer: Mapping[str, float]) -> dict[str, float]:
-    """Return 2 |own - finer|: the error of steps in time, against twice as many (first order)."""
-    return {name: 2 * abs(own[name] - finer[name]) for name in GRID_NAMES}
-
-
-def with_discretisation_errors(
-    numbers: Mapping[str, SourcedValue], grid: Mapping[str, float], steps: Mapping[str, float]
-) -> dict[str, SourcedValue]:
-    """Return the numbers with the errors of grid and steps in their uncertainty and their note."""
-    found = dict(numbers)
-    for name, error in grid.items():
-        value, by_steps = numbers[name], steps.get(name, 0.0)
-        said = f"grid error about {_error(error, value)}"
-        if steps:
-            said += f", of the steps in time {_error(by_steps, value)}"
-        # a spread that isn't known stays so: the grid is not what decides it
-        spread, ends, both = value.uncertainty, value.interval, math.hypot(error, by_steps)
-        if ends is not None and value.value is not None:
-            low, high = (math.hypot(end - value.value, both) for end in ends)
-            ends = max(value.value - low, 0.0), value.value + high
-        found[name] = replace(
-            value,
-            uncertainty=None if spread is None else math.hypot(spread, both),
-            interval=ends,
-            note=f"{value.note}; {said}" if value.note else said,
-        )
-    return found
-
-
-def discretisation_words(
-    numbers: Mapping[str, SourcedValue],
-    grid: Mapping[str, float],
-    steps: Mapping[str, float],
-    cells: str,
-) -> str:
-    """Return the remark on grid and steps in time for a summary; ``cells`` they were judged on."""
-
-    def parts(errors: Mapping[str, float]) -> str:
-        return ", ".join(
-            f"{name.replace('_', ' ')} +- {_error(error, numbers[name])}"
-            for name, error in errors.items()
-        )
-
-    words = f"grid: {parts(grid)} (difference to {cells})"
-    if steps:
-        words += f"; steps in time: {parts(steps)} (from twice as many on these)"
-    return words
-
-
-def _error(error: float, value: SourcedValue) -> str:
-    return display(float(f"{error:.2g}"), value.unit)

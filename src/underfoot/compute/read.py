@@ -1,31 +1,25 @@
 """What is read from a solved case: its numbers, their errors by the grid, and words on both."""
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from underfoot.case import Case
-from underfoot.core import Breach, InputError, Progress, SourcedValue, display, silent
+from underfoot.core import Breach, Progress, SourcedValue, display, silent
 from underfoot.friction import SampledCof
-from underfoot.shoe import SoleMap
 from underfoot.shoe.lug_drainage import LugDrainage, lug_drainage
 from underfoot.slip import SlipRisk
 from underfoot.sole_contact.edge_peak import peak_pressure
 from underfoot.sole_contact.slits import slit_words
-from underfoot.sole_contact.solver import SoleContact
 
 from . import numbers
-from .contact_friction import friction_sums
-from .positions import Place, TreadPositions
+from .numerical_error import NumericalErrors, numerical_errors, with_numerical_error
+from .positions import TreadPositions
 from .prepare import Prepared
-from .sensors import blind_sensor, scanned
+from .sensors import blind_sensor
 from .sole import overload_breaches
-from .solve import Solution, solved_at
+from .solve import Solution
 from .summary import FILM_MATTERS
-
-RESOLVED = 16
-"""Cells along the sliding in one spacing that hold the inlet of a film at a rim or corner."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +63,12 @@ def readings(
     friction, sampled = solution.friction.sums, solution.friction.sampled
     if positions:
         friction, sampled = positions.friction(friction, sampled)
+    errors = numerical_errors(parts, solution, positions, quick=quick, progress=progress)
+    if sampled is not None and isinstance(errors, NumericalErrors):
+        cof, name = friction.cof, numbers.sole_name(case)
+        error = errors.deviation("cof")
+        sampled = with_numerical_error(sampled, error, cof=cof.value or 0.0, sole=name)
+        friction = replace(friction, cof=sampled.sourced("cof", cof))
     sensor = solution.sensor
     values, risk = numbers.scalars(case, contact, friction, sensor, sampled, parts.slip_model)
     values |= solution.recorder.array_scalars()
@@ -85,8 +85,10 @@ def readings(
     }
     labels = numbers.regime(share) | numbers.spread_origin(sampled)
     labels |= _remarks(parts, solution, remarks)
-    if case.numerics.grid_check and not quick:
-        values, labels = _grid_checked(parts, solution, values, labels, progress)
+    if isinstance(errors, NumericalErrors):
+        values = errors.added(values)
+        errors = errors.words(values)
+    labels["grid_error"] = errors
     return Reading(values, labels, sampled, overload, risk, drainage)
 
 
@@ -109,56 +111,12 @@ def _remarks(parts: Prepared, solution: Solution, more: dict[str, str]) -> dict[
         "instant": _last_instant(case),
         "edge_peak": peak.remark,
         "film_inlet": ""
-        if sole.cells or case.numerics.grid_check or sole.tread_depth.any()
+        if sole.cells or sole.tread_depth.any()
         else "Square cells do not resolve where the film enters: COF and film load of a flat heel "
-        "may be off by half; numerics.cells_along = 16 resolves it.",
+        'may be off by half; numerics.cells_along = "auto" resolves it.',
         "sensor": blind_sensor(case, sensor, contact),
     }
     return {name: remark for name, remark in (remarks | more).items() if remark}
-
-
-def _grid_checked(
-    parts: Prepared,
-    solution: Solution,
-    values: dict[str, SourcedValue],
-    labels: dict[str, str],
-    progress: Progress,
-) -> tuple[dict[str, SourcedValue], dict[str, str]]:
-    """Return numbers and labels with the errors of the grid and of the steps in time."""
-    if "compliance" in parts.objects:
-        raise InputError(
-            "a compliance that was given holds for one grid",
-            where="numerics.grid_check",
-            remedy="Set numerics.grid_check = false",
-        )
-    case, viscosity = parts.case, parts.viscosity
-    columns = max(RESOLVED, case.numerics.cells_along)
-    resolved = replace(parts, case=case.replace("numerics.cells_along", columns))
-    spacing = case.numerics.quick_grid_spacing
-    place: dict[str, Any] = {"place": Place(), "spacing": spacing, "progress": progress}
-    cells = f"cells of {display(spacing, 'm')}, {columns} along the sliding"
-    on_cells = [solved_at(resolved, **place)]
-    if viscosity is not None:  # a dry contact has no memory: its steps are not steps in time
-        on_cells.append(solved_at(resolved, **place, finer=2))
-    if not all(contact.status.usable for _, contact in on_cells):
-        failed = f"not estimated: a march on {cells} did not converge"
-        return values, {**labels, "grid_error": failed}
-
-    def read(sole: SoleMap, contact: SoleContact) -> dict[str, float]:
-        friction = friction_sums(parts.law_on(sole), contact, case.motion.speed)
-        sensor = scanned(case, sole, contact, viscosity=viscosity)
-        return numbers.readings(contact, friction.cof.value or 0.0, sensor)
-
-    there = [read(*each) for each in on_cells]
-    errors = (
-        numbers.grid_errors(read(parts.sole, solution.contact), there[0]),
-        numbers.step_errors(*there) if len(there) > 1 else {},
-    )
-    values = numbers.with_discretisation_errors(values, *errors)
-    return values, {
-        **labels,
-        "grid_error": numbers.discretisation_words(values, *errors, cells),
-    }
 
 
 def _last_instant(case: Case) -> str:

@@ -53,6 +53,8 @@ from .resolve import resolved, youngs_modulus
 if TYPE_CHECKING:
     from underfoot.shoe.files import FileOutsole, FileSettings
 
+RESOLVED = 8
+"""Cells along the sliding in one spacing that hold the inlet of a film at the corner of a sole."""
 BOTTOMED = 0.5
 """Share of the outsole's thickness beyond which the load bottoms it out: refused."""
 LINEAR_STRAIN = Range(0.0, 0.25, "1", "linear elasticity of rubber in compression")
@@ -113,8 +115,21 @@ def sole_map(
 
 def _with_cells(case: Case, sole: SoleMap, fine: Callable[[int], SoleMap]) -> SoleMap:
     """Return the sole with the cells along the sliding that the case asks for."""
-    columns = case.numerics.cells_along
+    columns = cells_along(case, sole)
     return sole if columns == 1 else replace(sole, cells=row_cells(sole, fine(columns)))
+
+
+def cells_along(case: Case, sole: SoleMap) -> int:
+    """Return the cells along the sliding in one spacing that a sole is solved on.
+
+    A flat sole in a fluid is resolved by ``RESOLVED``. Lugs stay on square cells: their rims are
+    not resolved by fine ones either, which cost ten times as much.
+    """
+    given = case.numerics.cells_along
+    if given != "auto":
+        return given
+    flat = case.contaminant is not None and sole.slits is None and not sole.tread_depth.any()
+    return RESOLVED if flat else 1
 
 
 def _jointed(case: Case, sole: SoleMap, length: float) -> SoleMap:

@@ -183,10 +183,13 @@ def value_text(name: str, scalar: SourcedValue) -> str:
 
 
 def interval_text(name: str, scalar: SourcedValue) -> str:
-    """Return the 95 % interval of a named dimensionless value; empty where there is none."""
+    """Return the 95 % interval of a named value; empty where there is none."""
     if scalar.interval is None:
         return ""
-    low, high = (_plain(name, end) for end in scalar.interval)
+    plain = name in PROBABILITIES or scalar.unit == "1"
+    low, high = (
+        _plain(name, end) if plain else quantity_text(end, scalar.unit) for end in scalar.interval
+    )
     return "" if low == high else f"{low} to {high}"
 
 

@@ -151,6 +151,11 @@ def named_shares(seed: int, name: str, samples: int) -> Array:
     return _strata(np.random.default_rng([seed, zlib.crc32(name.encode())]), samples)
 
 
+def normal_draws(seed: int, name: str, samples: int) -> Array:
+    """Return (samples,) standard normal draws of a cause, the same for the same seed and name."""
+    return ndtri(named_shares(seed, name, samples))
+
+
 def _strata(generator: np.random.Generator, samples: int) -> Array:
     shares = (generator.permutation(samples) + generator.random(samples)) / samples
     return np.clip(shares, 1e-12, 1 - 1e-12)

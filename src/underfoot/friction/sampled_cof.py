@@ -6,13 +6,12 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import ndtri
 
 from underfoot.core import SourcedValue
 from underfoot.core.arrays import Array, Mask
 
 from .law import SMALLEST_FILM, FrictionLaw, FrictionParts
-from .propagation import Propagated, named_shares, propagated
+from .propagation import Propagated, normal_draws, propagated
 
 PARTS = ("adhesion", "hysteresis", "viscous")
 CLASSES = 64
@@ -106,7 +105,7 @@ def sampled_cof(
     joint = dict(_joint(law, samples, seed))
     if film_error and np.any(fluid_pressure):
         inputs[FILM] = SourcedValue(0.0, "1", "", film_error)
-        joint[FILM] = film_error * ndtri(named_shares(seed, f"{FILM} {sole}", samples))
+        joint[FILM] = film_error * normal_draws(seed, f"{FILM} {sole}", samples)
     pull, pull_share = suction or (None, 0.0)
     if pull is not None and pull.value and pull_share:
         inputs[SUCTION] = pull

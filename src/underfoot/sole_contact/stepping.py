@@ -130,7 +130,7 @@ class SlidingSole:
         blank = np.zeros_like(clearance)
         self._march = March(
             problem,
-            pole_fit(compliance, extent, sole.spacing),
+            pole_fit(compliance, extent, sole.spacing * float(cells.width.min())),
             State(blank, -lift, clearance + lift, blank, blank, blank > 0, np.ones_like(blank)),
             pool_depth=settings.pool_depth,
             first_step=settings.rise_time * FIRST_STEP,

@@ -1,0 +1,187 @@
+"""How far the numbers of a run may lie from those of endlessly fine cells and steps."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from underfoot.core import InputError, Progress, SourcedValue, display, silent
+from underfoot.friction import SampledCof
+from underfoot.friction.propagation import normal_draws
+from underfoot.shoe import SoleMap
+from underfoot.sole_contact.solver import SoleContact
+
+from .contact_friction import friction_sums
+from .numbers import GRID_NAMES, readings
+from .positions import Place, TreadPositions
+from .prepare import Prepared
+from .sensors import scanned
+from .sole import RESOLVED, cells_along
+from .solve import Solution, solved_at
+
+LUGS = {name: 0.03 if name == "cof" else 0.3 for name in GRID_NAMES}
+"""Relative standard deviation between grids under lugs: square cells of 1 and 0.6 mm, and cells of
+1/4 to 1/16 mm along the sliding beside their rims (docs/guide/performance.md)."""
+CHECKED = 2 * RESOLVED
+"""Cells along the sliding of a grid check, at least."""
+
+
+@dataclass(frozen=True, slots=True)
+class NumericalErrors:
+    """Standard deviations of grid and steps in time by name, SI, and what tells them.
+
+    ``steps`` is empty where the steps were not looked at.
+    """
+
+    grid: Mapping[str, float]
+    steps: Mapping[str, float]
+    origin: str
+
+    def deviation(self, name: str) -> float:
+        """Return the standard deviation of a number, grid and steps together."""
+        return math.hypot(self.grid[name], self.steps.get(name, 0.0))
+
+    def added(self, values: Mapping[str, SourcedValue]) -> dict[str, SourcedValue]:
+        """Return the numbers with these errors in their uncertainty, interval and note.
+
+        Not in those of COF, whose draws have it.
+        """
+        result = dict(values)
+        for name in self.grid:
+            value, error = values[name], self.deviation(name)
+            note = f"numerical error {_error(error, value)}"
+            change: dict[str, Any] = {"note": f"{value.note}; {note}" if value.note else note}
+            if name != "cof" and value.value is not None:
+                known, ends = value.uncertainty or 0.0, value.interval
+                change |= {"uncertainty": math.hypot(known, error), "reason": ""}
+                if ends is not None and value.value > 0:
+                    change["interval"] = _wider(value.value, ends, error)
+            result[name] = replace(value, **change)
+        return result
+
+    def words(self, values: Mapping[str, SourcedValue]) -> str:
+        """Return the errors in one sentence."""
+
+        def parts(errors: Mapping[str, float]) -> str:
+            return ", ".join(
+                f"{name.replace('_', ' ')} ± {_error(error, values[name])}"
+                for name, error in errors.items()
+            )
+
+        words = f"grid: {parts(self.grid)} ({self.origin})"
+        if self.steps:
+            words += f"; steps in time: {parts(self.steps)} (from twice as many)"
+        return words
+
+
+def with_numerical_error(sampled: SampledCof, error: float, *, cof: float, sole: str) -> SampledCof:
+    """Return the draws of COF with its numerical error, a log-normal factor on all parts.
+
+    ``error`` is the standard deviation of ``cof``; ``sole`` names the sole: two runs of one name
+    share the error.
+    """
+    if not (error > 0 and cof > 0):
+        return sampled
+    width = math.sqrt(math.log1p((error / cof) ** 2))
+    normal = normal_draws(sampled.seed, f"numerical error {sole}", sampled.cof.size)
+    factor = np.exp(width * normal)
+    own, law = error**2, float(np.var(sampled.cof))
+    share = {name: each * law / (law + own) for name, each in sampled.share.items()}
+    parts = ("cof", "adhesion", "hysteresis", "viscous")
+    return replace(
+        sampled,
+        share={**share, "numerical": own / (law + own)},
+        **{name: getattr(sampled, name) * factor for name in parts},
+    )
+
+
+def numerical_errors(
+    parts: Prepared,
+    solution: Solution,
+    positions: TreadPositions | None,
+    *,
+    quick: bool,
+    progress: Progress = silent,
+) -> NumericalErrors | str:
+    """Return the numerical errors of a solved case, or why they are not known.
+
+    With n positions of a tread
+
+        s^2 = (c v)^2 + s_p^2 / n
+
+    c v what lies between grids under lugs (``LUGS``), s_p the standard deviation over the
+    positions. Without a tread s is the difference to the quick grid, on which the case is solved
+    once more, in a quick run to half its cells along the sliding. ``numerics.grid_check`` compares
+    with ``CHECKED`` cells along the sliding on the quick grid, and these with twice the steps in
+    time (first order).
+
+    Raises:
+        InputError: A grid check with a compliance of one grid.
+    """
+    case = parts.case
+    checked = case.numerics.grid_check and not quick
+    if "compliance" in parts.objects:
+        if checked:
+            raise InputError(
+                "a compliance that was given holds for one grid",
+                where="numerics.grid_check",
+                remedy="Set numerics.grid_check = false",
+            )
+        return "not estimated: the compliance holds for one grid"
+    own, columns = _read(parts, parts.sole, solution.contact), cells_along(case, parts.sole)
+    if checked:
+        return _compared(_with_cells(parts, max(CHECKED, columns)), own, progress, steps=True)
+    if positions is not None and parts.sole.tread_depth.any():
+        count = len(positions.places)
+        grid = {}
+        for name in own:
+            values = positions.values[name]
+            scatter = float(np.std(values, ddof=1)) if count > 1 else 0.0
+            grid[name] = math.hypot(LUGS[name] * float(values.mean()), scatter / math.sqrt(count))
+        return NumericalErrors(grid, {}, f"{count} positions, and other grids under lugs")
+    if quick and columns == 1:
+        return "not estimated on the quick grid"
+    return _compared(_with_cells(parts, columns // 2) if quick else parts, own, progress)
+
+
+def _compared(
+    parts: Prepared, own: Mapping[str, float], progress: Progress, *, steps: bool = False
+) -> NumericalErrors | str:
+    """Return the differences of ``own`` to the quick grid, and by its steps in time."""
+    spacing = parts.case.numerics.quick_grid_spacing
+    sole, contact = solved_at(parts, Place(), spacing, progress=progress)
+    contacts = [contact]
+    if steps and parts.viscosity is not None:  # a dry contact has no memory
+        contacts.append(solved_at(parts, Place(), spacing, finer=2, progress=progress)[1])
+    columns = cells_along(parts.case, sole)
+    cells = f"cells of {display(spacing, 'm')}"
+    cells += f", {columns} along the sliding" * (columns > 1)
+    if not all(each.status.usable for each in contacts):
+        return f"not estimated: a march on {cells} did not converge"
+    there = [_read(parts, sole, each) for each in contacts]
+    grid = {name: abs(value - there[0][name]) for name, value in own.items()}
+    by_steps = {name: 2 * abs(value - there[-1][name]) for name, value in there[0].items()}
+    return NumericalErrors(grid, by_steps if len(there) > 1 else {}, f"difference to {cells}")
+
+
+def _with_cells(parts: Prepared, columns: int) -> Prepared:
+    return replace(parts, case=parts.case.replace("numerics.cells_along", columns))
+
+
+def _read(parts: Prepared, sole: SoleMap, contact: SoleContact) -> dict[str, float]:
+    friction = friction_sums(parts.law_on(sole), contact, parts.case.motion.speed)
+    sensor = scanned(parts.case, sole, contact, viscosity=parts.viscosity)
+    return readings(contact, friction.cof.value or 0.0, sensor)
+
+
+def _wider(value: float, ends: tuple[float, float], error: float) -> tuple[float, float]:
+    """Return a 95 % interval of a positive number with a further standard deviation."""
+    width = 1.96 * error / value
+    low, high = (math.log(max(end, 1e-6 * value) / value) for end in ends)
+    return value * math.exp(-math.hypot(low, width)), value * math.exp(math.hypot(high, width))
+
+
+def _error(error: float, value: SourcedValue) -> str:
+    return display(float(f"{error:.2g}"), value.unit)
