@@ -1,82 +1,90 @@
-"""What grid and steps in time leave open: exact for first-order errors, in words and spread."""
+"""What grid, positions and steps in time leave open: its size, in spread, words and draws."""
 
 import math
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from underfoot.case import Case
-from underfoot.compute.numbers import (
-    GRID_NAMES,
-    discretisation_words,
-    grid_errors,
-    step_errors,
-    with_discretisation_errors,
-)
+from underfoot.compute.numbers import GRID_NAMES
+from underfoot.compute.numerical_error import NumericalErrors, with_numerical_error
 from underfoot.compute.run import run
 from underfoot.compute.solve import solved_motion
 from underfoot.core import SourcedValue, Status
+from underfoot.friction import SampledCof
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
+COARSE = {"numerics.grid_spacing": "1 mm", "numerics.quick_grid_spacing": "1.2 mm"}
 
 
-def test_errors_are_differences_to_the_resolved_cells_and_by_halved_steps():
-    plain, resolved = (
-        dict(zip(GRID_NAMES, values, strict=True))
-        for values in ((0.04, 100.0, 40.0, 1e5), (0.06, 90.0, 43.0, 1e5))
-    )
-    errors = grid_errors(plain, resolved)
-    assert errors == pytest.approx(dict(zip(GRID_NAMES, (0.02, 10.0, 3.0, 0.0), strict=True)))
-    # a first-order error of the steps: what half of them leaves, twice
-    assert step_errors(plain, resolved)["fluid_load"] == pytest.approx(2 * 10.0)
-
-
-def test_the_error_joins_a_known_spread_and_interval_and_is_told():
-    numbers = {
+def test_the_error_joins_spread_and_interval_and_is_told():
+    values = {
         "cof": SourcedValue(0.04, uncertainty=0.003, interval=(0.036, 0.05)),
-        "fluid_load": SourcedValue(100.0, "N", source="s", reason="not known"),
-        "fluid_load_sensor": SourcedValue(40.0, "N", source="s", uncertainty=3.0, note="tracks"),
-        "peak_fluid_pressure_sensor": SourcedValue(1e5, "Pa", source="s", uncertainty=0.0),
+        "fluid_load": SourcedValue(100.0, "N", uncertainty=30.0, interval=(50.0, 160.0)),
+        "fluid_load_sensor": SourcedValue(40.0, "N", source="s", uncertainty=5.0, note="tracks"),
+        "peak_fluid_pressure": SourcedValue(2e5, "Pa", reason="not known"),
+        "peak_fluid_pressure_sensor": SourcedValue(0.0, "Pa", uncertainty=0.0),
     }
-    grid = dict(zip(GRID_NAMES, (0.003, 5.0, 4.0, 2e3), strict=True))
-    steps = dict(zip(GRID_NAMES, (0.0, 1.0, 12.0, 0.0), strict=True))
-    found = with_discretisation_errors(numbers, grid, steps)
-    assert found["cof"].interval == pytest.approx((0.035, 0.04 + math.hypot(0.01, 0.003)))
+    errors = NumericalErrors(
+        dict(zip(GRID_NAMES, (0.003, 40.0, 12.0, 3e4, 0.0), strict=True)),
+        dict(zip(GRID_NAMES, (0.0, 0.0, 0.0, 4e4, 0.0), strict=True)),
+        "difference to cells of 1 mm",
+    )
+    found = errors.added(values)
+    assert found["cof"].interval == values["cof"].interval  # its draws hold the error
+    assert found["fluid_load"].uncertainty == pytest.approx(50.0)
+    low, high = found["fluid_load"].interval
+    assert 0 < low < 50.0
+    assert math.log(high / 100) == pytest.approx(math.hypot(math.log(1.6), 1.96 * 0.4))
     assert found["fluid_load_sensor"].uncertainty == pytest.approx(13.0)
-    assert found["fluid_load"].uncertainty is None
-    assert "grid error about 4 N, of the steps in time 12 N" in found["fluid_load_sensor"].note
-    words = discretisation_words(found, grid, steps, "cells of 1 mm")
+    assert "tracks; numerical error 12 N" in found["fluid_load_sensor"].note
+    assert found["peak_fluid_pressure"].uncertainty == pytest.approx(5e4)
+    assert found["peak_fluid_pressure"].reason == ""
+    words = errors.words(found)
+    assert "fluid load ± 40 N" in words
     assert "difference to cells of 1 mm" in words
-    assert "steps in time: cof +- 0, fluid load +- 1 N" in words
-    dry = with_discretisation_errors(numbers, grid, {})
-    assert dry["fluid_load_sensor"].uncertainty == pytest.approx(5.0)
-    assert "steps" not in dry["fluid_load_sensor"].note
+    assert "steps in time: cof ± 0" in words
+
+
+def test_draws_of_cof_carry_the_error_and_two_soles_do_not_share_it():
+    parts = {name: np.full(4000, 0.04) for name in ("adhesion", "hysteresis", "viscous")}
+    sampled = SampledCof(
+        cof=np.full(4000, 0.12), **parts, share={}, left_out=(), confidence=0.95, seed=0
+    )
+    first, again, other = (
+        with_numerical_error(sampled, 0.012, cof=0.12, sole=sole) for sole in ("a", "a", "b")
+    )
+    assert np.std(first.cof) == pytest.approx(0.012, rel=0.05)
+    assert first.cof == pytest.approx(first.adhesion + first.hysteresis + first.viscous)
+    assert first.share == {"numerical": 1.0}
+    assert (first.cof == again.cof).all()
+    assert abs(np.corrcoef(first.cof, other.cof)[0, 1]) < 0.05
+    assert with_numerical_error(sampled, 0.0, cof=0.12, sole="a") is sampled
 
 
 @pytest.mark.parametrize("name", ["untreaded_glycerol", "full_tread_dry"])
-def test_a_run_tells_of_grid_and_steps(name):
-    case = Case.load(EXAMPLES / f"work_shoe_{name}.toml").replace(
-        {
-            "numerics.grid_check": True,
-            "numerics.tread_positions": 1,
-            "numerics.grid_spacing": "1 mm",
-            "numerics.quick_grid_spacing": "1.2 mm",
-        }
-    )
+def test_every_run_tells_its_numerical_error(name):
+    case = Case.load(EXAMPLES / f"work_shoe_{name}.toml").replace(COARSE)
     result = run(case)
-    words = result.labels["grid_error"]
+    words, cof = result.labels["grid_error"], result.scalars["cof"]
+    if "untreaded" in name:  # a corner of the sole is resolved, and compared with the quick grid
+        assert "difference to cells of 1.2 mm, 8 along the sliding" in words
+        assert result.scalars["fluid_load"].interval is not None
+    else:
+        assert "4 positions, and other grids under lugs" in words
+    assert "numerical error" in cof.note
+
+
+def test_a_grid_check_looks_at_finer_cells_and_steps():
+    case = Case.load(EXAMPLES / "work_shoe_untreaded_glycerol.toml").replace(COARSE)
+    words = run(case.replace("numerics.grid_check", True)).labels["grid_error"]
     assert "cells of 1.2 mm, 16 along the sliding" in words
-    assert ("steps in time" in words) == ("dry" not in name)
-    if "untreaded" in name:  # square cells can't hold the inlet: the interval says so
-        plain = run(case.replace("numerics.grid_check", False))
-        checked, unchecked = (each.scalars["cof"].interval for each in (result, plain))
-        assert checked is not None
-        assert unchecked is not None
-        assert checked[1] > unchecked[1]
+    assert "steps in time" in words
 
 
-def test_a_check_that_does_not_converge_is_told(monkeypatch):
+def test_a_march_that_does_not_converge_leaves_the_error_unknown(monkeypatch):
     def fails_with_more_steps(*given, finer=1, **options):
         contact = solved_motion(*given, finer=finer, **options)
         return replace(contact, status=Status.NOT_CONVERGED) if finer > 1 else contact

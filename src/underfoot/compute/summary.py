@@ -41,7 +41,7 @@ LABELS = {
     "cof_spread_from": "Uncertainty of the COF",
     "tread_position": "Tread position",
     "shoe_angle": "Shoe angle",
-    "grid_error": "Discretisation error",
+    "grid_error": "Numerical error",
     "edge_peak": "Caution on pressures",
     "drainage": "Drainage",
     "lug_edges": "Edges of the lugs",
