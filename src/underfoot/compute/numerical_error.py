@@ -15,7 +15,7 @@ from underfoot.sole_contact.solver import SoleContact
 
 from .contact_friction import friction_sums
 from .numbers import GRID_NAMES, readings
-from .positions import Place, TreadPositions
+from .positions import Place, ShoeAngles, TreadPositions
 from .prepare import Prepared
 from .sensors import scanned
 from .sole import RESOLVED, cells_along
@@ -24,6 +24,8 @@ from .solve import Solution, solved_at
 LUGS = {name: 0.03 if name == "cof" else 0.3 for name in GRID_NAMES}
 """Relative standard deviation between grids under lugs: square cells of 1 and 0.6 mm, and cells of
 1/4 to 1/16 mm along the sliding beside their rims (docs/guide/performance.md)."""
+QUICK = {name: 0.08 if name == "cof" else 0.05 for name in GRID_NAMES}
+"""The same of the quick grid without a tread, against finer ones."""
 CHECKED = 2 * RESOLVED
 """Cells along the sliding of a grid check, at least."""
 
@@ -112,10 +114,9 @@ def numerical_errors(
         s^2 = (c v)^2 + s_p^2 / n
 
     c v what lies between grids under lugs (``LUGS``), s_p the standard deviation over the
-    positions. Without a tread s is the difference to the quick grid, on which the case is solved
-    once more, in a quick run to half its cells along the sliding. ``numerics.grid_check`` compares
-    with ``CHECKED`` cells along the sliding on the quick grid, and these with twice the steps in
-    time (first order).
+    positions. Without a tread s is the difference to the quick grid, of a quick run ``QUICK``.
+    ``numerics.grid_check`` compares with ``CHECKED`` cells along the sliding on the quick grid, and
+    these with twice the steps in time (first order).
 
     Raises:
         InputError: A grid check with a compliance of one grid.
@@ -132,8 +133,14 @@ def numerical_errors(
         return "not estimated: the compliance holds for one grid"
     own, columns = _read(parts, parts.sole, solution.contact), cells_along(case, parts.sole)
     if checked:
-        return _compared(_with_cells(parts, max(CHECKED, columns)), own, progress, steps=True)
-    if positions is not None and parts.sole.tread_depth.any():
+        return _compared(_with_cells(parts, max(CHECKED, columns)), own, progress)
+    if isinstance(positions, ShoeAngles):
+        if quick:
+            grid = {name: QUICK[name] * value for name, value in own.items()}
+            return NumericalErrors(grid, {}, "finer grids under other soles")
+        grid = {name: abs(value - positions.coarse[name]) for name, value in own.items()}
+        return NumericalErrors(grid, {}, f"difference to {_cells(parts, columns)}")
+    if positions is not None:
         count = len(positions.places)
         grid = {}
         for name in own:
@@ -141,29 +148,30 @@ def numerical_errors(
             scatter = float(np.std(values, ddof=1)) if count > 1 else 0.0
             grid[name] = math.hypot(LUGS[name] * float(values.mean()), scatter / math.sqrt(count))
         return NumericalErrors(grid, {}, f"{count} positions, and other grids under lugs")
-    if quick and columns == 1:
-        return "not estimated on the quick grid"
-    return _compared(_with_cells(parts, columns // 2) if quick else parts, own, progress)
+    return "not estimated with numerics.tread_positions = 1"
 
 
 def _compared(
-    parts: Prepared, own: Mapping[str, float], progress: Progress, *, steps: bool = False
+    parts: Prepared, own: Mapping[str, float], progress: Progress
 ) -> NumericalErrors | str:
     """Return the differences of ``own`` to the quick grid, and by its steps in time."""
     spacing = parts.case.numerics.quick_grid_spacing
     sole, contact = solved_at(parts, Place(), spacing, progress=progress)
     contacts = [contact]
-    if steps and parts.viscosity is not None:  # a dry contact has no memory
+    if parts.viscosity is not None:  # a dry contact has no memory
         contacts.append(solved_at(parts, Place(), spacing, finer=2, progress=progress)[1])
-    columns = cells_along(parts.case, sole)
-    cells = f"cells of {display(spacing, 'm')}"
-    cells += f", {columns} along the sliding" * (columns > 1)
+    cells = _cells(parts, cells_along(parts.case, sole))
     if not all(each.status.usable for each in contacts):
         return f"not estimated: a march on {cells} did not converge"
     there = [_read(parts, sole, each) for each in contacts]
     grid = {name: abs(value - there[0][name]) for name, value in own.items()}
     by_steps = {name: 2 * abs(value - there[-1][name]) for name, value in there[0].items()}
     return NumericalErrors(grid, by_steps if len(there) > 1 else {}, f"difference to {cells}")
+
+
+def _cells(parts: Prepared, columns: int) -> str:
+    spacing = display(parts.case.numerics.quick_grid_spacing, "m")
+    return f"cells of {spacing}" + f", {columns} along the sliding" * (columns > 1)
 
 
 def _with_cells(parts: Prepared, columns: int) -> Prepared:

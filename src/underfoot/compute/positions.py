@@ -149,11 +149,17 @@ class TreadPositions:
         return f"{display(values.min(), unit)} to {display(values.max(), unit)}"
 
 
+@dataclass(frozen=True, slots=True)
 class ShoeAngles(TreadPositions):
     """Numbers of a run of a sole without lugs at its own shoe angle and beside it.
 
     The result is that at the own angle; its draws take the angles in turn.
+
+    Attributes:
+        coarse: Scalars at the own angle on the grid that the angles are compared on.
     """
+
+    coarse: Mapping[str, float]
 
     origin = "shoe_angle"
     held = "shoe angle"
@@ -216,38 +222,51 @@ def tread_positions(
     law_on: Callable[[SoleMap], FrictionLaw | EdgedLaw],
     sole: SoleMap,
     contact: SoleContact,
-    solve: Callable[[Place, Progress], tuple[SoleMap, SoleContact]],
+    solve: Callable[[Place, float, Progress], tuple[SoleMap, SoleContact]],
     *,
     viscosity: float | None,
+    spacing: float,
     quick: bool,
     progress: Progress = silent,
 ) -> TreadPositions | None:
     """Return the numbers of a run at more positions of its tread, or shoe angles without a tread.
 
-    None where the case asks for one position.
+    None where the case asks for one position. Positions are solved on the grid of the run, of
+    ``spacing`` (m); shoe angles on the quick one, whose ratios are taken.
 
-    ``law_on`` returns the local friction on a sole, ``solve`` sole and contact at a place on the
-    grid of ``sole``.
+    ``law_on`` returns the local friction on a sole, ``solve`` sole and contact at a place on a
+    grid.
     """
     count = position_count(case, quick=quick)
     if count == 1:
         return None
+    own = place_numbers(case, law_on(sole), sole, contact, viscosity)
     if _treaded(case):
         tread = _tread(case)
         lying = places(file_periods(case) if tread is None else tread.periods, count)
-        kind = TreadPositions
+        kept = [(Place(), own)]
     else:
-        lying, kind = shoe_angles(), ShoeAngles
-    kept = [(Place(), place_numbers(case, law_on(sole), sole, contact, viscosity))]
-    for k, place in list(enumerate(lying))[1:]:
+        lying = shoe_angles()
+        kept = [(Place(), own)] if quick else []
+        spacing = case.numerics.quick_grid_spacing
+    begun = len(kept)
+    for k, place in list(enumerate(lying))[begun:]:
         try:
-            there = solve(place, _stage(progress, k, count))
+            there = solve(place, spacing, _stage(progress, k, len(lying), begun))
         except ConvergenceError:
             continue
         if there[1].status.usable:
             kept.append((place, place_numbers(case, law_on(there[0]), *there, viscosity)))
-    values = {name: np.array([numbers[name] for _, numbers in kept]) for name in kept[0][1]}
-    return kind(tuple(place for place, _ in kept), values, count - len(kept))
+    if not kept or kept[0][0] != Place():  # nothing to compare the angles with
+        kept = [(Place(), own)]
+    lying, values = tuple(place for place, _ in kept), {}
+    for name, value in own.items():
+        there = np.array([numbers[name] for _, numbers in kept])
+        values[name] = there * (value / there[0]) if there[0] else there
+    left_out = count - len(kept)
+    if _treaded(case):
+        return TreadPositions(lying, values, left_out)
+    return ShoeAngles(lying, values, left_out, coarse=kept[0][1])
 
 
 def position_count(case: Case, *, quick: bool) -> int:
@@ -269,11 +288,21 @@ def _treaded(case: Case) -> bool:
     return float(file_surface(case).tread_depth.max()) > 0
 
 
+def first_share(case: Case, *, quick: bool) -> float:
+    """Return the share of a run's work that its march at the case's own place takes."""
+    count = position_count(case, quick=quick)
+    if quick or count == 1 or _treaded(case):
+        return 1 / count
+    numerics = case.numerics
+    return 1 / (1 + count * (numerics.grid_spacing / numerics.quick_grid_spacing) ** 2)
+
+
 def run_cost(case: Case, *, quick: bool) -> Cost:
-    """Return what a run will take, all positions of the tread together."""
+    """Return what a run will take, all places together."""
     numerics = case.numerics
     one = cost(case, numerics.quick_grid_spacing if quick else numerics.grid_spacing)
-    low, high = (position_count(case, quick=quick) * seconds for seconds in one.seconds)
+    share = first_share(case, quick=quick)
+    low, high = (seconds / share for seconds in one.seconds)
     return replace(one, seconds=(low, high))
 
 
@@ -282,9 +311,12 @@ def _tread(case: Case) -> Tread | None:
     return tread if tread and tread.depth > 0 else None
 
 
-def _stage(progress: Progress, number: int, count: int) -> Progress:
+def _stage(progress: Progress, number: int, count: int, begun: int) -> Progress:
+    """Return the progress of a march, the ``number``-th of those from ``begun`` to ``count``."""
+
     def report(stage: str, fraction: float, residual: float | None = None) -> None:
-        progress(f"Tread position {number + 1} of {count}", (number + fraction) / count, residual)
+        share = (number - begun + fraction) / (count - begun)
+        progress(f"Tread position {number + 1} of {count}", share, residual)
 
     return report
 

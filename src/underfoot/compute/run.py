@@ -13,7 +13,7 @@ from underfoot.sole_contact.cost import refuse_too_large
 
 from .answer import answer
 from .cost import cost
-from .positions import position_count
+from .positions import first_share
 from .prepare import case_and_objects, prepared
 from .read import readings
 from .result import Result
@@ -57,9 +57,9 @@ def run(
     refuse_too_large(cost(case, spacing), most_memory=most, where=grid, spacing=spacing)
     parts = prepared(case, spacing, given, progress=progress)
     moments.append(time.perf_counter())
-    count = position_count(case, quick=quick)
-    solution = solved(parts, part(progress, 0.0, 1.0 / count))
-    positions = averaged(parts, solution, quick=quick, progress=progress)
+    first = first_share(case, quick=quick)
+    solution = solved(parts, part(progress, 0.0, first))
+    positions = averaged(parts, solution, quick=quick, progress=part(progress, first, 1.0))
     moments.append(time.perf_counter())
     reading = readings(parts, solution, positions, quick=quick, progress=progress)
     moments.append(time.perf_counter())

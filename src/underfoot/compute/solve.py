@@ -88,8 +88,8 @@ def averaged(
     if "compliance" in parts.objects or not solution.contact.status.usable:
         return None
 
-    def at_place(place: Place, progress: Progress) -> tuple[SoleMap, SoleContact]:
-        return solved_at(parts, place, parts.spacing, progress=progress)
+    def at_place(place: Place, spacing: float, progress: Progress) -> tuple[SoleMap, SoleContact]:
+        return solved_at(parts, place, spacing, progress=progress)
 
     return tread_positions(
         parts.case,
@@ -98,6 +98,7 @@ def averaged(
         solution.contact,
         at_place,
         viscosity=parts.viscosity,
+        spacing=parts.spacing,
         quick=quick,
         progress=progress,
     )
