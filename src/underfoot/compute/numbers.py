@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from underfoot.case import Case
-from underfoot.core import Breach, SourcedValue, Status, content_hash
+from underfoot.core import Breach, SourcedValue, Status, content_hash, display
 from underfoot.film import SHARE_LIMITS, lubrication_by_load_share
 from underfoot.friction import FrictionCoefficients, SampledCof
 from underfoot.slip import RcofPopulation, SlipModel, SlipRisk, slip_risk

@@ -19,6 +19,7 @@ from .tread import Sipes
 
 HALF, NARROW = 50.0, 10.0
 """Percentiles of the local width by area: what is refused, and what is listed."""
+_BISECTIONS = 48
 _FAR = 1.0
 """m: the distance to a channel where there is none."""
 
@@ -156,9 +157,9 @@ def _few_cells(quantity: str, cells: float) -> list[Breach]:
 def _solved(
     along: Callable[[Array, Array], Array], target: Array, y: Array, low: float, high: float
 ) -> Array:
-    """Return the x of the sole whose place on the floor is ``target``, by bisection to 1 nm."""
+    """Return the x of the sole whose place on the floor is ``target``, by bisection."""
     below, above = np.full_like(target, low), np.full_like(target, high)
-    for _ in range(math.ceil(math.log2((high - low) / 1e-9))):
+    for _ in range(_BISECTIONS):
         middle = 0.5 * (below + above)
         short = along(middle, y) < target
         below = np.where(short, middle, below)
