@@ -18,8 +18,6 @@ from underfoot.studies import (
     Quantity,
     StudyResult,
     Table,
-    g2,
-    g3,
     headline,
     judged,
     read_results,
@@ -31,6 +29,7 @@ from underfoot.studies import (
     write_summary,
 )
 from underfoot.studies.summary import figure_rows
+from underfoot_studies import g2, g3
 
 ROOT = Path(__file__).parents[2]
 

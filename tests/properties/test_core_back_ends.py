@@ -6,13 +6,14 @@ from underfoot.compute.run import run
 from underfoot.core import fourier, sparse
 
 
-@pytest.mark.parametrize(("tolerance", "apart"), [(1e-4, 1e-7), (1e-6, 1e-9)])
-def test_run_without_mkl_gives_the_same_numbers(tolerance, apart, worn_shoe_case, monkeypatch):
-    """Solutions of one system agree to 1e-9; a march ends anywhere within its own tolerance."""
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
+def test_run_without_mkl_gives_the_same_numbers(tolerance, worn_shoe_case, monkeypatch):
+    """Within a hundredth of the tolerance, anywhere within which a march may end."""
     assert sparse.back_end() == "pardiso", "MKL belongs to the environment of the tests"
     case = worn_shoe_case.replace("numerics.tolerance", tolerance)
     with_mkl = run(case).scalars
     monkeypatch.setenv(sparse.VARIABLE, "superlu")
     monkeypatch.setenv(fourier.VARIABLE, "scipy")
     for name, scalar in run(case).scalars.items():
-        assert scalar.value == pytest.approx(with_mkl[name].value, rel=apart), name
+        size = with_mkl["cof" if name == "cof_shoe_angle" else name].value  # a difference of COF
+        assert abs(scalar.value - with_mkl[name].value) <= 0.01 * tolerance * size, name

@@ -4,8 +4,6 @@ from collections.abc import Iterable, Mapping
 from itertools import chain
 from typing import Any
 
-import numpy as np
-
 from underfoot.case import Case, assumptions
 from underfoot.core import Breach, Provenance, Status
 from underfoot.core.fields import Fields, labelled
@@ -171,11 +169,7 @@ def _sole_maps(parts: Prepared, solution: Solution) -> dict[str, tuple[tuple[str
         "contact_pressure": (contact.contact_pressure, "Pa", "asperity contact pressure"),
         "fluid_pressure": (contact.fluid_pressure, "Pa", "fluid pressure"),
         "film_thickness": (contact.film_thickness, "m", "mean gap, at most the pool"),
-        "shear_stress": (
-            shear.total - np.where(contact.wet, 0.0, shear.viscous),
-            "Pa",
-            "shear stress on the sole",
-        ),
+        "shear_stress": (shear.total, "Pa", "shear stress on the sole"),
         "clearance": (sole.clearance, "m", "height of the undeformed sole"),
         "inside": (sole.inside, "1", "within the plan form"),
         "land": (sole.land, "1", "can touch the floor"),

@@ -2,8 +2,11 @@
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from underfoot.case import Case
 from underfoot.case.context import Context
+from underfoot.core.arrays import Array
 from underfoot.friction import (
     FrictionCoefficients,
     FrictionLaw,
@@ -22,7 +25,10 @@ from . import numbers
 
 @dataclass(frozen=True, slots=True)
 class ContactFriction:
-    """Shear stresses on the sole, what edges of lugs do to them, their sum and its draws."""
+    """Shear stresses on the sole, what edges of lugs do to them, their sum and its draws.
+
+    ``parts`` are maps (nx, ny), the viscous part 0 outside the film.
+    """
 
     parts: FrictionParts
     lugs: LugFriction | None
@@ -43,6 +49,10 @@ def contact_friction(
     law = law_on(law, at)
     values = at.contact_pressure, case.motion.speed, at.film_thickness
     parts = maps if at is contact else law(*values)
+    if isinstance(at, CellState):
+        maps = _on_squares(parts, at, contact)
+    else:
+        maps = replace(maps, viscous=np.where(contact.wet, maps.viscous, 0.0))
     lugs, suction, plain = None, None, law
     if isinstance(law, EdgedLaw):
         plain, lugs = law.law, law.lugs(*values)
@@ -75,6 +85,21 @@ def contact_friction(
         source=f"{plain.name} law: {plain.source}",
     )
     return ContactFriction(maps, lugs, sums, sampled)
+
+
+def _on_squares(parts: FrictionParts, at: CellState, contact: SoleContact) -> FrictionParts:
+    """Return the shear stresses of finer cells as means over what squares stand for, (nx, ny)."""
+    area = contact.areas["area"]
+
+    def mean(stress: Array, weight: Array) -> Array:
+        sums = np.bincount(at.square, stress * weight, area.size)
+        return sums.reshape(area.shape) / area
+
+    return FrictionParts(
+        mean(parts.adhesion, at.area),
+        mean(parts.hysteresis, at.area),
+        mean(parts.viscous, at.area * at.wet),
+    )
 
 
 def law_on(law: FrictionLaw | EdgedLaw, state: SoleState | CellState) -> FrictionLaw | EdgedLaw:

@@ -40,7 +40,6 @@ from underfoot.shoe import SoleMap, SoleSurface, heel_map, surface_map
 from underfoot.shoe.ball_joint import PLACE, BallJoint
 from underfoot.shoe.row_division import row_cells
 from underfoot.shoe.shape import SoleShape
-from underfoot.shoe.tread_shift import moved_tread, tread_periods
 from underfoot.shoe.worn import ArchardStep, WornMap, archard_wear, worn_surface
 from underfoot.sole_contact.edge_peak import MOST_OVERLOADED, overloaded_share
 from underfoot.sole_contact.slits import loaded_slits
@@ -281,6 +280,9 @@ def _read(path: str, checksum: str, settings: "FileSettings") -> "FileOutsole":
 
 @lru_cache(maxsize=4)
 def _periods(path: str, checksum: str, settings: "FileSettings") -> NDArray[np.float64]:
+    # compiled: numba takes a while to import
+    from underfoot.shoe.tread_shift import tread_periods
+
     return tread_periods(_read(path, checksum, settings).surface)
 
 
@@ -296,6 +298,8 @@ def file_surface(case: Case, shift: tuple[float, float] = (0.0, 0.0)) -> SoleSur
     """
     surface, wear = file_outsole(case).surface, case.shoe.wear
     if any(shift):
+        from underfoot.shoe.tread_shift import moved_tread
+
         surface = moved_tread(surface, shift, file_periods(case))
     removed = wear.build() if wear.depth > 0 else None
     return surface if removed is None else worn_surface(surface, removed)

@@ -88,9 +88,14 @@ function cameraMatrix(view, aspect) {
 }
 
 // Smooth edges double the work of each pixel: for graphics processors, not for their imitations.
+// Asked once: a page has few contexts.
+let smooth = null;
 function smoothEdges() {
+  if (smooth !== null) return smooth;
   const gl = document.createElement("canvas").getContext("webgl2"), told = gl && gl.getExtension("WEBGL_debug_renderer_info");
-  return !told || !/SwiftShader|llvmpipe|Basic Render/.test(gl.getParameter(told.UNMASKED_RENDERER_WEBGL));
+  smooth = !told || !/SwiftShader|llvmpipe|Basic Render/.test(gl.getParameter(told.UNMASKED_RENDERER_WEBGL));
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return smooth;
 }
 
 class Drawing {
