@@ -24,6 +24,7 @@ def test_the_error_joins_spread_and_interval_and_is_told():
         "cof": SourcedValue(0.04, uncertainty=0.003, interval=(0.036, 0.05)),
         "fluid_load": SourcedValue(100.0, "N", uncertainty=30.0, interval=(50.0, 160.0)),
         "fluid_load_sensor": SourcedValue(40.0, "N", source="s", uncertainty=5.0, note="tracks"),
+        "normal_force": SourcedValue(1e9, "N"),
         "peak_fluid_pressure": SourcedValue(2e5, "Pa", reason="not known"),
         "peak_fluid_pressure_sensor": SourcedValue(0.0, "Pa", uncertainty=0.0),
     }
@@ -38,6 +39,8 @@ def test_the_error_joins_spread_and_interval_and_is_told():
     low, high = found["fluid_load"].interval
     assert 0 < low < 50.0
     assert math.log(high / 100) == pytest.approx(math.hypot(math.log(1.6), 1.96 * 0.4))
+    pressed = values | {"normal_force": SourcedValue(200.0, "N")}
+    assert 160.0 < errors.added(pressed)["fluid_load"].interval[1] < 200.0
     assert found["fluid_load_sensor"].uncertainty == pytest.approx(13.0)
     assert "tracks; numerical error 12 N" in found["fluid_load_sensor"].note
     assert found["peak_fluid_pressure"].uncertainty == pytest.approx(5e4)

@@ -59,7 +59,10 @@ class NumericalErrors:
                 known, ends = value.uncertainty or 0.0, value.interval
                 change |= {"uncertainty": math.hypot(known, error), "reason": ""}
                 if ends is not None and value.value > 0:
-                    change["interval"] = _wider(value.value, ends, error)
+                    most = math.inf
+                    if name == "fluid_load":  # by the odds: not above the load
+                        most = max(values["normal_force"].value or math.inf, 1.001 * value.value)
+                    change["interval"] = _wider(value.value, ends, error, most)
             result[name] = replace(value, **change)
         return result
 
@@ -184,11 +187,24 @@ def _read(parts: Prepared, sole: SoleMap, contact: SoleContact) -> dict[str, flo
     return readings(contact, friction.cof.value or 0.0, sensor)
 
 
-def _wider(value: float, ends: tuple[float, float], error: float) -> tuple[float, float]:
-    """Return a 95 % interval of a positive number with a further standard deviation."""
-    width = 1.96 * error / value
-    low, high = (math.log(max(end, 1e-6 * value) / value) for end in ends)
-    return value * math.exp(-math.hypot(low, width)), value * math.exp(math.hypot(high, width))
+def _wider(
+    value: float, ends: tuple[float, float], error: float, most: float
+) -> tuple[float, float]:
+    """Return a 95 % interval of a number from 0 to ``most`` with a further standard deviation.
+
+    Both join as ln v / (1 - v / most), which keeps the ends in between.
+    """
+
+    def turned(number: float) -> float:
+        share = min(max(number / value, 1e-6), (1 - 1e-9) * most / value)
+        return math.log(share / (1 - share * value / most))
+
+    width = 1.96 * error / (value * (1 - value / most))
+    result = []
+    for end, sign in zip(ends, (-1, 1), strict=True):
+        odds = math.exp(turned(value) + sign * math.hypot(turned(end) - turned(value), width))
+        result.append(value * odds / (1 + odds * value / most))
+    return result[0], result[1]
 
 
 def _error(error: float, value: SourcedValue) -> str:
