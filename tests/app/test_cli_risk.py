@@ -155,8 +155,10 @@ def test_changes_are_those_of_whole_runs(shoe) -> None:
     case = Case.load(f"examples/{shoe}_glycerol.toml")
     found = risk_assessment(case)
     slips = {"own": found.outcome.number("slip_probability")}
+    # changes of a sole without tread are compared at its own shoe angle
+    whole = case if "full" in shoe else case.replace("numerics.tread_positions", 1)
     for effect in found.changes:
-        alone = run(case.replace(effect.change.values), quick=True)
+        alone = run(whole.replace(effect.change.values), quick=True)
         by_cof = abs(effect.number("cof") - alone.value("cof"))
         assert by_cof <= max(0.01, effect.error or 0.0), effect.change.name
         slips[effect.change.name] = alone.value("slip_probability")
