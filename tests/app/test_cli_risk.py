@@ -133,8 +133,7 @@ def test_a_motion_with_a_history_is_run_for_each_change() -> None:
     case = Case.from_text(TEXT).replace("motion", "heel_strike_to_flat")
     rougher = Change("rougher", "rougher", "floor", {"floor.roughness.rq": 5e-6})
     (found,) = risk_assessment(case, changes=[rougher]).changes
-    changed = case.replace({**rougher.values, "numerics.tread_positions": 1})
-    alone = run(changed, quick=True)  # a change is compared at one position
+    alone = run(case.replace(rougher.values), quick=True)  # no tread: one position either way
     for name, scalar in found.scalars.items():
         assert scalar.value == pytest.approx(alone.value(name), rel=1e-9)
     assert found.error is None
@@ -155,16 +154,13 @@ def test_changes_are_those_of_whole_runs(shoe) -> None:
     case = Case.load(f"examples/{shoe}_glycerol.toml")
     found = risk_assessment(case)
     slips = {"own": found.outcome.number("slip_probability")}
-    # changes of a sole without tread are compared at its own shoe angle
-    whole = case if "full" in shoe else case.replace("numerics.tread_positions", 1)
     for effect in found.changes:
-        alone = run(whole.replace(effect.change.values), quick=True)
-        by_cof = abs(effect.number("cof") - alone.value("cof"))
-        assert by_cof <= max(0.01, effect.error or 0.0), effect.change.name
+        alone = run(case.replace(effect.change.values), quick=True)
+        off = abs(effect.number("cof") - alone.value("cof"))
+        assert off <= max(0.01, effect.error or 0.0), effect.change.name
         slips[effect.change.name] = alone.value("slip_probability")
         off = abs(effect.number("slip_probability") - slips[effect.change.name])
-        # the logistic in ACOF - RCOF is at most 49.2 / 4 steep
-        assert off <= 0.03 + 49.2 / 4 * by_cof, effect.change.name
+        assert off <= 0.03, effect.change.name
     best = [each.change.name for each in found.best]
     assert best[:3] == sorted(best, key=lambda name: slips[name])[:3]
     assert all(slips[name] < slips["own"] for name in best[:3])

@@ -125,6 +125,15 @@ class Continuation:
         """Scalars of the march by name, SI."""
         return _numbers(self._parts, self.case, self.contact)
 
+    @cached_property
+    def cof_draws(self) -> Array | None:
+        """Draws of COF of the march over the spread of its law, (n,); None where it has none."""
+        parts = self._parts
+        drawn = contact_friction(
+            self.case, parts.context, parts.local_law, parts.sole, self.contact
+        )
+        return None if drawn.sampled is None else drawn.sampled.cof
+
     def continued(self, changes: Mapping[str, Any]) -> Preview:
         """Return what the changes (path in the case: new value) make of the contact.
 

@@ -241,7 +241,7 @@ def tread_positions(
     if count == 1:
         return None
     own = place_numbers(case, law_on(sole), sole, contact, viscosity)
-    if _treaded(case):
+    if treaded(case):
         tread = _tread(case)
         lying = places(file_periods(case) if tread is None else tread.periods, count)
         kept = [(Place(), own)]
@@ -264,7 +264,7 @@ def tread_positions(
         there = np.array([numbers[name] for _, numbers in kept])
         values[name] = there * (value / there[0]) if there[0] else there
     left_out = count - len(kept)
-    if _treaded(case):
+    if treaded(case):
         return TreadPositions(lying, values, left_out)
     return ShoeAngles(lying, values, left_out, coarse=kept[0][1])
 
@@ -277,12 +277,13 @@ def position_count(case: Case, *, quick: bool) -> int:
     count = case.numerics.tread_positions
     if count == 1:
         return 1
-    if not _treaded(case):
+    if not treaded(case):
         return len(shoe_angles())
     return math.ceil(count / 2) if quick else count
 
 
-def _treaded(case: Case) -> bool:
+def treaded(case: Case) -> bool:
+    """Return whether the sole of a case has lugs."""
     if case.shoe.outsole is None:
         return _tread(case) is not None
     return float(file_surface(case).tread_depth.max()) > 0
@@ -291,7 +292,7 @@ def _treaded(case: Case) -> bool:
 def first_share(case: Case, *, quick: bool) -> float:
     """Return the share of a run's work that its march at the case's own place takes."""
     count = position_count(case, quick=quick)
-    if quick or count == 1 or _treaded(case):
+    if quick or count == 1 or treaded(case):
         return 1 / count
     numerics = case.numerics
     return 1 / (1 + count * (numerics.grid_spacing / numerics.quick_grid_spacing) ** 2)

@@ -79,6 +79,14 @@ class _Friction:
         load = SourcedValue(seen.values["fluid_load"], "N", reason="not estimated")
         return cls(seen.cof, seen.cof_draws, load)
 
+    def widened(self, deviation: float) -> _Friction:
+        """Return the friction with a further relative deviation in its draws, log-normal."""
+        if self.draws is None or not deviation:
+            return self
+        width = math.sqrt(math.log1p(deviation**2))
+        normal = normal_draws(0, "what a preview leaves out", self.draws.size)
+        return replace(self, draws=self.draws * np.exp(width * normal - width**2 / 2))
+
     def moved(self, start: _Level, own: _Level) -> _Friction:
         """Return a changed friction as from ``own``, the unchanged one, instead of ``start``."""
         cof, load = self.cof.value or 0.0, self.fluid_load.value or 0.0
@@ -145,26 +153,30 @@ def change_effects(
         return tuple(effects.values())
     mean, own = _levels(present)
     march = start = None
+    left_out = 0.0
     if quick:
         march = _march(case, part(progress, 0.0, 0.3))
     if march is not None:
         start = _Level(march.values["cof"], march.values["fluid_load"])
+        left_out = _further_deviation(_Friction.of(present.scalars, present.data), march.cof_draws)
         for number, variant in variants.items():
             progress(STAGE, 0.3 + 0.3 * number / len(changes))
             if variant.shoe.material != case.shoe.material:
                 continue  # a rubber that gives way otherwise: most steps to it cost a march or fail
             seen = _continued(march, changes[number])
             if seen is not None:
-                there = _Friction.of_preview(seen).moved(start, mean)
+                there = _Friction.of_preview(seen).moved(start, mean).widened(left_out)
                 error = seen.errors["cof"]
                 effects[number] = there.effect(changes[number], variant, error)
     alike = {number for number, each in variants.items() if quick and _same_plan(case, each)}
+    # shoe angles of a sole without lugs leave its value and belong to its draws
+    one_position = _ONE_POSITION if treaded(case) else {}
     runs = {
-        number: each.replace(_ONE_POSITION) if number in alike else each
+        number: each.replace(one_position) if number in alike else each
         for number, each in variants.items()
         if number not in effects
     }
-    unchanged = [case.replace(_ONE_POSITION)] if quick and march is None else []
+    unchanged = [case.replace(one_position)] if quick and march is None else []
     found = outcomes(
         [*unchanged, *runs.values()],
         quick=quick,
@@ -203,6 +215,15 @@ def _levels(present: Result) -> tuple[_Level, _Level]:
         return mean, mean
     first = (np.asarray(present.data[f"position_{name}"])[0] for name in _Level._fields)
     return mean, _Level(*map(float, first))
+
+
+def _further_deviation(friction: _Friction, draws: Array | None) -> float:
+    """Return the relative deviation of a friction beyond that of ``draws``: angle, position, grid.
+    """
+    if friction.draws is None or draws is None:
+        return 0.0
+    whole, part = (float(np.std(each) / np.mean(each)) for each in (friction.draws, draws))
+    return math.sqrt(max(whole**2 - part**2, 0.0))
 
 
 def _march(case: Case, progress: Progress) -> Continuation | None:
