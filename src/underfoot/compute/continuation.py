@@ -26,7 +26,7 @@ from underfoot.core.threads import threads_limited
 from underfoot.shoe import SoleMap
 from underfoot.sole_contact.solver import SoleContact, solve_on
 
-from .contact_friction import contact_friction
+from .contact_friction import ContactFriction, contact_friction
 from .positions import place_numbers
 from .prepare import Prepared, prepared
 from .solve import solved_motion, solver_settings
@@ -125,14 +125,20 @@ class Continuation:
         """Scalars of the march by name, SI."""
         return _numbers(self._parts, self.case, self.contact)
 
-    @cached_property
+    @property
+    def cof(self) -> SourcedValue:
+        """COF of the march with the spread of its law."""
+        return self._drawn.sums.cof
+
+    @property
     def cof_draws(self) -> Array | None:
         """Draws of COF of the march over the spread of its law, (n,); None where it has none."""
+        return None if self._drawn.sampled is None else self._drawn.sampled.cof
+
+    @cached_property
+    def _drawn(self) -> ContactFriction:
         parts = self._parts
-        drawn = contact_friction(
-            self.case, parts.context, parts.local_law, parts.sole, self.contact
-        )
-        return None if drawn.sampled is None else drawn.sampled.cof
+        return contact_friction(self.case, parts.context, parts.local_law, parts.sole, self.contact)
 
     def continued(self, changes: Mapping[str, Any]) -> Preview:
         """Return what the changes (path in the case: new value) make of the contact.

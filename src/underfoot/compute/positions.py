@@ -153,8 +153,6 @@ class TreadPositions:
 class ShoeAngles(TreadPositions):
     """Numbers of a run of a sole without lugs at its own shoe angle and beside it.
 
-    The result is that at the own angle; its draws take the angles in turn.
-
     Attributes:
         coarse: Scalars at the own angle on the grid that the angles are compared on.
     """
@@ -164,26 +162,25 @@ class ShoeAngles(TreadPositions):
     origin = "shoe_angle"
     held = "shoe angle"
     several = "shoe angles"
-    within = "in the interval of COF"
-
-    def answer(self, name: str) -> float:
-        """Return the scalar at the case's own shoe angle."""
-        return float(self.values[name][0])
+    within = "over the shoe angles"
 
     def labels(self) -> dict[str, str]:
         """Return what the interval holds in words."""
         if len(self.places) == 1:
             return {}
         least, most = (math.degrees(bound([p.turn for p in self.places])) for bound in (min, max))
+        cof, load = (float(self.values[name][0]) for name in ("cof", "fluid_load"))
         return {
             "shoe_angle": f"COF {self._range('cof')}, load on the film "
             f"{self._range('fluid_load', 'N')} from {least:.1f} to +{most:.1f} deg beside the "
-            "case's angle, which the interval of COF holds"
+            "case's angle. Numbers are means over them; maps and histories show the case's angle "
+            f"(COF {display(cof, '1')}, {display(load, 'N')} on the film)"
         }
 
     def fields(self) -> dict[str, Any]:
-        """Return nothing: the angles are three."""
-        return {}
+        """Return the variables of a data set: the angles, COF and load there."""
+        fields = super(ShoeAngles, self).fields()
+        return {name: each for name, each in fields.items() if "shift" not in name}
 
 
 def shoe_angles() -> tuple[Place, ...]:

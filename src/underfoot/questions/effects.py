@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -10,6 +11,7 @@ import numpy as np
 
 from underfoot.compute.continuation import Continuation, Preview
 from underfoot.compute.numbers import slip_probability
+from underfoot.compute.positions import treaded
 from underfoot.core import (
     ConvergenceError,
     InputError,
@@ -21,6 +23,7 @@ from underfoot.core import (
 from underfoot.core.arrays import Array
 from underfoot.core.fields import Fields
 from underfoot.core.progress import part
+from underfoot.friction.propagation import normal_draws
 
 from .changes import Change
 from .outcomes import outcomes
@@ -30,7 +33,7 @@ if TYPE_CHECKING:
     from underfoot.compute.result import Result
 
 MOST_ERROR = 0.01
-"""COF that a continuation may miss by its own estimate; half of the COF's own spread if more."""
+"""COF that a continuation may miss by its own estimate; with lugs half of its spread if more."""
 STAGE = "Simulating changes"
 _DRAWS = "cof_draws"
 _ONE_POSITION = {"numerics.tread_positions": 1}
@@ -75,22 +78,27 @@ class _Friction:
         return cls(scalars["cof"], draws, scalars["fluid_load"])
 
     @classmethod
-    def of_preview(cls, seen: Preview) -> _Friction:
-        load = SourcedValue(seen.values["fluid_load"], "N", reason="not estimated")
-        return cls(seen.cof, seen.cof_draws, load)
+    def of_march(cls, made: Continuation | Preview) -> _Friction:
+        load = SourcedValue(made.values["fluid_load"], "N", reason="not estimated")
+        return cls(made.cof, made.cof_draws, load)
 
-    def widened(self, deviation: float) -> _Friction:
-        """Return the friction with a further relative deviation in its draws, log-normal."""
-        if self.draws is None or not deviation:
+    def film_left(self, start: _Level) -> float:
+        """Return the load on the film as a share of that of ``start``, at most 1."""
+        load = self.fluid_load.value or 0.0
+        return min(1.0, load / start.fluid_load) if start.fluid_load else 1.0
+
+    def spread(self, beyond: _Spread, share: float) -> _Friction:
+        """Return the friction with ``share`` of a further shift and spread in its draws."""
+        if self.draws is None:
             return self
-        width = math.sqrt(math.log1p(deviation**2))
         normal = normal_draws(0, "what a preview leaves out", self.draws.size)
-        return replace(self, draws=self.draws * np.exp(width * normal - width**2 / 2))
+        further = beyond.shift + beyond.deviation * normal
+        return replace(self, draws=self.draws * np.exp(share * further))
 
     def moved(self, start: _Level, own: _Level) -> _Friction:
         """Return a changed friction as from ``own``, the unchanged one, instead of ``start``."""
         cof, load = self.cof.value or 0.0, self.fluid_load.value or 0.0
-        left = min(1.0, load / start.fluid_load) if start.fluid_load else 1.0
+        left = self.film_left(start)
         more, more_load = (left * (b - a) for a, b in zip(start, own, strict=True))
         factor = max(1.0 + more / cof, 0.0) if cof else 1.0
         return _Friction(
@@ -104,6 +112,23 @@ class _Friction:
         slip, _ = slip_probability(variant, self.cof, self.draws)
         scalars = {"cof": self.cof, "fluid_load": self.fluid_load, "slip_probability": slip}
         return ChangeEffect(change, scalars, error=error)
+
+
+class _Spread(NamedTuple):
+    """Mean and standard deviation of the logarithm of COF around its value."""
+
+    shift: float = 0.0
+    deviation: float = 0.0
+
+    @classmethod
+    def beyond(cls, whole: _Friction, part: _Friction) -> _Spread:
+        """Return what the draws of ``whole`` hold beyond those of ``part``: grid and positions."""
+        drawn = [np.log(e.draws / float(e.cof)) for e in (whole, part) if e.draws is not None]
+        if len(drawn) < 2:
+            return cls()
+        of_whole, of_part = drawn
+        variance = float(np.var(of_whole) - np.var(of_part))
+        return cls(float(np.mean(of_whole) - np.mean(of_part)), math.sqrt(max(variance, 0.0)))
 
 
 class _Level(NamedTuple):
@@ -124,10 +149,11 @@ def change_effects(
 ) -> tuple[ChangeEffect, ...]:
     """Return what each change makes of the ``present`` result of a case, in order.
 
-    A change of who walks takes the friction that is there. With ``quick``, others go on from one
-    march of the case on its coarse grid at the tread's own position (``Continuation``). What that
-    can't tell within ``MOST_ERROR``, and another rubber, is run there; another plan of the sole at
-    the positions of a quick run; with a motion history all are, in up to ``processes`` processes.
+    A change of who walks takes the friction that is there. With ``quick``, others go on from a
+    march of the case on its coarse grid at the case's own position (``Continuation``). What that
+    can't tell within ``MOST_ERROR``, and another rubber, is run there (without lugs at every shoe
+    angle); another plan of the sole at the positions of a quick run; with a motion history all are,
+    in up to ``processes`` processes.
     What the coarse grid and the one position miss is known of the unchanged case, and carried over
     in proportion to the load that is left on the film:
 
@@ -152,60 +178,53 @@ def change_effects(
     if not variants:
         return tuple(effects.values())
     mean, own = _levels(present)
-    march = start = None
-    left_out = 0.0
+    march, start, lugs = None, None, treaded(case)
+    left_out = _Spread()
     if quick:
         march = _march(case, part(progress, 0.0, 0.3))
     if march is not None:
         start = _Level(march.values["cof"], march.values["fluid_load"])
-        left_out = _further_deviation(_Friction.of(present.scalars, present.data), march.cof_draws)
+        whole = _Friction.of(present.scalars, present.data)
+        left_out = _Spread.beyond(whole, _Friction.of_march(march))
         for number, variant in variants.items():
             progress(STAGE, 0.3 + 0.3 * number / len(changes))
             if variant.shoe.material != case.shoe.material:
                 continue  # a rubber that gives way otherwise: most steps to it cost a march or fail
-            seen = _continued(march, changes[number])
+            seen = _continued(march, changes[number], lugs)
             if seen is not None:
-                there = _Friction.of_preview(seen).moved(start, mean).widened(left_out)
-                error = seen.errors["cof"]
-                effects[number] = there.effect(changes[number], variant, error)
+                there = _Friction.of_march(seen)
+                there = there.moved(start, mean).spread(left_out, there.film_left(start))
+                effects[number] = there.effect(changes[number], variant, seen.errors["cof"])
     alike = {number for number, each in variants.items() if quick and _same_plan(case, each)}
-    # shoe angles of a sole without lugs leave its value and belong to its draws
-    one_position = _ONE_POSITION if treaded(case) else {}
+    one_position = _ONE_POSITION if lugs else {}
     runs = {
         number: each.replace(one_position) if number in alike else each
         for number, each in variants.items()
         if number not in effects
     }
-    unchanged = [case.replace(one_position)] if quick and march is None else []
+    again = [case.replace(one_position)] if quick and march is None else []
     found = outcomes(
-        [*unchanged, *runs.values()],
+        [*again, *runs.values()],
         quick=quick,
         maps=(_DRAWS,),
-        processes=1 if march else processes,  # few are left: started workers would cost more
+        # few are left under lugs: started workers would cost more
+        processes=1 if march and lugs else processes,
         progress=part(progress, 0.6, 1.0),
         stage=STAGE,
     )
-    if unchanged and (first := found.pop(0)).usable:
+    if again and (first := found.pop(0)).usable:
         start = _Level(first.number("cof"), first.number("fluid_load"))
+    elif start is not None and not lugs:  # the ratio of the angles is that of the coarse grid
+        start = _Level(*(s * m / o if o else s for s, m, o in zip(start, mean, own, strict=True)))
     for (number, each), outcome in zip(runs.items(), found, strict=True):
         if not outcome.usable:
             effects[number] = ChangeEffect(changes[number], {}, str(outcome.status))
             continue
         there = _Friction.of(outcome.scalars, outcome.maps)
         if start is not None:
-            there = there.moved(start, mean if number in alike else own)
+            there = there.moved(start, mean if number in alike or not lugs else own)
         effects[number] = there.effect(changes[number], each)
     return tuple(effects[number] for number in range(len(changes)))
-
-
-def _continued(march: Continuation, change: Change) -> Preview | None:
-    """Return a change by continuation; None where it can't be made or may be too far off."""
-    try:
-        seen = march.continued(change.values)
-    except (InputError, ConvergenceError):
-        return None
-    most = max(MOST_ERROR, 0.5 * (seen.cof.uncertainty or 0.0))
-    return seen if seen.errors["cof"] <= most else None
 
 
 def _levels(present: Result) -> tuple[_Level, _Level]:
@@ -217,15 +236,6 @@ def _levels(present: Result) -> tuple[_Level, _Level]:
     return mean, _Level(*map(float, first))
 
 
-def _further_deviation(friction: _Friction, draws: Array | None) -> float:
-    """Return the relative deviation of a friction beyond that of ``draws``: angle, position, grid.
-    """
-    if friction.draws is None or draws is None:
-        return 0.0
-    whole, part = (float(np.std(each) / np.mean(each)) for each in (friction.draws, draws))
-    return math.sqrt(max(whole**2 - part**2, 0.0))
-
-
 def _march(case: Case, progress: Progress) -> Continuation | None:
     """Return the case marched on its quick grid, if it can be continued from there."""
     if case.motion.build() is not None:
@@ -234,6 +244,18 @@ def _march(case: Case, progress: Progress) -> Continuation | None:
         return Continuation(case, progress=progress)
     except ConvergenceError:
         return None
+
+
+def _continued(march: Continuation, change: Change, lugs: bool) -> Preview | None:
+    """Return a change by continuation; None where it can't be made or may be too far off."""
+    try:
+        seen = march.continued(change.values)
+    except (InputError, ConvergenceError):
+        return None
+    spread = 0.5 * (seen.cof.uncertainty or 0.0)
+    # a large change of a film under a plain sole changes what a degree of shoe angle does to it
+    most = max(MOST_ERROR, spread) if lugs else MOST_ERROR
+    return seen if seen.errors["cof"] <= most else None
 
 
 def _same_plan(case: Case, variant: Case) -> bool:
