@@ -1,11 +1,12 @@
 """Study G.4: the arithmetic on made-up readings, and the command as a process."""
 
+import json
 import math
 
 import numpy as np
 import pytest
 
-from commands import called
+from commands import called, process
 from underfoot.core import SourcedValue, Status
 from underfoot.core.catalogue import Catalogue
 from underfoot.questions.outcomes import Outcome
@@ -195,3 +196,20 @@ def test_options_of_other_studies_are_refused():
     done = called("studies", "run", "g4", "--explicit")
     assert done.returncode == 2
     assert "--explicit" in done.stderr
+
+
+@pytest.mark.slow
+def test_the_quick_study_as_a_process(tmp_path):
+    """One coarse grid: values of every condition, and no verdict that a grid enters."""
+    out = tmp_path / "g4"
+    done = process("studies", "run", "g4", "--quick", "--json", "--out", out)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    verdicts = {one["statement"]: one["verdict"] for one in found["statements"]}
+    assert verdicts["g4.load_athletic"] == verdicts["g4.peak_work"] == "not converged"
+    values = {name: q["values"] for name, q in found["quantities"].items()}
+    treaded = [v[0] for name, v in values.items() if "tread." in name and name.endswith(".load")]
+    assert len(treaded) == 8
+    assert max(treaded) < 1.0  # N: a 10 mm inlet always overlaps a channel
+    names = {path.name for path in out.iterdir()}
+    assert {"fig29_maps.png", "fig30_loads.png", "tread_depth.png", "verdicts.csv"} <= names

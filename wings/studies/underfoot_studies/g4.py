@@ -55,7 +55,8 @@ DECIDING = (
     "motion.start_film",
     "shoe.tread.lug_width",
 )
-"""Open inputs that are varied under treaded shoes: the others move readings near 0 by less."""
+"""Open inputs varied under treaded shoes, where others move readings near 0 by less, and with
+``quick``."""
 LOAD, TRUE_LOAD, PEAK = "fluid_load_sensor", "fluid_load", "peak_fluid_pressure_sensor"
 LEAST = {LOAD: 0.01, TRUE_LOAD: 0.01, PEAK: 100.0}
 """N, Pa: smaller readings are none."""
@@ -154,12 +155,13 @@ def conditions() -> list[Condition]:
 def compute(options: Options) -> Computed:
     """Return the twelve conditions on three grids, with bands from what the report leaves open.
 
-    ``quick``: the coarse grid alone, no bands under treaded shoes, fewer depths. Variants are kept
-    on disk, so that a run stopped early goes on.
+    ``quick``: the coarse grid alone, no bands under treaded shoes, fewer inputs and depths.
+    Variants are kept on disk, so that a run stopped early goes on.
     """
     plan = conditions()
     varied, lost = sensitivities(
         [one for one in plan if one.untreaded or not options.quick],
+        quick=options.quick,
         processes=options.processes,
         progress=part(options.progress, 0.0, 0.5),
     )
@@ -218,32 +220,40 @@ def _draws(name: str, outcome: Outcome, varied: Sensitivity) -> Array:
     return sampled(varied, name, value=value, factors=factors, least=LEAST[name], most=most)
 
 
-def inputs_of(condition: Condition) -> list[OpenInput]:
+def inputs_of(condition: Condition, *, quick: bool = False) -> list[OpenInput]:
     """Return the open inputs that are varied: all of an untreaded shoe, the deciding ones else."""
     found = open_inputs(condition.case)
-    return found if condition.untreaded else [one for one in found if one.path in DECIDING]
+    if condition.untreaded and not quick:
+        return found
+    return [one for one in found if one.path in DECIDING]
 
 
 def sensitivities(
-    chosen: list[Condition], *, processes: int | None = 1, progress: Progress = silent
+    chosen: list[Condition],
+    *,
+    quick: bool = False,
+    processes: int | None = 1,
+    progress: Progress = silent,
 ) -> tuple[dict[str, Sensitivity], list[str]]:
     """Return what the open inputs do to each condition, by its name, and what gave no result.
 
-    On the quick grid. An end at which the contact can't be solved takes its input out of the band.
+    On the quick grid, without a tread at the shoe's own angle: that of the facet is an input. An
+    end at which the contact can't be solved takes its input out of the band.
     """
     found: dict[str, Sensitivity] = {}
     lost: list[str] = []
     for number, one in enumerate(chosen):
         progress(f"Open inputs: {one.name}", number / len(chosen))
-        inputs = inputs_of(one)
+        inputs = inputs_of(one, quick=quick)
+        case = one.case.replace("numerics.tread_positions", 1) if one.untreaded else one.case
         try:
-            found[one.name] = sensitivity(one.case, inputs=inputs, processes=processes)
+            found[one.name] = sensitivity(case, inputs=inputs, processes=processes)
             continue
         except ConvergenceError:
-            whole = sensitivity(one.case, inputs=[])
+            whole = sensitivity(case, inputs=[])
         for each in inputs:  # what is solved already comes from the cache
             try:
-                more = sensitivity(one.case, inputs=[each], processes=processes)
+                more = sensitivity(case, inputs=[each], processes=processes)
                 whole = replace(whole, effects=(*whole.effects, *more.effects))
             except ConvergenceError:
                 lost.append(f"{one.name}: {each.path}")
