@@ -165,6 +165,7 @@ def solve_on(
         viscosity=viscosity,
         settings=settings,
         typical_force=normal_force,
+        before=start.instant.march[0],
     )
     sliding.take_over(start.instant, duration)
     found = []

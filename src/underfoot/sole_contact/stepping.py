@@ -81,6 +81,7 @@ class SlidingSole:
             ``rolled_clearance``.
         typical_force: N, a load of the order to come: sets the scale of the asperity law.
         reporting: Who hears of the steps.
+        before: The problem of another case, whose compliance serves again on the same sole.
 
     The sole starts ``settings.start_film`` above the floor, unloaded. Cells are fixed to the sole:
     rolling by ``a`` from its map's angle a0 leaves them cos(a) / cos(a0) too long, refused beyond
@@ -98,6 +99,7 @@ class SlidingSole:
         shoe_angle: float = 0.0,
         typical_force: float = 500.0,
         reporting: Reporting | None = None,
+        before: Problem | None = None,
     ) -> None:
         settings = settings or SolverSettings()
         check_setup(sole, compliance.self_compliance, viscosity, typical_force, settings)
@@ -112,11 +114,15 @@ class SlidingSole:
         cells = sole.cells or row_cells(sole)
         clearance = _bounded(cells.clearance)
         extent = max(cells.shape) * sole.spacing
+        if before and before.cells is cells and before.compliance.squares is compliance:
+            between_cells = before.compliance
+        else:
+            between_cells = row_compliance(compliance, cells, sole.land & sole.inside)
         decay, touch = asperity_scale(law, typical_force / (0.01 * extent**2))
         problem = Problem(
             cells=cells,
             clearance=clearance,
-            compliance=row_compliance(compliance, cells, sole.land & sole.inside),
+            compliance=between_cells,
             law=law,
             viscosity=viscosity,
             wall_speed=0.0,
