@@ -32,7 +32,7 @@ def wall_draft(triangles: NDArray[np.float32], seen: View, height: Array) -> flo
     """
     from scipy.ndimage import maximum_filter, minimum_filter
 
-    chosen = triangles[:: max(1, triangles.shape[0] // _SAMPLE)].astype(np.float64)
+    chosen = triangles[:: math.ceil(triangles.shape[0] / _SAMPLE) or 1].astype(np.float64)
     corners = chosen @ seen.axes.T
     sides = corners[:, 1:] - corners[:, :1]
     normal = np.cross(sides[:, 0], sides[:, 1])

@@ -1,5 +1,6 @@
 """A plane of floor that was left in a file with the sole."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -30,7 +31,7 @@ def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | Non
     away from it (a direction in the file's axes, else None).
     """
     axes = box_axes(mesh.triangles, FileSettings())
-    chosen = mesh.triangles[:: max(1, mesh.triangles.shape[0] // _SAMPLE)]
+    chosen = mesh.triangles[:: math.ceil(mesh.triangles.shape[0] / _SAMPLE) or 1]
     plane = _plane(chosen, axes)
     if plane is None:
         return mesh, None, []

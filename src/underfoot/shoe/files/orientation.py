@@ -83,7 +83,7 @@ def box_axes(
 
 def _sample(triangles: NDArray[np.float32]) -> tuple[Array, Array]:
     """Return corners (n, 3, 3) about the centroid, and areas."""
-    chosen = triangles[:: max(1, triangles.shape[0] // _SAMPLE)].astype(np.float64)
+    chosen = triangles[:: math.ceil(triangles.shape[0] / _SAMPLE) or 1].astype(np.float64)
     chosen = chosen[np.isfinite(chosen).all(axis=(1, 2))]
     sides = chosen[:, 1:] - chosen[:, :1]
     areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
