@@ -180,7 +180,7 @@ def test_the_loads_of_both_pressures_are_told(tab, worn_shoe_result):
         choose(tab, title)
         note = tab.value("document.querySelector('[data-part=bar-note]').textContent")
         (load,) = re.findall(r"([\d.]+) N in all", note)
-        values = {"fluid_load": worn_shoe_result.value("fluid_load")}
+        values = {"fluid_load": float(worn_shoe_result.fields.position_fluid_load[0])}
         values["contact_load"] = worn_shoe_result.value("normal_force") - values["fluid_load"]
         assert float(load) == pytest.approx(values[name], rel=0.01)
 

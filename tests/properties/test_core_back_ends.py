@@ -6,14 +6,24 @@ from underfoot.compute.run import run
 from underfoot.core import fourier, sparse
 
 
-@pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
-def test_run_without_mkl_gives_the_same_numbers(tolerance, worn_shoe_case, monkeypatch):
-    """Within a hundredth of the tolerance, anywhere within which a march may end."""
+@pytest.mark.parametrize(
+    ("tolerance", "positions", "apart"),
+    [
+        (1e-4, 1, 1e-7),
+        (1e-8, 1, 1e-9),
+        # films trapped under a turned heel drain late: a march ends anywhere within its tolerance
+        pytest.param(1e-4, 4, 1e-5, marks=pytest.mark.slow),
+    ],
+)
+def test_run_without_mkl_gives_the_same_numbers(
+    tolerance, positions, apart, worn_shoe_case, monkeypatch
+):
+    """Solutions of one system agree to 1e-9; a march ends anywhere within its own tolerance."""
     assert sparse.back_end() == "pardiso", "MKL belongs to the environment of the tests"
-    case = worn_shoe_case.replace("numerics.tolerance", tolerance)
+    numerics = {"numerics.tolerance": tolerance, "numerics.tread_positions": positions}
+    case = worn_shoe_case.replace(numerics)
     with_mkl = run(case).scalars
     monkeypatch.setenv(sparse.VARIABLE, "superlu")
     monkeypatch.setenv(fourier.VARIABLE, "scipy")
     for name, scalar in run(case).scalars.items():
-        size = with_mkl["cof" if name == "cof_shoe_angle" else name].value  # a difference of COF
-        assert abs(scalar.value - with_mkl[name].value) <= 0.01 * tolerance * size, name
+        assert scalar.value == pytest.approx(with_mkl[name].value, rel=apart), name

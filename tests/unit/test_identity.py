@@ -38,7 +38,7 @@ PARTS = {
 SMOOTH = {
     **PARTS,
     "shoe": "work_shoe_untreaded",
-    "numerics": {"grid_spacing": "2 mm", "quick_grid_spacing": "3 mm"},
+    "numerics": {"grid_spacing": "2 mm", "quick_grid_spacing": "3 mm", "cells_along": 1},
 }
 CHANGES = {
     "shoe.material.shore_a": 61.0,

@@ -260,6 +260,7 @@ def tread_positions(
     for name, value in own.items():
         there = np.array([numbers[name] for _, numbers in kept])
         values[name] = there * (value / there[0]) if there[0] else there
+    values["cof"] = sum(values[f"cof_{part}"] for part in ("adhesion", "hysteresis", "viscous"))
     left_out = count - len(kept)
     if treaded(case):
         return TreadPositions(lying, values, left_out)
