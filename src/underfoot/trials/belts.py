@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .axes import Direction, DirectionSource, marker_velocity, pressure_path, shear_swing
-from .signals import contacts
+from .plates import plate_contacts
 from .trial import Marker, Plate, Trial
 
 _SLOWEST = 0.3  # m/s; a slower belt can't be told from feet that roll and drift
@@ -63,7 +63,7 @@ def belts_of(trial: Trial, up: np.ndarray, feet: Sequence[Marker]) -> dict[str, 
         if not plate.usable:
             continue
         seen, straightness = [], []
-        for start, stop in contacts(plate.force @ up, plate.rate):
+        for start, stop in plate_contacts(plate, up):
             swing = shear_swing(plate, start, stop, up)
             if not 0.3 < (stop - start) / plate.rate < 2.0 or np.linalg.norm(swing) < 10.0:
                 continue

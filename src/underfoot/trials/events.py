@@ -9,8 +9,8 @@ from underfoot.core import InputError, unknown_name
 
 from .axes import Direction
 from .measurement import Flag
-from .plates import plate_axes, plate_named
-from .signals import CONTACT_FORCE, contacts
+from .plates import plate_axes, plate_contacts, plate_named
+from .signals import CONTACT_FORCE
 from .trial import Edit, Plate, Trial
 from .walkway import Walkway, walkway_of
 
@@ -193,7 +193,7 @@ def stances(walk: Trial | Walkway, *, threshold: float = CONTACT_FORCE) -> list[
     found: list[Stance] = []
     for plate in plates.values():
         vertical = plate.force @ up
-        for start, stop in contacts(vertical, plate.rate, threshold):
+        for start, stop in plate_contacts(plate, up, threshold):
             time = plate.start + np.array([start, stop]) / plate.rate
             peak = float(np.nanmax(vertical[start:stop]))
             found.append(Stance(plate.name, start, stop, float(time[0]), float(time[1]), peak))

@@ -286,14 +286,12 @@ def _curves(
     stance: Stance,
     definition: RcofDefinition,
     surface: tuple[np.ndarray, np.ndarray],
-    around: float = np.inf,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return normal force, ratio and shear along the walk over the stance, (n,) each.
 
-    ``surface`` holds normal and forward tangent of the walking surface. The filter sees ``around``
-    seconds of record before and after the stance.
+    ``surface`` holds normal and forward tangent of the walking surface.
     """
-    part = stance.start, stance.stop, around
+    part = stance.start, stance.stop
     force = low_passed_part(plate.force, plate.rate, definition.filter, *part)
     up, forward = surface
     normal = force @ up
@@ -328,7 +326,7 @@ def _uncertainty(
     if definition.filter.kind != "none":
         for kind in set(FILTERS) - {"none", definition.filter.kind}:
             other = replace(definition, filter=replace(definition.filter, kind=kind))
-            load, curve, push = _curves(plate, stance, other, surface, 0.2)
+            load, curve, push = _curves(plate, stance, other, surface)
             top = _peak(other, curve, _allowed(other, load, push, gate))
             if top is not None:
                 readings.append(float(curve[top]))

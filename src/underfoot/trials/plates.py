@@ -1,11 +1,14 @@
 """Force plates: from analog channels (C3D types 1-4) to the force on the foot in lab axes."""
 
+import math
+from functools import lru_cache
+
 import numpy as np
 
 from underfoot.core import DataError
 
 from .measurement import Flag, remark
-from .signals import SHEAR_WARNING, enough, saturated, unloaded
+from .signals import CONTACT_FORCE, SHEAR_WARNING, contacts, enough, saturated, unloaded
 from .trial import Plate, Trial
 
 KINDS = {
@@ -32,7 +35,7 @@ def plate_axes(corners: np.ndarray) -> np.ndarray:
     x = corners[0] - corners[1] + corners[3] - corners[2]
     y = corners[0] - corners[3] + corners[1] - corners[2]
     z = _cross(x, y)
-    lengths = np.linalg.norm(x), np.linalg.norm(y), np.linalg.norm(z)
+    lengths = [math.sqrt(float(v @ v)) for v in (x, y, z)]  # numpy's norm takes longer for one
     if min(lengths[:2]) < 0.02 or lengths[2] < 0.1 * lengths[0] * lengths[1]:
         raise DataError("the plate's corners enclose no area")
     x, z = x / lengths[0], z / lengths[2]
@@ -42,6 +45,11 @@ def plate_axes(corners: np.ndarray) -> np.ndarray:
 def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Cross product of two vectors (3,); numpy's takes ten times as long for one."""
     return a[[1, 2, 0]] * b[[2, 0, 1]] - a[[2, 0, 1]] * b[[1, 2, 0]]
+
+
+def _crossing(a: np.ndarray) -> np.ndarray:
+    """Matrix (3, 3) that makes of a vector its cross product with ``a`` (3,) before it."""
+    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
 
 
 def ordered_corners(corners: np.ndarray, *, down: bool = True) -> tuple[np.ndarray, bool]:
@@ -66,6 +74,18 @@ def ordered_corners(corners: np.ndarray, *, down: bool = True) -> tuple[np.ndarr
         if (z[int(np.argmax(np.abs(z)))] < 0) == down:
             return order, True
     return corners, False
+
+
+def plate_contacts(
+    plate: Plate, up: np.ndarray, threshold: float = CONTACT_FORCE
+) -> tuple[tuple[int, int], ...]:
+    """Return ``contacts`` with a plate; ``up`` (3,) is the unit vector out of the floor."""
+    return _contacts(plate, tuple(up.tolist()), threshold)
+
+
+@lru_cache(maxsize=4)  # every check of every step asks
+def _contacts(plate: Plate, up: tuple[float, ...], threshold: float) -> tuple[tuple[int, int], ...]:
+    return tuple(contacts(plate.force @ np.array(up), plate.rate, threshold))
 
 
 def channel_forces(
@@ -106,7 +126,7 @@ def channel_forces(
         to_surface = np.asarray(origin, dtype=float)
     if to_surface[2] > 0:  # z points down and the transducers lie below the surface
         to_surface = -to_surface
-    return force, moment - np.cross(np.broadcast_to(to_surface, force.shape), force)
+    return force, moment - force @ _crossing(to_surface).T
 
 
 def finished_plate(
@@ -228,5 +248,5 @@ def _centre_of_pressure(
     vertical = force @ up
     place = np.full(force.shape, np.nan)
     loaded = vertical > _LOADED
-    place[loaded] = np.cross(up, moment[loaded]) / vertical[loaded, None] + centre
+    place[loaded] = moment[loaded] @ _crossing(up).T / vertical[loaded, None] + centre
     return place

@@ -16,16 +16,16 @@ from .axes import LEVEL, DirectionSource, Ramp
 from .events import Stance
 from .likelihood import unlikely_flags
 from .measurement import Flag, remark
+from .plates import plate_contacts
 from .signals import (
     CONTACT_FORCE,
     LowPass,
-    contacts,
     longest_run,
     low_passed,
     low_passed_part,
     runs,
 )
-from .slips import contact_from_heel, marker_jumps
+from .slips import contact_from_heel, heel_motion, marker_jumps
 from .step_features import step_features
 from .trial import MADE_UP, Plate
 from .walkway import BodyWeight, Walkway
@@ -312,7 +312,7 @@ def unloaded_levels(plate: Plate, stance: Stance, up: np.ndarray) -> list[np.nda
 def _unloaded(plate: Plate, up: np.ndarray, margin: int) -> np.ndarray:
     """Mask of the samples (n,) further than ``margin`` from any contact."""
     free = np.ones(len(plate.force), dtype=bool)
-    for start, stop in contacts(plate.force @ up, plate.rate):
+    for start, stop in plate_contacts(plate, up):
         free[max(0, start - margin) : stop + margin] = False
     return free
 
@@ -467,13 +467,16 @@ def _marker_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
             yield Flag("foot", words)
         return
     heel = walk.trial.marker(stance.heel)
-    if heel.times is None:
+    if heel.times is not None:
+        jumps = marker_jumps(heel.positions)
+    else:
+        jumps = heel_motion(heel, walk.up).jumps
         landings = [t for t in contact_from_heel(heel, walk.up) if abs(t - stance.contact) < 0.4]
         gap = min((abs(t - stance.contact) for t in landings), default=0.0)
         words = f"heel and force come down {1e3 * gap:.0f} ms apart: forces late or early"
         yield from LATE.above(gap, words)
     near = (heel.time > stance.contact - 0.1) & (heel.time < stance.toe_off)
-    leaps = int(marker_jumps(heel.positions)[near].sum())
+    leaps = int(jumps[near].sum())
     if leaps:
         words = f"the heel marker leaps off its path in {leaps} frames"
         yield Flag("marker jumps", words, True, leaps, 0.0, "1")

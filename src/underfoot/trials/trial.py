@@ -1,7 +1,6 @@
 """One recording as read: channels, plates, markers, events, where it came from, its edits."""
 
 import hashlib
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
@@ -60,14 +59,6 @@ class Marker:
         """Time of each frame (s), shape (n,)."""
         return _time(len(self.positions), self.rate, self.start, self.times)
 
-    def between(self, begin: float, end: float) -> "Marker":
-        """Return the marker in the frames between two times (s), both included."""
-        if self.times is None and math.isinf(begin) and math.isinf(end):
-            return self
-        inside = np.flatnonzero((self.time >= begin) & (self.time <= end))
-        rows = slice(inside[0], inside[-1] + 1) if len(inside) else slice(0, 0)
-        return Marker(self.positions[rows], self.rate, times=self.time[rows])
-
     @property
     def missing(self) -> np.ndarray:
         """True where the marker was not seen, shape (n,)."""
@@ -91,7 +82,7 @@ class PlateAccuracy:
             raise InputError("gain and crosstalk are shares", where="accuracy", allowed="0 to 1")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Plate:
     """One force plate: the force of the floor **on the foot**, in the laboratory's axes.
 
