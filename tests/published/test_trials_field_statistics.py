@@ -32,16 +32,29 @@ JUDGES = [[9, 2, 5, 8], [6, 1, 3, 2], [8, 4, 6, 8], [7, 1, 2, 6], [10, 5, 6, 9],
 
 
 @pytest.mark.parametrize(
-    ("form", "value", "low", "high"),
-    [  # their Table 4; intervals as R's psych and irr print them
-        ("ICC(1,1)", 0.17, -0.13, 0.72), ("ICC(A,1)", 0.29, 0.02, 0.76),
-        ("ICC(C,1)", 0.71, 0.34, 0.95), ("ICC(1,k)", 0.44, -0.88, 0.91),
-        ("ICC(A,k)", 0.62, 0.07, 0.93), ("ICC(C,k)", 0.91, 0.68, 0.99),
+    ("form", "value", "low", "high", "library"),
+    [  # their Table 4; intervals as R's psych and irr print them; pingouin 0.7.0, intraclass_corr
+        ("ICC(1,1)", 0.17, -0.13, 0.72, 0.165741768), ("ICC(A,1)", 0.29, 0.02, 0.76, 0.289763779),
+        ("ICC(C,1)", 0.71, 0.34, 0.95, 0.714840714), ("ICC(1,k)", 0.44, -0.88, 0.91, 0.442797133),
+        ("ICC(A,k)", 0.62, 0.07, 0.93, 0.620050547), ("ICC(C,k)", 0.91, 0.68, 0.99, 0.909315542),
     ],
 )  # fmt: skip
-def test_intraclass_correlation_of_shrout_and_fleiss(form, value, low, high):
+def test_intraclass_correlation_of_shrout_and_fleiss(form, value, low, high, library):
     icc = intraclass_correlation(JUDGES, form)
     assert [icc.value, icc.low, icc.high] == pytest.approx([value, low, high], abs=0.005)
+    assert icc.value == pytest.approx(library, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("form", "ratio", "df"),
+    [("ICC(1,1)", 1.7946784922394683, 18), ("ICC(C,1)", 11.027247956403299, 15)],
+)
+def test_interval_of_the_intraclass_correlation(form, ratio, df):
+    """From pingouin's ratios F of the same table, by Shrout and Fleiss's formulas."""
+    icc = intraclass_correlation(JUDGES, form)
+    ends = ratio / stats.f.ppf(0.975, 5, df), ratio * stats.f.ppf(0.975, df, 5)
+    exact = [(one - 1) / (one + 3) for one in ends]
+    assert [icc.low, icc.high] == pytest.approx(exact, abs=1e-6)
 
 
 def test_intraclass_correlation_from_mean_squares_and_uneven_rows():
@@ -69,6 +82,11 @@ def test_bland_and_altmans_flow_meters():
     assert found.bias == pytest.approx(-2.1, abs=0.05)
     assert found.sd == pytest.approx(38.8, abs=0.05)
     assert found.bias_interval == pytest.approx((-22.0, 17.8), abs=0.06)
+    library = stats.ttest_rel(WRIGHT, MINI).confidence_interval()
+    assert found.bias_interval == pytest.approx((library.low, library.high), abs=1e-6)
+    assert found.sd == pytest.approx(np.std(np.subtract(WRIGHT, MINI), ddof=1), abs=1e-6)
+    line = stats.linregress(np.add(WRIGHT, MINI) / 2, np.subtract(WRIGHT, MINI))
+    assert [found.slope, found.slope_p] == pytest.approx([line.slope, line.pvalue], abs=1e-6)
     assert found.upper - found.lower == pytest.approx(2 * 1.96 * found.sd)
     wider = found.upper_interval[1] - found.upper, found.upper - found.upper_interval[0]
     assert wider[0] > wider[1] > 0
@@ -84,6 +102,23 @@ def test_limits_of_repeated_pairs_hold_95_percent_of_differences():
     found = bland_altman(first, second, who)
     assert found.sd == pytest.approx(np.sqrt(1 + 0.25 + 0.25), rel=0.05)
     assert found.within == pytest.approx(np.sqrt(0.5), rel=0.05)
+
+
+def test_limits_of_repeated_pairs_beside_statsmodels():
+    """Bland and Altman 2007: variances of the one-way analysis of the differences."""
+    from pandas import DataFrame
+    from statsmodels.formula.api import ols
+    from statsmodels.stats.anova import anova_lm
+
+    rng = np.random.default_rng(7)
+    who = np.repeat(np.arange(10), 4)
+    d = 0.3 + rng.normal(0, 1, 10)[who] + rng.normal(0, 0.6, 40)
+    squares = anova_lm(ols("d ~ C(who)", DataFrame({"d": d, "who": who})).fit())["mean_sq"]
+    between, within = squares["C(who)"], squares["Residual"]
+    found = bland_altman(d, np.zeros(40), who)
+    assert found.sd == pytest.approx(np.sqrt((between - within) / 4 + within), abs=1e-6)
+    assert found.within == pytest.approx(np.sqrt(within), abs=1e-6)
+    assert found.upper == pytest.approx(d.mean() + 1.96 * found.sd, abs=1e-6)
 
 
 def test_interval_of_the_limits_covers():
@@ -117,6 +152,11 @@ def test_power_and_numbers_of_persons():
     assert FTestAnovaPower().power(0.25, 128, 0.05, 2) == pytest.approx(
         power("groups", 64, difference=0.5), abs=1e-6
     )
+    # pingouin 0.7.0: power_rm_anova(eta_squared=0.1, n=12, m=3, corr=0.5), and n=8, m=4
+    for persons, conditions, told in ((12, 3, 0.653224490302586), (8, 4, 0.5117059325898751)):
+        spread = np.sqrt(2 * 0.1 / 0.9 * conditions / 0.5)  # f^2, conditions, 1 - correlation
+        found = power("repeated", persons, difference=spread, conditions=conditions)
+        assert found == pytest.approx(told, abs=1e-6)
     least = detectable_difference("paired", 16, 0.02)
     assert power("paired", 16, difference=least, sd=0.02) == pytest.approx(0.8, abs=1e-5)
 
@@ -157,6 +197,13 @@ def test_effect_size_and_its_interval():
     d = (a.mean() - b.mean()) / pooled
     g = effect_size(a, b)
     assert g.value == pytest.approx(d * (1 - 3 / (4 * 24 - 1)), rel=1e-3)  # Hedges's approximation
+    # pingouin 0.7.0: compute_effsize(first, second, eftype="cohen")
+    first, second = [5.1, 4.8, 6.2, 5.9, 5.5, 6.6, 5.0], [4.2, 4.9, 5.1, 4.4, 4.8, 5.2]
+    g = effect_size(first, second)
+    assert g.value == pytest.approx(1.4557843649112105 * g_correction(11), abs=1e-6)
+    t = stats.ttest_ind(first, second).statistic
+    ends = np.array([g.low, g.high]) / g_correction(11) / np.sqrt(1 / 7 + 1 / 6)
+    assert stats.nct.cdf(t, 11, ends) == pytest.approx([0.975, 0.025], abs=1e-6)
     hits = 0
     for _ in range(1000):
         x, y = rng.normal(0.8, 1, 10), rng.normal(0, 1, 10)
