@@ -16,8 +16,9 @@ def examples():
     """Return the examples of everything that a room shows, by their names."""
     finder, found = doctest.DocTestFinder(recurse=False), {}
     for room in ROOMS.split():
-        shown = vars(importlib.import_module(f"underfoot.{room}"))
-        for name, item in sorted(shown.items()):
+        face = importlib.import_module(f"underfoot.{room}")
+        for name in sorted({*dir(face), *getattr(face, "__all__", ())}):  # some when asked for
+            item = getattr(face, name)
             if inspect.isfunction(item) or inspect.isclass(item):
                 module = inspect.getmodule(item)
                 tests = finder.find(item, f"{room}.{name}", module=module)
