@@ -154,7 +154,7 @@ def test_cancel_ends_the_changes() -> None:
 def test_changes_are_those_of_whole_runs(shoe) -> None:
     case = Case.load(f"examples/{shoe}_glycerol.toml")
     if "untreaded" in shoe:  # whose film needs cells along the sliding: eight runs at three angles
-        case = case.replace("numerics.quick_grid_spacing", "1.6 mm")
+        case = case.replace("numerics.quick_grid_spacing", "1.2 mm")
     found = risk_assessment(case)
     slips = {"own": found.outcome.number("slip_probability")}
     for effect in found.changes:

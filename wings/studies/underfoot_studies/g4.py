@@ -66,11 +66,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Condition:
-    """One shoe in one fluid."""
+    """One shoe in one fluid; ``squares``: without finer cells along the sliding, for a look."""
 
     kind: str
     tread: str
     fluid: str
+    squares: bool = False
 
     @property
     def path(self) -> str:
@@ -99,6 +100,7 @@ class Condition:
                 "contaminant": {"from": FLUIDS[self.fluid]},
                 "motion": {"from": SETUP},
                 "sensor": {"from": SETUP},
+                "numerics": {"cells_along": 1} if self.squares else {},
             }
         )
 
@@ -147,18 +149,18 @@ class Reading:
         return Quantity.of(self.number(name), unit, draws=self.draws.get(name), levels=levels)
 
 
-def conditions() -> list[Condition]:
+def conditions(*, squares: bool = False) -> list[Condition]:
     """Return the twelve: work and athletic shoe, three depths of tread, two fluids."""
-    return [Condition(kind, t, fluid) for kind in KINDS for t in TREADS for fluid in FLUIDS]
+    return [Condition(k, t, fluid, squares) for k in KINDS for t in TREADS for fluid in FLUIDS]
 
 
 def compute(options: Options) -> Computed:
     """Return the twelve conditions on three grids, with bands from what the report leaves open.
 
-    ``quick``: the coarse grid alone, no bands under treaded shoes, fewer inputs and depths.
-    Variants are kept on disk, so that a run stopped early goes on.
+    ``quick``: squares of the coarse grid alone, no bands under treaded shoes, fewer inputs and
+    depths. Variants are kept on disk, so that a run stopped early goes on.
     """
-    plan = conditions()
+    plan = conditions(squares=options.quick)
     varied, lost = sensitivities(
         [one for one in plan if one.untreaded or not options.quick],
         quick=options.quick,
@@ -170,7 +172,9 @@ def compute(options: Options) -> Computed:
         options.progress(one.name, 0.5 + 0.35 * number / len(plan))
         readings.append(reading(one, varied.get(one.name), quick=options.quick))
     options.progress("Tread depth and lower force", 0.9)
-    depths = depth_series(QUICK_DEPTHS if options.quick else DEPTHS, processes=options.processes)
+    base = Condition("work", "half_tread", "glycerol", options.quick).case
+    tried = QUICK_DEPTHS if options.quick else DEPTHS
+    depths = depth_series(base, tried, processes=options.processes)
     lower = at_lower_force(readings, processes=options.processes)
     by = {one.condition.path: one for one in readings}
     untreaded = [by[f"{kind}.untreaded.glycerol"] for kind in KINDS]
@@ -270,14 +274,13 @@ def at_lower_force(readings: Sequence[Reading], *, processes: int | None = 1) ->
 
 
 def depth_series(
-    depths: Sequence[float], *, processes: int | None = 1
+    base: Case, depths: Sequence[float], *, processes: int | None = 1
 ) -> list[tuple[float, Outcome]]:
     """Return the half-treaded work shoe in glycerol with its tread at other depths (m).
 
     One compound, one roughness and one set of channels, so that the depth alone changes; on the
     quick grid. A depth of 0 is the shoe without channels.
     """
-    base = Condition("work", "half_tread", "glycerol").case
     cases = [
         base.replace("shoe.tread.depth", f"{depth!r} m")
         if depth > 0
