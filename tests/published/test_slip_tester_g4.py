@@ -63,7 +63,7 @@ def test_the_untreaded_work_shoe_s_load_in_glycerol_is_within_the_reading_error(
     ],
 )
 def test_half_a_degree_of_the_facet_decides_the_athletic_shoe_s_reading(printed, read):
-    """It reads a tenth of the printed load: the heel's facet is assumed."""
+    """At its own angle it reads a tenth of the printed load: the heel's facet is assumed."""
     case = Case.load(EXAMPLES / "athletic_shoe_untreaded_glycerol.toml")
     flat, tipped = (
         run(case.replace({"motion.shoe_angle": angle, "numerics.tread_positions": 1}), quick=True)
