@@ -33,7 +33,7 @@ def make() -> None:
     for wing in sorted((ROOT / "wings").iterdir()):
         options += [f"--collect-submodules=underfoot_{wing.name}"]
         options += [f"--collect-data=underfoot_{wing.name}"]
-        options += [f"--copy-metadata=underfoot-{wing.name}"]
+        options += [f"--copy-metadata=underfoot-{wing.name.replace('_', '-')}"]
     options += ["--collect-data=underfoot"]
     options += ["--collect-data=nicegui", "--recursive-copy-metadata=underfoot"]
     options += [f"--exclude-module={name}" for name in LEFT_OUT]

@@ -5,7 +5,7 @@ import json
 import pytest
 from typer.testing import CliRunner
 
-from underfoot.cli.app import add_offered, app
+from underfoot.cli.app import app
 from underfoot.core import silent
 from underfoot_block import MicroBlock
 from underfoot_block.command_input import TEMPLATE, micro_case
@@ -32,8 +32,6 @@ control = "load"
 
 @pytest.fixture
 def run():
-    add_offered(["micro"])
-
     def typed(*words):
         return CliRunner().invoke(app, [str(word) for word in words])
 

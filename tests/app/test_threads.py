@@ -25,7 +25,7 @@ outputs = {{ maximise = ["cof"] }}
 """
 WORKER = f"""\
 from pathlib import Path
-from underfoot.app import work
+from underfoot_app import work
 from underfoot.core.worker import Worker
 
 if __name__ == "__main__":

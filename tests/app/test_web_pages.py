@@ -15,7 +15,7 @@ import time
 
 import numpy as np
 import pytest
-from web_app import SOURCE, Cost, begin, drawn, page_of, served
+from web_app import PATHS, Cost, begin, drawn, page_of, served
 
 from underfoot.shoe.files import FileSettings, outsole_from_file
 
@@ -64,10 +64,10 @@ def test_small_server_without_scipy_and_outside_requests(app):
 
 def test_start_takes_little_processor_time():
     code = (
-        "import time\nimport underfoot.app.serve\nprint(time.process_time())\nimport sys\n"
+        "import time\nimport underfoot_app.serve\nprint(time.process_time())\nimport sys\n"
         "print(*(m for m in ('scipy', 'pandas', 'xarray', 'matplotlib') if m in sys.modules))"
     )
-    environment = {**os.environ, "PYTHONPATH": str(SOURCE)}
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(PATHS)}
     runs = [
         subprocess.run(
             [sys.executable, "-c", code],
@@ -339,7 +339,7 @@ def test_two_hundred_random_actions_lose_no_variant_and_raise_no_error(app):
         assert app.process.poll() is None
         history = (app.folder / "history.jsonl").read_text()
         assert all(f'"variant": "{name}"' in history for name in known)
-        from underfoot.app.project import Project
+        from underfoot_app.project import Project
 
         project = Project(app.folder)
         assert known == {*project.variants(), *project.removed()}

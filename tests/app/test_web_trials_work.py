@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from underfoot.app import work_trials
 from underfoot.cli.trials import trials_app
 from underfoot.core import InputError
 from underfoot.trials.analyse.edit_table import edit_text, edits_of, with_edit_row
 from underfoot.trials.analyse.record_signals import Signal
 from underfoot.trials.events import EditError
+from underfoot_app import work_trials
 from underfoot_simulator import simulated_folder
 
 DATA = Path(__file__).parents[1] / "data" / "trials"

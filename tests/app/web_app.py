@@ -13,7 +13,11 @@ import psutil
 from chromium import browser
 
 COMMAND = "from underfoot.cli import main; main()"
-SOURCE = Path(__file__).resolve().parents[2] / "src"
+REPOSITORY = Path(__file__).resolve().parents[2]
+PATHS = [
+    *map(str, (REPOSITORY / "src", *sorted((REPOSITORY / "wings").iterdir()))),
+    os.environ.get("PYTHONPATH", ""),
+]
 
 
 class Served:
@@ -22,7 +26,7 @@ class Served:
     def __init__(self, folder, home, *options):
         self.began = time.monotonic()
         environment = {
-            **os.environ, "PYTHONPATH": str(SOURCE), "PYTHONUNBUFFERED": "1",
+            **os.environ, "PYTHONPATH": os.pathsep.join(PATHS), "PYTHONUNBUFFERED": "1",
             "XDG_STATE_HOME": str(home), "XDG_CACHE_HOME": str(home),
         }  # fmt: skip
         self.folder = Path(folder)

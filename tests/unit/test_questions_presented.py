@@ -220,7 +220,7 @@ def test_old_option_names_answer_with_a_note(capsys):
     import typer
     from typer.testing import CliRunner
 
-    from underfoot.cli.app import Command
+    from underfoot.cli.groups import Command
 
     app, seen = typer.Typer(), SimpleNamespace(target=None)
 

@@ -9,9 +9,8 @@ def main() -> None:
 
     try:
         end_cleanly_on_sigterm()
-        from .app import add_offered, app
+        from .app import app
 
-        add_offered(sys.argv[1:])
         app()
     except KeyboardInterrupt as stop:
         say("stopped; nothing was written")

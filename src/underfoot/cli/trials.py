@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from .groups import Group
 from .guard import guarded
 from .options import AsJson, PlateFrame, RampAngle, optional
 from .trials_analyse import analyse, persons, simulate
@@ -15,6 +16,7 @@ from .trials_steps import definitions, edit, export
 
 trials_app = typer.Typer(
     name="trials",
+    cls=Group,
     help="Measurement files: from recordings to the numbers the field publishes.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,

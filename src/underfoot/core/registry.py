@@ -19,6 +19,7 @@ from .errors import InputError
 
 PREFIX = "underfoot."
 WINGS = {
+    ("commands", "app"): "underfoot-app",
     ("commands", "micro"): "underfoot-block",
     ("studies", "g1"): "underfoot-block",
     **{
@@ -113,9 +114,10 @@ def offered(door: str, name: str, check: Callable[[Any], str] = lambda _item: ""
             raise InputError(f"{offer} {wrong}", remedy=f"Mend or remove {offer.package}")
         return item
     if wing:
+        folder = wing.partition("-")[2].replace("-", "_")
         raise InputError(
-            f"{name} comes with the package {wing}",
-            remedy=f"pip install {wing} (in the source: ./wings/{wing.partition('-')[2]})",
+            f"{name.replace('.', ' ')} comes with the package {wing}",
+            remedy=f"pip install {wing} (in the source: ./wings/{folder})",
         )
     return None
 

@@ -24,7 +24,7 @@ from ..session import Session, address, problem_parts
 from ..variant_bar import new_variant
 
 ROUTE = "/studies"
-WORK = "underfoot.app.work_studies"
+WORK = "underfoot_app.work_studies"
 KINDS = {"normal": ("normal", "sd"), "lognormal": ("lognormal", "factor"), "even": ("from", "to")}
 """Keys of the two numbers of each distribution."""
 FIELDS = {

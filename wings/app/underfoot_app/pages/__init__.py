@@ -8,7 +8,7 @@ write the module and its line in ``PAGES``; nothing else names it.
         ui.label(session.text("answer.live"))                      # words: text/en.toml, de.toml
 
         async def analyse() -> None:
-            answer = await session.ask("underfoot.app.work_trials:analysed", str(folder))
+            answer = await session.ask("underfoot_app.work_trials:analysed", str(folder))
             ...                                                     # raise freely: errors are told
 
         def run() -> None:                                          # minutes: the queue
@@ -17,7 +17,7 @@ write the module and its line in ``PAGES``; nothing else names it.
 - ``session.ask("module:function", *args)`` (the warm process, while a person waits) and
   ``session.jobs.submit(title, "module:function", *args)`` (the queue) compute in another process:
   ``function(*args, progress=...)`` takes and returns plain data (text, numbers, lists; HTML or JSON
-  as text) and stands in ``underfoot.app.work`` or a module ``work_NAME`` beside it. A page never
+  as text) and stands in ``underfoot_app.work`` or a module ``work_NAME`` beside it. A page never
   imports that module: the server must stay free of SciPy, xarray, pandas and Matplotlib.
 - A task of the queue: ``task.state``, ``task.fraction``, ``task.answer``; ``await
   session.jobs.finished(task)``. What lasts is written into the project's folder by the function.

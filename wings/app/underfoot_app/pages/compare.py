@@ -12,7 +12,7 @@ from ..components import SoleView, sentences, table, title
 from ..session import Session
 
 ROUTE = "/compare"
-WORK = "underfoot.app.work_studies"
+WORK = "underfoot_app.work_studies"
 MOST = 12
 COLUMNS = ("letter", "name", "cof", "slip_probability", "fluid_load", "peak_fluid_pressure",
            "contact_area")  # fmt: skip

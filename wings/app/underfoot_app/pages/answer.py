@@ -27,7 +27,7 @@ LIVE = (
     Input("motion.normal_force", "N", 100.0, 900.0, 10.0),
 )
 """Values that a preview can follow while they move."""
-RUN, ADVICE = "underfoot.app.work:computed", "underfoot.app.work:advised"
+RUN, ADVICE = "underfoot_app.work:computed", "underfoot_app.work:advised"
 TRIED = ".tried"
 """Folder of results that holds full runs behind previews until they are kept as a variant."""
 
@@ -141,7 +141,7 @@ class _Answer:
         self._helps()
 
     async def _answer(self) -> None:
-        answer = await self.session.ask("underfoot.app.work:answer", str(self.folder))
+        answer = await self.session.ask("underfoot_app.work:answer", str(self.folder))
         self.view.show(answer["html"])
         with self.words:
             self._headline(answer)
@@ -149,7 +149,7 @@ class _Answer:
             self._tables(answer)
         if self._current():  # the march from which previews go on
             path = str(self.session.project.path(self.name))
-            await self.session.ask("underfoot.app.work:previewed", path, {})
+            await self.session.ask("underfoot_app.work:previewed", path, {})
 
     def _headline(self, answer: dict[str, Any]) -> None:
         with ui.element("div").classes("answer-card"):
@@ -199,7 +199,7 @@ class _Answer:
 
     async def _moved(self, changes: dict[str, Any]) -> dict[str, Any]:
         path = str(self.session.project.path(self.name))
-        answer = await self.session.ask("underfoot.app.work:previewed", path, changes)
+        answer = await self.session.ask("underfoot_app.work:previewed", path, changes)
         self.preview_cof = answer["cof"]
         cof, error = f"{answer['cof']:.3f}", f"{answer['error']:.3f}"
         load, slip = answer["fluid_load"], answer["slip"]
@@ -229,7 +229,7 @@ class _Answer:
         async def ended(done: Task) -> None:
             if done is not self.tried or done.state != DONE or done.answer is None:
                 return
-            answer = await self.session.ask("underfoot.app.work:answer", folder)
+            answer = await self.session.ask("underfoot_app.work:answer", folder)
             self.view.show(answer["html"])
             off = 100 * (done.answer / self.preview_cof - 1) if self.preview_cof else 0.0
             self.behind.clear()

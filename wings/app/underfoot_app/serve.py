@@ -32,7 +32,7 @@ from .uploads import MOST_BYTES, received
 PORT = 8642
 """The port that is tried where none is named."""
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
-PRELOAD = ("underfoot.app.work",)
+PRELOAD = ("underfoot_app.work",)
 """What the computing processes import before the first question."""
 
 
@@ -89,7 +89,7 @@ def _application(project: Project, jobs: Jobs) -> FastAPI:
         jobs.live.start()
 
     pages_app.on_startup(start)
-    pages_app.add_static_files("/static", str(files("underfoot.app") / "static"))
+    pages_app.add_static_files("/static", str(files("underfoot_app") / "static"))
     pages_app.add_static_files("/viewer", str(files("underfoot.report") / "templates"))
     for page in PAGES:
         _route(page, project, jobs, exchange)

@@ -95,7 +95,7 @@ class _Inspection:
             key: value for key, value in self.settings.items() if value not in ("auto", None)
         }
         try:
-            answer = await self.session.ask("underfoot.app.work:inspected_sole", file, settings)
+            answer = await self.session.ask("underfoot_app.work:inspected_sole", file, settings)
         except Exception:
             self.found.clear()
             raise

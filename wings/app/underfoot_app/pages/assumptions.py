@@ -14,7 +14,7 @@ from ..components import task_line
 from ..jobs import Task
 from ..session import Session
 
-EFFECTS = "underfoot.app.work:effects"
+EFFECTS = "underfoot_app.work:effects"
 
 
 def build(session: Session, name: str) -> None:

@@ -18,8 +18,8 @@ from ..jobs import Task
 from ..session import Session
 from ..trials_study import Study
 
-WORK = "underfoot.app.work_trials"
-STATIC = Path(str(files("underfoot.app"))) / "static"
+WORK = "underfoot_app.work_trials"
+STATIC = Path(str(files("underfoot_app"))) / "static"
 SHOWN = 60
 """Cards that are shown at once; more on demand."""
 

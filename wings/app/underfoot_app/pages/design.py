@@ -165,7 +165,7 @@ class _Design:
 
     async def _drawn(self, changes: dict[str, Any]) -> dict[str, Any]:
         path = str(self.session.project.path(self.name))
-        answer = await self.session.ask("underfoot.app.work:sole", path, changes)
+        answer = await self.session.ask("underfoot_app.work:sole", path, changes)
         words = self.text("design.measures", **answer["measures"])
         return {"html": answer["html"], "texts": {"measures": words}}
 

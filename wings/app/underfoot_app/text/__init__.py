@@ -38,7 +38,7 @@ class Text:
 @cache
 def catalogue(language: str) -> dict[str, str]:
     """Return the words of a language by dotted key."""
-    file = files("underfoot.app.text").joinpath(f"{language}.toml")
+    file = files("underfoot_app.text").joinpath(f"{language}.toml")
     return _flat(tomllib.loads(file.read_text("utf-8")))
 
 
