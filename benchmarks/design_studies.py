@@ -19,10 +19,10 @@ from pathlib import Path
 import psutil
 
 from underfoot.compute.run import run
-from underfoot.explore import Study, StudyResult
-from underfoot.explore.effects import surrogates
-from underfoot.explore.status import study_status
-from underfoot.explore.study_file import read_plan
+from underfoot_design_studies import Study, StudyResult
+from underfoot_design_studies.effects import surrogates
+from underfoot_design_studies.status import study_status
+from underfoot_design_studies.study_file import read_plan
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 CASES = int(os.environ.get("UNDERFOOT_BENCH_CASES", "1000"))
@@ -85,7 +85,7 @@ def numbers(result: StudyResult) -> dict[str, tuple[object, ...]]:
 
 def ready() -> Iterator[str]:
     """Yield the CPU time until a worker is ready for its first case."""
-    code = "import time, underfoot.explore.computing; print(time.process_time())"
+    code = "import time, underfoot_design_studies.computing; print(time.process_time())"
     runs = [
         float(subprocess.run([sys.executable, "-c", code], capture_output=True, check=True).stdout)
         for _ in range(3)

@@ -16,10 +16,12 @@ if TYPE_CHECKING:
     from .compute.result import Result
     from .compute.run import run
     from .core.catalogue import catalogue
-    from .explore import Study, optimise, sweep
     from .questions.comparison import compare
     from .questions.explanation import explain
 
+    Study: Any
+    optimise: Any
+    sweep: Any
     __version__: str
 
 __all__ = [
@@ -42,17 +44,18 @@ _HOMES = {
     "catalogue": ".core.catalogue",
     "compare": ".questions.comparison",
     "explain": ".questions.explanation",
-    "Study": ".explore.study",
     "load": ".case",
-    "optimise": ".explore.sweeps",
     "run": ".compute.run",
-    "sweep": ".explore.sweeps",
 }
+_OFFERED = ("Study", "optimise", "sweep")
+"""Names of the wing of design studies."""
 
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
         return import_module(".core.provenance", __name__).version()
+    if name in _OFFERED:
+        return import_module(".core.registry", __name__).offered("names", name)
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(_HOMES[name], __name__), name)

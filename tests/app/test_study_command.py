@@ -13,7 +13,7 @@ import pytest
 
 from commands import COMMAND, called, process
 from underfoot.case import load
-from underfoot.explore import Study
+from underfoot_design_studies import Study
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 STUDY = f"""\

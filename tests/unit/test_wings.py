@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
+import underfoot
 from commands import called
-from underfoot.core import registry
+from underfoot.core import InputError, registry
 
 FOLDERS = sorted(Path(__file__).parents[2].glob("wings/*/pyproject.toml"))
 
@@ -53,3 +54,10 @@ def test_without_wings_the_help_holds_the_core(no_wings):
     assert shown.returncode == 0
     assert " run " in shown.stdout
     assert not [name for name in COMMANDS if f"│ {name} " in shown.stdout]
+
+
+@pytest.mark.parametrize("name", [name for door, name in registry.WINGS if door == "names"])
+def test_a_name_of_a_missing_wing_says_what_to_install(no_wings, name):
+    assert name in underfoot.__all__
+    with pytest.raises(InputError, match=rf"^{name} comes with .* pip install underfoot-\w+"):
+        getattr(underfoot, name)

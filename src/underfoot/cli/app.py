@@ -16,7 +16,6 @@ from .guard import guarded
 from .outsole import outsole_app
 from .stribeck import stribeck
 from .studies import studies_app
-from .study import study_app
 from .trials import trials_app
 
 app = typer.Typer(
@@ -52,7 +51,7 @@ for command in COMMANDS:
 app.command("test", cls=Command)(guarded(cases.by_method))
 
 
-for group in (trials_app, calibrate_app, studies_app, study_app, outsole_app):
+for group in (trials_app, calibrate_app, studies_app, outsole_app):
     app.add_typer(group)
 
 

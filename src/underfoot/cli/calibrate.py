@@ -5,12 +5,14 @@ from typing import Annotated
 
 import typer
 
+from .groups import Group
 from .guard import guarded, say
-from .options import AsJson, On, Overwrite, Quick, Workers
+from .options import AsJson, Overwrite, Quick
 from .output import finish
 
 calibrate_app = typer.Typer(
     name="calibrate",
+    cls=Group,
     help="Make laws of trials and readings, with their uncertainty.",
     no_args_is_help=True,
 )
@@ -105,49 +107,8 @@ def pair(
         print(f'\nwrote {out}\nUse it: friction.draws_file = "{out.name}"')
 
 
-def posterior(
-    readings: Annotated[
-        Path,
-        typer.Argument(help="Study file with [uncertain] and [[reading]].", show_default=False),
-    ],
-    out: Annotated[Path, typer.Option("--out", help="File of draws (CSV).", show_default=False)],
-    folder: Annotated[
-        Path | None,
-        typer.Option(
-            "--study", help="Folder of its runs; by default out/NAME.", show_default=False
-        ),
-    ] = None,
-    on: On = None,
-    workers: Workers = None,
-    json: AsJson = False,
-    overwrite: Overwrite = False,
-) -> None:
-    """Find parameters of a case from your own readings: their joint posterior.
-
-    The model is run where a surrogate needs it; its own discrepancy is found too. A study uses
-    the draws with posterior = "FILE" under [uncertain].
-    """
-    from underfoot.core import InputError
-    from underfoot.core.progress import bar
-    from underfoot.explore import Study
-    from underfoot.explore.posterior import posterior as joint
-
-    if out.exists() and not overwrite:
-        raise InputError(f"{out} exists", where="--out", remedy="Add --overwrite to replace it")
-    study = Study.load(readings, folder)
-    with bar(study.plan.name) as progress:
-        found = joint(study, on=on, workers=workers, progress=progress)
-    if found.usable:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        found.write(out)
-    finish(found, None, json=json)
-    if found.usable and not json:
-        print(f'\nwrote {out}\nUse it: posterior = "{out.name}" under [uncertain] of a study')
-
-
 calibrate_app.command()(guarded(law))
 calibrate_app.command()(guarded(pair))
-calibrate_app.command()(guarded(posterior))
 
 
 @calibrate_app.callback()

@@ -21,6 +21,10 @@ PREFIX = "underfoot."
 WINGS = {
     ("commands", "app"): "underfoot-app",
     ("commands", "micro"): "underfoot-block",
+    ("commands", "study"): "underfoot-design-studies",
+    ("commands", "calibrate.posterior"): "underfoot-design-studies",
+    **{("names", name): "underfoot-design-studies" for name in ("Study", "optimise", "sweep")},
+    ("reports", "underfoot_design_studies"): "underfoot-design-studies",
     ("studies", "g1"): "underfoot-block",
     **{
         ("studies", name): "underfoot-studies"

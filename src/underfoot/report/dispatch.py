@@ -1,7 +1,8 @@
 """What an object can be drawn as and written to: generic functions that each type registers for.
 
 A module of this room registers its types when it is imported; ``_HOMES`` names the module for the
-types of a room of the package, so that nothing is imported before it is needed.
+types of a room of the package, so that nothing is imported before it is needed. Another package
+offers the module for its types behind the door ``reports``, by the package's name.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from underfoot.core import InputError, unknown_name
 from underfoot.core.presentation import Presentable
+from underfoot.core.registry import offered
 
 from .html import embedded, png
 from .page import Picture, Section, page, remark_sections, table_sections
@@ -28,8 +30,7 @@ _HOMES = {
     "case": ("results",),
     "questions": ("results", "question_figures", "slips", "wear_page"),
     "film": ("regime_figure",),
-    "explore": ("design_studies",),
-    "report": ("outsole", "design_studies"),
+    "report": ("outsole",),
     **dict.fromkeys(("friction", "rough_contact", "slip", "material"), ("laws",)),
 }
 """Modules of this room that register the types of a room of the package."""
@@ -38,8 +39,11 @@ _HOMES = {
 def _registered(generic: Any, shown: object) -> Any:
     """Return the function registered for the type of ``shown`` after its module is imported."""
     package, _, rest = type(shown).__module__.partition(".")
-    for name in _HOMES.get(rest.partition(".")[0], ()) if package == "underfoot" else ():
-        import_module(f".{name}", __package__)
+    if package != "underfoot":
+        offered("reports", package)
+    else:
+        for name in _HOMES.get(rest.partition(".")[0], ()):
+            import_module(f".{name}", __package__)
     chosen = generic.dispatch(type(shown))
     return None if chosen is generic.dispatch(object) else chosen
 

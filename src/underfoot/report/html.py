@@ -32,10 +32,10 @@ def embedded(picture: bytes) -> str:
 
 
 @cache
-def environment() -> Environment:
-    """Return the template environment of this room, escaping everything by default."""
-    from jinja2 import Environment, PackageLoader, StrictUndefined
+def environment(*packages: str) -> Environment:
+    """Return the templates of packages, then of this room, escaping everything by default."""
+    from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
     blocks: dict[str, Any] = {"trim_blocks": True, "lstrip_blocks": True}
-    loader = PackageLoader("underfoot.report")
+    loader = ChoiceLoader([PackageLoader(name) for name in (*packages, "underfoot.report")])
     return Environment(loader=loader, autoescape=True, undefined=StrictUndefined, **blocks)

@@ -65,9 +65,8 @@ def _per_row(count: int, most: int) -> int:
 
 def viewer_script(*further: str) -> str:
     """Return the program that draws every viewer of a page; ``further`` scripts can start more."""
-    templates = environment()
-    parts = [templates.get_template(name).render() for name in (*SCRIPTS, *further)]
-    return "(() => {\n" + "\n".join(parts) + "\n})();"
+    parts = [environment().get_template(name).render() for name in SCRIPTS]
+    return "(() => {\n" + "\n".join([*parts, *further]) + "\n})();"
 
 
 def viewer_scene(results: Sequence[OnSole]) -> dict[str, Any]:

@@ -11,17 +11,17 @@ from underfoot.compute.result import Result
 from underfoot.core import Progress
 from underfoot.core.pool import available_processors
 from underfoot.core.presentation import percent, value_text
-from underfoot.explore import Study
-from underfoot.explore.check import study_check
-from underfoot.explore.status import study_status
-from underfoot.explore.study_file import flat_paths
 from underfoot.questions.comparison import chance_higher, compare
-from underfoot.report.design_studies import design_sole, shown, write_study_report
 from underfoot.report.dispatch import figures, sections
 from underfoot.report.export import export_result
 from underfoot.report.html import png
 from underfoot.report.page import page_part
 from underfoot.report.viewer import scene_section, viewer_scene
+from underfoot_design_studies import Study
+from underfoot_design_studies.check import study_check
+from underfoot_design_studies.report import design_sole, shown, write_study_report
+from underfoot_design_studies.status import study_status
+from underfoot_design_studies.study_file import flat_paths
 
 from .work import Drawn, said
 

@@ -17,11 +17,10 @@ from underfoot.compute.result import Result
 from underfoot.compute.run import run
 from underfoot.compute.sole import file_surface, sole_shape
 from underfoot.core import ConvergenceError, InputError, SourcedValue, Status
-from underfoot.core.identity import program_hash
 from underfoot.shoe import heel_surface
 
 from .plan import job_key
-from .record import Ending, Job, Record
+from .record import Ending, Job, Record, program
 
 MEASURES = {
     "land": "1",
@@ -59,7 +58,7 @@ def computed(base: Case, job: Job) -> Record:
         **found,
         seconds=time.perf_counter() - wall,
         cpu_seconds=time.process_time() - cpu,
-        program=program_hash()[:16],
+        program=program(),
         worker=worker_name(),
         ended=time.time(),
     )
@@ -68,8 +67,7 @@ def computed(base: Case, job: Job) -> Record:
 def crashed(job: Job) -> Record:
     """Return the record of a job that two workers in turn did not survive."""
     reason = "its worker process ended without an answer, twice: killed, or out of memory"
-    program = program_hash()[:16]
-    return Record(job.key, Ending.CRASHED, reason, program=program, ended=time.time())
+    return Record(job.key, Ending.CRASHED, reason, program=program(), ended=time.time())
 
 
 @cache

@@ -1,4 +1,4 @@
-"""``underfoot study``: sweeps, sensitivities and optimisations of a case."""
+"""``underfoot study``: sweeps, sensitivities, optimisations; ``underfoot calibrate posterior``."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .guard import guarded, say
-from .options import AsJson, On, Overwrite, ShowAll, Workers, optional
-from .output import finish, print_table
+from underfoot.cli.guard import guarded, say
+from underfoot.cli.options import AsJson, On, Overwrite, ShowAll, Workers, optional
+from underfoot.cli.output import finish, print_table
 
 if TYPE_CHECKING:
-    from underfoot.explore import Study
+    from . import Study
 
 study_app = typer.Typer(
     name="study",
@@ -29,14 +29,14 @@ Folder = Annotated[
 
 
 def _study(path: Path, out: Path | None = None) -> Study:
-    from underfoot.explore import Study
+    from . import Study
 
     return Study.load(path, out)
 
 
 def check(study: StudyPath, json: AsJson = False) -> None:
     """Print how many cases a study has, what they cost, which can't be built; compute nothing."""
-    from underfoot.explore.check import study_check
+    from .check import study_check
 
     finish(study_check(_study(study).plan), None, json=json, everything=True)
 
@@ -54,7 +54,8 @@ def run(
     The same command goes on where it stopped, whatever stopped it.
     """
     from underfoot.core.progress import bar
-    from underfoot.report.design_studies import write_study_report
+
+    from .report import write_study_report
 
     chosen = _study(study, out)
     with bar(chosen.plan.name) as progress:
@@ -79,7 +80,7 @@ def work(study: StudyPath, out: Folder = None, workers: Workers = 1) -> None:
 
 def status(study: StudyPath, out: Folder = None, json: AsJson = False) -> None:
     """Print how far a study is, its throughput, the time left and why cases have no numbers."""
-    from underfoot.explore.status import study_status
+    from .status import study_status
 
     finish(study_status(_study(study, out)), None, json=json, everything=True)
 
@@ -87,7 +88,8 @@ def status(study: StudyPath, out: Folder = None, json: AsJson = False) -> None:
 def report(study: StudyPath, out: Folder = None) -> None:
     """Write results.csv, results.parquet, surrogate.json and report.html of what is finished."""
     from underfoot.core.progress import bar
-    from underfoot.report.design_studies import write_study_report
+
+    from .report import write_study_report
 
     chosen = _study(study, out)
     with bar("report") as progress:
@@ -135,11 +137,52 @@ def export(
     overwrite: Overwrite = False,
 ) -> None:
     """Write the table of all cases, and of the best designs case files and soles as STEP."""
-    from underfoot.explore.export import exported
+    from .export import exported
 
     for line in exported(_study(study, out), to, count=count, step=step, overwrite=overwrite):
         say(line)
     print(f"Files in {to}")
+
+
+def posterior(
+    readings: Annotated[
+        Path,
+        typer.Argument(help="Study file with [uncertain] and [[reading]].", show_default=False),
+    ],
+    out: Annotated[Path, typer.Option("--out", help="File of draws (CSV).", show_default=False)],
+    folder: Annotated[
+        Path | None,
+        typer.Option(
+            "--study", help="Folder of its runs; by default out/NAME.", show_default=False
+        ),
+    ] = None,
+    on: On = None,
+    workers: Workers = None,
+    json: AsJson = False,
+    overwrite: Overwrite = False,
+) -> None:
+    """Find parameters of a case from your own readings: their joint posterior.
+
+    The model is run where a surrogate needs it; its own discrepancy is found too. A study uses
+    the draws with posterior = "FILE" under [uncertain].
+    """
+    from underfoot.core import InputError
+    from underfoot.core.progress import bar
+
+    from . import Study
+    from .posterior import posterior as joint
+
+    if out.exists() and not overwrite:
+        raise InputError(f"{out} exists", where="--out", remedy="Add --overwrite to replace it")
+    study = Study.load(readings, folder)
+    with bar(study.plan.name) as progress:
+        found = joint(study, on=on, workers=workers, progress=progress)
+    if found.usable:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        found.write(out)
+    finish(found, None, json=json)
+    if found.usable and not json:
+        print(f'\nwrote {out}\nUse it: posterior = "{out.name}" under [uncertain] of a study')
 
 
 for command in (check, run, work, status, report, best, export):

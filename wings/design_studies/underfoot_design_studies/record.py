@@ -7,16 +7,25 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from enum import StrEnum
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from underfoot.core import DataError, SourcedValue
+from underfoot.core import DataError, SourcedValue, content_hash
 from underfoot.core.arrays import Array
 from underfoot.core.fields import Fields
+from underfoot.core.identity import files_hash, program_hash
 
 FORMAT = 1
 """Version of the lines that this package writes; newer ones are refused."""
+
+
+@cache
+def program() -> str:
+    """Return a hash of what computes records: the program and this package."""
+    return content_hash(program_hash(), files_hash((str(Path(__file__).parent),)))[:16]
 
 
 class Ending(StrEnum):

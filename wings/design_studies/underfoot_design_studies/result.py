@@ -13,13 +13,12 @@ import numpy as np
 
 from underfoot.case import unit_at
 from underfoot.core.arrays import Array, Mask
-from underfoot.core.identity import program_hash
 from underfoot.core.presentation import Presentable, Table, percent, quantity_text
 from underfoot.friction.propagation import probability_higher
 
 from .goals import AnyGoal, Goal, output_array
 from .plan import StudyPlan
-from .record import Ending, Job, Record
+from .record import Ending, Job, Record, program
 
 if TYPE_CHECKING:
     import xarray
@@ -232,7 +231,7 @@ class StudyResult(Presentable):
         """Return what keeps the numbers from being taken as they are."""
         reasons = list(self.plan.remarks)
         programs = {record.program for record in self.records.values()} - {""}
-        if programs - {program_hash()[:16]}:
+        if programs - {program()}:
             mixed = f"Cases of {len(programs)} versions of the program are mixed"
             older = "The cases were computed by another version of the program"
             advice = "run the study in a new folder to have all by this one"

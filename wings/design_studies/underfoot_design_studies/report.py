@@ -19,20 +19,21 @@ from underfoot.core.fields import Fields
 from underfoot.core.files import whole_file
 from underfoot.core.presentation import Table, percent
 from underfoot.core.units import display_unit
-from underfoot.explore import Study, StudyResult
-from underfoot.explore.effects import Effects, effects, surrogates
-from underfoot.explore.goals import AnyGoal, Goal
-from underfoot.explore.result import Design
-from underfoot.explore.surrogate import Surrogate
+from underfoot.report.dispatch import FigureMakers, figures, page_text, sections
+from underfoot.report.html import embedded, environment, new_figure, png
+from underfoot.report.page import Picture, Section, remark_sections, table_sections
+from underfoot.report.results import sole_fields
+from underfoot.report.viewer import viewer_script, viewer_section
+from underfoot.report.writing import Written
 
-from .dispatch import FigureMakers, figures, page_text, sections
-from .html import embedded, environment, new_figure, png
-from .page import Picture, Section, remark_sections, table_sections
-from .results import sole_fields
-from .viewer import viewer_script, viewer_section
-from .writing import Written
+from . import Study, StudyResult
+from .effects import Effects, effects, surrogates
+from .goals import AnyGoal, Goal
+from .result import Design
+from .surrogate import Surrogate
 
 if TYPE_CHECKING:
+    from jinja2 import Template
     from matplotlib.figure import Figure
 
 MOST_SOLES = 24
@@ -162,7 +163,7 @@ def _study_sections(
     parts += remark_sections(result)
     parts.append(Section("Study file (TOML)", text=result.plan.text, folded=True))
     kept = [p for p in parts if p.html or p.pictures or p.table or p.items or p.text or p.intro]
-    return kept, viewer_script("design_study.js")
+    return kept, viewer_script(_template("design_study.js").render())
 
 
 def _explorer(result: StudyResult, designs: Sequence[Design]) -> str:
@@ -209,8 +210,12 @@ def _explorer(result: StudyResult, designs: Sequence[Design]) -> str:
         for number, fields in result.soles.items():
             sole: Any = SimpleNamespace(name=f"design {number}", data=fields)
             soles[number] = viewer_section([sole])
-    template = environment().get_template("design_study.html")
+    template = _template("design_study.html")
     return template.render(data=data.replace("<", "\\u003c"), soles=soles)
+
+
+def _template(name: str) -> Template:
+    return environment(__package__ or "").get_template(name)
 
 
 def front_figure(result: StudyResult) -> Figure:
