@@ -9,11 +9,11 @@ from pathlib import Path
 
 import psutil
 
-from underfoot.report.trials_report import STORE, write_trials_report
-from underfoot.trials.analyse import analyse_folder
 from underfoot.trials.protocols import protocol
 from underfoot_simulator import simulated_folder
 from underfoot_simulator.folder import NAMES
+from underfoot_trial_analysis import analyse_folder
+from underfoot_trial_analysis.report import STORE, write_trials_report
 
 TRIALS = 500
 WALKS = 2004

@@ -10,7 +10,6 @@ import pytest
 from commands import called
 from underfoot.core import InputError
 from underfoot.trials import read_trial
-from underfoot.trials.analyse import analyse_folder
 from underfoot.trials.axes import LEVEL, Direction, DirectionSource, Ramp, ramp_from
 from underfoot.trials.events import Stance
 from underfoot.trials.gait import RcofDefinition, required_friction, required_frictions
@@ -18,6 +17,7 @@ from underfoot.trials.protocols import protocol
 from underfoot.trials.trial import Plate, Trial
 from underfoot.trials.walkway import walkway_of
 from underfoot_simulator import Defects, SlipTruth, walk_c3d, walk_with_slip
+from underfoot_trial_analysis import analyse_folder
 
 WEIGHT = 700.0
 FORWARD, UP = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])

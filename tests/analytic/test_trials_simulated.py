@@ -8,7 +8,6 @@ import pytest
 
 from underfoot.core import DataError, InputError
 from underfoot.trials import Channel, Marker, read_profile, read_trial
-from underfoot.trials.analyse import analyse_folder
 from underfoot.trials.pressure_map import pressure_map, pressure_scan
 from underfoot.trials.protocols import protocol
 from underfoot_simulator import (
@@ -21,6 +20,7 @@ from underfoot_simulator import (
     walk_c3d,
     walk_with_slip,
 )
+from underfoot_trial_analysis import analyse_folder
 
 
 def _truth(folder: Path) -> dict[str, dict[str, str]]:

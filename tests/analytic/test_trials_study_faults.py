@@ -14,9 +14,9 @@ from pathlib import Path
 import pytest
 
 from underfoot.core import InputError
-from underfoot.trials.analyse import FolderAnalysis, analyse_folder
 from underfoot.trials.protocols import protocol
 from underfoot_simulator.folder import simulated_study
+from underfoot_trial_analysis import FolderAnalysis, analyse_folder
 
 Rows = list[dict[str, str]]
 MASSES = ("61", "72", "70", "75", "76")

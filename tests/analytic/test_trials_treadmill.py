@@ -8,9 +8,9 @@ import pytest
 
 from underfoot.core import DataError
 from underfoot.trials import read_trial, required_frictions, walkway_of
-from underfoot.trials.analyse import analyse_folder
 from underfoot.trials.protocols import protocol
 from underfoot_simulator import simulated_folder, treadmill_walk, walk_c3d
+from underfoot_trial_analysis import analyse_folder
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
 

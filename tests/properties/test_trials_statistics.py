@@ -6,7 +6,8 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from underfoot.core import DataError, InputError
-from underfoot.trials.statistics import (
+from underfoot.trials.stribeck_fit import stribeck_fit
+from underfoot_trial_analysis.statistics import (
     analysis_of_variance,
     crossed,
     fisher_exact,
@@ -17,7 +18,6 @@ from underfoot.trials.statistics import (
     t_test,
     tukey_hsd,
 )
-from underfoot.trials.stribeck_fit import stribeck_fit
 
 _SEEDS = st.integers(0, 2**31)
 

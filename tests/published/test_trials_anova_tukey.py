@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from underfoot.trials.statistics import (
+from underfoot_trial_analysis.statistics import (
     all_subsets,
     analysis_of_variance,
     least_squares_means,

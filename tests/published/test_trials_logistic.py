@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from underfoot.core import DataError
-from underfoot.trials.statistics import clustered_logistic, logistic_regression
+from underfoot_trial_analysis.statistics import clustered_logistic, logistic_regression
 
 # Dalal, Fowlkes and Hoadley 1989, O-rings.
 _TEMPERATURE = [66, 70, 69, 68, 67, 72, 73, 70, 57, 63, 70, 78]
@@ -120,7 +120,7 @@ def test_complete_separation_on_the_scale_of_a_cof():
 
 def test_reports_risk_model_is_consistent_with_its_percentages():
     # G.6: slope -49.2 of ACOF - RCOF, 50 % at -0.06.
-    from underfoot.trials.statistics.logistic import LogisticLine
+    from underfoot_trial_analysis.statistics.logistic import LogisticLine
 
     line = LogisticLine(-2.952, -49.2)
     assert line.at_probability(0.5) == pytest.approx(-0.06, abs=5e-5)
@@ -162,7 +162,7 @@ def test_clusters_against_statsmodels():
 
 
 def test_risk_curve_band():
-    from underfoot.trials.statistics.logistic import risk_curve
+    from underfoot_trial_analysis.statistics.logistic import risk_curve
 
     fit = logistic_regression(_DISTRESS, {"temperature": _TEMPERATURE})
     curve = risk_curve(fit, np.array([31.0, 70.0]))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import f
 
-from underfoot.trials.statistics import (
+from underfoot_trial_analysis.statistics import (
     equivalence,
     mixed_model,
     paired_curve_test,

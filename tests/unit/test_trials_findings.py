@@ -24,8 +24,6 @@ from underfoot.trials import (
     slip,
     stances,
 )
-from underfoot.trials.analyse import analyse_folder
-from underfoot.trials.analyse.steps import rcof_definition
 from underfoot.trials.events import no_contact_reason
 from underfoot.trials.gait_context import gait_context
 from underfoot.trials.plates import channel_forces, ordered_corners, plate_axes
@@ -40,6 +38,8 @@ from underfoot_simulator import (
     walk_c3d,
     walk_with_slip,
 )
+from underfoot_trial_analysis import analyse_folder
+from underfoot_trial_analysis.steps import rcof_definition
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
 UP = np.array([0.0, 0.0, 1.0])
@@ -238,7 +238,7 @@ def test_four_causes_of_no_contact_are_told_apart(tmp_path):
 
 def test_rcof_of_persons_not_of_steps_and_means(tmp_path):
     from underfoot.questions.slips import measured_rcof
-    from underfoot.report.trials_report import csv_text
+    from underfoot_trial_analysis.report import csv_text
 
     simulated_folder("slips", tmp_path, count=4)
     analysis = analyse_folder(tmp_path, protocol("report_g6"), processes=1)

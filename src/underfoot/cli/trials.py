@@ -8,11 +8,8 @@ from typing import Annotated
 import typer
 
 from .groups import Group
-from .guard import guarded
-from .options import AsJson, PlateFrame, RampAngle, optional
-from .trials_analyse import analyse, persons, simulate
-from .trials_bundle import bundle
-from .trials_steps import definitions, edit, export
+from .guard import guarded, say
+from .options import AsJson, Overwrite, PlateFrame, RampAngle, optional
 
 trials_app = typer.Typer(
     name="trials",
@@ -73,11 +70,25 @@ def describe(
         print("\n\n".join(one.text() for one in found))
 
 
+def simulate(
+    kind: Annotated[str, typer.Argument(help="slips, study, tester, pin_on_disk or relaxation.")],
+    out: Annotated[Path, optional("Folder to be made.")],
+    count: Annotated[int, typer.Option(help="Number of trials, persons, scans or repeats.")] = 12,
+    seed: Annotated[int, typer.Option(help="Another seed gives other trials.")] = 1,
+    overwrite: Overwrite = False,
+) -> None:
+    """Write made-up measurements with known truth, to try the analysis out; clearly synthetic."""
+    from underfoot.core.files import whole_folder
+    from underfoot.core.progress import bar
+    from underfoot.core.registry import offered
+
+    simulated_folder = offered("simulators", "simulate")
+    with bar("writing made-up trials") as progress, whole_folder(out, overwrite=overwrite) as made:
+        paths = simulated_folder(kind, made, count=count, seed=seed, progress=progress)
+    say(
+        f"{len(paths)} made-up files in {out}: nothing in them was measured; the truth is truth.csv"
+    )
+
+
 trials_app.command()(guarded(describe))
-trials_app.command()(guarded(analyse))
 trials_app.command()(guarded(simulate))
-trials_app.command()(guarded(persons))
-trials_app.command()(guarded(edit))
-trials_app.command()(guarded(definitions))
-trials_app.command()(guarded(export))
-trials_app.command()(guarded(bundle))

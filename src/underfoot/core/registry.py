@@ -22,6 +22,10 @@ WINGS = {
     ("commands", "app"): "underfoot-app",
     ("commands", "micro"): "underfoot-block",
     ("commands", "study"): "underfoot-design-studies",
+    **{
+        ("commands", f"trials.{name}"): "underfoot-trial-analysis"
+        for name in ("analyse", "bundle", "definitions", "edit", "export", "persons")
+    },
     ("commands", "calibrate.posterior"): "underfoot-design-studies",
     **{("names", name): "underfoot-design-studies" for name in ("Study", "optimise", "sweep")},
     ("reports", "underfoot_design_studies"): "underfoot-design-studies",

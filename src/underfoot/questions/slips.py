@@ -277,7 +277,7 @@ def measured_rcof(path: Path) -> tuple[float, float, str]:
     Raises:
         InputError: No such file, no RCOF in it, or one person only.
     """
-    from underfoot.trials.analyse.file_result import MEAN_OF_STEPS
+    from underfoot.trials.measurement import MEAN_OF_STEPS
 
     try:
         with path.open(encoding="utf-8", newline="") as stream:

@@ -10,6 +10,9 @@ import numpy as np
 from underfoot.core import InputError, display
 from underfoot.core.presentation import Presentable, Table
 
+MEAN_OF_STEPS = "mean of the steps"
+"""The item of a table that stands for all steps of a file."""
+
 
 @dataclass(frozen=True, slots=True)
 class Flag:

@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from underfoot.report.trials_figures import Sheet, Tile
-from underfoot.trials.analyse import FileResult
-from underfoot.trials.analyse.record_signals import Envelope, RecordSignals
 from underfoot.trials.signals import CONTACT_FORCE
+from underfoot_trial_analysis import FileResult
+from underfoot_trial_analysis.figures import Sheet, Tile
+from underfoot_trial_analysis.record_signals import Envelope, RecordSignals
 
 WIDTH = 900
 """Parts of a signal that are drawn across a page."""

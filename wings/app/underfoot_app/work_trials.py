@@ -14,32 +14,32 @@ from underfoot.core import InputError, Progress, silent
 from underfoot.core.files import whole_folder
 from underfoot.core.progress import part
 from underfoot.core.registry import offered
-from underfoot.report.trials_figures import Tile, sheets
-from underfoot.report.trials_report import (
-    STORE,
-    check_report_folder,
-    study_parts,
-    write_trials_report,
-)
-from underfoot.trials.analyse import (
+from underfoot.trials.protocols import Protocol, protocol, protocol_names
+from underfoot.trials.trial import Edit
+from underfoot_trial_analysis import (
     FileResult,
     FolderAnalysis,
     analyse_folder,
     recording_results,
 )
-from underfoot.trials.analyse.conditions import Recording, profile_of, study_folder
-from underfoot.trials.analyse.edit_table import (
+from underfoot_trial_analysis.conditions import Recording, profile_of, study_folder
+from underfoot_trial_analysis.edit_table import (
     edit_from,
     edit_rows,
     edit_text,
     with_edit_row,
     write_edit_text,
 )
-from underfoot.trials.analyse.folder import recording_trials
-from underfoot.trials.analyse.record_signals import record_signals
-from underfoot.trials.analyse.tables import quantity_name, scaled, shown_unit
-from underfoot.trials.protocols import Protocol, protocol, protocol_names
-from underfoot.trials.trial import Edit
+from underfoot_trial_analysis.figures import Tile, sheets
+from underfoot_trial_analysis.folder import recording_trials
+from underfoot_trial_analysis.record_signals import record_signals
+from underfoot_trial_analysis.report import (
+    STORE,
+    check_report_folder,
+    study_parts,
+    write_trials_report,
+)
+from underfoot_trial_analysis.tables import quantity_name, scaled, shown_unit
 
 from .trials_plots import record_plot, run_plot, step_plot, tile_svg
 

@@ -33,7 +33,7 @@ from underfoot.studies.figure import (
 )
 from underfoot.studies.runner import Computed, Options, Table, part
 from underfoot.studies.verdict import Quantity
-from underfoot.trials.statistics import analysis_of_variance
+from underfoot_trial_analysis.statistics import analysis_of_variance
 
 STATEMENTS = Path(__file__).with_name("g4.toml")
 

@@ -22,7 +22,7 @@ from underfoot.slip.dynamics import ReducedSole, SlipStudy
 from underfoot.studies.figure import GREY, OURS, PRINTED, SECOND, Figure, Panel, line, points
 from underfoot.studies.runner import Computed, Options, Table, kept, named, part
 from underfoot.studies.verdict import Quantity
-from underfoot.trials.statistics.linear import all_subsets
+from underfoot_trial_analysis.statistics.linear import all_subsets
 
 from .g6 import PRINTED_ACOF, SOLES, sole_case
 

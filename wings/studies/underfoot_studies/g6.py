@@ -27,7 +27,7 @@ from underfoot.slip.dynamics import cof_table, slip_study
 from underfoot.studies.figure import PRINTED, Figure, Layer, Panel, grouped_bars, line, points
 from underfoot.studies.runner import Computed, Options, Table, part
 from underfoot.studies.verdict import Quantity
-from underfoot.trials.statistics.logistic import logistic_regression, risk_curve
+from underfoot_trial_analysis.statistics.logistic import logistic_regression, risk_curve
 
 STATEMENTS = Path(__file__).with_name("g6.toml")
 

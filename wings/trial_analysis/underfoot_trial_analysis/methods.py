@@ -4,9 +4,11 @@ import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from ..protocols import KINDS, Protocol
-from ..signals import CONTACT_FORCE
-from .file_result import CAUTION, MEAN_OF_STEPS, REFUSED, FileResult
+from underfoot.trials.measurement import MEAN_OF_STEPS
+from underfoot.trials.protocols import KINDS, Protocol
+from underfoot.trials.signals import CONTACT_FORCE
+
+from .file_result import CAUTION, REFUSED, FileResult
 from .steps import protocol_ramp
 from .study import Study
 

@@ -8,10 +8,10 @@ from typing import Any
 
 from underfoot.core import InputError, nearest_match, to_si
 from underfoot.core.files import whole_file
+from underfoot.trials.events import EditError
+from underfoot.trials.readers.text import decoded, is_number, name_and_unit
+from underfoot.trials.trial import Edit
 
-from ..events import EditError
-from ..readers.text import decoded, is_number, name_and_unit
-from ..trial import Edit
 from .conditions import named_file, table_columns, table_delimiter
 
 NAMES = ("edits.csv", "edits.xlsx")

@@ -8,14 +8,13 @@ from typing import Any, Self
 
 import numpy as np
 
-from ..measurement import Measurement
-from ..protocols import Protocol
-from ..tester_calibration import FAILED, TesterCalibration
-from ..trial import Trial
+from underfoot.trials.measurement import Measurement
+from underfoot.trials.protocols import Protocol
+from underfoot.trials.tester_calibration import FAILED, TesterCalibration
+from underfoot.trials.trial import Trial
 
 ACCEPTED, CAUTION, REFUSED = "accepted", "caution", "refused"
 _POINTS = 400
-MEAN_OF_STEPS = "mean of the steps"  # the item that stands for all steps of a file
 
 
 @dataclass(frozen=True, slots=True)

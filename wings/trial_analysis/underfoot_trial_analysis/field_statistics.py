@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError
+from underfoot.trials.gait_context import PERCENT
 
-from .. import statistics
-from ..gait_context import PERCENT
+from . import statistics
 from .file_result import FileResult
 from .tables import Cell, Finding, decimals_of, finding, quantity_name
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from underfoot.trials.analyse import FileResult, Finding, FolderAnalysis
+    from . import FileResult, Finding, FolderAnalysis
 
 COLOURS = {"accepted": "#0b6fa4", "caution": "#b36b00", "refused": "#a32020", "rejected": "#a32020"}
 _PER_PAGE, _ACROSS = 60, 6

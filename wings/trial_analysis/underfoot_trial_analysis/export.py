@@ -5,12 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from underfoot.core import DataError
-
-from .c3d_writer import c3d_bytes
-from .events import Stance
-from .plates import plate_axes
-from .trial import Plate, Trial
-from .walkway import body_mass
+from underfoot.trials.c3d_writer import c3d_bytes
+from underfoot.trials.events import Stance
+from underfoot.trials.plates import plate_axes
+from underfoot.trials.trial import Plate, Trial
+from underfoot.trials.walkway import body_mass
 
 
 def c3d_with_events(trial: Trial, found: Sequence[Stance]) -> bytes:

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
+from underfoot.trials.measurement import Flag, Measurement, remark
 
 from . import statistics
-from .measurement import Flag, Measurement, remark
 
 _SAID = {
     "hysteresis": "friction with the blocking oil, all adhesion taken as blocked (Eq. 23)",

@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Any
 from underfoot.core import InputError, Progress, silent
 from underfoot.core.files import checksum
 from underfoot.core.provenance import package_version, program_hash
-from underfoot.trials.analyse import analyse_folder
-from underfoot.trials.analyse.tables import measurement_table
+from underfoot.report.html import environment
 from underfoot.trials.protocols import protocol
 
-from .html import environment
-from .trials_report import STORE, csv_text, lead_sentence, page_table, write_trials_report
+from . import analyse_folder
+from .report import STORE, csv_text, lead_sentence, page_table, write_trials_report
+from .tables import measurement_table
 
 if TYPE_CHECKING:
-    from underfoot.trials.analyse import FolderAnalysis
+    from . import FolderAnalysis
 
 SUMS, PAGE, SETTINGS, RECORDINGS = "SHA256SUMS", "audit.html", "bundle.json", "recordings"
 _REPORT, _CATALOGUE, _NUMBERS = "report", "catalogue", "tables/measurements.csv"
@@ -71,7 +71,7 @@ def audit_page(analysis: FolderAnalysis, fingerprint: str) -> str:
         for key in ("calibration", "check surfaces")
         if key in m["conventions"]
     )
-    return environment().get_template("audit.html").render(
+    return environment(__package__ or "").get_template("audit.html").render(
         analysis=analysis, lead=lead_sentence(analysis), tables=known, calibration=list(said),
         fingerprint=fingerprint, versions=_versions(),
     )  # fmt: skip

@@ -21,14 +21,14 @@ from underfoot.core import Progress, display, silent
 from underfoot.core.files import check_writable_folder
 from underfoot.core.pool import in_processes
 from underfoot.core.progress import part
+from underfoot.report.html import embedded, environment, png
 
-from .html import embedded, environment, png
-from .trials_figures import SheetPage, TrialFigure, contact_sheets, sheets, trial_figures
+from .figures import SheetPage, TrialFigure, contact_sheets, sheets, trial_figures
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from underfoot.trials.analyse import FolderAnalysis, Table
+    from . import FolderAnalysis, Table
 
 STORE = ".files"
 _MARK = "analysis.txt"
@@ -123,7 +123,7 @@ def trials_page(
         )
     tables = {table.name: table for table in all_tables}
     noted = {name for one in analysis.files for name in one.conditions}
-    return environment().get_template("trials.html").render(
+    return environment(__package__ or "").get_template("trials.html").render(
         analysis=analysis,
         **study_parts(analysis),
         first=chapters["study"][:1],

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..axes import Axes
-from ..events import Stance
-from ..plates import plate_named
-from ..trial import Trial
+from underfoot.trials.axes import Axes
+from underfoot.trials.events import Stance
+from underfoot.trials.plates import plate_named
+from underfoot.trials.trial import Trial
 
 FORCE, HEIGHT = "mean force in stance (N)", "height of the highest marker (m)"
 _MARKERS = 24  # the first ones by name: pairs grow with the square

@@ -7,9 +7,9 @@ from typing import Self
 import numpy as np
 
 from underfoot.core import UnderfootError
+from underfoot.trials.gait_context import PERCENT
 
-from .. import statistics
-from ..gait_context import PERCENT
+from . import statistics
 from .conditions import NUMBERS, person_condition
 from .file_result import FileResult
 

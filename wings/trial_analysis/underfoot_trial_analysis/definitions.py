@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 
 from underfoot.core import Progress, UnderfootError, silent
+from underfoot.trials.events import EditError
+from underfoot.trials.gait import DEFINITIONS, required_friction, required_frictions
+from underfoot.trials.readers import Profile, read_trials
+from underfoot.trials.trial import Trial, joined
+from underfoot.trials.walkway import walkway_of
 
-from ..events import EditError
-from ..gait import DEFINITIONS, required_friction, required_frictions
-from ..readers import Profile, read_trials
-from ..trial import Trial, joined
-from ..walkway import walkway_of
 from .conditions import profile_of, study_folder
 from .edit_table import edits_of
 from .tables import Cell, Table, mean_and_interval

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..protocols import Protocol
+from underfoot.trials.protocols import Protocol
+
 from .conditions import MASS, NUMBERS, PERSON, person_condition, plain_spelling
 from .file_result import REFUSED, FileResult
 from .person_measures import FORCE, HEIGHT

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from underfoot.core import UnderfootError
+from underfoot.trials.protocols import Protocol
+from underfoot.trials.readers import Profile
+from underfoot.trials.slips import heel_motion
+from underfoot.trials.trial import Trial
 
-from ..protocols import Protocol
-from ..readers import Profile
-from ..slips import heel_motion
-from ..trial import Trial
 from .steps import slip_definition, walkway
 
 

@@ -1,4 +1,4 @@
-"""``underfoot trials analyse`` and ``underfoot trials simulate``."""
+"""``underfoot trials analyse`` and ``underfoot trials persons``."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from .guard import say
-from .options import CatalogueFolders, Overwrite, PlateFrame, RampAngle, optional
+from underfoot.cli.guard import say
+from underfoot.cli.options import CatalogueFolders, Overwrite, PlateFrame, RampAngle, optional
 
 
 def analyse(
@@ -80,8 +80,9 @@ def analyse(
     if out.resolve() == folder.resolve():
         raise InputError("the folder of the trials can't take the results", where="--out")
     from underfoot.core.progress import bar
-    from underfoot.report.trials_report import STORE, check_report_folder, write_trials_report
-    from underfoot.trials.analyse import CAUTION, REFUSED, analyse_folder
+
+    from . import CAUTION, REFUSED, analyse_folder
+    from .report import STORE, check_report_folder, write_trials_report
 
     check_report_folder(out, overwrite=overwrite)
     with bar("analysing trials") as progress:
@@ -132,7 +133,7 @@ def persons(
     power: Annotated[float, typer.Option(help="Chance to find it.")] = 0.8,
 ) -> None:
     """Print how many persons a study needs (in each group, for groups and slips)."""
-    from underfoot.trials import statistics
+    from . import statistics
 
     settings = {"difference": difference, "sd": sd, "shares": shares, "conditions": conditions}
 
@@ -142,23 +143,3 @@ def persons(
     count = statistics.persons_needed(chance, power)
     each = " in each group" if design in ("groups", "slips") else ""
     print(f"{count} persons{each}: power {chance(count):.3f} at alpha 0.05, two-sided")
-
-
-def simulate(
-    kind: Annotated[str, typer.Argument(help="slips, study, tester, pin_on_disk or relaxation.")],
-    out: Annotated[Path, optional("Folder to be made.")],
-    count: Annotated[int, typer.Option(help="Number of trials, persons, scans or repeats.")] = 12,
-    seed: Annotated[int, typer.Option(help="Another seed gives other trials.")] = 1,
-    overwrite: Overwrite = False,
-) -> None:
-    """Write made-up measurements with known truth, to try the analysis out; clearly synthetic."""
-    from underfoot.core.files import whole_folder
-    from underfoot.core.progress import bar
-    from underfoot.core.registry import offered
-
-    simulated_folder = offered("simulators", "simulate")
-    with bar("writing made-up trials") as progress, whole_folder(out, overwrite=overwrite) as made:
-        paths = simulated_folder(kind, made, count=count, seed=seed, progress=progress)
-    say(
-        f"{len(paths)} made-up files in {out}: nothing in them was measured; the truth is truth.csv"
-    )

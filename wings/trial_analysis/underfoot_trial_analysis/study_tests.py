@@ -6,10 +6,9 @@ from typing import Any, TypeVar
 import numpy as np
 
 from underfoot.core import DataError, UnderfootError
+from underfoot.trials.protocols import Protocol
 
-from .. import statistics
-from ..protocols import Protocol
-from ..statistics.logistic import METHODS, risk_curve
+from . import statistics
 from .conditions import person_condition
 from .field_statistics import (
     corrected_p,
@@ -23,6 +22,7 @@ from .field_statistics import (
     reliability_findings,
 )
 from .file_result import FileResult
+from .statistics.logistic import METHODS, risk_curve
 from .tables import Cell, Finding, Table, decimals_of, finding, not_done, quantity_name
 
 _Fit = TypeVar("_Fit")

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .guard import say
-from .options import Overwrite, optional
+from underfoot.cli.guard import say
+from underfoot.cli.options import Overwrite, optional
 
 if TYPE_CHECKING:
     from underfoot.trials.gait import RequiredFriction
@@ -38,17 +38,18 @@ def edit(
     An edit that names no step, changes nothing or contradicts another is refused.
     """
     from underfoot.core import InputError
-    from underfoot.trials.analyse.conditions import profile_of
-    from underfoot.trials.analyse.edit_table import (
+    from underfoot.trials.gait import required_frictions
+    from underfoot.trials.readers import read_trial
+    from underfoot.trials.walkway import walkway_of
+
+    from .conditions import profile_of
+    from .edit_table import (
         edit_from,
         edit_text,
         edits_of,
         with_edit_row,
         write_edit_text,
     )
-    from underfoot.trials.gait import required_frictions
-    from underfoot.trials.readers import read_trial
-    from underfoot.trials.walkway import walkway_of
 
     given = {"contact": contact, "toe off": toe_off, "side": side, "plate": plate}
     changes = [(what, value) for what, value in given.items() if value is not None]
@@ -93,8 +94,9 @@ def definitions(
     """Show the RCOF of a folder under every definition: what the choice does to the numbers."""
     from underfoot.core.files import whole_folder
     from underfoot.core.progress import bar
-    from underfoot.report.trials_report import csv_text
-    from underfoot.trials.analyse.definitions import definition_tables
+
+    from .definitions import definition_tables
+    from .report import csv_text
 
     with bar("reading trials") as progress:
         summary, steps = definition_tables(folder, profile=profile, progress=progress)
@@ -121,10 +123,11 @@ def export(
     """Write a recording as C3D with the contacts found as events, for other software."""
     from underfoot.core import InputError
     from underfoot.trials.events import stances
-    from underfoot.trials.export import c3d_with_events
     from underfoot.trials.readers import Profile, read_profile, read_trial
     from underfoot.trials.trial import joined
     from underfoot.trials.walkway import walkway_of
+
+    from .export import c3d_with_events
 
     if out.exists():
         raise InputError(f"{out} is there already", where="--out", remedy="Choose another name")

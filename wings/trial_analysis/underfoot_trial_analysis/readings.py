@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError
+from underfoot.trials.measurement import Measurement, caution
+from underfoot.trials.protocols import Protocol
+from underfoot.trials.readers.text import is_number
+from underfoot.trials.tester_calibration import TesterCalibration
 
-from ..measurement import Measurement, caution
-from ..protocols import Protocol
-from ..readers.text import is_number
-from ..tester_calibration import TesterCalibration
 from .conditions import one_spelling, table_columns
 from .file_result import Draft, FileResult, refer_to
 from .floor_classes import class_scheme

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from .guard import say
-from .options import CatalogueFolders, Overwrite, PlateFrame, RampAngle, optional
+from underfoot.cli.guard import say
+from underfoot.cli.options import CatalogueFolders, Overwrite, PlateFrame, RampAngle, optional
 
 
 def bundle(
@@ -37,9 +37,10 @@ def bundle(
     from underfoot.core.catalogue import catalogue_folders
     from underfoot.core.files import whole_folder
     from underfoot.core.progress import bar
-    from underfoot.report.trials_bundle import PAGE, bundle_faults, write_bundle
-    from underfoot.trials.analyse import analyse_folder
     from underfoot.trials.protocols import protocol as protocol_named
+
+    from . import analyse_folder
+    from .court_bundle import PAGE, bundle_faults, write_bundle
 
     if check is not None:
         faults = bundle_faults(check)

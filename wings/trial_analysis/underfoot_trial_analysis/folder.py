@@ -11,14 +11,14 @@ from typing import Any
 from underfoot.core import Progress, UnderfootError, content_hash, silent, unknown_name
 from underfoot.core.pool import available_processors, in_processes
 from underfoot.core.provenance import version
+from underfoot.trials.events import EditError
+from underfoot.trials.protocols import Protocol
+from underfoot.trials.readers import Profile, read_trials, with_channels
+from underfoot.trials.tester_calibration import FILE as CALIBRATION
+from underfoot.trials.tester_calibration import read_calibration
+from underfoot.trials.trial import Edit, Trial, file_checksum, joined
+from underfoot.trials.walkway import body_mass
 
-from ..events import EditError
-from ..protocols import Protocol
-from ..readers import Profile, read_trials, with_channels
-from ..tester_calibration import FILE as CALIBRATION
-from ..tester_calibration import read_calibration
-from ..trial import Edit, Trial, file_checksum, joined
-from ..walkway import body_mass
 from .conditions import body_mass_noted, person_condition, profile_of, study_folder
 from .edit_table import edits_of
 from .file_result import REFUSED, Draft, FileResult
