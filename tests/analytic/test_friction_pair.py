@@ -9,7 +9,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import erf
 
-from underfoot.calibrate.pair_law import fitted, law_named
 from underfoot.calibrate.pair_readings import PairReading
 from underfoot.case import Case
 from underfoot.compute.resolve import resolved
@@ -26,6 +25,7 @@ from underfoot.friction.law import PIN_PRESSURE, FrictionLaw
 from underfoot.friction.pair_contact import HIGHEST_WET, ROUGHNESS, PairConstants
 from underfoot.rough_contact.contact_table import QUANTITIES, ContactTable
 from underfoot_studies.corpus import readings
+from underfoot_studies.pair_law import fitted, law_named
 
 TILE = Pair(shore_a=65, sole_rq=(8e-6, 8e-6), floor_rq=(3e-6, 3e-6), family="aqueous")
 KNOWN = {"film": 0.1, "hysteresis": 0.04, "dry": 0.3, "kappa": 1e-3, "laboratory": 1.0, "pair": 1.0}

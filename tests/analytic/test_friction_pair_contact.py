@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from underfoot.calibrate.corpus import Condition, Reading, Span
-from underfoot.calibrate.pair_law import _covariance, fitted, law_named, scored
 from underfoot.friction.pair_contact import (
     FULL_CONTACT,
     Pair,
@@ -15,6 +13,8 @@ from underfoot.friction.pair_contact import (
     PairDraws,
     contact_terms,
 )
+from underfoot_studies.pair_law import _covariance, fitted, law_named, scored
+from underfoot_studies.sources import Condition, Reading, Span
 
 ONE = PairConstants(*(np.array([value]) for value in (0.10, 0.08, 0.35, 8e-4, 0.8, 1.2, 0.15)))
 PAIR = {"viscosity": 5e-3, "speed": 0.3, "sole_rq": 8e-6, "floor_rq": 2e-6, "shore_a": 60.0}

@@ -20,9 +20,9 @@ from trial_testers import (
 from underfoot.core import InputError
 from underfoot.trials.protocols import protocol
 from underfoot.trials.tester_calibration import FAILED, read_calibration
-from underfoot.trials.tester_checks import log_kind
 from underfoot_simulator import simulated_folder
 from underfoot_trial_analysis import analyse_folder
+from underfoot_trial_analysis.tester_checks import log_kind
 
 SEEDS = (7001, 7002, 7003)
 

@@ -5,6 +5,7 @@ import dataclasses
 import functools
 import itertools
 import re
+import zlib
 
 import matplotlib
 import numpy as np
@@ -22,7 +23,6 @@ from underfoot.report.html import environment
 from underfoot.report.viewer import (
     colour_tables,
     scene_section,
-    unpacked,
     viewer_scene,
     viewer_script,
 )
@@ -56,6 +56,13 @@ def centre(tab):
 def colourful(picture):
     """Share of the pixels that are no grey: data, not rubber, floor or paper."""
     return float(np.mean(np.ptp(picture, axis=2) > 0.12))
+
+
+def unpacked(stored, shape):
+    """The array of ``viewer.packed`` again, as the page reads it."""
+    planes = np.frombuffer(zlib.decompress(base64.b64decode(stored["data"])), np.uint8)
+    halves = np.ascontiguousarray(planes.reshape(2, -1).T).view("<f2").reshape(shape)
+    return halves.astype(float) * stored["scale"]
 
 
 def choose(tab, title):

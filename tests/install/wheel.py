@@ -26,8 +26,8 @@ ARM = [f"--platform=manylinux_2_{minor}_aarch64" for minor in (17, 26, 27, 28, 3
 PIP = ("-m", "pip", "--disable-pip-version-check", "--quiet")
 
 
-def call(*command, **options):
-    """Run a command; its output is shown only when it fails."""
+def call(*command, code=0, **options):
+    """Run a command that ends with ``code``; its output is shown only when it does not."""
     environment = {
         name: value
         for name, value in os.environ.items()
@@ -38,10 +38,10 @@ def call(*command, **options):
         [str(part) for part in command],
         env=environment, text=True, capture_output=True, timeout=600, check=False, **options,
     )  # fmt: skip
-    if ended.returncode:
+    if ended.returncode != code:
         said = f"{ended.stdout[-3000:]}\n{ended.stderr[-3000:]}"
         raise SystemExit(f"exit {ended.returncode}: {' '.join(map(str, command))}\n{said}")
-    return ended.stdout
+    return ended.stdout if code == 0 else ended.stderr
 
 
 def lowest_versions():
@@ -78,6 +78,8 @@ def leg(name, wheel, pinned, folder):
     )
     doctor = call(scripts / "underfoot", "doctor", cwd=folder)
     assert "superlu" in doctor, doctor
+    missing = call(scripts / "underfoot", "study", "--help", code=2, cwd=folder)
+    assert "pip install underfoot-design-studies" in missing, missing
     assert size < LARGEST_MB, f"{name}: {size:.0f} MB, more than {LARGEST_MB} MB"
     print(
         f"{name}: COF {cof:.6f}, {size:.0f} MB, numpy {versions['numpy']}, scipy "

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from underfoot.calibrate.pair_law import law_named
 from underfoot.studies import Options, run_study, study
+from underfoot_studies.pair_law import law_named
 
 
 @pytest.mark.slow

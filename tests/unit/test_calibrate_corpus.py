@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from underfoot.calibrate.corpus import KINDS, NUMBERS, corpus, read_source, sampled_numbers
 from underfoot.core import DataError
+from underfoot_studies.sources import KINDS, NUMBERS, corpus, read_source, sampled_numbers
 
 GOOD = """
 reference = "Someone 2020"

@@ -17,7 +17,7 @@ with p_R in proportion to R: rough pairs grip less dry and more wet. No dry read
 it: adhesion at 8.3 um is taken as what water leaves of it at rest.
 
 The form under a fluid is the film at single asperities (rougher pairs shed it at higher eta V); its
-constants are calibrated on published measurements (``underfoot.calibrate.pair_law``) and are
+constants are calibrated on published measurements (``underfoot_studies.pair_law``) and are
 measurements of no single pair. A laboratory, its dry-like part and a pair each have an error of
 their own, learned between the sources; they are the largest part of the interval.
 """

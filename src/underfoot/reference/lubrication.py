@@ -15,9 +15,6 @@ Array = NDArray[np.float64]
 BEST_TAPER = 1.18869
 """Gap ratio m = (h1 - h0) / h0 of the infinitely wide inclined bearing that carries the most."""
 
-BEST_STEP = (0.7182, 1.8660)
-"""Place of the step (share of the length before it) and gap ratio of the best step bearing."""
-
 
 def inclined_bearing_load(
     *, viscosity: float, speed: float, length: float, leading_gap: float, trailing_gap: float

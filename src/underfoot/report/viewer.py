@@ -229,13 +229,6 @@ def packed(values: NDArray[np.float64]) -> dict[str, Any]:
     return {"scale": largest, "data": data.decode("ascii")}
 
 
-def unpacked(stored: dict[str, Any], shape: tuple[int, int]) -> NDArray[np.float64]:
-    """Return the array of ``packed`` again, as the page reads it."""
-    planes = np.frombuffer(zlib.decompress(base64.b64decode(stored["data"])), np.uint8)
-    halves = np.ascontiguousarray(planes.reshape(2, -1).T).view("<f2").reshape(shape)
-    return halves.astype(float) * stored["scale"]
-
-
 @cache
 def colour_tables() -> dict[str, str]:
     """Return the 256 colours (RGB bytes, base64) of each of Matplotlib's maps in use here."""

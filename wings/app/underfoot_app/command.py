@@ -28,6 +28,6 @@ def app(
     from underfoot.core.optional import optional_module
 
     optional_module("nicegui", "app", "underfoot app")
-    from underfoot_app.serve import serve
+    from .serve import serve
 
     serve(folder, host, port, not no_browser)

@@ -10,18 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from underfoot.calibrate.corpus import Condition, Reading, corpus
-from underfoot.calibrate.pair_law import (
-    LAWS,
-    CorpusScore,
-    PairPosterior,
-    SourceScore,
-    corpus_score,
-    fitted,
-    law_named,
-    scored,
-    source_left_out,
-)
 from underfoot.case import Case
 from underfoot.compute.run import run
 from underfoot.core import UnderfootError, content_hash
@@ -37,6 +25,18 @@ from .corpus_cases import (
     verdict,
     whole_shoe_stands,
 )
+from .pair_law import (
+    LAWS,
+    CorpusScore,
+    PairPosterior,
+    SourceScore,
+    corpus_score,
+    fitted,
+    law_named,
+    scored,
+    source_left_out,
+)
+from .sources import Condition, Reading, corpus
 
 STATEMENTS = Path(__file__).with_name("corpus.toml")
 

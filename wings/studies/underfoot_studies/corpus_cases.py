@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
-from underfoot.calibrate.corpus import RQ_PER_RA, Condition, Effect, Source, Span
 from underfoot.case import Case
 from underfoot.case.sole import Lugs
 from underfoot.case.surfaces import FLOOR_RQ, SOLE_RQ
@@ -19,6 +18,8 @@ from underfoot.compute.resolve import resolved
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.film import Strike, touch_time
 from underfoot.rough_contact import ExponentialLaw
+
+from .sources import RQ_PER_RA, Condition, Effect, Source, Span
 
 WHOLE_SHOE = ("whole shoe", "walking")
 FLAT = ("block", "pin", "slipmeter", "pull slipmeter", "drop pad")

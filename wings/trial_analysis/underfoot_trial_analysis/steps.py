@@ -12,22 +12,22 @@ from underfoot.trials.events import Stance, no_contact_reason, stances
 from underfoot.trials.gait import DEFINITIONS, RcofDefinition, RequiredFriction, stance_frictions
 from underfoot.trials.gait_context import gait_context, slip_course, stance_curves
 from underfoot.trials.measurement import MEAN_OF_STEPS, Measurement, mean_of
-from underfoot.trials.pin_on_disk import friction_point
 from underfoot.trials.pressure_map import pressure_scan
 from underfoot.trials.pressures import sensor_array_reading
 from underfoot.trials.protocols import KINDS, Protocol
 from underfoot.trials.readers import Profile
-from underfoot.trials.relaxation_test import relaxation_reading
 from underfoot.trials.signals import LowPass
 from underfoot.trials.slip_friction import slide_friction, slide_plate
 from underfoot.trials.slips import OutcomeLimits, Slip, SlipDefinition, slip_of
-from underfoot.trials.tester_checks import log_kind, scan_flags, slide_flags
 from underfoot.trials.trial import Trial
 from underfoot.trials.walkway import Walkway, walkway_of
 
 from .edit_table import EDIT_COLUMNS, edit_log
 from .file_result import Draft, rates, refer_to
 from .person_measures import person_measures
+from .pin_on_disk import friction_point
+from .relaxation_test import relaxation_reading
+from .tester_checks import log_kind, scan_flags, slide_flags
 
 
 def analysed_trial(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:

@@ -9,13 +9,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from .measurement import Flag
-from .plausibility import HELD, Limit
-from .pressure_map import PressureScan
-from .signals import longest_run, runs, unloaded
-from .slip_friction import SlideFriction
-from .tester_calibration import TesterCalibration
-from .trial import Plate
+from underfoot.trials.measurement import Flag
+from underfoot.trials.plausibility import HELD, Limit
+from underfoot.trials.pressure_map import PressureScan
+from underfoot.trials.signals import longest_run, runs, unloaded
+from underfoot.trials.slip_friction import SlideFriction
+from underfoot.trials.tester_calibration import TesterCalibration
+from underfoot.trials.trial import Plate
 
 ZERO = Limit("zero", 0.005, "1", "change of COF by the unloaded level at the slide; assumed")
 LOW = Limit("COF", 0.02, "1", "few shoes on lubricated floors lie below (lowest known 0.008)")

@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
-
-from .measurement import Measurement, caution
-from .trial import Channel, Trial
+from underfoot.trials.measurement import Measurement, caution
+from underfoot.trials.trial import Channel, Trial
 
 BATCH = 5
 _LATEST = 0.5

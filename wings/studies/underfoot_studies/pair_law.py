@@ -26,7 +26,7 @@ from underfoot.friction.pair_contact import (
     contact_terms,
 )
 
-from .corpus import NUMBERS, Condition, sampled_numbers
+from .sources import NUMBERS, Condition, sampled_numbers
 
 DRAWS = 8
 """Points over the open ranges of a condition."""

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from underfoot.core import DataError, InputError
-
-from .measurement import Flag, Measurement, caution
-from .trial import Trial
+from underfoot.trials.measurement import Flag, Measurement, caution
+from underfoot.trials.trial import Trial
 
 FORCE = ("force", "load", "normal force", "fz", "axial force")
 DISPLACEMENT = ("displacement", "compression", "position", "crosshead", "axial displacement", "z")
