@@ -27,7 +27,7 @@ from underfoot.shoe import SoleMap
 from underfoot.sole_contact.solver import SoleContact, solve_on
 
 from .contact_friction import ContactFriction, contact_friction
-from .positions import place_numbers
+from .positions import place_numbers, treaded
 from .prepare import Prepared, prepared
 from .solve import solved_motion, solver_settings
 
@@ -91,7 +91,8 @@ class Continuation:
         progress: Hears of the march.
 
     Changes may be of fluid, speed, load, shoe angle, wear, hardness and roughness; a change of the
-    plan of the tread or of the grid needs a run.
+    plan of the tread or of the grid needs a run. So does the shoe angle of a sole without lugs: the
+    pool that a tipped facet traps at landing hangs on the whole march.
 
     Raises:
         InputError: A motion that follows a history.
@@ -182,6 +183,13 @@ class Continuation:
     def _steps(self, case: Case) -> tuple[Prepared, SoleContact, SoleContact]:
         """Return the contact after one step and after two, on the grid of the march."""
         angle = self.case.motion.shoe_angle
+        if case.motion.shoe_angle != angle and not treaded(case):
+            raise InputError(
+                "the shoe angle of a sole without lugs changes",
+                where="continued",
+                allowed="fluid, speed, load, wear, hardness, roughness",
+                remedy="Run the changed case",
+            )
         level = case.replace("motion.shoe_angle", angle)  # the map keeps its angle, the sole rolls
         parts = _changed(self._parts, level)
         before, land = self._parts.sole.land, parts.sole.land

@@ -20,6 +20,9 @@ CELLS_REFUSED = 2.0
 CELLS_WANTED = 4.0
 """A channel or lug of fewer cells is listed as a breach."""
 
+BESIDE_A_WALL = 1e-3
+"""Reach of a channel's wall, m: the deepest within it is the channel's floor."""
+
 
 def centred(count: int, spacing: float) -> Array:
     """Return ``count`` places ``spacing`` apart, symmetric about 0."""

@@ -12,7 +12,7 @@ from underfoot.core.checks import between, not_negative, positive
 
 from ._kernels.regions import distance_to, nearest_true
 from .cut_cells import Cells, cut_cells
-from .geometry import CELLS_REFUSED, CELLS_WANTED, SoleMap, SoleSurface, centred
+from .geometry import BESIDE_A_WALL, CELLS_REFUSED, CELLS_WANTED, SoleMap, SoleSurface, centred
 from .shape import Heel, SoleShape
 from .slits import Slits, slits_of, without_slits
 from .tread import Sipes
@@ -349,7 +349,7 @@ def surface_map(
     cells = _cells(
         surface, np.where(covered, origin, surface.x[0]), np.broadcast_to(y, x.shape + y.shape)
     )
-    above = np.where(inside, surface.height - base, 0.0)
+    above = _above_land(surface, base)
     clearance = np.where(covered, clearance + above[cells] * cosine, np.inf)
     if covered.any():
         clearance -= clearance.min()
@@ -396,6 +396,20 @@ def surface_map(
         slits=slits,
         removed=None if surface.removed is None else surface.removed[cells],
     )
+
+
+def _above_land(surface: SoleSurface, base: Array) -> Array:
+    """Return the height over the land's ``base`` (nx, ny), m: of channels that of their floor.
+
+    Their walls, and tips of lugs too small to be land, move with the lugs beside them. At their
+    own height they would be rigid studs where the lugs give way.
+    """
+    from scipy.ndimage import maximum_filter
+
+    above = np.where(surface.inside, surface.height - base, 0.0)
+    channel = surface.inside & ~surface.land
+    window = 1 + 2 * max(1, round(BESIDE_A_WALL / surface.spacing))
+    return np.where(channel, maximum_filter(np.where(channel, above, 0.0), window), above)
 
 
 def _signed_distance(

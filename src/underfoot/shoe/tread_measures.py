@@ -20,7 +20,7 @@ from ._kernels.regions import (
     without_specks,
 )
 from ._kernels.rolling import rolled_base
-from .geometry import SoleSurface
+from .geometry import BESIDE_A_WALL, SoleSurface
 
 ROLLING_RADIUS = 0.5
 """Of the paraboloid that tells land: hollows of a larger radius are the sole's shape, m."""
@@ -78,6 +78,8 @@ def tread_map(
         channels: Cells that are known to be channel beside those found.
         lag: Cells between heights that don't share noise: the scan's distance of points.
     """
+    from scipy.ndimage import maximum_filter
+
     inside = np.isfinite(height)
     rolled = rolled_base(height, spacing, ROLLING_RADIUS, STEEPEST_RIM)
     above = height - rolled
@@ -111,7 +113,9 @@ def tread_map(
         return TreadMap(land, np.zeros_like(height), base, level, noise)
     depth = np.where(channel, np.maximum(height - base, 0.0), 0.0)
     far = distance_to(channel) * spacing > LUG_REACH
-    floor = floor_depth(depth, channel)
+    # of a channel that the rim cuts the nearest cells may show nothing but its wall
+    window = 1 + 2 * max(1, round(BESIDE_A_WALL / spacing))
+    floor = maximum_filter(floor_depth(depth, channel), window)
     lugs = np.where(land & ~far, floor[nearest_true(channel)], 0.0)
     return TreadMap(land, lugs, base, level, noise)
 
