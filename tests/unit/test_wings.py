@@ -8,6 +8,7 @@ import pytest
 import underfoot
 from commands import called
 from underfoot.core import InputError, registry
+from underfoot.core.installation import installation
 
 FOLDERS = sorted(Path(__file__).parents[2].glob("wings/*/pyproject.toml"))
 
@@ -47,6 +48,16 @@ def test_a_command_of_a_missing_wing_says_in_one_line_what_to_install(no_wings, 
         f"error: {words} comes with the package {wing}. "
         f"pip install {wing} (in the source: ./wings/{folder}).\n"
     )
+
+
+def test_the_doctor_names_a_missing_wing(no_wings):
+    rows = dict(installation())
+    assert {*registry.WINGS.values()} <= rows.keys()
+    assert rows["underfoot-app"].endswith("pip install underfoot-app (in the source: ./wings/app)")
+
+
+def test_with_all_wings_the_doctor_names_none():
+    assert registry.missing_wings() == {}
 
 
 def test_without_wings_the_help_holds_the_core(no_wings):

@@ -122,12 +122,20 @@ def offered(door: str, name: str, check: Callable[[Any], str] = lambda _item: ""
             raise InputError(f"{offer} {wrong}", remedy=f"Mend or remove {offer.package}")
         return item
     if wing:
-        folder = wing.partition("-")[2].replace("-", "_")
-        raise InputError(
-            f"{name.replace('.', ' ')} comes with the package {wing}",
-            remedy=f"pip install {wing} (in the source: ./wings/{folder})",
-        )
+        what = f"{name.replace('.', ' ')} comes with the package {wing}"
+        raise InputError(what, remedy=_installing(wing))
     return None
+
+
+def missing_wings() -> dict[str, str]:
+    """Return the remedy for each package of this project that is not installed, by its name."""
+    present = {offer.package for offer in all_offers()}
+    return {wing: _installing(wing) for wing in sorted({*WINGS.values()} - present)}
+
+
+def _installing(wing: str) -> str:
+    folder = wing.partition("-")[2].replace("-", "_")
+    return f"pip install {wing} (in the source: ./wings/{folder})"
 
 
 def broken_offers() -> Iterator[str]:
