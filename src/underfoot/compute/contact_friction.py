@@ -1,5 +1,6 @@
 """The friction of a solved contact: the local law on its maps, the sum, and draws of its spread."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,7 +16,10 @@ from underfoot.friction import (
     cof,
     sampled_cof,
 )
+from underfoot.friction.sampled_cof import SAMPLES
+from underfoot.friction.tread_error import SharedError, tread_error
 from underfoot.shoe import SoleMap
+from underfoot.shoe.tread_place import tread_place
 from underfoot.sole_contact.lug_edges import EdgedLaw, LugFriction
 from underfoot.sole_contact.sole_state import CellState, SoleState
 from underfoot.sole_contact.solver import SoleContact
@@ -42,6 +46,8 @@ def contact_friction(
     law: FrictionLaw | EdgedLaw,
     sole: SoleMap,
     contact: SoleContact,
+    *,
+    samples: int = SAMPLES,
 ) -> ContactFriction:
     """Return the friction of a contact by the local law, drawn over the spread of its inputs."""
     maps = law(contact.contact_pressure, case.motion.speed, contact.film_thickness)
@@ -60,6 +66,12 @@ def contact_friction(
         pull = pull if pull.uncertainty else replace(pull, uncertainty=numbers.SUCTION_SPREAD)
         suction = pull, lugs.suction_share(parts)
     assert isinstance(plain, FrictionLaw)
+    place, seed = place_of_tread(case, sole), case.numerics.seed
+    known: Mapping[str, Array] = getattr(plain, "known_errors", lambda _: {})(samples)
+    errors = {
+        name: error.draws(place, samples=samples, seed=seed, known=known)
+        for name, error in sole_errors(case, context).items()
+    }
     pressures = at.contact_pressure, at.fluid_pressure
     sampled = sampled_cof(
         plain,
@@ -69,11 +81,11 @@ def contact_friction(
         wet=at.wet,
         **at.areas,
         fluid_inputs={} if context.viscosity is None else {"viscosity": context.viscosity},
-        film_error=numbers.FILM_ERROR,
-        sole=numbers.sole_name(case),
+        **errors,
         contact_factor=1.0 if lugs is None else lugs.factor_map(),
         suction=suction,
-        seed=case.numerics.seed,
+        samples=samples,
+        seed=seed,
     )
     sums = cof(
         parts,
@@ -85,6 +97,21 @@ def contact_friction(
         source=f"{plain.name} law: {plain.source}",
     )
     return ContactFriction(maps, lugs, sums, sampled)
+
+
+def place_of_tread(case: Case, sole: SoleMap) -> Array:
+    """Return where the tread of a case lies among treads; all 0 without one."""
+    moulded = getattr(case.shoe.tread, "edge_radius", 0.0)
+    return tread_place(sole, max(moulded, case.shoe.wear.edge_radius or 0.0))
+
+
+def sole_errors(case: Case, context: Context) -> dict[str, SharedError]:
+    """Return the errors of film load and tread of a case, as ``sampled_cof`` names them.
+
+    Soles of one heel share that of the film as far as their treads are alike.
+    """
+    film = SharedError(f"film load, {numbers.heel_name(case)}", numbers.FILM_ERROR)
+    return {"film_error": film, "tread_error": tread_error(context.viscosity_value)}
 
 
 def _on_squares(parts: FrictionParts, at: CellState, contact: SoleContact) -> FrictionParts:

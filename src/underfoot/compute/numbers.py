@@ -43,6 +43,7 @@ _INPUTS = {
     "numerical": "grid",
     "film load": "load on the film",
     "suction": "suction behind the edges of lugs",
+    "tread": "the model of the tread",
 }
 FILM_ERROR = math.log(1.41)
 """Standard deviation of ln F / (W - F), F the load on the film: the model's error on the untreaded
@@ -235,11 +236,20 @@ def contact_area(state: SoleState) -> float:
 
 
 def sole_name(case: Case) -> str:
-    """Return a name of the geometry of the case's sole: cases of one sole share its film error."""
+    """Return a name of the geometry of the case's sole: those of one share its grid's error."""
+    return _named(case, "heel", "tread", "sole", "wear")
+
+
+def heel_name(case: Case) -> str:
+    """Return a name of the case's sole without its tread: what shares the error of the film."""
+    return _named(case, "heel", "sole", "wear")
+
+
+def _named(case: Case, *parts: str) -> str:
     if case.shoe.outsole is not None:  # a file written anew has another checksum
         return Path(case.shoe.outsole.file).stem
-    parts = tuple(f"shoe.{part}." for part in ("heel", "tread", "sole", "wear"))
-    return content_hash([row[:2] for row in case.rows() if row[0].startswith(parts)])
+    heads = tuple(f"shoe.{part}." for part in parts)
+    return content_hash([row[:2] for row in case.rows() if row[0].startswith(heads)])
 
 
 def readings(contact: SoleContact, cof: float, sensor: SensorReading) -> dict[str, float]:

@@ -314,6 +314,11 @@ class PairContactLaw(UncertainInputs):
             object.__setattr__(self, "spread_basis", "calibrated to readings")
 
     @property
+    def highest(self) -> float:
+        """COF that no contact is above."""
+        return HIGHEST_DRY if self.viscosity is None else HIGHEST_WET
+
+    @property
     def source(self) -> str:
         """Of the calibration."""
         return self.draws.source
@@ -359,6 +364,10 @@ class PairContactLaw(UncertainInputs):
         rows = np.arange(samples) % self.draws.count
         return self.pair.drawn(self.draws.rows(rows), seed)
 
+    def known_errors(self, samples: int) -> Mapping[str, Array]:
+        """Return (samples,) errors that readings determined, by name, in the rows of the draws."""
+        return self.draws.rows(np.arange(samples) % self.draws.count).errors
+
     def at(self, values: Mapping[str, float]) -> PairContactLaw:
         """Return the law at other numbers."""
         present = {**self.medians, **{k: v for k, v in values.items() if k in self.medians}}
@@ -373,12 +382,11 @@ class PairContactLaw(UncertainInputs):
         if self.viscosity is None:
             area = erf(pressure / m["full_contact"])
             area *= PIN_PRESSURE / erf(PIN_PRESSURE / (FULL_CONTACT * ROUGHNESS))
-            adhesion, highest = factor * (m["film"] + m["dry"]) * area, HIGHEST_DRY
+            adhesion = factor * (m["film"] + m["dry"]) * area
         else:
             left = np.exp(-self.viscosity * velocity / m["kappa"])
             adhesion = factor * (m["film"] + m["dry"] * left) * pressure
-            highest = HIGHEST_WET
-        most = np.minimum(1.0, highest * pressure / np.maximum(adhesion + hysteresis, 1e-30))
+        most = np.minimum(1.0, self.highest * pressure / np.maximum(adhesion + hysteresis, 1e-30))
         return adhesion * most, hysteresis * most
 
     @property

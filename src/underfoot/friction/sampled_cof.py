@@ -11,15 +11,19 @@ from underfoot.core import SourcedValue
 from underfoot.core.arrays import Array, Mask
 
 from .law import SMALLEST_FILM, FrictionLaw, FrictionParts
-from .propagation import Propagated, normal_draws, propagated
+from .propagation import Propagated, propagated
 
 PARTS = ("adhesion", "hysteresis", "viscous")
 CLASSES = 64
 """Classes of contact pressure that stand for the cells under the sole in the draws."""
 SAMPLES = 500
 MODEL = "model"
-FILM, SUCTION = "film load", "suction"
+FILM, SUCTION, TREAD = "film load", "suction", "tread"
+APART = (MODEL, FILM, SUCTION, TREAD)
+"""What is drawn beside the inputs of the law."""
 VACUUM = 1e5
+HIGHEST = 3.0
+"""COF that no error of the tread leads beyond, where the law has none of its own."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,8 +71,8 @@ def sampled_cof(
     area: Array | float = 1.0,
     film_area: Array | float = 1.0,
     fluid_inputs: Mapping[str, SourcedValue] | None = None,
-    film_error: float = 0.0,
-    sole: str = "",
+    film_error: Array | None = None,
+    tread_error: Array | None = None,
     contact_factor: ArrayLike = 1.0,
     suction: tuple[SourcedValue, float] | None = None,
     confidence: float = 0.95,
@@ -78,11 +82,11 @@ def sampled_cof(
     """Return draws of Eq. (1): the inputs of the law within their spreads, and the law's own error.
 
     Contact and film stay as they were computed, but for the load that the film carries: the
-    logarithm of its odds F / (W - F) has the standard deviation ``film_error``, and the contact
-    carries the rest in the same distribution. The law's own error is one normal draw for the whole
-    sole, in proportion to the load on the contact; contact friction is not drawn below 0. Cells
-    are put into classes of equal pressure (with their film); what the classes miss of each part is
-    made up for by a factor.
+    logarithm of its odds F / (W - F) is off by ``film_error``, and the contact carries the rest in
+    the same distribution. COF is off by the factor exp(``tread_error``), not beyond what the law
+    calls its highest. The law's own error is one normal draw for the whole sole, in proportion to
+    the load on the contact; contact friction is not drawn below 0. Cells are put into classes of
+    equal pressure (with their film); what the classes miss of each part is made up for by a factor.
 
     Parameters:
         contact_pressure, fluid_pressure, film_thickness, wet, area, film_area: (nx, ny) Pa, Pa, m,
@@ -90,8 +94,8 @@ def sampled_cof(
         speed: m/s.
         fluid_inputs: "viscosity" (Pa s) with its standard deviation; where it has none it counts as
             exact.
-        film_error: Standard deviation of ln F / (W - F), 1; 0 takes the film load as exact.
-        sole: Name of the sole: its error of the film load is the same wherever the name is.
+        film_error: Draws (samples,) of the error of ln F / (W - F); None takes the load as exact.
+        tread_error: Draws (samples,) of the error of ln COF by the tread; None counts none.
         contact_factor: On the contact friction of the law, (nx, ny), 1.
         suction: Highest suction behind edges (Pa, drawn between 0 and that of a vacuum), and the
             share of the contact friction that its value makes.
@@ -103,9 +107,12 @@ def sampled_cof(
     if inputs is None:
         return None
     joint = dict(_joint(law, samples, seed))
-    if film_error and np.any(fluid_pressure):
-        inputs[FILM] = SourcedValue(0.0, "1", "", film_error)
-        joint[FILM] = film_error * normal_draws(seed, f"{FILM} {sole}", samples)
+    highest = getattr(law, "highest", HIGHEST)
+    film_error = film_error if np.any(fluid_pressure) else None
+    for name, draws in ((FILM, film_error), (TREAD, tread_error)):
+        if draws is not None and draws.any():
+            inputs[name] = SourcedValue(0.0, "1", "", float(np.std(draws)))
+            joint[name] = draws
     pull, pull_share = suction or (None, 0.0)
     if pull is not None and pull.value and pull_share:
         inputs[SUCTION] = pull
@@ -127,7 +134,7 @@ def sampled_cof(
     factor = np.where(coarse > 0, exact / np.where(coarse > 0, coarse, 1.0), 1.0)
 
     def parts(values: Mapping[str, float]) -> Array:
-        drawn = law.at({k: v for k, v in values.items() if k not in (MODEL, FILM, SUCTION)})
+        drawn = law.at({k: v for k, v in values.items() if k not in APART})
         adhesion, hysteresis, viscous = factor * sums(
             drawn(pressure, speed, gap), counts, wet_counts
         )
@@ -141,7 +148,9 @@ def sampled_cof(
         share = 1.0 / (carried + (1.0 - carried) * np.exp(values.get(FILM, 0.0)))
         solid, hysteresis = solid * share, hysteresis * share
         hysteresis = min(hysteresis, solid)
-        return np.array([solid + viscous, solid - hysteresis, hysteresis, viscous])
+        whole = np.array([solid + viscous, solid - hysteresis, hysteresis, viscous])
+        most = max(highest / max(whole[0], 1e-9), 1.0)
+        return whole * min(np.exp(values.get(TREAD, 0.0)), most)
 
     options = {"samples": samples, "seed": seed, "shares": False}
     spread = propagated(parts, inputs, confidence=confidence, joint=joint, **options)

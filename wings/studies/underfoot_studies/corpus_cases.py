@@ -109,7 +109,8 @@ class Contrast:
     """One published effect under one fluid: COF of ``over`` against that of ``under``.
 
     ``rises`` is the published sign. ``low`` and ``high`` bound the published ratio (or slope, over
-    ``step`` in its unit); nan where the sign alone is published.
+    ``step`` in its unit); nan where the sign alone is published. Both sides are the
+    highest and the lowest of ``extremes_of``.
     """
 
     source: str
@@ -122,6 +123,7 @@ class Contrast:
     low: float = math.nan
     high: float = math.nan
     step: float = math.nan
+    extremes_of: int = 2
 
     @property
     def reason(self) -> str:
@@ -224,6 +226,7 @@ def _of(effect: Effect, source: Source) -> Iterator[Contrast]:
                 low,
                 high,
                 step,
+                content.get("extremes_of", 2),
             )
 
 

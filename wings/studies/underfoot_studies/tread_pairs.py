@@ -1,0 +1,92 @@
+"""Published pairs of treads beside what is computed of them: what the error of the tread model is
+learned from (``underfoot.friction.tread_error``).
+
+    python -m underfoot_studies.tread_pairs src/underfoot/data/friction/tread_pairs.csv
+"""
+
+import csv
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from scipy.stats import norm
+
+from underfoot.calibrate.corpus import corpus
+from underfoot.case import Case
+from underfoot.compute.contact_friction import place_of_tread
+from underfoot.compute.resolve import resolved
+from underfoot.compute.run import run
+from underfoot.compute.sole import sole_map
+from underfoot.core.arrays import Array
+from underfoot.friction.tread_error import TreadPair, fluid_class, tread_error
+
+from .corpus_cases import Contrast, Stand, contrasts
+
+TREAD = {"groove direction", "depth", "tread area", "edge radius", "wear"}
+"""What an effect of the tread alone is about."""
+
+
+def tread_contrasts() -> list[Contrast]:
+    """Return the published effects of treads that can be computed."""
+    every = (one for source in corpus() if source.verified for one in contrasts(source))
+    return [one for one in every if set(one.topic.split(", ")) <= TREAD and not one.reason]
+
+
+def computed_pairs() -> Iterator[TreadPair]:
+    """Yield each published pair with its computed ln ratio, on the quick grid.
+
+    Its spread is without the error of the tread model itself: of contact law, film and suction.
+    """
+    for one in tread_contrasts():
+        over, under = (_drawn(stand) for stand in (one.over, one.under))
+        ratio = np.log(over[0] / under[0])
+        low, high = _published(one, under[0])
+        first, second = (_place(stand.cases[0]) for stand in (one.over, one.under))
+        fluid = fluid_class(resolved(one.over.cases[0]).viscosity_value)
+        # by quantiles: draws that the law bounds hold less of the error than is taken off here
+        ends = np.quantile(np.log(over[1:] / under[1:]), norm.cdf([-1, 1]))
+        numbers = (low, high, float(ratio), float(np.ptp(ends) / 2))
+        words = (one.source, one.effect, fluid)
+        yield TreadPair(*words, *numbers, first, second, one.extremes_of)
+
+
+def _drawn(stand: Stand) -> Array:
+    """Return COF of what stands for a condition, and its draws (1 + draws,)."""
+    rows = []
+    for case in stand.cases:
+        result, error = run(case, quick=True), tread_error(resolved(case).viscosity_value)
+        draws = result.data["cof_draws"].values
+        off = error.draws(_place(case), samples=draws.size, seed=case.numerics.seed)
+        rows.append(np.append(result.value("cof"), draws * np.exp(-off)))
+    return np.mean(rows, axis=0) * stand.contact_time
+
+
+def _place(case: Case) -> Array:
+    return place_of_tread(case, sole_map(case, case.numerics.quick_grid_spacing))
+
+
+def _published(one: Contrast, cof: float) -> tuple[float, float]:
+    """Return the bounds of the published ln ratio; a slope is over the computed COF."""
+    ends = np.array([one.low, one.high])
+    if np.isnan(one.low):
+        return (0.0, np.inf) if one.rises else (-np.inf, 0.0)
+    ratios = ends if np.isnan(one.step) else 1 + ends * one.step / cof
+    low, high = np.log(ratios)
+    return float(low), float(high)
+
+
+def write(path: Path) -> None:
+    """Write the pairs as CSV."""
+    with path.open("w", newline="", encoding="utf-8") as stream:
+        table = csv.writer(stream, lineterminator="\n")
+        table.writerow(TreadPair.__dataclass_fields__)
+        for pair in computed_pairs():
+            places = (" ".join(f"{x:.4f}" for x in each) for each in (pair.first, pair.second))
+            numbers = (f"{x:.5g}" for x in (pair.low, pair.high, pair.computed, pair.sd))
+            words = (pair.source, pair.effect, pair.fluid)
+            table.writerow((*words, *numbers, *places, pair.extremes_of))
+
+
+if __name__ == "__main__":
+    write(Path(sys.argv[1]))
