@@ -21,7 +21,7 @@ from underfoot.compute.sole import sole_map
 from underfoot.core.arrays import Array
 from underfoot.friction.tread_error import TreadPair, fluid_class, tread_error
 
-from .corpus_cases import Contrast, Stand, contrasts
+from .corpus_cases import Contrast, Stand, contrasts, whole_shoe_stands
 
 TREAD = {"groove direction", "depth", "tread area", "edge radius", "wear"}
 """What an effect of the tread alone is about."""
@@ -36,19 +36,42 @@ def tread_contrasts() -> list[Contrast]:
 def computed_pairs() -> Iterator[TreadPair]:
     """Yield each published pair with its computed ln ratio, on the quick grid.
 
-    Its spread is without the error of the tread model itself: of contact law, film and suction.
+    Then each reading of a treaded shoe beside the COF computed of it, as the ratio to a sole
+    without tread that is known: the second place is 0. The extremes of many treads count as a pair
+    alone, means over several fluids do not count. Its spread is without the error of the tread
+    model itself: of contact law, film and suction.
     """
     for one in tread_contrasts():
         over, under = (_drawn(stand) for stand in (one.over, one.under))
-        ratio = np.log(over[0] / under[0])
-        low, high = _published(one, under[0])
-        first, second = (_place(stand.cases[0]) for stand in (one.over, one.under))
-        fluid = fluid_class(resolved(one.over.cases[0]).viscosity_value)
-        # by quantiles: draws that the law bounds hold less of the error than is taken off here
-        ends = np.quantile(np.log(over[1:] / under[1:]), norm.cdf([-1, 1]))
-        numbers = (low, high, float(ratio), float(np.ptp(ends) / 2))
-        words = (one.source, one.effect, fluid)
-        yield TreadPair(*words, *numbers, first, second, one.extremes_of)
+        ends = _published(one, under[0])
+        second = _place(one.under.cases[0])
+        words = (one.source, one.effect)
+        yield _pair(words, one.over.cases[0], ends, over / under, second, one.extremes_of)
+    paired = {one.source for one in tread_contrasts()}
+    for source in corpus():
+        shoes = whole_shoe_stands(source) if source.verified and source.name not in paired else []
+        for condition, stand in shoes:
+            if not condition.members and not stand.reason:
+                words, reading = (source.name, condition.id), condition.reading
+                with np.errstate(divide="ignore"):
+                    ends = tuple(np.log((reading.low, reading.high)))
+                yield _pair(words, stand.cases[0], ends, _drawn(stand), np.zeros(6))
+
+
+def _pair(
+    words: tuple[str, str],
+    case: Case,
+    ends: tuple[float, float],
+    drawn: Array,
+    second: Array,
+    extremes_of: int = 2,
+) -> TreadPair:
+    """Return a pair from the case of its first tread and the ratio computed and drawn."""
+    fluid = fluid_class(resolved(case).viscosity_value)
+    # by quantiles: draws that the law bounds hold less of the error than was taken off
+    spread = np.ptp(np.quantile(np.log(drawn[1:]), norm.cdf([-1, 1]))) / 2
+    numbers = (*map(float, ends), float(np.log(drawn[0])), float(spread))
+    return TreadPair(*words, fluid, *numbers, _place(case), second, extremes_of)
 
 
 def _drawn(stand: Stand) -> Array:
