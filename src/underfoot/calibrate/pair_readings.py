@@ -2,8 +2,9 @@
 
 The draws of the law of the pair are weighted by how well each predicts the readings, each computed
 as the whole case that describes it (contact and film as solved), and drawn anew by weight. The
-error of the laboratory and that of each pair become known as far as the readings go; other pairs
-of the same laboratory profit too.
+errors of the laboratory, of each pair, and of the film and the tread of each sole become known as
+far as the readings go; other pairs of the same laboratory profit too, other treads as far as they
+are alike. A reading has an error of its own, as fitted between the sources, which teaches nothing.
 """
 
 import tomllib
@@ -16,9 +17,11 @@ import numpy as np
 from scipy.stats import norm
 
 from underfoot.case import Case
-from underfoot.compute.numbers import FILM_ERROR, sole_name
+from underfoot.compute.contact_friction import contact_friction, place_of_tread, sole_errors
+from underfoot.compute.prepare import prepared
 from underfoot.compute.resolve import resolved
-from underfoot.compute.run import run
+from underfoot.compute.sole import sole_map
+from underfoot.compute.solve import averaged, solved
 from underfoot.core import (
     ConvergenceError,
     DataError,
@@ -31,7 +34,7 @@ from underfoot.core import (
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import Presentable, Table
 from underfoot.core.progress import part
-from underfoot.friction import PairContactLaw, PairDraws, packaged_pair_draws, sampled_cof
+from underfoot.friction import PairContactLaw, PairDraws, packaged_pair_draws
 from underfoot.friction.pair_contact import DRY_PART, LABORATORY
 
 REPEATS = 20
@@ -55,12 +58,16 @@ class PairReading:
     sd: float | None = None
     kind: str = "value"
 
-    def log_weight(self, cof: Array) -> Array:
-        """Return the logarithm of the likelihood of the reading at predicted COF (draws,)."""
-        deviation = READING if self.sd is None else self.sd / self.cof
+    def log_weight(self, cof: Array, error: Array) -> Array:
+        """Return the logarithm of the likelihood of the reading at predicted COF (draws,).
+
+        ``error`` (draws,) is the standard deviation of ln COF by which readings miss beyond their
+        repeats, as fitted between the sources.
+        """
+        deviation = np.hypot(READING if self.sd is None else self.sd / self.cof, error)
         rest = (np.log(np.maximum(cof, 1e-6)) - np.log(self.cof)) / deviation
         if self.kind == "value":
-            return norm.logpdf(rest)
+            return norm.logpdf(rest) - np.log(deviation)
         return norm.logcdf(rest if self.kind == "lower" else -rest)
 
 
@@ -68,8 +75,9 @@ class PairReading:
 class PairCalibration(Presentable):
     """Draws of the law calibrated to readings, and what each reading's case was and is.
 
-    ``before`` and ``after`` are (readings, 3): COF at 2.5, 50 and 97.5 %. ``effective`` is the
-    number of equal draws that the weighted ones are worth.
+    ``before`` and ``after`` are (readings, 3): COF at 2.5, 50 and 97.5 %. ``errors`` names each
+    error of ln COF with its standard deviation before and after. ``effective`` is the number of
+    equal draws that the weighted ones are worth.
     """
 
     kind: ClassVar[str] = "pair_calibration"
@@ -78,6 +86,7 @@ class PairCalibration(Presentable):
     draws: PairDraws
     before: Array
     after: Array
+    errors: tuple[tuple[str, float, float], ...]
     effective: float
 
     def heading(self) -> str:
@@ -91,7 +100,22 @@ class PairCalibration(Presentable):
         return (
             f"Law of the pair calibrated to {names}: the 95 % interval of the first went from a "
             f"factor of {before:.2g} to one of {after:.2g} either way.",
+            "It was taken from "
+            + ", ".join(f"{name} ({then:.2f} to {now:.2f})" for name, then, now in self._taken())
+            + " (standard deviations of ln COF). Another tread keeps its own error.",
         )
+
+    def _taken(self) -> list[tuple[str, float, float]]:
+        """Return the errors that the readings made smaller, the most first."""
+        smaller = [each for each in self.errors if each[2] < 0.95 * each[1]]
+        most = max(self.errors, key=lambda each: each[1] ** 2 - each[2] ** 2)
+        return sorted(smaller or [most], key=lambda each: each[2] ** 2 - each[1] ** 2)
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the readings, and which errors they made smaller."""
+        rows = [(name, f"{then:.2f}", f"{now:.2f}") for name, then, now in self.errors]
+        heads = ("Error of", "sd of ln COF before", "after")
+        return self.table(), Table("Where the interval comes from", heads, rows)
 
     def table(self) -> Table:
         """Return each reading beside the prediction before and after."""
@@ -192,20 +216,29 @@ def calibrated_pair(
                 allowed='"pair"',
             )
         laws.append(law)
-    errors = {
-        LABORATORY: wide.error(LABORATORY, wide.sd_laboratory, seed),
-        DRY_PART: wide.error(DRY_PART, wide.sd_dry_part, seed),
-    }
-    for law in laws:
-        name = law.pair.compound_and_floor
+    words = {LABORATORY: "the laboratory", DRY_PART: "its dry-like part"}
+    errors = {**wide.errors}
+    errors[LABORATORY] = wide.error(LABORATORY, wide.sd_laboratory, seed)
+    errors[DRY_PART] = wide.error(DRY_PART, wide.sd_dry_part, seed)
+    grid = "numerics.quick_grid_spacing" if quick else "numerics.grid_spacing"
+    for reading, law in zip(readings, laws, strict=True):
+        case, name = reading.case, law.pair.compound_and_floor
+        words[name] = f"the pair of {case.name}"
         errors[name] = wide.error(name, wide.sd_pair, seed)
+        place = place_of_tread(case, sole_map(case, case.value(grid)))
+        for subject, error in sole_errors(case, resolved(case)).items():
+            name = error.name(place)
+            words[name] = f"the {subject.removesuffix('_error')} of {case.name}"
+            errors[name] = error.draws(place, samples=wide.count, seed=seed, known=errors)
     wide = replace(wide, errors=errors)
     predicted = np.empty((len(readings), wide.count))
     for row, (reading, law) in enumerate(zip(readings, laws, strict=True)):
         here = part(progress, row / len(readings), (row + 1) / len(readings))
-        predicted[row] = _whole_cof(reading.case, law, wide, quick, seed, here)
+        drawn = PairContactLaw(law.pair, law.viscosity, wide)
+        predicted[row] = _whole_cof(reading.case, drawn, quick, here)
     log_weight = sum(
-        reading.log_weight(row) for reading, row in zip(readings, predicted, strict=True)
+        reading.log_weight(row, wide.sd_reading)
+        for reading, row in zip(readings, predicted, strict=True)
     )
     weight = np.exp(log_weight - np.max(log_weight))
     weight /= weight.sum()
@@ -226,39 +259,39 @@ def calibrated_pair(
     names = "; ".join(f"{reading.case.name}: {reading.cof:g}" for reading in readings)
     source = f"{start.source}; calibrated to readings of one laboratory ({names})"
     levels = (0.025, 0.5, 0.975)
+    kept = replace(wide.rows(rows), source=source)
+    spreads = {
+        name: (float(np.std(errors[name])), float(np.std(kept.errors[name]))) for name in words
+    }
     return PairCalibration(
         tuple(readings),
-        replace(wide.rows(rows), source=source),
+        kept,
         np.quantile(predicted, levels, axis=1).T,
         np.quantile(predicted[:, rows], levels, axis=1).T,
+        tuple((words[name], *each) for name, each in spreads.items() if each[0] > 0),
         effective,
     )
 
 
-def _whole_cof(
-    case: Case, law: PairContactLaw, draws: PairDraws, quick: bool, seed: int, progress: Progress
-) -> Array:
-    """Return COF (draws,) of the whole sole at each draw, contact and film solved once."""
-    result = run(case, quick=quick, progress=progress)
-    if not result.usable:
+def _whole_cof(case: Case, law: PairContactLaw, quick: bool, progress: Progress) -> Array:
+    """Return COF (draws,) of the whole sole at each draw of the law, contact and film solved once.
+
+    Over the positions of its tread, as ``run`` has it.
+    """
+    spacing = case.numerics.quick_grid_spacing if quick else case.numerics.grid_spacing
+    parts = prepared(case, spacing, {"friction": law})
+    solution = solved(parts, part(progress, 0.0, 0.5))
+    contact = solution.contact
+    if not contact.status.usable:
         raise ConvergenceError(
-            f"the case {case.name} gave no result: {result.status}", history=(), where=case.name
+            f"the case {case.name} gave no result: {contact.status}", history=(), where=case.name
         )
-    fields = result.data
-    sampled = sampled_cof(
-        PairContactLaw(law.pair, law.viscosity, draws),
-        fields["contact_pressure"].values,
-        fields["fluid_pressure"].values,
-        fields["film_thickness"].values,
-        wet=fields["wet"].values,
-        area=fields["cell_area"].values,
-        film_area=fields["cell_film_area"].values,
-        speed=case.motion.speed,
-        film_error=FILM_ERROR,
-        sole=sole_name(case),
-        samples=draws.count,
-        seed=seed,
-    )
+    samples = {"samples": law.draws.count}
+    found = contact_friction(case, parts.context, parts.local_law, parts.sole, contact, **samples)
+    sums, sampled = found.sums, found.sampled
+    positions = averaged(parts, solution, quick=quick, progress=part(progress, 0.5, 1.0))
+    if positions is not None:
+        sums, sampled = positions.friction(sums, sampled)
     if sampled is None:
         raise DataError("the law of the pair has no spread", where=case.name)
     return sampled.cof

@@ -12,6 +12,7 @@ from underfoot.friction import (
     FrictionCoefficients,
     FrictionLaw,
     FrictionParts,
+    PairContactLaw,
     SampledCof,
     cof,
     sampled_cof,
@@ -112,6 +113,16 @@ def sole_errors(case: Case, context: Context) -> dict[str, SharedError]:
     """
     film = SharedError(f"film load, {numbers.heel_name(case)}", numbers.FILM_ERROR)
     return {"film_error": film, "tread_error": tread_error(context.viscosity_value)}
+
+
+def with_known_tread(law: FrictionLaw, case: Case, context: Context, sole: SoleMap) -> FrictionLaw:
+    """Return the law with the median of the tread's error, where readings determined some."""
+    if not isinstance(law, PairContactLaw) or not law.draws.errors:
+        return law
+    error, place = sole_errors(case, context)["tread_error"], place_of_tread(case, sole)
+    drawn = {"samples": law.draws.count, "seed": case.numerics.seed, "known": law.draws.errors}
+    factor = float(np.exp(np.median(error.draws(place, **drawn))))
+    return replace(law, medians={**law.medians, "pair": factor * law.medians["pair"]})
 
 
 def _on_squares(parts: FrictionParts, at: CellState, contact: SoleContact) -> FrictionParts:

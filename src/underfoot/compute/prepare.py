@@ -21,6 +21,7 @@ from underfoot.slip.model import SlipModel
 from underfoot.sole_contact.compliance import Compliance
 from underfoot.sole_contact.lug_edges import EdgedLaw, lug_edges
 
+from .contact_friction import with_known_tread
 from .resolve import resolved, turned
 from .sole import sole_map
 
@@ -93,9 +94,10 @@ def prepared(
 
     film = objects["film"] if "film" in objects else case.film.build(context)
     law = chosen("friction", lambda: case.friction.build(context))
+    sole = geometry[0] if geometry else sole_map(case, spacing, progress)
+    law = with_known_tread(law, case, context, sole)
     if film is not None and not isinstance(film, NewtonianFilm):
         law = FilmShearLaw(law, with_members("film", film, "film.model"))
-    sole = geometry[0] if geometry else sole_map(case, spacing, progress)
     asperities = chosen("rough_contact", lambda: case.rough_contact.build(context))
 
     def compliance() -> Compliance:

@@ -67,6 +67,7 @@ HIGHEST_WET, HIGHEST_DRY = 1.39, 3.0
 steel, the highest read under a fluid (Yamaguchi, Katsurashima, Shibata and Hokkirigawa, design of
 tread blocks; sliding they read 1.18); of clean soft rubber dry (assumed)."""
 UNITS = {"kappa": "Pa*m", "full_contact": "Pa"}
+SPREADS = ("sd_laboratory", "sd_dry_part", "sd_pair", "sd_reading")
 LABORATORY, DRY_PART = "laboratory", "dry part of the laboratory"
 
 
@@ -121,15 +122,16 @@ def contact_terms(
 class PairDraws:
     """Joint draws of the constants and of the errors of ln COF, each (draws,).
 
-    ``sd_laboratory``, ``sd_dry_part``, ``sd_pair`` are the standard deviations of the errors of a
-    laboratory, of its dry-like part and of a pair. ``errors`` holds those that readings of one
-    laboratory determined, by name; the others are drawn.
+    ``sd_laboratory``, ``sd_dry_part``, ``sd_pair``, ``sd_reading`` are the standard deviations of
+    the errors of a laboratory, of its dry-like part, of a pair and of a reading. ``errors`` holds
+    those that readings of one laboratory determined, by name; the others are drawn.
     """
 
     constants: PairConstants
     sd_laboratory: Array
     sd_dry_part: Array
     sd_pair: Array
+    sd_reading: Array
     errors: Mapping[str, Array] = field(default_factory=dict)
     source: str = SOURCE
 
@@ -157,10 +159,9 @@ class PairDraws:
     def columns(self) -> dict[str, Array]:
         """Return every array by name, as a file of draws has them."""
         names = PairConstants.__dataclass_fields__
-        spreads = ("sd_laboratory", "sd_dry_part", "sd_pair")
         return {
             **{name: getattr(self.constants, name) for name in names},
-            **{name: getattr(self, name) for name in spreads},
+            **{name: getattr(self, name) for name in SPREADS},
             **self.errors,
         }
 
@@ -177,7 +178,7 @@ class PairDraws:
 def _from_columns(columns: Mapping[str, Array], source: str) -> PairDraws:
     rest = dict(columns)
     constants = PairConstants(*(rest.pop(name) for name in PairConstants.__dataclass_fields__))
-    spreads = [rest.pop(name) for name in ("sd_laboratory", "sd_dry_part", "sd_pair")]
+    spreads = [rest.pop(name) for name in SPREADS]
     return PairDraws(constants, *spreads, errors=rest, source=source)
 
 

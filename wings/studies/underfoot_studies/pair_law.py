@@ -213,7 +213,7 @@ class PairPosterior:
         generator = np.random.default_rng(seed)
         rows = generator.choice(self.theta.shape[0], count, replace=False)
         columns, spreads = self.theta[rows].T, self.spreads[rows].T
-        return PairDraws(_constants(columns), spreads[0], spreads[3], spreads[1])
+        return PairDraws(_constants(columns), *spreads[[0, 3, 1, 2]])
 
     def expected(self, conditions: Sequence[Condition]) -> Array:
         """Return the mean of ln COF (rows,) without errors: equal for equal conditions."""
