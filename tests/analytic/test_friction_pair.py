@@ -9,9 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import erf
 
-from underfoot.calibrate.pair_readings import PairReading
+from underfoot.calibrate.pair_readings import PairReading, calibrated_pair
 from underfoot.case import Case
+from underfoot.compute.contact_friction import place_of_tread, sole_errors
 from underfoot.compute.resolve import resolved
+from underfoot.compute.sole import sole_map
 from underfoot.core import DataError, InputError
 from underfoot.friction import (
     Pair,
@@ -118,16 +120,17 @@ def test_a_reading_narrows_as_the_normal_theory_says():
     generator = np.random.default_rng(0)
     error = sd * generator.standard_normal(count)
     cof = 0.2 * np.exp(error)
-    weight = np.exp(PairReading(None, 0.3, reading * 0.3).log_weight(cof))
+    half = np.full(count, reading / 2**0.5)  # repeats, and the fitted error of a reading
+    weight = np.exp(PairReading(None, 0.3, reading / 2**0.5 * 0.3).log_weight(cof, half))
     weight /= weight.sum()
     gain = sd**2 / (sd**2 + reading**2)
     mean = float(weight @ error)
     assert mean == pytest.approx(gain * math.log(1.5), rel=0.05)
     spread = math.sqrt(float(weight @ (error - mean) ** 2))
     assert spread == pytest.approx(math.sqrt(1 - gain) * sd, rel=0.05)
-    above = PairReading(None, 0.3, 0.001, "lower").log_weight(np.array([0.2, 0.4]))
+    above = PairReading(None, 0.3, 0.001, "lower").log_weight(np.array([0.2, 0.4]), np.zeros(2))
     assert above[0] < -1e3 < above[1]
-    below = PairReading(None, 0.3, 0.001, "upper").log_weight(np.array([0.2, 0.4]))
+    below = PairReading(None, 0.3, 0.001, "upper").log_weight(np.array([0.2, 0.4]), np.zeros(2))
     assert below[1] < -1e3 < below[0]
 
 
@@ -271,3 +274,36 @@ def test_packaged_draws_are_those_of_the_packaged_corpus():
     assert np.median(again.sd_laboratory) == pytest.approx(
         np.median(packaged.sd_laboratory), rel=0.2
     )
+
+
+def test_a_reading_of_one_tread_leaves_another_its_own_error():
+    """Read far above the prediction: part is the laboratory's, part the tread's, part a reading's.
+
+    Another tread of the same laboratory keeps its own error: at least 0.25 in ln COF more.
+    """
+    shoe = {"from": "work_shoe_full_tread", "roughness": {"rq": "3 um"}}
+    case = Case(
+        shoe=shoe,
+        floor="vinyl_g4",
+        contaminant="water",
+        motion="slip_tester_g4",
+        numerics={"tread_positions": 1},
+    )
+    found = calibrated_pair([PairReading(case, 0.4)])
+    names = {name: (then, now) for name, then, now in found.errors}
+    for part in ("the laboratory", f"the tread of {case.name}"):
+        assert names[part][1] < 0.95 * names[part][0]
+    assert f"the tread of {case.name}" in found.headline()[1]
+    law = PairContactLaw(TILE, 1e-3, found.draws)
+    other = case.replace({"shoe.tread.pattern": "longitudinal", "shoe.tread.depth": "5 mm"})
+    spreads = []
+    for one in (case, other):
+        place = place_of_tread(one, sole_map(one, 1e-3))
+        error = sole_errors(one, resolved(one))["tread_error"]
+        drawn = error.draws(place, samples=1000, seed=0, known=law.known_errors(1000))
+        laboratory = found.draws.errors["laboratory"]
+        spreads.append(np.std(laboratory + drawn))
+    assert spreads[1] > np.hypot(spreads[0], 0.25)
+    after = found.after[0]
+    assert after[0] < 0.4 < after[2]
+    assert np.log(after[2] / after[0]) / 3.92 > 0.08  # not below the error of a reading

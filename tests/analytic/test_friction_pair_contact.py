@@ -130,7 +130,7 @@ def test_sole_and_floor_make_one_roughness():
 COUNT = 4000
 DRAWS = PairDraws(
     PairConstants(*(np.full(COUNT, getattr(ONE, name).item()) for name in ONE.__slots__)),
-    np.full(COUNT, 0.3), np.full(COUNT, 0.5), np.full(COUNT, 0.1),
+    np.full(COUNT, 0.3), np.full(COUNT, 0.5), np.full(COUNT, 0.1), np.full(COUNT, 0.1),
 )  # fmt: skip
 KNOWN = Pair(60.0, (8e-6, 8e-6), (2e-6, 2e-6), "aqueous")
 

@@ -16,8 +16,8 @@ from underfoot.friction import (
     sampled_cof,
     self_affine_scale,
 )
-from underfoot.friction.propagation import named_shares, probability_higher
-from underfoot.friction.sampled_cof import VACUUM
+from underfoot.friction.propagation import named_shares, normal_draws, probability_higher
+from underfoot.friction.sampled_cof import HIGHEST, VACUUM
 
 SCALE = self_affine_scale(2.5e-6, rq=8.3e-6, longest_wave=0.8e-3)
 SPREAD = {"modulus_deviation": 0.5e6, "roughness_deviation": 0.1}
@@ -136,7 +136,8 @@ def test_the_error_of_the_film_load_spreads_the_odds_of_the_contact():
     """Odds F / (W - F) times exp(z), z normal: contact carries 1 / (c + (1 - c) exp z) of c."""
     contact, fluid, *_ = sole(5)
     carried = contact.sum() / (contact + fluid).sum()
-    plain, spread = drawn_cof(samples=500), drawn_cof(film_error=0.5, samples=500)
+    error = 0.5 * normal_draws(0, "film", 500)
+    plain, spread = drawn_cof(samples=500), drawn_cof(film_error=error, samples=500)
     solid = (spread.adhesion + spread.hysteresis) / (plain.adhesion + plain.hysteresis).mean()
     z = np.log((1 / solid - carried) / (1 - carried))
     assert z.std() == pytest.approx(0.5, rel=0.03)
@@ -144,10 +145,14 @@ def test_the_error_of_the_film_load_spreads_the_odds_of_the_contact():
     assert spread.adhesion + spread.hysteresis + spread.viscous == pytest.approx(spread.cof)
 
 
-def test_one_sole_has_one_error_of_its_film_load():
-    first, again, other = (drawn_cof(film_error=0.5, sole=s).cof for s in ("a", "a", "b"))
-    assert np.array_equal(first, again)
-    assert abs(np.corrcoef(first, other)[0, 1]) < 0.2
+def test_the_error_of_the_tread_is_a_factor_up_to_the_highest_cof():
+    error = 0.5 * normal_draws(0, "tread", 500)
+    plain, spread = drawn_cof(samples=500), drawn_cof(tread_error=error, samples=500)
+    assert spread.cof == pytest.approx(plain.cof * np.exp(error), rel=1e-6)
+    assert spread.viscous == pytest.approx(plain.viscous * np.exp(error), rel=1e-6)
+    assert spread.share["tread"] > 0.99
+    far = drawn_cof(tread_error=error + 6.0, samples=500)
+    assert far.cof == pytest.approx(HIGHEST, rel=1e-6)
 
 
 def test_suction_that_is_known_changes_no_draw_and_a_wide_one_stays_below_a_vacuum():

@@ -36,13 +36,12 @@ from underfoot.core.presentation import Presentable, Table
 from underfoot.core.progress import part
 from underfoot.friction import PairContactLaw, PairDraws, packaged_pair_draws
 from underfoot.friction.pair_contact import DRY_PART, LABORATORY
+from underfoot.friction.tread_error import READING
 
 REPEATS = 20
 """Draws of the errors for each draw of the constants."""
 COUNT = 1000
 """Draws that are kept."""
-READING = 0.10
-"""Standard deviation of ln COF of one reading where none is given: repeats of one tester."""
 FEWEST = 50
 """Effective draws below which the readings are too far from the law to be weighed."""
 KINDS = ("value", "lower", "upper")

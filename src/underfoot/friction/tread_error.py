@@ -30,7 +30,7 @@ PRIOR = {"thin": 0.5, "thick": 0.5, "dry": 0.15}
 """Scale of the half-normal prior of s, by class of fluid (assumed): the ratio of two unlike treads
 may be off by a factor of two under a film, of 1.2 without one."""
 READING = 0.10
-"""Standard deviation of ln COF of a published reading whose spread is not printed."""
+"""Standard deviation of ln COF of one reading where none is given: repeats of one tester."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ def fluid_class(viscosity: float | None) -> str:
     return "thin" if viscosity < THIN else "thick"
 
 
-def likeness(first: Array, second: Array) -> Array:
+def likeness(first: Array, second: Array | float) -> Array:
     """Return the correlation k of fields at places (..., 6)."""
     return np.mean(np.cos((np.asarray(first) - second) @ _waves().T), axis=-1)
 
@@ -134,12 +134,17 @@ def tread_pairs() -> tuple[TreadPair, ...]:
     """Return the published pairs of treads and what is computed of them."""
     path = resources.files("underfoot") / "data" / "friction" / "tread_pairs.csv"
     rows = csv.DictReader(path.read_text(encoding="utf-8").splitlines())
-    words = ("source", "effect", "fluid")
     return tuple(
         TreadPair(
-            *(row[name] for name in words),
-            *(float(row[name]) for name in ("low", "high", "computed", "sd")),
-            *(np.array(row[name].split(), dtype=float) for name in ("first", "second")),
+            row["source"],
+            row["effect"],
+            row["fluid"],
+            float(row["low"]),
+            float(row["high"]),
+            float(row["computed"]),
+            float(row["sd"]),
+            np.array(row["first"].split(), dtype=float),
+            np.array(row["second"].split(), dtype=float),
             int(row["extremes_of"]),
         )
         for row in rows
@@ -173,7 +178,7 @@ def range_density(width: Array, count: int) -> Array:
 
     n (n - 1) integral of phi(x) phi(x + w) (Phi(x + w) - Phi(x))^(n - 2) over x.
     """
-    x = np.linspace(-8, 8, 801)
+    x = np.linspace(-8, 8, 161)
     above = x + np.asarray(width)[:, None]
     inner = norm.pdf(x) * norm.pdf(above) * (norm.cdf(above) - norm.cdf(x)) ** (count - 2)
     return count * (count - 1) * np.maximum(np.trapezoid(inner, x, axis=1), 1e-300)

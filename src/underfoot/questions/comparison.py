@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -18,6 +18,7 @@ from underfoot.core import InputError, Progress, SourcedValue, nearest_match, si
 from underfoot.core.presentation import Presentable, Table, percent, value_text
 from underfoot.core.progress import part
 from underfoot.friction.propagation import probability_higher
+from underfoot.friction.tread_error import READING
 
 if TYPE_CHECKING:
     from underfoot.core.catalogue import Catalogue
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
 LETTERS = "ABCDEFGHIJKL"
 DECIDED = 0.75
 """Least probability at which an order is stated."""
+REPEATS = math.sqrt(2) * READING
+"""Standard deviation of ln of the ratio of two readings of one tester."""
+COMPARED = {"shoe": "soles", "floor": "floors", "contaminant": "fluids", "motion": "motions"}
 Z95 = 1.96
 _FILE, _CHECKSUM = "shoe.outsole.file", "shoe.outsole.sha256"
 LONGEST_CELL = 34
@@ -97,11 +101,29 @@ class Comparison(Presentable):
         sure = f"probability {_chance(chance, 'not estimated')}"
         if lead == 0.0 or (chance is not None and chance < DECIDED):
             order = f"The order of {better} and {other} is not decided: COF higher by {lead:.3f}"
+            return (f"{order} ({sure}).", self._telling(first.letter, second.letter))
         else:
             order = f"{better} has the higher COF than {other}, by {lead:.3f}"
             if len(self.results) > 2:
                 order = f"{better} has the highest COF, {lead:.3f} above {other}"
         return (f"{order} ({sure}).", self._different())
+
+    def _telling(self, *letters: str) -> str:
+        """Return the measurement that would tell the order of two, or that none can."""
+        at = [LETTERS.index(letter) for letter in letters]
+        known = (self.results[k].data.get("cof_draws") for k in at)
+        draws = [np.log(each.values) for each in known if each is not None]
+        spread = float(np.std(draws[0] - draws[1])) if len(draws) == 2 else math.inf
+        if spread < REPEATS:
+            return (
+                f"No reading would tell: they lie within {spread:.0%}, and readings of one tester "
+                f"repeat within {READING:.0%}. Take them as equal."
+            )
+        apart = {
+            row[0].split(".")[0] for row in self.differences if row[1 + at[0]] != row[1 + at[1]]
+        }
+        both = next((words for part, words in COMPARED.items() if part in apart), "cases")
+        return f"One measurement would tell: COF of both {both} on one tester, all else alike."
 
     def cautions(self) -> tuple[str, ...]:
         return self.reasons
@@ -201,9 +223,10 @@ def compare(
         progress: Receives stage, fraction and residual.
 
     The probability that one COF is higher than another is the share of the joint draws in which it
-    is: what two cases have in common (laboratory, compound, floor, law, the model's error of the
-    film) is drawn once for both and cancels. Results without draws, or of different laws or seeds,
-    count as independent: Phi(d / s), d their difference and s = sqrt(s1^2 + s2^2).
+    is: what two cases have in common (laboratory, compound, floor, law) is drawn once for both and
+    cancels; the errors of film and tread do as far as both treads are alike. Results without draws,
+    or of different laws or seeds, count as independent: Phi(d / s), d their difference and
+    s = sqrt(s1^2 + s2^2).
 
     Raises:
         InputError: Fewer than two or more than twelve items.
@@ -313,7 +336,8 @@ def _different_from_first(values: Sequence[SourcedValue | None]) -> tuple[str, .
     if first is None or first.value is None or first.uncertainty is None:
         return None
     differs = {
-        letter: abs(other.value - first.value) > Z95 * hypot(first.uncertainty, other.uncertainty)
+        letter: abs(other.value - first.value)
+        > Z95 * math.hypot(first.uncertainty, other.uncertainty)
         for letter, other in zip(LETTERS[1:], values[1:], strict=False)
         if other is not None and other.value is not None and other.uncertainty is not None
     }

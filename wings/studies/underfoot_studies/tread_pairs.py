@@ -45,23 +45,24 @@ def computed_pairs() -> Iterator[TreadPair]:
         over, under = (_drawn(stand) for stand in (one.over, one.under))
         ends = _published(one, under[0])
         second = _place(one.under.cases[0])
-        words = (one.source, one.effect)
-        yield _pair(words, one.over.cases[0], ends, over / under, second, one.extremes_of)
+        names, case = (one.source, one.effect), one.over.cases[0]
+        yield _pair(*names, case, ends, over / under, second, one.extremes_of)
     paired = {one.source for one in tread_contrasts()}
     for source in corpus():
         shoes = whole_shoe_stands(source) if source.verified and source.name not in paired else []
         for condition, stand in shoes:
             if not condition.members and not stand.reason:
-                words, reading = (source.name, condition.id), condition.reading
+                names, reading = (source.name, condition.id), condition.reading
                 with np.errstate(divide="ignore"):
                     ends = tuple(np.log((reading.low, reading.high)))
-                yield _pair(words, stand.cases[0], ends, _drawn(stand), np.zeros(6))
+                yield _pair(*names, stand.cases[0], ends, _drawn(stand), np.zeros(6))
 
 
 def _pair(
-    words: tuple[str, str],
+    source: str,
+    effect: str,
     case: Case,
-    ends: tuple[float, float],
+    ends: tuple[float, ...],
     drawn: Array,
     second: Array,
     extremes_of: int = 2,
@@ -70,8 +71,9 @@ def _pair(
     fluid = fluid_class(resolved(case).viscosity_value)
     # by quantiles: draws that the law bounds hold less of the error than was taken off
     spread = np.ptp(np.quantile(np.log(drawn[1:]), norm.cdf([-1, 1]))) / 2
-    numbers = (*map(float, ends), float(np.log(drawn[0])), float(spread))
-    return TreadPair(*words, fluid, *numbers, _place(case), second, extremes_of)
+    low, high, ratio = map(float, (*ends, np.log(drawn[0])))
+    first, sd = _place(case), float(spread)
+    return TreadPair(source, effect, fluid, low, high, ratio, sd, first, second, extremes_of)
 
 
 def _drawn(stand: Stand) -> Array:
