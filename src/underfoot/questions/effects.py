@@ -23,7 +23,7 @@ from underfoot.core import (
 from underfoot.core.arrays import Array
 from underfoot.core.fields import Fields
 from underfoot.core.progress import part
-from underfoot.friction.propagation import normal_draws
+from underfoot.friction.propagation import normal_draws, probability_higher
 
 from .changes import Change
 from .outcomes import outcomes
@@ -45,13 +45,15 @@ class ChangeEffect:
     """A change and what it leads to: ``cof``, ``fluid_load`` and ``slip_probability``.
 
     ``reason`` says why there are none. ``error`` is the computation's own on COF, estimated, where
-    the change was continued; its spread is that of the friction law.
+    the change was continued; its spread is that of the friction law. ``higher`` is the probability
+    that it raises COF, None where no spread is known.
     """
 
     change: Change
     scalars: Mapping[str, SourcedValue]
     reason: str = ""
     error: float | None = None
+    higher: float | None = None
 
     @property
     def computed(self) -> bool:
@@ -107,11 +109,16 @@ class _Friction:
             replace(self.fluid_load, value=max(load + more_load, 0.0)),
         )
 
-    def effect(self, change: Change, variant: Case, error: float | None = None) -> ChangeEffect:
-        """Return what a change leads to that has this friction."""
+    def effect(
+        self, change: Change, variant: Case, present: Result, error: float | None = None
+    ) -> ChangeEffect:
+        """Return what a change of the ``present`` result leads to that has this friction."""
         slip, _ = slip_probability(variant, self.cof, self.draws)
         scalars = {"cof": self.cof, "fluid_load": self.fluid_load, "slip_probability": slip}
-        return ChangeEffect(change, scalars, error=error)
+        before = _Friction.of(present.scalars, present.data)
+        known = [(one.cof.value or 0.0, one.cof.uncertainty, one.draws) for one in (self, before)]
+        higher = probability_higher(*known, shared=True)
+        return ChangeEffect(change, scalars, error=error, higher=higher)
 
 
 class _Spread(NamedTuple):
@@ -172,7 +179,9 @@ def change_effects(
             effects[number] = ChangeEffect(change, {}, str(error))
             continue
         if all(path.split(".")[0] == "risk" for path in change.values):
-            effects[number] = _Friction.of(present.scalars, present.data).effect(change, variant)
+            effects[number] = _Friction.of(present.scalars, present.data).effect(
+                change, variant, present
+            )
         else:
             variants[number] = variant
     if not variants:
@@ -194,7 +203,9 @@ def change_effects(
             if seen is not None:
                 there = _Friction.of_march(seen)
                 there = there.moved(start, mean).spread(left_out, there.film_left(start))
-                effects[number] = there.effect(changes[number], variant, seen.errors["cof"])
+                effects[number] = there.effect(
+                    changes[number], variant, present, seen.errors["cof"]
+                )
     alike = {number for number, each in variants.items() if quick and _same_plan(case, each)}
     one_position = _ONE_POSITION if lugs else {}
     runs = {
@@ -223,7 +234,7 @@ def change_effects(
         there = _Friction.of(outcome.scalars, outcome.maps)
         if start is not None:
             there = there.moved(start, mean if number in alike or not lugs else own)
-        effects[number] = there.effect(changes[number], each)
+        effects[number] = there.effect(changes[number], each, present)
     return tuple(effects[number] for number in range(len(changes)))
 
 

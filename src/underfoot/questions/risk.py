@@ -116,7 +116,9 @@ class RiskAssessment(Presentable):
         lines = [
             f"{each.change.action}: COF {before} to {each.number('cof'):.2f}, slip probability "
             f"{chance} to {probability_text(each.number('slip_probability'))}"
-            + (" (extrapolated)" if _note(each) else "")
+            + "".join(
+                f" ({text})" for text in (("extrapolated",) * bool(_note(each)) + _sure(each))
+            )
             for each in self.best[:most]
         ]
         return lines or ["No tested change reduces the slip probability."]
@@ -130,7 +132,7 @@ class RiskAssessment(Presentable):
                 rows.append(("-", each.change.action, "", "", f"not computed: {each.reason}"))
                 continue
             texts = [value_text(k, each.scalars[k]) for k in ("cof", "slip_probability")]
-            note = "extrapolated" if _note(each) else ""
+            note = "; ".join(("extrapolated",) * bool(_note(each)) + _sure(each))
             rows.append(("-" if rank is None else f"{rank}.", each.change.action, *texts, note))
         heads = ("", "Change", "COF", "Slip probability", "")
         return Table("Most effective changes (each simulated)", heads, rows)
@@ -180,6 +182,7 @@ class RiskAssessment(Presentable):
                         for name in ("cof", "slip_probability", "fluid_load")
                     },
                     "cof_error": each.error,
+                    "higher_cof": each.higher,
                     "reason": each.reason,
                 }
                 for each in self.changes
@@ -195,6 +198,7 @@ class RiskAssessment(Presentable):
             "slip_probability",
             "fluid_load",
             "cof_error",
+            "higher_cof",
             "reason",
         )
         rows = [tuple(change[name] for name in names) for change in self.to_dict()["changes"]]
@@ -282,6 +286,13 @@ def odds(probability: float) -> str:
 
 def _note(effect: ChangeEffect) -> str:
     return effect.scalars["slip_probability"].note
+
+
+def _sure(effect: ChangeEffect) -> tuple[str, ...]:
+    """Return in words how sure it is that a change raises COF; nothing where it changes none."""
+    if effect.higher is None or effect.change.lever == "walking":
+        return ()
+    return (f"higher COF with a probability of {percent(effect.higher)}",)
 
 
 def _needed(target: float, rcof: RcofPopulation, model: SlipModel) -> float | None:

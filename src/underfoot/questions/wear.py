@@ -38,6 +38,7 @@ BEYOND_TREAD = {"walk": 2.4, "archard": 1.6}
 through, the rest is not."""
 MAPS = {"contact_pressure": "contact pressure", "fluid_pressure": "fluid pressure"}
 """Fields that a series keeps of every state."""
+DRAWS = "cof_draws"
 PARTS = 6
 """Parts of a step in which the wear is measured, to say how worn the sole is at the limit."""
 HEEL_PART = 0.25
@@ -133,7 +134,7 @@ class WearSeries(Presentable):
         sentences = [self._crossing(name) for name in LOADS]
         if known.size > 1:
             first, last = cof[known[0]], cof[known[-1]]
-            sentences.append(f"COF {first:.3f} new and {last:.3f} at the last state.")
+            sentences.append(f"COF {first:.3f} new and {last:.3f} at the last state{self._sure()}.")
         if self.untreaded is not None and math.isfinite(self.untreaded.number("cof")):
             bare = self.untreaded.number("cof")
             sentences[-1] = f"{sentences[-1][:-1]}; {bare:.3f} if that sole had no tread at all."
@@ -144,6 +145,16 @@ class WearSeries(Presentable):
             volume = _size(float(self.measured("removed_volume")[-1]), "m^3")
             sentences.append(f"The last state has lost {volume}: {bound}{walks[-1]}.")
         return tuple(sentences)
+
+    def _sure(self) -> str:
+        """Return the probability that COF changes as computed; empty where it is not known."""
+        outcomes = [point.outcome for point in self.points if point.outcome.usable]
+        new, worn = (outcomes[k].maps.get(DRAWS) for k in (0, -1))
+        if new is None or worn is None:
+            return ""
+        falls = outcomes[-1].number("cof") < outcomes[0].number("cof")
+        chance = float(np.mean(worn < new if falls else worn > new))
+        return f" ({'lower' if falls else 'higher'} with a probability of {percent(chance)})"
 
     def walked(self) -> list[Walked]:
         """Return how far one walks to each state; empty without a walker."""
@@ -407,7 +418,7 @@ def wear_series(
     results = outcomes(
         [*plan, *bare],
         quick=quick,
-        maps=tuple(MAPS),
+        maps=(*MAPS, DRAWS),
         processes=processes,
         progress=part(progress, shaped, 1.0),
         stage="Simulating the worn soles",
