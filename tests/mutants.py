@@ -38,6 +38,7 @@ TESTS = {
         "properties/test_friction_sampled.py",
         "analytic/test_friction_pair_contact.py",
     ),
+    "treads": ("properties/test_friction_tread_error.py",),
     "lug edges": (
         "analytic/test_slip_lug_edges.py",
         "analytic/test_sole_contact_lug_edges.py",
@@ -63,7 +64,7 @@ SAMPLED, SPREAD = "friction/sampled_cof.py", "friction/propagation.py"
 PAIR, EDGES = "friction/pair_contact.py", "sole_contact/lug_edges.py"
 WORN, SLIDE, SLIPS = "shoe/worn/archard.py", "trials/slip_friction.py", "trials/slips.py"
 STRIKE, PATIR, WALKER = "film/pad_strike.py", "film/patir_cheng_1978.py", "slip/dynamics/walker.py"
-LAW = "wings/studies/underfoot_studies/pair_law.py"
+LAW, TREADS = "wings/studies/underfoot_studies/pair_law.py", "friction/tread_error.py"
 
 # what earlier tests let pass
 SURVIVORS = (
@@ -99,9 +100,12 @@ OTHERS = (
            "hyst"),
     Mutant("draws", SAMPLED, "min(max(values[SUCTION], 0.0), VACUUM)", "values[SUCTION]"),
     Mutant("draws", SAMPLED, "carried = solid_load / load", "carried = 1.0"),
-    Mutant("draws", SAMPLED, "film_error * ndtri(", "2 * film_error * ndtri("),
-    Mutant("draws", SAMPLED, "named_shares(seed, f\"{FILM} {sole}\"",
-           "named_shares(seed, f\"{FILM}\""),
+    Mutant("treads", TREADS, "return self.deviation * found", "return 0 * found"),
+    Mutant("treads", TREADS, "phase = every @ _waves().T", "phase = 1e3 * every @ _waves().T"),
+    Mutant("treads", TREADS, "if name.startswith(head)", "if not name.startswith(head)"),
+    Mutant("treads", TREADS, "s**2 * apart + pair.sd**2", "1e-4 * apart + pair.sd**2 + 0 * s"),
+    Mutant("treads", TREADS, "np.sqrt(np.average(s**2, weights=density))", "0.05"),
+    Mutant("treads", "shoe/tread_place.py", "TURN * share * (x - y)", "TURN * share * 0 * (x - y)"),
     Mutant("draws", SAMPLED, "exact / np.where(coarse > 0, coarse, 1.0)", "1.0 + 0 * exact"),
     Mutant("draws", SPREAD, "width * (normal - 0.5 * width)", "width * normal"),
     Mutant("draws", SPREAD, "spread > LOGNORMAL_ABOVE * value", "spread < LOGNORMAL_ABOVE * value"),
