@@ -155,6 +155,22 @@ def test_the_error_of_the_tread_is_a_factor_up_to_the_highest_cof():
     assert far.cof == pytest.approx(HIGHEST, rel=1e-6)
 
 
+def test_warmth_and_zero_move_the_film_s_part_alone():
+    warmth, zero = (0.2 * normal_draws(0, name, 500) for name in ("warmth", "zero"))
+    plain = drawn_cof(samples=500)
+    warm = drawn_cof(film_shear=warmth, samples=500)
+    assert warm.viscous == pytest.approx(plain.viscous * np.exp(warmth), rel=1e-6)
+    assert warm.adhesion == pytest.approx(plain.adhesion, rel=1e-9)
+    off = drawn_cof(zero=0.01 * zero, samples=500)
+    assert off.cof - plain.cof == pytest.approx(np.maximum(0.01 * zero, -plain.viscous), abs=1e-9)
+    contact, _, film, wet = sole(5)
+    dry = [
+        sampled_cof(EXACT, contact, 0 * contact, film, speed=0.3, wet=wet, film_shear=each).cof
+        for each in (None, warmth)
+    ]
+    assert np.array_equal(*dry)
+
+
 def test_suction_that_is_known_changes_no_draw_and_a_wide_one_stays_below_a_vacuum():
     plain = drawn_cof().cof
     known = drawn_cof(suction=(SourcedValue(5e4, "Pa", "", 1e-3), 0.3)).cof

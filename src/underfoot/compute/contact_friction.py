@@ -8,6 +8,7 @@ import numpy as np
 from underfoot.case import Case
 from underfoot.case.context import Context
 from underfoot.core.arrays import Array
+from underfoot.fluid.temperature import ROOM_DEVIATION, sliding_heat, viscosity_slope
 from underfoot.friction import (
     FrictionCoefficients,
     FrictionLaw,
@@ -17,6 +18,7 @@ from underfoot.friction import (
     cof,
     sampled_cof,
 )
+from underfoot.friction.propagation import named_shares, normal_draws
 from underfoot.friction.sampled_cof import SAMPLES
 from underfoot.friction.tread_error import SharedError, tread_error
 from underfoot.shoe import SoleMap
@@ -74,6 +76,10 @@ def contact_friction(
         for name, error in sole_errors(case, context).items()
     }
     pressures = at.contact_pressure, at.fluid_pressure
+    on_cells = {"spacing": sole.spacing, "wet": at.wet, **at.areas}
+    source = f"{plain.name} law: {plain.source}"
+    exact = cof(parts, *pressures, **on_cells, source=source).cof.value or 0.0
+    film_shear = film_warmth(case, context, exact, contact, samples=samples)
     sampled = sampled_cof(
         plain,
         *pressures,
@@ -84,21 +90,36 @@ def contact_friction(
         fluid_inputs={} if context.viscosity is None else {"viscosity": context.viscosity},
         film_error=errors["film_error"],
         tread_error=errors["tread_error"],
+        film_shear=film_shear,
+        zero=numbers.ZERO * normal_draws(seed, "zero of the cell", samples),
         contact_factor=1.0 if lugs is None else lugs.factor_map(),
         suction=suction,
         samples=samples,
         seed=seed,
     )
-    sums = cof(
-        parts,
-        *pressures,
-        spacing=sole.spacing,
-        wet=at.wet,
-        **at.areas,
-        sampled=sampled,
-        source=f"{plain.name} law: {plain.source}",
-    )
+    sums = cof(parts, *pressures, **on_cells, sampled=sampled, source=source)
     return ContactFriction(maps, lugs, sums, sampled)
+
+
+def film_warmth(
+    case: Case, context: Context, cof: float, contact: SoleContact, *, samples: int
+) -> Array | None:
+    """Return draws (samples,) of ln of a film's shear stress over that computed; None when dry.
+
+    -b (T + u dT): b how fast the fluid thins, T the laboratory beside 22.5 C, dT what all heat of
+    sliding at the ``cof`` warms the faces by, u a share of it between 0 and 1. The fluid's own
+    spread is drawn with its viscosity. One laboratory is that of all cases.
+    """
+    viscosity = context.viscosity_value
+    if viscosity is None or case.contaminant is None:
+        return None
+    loaded, seed = contact.total_pressure > 0, case.numerics.seed
+    pressure = case.motion.normal_force / (float(loaded.sum()) * contact.spacing**2)
+    length = float(loaded.sum() / max(loaded.any(axis=0).sum(), 1)) * contact.spacing
+    slope = viscosity_slope(viscosity, oil=case.contaminant.chemistry == "oil")
+    warm = ROOM_DEVIATION * normal_draws(seed, "temperature of the laboratory", samples)
+    heat = sliding_heat(cof, pressure, abs(case.motion.speed), length)
+    return -slope * (warm + heat * named_shares(seed, "share of the heat of sliding", samples))
 
 
 def place_of_tread(case: Case, sole: SoleMap) -> Array:

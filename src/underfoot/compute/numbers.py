@@ -44,12 +44,17 @@ _INPUTS = {
     "film load": "load on the film",
     "suction": "suction behind the edges of lugs",
     "tread": "the model of the tread",
+    "film shear": "warmth of the film",
+    "zero": "zero of the load cell",
 }
 FILM_ERROR = math.log(1.41)
 """Standard deviation of ln F / (W - F), F the load on the film: the model's error on the untreaded
 heels of the report's slip tester (docs/studies/calibration.md), assumed of every sole."""
 SUCTION_SPREAD = 29e3
 """Pa: standard deviation of a suction anywhere between 0 and 100 kPa."""
+ZERO = 0.005 / math.sqrt(3)
+"""Standard deviation of COF by the zero of a load cell: anywhere within what the checks of a log of
+a tester let pass (0.005, assumed)."""
 GRID_NAMES: tuple[str, ...] = (
     "cof",
     "fluid_load",

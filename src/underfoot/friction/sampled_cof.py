@@ -19,7 +19,8 @@ CLASSES = 64
 SAMPLES = 500
 MODEL = "model"
 FILM, SUCTION, TREAD = "film load", "suction", "tread"
-APART = (MODEL, FILM, SUCTION, TREAD)
+SHEAR, ZERO = "film shear", "zero"
+APART = (MODEL, FILM, SUCTION, TREAD, SHEAR, ZERO)
 """What is drawn beside the inputs of the law."""
 VACUUM = 1e5
 HIGHEST = 3.0
@@ -73,6 +74,8 @@ def sampled_cof(
     fluid_inputs: Mapping[str, SourcedValue] | None = None,
     film_error: Array | None = None,
     tread_error: Array | None = None,
+    film_shear: Array | None = None,
+    zero: Array | None = None,
     contact_factor: ArrayLike = 1.0,
     suction: tuple[SourcedValue, float] | None = None,
     confidence: float = 0.95,
@@ -96,6 +99,8 @@ def sampled_cof(
             exact.
         film_error: Draws (samples,) of the error of ln F / (W - F); None takes the load as exact.
         tread_error: Draws (samples,) of the error of ln COF by the tread; None counts none.
+        film_shear: Draws (samples,) of ln of the film's shear stress over that computed.
+        zero: Draws (samples,) of what a reading of COF under a film is off by.
         contact_factor: On the contact friction of the law, (nx, ny), 1.
         suction: Highest suction behind edges (Pa, drawn between 0 and that of a vacuum), and the
             share of the contact friction that its value makes.
@@ -108,8 +113,8 @@ def sampled_cof(
         return None
     joint = dict(_joint(law, samples, seed))
     highest = getattr(law, "highest", HIGHEST)
-    film_error = film_error if np.any(fluid_pressure) else None
-    for name, draws in ((FILM, film_error), (TREAD, tread_error)):
+    beside = {FILM: film_error, SHEAR: film_shear, ZERO: zero} if np.any(fluid_pressure) else {}
+    for name, draws in {**beside, TREAD: tread_error}.items():
         if draws is not None and draws.any():
             inputs[name] = SourcedValue(0.0, "1", "", float(np.std(draws)))
             joint[name] = draws
@@ -148,6 +153,7 @@ def sampled_cof(
         share = 1.0 / (carried + (1.0 - carried) * np.exp(values.get(FILM, 0.0)))
         solid, hysteresis = solid * share, hysteresis * share
         hysteresis = min(hysteresis, solid)
+        viscous = max(viscous * np.exp(values.get(SHEAR, 0.0)) + values.get(ZERO, 0.0), 0.0)
         whole = np.array([solid + viscous, solid - hysteresis, hysteresis, viscous])
         most = max(highest / max(whole[0], 1e-9), 1.0)
         return whole * min(np.exp(values.get(TREAD, 0.0)), most)
@@ -157,7 +163,7 @@ def sampled_cof(
     return SampledCof(
         *spread.draws.T,
         share=_shares(spread),
-        left_out=spread.left_out,
+        left_out=tuple(name for name in spread.left_out if SHEAR not in inputs),
         confidence=confidence,
         seed=seed,
     )
