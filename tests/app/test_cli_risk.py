@@ -71,12 +71,32 @@ def test_changes_fit_the_case() -> None:
     names = {change.name for change in possible_changes(treaded)}
     assert "wider_channels" in names
     assert not names & {"new_tread", "rinse", "dilute"}
-    oily = {change.name for change in possible_changes(worn.replace({"contaminant": "canola_oil"}))}
-    assert "rinse" not in oily  # water takes no oil off a floor
+    oily = {one.name: one for one in possible_changes(worn.replace("contaminant", "canola_oil"))}
+    assert "stays on the floor under the water" in oily["rinse"].reason
     assert "dilute" in oily
+    unknown = {
+        one.name: one
+        for one in possible_changes(worn.replace("contaminant", {"viscosity": "75 cP"}))
+    }
+    assert "contaminant.family" in unknown["rinse"].reason
+    known = {one.name: one for one in possible_changes(worn)}
+    assert not known["rinse"].reason
+    assert "computed: the floor clean and wet" in known["rinse"].action
     for case in (worn, treaded):
         for change in possible_changes(case):
             assert case.replace(change.values) != case
+
+
+@pytest.mark.parametrize("fluid", ["canola_oil", {"viscosity": "75 cP"}])
+def test_rinsing_what_does_not_mix_with_water_is_never_ranked(fluid) -> None:
+    case = Case.from_text(TEXT).replace("contaminant", fluid)
+    changes = [one for one in possible_changes(case) if one.lever == "cleaning"]
+    found = risk_assessment(case, changes=changes)
+    assert "rinse" not in [each.change.name for each in found.best]
+    (row,) = (row for row in found.table().rows if "rinse" in row[1])
+    assert row[0] == "-"
+    assert "water" in row[-1]
+    assert all(0 <= each.higher <= 1 for each in found.best)
 
 
 def test_changes_are_computed_and_ranked_by_the_chance_they_leave() -> None:

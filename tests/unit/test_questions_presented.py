@@ -8,6 +8,7 @@ import pytest
 
 from underfoot.compute import summary
 from underfoot.core import InputError, SourcedValue, Status
+from underfoot.core.presentation import value_text
 from underfoot.questions.changes import Change
 from underfoot.questions.effects import ChangeEffect
 from underfoot.questions.outcomes import Outcome
@@ -53,7 +54,7 @@ def test_the_limit_of_the_friction_is_film_blocked_adhesion_or_the_dry_pair():
     useless = summary.friction_limit(outcome(cof=0.03, fluid=30.0).scalars)
     assert useless.kind == "boundary"
     scalars = outcome().scalars | {"minimum_film_thickness": SourcedValue(None, "m")}
-    assert summary.friction_limit(scalars).kind == "dry"
+    assert summary.friction_limit(scalars).kind == "no fluid"
 
 
 def test_the_headline_has_the_number_first_and_marks_what_is_extrapolated():
@@ -91,6 +92,27 @@ def assessment(*effects, missing=0.1, present=None):
 def effect(name, cof, slip, **changes):
     scalars = outcome(cof, slip, **changes).scalars
     return ChangeEffect(Change(name, f"do {name}", "shoe", {}), scalars)
+
+
+def test_a_probability_that_is_not_known_is_never_one_number():
+    def spread(value, low, high):
+        return SourcedValue(value, uncertainty=(high - low) / 4, interval=(low, high))
+
+    wide, narrow = spread(0.45, 0.002, 0.93), spread(0.45, 0.35, 0.55)
+    assert value_text("slip_probability", wide) == "45 % (0.2 % to 93 %)"
+    assert value_text("slip_probability", narrow) == "45 % ± 5.0 %"
+    present = outcome()
+    found = assessment(
+        effect("open", 0.3, 0.1),
+        present=dataclasses.replace(present, scalars={**present.scalars, "slip_probability": wide}),
+    )
+    (change,) = found.change_sentences()
+    assert change.startswith("do open: COF 0.10 to 0.30, slip probability 45 % (0.2 % to 93 %)")
+    models = found.tables()[1].rows
+    assert [row[1] for row in models] == ["60 %", "50 %"]
+    rare = spread(0.1, 0.001, 0.8)
+    odd = dataclasses.replace(present, scalars={**present.scalars, "slip_probability": rare})
+    assert "steps" not in assessment(present=odd).headline()[0]
 
 
 def test_changes_are_ranked_by_the_probability_they_leave_then_by_friction():

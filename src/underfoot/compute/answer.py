@@ -115,7 +115,7 @@ def _provenance(
 def _film_closure(parts: Prepared) -> str:
     """Return the equation of the film."""
     if parts.case.contaminant is None:
-        return "none: dry floor"
+        return "none: no fluid"
     film, closure = parts.film, parts.case.film.closure
     return closure if film is None or isinstance(film, NewtonianFilm) else film.source
 

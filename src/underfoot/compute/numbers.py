@@ -99,7 +99,7 @@ def scalars(
         "contact_area": computed(contact_area(contact), "m^2", "apparent, on the grid"),
         "minimum_film_thickness": computed(thinnest, "m")
         if thinnest is not None
-        else SourcedValue(None, "m", reason="dry floor: no film"),
+        else SourcedValue(None, "m", reason="no fluid: no film"),
         "slip_probability": probability,
     }
     return numbers, risk

@@ -76,8 +76,8 @@ class FrictionLimit:
     """What keeps the friction low.
 
     ``cof_without_film`` is the COF if the film carried no load and the present friction of the
-    touching part acted everywhere: (COF - viscous part) / (1 - film share). On a dry floor
-    ``film_share`` is nan.
+    touching part acted everywhere: (COF - viscous part) / (1 - film share). Without a fluid in the
+    case (a dry floor, or a COF that was measured with one) ``film_share`` is nan.
     """
 
     film_share: float
@@ -85,15 +85,15 @@ class FrictionLimit:
     cof_without_film: float
 
     @property
-    def kind(self) -> Literal["film", "boundary", "dry"]:
-        """Return what limits the friction: load on the film, blocked adhesion or the dry pair."""
+    def kind(self) -> Literal["film", "boundary", "no fluid"]:
+        """Return what limits the friction: load on the film, blocked adhesion or the pair."""
         if math.isnan(self.film_share):
-            return "dry"
+            return "no fluid"
         drainage = self.cof_without_film > GAIN_MATTERS * self.cof
         return "film" if self.film_share > FILM_MATTERS and drainage else "boundary"
 
     def __str__(self) -> str:
-        if self.kind == "dry":
+        if self.kind == "no fluid":
             return "The case has no fluid: the friction of the pair, as given, is the limit."
         limit = "the limit is the adhesion that the fluid blocks where the surfaces touch."
         if self.kind == "film":

@@ -19,6 +19,8 @@ BACKEND = "underfoot.report"
 """Module that draws and writes pages. It lies above every room, so it is named, not imported."""
 PROBABILITIES = ("slip_probability",)
 """Dimensionless values that people read in percent."""
+WIDE = 0.5
+"""Width of the interval of a probability from which it is never printed without."""
 SKEWED = 0.25
 """Difference of an interval's two sides over its width above which the interval is printed in
 place of one standard deviation."""
@@ -174,7 +176,8 @@ def value_text(name: str, scalar: SourcedValue) -> str:
     if name not in PROBABILITIES and scalar.unit != "1":
         return quantity_text(scalar.value, scalar.unit, scalar.uncertainty)
     shown = _plain(name, scalar.value)
-    if scalar.interval is not None and _skewed(scalar.value, scalar.interval):
+    wide = name in PROBABILITIES and is_wide(scalar.interval)
+    if scalar.interval is not None and (wide or _skewed(scalar.value, scalar.interval)):
         interval = interval_text(name, scalar)
         return f"{shown} ({interval})" if interval else shown
     if scalar.uncertainty is None or (name in PROBABILITIES and scalar.uncertainty < 1e-3):
@@ -195,6 +198,11 @@ def interval_text(name: str, scalar: SourcedValue) -> str:
 
 def _plain(name: str, value: float) -> str:
     return probability_text(value) if name in PROBABILITIES else f"{value:.3f}"
+
+
+def is_wide(interval: tuple[float, float] | None) -> bool:
+    """Return whether a probability is so uncertain that one number would say what nobody knows."""
+    return interval is not None and interval[1] - interval[0] > WIDE
 
 
 def _skewed(value: float, interval: tuple[float, float]) -> bool:

@@ -25,12 +25,16 @@ THIN = 2e-3
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """One change of a case: what is done, who decides on it, and the new values."""
+    """One change of a case: what is done, who decides on it, and the new values.
+
+    ``reason`` says why it can't be computed, where it can't.
+    """
 
     name: str
     action: str
     lever: str
     values: Mapping[str, Any]
+    reason: str = ""
 
 
 def possible_changes(case: Case) -> list[Change]:
@@ -63,11 +67,16 @@ def _possible_changes(case: Case) -> Iterator[Change]:
         action = f"a floor of Rq {ROUGH_FLOOR_RQ * 1e6:.0f} µm (as a rough ceramic tile)"
         yield Change("rougher_floor", action, "floor", {"floor.roughness.rq": ROUGH_FLOOR_RQ})
     viscosity = case.value("contaminant.viscosity") or 0.0
-    if viscosity >= THIN and case.value("contaminant.family") != "oil":  # water spreads oil
-        action = "rinse the contaminant away with water"
-        yield Change("rinse", action, "cleaning", {"contaminant": "water"})
+    if viscosity >= THIN:
+        action, reason = "rinse with water (computed: the floor clean and wet)", ""
+        family = case.origins.get("contaminant.family")
+        if case.contaminant is not None and case.contaminant.chemistry == "oil":
+            reason = "water spreads oil; a film of it stays on the floor under the water"
+        elif family is not None and family.leaf.assumed:
+            reason = "contaminant.family is not given: whether it mixes with water is not known"
+        yield Change("rinse", action, "cleaning", {"contaminant": "water"}, reason)
     if viscosity >= 5 * THIN:
-        action = "clean with a detergent solution"
+        action = "clean with a detergent solution (computed: the floor wet with nothing else)"
         yield Change("dilute", action, "cleaning", {"contaminant": "detergent"})
     mean = case.risk.rcof_mean
     if mean >= 0.12:

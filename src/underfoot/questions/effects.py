@@ -173,6 +173,9 @@ def change_effects(
     effects: dict[int, ChangeEffect] = {}
     variants: dict[int, Case] = {}
     for number, change in enumerate(changes):
+        if change.reason:
+            effects[number] = ChangeEffect(change, {}, change.reason)
+            continue
         try:
             variant = case.replace(change.values)
         except UnderfootError as error:

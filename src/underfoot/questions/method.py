@@ -386,7 +386,7 @@ def has_whole_sole(case: Case) -> bool:
 
 def _present(case: Case, section: str) -> str:
     if getattr(case, section) is None:
-        return "none: dry"
+        return "none"
     return case.entries.get(section, "given in the case")
 
 

@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from underfoot.compute.run import run
 from underfoot.compute.summary import FrictionLimit, cautions, friction_limit
 from underfoot.core import InputError, Progress, SourcedValue, silent
-from underfoot.core.presentation import Presentable, Table, percent, probability_text, value_text
+from underfoot.core.presentation import (
+    Presentable,
+    Table,
+    is_wide,
+    percent,
+    probability_text,
+    value_text,
+)
 from underfoot.core.progress import part
 from underfoot.slip import RcofPopulation, ReportG6, slip_model, slip_risk
 from underfoot.slip.model import MODELS
@@ -86,7 +93,8 @@ class RiskAssessment(Presentable):
         slip = scalars["slip_probability"]
         extrapolated = ", extrapolated" if slip.note else ""
         probability = self.outcome.number("slip_probability")
-        often = f", {odds(probability)}," if probability < RARE else ""
+        rare = probability < RARE and not is_wide(slip.interval)
+        often = f", {odds(probability)}," if rare else ""
         sentences = [
             f"Slip probability {value_text('slip_probability', slip)}{extrapolated}{often} at an "
             f"available COF of {value_text('cof', scalars['cof'])}.",
@@ -112,10 +120,10 @@ class RiskAssessment(Presentable):
     def change_sentences(self, most: int = MOST_CHANGES) -> list[str]:
         """Return the most effective changes with the COF and probability they lead to."""
         before = f"{self.outcome.number('cof'):.2f}"
-        chance = probability_text(self.outcome.number("slip_probability"))
+        chance = _chance(self.outcome.scalars["slip_probability"])
         lines = [
             f"{each.change.action}: COF {before} to {each.number('cof'):.2f}, slip probability "
-            f"{chance} to {probability_text(each.number('slip_probability'))}"
+            f"{chance} to {_chance(each.scalars['slip_probability'])}"
             + "".join(
                 f" ({text})" for text in (("extrapolated",) * bool(_note(each)) + _sure(each))
             )
@@ -141,7 +149,9 @@ class RiskAssessment(Presentable):
         rows = []
         for one in self.models:
             needed = "not reachable" if one.needed_acof is None else f"{one.needed_acof:.3f}"
-            rows.append((one.name, probability_text(one.probability), needed))
+            ends = None if one.low is None or one.high is None else (one.low, one.high)
+            chance = _chance(SourcedValue(one.probability, interval=ends))
+            rows.append((one.name, chance, needed))
         heads = ("Model", "Slip probability", f"COF needed for {percent(self.target)}")
         models = Table("Slip probability of the same friction by every model", heads, rows)
         return (self.table(), models) if self.usable else ()
@@ -286,6 +296,13 @@ def odds(probability: float) -> str:
 
 def _note(effect: ChangeEffect) -> str:
     return effect.scalars["slip_probability"].note
+
+
+def _chance(slip: SourcedValue) -> str:
+    """Return a slip probability without its spread, but with an interval that is wide."""
+    if is_wide(slip.interval):
+        return value_text("slip_probability", slip)
+    return probability_text(math.nan if slip.value is None else slip.value)
 
 
 def _sure(effect: ChangeEffect) -> tuple[str, ...]:
