@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 from scipy.stats import norm
-
 from underfoot.calibrate.corpus import corpus
+
 from underfoot.case import Case
 from underfoot.compute.contact_friction import place_of_tread
 from underfoot.compute.resolve import resolved
