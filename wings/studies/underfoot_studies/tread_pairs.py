@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 from scipy.stats import norm
-from underfoot.calibrate.corpus import corpus
 
 from underfoot.case import Case
 from underfoot.compute.contact_friction import place_of_tread
@@ -22,6 +21,7 @@ from underfoot.core.arrays import Array
 from underfoot.friction.tread_error import TreadPair, fluid_class, tread_error
 
 from .corpus_cases import Contrast, Stand, contrasts, whole_shoe_stands
+from .sources import corpus
 
 TREAD = {"groove direction", "depth", "tread area", "edge radius", "wear"}
 """What an effect of the tread alone is about."""
