@@ -83,3 +83,21 @@ def test_a_skewed_interval_takes_the_place_of_one_deviation(result):
     assert value_text("cof", skewed) == "0.100 (0.080 to 0.300)"
     even = replace(skewed, interval=(0.0, 0.2))
     assert value_text("cof", even) == "0.100 ± 0.050"
+
+
+def test_overloaded_rubber_has_no_peak_of_the_film_pressure():
+    """It grows with the grid; the sensor's, a mean over its face, does not."""
+    crushed = {
+        "shoe.material.shore_a": 60,
+        "motion.normal_force": "1500 N",
+        "motion.shoe_angle": "20 deg",
+        "numerics.tread_positions": 1,
+    }
+    path = EXAMPLE.with_name("work_shoe_full_tread_glycerol.toml")
+    result = run(Case.load(path, settings=crushed), quick=True)
+    assert result.usable
+    assert "above the modulus" in " ".join(result.headline())
+    peak = result.scalars["peak_fluid_pressure"]
+    assert peak.value is None
+    assert "not resolved" in peak.reason
+    assert result.value("peak_fluid_pressure_sensor") > 0

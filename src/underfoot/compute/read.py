@@ -89,6 +89,9 @@ def readings(
         values = errors.added(values)
         errors = errors.words(values)
     labels["grid_error"] = errors
+    if overload:
+        reason = "not resolved: pressures above the modulus of the rubber, which gives way"
+        values["peak_fluid_pressure"] = SourcedValue(None, "Pa", reason=reason)
     return Reading(values, labels, sampled, overload, risk, drainage)
 
 
