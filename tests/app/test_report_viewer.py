@@ -5,7 +5,6 @@ import dataclasses
 import functools
 import itertools
 import re
-import zlib
 
 import matplotlib
 import numpy as np
@@ -29,6 +28,7 @@ from underfoot.report.viewer import (
 from underfoot.report.wear_page import wear_scene
 from underfoot.shoe import Heel, Tread, WearPlane, heel_surface
 from underfoot.shoe.worn import wear_measures
+from viewer_fields import unpacked
 
 
 @pytest.fixture(scope="module")
@@ -56,13 +56,6 @@ def centre(tab):
 def colourful(picture):
     """Share of the pixels that are no grey: data, not rubber, floor or paper."""
     return float(np.mean(np.ptp(picture, axis=2) > 0.12))
-
-
-def unpacked(stored, shape):
-    """The array of ``viewer.packed`` again, as the page reads it."""
-    planes = np.frombuffer(zlib.decompress(base64.b64decode(stored["data"])), np.uint8)
-    halves = np.ascontiguousarray(planes.reshape(2, -1).T).view("<f2").reshape(shape)
-    return halves.astype(float) * stored["scale"]
 
 
 def choose(tab, title):

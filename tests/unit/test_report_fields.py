@@ -15,7 +15,8 @@ from underfoot.report import figures
 from underfoot.report.common_grid import common_grid, difference, on_grid, sole_on_grid
 from underfoot.report.maps import comparison_figure, grid_note, map_figure
 from underfoot.report.quantities import Quantity, carried_load, drawn, quantities, scale
-from underfoot.report.viewer import packed, unpacked, viewer_scene
+from underfoot.report.viewer import packed, viewer_scene
+from viewer_fields import unpacked
 
 PRESSURE = Quantity("contact_pressure", "", 1e3, "kPa")
 
