@@ -81,7 +81,7 @@ def test_changes_fit_the_case() -> None:
     assert "contaminant.family" in unknown["rinse"].reason
     known = {one.name: one for one in possible_changes(worn)}
     assert not known["rinse"].reason
-    assert "computed: the floor clean and wet" in known["rinse"].action
+    assert "as a clean wet floor" in known["rinse"].action
     for case in (worn, treaded):
         for change in possible_changes(case):
             assert case.replace(change.values) != case

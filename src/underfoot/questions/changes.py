@@ -68,7 +68,7 @@ def _possible_changes(case: Case) -> Iterator[Change]:
         yield Change("rougher_floor", action, "floor", {"floor.roughness.rq": ROUGH_FLOOR_RQ})
     viscosity = case.value("contaminant.viscosity") or 0.0
     if viscosity >= THIN:
-        action, reason = "rinse with water (computed: the floor clean and wet)", ""
+        action, reason = "rinse with water (as a clean wet floor)", ""
         family = case.origins.get("contaminant.family")
         if case.contaminant is not None and case.contaminant.chemistry == "oil":
             reason = "water spreads oil; a film of it stays on the floor under the water"
@@ -76,7 +76,7 @@ def _possible_changes(case: Case) -> Iterator[Change]:
             reason = "contaminant.family is not given: whether it mixes with water is not known"
         yield Change("rinse", action, "cleaning", {"contaminant": "water"}, reason)
     if viscosity >= 5 * THIN:
-        action = "clean with a detergent solution (computed: the floor wet with nothing else)"
+        action = "clean with a detergent solution (as the floor wet with it alone)"
         yield Change("dilute", action, "cleaning", {"contaminant": "detergent"})
     mean = case.risk.rcof_mean
     if mean >= 0.12:

@@ -124,9 +124,8 @@ class RiskAssessment(Presentable):
         lines = [
             f"{each.change.action}: COF {before} to {each.number('cof'):.2f}, slip probability "
             f"{chance} to {_chance(each.scalars['slip_probability'])}"
-            + "".join(
-                f" ({text})" for text in (("extrapolated",) * bool(_note(each)) + _sure(each))
-            )
+            + (" (extrapolated)" if _note(each) else "")
+            + (f", higher COF with a probability of {_sure(each)}" if _sure(each) else "")
             for each in self.best[:most]
         ]
         return lines or ["No tested change reduces the slip probability."]
@@ -137,12 +136,13 @@ class RiskAssessment(Presentable):
         for each in sorted(self.changes, key=lambda one: place.get(id(one), len(self.changes) + 1)):
             rank = place.get(id(each))
             if not each.computed:
-                rows.append(("-", each.change.action, "", "", f"not computed: {each.reason}"))
+                rows.append(("-", each.change.action, "", "", "", f"not computed: {each.reason}"))
                 continue
             texts = [value_text(k, each.scalars[k]) for k in ("cof", "slip_probability")]
-            note = "; ".join(("extrapolated",) * bool(_note(each)) + _sure(each))
-            rows.append(("-" if rank is None else f"{rank}.", each.change.action, *texts, note))
-        heads = ("", "Change", "COF", "Slip probability", "")
+            note = "extrapolated" if _note(each) else ""
+            place_text = "-" if rank is None else f"{rank}."
+            rows.append((place_text, each.change.action, *texts, _sure(each), note))
+        heads = ("", "Change", "COF", "Slip probability", "Higher COF", "")
         return Table("Most effective changes (each simulated)", heads, rows)
 
     def tables(self) -> tuple[Table, ...]:
@@ -305,11 +305,11 @@ def _chance(slip: SourcedValue) -> str:
     return probability_text(math.nan if slip.value is None else slip.value)
 
 
-def _sure(effect: ChangeEffect) -> tuple[str, ...]:
-    """Return in words how sure it is that a change raises COF; nothing where it changes none."""
+def _sure(effect: ChangeEffect) -> str:
+    """Return the probability that a change raises COF; empty where it changes none."""
     if effect.higher is None or effect.change.lever == "walking":
-        return ()
-    return (f"higher COF with a probability of {percent(effect.higher)}",)
+        return ""
+    return percent(effect.higher)
 
 
 def _needed(target: float, rcof: RcofPopulation, model: SlipModel) -> float | None:
