@@ -100,6 +100,7 @@ OTHERS = (
            "hyst"),
     Mutant("draws", SAMPLED, "min(max(values[SUCTION], 0.0), VACUUM)", "values[SUCTION]"),
     Mutant("draws", SAMPLED, "carried = solid_load / load", "carried = 1.0"),
+    Mutant("draws", SAMPLED, "viscous * np.exp(values.get(SHEAR, 0.0))", "viscous"),
     Mutant("treads", TREADS, "return self.deviation * found", "return 0 * found"),
     Mutant("treads", TREADS, "phase = every @ _waves().T", "phase = 1e3 * every @ _waves().T"),
     Mutant("treads", TREADS, "if name.startswith(head)", "if not name.startswith(head)"),
