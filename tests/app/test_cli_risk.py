@@ -28,6 +28,7 @@ contaminant = "glycerol_90pct"
 motion = "slip_tester_g4"
 numerics.quick_grid_spacing = "2.5 mm"
 numerics.cells_along = 1
+numerics.tread_positions = 1
 """
 
 
@@ -130,7 +131,7 @@ def test_changes_are_computed_and_ranked_by_the_chance_they_leave() -> None:
 def test_no_change_gives_back_the_result_and_other_walkers_take_its_friction() -> None:
     tread = {"pattern": "grid", "depth": "3 mm", "lug_width": "12 mm", "channel_width": "6 mm"}
     case = Case.from_text(TEXT).replace({f"shoe.tread.{key}": tread[key] for key in tread})
-    fine = case.replace("numerics.grid_spacing", "2 mm")
+    fine = case.replace({"numerics.grid_spacing": "2 mm", "numerics.tread_positions": 4})
     result = run(fine)
     viscosity = fine.value("contaminant.viscosity")
     same = Change("same", "same", "cleaning", {"contaminant.viscosity": viscosity})
@@ -154,7 +155,7 @@ def test_a_motion_with_a_history_is_run_for_each_change() -> None:
     case = Case.from_text(TEXT).replace("motion", "heel_strike_to_flat")
     rougher = Change("rougher", "rougher", "floor", {"floor.roughness.rq": 5e-6})
     (found,) = risk_assessment(case, changes=[rougher]).changes
-    alone = run(case.replace(rougher.values), quick=True)  # no tread: one position either way
+    alone = run(case.replace(rougher.values), quick=True)
     for name, scalar in found.scalars.items():
         assert scalar.value == pytest.approx(alone.value(name), rel=1e-9)
     assert found.error is None
@@ -174,7 +175,7 @@ def test_cancel_ends_the_changes() -> None:
 def test_changes_are_those_of_whole_runs(shoe) -> None:
     case = Case.load(f"examples/{shoe}_glycerol.toml")
     if "untreaded" in shoe:  # whose film needs cells along the sliding: eight runs at three angles
-        case = case.replace("numerics.quick_grid_spacing", "1.2 mm")
+        case = case.replace("numerics.quick_grid_spacing", "2 mm")
     found = risk_assessment(case)
     slips = {"own": found.outcome.number("slip_probability")}
     for effect in found.changes:

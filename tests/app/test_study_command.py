@@ -22,6 +22,7 @@ base = "{(EXAMPLES / "work_shoe_untreaded_glycerol.toml").as_posix()}"
 "numerics.quick_grid_spacing" = "3 mm"
 "numerics.grid_spacing" = "3 mm"
 "numerics.cells_along" = 1
+"numerics.tread_positions" = 1
 [vary]
 "shoe.heel.profile.angle" = {{ from = "6 deg", to = "14 deg", steps = STEPS }}
 "shoe.material.shore_a" = {{ from = 50, to = 70, steps = 2 }}

@@ -9,7 +9,11 @@ import underfoot as uf
 from underfoot.core import InputError
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-GRID = {"numerics.grid_spacing": "3 mm", "numerics.quick_grid_spacing": "3 mm"}
+GRID = {
+    "numerics.grid_spacing": "3 mm",
+    "numerics.quick_grid_spacing": "3 mm",
+    "numerics.tread_positions": 1,
+}
 
 
 @pytest.fixture(scope="module")

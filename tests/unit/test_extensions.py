@@ -29,7 +29,12 @@ PARTS = {
     "floor": "vinyl_g4",
     "contaminant": "glycerol_90pct",
     "motion": "slip_tester_g4",
-    "numerics": {"grid_spacing": "3 mm", "quick_grid_spacing": "4 mm", "cells_along": 1},
+    "numerics": {
+        "grid_spacing": "3 mm",
+        "quick_grid_spacing": "4 mm",
+        "cells_along": 1,
+        "tread_positions": 1,
+    },
 }
 EXTENSIONS = {
     "law": """

@@ -38,7 +38,12 @@ PARTS = {
 SMOOTH = {
     **PARTS,
     "shoe": "work_shoe_untreaded",
-    "numerics": {"grid_spacing": "2 mm", "quick_grid_spacing": "3 mm", "cells_along": 1},
+    "numerics": {
+        "grid_spacing": "2 mm",
+        "quick_grid_spacing": "3 mm",
+        "cells_along": 1,
+        "tread_positions": 1,
+    },
 }
 CHANGES = {
     "shoe.material.shore_a": 61.0,

@@ -20,6 +20,7 @@ contaminant = "glycerol_90pct"
 motion = "slip_tester_g4"
 numerics.quick_grid_spacing = "2.5 mm"
 numerics.cells_along = 1
+numerics.tread_positions = 1
 """
 
 
