@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from underfoot.case import Case
 from underfoot.compute.run import run
@@ -99,6 +100,28 @@ def test_mean_pressure_of_a_lug_does_not_ask_which_cells_were_solved():
         return lug_friction(edges, pressure, np.array([0.3]), asperities, **constants).factor
 
     assert factor(0.0) == pytest.approx(factor(1e-30), rel=1e-12)
+
+
+def test_fluid_from_the_sides_takes_two_parabolas_of_the_suction():
+    """From either side it comes as far in as from behind, less towards the leading edge."""
+    edges = (one_lug(height=1e-3, width=width) for width in (10.0, 2e-3))
+    wide, narrow = (friction(each, drag=3e-3, suction=1e4) for each in edges)
+    asperities = ExponentialLaw(3e6, 0.5, 2e-6)
+    most = 1e5 * (1 + wide.suction.item())
+    dry = brentq(lambda gap: float(asperities.pressure(gap)) - most, 1e-9, 1e-4)
+    back = dry**2 * 1e4 / (6 * module.LACKING * 3e-3)
+    left = 1 - 4 / 3 * math.sqrt(back * 0.01) / 2e-3
+    assert 0.6 < left < 0.8
+    assert narrow.suction.item() / wide.suction.item() == pytest.approx(left, abs=0.01)
+
+
+def test_a_lug_longer_than_twice_its_height_wipes_no_better():
+    edges = (one_lug(length=length, height=2e-3, edge=0.83e-3) for length in (0.02, 0.04))
+    long, longer = (friction(each, suction=0.0) for each in edges)
+    assert 0.01 < long.film.item() < 0.99
+    assert longer.film.item() == pytest.approx(long.film.item(), rel=1e-9)
+    short = friction(one_lug(length=2e-3, height=2e-3, edge=0.83e-3), suction=0.0)
+    assert short.film.item() != pytest.approx(long.film.item(), rel=0.01)
 
 
 def test_limits():

@@ -10,8 +10,8 @@ from scipy.signal import freqz, savgol_coeffs
 from underfoot.trials import tester_calibration
 from underfoot.trials.protocols import protocol
 from underfoot.trials.slip_friction import calibrated, mean_friction, slide_friction, slide_plate
-from underfoot.trials.slips import _half_window
-from underfoot.trials.trial import Channel, Plate, Trial
+from underfoot.trials.slips import SlipDefinition, _half_window, heel_motion
+from underfoot.trials.trial import Channel, Marker, Plate, Trial
 
 RATE, UP = 1000.0, np.array([0.0, 0.0, 1.0])
 CHANNELS = {"normal": (1.1, 0.03, 500.0), "friction": (0.9, 0.04, 300.0)}
@@ -69,3 +69,16 @@ def test_the_window_of_savitzky_and_golay_has_the_cutoff_asked_for(rate, cutoff,
     frequency, gain = freqz(weights, worN=20000, fs=rate)
     passed = frequency[np.flatnonzero(np.abs(gain) < np.sqrt(0.5))[0]]
     assert passed == pytest.approx(cutoff, rel=within)
+
+
+def test_a_wave_at_the_cutoff_keeps_its_place_and_half_its_power():
+    rate, cutoff = 250.0, 10.0  # of the filter that is the default
+    time = np.arange(500) / rate
+    wave = np.exp(2j * np.pi * cutoff * time)
+    path = np.outer(5e-3 * wave.real, [1.0, 0.0, 0.0]) + np.array([0.1, 0.2, 0.3])
+    definition = SlipDefinition(derivative="savitzky-golay")
+    motion = heel_motion(Marker(path, rate), UP, definition)
+    middle = slice(100, 400)  # 12 waves, off the ends
+    passed = 2 * np.mean((motion.position[middle, 0] - 0.1) * wave[middle].conj()) / 5e-3
+    assert abs(passed) == pytest.approx(np.sqrt(0.5), rel=0.05)
+    assert np.angle(passed) == pytest.approx(0.0, abs=1e-6)

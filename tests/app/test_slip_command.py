@@ -98,7 +98,8 @@ def test_a_history_that_ends_before_the_slip_is_flagged(tmp_path):
 def test_an_untreaded_sole_in_glycerol_slips_and_the_run_is_kept(tmp_path):
     arguments = (
         "--json", "--subjects", 10, "--set", "slip.fit_runs=4", "--set", "slip.test_runs=1",
-        "--set", "slip.time_step=20 ms", "--set", "numerics.quick_grid_spacing=2 mm",
+        "--set", "slip.time_step=20 ms", "--set", "numerics.quick_grid_spacing=2.5 mm",
+        "--set", "numerics.cells_along=1", "--set", "numerics.tread_positions=1",
     )  # fmt: skip
     first = json.loads(slip(WET, *arguments).stdout)
     assert first["numbers"]["slipped"] == 1.0

@@ -117,7 +117,7 @@ def test_killed_at_any_time_it_goes_on_and_gives_the_same(finished, tmp_path):
     opened = len(study._open())
     assert time.process_time() - began < 5.0
     assert opened == 6 - len(before)
-    process("study", "run", "heel.toml", folder=tmp_path)
+    process("study", "run", "heel.toml", "--workers", "1", folder=tmp_path)
     assert numbers(store) == numbers(folder / "out" / "heel")
 
 
@@ -253,7 +253,7 @@ def test_a_dask_cluster_that_loses_a_worker_and_then_its_scheduler(finished, tmp
         for started in (scheduler, *workers):
             started.kill()
             started.wait()
-    process("study", "run", folder / "heel.toml", "--out", "x", folder=tmp_path)
+    called("study", "run", folder / "heel.toml", "--out", "x", "--workers", "1", folder=tmp_path)
     assert numbers(store) == numbers(folder / "out" / "heel")
 
 
@@ -262,7 +262,7 @@ def test_a_dask_cluster_that_loses_a_worker_gives_the_same(finished, tmp_path):
     pytest.importorskip("distributed")
     folder, _ = finished
     run = [*COMMAND, "study", "run", folder / "heel.toml", "--out", "x"]
-    run += ["--on", "dask", "--workers", "4"]
+    run += ["--on", "dask", "--workers", "2"]
     with (tmp_path / "log").open("w") as log:
         master = subprocess.Popen(run, cwd=tmp_path, stdout=log, stderr=log)
         until(lambda: len(numbers(tmp_path / "x")) >= 1)

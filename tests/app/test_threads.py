@@ -39,7 +39,10 @@ def options(settings):
     return [word for pair in settings.items() for word in ("--set", "=".join(map(str, pair)))]
 
 
-SQUARES = CHANGES | {"numerics.cells_along": 1, "numerics.tread_positions": 1}  # what solves the sole a dozen times
+SQUARES = CHANGES | {
+    "numerics.cells_along": 1,
+    "numerics.tread_positions": 1,
+}  # what solves the sole a dozen times
 QUESTIONS = {
     "run": [*COMMAND, "run", CASE, *options(CHANGES), "--quick", "--json"],
     "risk": [*COMMAND, "risk", CASE, *options(SQUARES), "--json"],
