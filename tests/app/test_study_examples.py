@@ -21,9 +21,10 @@ def small(name, folder, spacing, **smaller):
         text, count = re.subn(rf"{key} = \d+", f"{key} = {value}", text)
         assert count == 1
     grid = {f"numerics.{which}": spacing for which in ("grid_spacing", "quick_grid_spacing")}
-    fixed = "\n".join(f'"{key}" = "{value}"' for key, value in grid.items())
+    fixed = "".join(f'"{key}" = "{value}"\n' for key, value in grid.items())
+    fixed += "".join(f'"numerics.{key}" = 1\n' for key in ("tread_positions", "cells_along"))
     head, rest = text.split("\n[", 1)
-    text = f'{head}\n[set]\n{fixed}\n"numerics.tread_positions" = 1\n"numerics.cells_along" = 1\n\n[{rest}'
+    text = f"{head}\n[set]\n{fixed}\n[{rest}"
     return Study(read_plan(text, STUDIES), folder)
 
 

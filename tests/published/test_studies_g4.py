@@ -201,7 +201,7 @@ def test_options_of_other_studies_are_refused():
 @pytest.mark.slow
 def test_the_quick_study_by_command(tmp_path, monkeypatch):
     """One coarse grid: values of every condition, and no verdict that a grid enters."""
-    coarser = {"numerics.quick_grid_spacing": "1.25 mm", "numerics.tread_positions": 1}
+    coarser = {"numerics.quick_grid_spacing": "1.2 mm", "numerics.tread_positions": 1}
     found_in_study = g4.Condition.case.func
     monkeypatch.setattr(
         g4.Condition, "case", property(lambda one: found_in_study(one).replace(coarser))
