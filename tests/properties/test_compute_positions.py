@@ -256,11 +256,10 @@ def test_one_position_is_the_case_s_own(bars):
 @pytest.mark.slow
 def test_the_mean_hardly_depends_on_where_the_pattern_begins(bars):
     single, mean = [], []
-    for offset in ("0 mm", "1.25 mm", "4 mm", "6.5 mm"):
+    for offset in ("0 mm", "1.25 mm", "4 mm"):
         moved = bars.replace("shoe.tread.offset_along", offset)
-        alone = run(moved.replace("numerics.tread_positions", 1), quick=True)
         over = run(moved.replace("numerics.tread_positions", 8), quick=True)
-        single.append((alone.value("cof"), alone.value("fluid_load")))
+        single.append([float(over.fields[f"position_{x}"][0]) for x in ("cof", "fluid_load")])
         mean.append((over.value("cof"), over.value("fluid_load")))
     before, after = np.ptp(single, axis=0), np.ptp(mean, axis=0)
     assert (after < 0.35 * before).all()

@@ -201,11 +201,15 @@ def test_options_of_other_studies_are_refused():
 @pytest.mark.slow
 def test_the_quick_study_by_command(tmp_path, monkeypatch):
     """One coarse grid: values of every condition, and no verdict that a grid enters."""
-    coarser = {"numerics.quick_grid_spacing": "1.2 mm", "numerics.tread_positions": 1}
-    found_in_study = g4.Condition.case.func
-    monkeypatch.setattr(
-        g4.Condition, "case", property(lambda one: found_in_study(one).replace(coarser))
-    )
+    of_the_study = g4.Condition.case.func
+
+    def coarser(one):
+        grid = "2 mm" if one.untreaded else "1.2 mm"  # two cells a channel
+        return of_the_study(one).replace(
+            {"numerics.quick_grid_spacing": grid, "numerics.tread_positions": 1}
+        )
+
+    monkeypatch.setattr(g4.Condition, "case", property(coarser))
     out = tmp_path / "g4"
     done = called("studies", "run", "g4", "--quick", "--json", "--out", out)
     assert done.returncode == 0, done.stderr

@@ -25,6 +25,7 @@ from underfoot.core.files import whole_file
 from underfoot.core.optional import optional_module
 from underfoot.core.presentation import Presentable, Table, quantity_text
 from underfoot.core.progress import part
+from underfoot.core.threads import threads_limited
 
 from .effects import surrogates
 from .goals import Goal
@@ -134,6 +135,7 @@ class Posterior(Presentable):
             np.savetxt(stream, self.draws, delimiter=",", fmt="%.10g")
 
 
+@threads_limited(1)  # thousands of small solves, which threads make several times dearer
 def posterior(
     study: Study,
     *,

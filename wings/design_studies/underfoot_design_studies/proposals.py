@@ -19,6 +19,7 @@ from scipy.stats import qmc
 from underfoot.core import DataError
 from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
+from underfoot.core.threads import threads_limited
 
 from .effects import sampled_effect_points, surrogates
 from .goals import Goal
@@ -42,6 +43,7 @@ BEYOND = 0.1
 """The hypervolume's reference lies this share of the goals' range beyond the worst of them."""
 
 
+@threads_limited(1)
 def next_batch(plan: StudyPlan, so_far: StudyResult) -> list[Job]:
     """Return the jobs of the next batch; none where the study is done."""
     batch = max((job.batch for job in so_far.jobs), default=-1) + 1
