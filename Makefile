@@ -6,6 +6,8 @@ READY := $(VENV)/.ready
 # Two workers. Quick tests: each takes over from the other when its own are done. Slow ones: a file
 # stays with one worker, since its tests share long runs.
 PYTEST := $(BIN)/pytest -n 2 --dist
+# Hundreds of processes that the tests start take half as long from bytecode.
+unexport PYTHONDONTWRITEBYTECODE
 SEED := $(or $(SEED),$(shell od -An -N4 -tu4 /dev/urandom | tr -d " "))
 
 .PHONY: run app check test test-quick test-slow fuzz test-install chromium bundle bundle-check bench validate docs clean help
