@@ -114,29 +114,29 @@ def test_what_no_row_can_say_is_left_alone():
 def test_the_studies_page_changes_the_file_runs_stops_and_goes_on(project, tmp_path):
     pytest.importorskip("playwright")
     file = project.inside("studies", "More.toml")
-    file.write_text(STUDY.replace("steps = 2", "steps = 26"))
+    file.write_text(STUDY.replace("steps = 2", "steps = 40"))
     with served(project.folder, tmp_path) as app, page_of(app.link) as page:
         page.goto(app.base + "studies?study=More")
-        page.get_by_text("52 designs: 52 cases").wait_for()
+        page.get_by_text("80 designs: 80 cases").wait_for()
         steps = page.get_by_label("Steps").first
-        steps.fill("20")
+        steps.fill("30")
         steps.blur()
-        page.get_by_text("40 designs: 40 cases").wait_for()
-        assert "steps = 20" in file.read_text()
+        page.get_by_text("60 designs: 60 cases").wait_for()
+        assert "steps = 30" in file.read_text()
         assert "# the worn heel" in file.read_text()
         page.get_by_role("button", name="Compute", exact=True).click()
         page.wait_for_function("document.querySelectorAll('.study circle').length > 1")
         page.get_by_role("button", name="Stop").click()
         page.get_by_role("button", name="Go on").wait_for()
         stopped = len(list(ended(project)))
-        assert 2 <= stopped < 40
+        assert 2 <= stopped < 60
         page.wait_for_function("!document.querySelector('.task')")
         page.get_by_role("button", name="Go on").click()
         limit = time.monotonic() + 300
-        while len(list(ended(project))) < 40:
+        while len(list(ended(project))) < 60:
             assert time.monotonic() < limit
             time.sleep(0.5)
-        assert len(set(ended(project))) == 40  # none was done twice
+        assert len(set(ended(project))) == 60  # none was done twice
         page.locator(".study circle").first.dispatch_event("click")
         drawn(page)
         page.get_by_role("button", name="Make a variant of it").click()
