@@ -309,7 +309,7 @@ def _sure(effect: ChangeEffect) -> str:
     """Return the probability that a change raises COF; empty where it changes none."""
     if effect.higher is None or effect.change.lever == "walking":
         return ""
-    return percent(effect.higher)
+    return probability_text(effect.higher)
 
 
 def _needed(target: float, rcof: RcofPopulation, model: SlipModel) -> float | None:
