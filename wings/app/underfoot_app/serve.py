@@ -90,7 +90,8 @@ def _application(project: Project, jobs: Jobs) -> FastAPI:
 
     pages_app.on_startup(start)
     pages_app.add_static_files("/static", str(files("underfoot_app") / "static"))
-    pages_app.add_static_files("/viewer", str(files("underfoot.report") / "templates"))
+    for route, package in (("/viewer", "underfoot.report"), ("/study", "underfoot_design_studies")):
+        pages_app.add_static_files(route, str(files(package) / "templates"))
     for page in PAGES:
         _route(page, project, jobs, exchange)
 

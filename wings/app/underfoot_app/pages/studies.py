@@ -62,7 +62,7 @@ budget = 40
 
 def build(session: Session) -> None:
     """Show the study of the address, or the studies there are and how to begin one."""
-    ui.add_head_html('<script defer src="/viewer/design_study.js"></script>')
+    ui.add_head_html('<script defer src="/study/design_study.js"></script>')
     files = session.project.inside("studies").glob("*.toml")
     names = sorted(file.stem for file in files if NAME.fullmatch(file.stem))
     name = session.query.get("study", "")
