@@ -43,7 +43,9 @@ def test_a_source_left_out_is_predicted_better_than_by_one_constant():
     assert 1 < softer["computed ratio"] < 1.3
     dry = effects["strobel_2012", "hardest_and_smoothest_sole_highest_dry", "dry"]
     assert dry["verdict"] == "right"
-    assert effects["li_2006", "depth_per_mm", "water"]["verdict"] == "right"
+    deeper = effects["li_2006", "depth_per_mm", "water"]
+    assert deeper["computed ratio"] > 1
+    assert deeper["verdict"] == "undecided"  # within the error of the tread model
     assert {row["inside 95 %"] for row in whole.values()} == {"yes"}
     for row in effects.values():
         nothing = row["computed ratio"] and abs(math.log(row["computed ratio"])) < 0.02
