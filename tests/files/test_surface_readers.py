@@ -109,7 +109,7 @@ def test_profile_with_units_decimal_commas_and_header(tmp_path):
     assert "decimal commas" in profile.processing[0]
     same = read_profile(
         _write(tmp_path, "\n".join(f"{0.01 * i:.2f} {i % 3}" for i in range(9)), "b.txt"),
-        position_unit="mm",
+        length_unit="mm",
         height_unit="um",
     )
     assert same.heights[2] == pytest.approx(2e-6)
@@ -208,4 +208,4 @@ def test_files_that_are_none(tmp_path):
     with pytest.raises(DataError, match="not a Dektak"):
         read_dektak(_write(tmp_path, "x um,z nm\n1,2"))
     with pytest.raises(DataError, match="length"):
-        read_profile(_write(tmp_path, "1 2\n2 3\n"), position_unit="kg", height_unit="um")
+        read_profile(_write(tmp_path, "1 2\n2 3\n"), length_unit="kg", height_unit="um")

@@ -7,7 +7,7 @@ from typing import Any, Never, Self
 
 from pydantic import ValidationError
 
-from underfoot.core import InputError, SourcedValue, content_hash
+from underfoot.core import InputError, SourcedValue, content_hash, display
 from underfoot.core.catalogue import Catalogue, catalogue_folders
 from underfoot.core.presentation import Presentable, Table
 
@@ -24,6 +24,7 @@ from .people import Risk, Walkers
 from .quantity import DOOR
 from .section import (
     DEFAULT,
+    FILE,
     GIVEN,
     Option,
     Origin,
@@ -354,7 +355,12 @@ class Case(Presentable):
         chosen = {
             path for option in vars(self._parts).values() for path in getattr(option, "reads", ())
         }
-        return frozenset(set(optional_reads()) - chosen)
+        unused = {
+            f"{path}.{name}"
+            for path, section in walk(self._parts)
+            for name in section.unused(self._parts)
+        }
+        return frozenset(set(optional_reads()) - chosen | unused)
 
     @cached_property
     def origins(self) -> Mapping[str, Origin]:
@@ -461,13 +467,16 @@ def value_text(origin: Origin, unit: str) -> str:
         return "yes" if given else "no"
     if isinstance(given, list | tuple):
         return f"{len(given)} terms"
+    if origin.kind == FILE and isinstance(origin.value, float):
+        return display(origin.value, unit)
     spread = origin.leaf.uncertainty
     return f"{plain_text(given, unit)}" + ("" if spread is None else f" ± {spread}")
 
 
 def _origin_text(origin: Origin) -> str:
     leaf = origin.leaf
-    words = {GIVEN: "given", DEFAULT: "default"}.get(origin.kind, f"catalogue: {origin.entry}")
+    plain = {GIVEN: "given", DEFAULT: "default"}
+    words = plain.get(origin.kind, f"{origin.kind}: {origin.entry}")
     words += ", assumed" if leaf.assumed else ""
     words += "" if leaf.verified else ", from memory"
     return words + (f" ({leaf.source})" if leaf.source else "")

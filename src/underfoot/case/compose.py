@@ -15,8 +15,16 @@ from underfoot.core.leaves import Leaf, leaves
 from .errors import CaseError, Place, placed
 from .friction import FrictionOption
 from .parts import CATALOGUE_SECTIONS, CaseParts, slot_table
-from .section import CATALOGUE, GIVEN, Option, Origin, Section, origin_of, section_in
-from .shoe import from_catalogue
+from .section import (
+    CATALOGUE,
+    GIVEN,
+    Option,
+    Origin,
+    Section,
+    from_catalogue,
+    origin_of,
+    section_in,
+)
 from .versions import RENAMED, SHORT
 
 DRY = "none"

@@ -107,7 +107,8 @@ class PairOption(FrictionOption):
         from underfoot.rough_contact import ContactTable
 
         material = context.shoe.material
-        hysteresis, origin, full_contact = _hysteresis(context), "Persson theory", None
+        hysteresis, origin = _hysteresis(context)
+        full_contact = _full_contact(context)
         if self.contact_table:
             with meant_file(
                 self.contact_table, self.contact_table_sha256, "friction.contact_table"
@@ -559,18 +560,28 @@ def _span(roughness: SurfaceRoughness, unknown: tuple[float, float]) -> tuple[fl
     return rq / factor, rq * factor
 
 
-def _hysteresis(context: Context) -> float | None:
-    """Return the hysteresis COF of the compound's spectrum on the floor; None without one."""
+def _hysteresis(context: Context) -> tuple[float | None, str]:
+    """Return the hysteresis COF of the compound's spectrum on the floor's, and what it is from.
+
+    Where one of the two spectra is not known its usual form stands for it; None without both.
+    """
+    from underfoot.friction.pair_contact import HYSTERESIS, SLOPE
     from underfoot.rough_contact import persson
 
+    floor, (shortest, roll_off, longest) = context.floor.roughness, HYSTERESIS_WAVES
     if context.shoe.material.relaxation is None:
-        return None
-    rq = context.floor.roughness.rq_or_estimate or math.sqrt(FLOOR_RQ[0] * FLOOR_RQ[1])
-    shortest, roll_off, longest = HYSTERESIS_WAVES
+        if floor.file is None:
+            return None, ""
+        slope = floor.moment(1, shortest, longest)
+        return HYSTERESIS * slope / SLOPE, "the slope of the floor's scan, loss tangent 0.2 assumed"
     wavenumber = np.geomspace(2 * math.pi / longest, 2 * math.pi / shortest, 60)
-    shape = wavenumber * roll_off / (2 * math.pi)
-    spectrum = np.where(shape < 1, 1.0, shape ** (-2 * (1 + context.interface.hurst)))
-    spectrum *= rq**2 / (2 * math.pi * np.trapezoid(wavenumber * spectrum, wavenumber))
+    if floor.file is None:
+        rq = floor.rq_or_estimate or math.sqrt(FLOOR_RQ[0] * FLOOR_RQ[1])
+        shape = wavenumber * roll_off / (2 * math.pi)
+        spectrum = np.where(shape < 1, 1.0, shape ** (-2 * (1 + context.interface.hurst)))
+        spectrum *= rq**2 / (2 * math.pi * np.trapezoid(wavenumber * spectrum, wavenumber))
+    else:
+        spectrum = floor.density(wavenumber)
     contact = persson(
         HYSTERESIS_PRESSURE,
         wavenumber,
@@ -580,7 +591,26 @@ def _hysteresis(context: Context) -> float | None:
         context.poisson_ratio,
     )
     assert contact.cof_hysteresis is not None  # the rubber is viscoelastic
-    return float(contact.cof_hysteresis[0])
+    surface = "" if floor.file is None else " on the floor's scan"
+    return float(contact.cof_hysteresis[0]), f"Persson theory{surface}"
+
+
+def _full_contact(context: Context) -> float | None:
+    """Return the pressure p_R of dry real area (Pa) from the slopes of both; None without a scan.
+
+    A surface without a scan has the usual slope of its Rq; without an Rq either nothing is known.
+    """
+    from underfoot.friction.pair_contact import FULL_CONTACT, SLOPE
+
+    both = context.shoe.roughness, context.floor.roughness
+    if not any(part.file for part in both) or any(part.rq_or_estimate is None for part in both):
+        return None
+    shortest, _, longest = HYSTERESIS_WAVES
+    slopes = [
+        part.moment(1, shortest, longest) if part.file else SLOPE * (part.rq_or_estimate or 0.0)
+        for part in both
+    ]
+    return FULL_CONTACT / SLOPE * math.hypot(*slopes)
 
 
 def _viscosity(context: Context) -> float:

@@ -33,7 +33,7 @@ from underfoot.core.registry import all_offers, loaded, offered, offers
 
 from .quantity import Quantity, default_of, refusal
 
-GIVEN, CATALOGUE, DEFAULT = "given", "catalogue", "default"
+GIVEN, CATALOGUE, DEFAULT, FILE = "given", "catalogue", "default", "file"
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Origin:
     """Where one value comes from, and the value (SI) that this is true of."""
 
     kind: str
-    """given, catalogue or default"""
+    """given, catalogue, default, or file: what a file beside the value holds"""
     leaf: Leaf
     entry: str = ""
     value: Any = None
@@ -209,6 +209,10 @@ class Section(BaseModel):
         """Return what of other packages it is computed with, beside its own class."""
         return None
 
+    def unused(self, case: CaseView) -> tuple[str, ...]:
+        """Return the fields of the section that nothing of this case reads."""
+        return ()
+
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         """Yield what does not fit together; ``where`` is the section's path in the case."""
         return iter(())
@@ -364,6 +368,35 @@ def origin_of(item: Any) -> Origin | None:
         marks = {name: item[name] for name in (*INHERITED, "erratum") if name in item}
         return Origin(GIVEN, Leaf(item["value"], uncertainty=item.get("uncertainty"), **marks))
     return None
+
+
+def from_catalogue(item: Any) -> bool:
+    """Return whether a value, or every value of a table, is one of the catalogue."""
+    if isinstance(item, dict):
+        return all(from_catalogue(value) for value in item.values())
+    origin = origin_of(item)
+    return origin is not None and origin.kind == CATALOGUE
+
+
+def with_file_values(
+    table: Mapping[str, Any], values: Mapping[str, SourcedValue | Any], name: str
+) -> dict[str, Any]:
+    """Return a section's table with the ``values`` of its file ``name``.
+
+    What was given goes before them; they go before the catalogue, and before those of an earlier
+    file.
+    """
+    given = {}
+    for key, item in table.items():
+        origin = origin_of(item)
+        if key not in values or origin is None or origin.kind not in (CATALOGUE, FILE):
+            given[key] = item
+    origins = {}
+    for key, value in values.items():
+        found = origin_of(value)
+        leaf = Leaf(value) if found is None else found.leaf
+        origins[key] = Origin(FILE, leaf, name)
+    return {**origins, **given}
 
 
 def leaf_of(item: Any) -> Leaf:

@@ -11,7 +11,7 @@ from underfoot.core import InputError, RangeError, display
 from underfoot.core.registry import offered
 
 from .quantity import Flag, Length, Quantity, default, optional
-from .section import CATALOGUE, GIVEN, CaseView, Origin, Section, leaf_of, origin_of, refused_at
+from .section import GIVEN, CaseView, Origin, Section, from_catalogue, leaf_of, refused_at
 from .sole import SolePlan, TreadPattern
 from .surfaces import SurfaceRoughness
 from .tables import plain, with_checksum
@@ -190,11 +190,3 @@ class Shoe(Section):
                     remedy=f"Remove [shoe.{part}], or shoe.outsole.file",
                 )
         return {**table, "heel": None, "tread": None}
-
-
-def from_catalogue(item: Any) -> bool:
-    """Return whether a value, or every value of a table, is one of the catalogue."""
-    if isinstance(item, dict):
-        return all(from_catalogue(value) for value in item.values())
-    origin = origin_of(item)
-    return origin is not None and origin.kind == CATALOGUE

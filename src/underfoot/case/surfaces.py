@@ -1,16 +1,27 @@
 """Sections for the roughness of sole and floor, and for the interface that both make."""
 
+from __future__ import annotations
+
 import math
 from abc import abstractmethod
-from collections.abc import Iterator
-from typing import Annotated, ClassVar
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
+import numpy as np
+from numpy.typing import ArrayLike
 from pydantic import Field
 
-from underfoot.core import InputError, RangeError, SourcedValue, display
+from underfoot.core import DataError, InputError, RangeError, SourcedValue, display, to_si
+from underfoot.core.arrays import Array
 
 from .quantity import Length, Quantity, default, optional
-from .section import CaseView, Option, Section
+from .section import CATALOGUE, FILE, GIVEN, CaseView, Option, Section, origin_of, with_file_values
+from .tables import meant_file, plain, with_checksum
+
+if TYPE_CHECKING:
+    from underfoot.surface import Scan
 
 Roughness = Annotated[float, Quantity("m", 1e-9, 1e-3)]
 Cutoff = Annotated[float, Quantity("m", 1e-6, 0.1)]
@@ -23,12 +34,21 @@ STEEPEST = 0.5
 """Largest rms slope of the interface's longest waves (small-slope theory, assumed)."""
 
 
+STYLUS_WAVES = (2.5e-6, 0.8e-3)
+"""Shortest and longest wave (m) of a stylus as standards filter it."""
+_AS_READ = ("cutoff", "length_unit", "height_unit", "spacing")
+
 WAVES = ("interface.hurst", "interface.longest_wave", "interface.shortest_wave")
 """What options that need the self-affine interface read of it."""
 
 
 class SurfaceRoughness(Section):
-    """Roughness numbers of a profile after the cut-off."""
+    """Roughness numbers of a profile after the cut-off, or the scan that they are computed from.
+
+    A number that is given goes before that of the scan, whose spectrum is then scaled to it.
+    """
+
+    file_paths: ClassVar[tuple[str, ...]] = ("file",)
 
     ra: Roughness | None = optional("mean deviation")
     rq: Roughness | None = optional("root-mean-square deviation")
@@ -36,6 +56,40 @@ class SurfaceRoughness(Section):
     rp: Roughness | None = optional("highest peak")
     rt: Roughness | None = optional("total height")
     cutoff: Cutoff | None = optional("cut-off wavelength of the filter")
+    file: str | None = optional(
+        "scan of the surface, profile or map, in any format of underfoot surface; the path counts "
+        "from the case file's folder"
+    )
+    sha256: str | None = optional("checksum of the scan that is meant; another file is refused")
+    length_unit: str | None = optional("of positions, where the scan does not name it")
+    height_unit: str | None = optional("of heights, where the scan does not name it")
+    spacing: Annotated[float, Quantity("m", 1e-9, 1e-3)] | None = optional(
+        "between points, where the scan has no positions"
+    )
+
+    @classmethod
+    def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+        table = with_checksum(table, "file", folder, where)
+        if not isinstance(plain(table.get("file")), str):
+            return table
+        given = {name: plain(table.get(name)) for name in ("file", "sha256", *_AS_READ)}
+        for name in ("spacing", "cutoff"):
+            origin = origin_of(table.get(name))
+            if origin is not None and origin.kind in (CATALOGUE, FILE):
+                given[name] = None
+            elif isinstance(given[name], str):
+                given[name] = to_si(given[name], "m", where=f"{where}.{name}")
+        scan = _scan(given, where)
+        heights = {name: scan.values[name] for name in ("ra", "rq", "rz", "rp", "rt")}
+        origin = origin_of(table.get("ra"))
+        if origin is not None and origin.kind == GIVEN:
+            del heights["rq"]
+        cutoff = SourcedValue(scan.cutoff, "m", source="longest of ISO 21920-3 in the scan")
+        return with_file_values(table, {**heights, "cutoff": cutoff}, scan.name)
+
+    def scan(self) -> Scan | None:
+        """Return the scan as read; None without one. Its spectrum is that of its own Rq."""
+        return None if self.file is None else _scan(vars(self), "roughness")
 
     @property
     def rq_or_estimate(self) -> float | None:
@@ -51,6 +105,40 @@ class SurfaceRoughness(Section):
             return self.sourced("rq").uncertainty
         spread = self.sourced("ra").uncertainty
         return spread and RQ_PER_RA * spread
+
+    def density(self, wavenumber: ArrayLike) -> Array:
+        """Return C(q) (m^4) of the scan at wave numbers (rad/m), scaled to the Rq of the case."""
+        scan = self.scan()
+        assert scan is not None
+        assert self.rq_or_estimate is not None
+        own = scan.values["rq"].value or 0.0
+        return scan.density(wavenumber) * (self.rq_or_estimate / own) ** 2
+
+    def moment(self, order: int, shortest: float, longest: float) -> float:
+        """Return rms height (order 0, m) or rms slope (order 1, 1) of the scan between two waves.
+
+        Both directions together: sqrt(2 pi int q^(1 + 2 n) C dq).
+        """
+        q = np.geomspace(2 * math.pi / longest, 2 * math.pi / shortest, 200)
+        return math.sqrt(2 * math.pi * np.trapezoid(q ** (1 + 2 * order) * self.density(q), q))
+
+
+def _scan(given: Mapping[str, Any], where: str) -> Scan:
+    """Return the scan of a section as its content was when the case was made."""
+    with meant_file(given["file"], given["sha256"], f"{where}.file") as path:
+        try:
+            return _read(path, given["sha256"], *(given[name] for name in _AS_READ))
+        except (DataError, InputError) as error:
+            what = f"{path.name}: {error.what}"
+            rest = {name: getattr(error, name) for name in ("allowed", "nearest", "remedy")}
+            raise InputError(what, where=f"{where}.file", **rest) from error
+
+
+@lru_cache(maxsize=32)
+def _read(path: Path, content: str, *settings: Any) -> Scan:
+    from underfoot.surface import read_scan
+
+    return read_scan(path, strict=True, **dict(zip(_AS_READ, settings, strict=True)))
 
 
 class Floor(Section):
@@ -138,15 +226,29 @@ class CompositeInterface(Interface):
     )
 
     def rq(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> SourcedValue:
-        ours = shoe.rq_or_estimate or math.sqrt(math.prod(SOLE_RQ))
-        theirs = floor.rq_or_estimate or math.sqrt(math.prod(FLOOR_RQ))
+        heights = self._height(shoe, SOLE_RQ), self._height(floor, FLOOR_RQ)
+        measured = bool(shoe.file and floor.file)
+        waves = f"waves of the scans up to {display(self.longest_wave, 'm')}"
         return SourcedValue(
-            self.roughness_beyond_cutoff * math.hypot(ours, theirs),
+            math.hypot(*heights),
             "m",
-            source=f"{self.source}, times {self.roughness_beyond_cutoff:g}",
-            assumed=True,
-            note="the stylus' cut-off hides long waves, through which fluid leaks",
+            source=waves if measured else f"{self.source}, times {self.roughness_beyond_cutoff:g}",
+            assumed=not measured,
+            note=""
+            if measured
+            else "the stylus' cut-off hides long waves, through which fluid leaks",
         )
+
+    def _height(self, roughness: SurfaceRoughness, usual: tuple[float, float]) -> float:
+        """Return Rq with waves up to the longest, m: of the scan, else the factor times Rq."""
+        if roughness.sha256 is None:
+            rq = roughness.rq_or_estimate or math.sqrt(math.prod(usual))
+            return self.roughness_beyond_cutoff * rq
+        return roughness.moment(0, STYLUS_WAVES[0], self.longest_wave)
+
+    def unused(self, case: CaseView) -> tuple[str, ...]:
+        scanned = case.shoe.roughness.file and case.floor.roughness.file
+        return ("roughness_beyond_cutoff",) if scanned else ()
 
     def rq_deviation(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> float | None:
         heights = [(part.rq_or_estimate or 0.0, part.rq_uncertainty) for part in (shoe, floor)]

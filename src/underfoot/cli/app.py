@@ -16,6 +16,7 @@ from .guard import guarded
 from .outsole import outsole_app
 from .stribeck import stribeck
 from .studies import studies_app
+from .surface import surface
 from .trials import trials_app
 
 app = typer.Typer(
@@ -38,6 +39,7 @@ COMMANDS: tuple[Callable[..., None], ...] = (
     cases.wear,
     export,
     stribeck,
+    surface,
     contact,
     tools.explain,
     tools.catalogue,

@@ -53,9 +53,11 @@ MOST_HYSTERESIS = 0.15
 GENT_SLOPE = 0.045
 """d ln E / d Shore A near 65 (Gent 1958)."""
 REFERENCE_HARDNESS = 60.0
+SLOPE = 0.105 / 1e-6
+"""rms slope h' over Rq (1/m) of the waves of ``HYSTERESIS``."""
 FULL_CONTACT = 2.97e6 / ROUGHNESS
-"""p_R over R (Pa/m): E* h' / sqrt(2), with E* of Shore A 60 and the slope h' = 0.105 R / um of the
-waves of ``HYSTERESIS``. Stiffer compounds have less area and more strength; c holds the rest."""
+"""p_R over R (Pa/m): E* h' / sqrt(2), with E* of Shore A 60 and the slope of ``SLOPE``. Stiffer
+compounds have less area and more strength; c holds the rest."""
 SOURCE = "law of the pair, calibrated on published measurements (underfoot studies run corpus)"
 RANGES = {
     "sliding speed": Range(0.01, 1.0, "m/s", "speeds of the measurements behind the law"),

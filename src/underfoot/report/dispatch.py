@@ -31,7 +31,7 @@ _HOMES = {
     "questions": ("results", "question_figures", "slips", "wear_page"),
     "film": ("regime_figure",),
     "report": ("outsole",),
-    **dict.fromkeys(("friction", "rough_contact", "slip", "material"), ("laws",)),
+    **dict.fromkeys(("friction", "rough_contact", "slip", "material", "surface"), ("laws",)),
 }
 """Modules of this room that register the types of a room of the package."""
 

@@ -17,6 +17,7 @@ from underfoot.rough_contact import ContactTable, SteadySliding
 from underfoot.rough_contact.pressure_gap_law import _PresentableLaw
 from underfoot.slip import SlipRisk, slip_model
 from underfoot.slip._checks import PresentableModel
+from underfoot.surface import Profile, Scan, levelled
 
 from .dispatch import figures
 from .html import new_figure
@@ -129,6 +130,30 @@ def _slip_risk(risk: SlipRisk, figure: Figure) -> None:
         axes.axhspan(100.0 * risk.low, 100.0 * risk.high, color="C1", alpha=0.2)
     axes.set(xlabel="Available COF", ylabel="Probability of a slip, %", title=risk.model)
     axes.legend()
+
+
+@_draws(Scan, "scan", 9.6, 3.6)
+def _scan(scan: Scan, figure: Figure) -> None:
+    """Heights, and the spectrum with the power law that continues it."""
+    left, right = figure.subplots(1, 2, width_ratios=(1.2, 1))
+    heights = 1e6 * levelled(scan.surface).heights
+    if isinstance(scan.surface, Profile):
+        left.plot(1e3 * scan.surface.positions, heights, lw=0.8)
+        left.set(xlabel="Position, mm", ylabel="Height, µm")
+    else:
+        sides = [1e3 * side for side in scan.surface.size]
+        image = left.imshow(heights.T, origin="lower", extent=(0, sides[0], 0, sides[1]))
+        left.set(xlabel="x, mm", ylabel="y, mm")
+        figure.colorbar(image, ax=left, label="Height, µm")
+    low, high = scan.spectrum.reliable
+    q = np.geomspace(low / 3, 3 * high, 300)
+    right.loglog(2e3 * np.pi / q, scan.density(q), "k--", lw=1, label="taken on by its power law")
+    inside = (q >= low) & (q <= high)
+    right.loglog(2e3 * np.pi / q[inside], scan.density(q[inside]), "C0", label="measured")
+    right.axvline(1e3 * scan.cutoff, color="0.6", lw=0.8, ls=":", label="cut-off of Ra, Rq")
+    right.invert_xaxis()
+    right.set(xlabel="Wavelength, mm", ylabel="C(q), m⁴", title=f"Hurst {scan.hurst.value:.2f}")
+    right.legend(fontsize=8)
 
 
 @_draws(RelaxationSpectrum, "modulus")

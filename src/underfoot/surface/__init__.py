@@ -27,6 +27,8 @@ from .roughness import areal_roughness as areal_roughness
 from .roughness import height_numbers as height_numbers
 from .roughness import profile_roughness as profile_roughness
 from .roughness import rms_slope as rms_slope
+from .scan import Scan as Scan
+from .scan import read_scan as read_scan
 from .spectrum import Asperities as Asperities
 from .spectrum import IsotropicSpectrum as IsotropicSpectrum
 from .spectrum import ProfileSpectrum as ProfileSpectrum

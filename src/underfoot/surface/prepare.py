@@ -40,13 +40,15 @@ def filled(heights: ArrayLike, *, largest_share: float = 0.05) -> tuple[np.ndarr
         z[missing] = np.interp(x[missing], x[~missing], z[~missing])
     else:
         from scipy.interpolate import griddata
+        from scipy.ndimage import binary_dilation
 
-        known = np.argwhere(~missing)
-        gaps = np.argwhere(missing)
-        values = griddata(known, z[~missing], gaps, method="linear")
+        # what lies around the gaps decides; all heights of a large map would take minutes
+        near = binary_dilation(missing, iterations=2) & ~missing
+        known, gaps = np.argwhere(near), np.argwhere(missing)
+        values = griddata(known, z[near], gaps, method="linear")
         rim = ~np.isfinite(values)
         if rim.any():
-            values[rim] = griddata(known, z[~missing], gaps[rim], method="nearest")
+            values[rim] = griddata(known, z[near], gaps[rim], method="nearest")
         z[missing] = values
     return z, f"{count} of {z.size} missing heights interpolated"
 

@@ -134,7 +134,7 @@ def _separator(lines: list[str]) -> str | None:
 def read_profile(
     path: Path | str,
     *,
-    position_unit: str | None = None,
+    length_unit: str | None = None,
     height_unit: str | None = None,
     spacing: float | None = None,
     tip_radius: float | None = None,
@@ -161,7 +161,7 @@ def read_profile(
             remedy="A map is read with read_map",
         )
     units = data.units()
-    _refuse_one_for_all(units, columns, position_unit, height_unit, data)
+    _refuse_one_for_all(units, columns, length_unit, height_unit, data)
     to_height = _factor(height_unit, units[-1:], data, "height_unit")
     heights, notes = _complete(
         data.rows[:, -1] * to_height, fill_missing, data.where, data.first_line
@@ -173,7 +173,7 @@ def read_profile(
             )
         profile = Profile(heights, spacing, tip_radius=tip_radius, source=data.where)
     else:
-        to_length = _factor(position_unit, units[:1], data, "length unit")
+        to_length = _factor(length_unit, units[:1], data, "length unit")
         profile = profile_from_positions(
             data.rows[:, 0] * to_length,
             heights,
@@ -472,4 +472,8 @@ def read_surface(path: Path | str, **settings: Any) -> Profile | HeightMap:
     if path.suffix.casefold() in TEXT:
         columns = read_numbers(path).rows.shape[1]
         return read_profile(path, **settings) if columns <= 2 else read_map(path, **settings)
+    if unused := settings.keys() & {"spacing", "height_unit"}:
+        raise InputError(
+            f"{' and '.join(sorted(unused))} given, which the file says itself", where=str(path)
+        )
     return read_instrument(path, **settings)

@@ -217,16 +217,18 @@ def isotropic_from_profile(spectrum: ProfileSpectrum) -> IsotropicSpectrum:
     C(q) = -1/pi int_q^inf C1'(k) / sqrt(k^2 - q^2) dk.
 
     The profile spectrum is first averaged over a twelfth of a decade, cut to what is reliable,
-    and made to fall (a profile of an isotropic surface can't have a rising spectrum; the running
-    minimum is the least change). Beyond the last wave number the power law of the last half
-    decade is taken on. The notes say so.
+    and made to fall by isotonic regression (a profile of an isotropic surface can't have a rising
+    spectrum). Beyond the last wave number the power law of the last half decade is taken on.
+    The notes say so.
 
     Raises:
         InputError: Less than half a decade of reliable wave numbers.
     """
-    q, c = _averaged(spectrum)
-    falling = np.minimum.accumulate(c)
-    changed = float(np.max(1.0 - falling / c))
+    from scipy.optimize import isotonic_regression
+
+    q, c, count = averaged(spectrum)
+    falling = isotonic_regression(c, weights=count, increasing=False).x
+    changed = float(np.max(np.abs(1.0 - falling / c)))
     tail = q >= q[-1] / np.sqrt(10.0)
     exponent = float(min(np.polyfit(np.log(q[tail]), np.log(falling[tail]), 1)[0], -1.05))
     density = np.array([_abel(one, q, falling, exponent) for one in q])
@@ -243,7 +245,15 @@ def isotropic_from_profile(spectrum: ProfileSpectrum) -> IsotropicSpectrum:
     )
 
 
-def _averaged(spectrum: ProfileSpectrum) -> tuple[np.ndarray, np.ndarray]:
+def averaged(
+    spectrum: ProfileSpectrum | IsotropicSpectrum,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the reliable wave numbers and densities averaged over a twelfth of a decade, and how
+    many values stand behind each.
+
+    Raises:
+        InputError: Less than half a decade of reliable wave numbers.
+    """
     low, high = spectrum.reliable
     inside = (spectrum.wavenumber >= low) & (spectrum.wavenumber <= high) & (spectrum.density > 0.0)
     q, c = spectrum.wavenumber[inside], spectrum.density[inside]
@@ -257,7 +267,7 @@ def _averaged(spectrum: ProfileSpectrum) -> tuple[np.ndarray, np.ndarray]:
     _, place = np.unique(place, return_inverse=True)
     count = np.bincount(place)
     mean_q = np.exp(np.bincount(place, np.log(q)) / count)
-    return mean_q, np.bincount(place, c) / count
+    return mean_q, np.bincount(place, c) / count, count
 
 
 def _abel(q: float, nodes: np.ndarray, values: np.ndarray, exponent: float) -> float:

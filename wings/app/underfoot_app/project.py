@@ -2,6 +2,7 @@
 
     variants/NAME.toml   cases; ``underfoot run variants/NAME.toml`` computes one
     soles/               outsole files that cases use
+    measured/            scans and rubber tests that cases use
     results/NAME/        what ``underfoot run --out`` writes
     studies/, trials/    design studies and measurements
     history.jsonl        every state of every variant, for undo and redo
@@ -25,7 +26,7 @@ from underfoot.case import Case
 from underfoot.core import InputError
 from underfoot.core.files import whole_file
 
-FOLDERS = ("variants", "soles", "results", "studies", "trials")
+FOLDERS = ("variants", "soles", "measured", "results", "studies", "trials")
 NAME = re.compile(r"[^\W_][\w .,+()'-]{0,59}")
 ALLOWED = "1 to 60 letters, digits, spaces and . , + ( ) ' - _, a letter or digit first"
 MOST_STATES = 500

@@ -14,7 +14,7 @@ from .project import Project
 
 MOST_BYTES = 300_000_000
 """Of one file: a scan of a sole has some 100 MB."""
-PLACES = ("soles", "trials", "studies")
+PLACES = ("soles", "measured", "trials", "studies")
 """Folders of a project that take files."""
 _PART = re.compile(r"[^\W.][^/\\:*?\"<>|\x00-\x1f]{0,120}")
 

@@ -16,7 +16,7 @@ from ..components import SoleView, title
 from ..inputs import Input, number_field, sliders
 from ..session import Session, as_json
 from ..variant_bar import new_variant, no_variant, variant_bar
-from . import assumptions, sole_file
+from . import assumptions, measured_file, sole_file
 
 ROUTE = "/design"
 TREAD = (
@@ -151,6 +151,7 @@ class _Design:
         sliders(self.session, TREAD, case, self._drawn, self._keep, self.view, keep=True)
         ui.separator()
         sole_file.build(self.session, self.name, self.view, self.fill)
+        measured_file.build(self.session, self.name, "sole", self.fill)
 
     def _patterned(self, pattern: str) -> dict[str, Any]:
         case = self.session.project.case(self.name)
@@ -178,6 +179,7 @@ class _Design:
         self._choice(part, entries, present)
         for each in CONDITIONS[part]:
             number_field(self.session, each, case, self.change)
+        measured_file.build(self.session, self.name, part, self.fill)
 
     def _choice(self, part: str, entries: dict[str, str], present: str | None) -> None:
         choice = ui.select(entries, label=self.text(f"design.choose_{part.replace('.', '_')}"))

@@ -1,0 +1,383 @@
+"""A scan as a case takes it: roughness as a stylus gives it, spectrum, and what was not seen."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import digamma
+
+from underfoot.core import DataError, SourcedValue, display
+from underfoot.core.arrays import Array
+from underfoot.core.presentation import Presentable, Table
+
+from .filter import short_waves
+from .heights import HeightMap, Profile, shortest_derivable_wavelength
+from .prepare import filled, levelled
+from .read import read_surface
+from .roughness import STANDARDS, profile_roughness
+from .spectrum import (
+    IsotropicSpectrum,
+    ProfileSpectrum,
+    averaged,
+    isotropic_from_profile,
+    isotropic_spectrum,
+    profile_spectrum,
+)
+
+CUTOFFS = (0.8e-3, 0.25e-3, 0.08e-3)
+"""Cut-offs of ISO 21920-3, m; the longest that the scan holds is taken."""
+SHORT_CUTOFF = 2.5e-6
+"""lambda_s that goes with a cut-off of 0.8 mm, m; a coarser instrument takes its own resolution."""
+SECTIONS, LINES = 5, 32
+NO_FLOOR = 50e-9
+"""Rq (m) below which a surface is no floor or sole: the smoothest steel read has 90 nm."""
+NO_ROUGHNESS = 300e-6
+SPIKE = 10.0
+"""Robust standard deviations by which a dead point stands out of its neighbours."""
+QUANTITIES = {
+    "ra": ("Ra", "m", "mean deviation"),
+    "rq": ("Rq", "m", "root mean square"),
+    "rz": ("Rz", "m", "mean peak to valley"),
+    "rp": ("Rp", "m", "mean highest peak (Rpm of ISO 4287)"),
+    "rt": ("Rt", "m", "highest peak to lowest valley"),
+    "rdq": ("Rdq", "1", "rms slope"),
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scan(Presentable):
+    """Roughness numbers of a scan with their standard errors, and its isotropic spectrum.
+
+    ``values`` by the names of ``QUANTITIES`` (m and 1), over lines along both axes of a map.
+    ``hurst`` with its standard error and ``roll_off`` (m, None where the spectrum keeps rising) are
+    the power law C ~ q^(-2 (1 + H)) through ``spectrum``; ``ends`` (m^4) are its values at the
+    longest and the shortest measured wave, from which ``density`` goes on by it.
+    """
+
+    kind: ClassVar[str] = "scan"
+
+    name: str
+    surface: Profile | HeightMap
+    cutoff: float
+    values: Mapping[str, SourcedValue]
+    spectrum: IsotropicSpectrum
+    hurst: SourcedValue
+    roll_off: float | None
+    ends: tuple[float, float]
+    notes: tuple[str, ...]
+    short: str = ""
+    """What a scan shorter than the usual cut-off lacks."""
+
+    def __repr__(self) -> str:
+        return f"<Scan {self.name}: Rq {self.values['rq']}>"[:199]
+
+    @property
+    def waves(self) -> tuple[float, float]:
+        """Longest and shortest wave (m) that was measured."""
+        low, high = self.spectrum.reliable
+        return 2 * math.pi / low, 2 * math.pi / high
+
+    def density(self, wavenumber: ArrayLike) -> Array:
+        """Return C(q) (m^4): as measured, beyond it the power law; flat above the roll-off."""
+        q = np.asarray(wavenumber, dtype=float)
+        known = self.spectrum
+        inside = np.exp(
+            np.interp(np.log(q), np.log(known.wavenumber), np.log(np.maximum(known.density, 1e-99)))
+        )
+        low, high = known.reliable
+        falling = -2 * (1 + (self.hurst.value or 0.0))
+        longer = self.ends[0] * (1.0 if self.roll_off else (q / low) ** falling)
+        shorter = self.ends[1] * (q / high) ** falling
+        return np.where(q < low, longer, np.where(q > high, shorter, inside))
+
+    def headline(self) -> tuple[str, ...]:
+        """Return Rq, Ra and the waves behind them."""
+        rq, waves = self.values["rq"], [display(wave, "m") for wave in self.waves]
+        return (
+            f"Rq {display(rq.value or 0.0, 'm')}, Ra {display(self.values['ra'].value or 0.0, 'm')}"
+            f" after a cut-off of {display(self.cutoff, 'm')}; waves from {waves[1]} to {waves[0]} "
+            "were measured.",
+        )
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return why the heights are none of a floor or sole, and which waves they lack."""
+        return tuple(filter(None, (_unlikely(self.values["rq"].value or 0.0), self.short)))
+
+    def table(self) -> Table:
+        """Return the numbers with their standard errors."""
+
+        def shown(value: SourcedValue) -> str:
+            if value.value is None:
+                return "not estimated"
+            spread = (
+                "" if value.uncertainty is None else f" ± {display(value.uncertainty, value.unit)}"
+            )
+            return display(value.value, value.unit) + spread
+
+        rows = [
+            (QUANTITIES[name][0], shown(value), value.reason or QUANTITIES[name][2])
+            for name, value in self.values.items()
+        ]
+        roll = "none" if self.roll_off is None else display(self.roll_off, "m")
+        rows += [
+            ("Hurst exponent", shown(self.hurst), self.hurst.note),
+            ("Roll-off", roll, "longer waves carry no more height"),
+            ("Longest wave", display(self.waves[0], "m"), "half the scan"),
+            ("Shortest wave", display(self.waves[1], "m"), "what instrument and spacing resolve"),
+        ]
+        return Table("Roughness", ("Quantity", "Value", "Remark"), rows)
+
+    def remarks(self) -> dict[str, Sequence[str]]:
+        """Return what the instrument did not see and what was done to the heights."""
+        return {"Notes": (*self.notes, *self.surface.processing)}
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the numbers in SI."""
+        content = {name: value.value for name, value in self.values.items()}
+        errors = {f"{name}_error": value.uncertainty for name, value in self.values.items()}
+        return {
+            "kind": self.kind,
+            "file": self.name,
+            **content,
+            **errors,
+            "hurst": self.hurst.value,
+            "hurst_error": self.hurst.uncertainty,
+            "roll_off_m": self.roll_off,
+            "cutoff_m": self.cutoff,
+            "longest_wave_m": self.waves[0],
+            "shortest_wave_m": self.waves[1],
+            "notes": [*self.notes, *self.surface.processing],
+        }
+
+    def data_tables(self) -> Mapping[str, Table]:
+        """Return the spectrum: wavelength, wave number, density."""
+        q = self.spectrum.wavenumber
+        rows = np.column_stack([2 * np.pi / q, q, self.spectrum.density]).tolist()
+        return {"spectrum": Table("", ("wavelength m", "wave number rad/m", "density m^4"), rows)}
+
+
+def _unlikely(rq: float) -> str:
+    """Return why an Rq (m) is none of a floor or sole; "" for a likely one."""
+    if rq < NO_FLOOR:
+        return (
+            f"an Rq of {display(rq, 'm')} is no floor and no sole (the smoothest steel floor has "
+            "90 nm): is the unit of the heights right?"
+        )
+    if rq > NO_ROUGHNESS:
+        return f"an Rq of {display(rq, 'm')} is no roughness: is the unit of the heights right?"
+    return ""
+
+
+def read_scan(
+    path: Path,
+    *,
+    cutoff: float | None = None,
+    strict: bool = False,
+    length_unit: str | None = None,
+    height_unit: str | None = None,
+    spacing: float | None = None,
+) -> Scan:
+    """Return the roughness of a scan (profile or map) in any format of ``read_surface``.
+
+    Parameters:
+        cutoff: Lambda_c, m; None takes the longest of ISO 21920-3, at most 0.8 mm, that the scan
+            holds.
+        strict: Refuse heights that no floor or sole has, instead of warning.
+        length_unit, height_unit, spacing: Where the file does not name them; spacing in m.
+
+    Missing heights and single points that stand ten robust standard deviations out of their
+    neighbours (dead pixels) are interpolated, up to 5 % of all.
+
+    Raises:
+        DataError: Not readable, too many heights missing, shorter than the cut-off, no heights of a
+            floor or sole (``strict``).
+    """
+    units = {"length_unit": length_unit, "height_unit": height_unit, "spacing": spacing}
+    given = {name: value for name, value in units.items() if value is not None}
+    surface = _without_spikes(read_surface(path, fill_missing=True, **given))
+    notes, short = [], ""
+    lines = _lines(surface)
+    length = max(line.length for line in lines)
+    resolved = shortest_derivable_wavelength(lines[0])
+    if cutoff is None:
+        fitting = [one for one in CUTOFFS if one <= length and one >= 4 * resolved.wavelength]
+        if not fitting:
+            raise DataError(
+                f"a scan of {display(length, 'm')} that resolves waves of "
+                f"{display(resolved.wavelength, 'm')} holds no cut-off",
+                where=str(path),
+                allowed=f"{', '.join(display(one, 'm') for one in CUTOFFS)}: at most the length, "
+                "at least four of the shortest waves",
+                remedy="Measure a longer part, or with a smaller spacing",
+            )
+        cutoff = fitting[0]
+        if cutoff < CUTOFFS[0]:
+            short = (
+                f"shorter than the usual cut-off of {display(CUTOFFS[0], 'm')}: waves beyond "
+                f"{display(cutoff, 'm')} are not in Ra and Rq, which are too low. Measure 4.8 mm "
+                "or more"
+            )
+    elif cutoff > length:
+        raise DataError(
+            f"a scan of {display(length, 'm')} for a cut-off of {display(cutoff, 'm')}",
+            where=str(path),
+            allowed=f"at most {display(length, 'm')}; a standard takes six cut-offs",
+            remedy="Measure a longer part, or leave the cut-off out to take the longest that fits",
+        )
+    values, sections = _numbers(lines, cutoff, max(SHORT_CUTOFF, resolved.wavelength))
+    if sections < SECTIONS:
+        notes.append(f"{sections} sections of {display(cutoff, 'm')} where a standard takes five")
+    if resolved.wavelength > SHORT_CUTOFF:
+        notes.append(f"waves below {display(resolved.wavelength, 'm')} not seen: {resolved.reason}")
+    if short:
+        values = {
+            name: replace(value, source=f"{value.source}; {short}")
+            for name, value in values.items()
+        }
+    unlikely = _unlikely(values["rq"].value or 0.0)
+    if strict and unlikely:
+        raise DataError(
+            unlikely.partition(":")[0],
+            where=str(path),
+            allowed=f"{display(NO_FLOOR, 'm')} to {display(NO_ROUGHNESS, 'm')}",
+            remedy='Name the unit of the heights (height_unit = "mm"), or write rq yourself',
+        )
+    if isinstance(surface, Profile):
+        measured = profile_spectrum(levelled(surface))
+        spectrum = _smoothed(isotropic_from_profile(measured))
+    else:
+        measured = isotropic_spectrum(surface)
+        spectrum = _by_decades(measured)
+    hurst, roll_off, ends = _power_law(measured, spectrum)
+    if isinstance(surface, Profile):
+        notes.append("one direction measured: the spectrum counts as that of every direction")
+    notes += [note for note in spectrum.notes if "levelled" in note]
+    return Scan(
+        *(Path(path).name, surface, cutoff, values, spectrum, hurst, roll_off, ends),
+        *(tuple(notes), short),
+    )
+
+
+def _without_spikes(surface: Profile | HeightMap) -> Profile | HeightMap:
+    """Return the surface with dead points interpolated; it says how many."""
+    from scipy.ndimage import median_filter
+
+    z = levelled(surface).heights
+    robust = 1.4826 * float(np.median(np.abs(z - np.median(z))))
+    dead = np.abs(z - median_filter(z, size=5, mode="nearest")) > SPIKE * robust
+    if not dead.any() or robust == 0.0:
+        return surface
+    heights, note = filled(np.where(dead, np.nan, surface.heights))
+    note = note.replace(
+        "missing heights", "points stand out of their neighbours (dead pixels) and are"
+    )
+    return surface.changed(heights, note)
+
+
+def _lines(surface: Profile | HeightMap) -> list[Profile]:
+    """Return the profile, or up to 32 evenly spaced lines along each axis of a map."""
+    if isinstance(surface, Profile):
+        return [surface]
+    lines = []
+    for heights in (surface.heights.T, surface.heights):
+        chosen = np.unique(np.linspace(0, len(heights) - 1, LINES).astype(int))
+        lines += [
+            Profile(line, surface.spacing, resolution=surface.resolution, periodic=surface.periodic)
+            for line in heights[chosen]
+        ]
+    return lines
+
+
+def _numbers(
+    lines: Sequence[Profile], cutoff: float, short: float
+) -> tuple[dict[str, SourcedValue], int]:
+    """Return the numbers over all lines that hold the cut-off, and the sections of a line.
+
+    Means of the lines, of Rq and Rdq root mean squares. The standard error is the spread of Rq
+    between sections over the root of those that do not overlap: lines within a cut-off of each
+    other see the same surface.
+    """
+    lines = [line for line in lines if line.length >= cutoff]
+    shortest = min(line.length for line in lines)
+    count = int((shortest - 2 * lines[0].spacing) / cutoff) - 1
+    ends, count = ("drop", min(count, SECTIONS)) if count >= 1 else ("regression", 1)
+    short_cutoff = short if short < cutoff / 4 else None
+    read = [
+        profile_roughness(line, cutoff, short_cutoff, sections=count, ends=ends) for line in lines
+    ]
+    pieces = []
+    for line in lines:
+        rough = short_waves(levelled(line), cutoff, ends).heights
+        size = round(cutoff / line.spacing)
+        pieces += [np.std(rough[n * size : (n + 1) * size]) for n in range(count)]
+    apart = max(1, round(shortest / cutoff)) if len(lines) > 1 else 1
+    independent = min(len(pieces), count * apart)
+    spread = float(np.std(pieces, ddof=1) / np.mean(pieces)) if len(pieces) > 1 else None
+    source = f"{STANDARDS[0]}, cut-off {display(cutoff, 'm')}, {count} sections"
+    values = {}
+    for name, (_, unit, _) in QUANTITIES.items():
+        found = [getattr(one, name) for one in read]
+        if any(value is None for value in found):
+            values[name] = SourcedValue(None, unit, reason=read[0].not_estimated[name])
+            continue
+        power = 2 if name in ("rq", "rdq") else 1
+        mean = float(np.mean(np.power(found, power)) ** (1 / power))
+        error = None if spread is None else mean * spread / math.sqrt(independent)
+        values[name] = SourcedValue(mean, unit, source=source, uncertainty=error)
+    return values, count
+
+
+def _by_decades(spectrum: IsotropicSpectrum) -> IsotropicSpectrum:
+    """Return the reliable part of a map's spectrum, averaged over a twelfth of a decade."""
+    q, density, _ = averaged(spectrum)
+    edges = np.concatenate([[q[0]], np.sqrt(q[1:] * q[:-1]), [q[-1]]])
+    return replace(spectrum, wavenumber=q, density=density, area=np.pi * np.diff(edges**2))
+
+
+def _smoothed(spectrum: IsotropicSpectrum) -> IsotropicSpectrum:
+    """Return the spectrum with q^2 C averaged over five values: one profile leaves gaps in it."""
+    power = np.pad(spectrum.wavenumber**2 * spectrum.density, 2, mode="edge")
+    mean = np.convolve(power, np.full(5, 0.2), "valid") / spectrum.wavenumber**2
+    return replace(spectrum, density=mean)
+
+
+def _power_law(
+    measured: ProfileSpectrum | IsotropicSpectrum, spectrum: IsotropicSpectrum
+) -> tuple[SourcedValue, float | None, tuple[float, float]]:
+    """Return the Hurst exponent, roll-off (m) and C (m^4) at both ends, least squares in ln C.
+
+    C = level for q below the roll-off, level (q / q_r)^(-2 (1 + H)) above, (q / q_r)^(-1 - 2 H)
+    of a profile; roll-offs within the longest half of the decades are tried, none included. Values
+    of few waves count less, and their mean logarithm is corrected.
+    """
+    q, c, count = averaged(measured)
+    log_q, log_c = np.log(q), np.log(c) - digamma(count) + np.log(count)
+    weight = np.sqrt(np.minimum(count, 30))
+    best: tuple[float, float, float, float] | None = None
+    for turn in [log_q[0], *log_q[1 : max(2, q.size // 2)]]:
+        basis = np.column_stack([np.ones(q.size), np.maximum(log_q - turn, 0.0)])
+        solved = np.linalg.lstsq(basis * weight[:, None], log_c * weight, rcond=None)[0]
+        rest = float(np.sum((weight * (log_c - basis @ solved)) ** 2))
+        if best is None or rest < 0.9 * best[0]:
+            inverse = np.linalg.inv((basis * weight[:, None]).T @ (basis * weight[:, None]))
+            error = math.sqrt(rest / max(q.size - 3, 1) * inverse[1, 1]) / 2
+            best = (rest, turn, float(solved[1]), error)
+    assert best is not None
+    _, turn, slope, error = best
+    exponent = -(slope + (1 if isinstance(measured, ProfileSpectrum) else 2)) / 2
+    bounded = min(max(exponent, 0.0), 1.0)
+    note = "of the power law that continues the spectrum"
+    if bounded != exponent:
+        note += f"; the fit gives {exponent:.2f}, which no self-affine surface has"
+    hurst = SourcedValue(bounded, "1", source="fit to the spectrum", uncertainty=error, note=note)
+    log_q = np.log(spectrum.wavenumber)
+    shape = -2 * (1 + bounded) * np.maximum(log_q - turn, 0.0)
+    away = np.log(np.maximum(spectrum.density, 1e-99)) - shape
+    ends = math.exp(np.mean(away[:5]) + shape[0]), math.exp(np.mean(away[-5:]) + shape[-1])
+    return hurst, None if turn == np.log(q[0]) else 2 * math.pi / math.exp(turn), ends
