@@ -1,5 +1,6 @@
 """``underfoot surface``: roughness of a scan, and the lines of a case that take it."""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -38,16 +39,14 @@ def surface(
     def length(name: str, text: str | None) -> float | None:
         return to_si(text, "m", where=f"--{name}") if text else None
 
-    units = {"length_unit": length_unit, "height_unit": height_unit}
-    lengths = length("cutoff", cutoff), length("spacing", spacing)
-    shared.answer(
-        scan.name,
-        lambda progress: read_scan(scan, cutoff=lengths[0], spacing=lengths[1], **units),
-    )
+    lengths = {"cutoff": length("cutoff", cutoff), "spacing": length("spacing", spacing)}
+    read = partial(read_scan, scan, length_unit=length_unit, height_unit=height_unit, **lengths)
+    shared.answer(scan.name, lambda progress: read())
     if shared.json:
         return
     print("\nA case beside it takes the scan with these lines ([shoe.roughness] for a sole):\n")
     print("[floor.roughness]")
-    for name, value in {"file": scan.name, "cutoff": cutoff, "spacing": spacing, **units}.items():
+    given = {"file": scan.name, "cutoff": cutoff, "spacing": spacing}
+    for name, value in (given | {"length_unit": length_unit, "height_unit": height_unit}).items():
         if value:
             print(f'{name} = "{value}"')
