@@ -7,10 +7,12 @@ from typing import Any
 from underfoot.case import Case
 from underfoot.core import Progress, silent
 from underfoot.film import FilmModel, NewtonianFilm
+from underfoot.friction import FrictionLaw
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
 from underfoot.shoe import SoleMap
 from underfoot.sole_contact import SensorReading
 from underfoot.sole_contact.compliance import Compliance
+from underfoot.sole_contact.lug_edges import EdgedLaw, LugInlet
 from underfoot.sole_contact.motion_history import solve_history
 from underfoot.sole_contact.sole_state import SoleState, SolverSettings
 from underfoot.sole_contact.solver import SoleContact, solve_sliding
@@ -52,6 +54,7 @@ def solved(parts: Prepared, progress: Progress = silent) -> Solution:
         parts.compliance,
         parts.asperities,
         parts.film,
+        parts.local_law,
         watch=recorder,
         progress=progress,
     )
@@ -74,8 +77,9 @@ def solved_at(
     """
     case = parts.case
     sole = sole_map(case, spacing, shift=place.shift, turn=place.turn)
-    compliance, more = parts.compliance_on(sole, place.turn), {"finer": finer, "progress": progress}
-    return sole, solved_motion(case, sole, compliance, parts.asperities, parts.film, **more)
+    compliance, law = parts.compliance_on(sole, place.turn), parts.law_on(sole)
+    more: Any = {"finer": finer, "progress": progress}
+    return sole, solved_motion(case, sole, compliance, parts.asperities, parts.film, law, **more)
 
 
 def averaged(
@@ -126,24 +130,36 @@ def solver_settings(
     )
 
 
+def edge_inlet(case: Case, law: FrictionLaw | EdgedLaw) -> LugInlet | None:
+    """Return what the edges of lugs let in; None where the local friction knows none."""
+    if not isinstance(law, EdgedLaw):
+        return None
+    return law.inlet(case.motion.normal_force, case.motion.speed)
+
+
 def solved_motion(
     case: Case,
     sole: SoleMap,
     compliance: Compliance,
     asperities: PressureGapLaw,
     film: FilmModel | None,
+    law: FrictionLaw | EdgedLaw,
     *,
     finer: float = 1,
     watch: Callable[[SoleState], None] | None = None,
     progress: Progress = silent,
 ) -> SoleContact:
-    """Return contact and film at the end of the case's motion; ``finer``: ``solver_settings``."""
+    """Return contact and film at the end of the case's motion; ``finer``: ``solver_settings``.
+
+    ``law`` is the local friction: where it knows the edges of lugs, these say what film enters.
+    """
     motion, history, parts = case.motion, case.motion.build(), (sole, compliance, asperities)
     common: dict[str, Any] = {
         "viscosity": None if film is None else film.viscosity,
         "settings": solver_settings(case, film, finer=finer),
         "progress": progress,
         "watch": watch,
+        "inlet": edge_inlet(case, law),
     }
     if history is not None:
         return solve_history(*parts, history, map_angle=motion.shoe_angle, **common)

@@ -1,7 +1,8 @@
 """Edges of lugs: the film that a leading edge lets in, and the suction of the contact behind it.
 
 A film solver on cells of half a millimetre does not see what the edge of a lug does on tenths of a
-millimetre. Where a lug slides out of a groove full of fluid, its edge lets in a film
+millimetre. Where a lug slides out of a groove full of fluid, its edge lets in a film (``lug_inlet`` gives it to
+the solver)
 
     h0 = 1.06 (eta V / p)^0.6 r^0.4 (10 p / E)^0.15 exp(-k)
     k = min(0.27 mu (min(w, 2 h) / r)^0.5, 1)
@@ -12,8 +13,7 @@ with up to the suction p_a over the share
 
     a = lambda (1 - (h0 / u)^4) (1 - l / w) (1 - 4/3 (l w)^0.5 / b),  l = u^2 p_a / (1.5 eta V)
 
-Contact friction of the lug is multiplied by 1 - f + s, f the film's share of its load and
-s = a p_a / p. Traction tilts a lug by statics: the pressure's centre moves forward by c mu h, and
+Contact friction of the lug is multiplied by 1 + s, s = a p_a / p. Traction tilts a lug by statics: the pressure's centre moves forward by c mu h, and
 the trailing part lifts off (lambda) beyond 0.12 of the length. Closed forms fitted to plane-strain
 finite elements coupled with Reynolds' equation and rough contact; over blocks they miss ln of the
 contact friction by 0.31 (root mean square), nearly all of it where the film sets in. A rib along
@@ -72,6 +72,11 @@ class LugEdges:
     edge: Array
     fed: Array
 
+    @property
+    def reach(self) -> Array:
+        """Root of the length over which friction turns an edge down, over its radius, (lugs,)."""
+        return np.sqrt(np.minimum(self.length, 2 * self.height) / self.edge)
+
     def on(self, cells: CellState) -> LugEdges:
         """Return the lugs on finer cells."""
         return replace(self, label=self.label.ravel()[cells.square], area=cells.area)
@@ -82,16 +87,27 @@ class LugEdges:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class LugInlet:
+    """What says how much film the edges of lugs let in.
+
+    ``cof`` is the contact friction of the lugs, ``modulus`` Young's modulus of the rubber, Pa.
+    """
+
+    edges: LugEdges
+    cof: float
+    modulus: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class LugFriction:
     """What the edges do to each lug, (lugs,).
 
     ``load`` on its contact (pressure times cells, Pa; 0 of a lug that hardly bears, which is
-    left as it is), the shares of it on film and of suction, and the factor on its contact friction.
+    left as it is), suction over it, and the factor on its contact friction.
     """
 
     edges: LugEdges
     load: Array
-    film: Array
     suction: Array
     factor: Array
 
@@ -108,13 +124,8 @@ class LugFriction:
     def words(self) -> str:
         """Return what the edges do in one sentence."""
         weight = self.load / max(self.load.sum(), 1e-30)
-        factor, film, pull = (
-            float(weight @ each) for each in (self.factor, self.film, self.suction)
-        )
-        return (
-            f"contact friction of {np.count_nonzero(self.load)} lugs times {factor:.2f}: film at "
-            f"their edges carries {film:.0%} of their load, suction adds {pull:.0%}"
-        )
+        count = np.count_nonzero(self.load)
+        return f"suction behind the edges of {count} lugs adds {weight @ self.suction:.0%} of load"
 
 
 def lug_edges(
@@ -196,28 +207,23 @@ def lug_friction(
     # the lug turns about its root: half the moment of the traction moves the pressure forward
     shift = np.maximum(0.5 - 0.012 / slender**2, 0.0)
     shift += np.where(slender > 0.25, ON_RUBBER / np.sqrt(slender), 0.0)
-    gaps = np.linspace(0.0, _widest_gap(asperities), GAPS)
-    pressures = asperities.pressure(gaps)
-    reach = np.sqrt(np.minimum(edges.length, 2 * edges.height) / edges.edge)
+    gaps, pressures = gap_table(asperities)
     mu, pull = np.array(cof_contact), np.zeros_like(p)
-    film = np.zeros_like(p)
     # fixed point a lug, relaxed by what the last step turned the change by (Aitken's rule)
     share, before = np.full_like(p, RELAXATION[0]), np.zeros((2, p.size))
     for _ in range(STEPS):
         forward = np.minimum(shift * mu * slender, 0.47)
         lifted = np.maximum(1 - LIFT * np.maximum(forward - LIFTING, 0.0), 0.12)
         most = p * (1 + pull) / lifted
-        inlet = INLET * (drag / most) ** 0.6 * edges.edge**0.4 * (10 * most / modulus) ** 0.15
-        inlet *= np.exp(-np.minimum(0.27 * mu * reach, 1.0))
+        inlet = let_in(drag, most, edges.edge, modulus, mu * edges.reach)
         dry = np.maximum(np.interp(most, pressures[::-1], gaps[::-1]), 1e-9)
         gap = (dry**4 + inlet**4) ** 0.25
-        film = np.clip(1 - np.interp(gap, gaps, pressures) / most, 0.0, 1.0) * (1 + pull)
         back = dry**2 * suction / (6 * LACKING * max(drag, 1e-12))
         emptied = lifted * np.maximum(1 - (inlet / dry) ** 4, 0.0)
         emptied *= np.maximum(1 - back / edges.length, 0.0)
         emptied *= np.maximum(1 - 4 / 3 * np.sqrt(back * edges.length) / edges.width, 0.0)
         sheared = drag / gap * (lifted - 0.5 * emptied) / p
-        now = cof_contact * np.maximum(1 - film + pull, 0.0) + sheared
+        now = cof_contact * (1 + pull) + sheared
         change = np.stack([now - mu, emptied * suction / p - pull])
         if np.abs(change[:, bears]).max(initial=0.0) < STILL:
             break
@@ -226,9 +232,8 @@ def lug_friction(
         share = np.clip(share, *RELAXATION)
         before = change
         mu, pull = np.stack([mu, pull]) + share * change
-    film, pull = (np.where(bears, edges.fed * each, 0.0) for each in (film, pull))
-    load = np.where(bears, load, 0.0)
-    return LugFriction(edges, load, film, pull, np.maximum(1 - film + pull, 0.0))
+    pull = np.where(bears, edges.fed * pull, 0.0)
+    return LugFriction(edges, np.where(bears, load, 0.0), pull, 1 + pull)
 
 
 def sum_by_lug(edges: LugEdges, values: Array | Mask) -> Array:
@@ -241,12 +246,26 @@ def _sums(label: NDArray[np.intp], count: int, values: ArrayLike) -> Array:
     return np.asarray(sums[1:], dtype=float)
 
 
-def _widest_gap(asperities: PressureGapLaw) -> float:
-    """Return a gap (m) at which the pressure is next to nothing."""
-    gap = 1e-6
-    while float(asperities.pressure(gap)) > 1.0 and gap < 1e-2:
-        gap *= 1.5
-    return gap
+def let_in(drag: float, pressure: Array, radius: Array, modulus: float, turned: Array) -> Array:
+    """Return the film h0 (m) that edges of a ``radius`` (m) let in.
+
+    Parameters:
+        drag: Viscosity times speed, Pa m.
+        pressure: Mean pressure behind the edge, Pa.
+        modulus: Young's modulus of the lugs, Pa.
+        turned: Friction of the lug times ``LugEdges.reach``: how far the edge is turned down.
+    """
+    film = INLET * (drag / pressure) ** 0.6 * radius**0.4 * (10 * pressure / modulus) ** 0.15
+    return film * np.exp(-np.minimum(0.27 * turned, 1.0))
+
+
+def gap_table(asperities: PressureGapLaw) -> tuple[Array, Array]:
+    """Return gaps (m) from 0 to where the pressure is next to nothing, and the pressures (Pa)."""
+    widest = 1e-6
+    while float(asperities.pressure(widest)) > 1.0 and widest < 1e-2:
+        widest *= 1.5
+    gaps = np.linspace(0.0, widest, GAPS)
+    return gaps, asperities.pressure(gaps)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -269,6 +288,14 @@ class EdgedLaw:
         return self._lugs(
             self.law(contact_pressure, speed, film_thickness), contact_pressure, speed
         )
+
+    def inlet(self, normal_force: float, speed: float) -> LugInlet:
+        """Return what the edges let in under a load (N), at a speed (m/s)."""
+        area = float((self.edges.length * self.edges.width).sum())
+        pressure = np.full(1, normal_force / area)
+        parts = self.law(pressure, speed, np.full(1, FAR_FILM))
+        cof = float((parts.adhesion + parts.hysteresis)[0] / pressure[0])
+        return LugInlet(self.edges, cof, self.modulus)
 
     def _lugs(self, parts: FrictionParts, contact_pressure: Array, speed: float) -> LugFriction:
         touching = np.where(contact_pressure > 0, contact_pressure, 1.0)
