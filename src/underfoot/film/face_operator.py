@@ -131,10 +131,11 @@ class Faces:
 
 
 class Inlet(NamedTuple):
-    """What the edges of lugs, finer than the cells, let in through the x faces, (faces,)."""
+    """What edges of lugs, finer than the cells, let through the x faces, (faces,)."""
 
-    most: Array  # m, gap of the largest shear flow; inf where no edge is
-    open: Array  # share of the pressure flow that passes, 1 where no edge is
+    film: Array  # m, gap of the shear flow that a closed edge lets in
+    closed: Array  # how far the edge is closed: 0 where cells hold it or none is, 1
+    passing: Array  # share of the pressure flow that passes
 
 
 class FaceMatrix(NamedTuple):
@@ -343,12 +344,9 @@ def face_operator(
         parted = lean[0] != lean[1]
         shear_gap = upwind_blend(a, b, shear_gap, upstream, from_a=speed < 0, steps=parted)
     if inlet is not None:
-        held = shear_gap.value > inlet.most
-        shear_gap = FaceValue(
-            np.minimum(shear_gap.value, inlet.most),
-            *(np.where(held, 0.0, d) for d in shear_gap[1:]),
-        )
-        kx = FaceValue(*(inlet.open * part for part in kx))
+        shear_gap = FaceValue(*((1 - inlet.closed) * part for part in shear_gap))
+        shear_gap = shear_gap._replace(value=shear_gap.value + inlet.closed * inlet.film)
+        kx = FaceValue(*(inlet.passing * part for part in kx))
     carry = FaceValue(*(faces.spacing * speed * part for part in shear_gap))
     m, dm = centre.value, slope
     north, south = faces.north, faces.south

@@ -1,8 +1,8 @@
 """Edges of lugs: the film that a leading edge lets in, and the suction of the contact behind it.
 
 A film solver on cells of half a millimetre does not see what the edge of a lug does on tenths of a
-millimetre. Where a lug slides out of a groove full of fluid, its edge lets in a film (``lug_inlet`` gives it to
-the solver)
+millimetre. Where a lug slides out of a groove full of fluid, its edge lets in a film, which
+``lug_inlet`` gives to the solver:
 
     h0 = 1.06 (eta V / p)^0.6 r^0.4 (10 p / E)^0.15 exp(-k)
     k = min(0.27 mu (min(w, 2 h) / r)^0.5, 1)
@@ -13,11 +13,11 @@ with up to the suction p_a over the share
 
     a = lambda (1 - (h0 / u)^4) (1 - l / w) (1 - 4/3 (l w)^0.5 / b),  l = u^2 p_a / (1.5 eta V)
 
-Contact friction of the lug is multiplied by 1 + s, s = a p_a / p. Traction tilts a lug by statics: the pressure's centre moves forward by c mu h, and
-the trailing part lifts off (lambda) beyond 0.12 of the length. Closed forms fitted to plane-strain
-finite elements coupled with Reynolds' equation and rough contact; over blocks they miss ln of the
-contact friction by 0.31 (root mean square), nearly all of it where the film sets in. A rib along
-the sliding has no such edge.
+Contact friction of the lug is multiplied by 1 + s, s = a p_a / p. Traction tilts a lug by statics:
+the pressure's centre moves forward by c mu h, and the trailing part lifts off (lambda) beyond 0.12
+of the length. Closed forms fitted to plane-strain finite elements coupled with Reynolds' equation
+and rough contact; over blocks they miss ln of the contact friction by 0.31 (root mean square),
+nearly all of it where the film sets in. A rib along the sliding has no such edge.
 """
 
 from __future__ import annotations

@@ -33,8 +33,6 @@ from .problem import Problem, State
 REACH = 0.5e-3
 """m behind an edge over which pressure and gap count as those at it: some radii of a moulded one.
 At 0.3 and 0.6 mm the film load is the same within 1 %, at 2 mm half (bars across)."""
-PEAK = 1.5
-"""Peak of the pressure at an edge over that behind it (``docs/physics/lug_edges.md``)."""
 LEAST = 1e3  # Pa, of a lug that hardly bears: its edge is open
 
 
@@ -55,26 +53,30 @@ class LeadingEdges:
         self._edge = edges.edge[lug], inlet.modulus, inlet.cof * edges.reach[lug]
         self._softness = np.minimum(edges.length, 2 * edges.height)[lug] / inlet.modulus
         self._mean = _mean_behind(rows, land, backward=backward)
+        self._label, self._lug = np.where(rows.land, label, 0), lug + 1
+        self._width, self._area = rows.width, np.bincount(self._label, rows.area)
 
     def inlet(self, problem: Problem, state: State, count: int) -> Inlet:
         """Return what the edges let in, as ``State`` was, at all of ``count`` faces."""
         assert problem.viscosity is not None
-        most, passing = np.full(count, np.inf), np.ones(count)
+        film, closed, passing = np.ones(count), np.zeros(count), np.ones(count)
         land, speed = self._land, abs(problem.wall_speed)
         bounded = np.clip(state.gap, SMALLEST_GAP, problem.largest_gap)
-        pressure = np.maximum(self._mean @ (state.pressure / problem.contact_share), LEAST)
+        of_lug = np.bincount(self._label, state.pressure * self._width) / self._area
+        beside = np.maximum(self._mean @ (state.pressure / problem.contact_share), LEAST)
         gaps, pressures = gap_table(problem.law)
-        dry = np.interp(PEAK * pressure, pressures[::-1], gaps[::-1])
-        film = let_in(problem.viscosity * speed, pressure, *self._edge)
-        closed = np.maximum((dry**4 + film**4) ** 0.25, SMALLEST_GAP)
-        wedge = (self._mean @ bounded / (pressure * self._softness)) ** 2
-        most[self.faces] = closed * (1 + wedge)
+        dry = np.interp(beside, pressures[::-1], gaps[::-1])
+        nominal = np.maximum(np.minimum(beside, of_lug[self._lug]), LEAST)
+        let = let_in(problem.viscosity * speed, nominal, *self._edge)
+        film[self.faces] = let = np.maximum((dry**4 + let**4) ** 0.25, SMALLEST_GAP)
+        wedge = (self._mean @ bounded / (beside * self._softness)) ** 2
+        closed[self.faces] = 1 / (1 + wedge)
         if speed:
             fluid = np.maximum(state.fluid[land] / problem.film_share[land], 0.0)
             pressed = problem.conductance(bounded[land]).value * fluid / self._way
-            out = (pressed / (0.5 * speed * closed)) ** 2 + wedge
+            out = (pressed / (0.5 * speed * let)) ** 2 + wedge
             passing[self.faces] = out / (1 + out)
-        return Inlet(most, passing)
+        return Inlet(film, closed, passing)
 
 
 def _mean_behind(rows: RowCells, land: Indices, *, backward: bool) -> sp.csr_matrix:
