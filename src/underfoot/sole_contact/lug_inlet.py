@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
+from scipy.ndimage import grey_dilation
 
 from underfoot.film.face_operator import Inlet
 from underfoot.shoe.row_cells import Indices, RowCells
@@ -41,7 +42,9 @@ class LeadingEdges:
 
     def __init__(self, inlet: LugInlet, rows: RowCells, *, backward: bool) -> None:
         land, ahead = (rows.west, rows.east) if backward else (rows.east, rows.west)
-        label = inlet.edges.label.ravel()[rows.parent]
+        lugs = inlet.edges.label
+        # finer cells reach into the squares beside their lug
+        label = np.where(lugs > 0, lugs, grey_dilation(lugs, size=3)).ravel()[rows.parent]
         inside = np.isfinite(rows.clearance[ahead])
         at_edge = rows.land[land] & (label[land] > 0) & ~rows.land[ahead] & inside
         self.faces = np.flatnonzero(at_edge)
