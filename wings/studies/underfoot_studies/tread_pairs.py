@@ -6,7 +6,7 @@ learned from (``underfoot.friction.tread_error``).
 
 import csv
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -33,8 +33,14 @@ def tread_contrasts() -> list[Contrast]:
     return [one for one in every if set(one.topic.split(", ")) <= TREAD and not one.reason]
 
 
-def computed_pairs() -> Iterator[TreadPair]:
-    """Yield each published pair with its computed ln ratio, on the quick grid.
+def cof_and_draws(case: Case) -> Array:
+    """Return COF of a case on the quick grid, and its draws (1 + draws,)."""
+    result = run(case, quick=True)
+    return np.append(result.value("cof"), result.data["cof_draws"].values)
+
+
+def computed_pairs(of_case: Callable[[Case], Array] = cof_and_draws) -> Iterator[TreadPair]:
+    """Yield each published pair with its computed ln ratio, from ``of_case``.
 
     Then each reading of a treaded shoe beside the COF computed of it, as the ratio to a sole
     without tread that is known: the second place is 0. The extremes of many treads count as a pair
@@ -42,7 +48,7 @@ def computed_pairs() -> Iterator[TreadPair]:
     model itself: of contact law, film and suction.
     """
     for one in tread_contrasts():
-        over, under = (_drawn(stand) for stand in (one.over, one.under))
+        over, under = (_drawn(stand, of_case) for stand in (one.over, one.under))
         ends = _published(one, under[0])
         second = _place(one.under.cases[0])
         names, case = (one.source, one.effect), one.over.cases[0]
@@ -55,7 +61,7 @@ def computed_pairs() -> Iterator[TreadPair]:
                 names, reading = (source.name, condition.id), condition.reading
                 with np.errstate(divide="ignore"):
                     ends = tuple(np.log((reading.low, reading.high)))
-                yield _pair(*names, stand.cases[0], ends, _drawn(stand), np.zeros(6))
+                yield _pair(*names, stand.cases[0], ends, _drawn(stand, of_case), np.zeros(6))
 
 
 def _pair(
@@ -76,14 +82,13 @@ def _pair(
     return TreadPair(source, effect, fluid, low, high, ratio, sd, first, second, extremes_of)
 
 
-def _drawn(stand: Stand) -> Array:
+def _drawn(stand: Stand, of_case: Callable[[Case], Array]) -> Array:
     """Return COF of what stands for a condition, and its draws (1 + draws,)."""
     rows = []
     for case in stand.cases:
-        result, error = run(case, quick=True), tread_error(resolved(case).viscosity_value)
-        draws = result.data["cof_draws"].values
-        off = error.draws(_place(case), samples=draws.size, seed=case.numerics.seed)
-        rows.append(np.append(result.value("cof"), draws * np.exp(-off)))
+        (cof, *draws), error = of_case(case), tread_error(resolved(case).viscosity_value)
+        off = error.draws(_place(case), samples=len(draws), seed=case.numerics.seed)
+        rows.append(np.append(cof, draws * np.exp(-off)))
     return np.mean(rows, axis=0) * stand.contact_time
 
 
