@@ -8,14 +8,17 @@ import pytest
 from scipy.optimize import brentq
 
 from underfoot.case import Case
+from underfoot.case.friction import PairOption
 from underfoot.compute.prepare import prepared
+from underfoot.compute.resolve import resolved
 from underfoot.compute.run import run
 from underfoot.compute.sole import sole_map
+from underfoot.core.catalogue import Catalogue
 from underfoot.friction import FrictionLaw
 from underfoot.rough_contact import ContactTable, ExponentialLaw
 from underfoot.shoe import SoleMap
 from underfoot.sole_contact import lug_edges as module
-from underfoot.sole_contact.lug_edges import LugEdges, lug_edges, lug_friction
+from underfoot.sole_contact.lug_edges import EdgedLaw, LugEdges, lug_edges, lug_friction
 from underfoot.surface import rms_slope, self_affine
 
 # A block 10 mm long and 5 mm high of 3 MPa at 100 kPa, pair of Rq 2 um, contact COF 0.3, full
@@ -302,3 +305,27 @@ def test_laws_that_hold_no_real_area_have_one_state():
     law = prepared(case, 1e-3, {}).local_law
     pressure = np.where(law.edges.label > 0, 3e5, 0.0)
     assert not law.lugs(pressure, 0.3, np.full_like(pressure, 1e-3)).wiped.any()
+
+
+@pytest.mark.parametrize("fluid", ["water", "detergent", "glycerol_50pct", "canola_oil"])
+@pytest.mark.parametrize("floor", Catalogue.load().names("floor"))
+def test_no_floor_of_the_catalogue_grips_more_wet_than_dry_behind_an_edge(floor, fluid):
+    """Wiped, with suction: a lug of the sharpest edge."""
+    parts = {"shoe": "work_shoe_full_tread", "floor": floor, "motion": "slip_tester_g4"}
+    wet, dry = (resolved(Case(**parts, contaminant=name)) for name in (fluid, "none"))
+    lug = one_lug(length=5e-3, width=5e-3, height=2.5e-3)
+    plain = PairOption().build(wet)
+    edged = EdgedLaw(
+        plain,
+        lug,
+        ExponentialLaw(wet.youngs_modulus, 0.49, wet.rq_value),
+        wet.youngs_modulus,
+        wet.viscosity_value,
+        suction=70e3,
+        dewetting=0.2,
+    )
+    pressure, film = np.array([[3e5]]), np.array([[1e-3]])
+    limit = PairOption().build(dry)(pressure, 0.3, film)
+    for speed in (0.03, 0.3, 1.0):
+        found = edged(pressure, speed, film)
+        assert found.adhesion + found.hysteresis <= limit.adhesion + limit.hysteresis
