@@ -17,11 +17,8 @@ from underfoot.friction.tread_error import PRIOR, TreadPair, log_evidence
 from underfoot.sole_contact.lug_edges import EdgedLaw
 from underfoot.sole_contact.solver import SoleContact
 
-from .tread_pairs import computed_pairs
+from .tread_pairs import FITTED, computed_pairs
 
-FITTED = ("blanchette_2015", "report_g6")
-"""A tread in water that grips four times another's, and two outsoles in 50 % glycerol: named before
-the fit, the one where wiping is most seen, the other where a pair is known."""
 STRESSES = (0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0)
 """S, Pa; at 0 lugs are in one mean state."""
 
