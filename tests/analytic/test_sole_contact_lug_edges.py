@@ -1,18 +1,35 @@
 """Edges of lugs: the closed forms against finite elements with film, their limits, the geometry."""
 
 import math
+from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
 from underfoot.case import Case
+from underfoot.case.friction import PairOption
+from underfoot.compute.prepare import prepared
+from underfoot.compute.resolve import resolved
 from underfoot.compute.run import run
 from underfoot.compute.sole import sole_map
-from underfoot.rough_contact import ExponentialLaw
+from underfoot.core.catalogue import Catalogue
+from underfoot.friction import FrictionLaw
+from underfoot.rough_contact import ContactTable, ExponentialLaw
 from underfoot.shoe import SoleMap
+from underfoot.sole_contact import layered_compliance, solve_sliding
 from underfoot.sole_contact import lug_edges as module
-from underfoot.sole_contact.lug_edges import LugEdges, lug_edges, lug_friction
+from underfoot.sole_contact.lug_edges import (
+    EdgedLaw,
+    LugEdges,
+    LugInlet,
+    let_in,
+    lug_edges,
+    lug_friction,
+)
+from underfoot.sole_contact.solver import SolverSettings
+from underfoot.surface import rms_slope, self_affine
 
 # A block 10 mm long and 5 mm high of 3 MPa at 100 kPa, pair of Rq 2 um, contact COF 0.3, full
 # suction: plane-strain elements coupled with Reynolds and rough contact, in time.
@@ -40,7 +57,9 @@ def one_lug(length=0.01, width=1.0, height=0.005, edge=1e-4, fed=1.0):
     return LugEdges(np.array([[1]]), np.ones((1, 1)), *arrays)
 
 
-def friction(edges=None, pressure=1e5, cof=0.3, drag=0.01, suction=1e5, rq=2e-6, modulus=3e6):
+def friction(
+    edges=None, pressure=1e5, cof=0.3, drag=0.01, suction=1e5, rq=2e-6, modulus=3e6, film_load=0.0
+):
     return lug_friction(
         edges or one_lug(),
         np.array([[pressure]]),
@@ -50,30 +69,90 @@ def friction(edges=None, pressure=1e5, cof=0.3, drag=0.01, suction=1e5, rq=2e-6,
         viscosity=drag,
         speed=1.0,
         suction=suction,
+        film_load=film_load,
     )
 
 
-def test_blocks_of_the_coupled_finite_elements():
-    """Within 6 % where the edge wipes; where the film sets in, off by up to a factor 1.7."""
-    errors = []
+def block(spacing, length=10e-3, height=5e-3):
+    """Return one lug across a sole 40 mm wide, a groove before and behind it."""
+    nx, ny = round(2 * length / spacing), round(0.04 / spacing)
+    x, y = ((np.arange(n) - 0.5 * (n - 1)) * spacing for n in (nx, ny))
+    land = np.broadcast_to((np.abs(x) < 0.5 * length)[:, None], (nx, ny)).copy()
+    depth, inside = np.full((nx, ny), height), np.ones((nx, ny), dtype=bool)
+    clearance = np.where(land, 0.0, height)
+    return SoleMap(x, y, clearance, inside, land, depth, spacing, np.zeros((4, 2)))
+
+
+@cache
+def block_film(radius, drag, spacing=1e-3):
+    """Return the share of its load that the film bears under the block of the finite elements."""
+    sole = block(spacing)
+    edges = lug_edges(sole, radius, worn_edge_radius=0.0)
+    load = 1e5 * np.count_nonzero(sole.land) * spacing**2
+    solved = solve_sliding(
+        sole,
+        layered_compliance(sole, modulus=3e6, poisson_ratio=0.49, thickness=0.02),
+        ExponentialLaw(3e6, 0.5, 2e-6),
+        viscosity=drag,
+        speed=1.0,
+        normal_force=load,
+        settings=SolverSettings(end_time=0.3),
+        inlet=LugInlet(edges, 0.3, 3e6),
+    )
+    return solved.fluid_load / load
+
+
+def test_film_and_friction_of_blocks_of_the_coupled_finite_elements():
+    """Film within 0.13 of the load; suction within 6 % of friction where the edge wipes."""
     for radius, rows in COUPLED.items():
-        for drag, film, pull, cof in rows:
-            found = friction(one_lug(edge=radius * 1e-3), drag=drag)
-            assert found.film.item() == pytest.approx(min(film, 1.0), abs=0.25)
-            contact = 0.3 * (1 - film + pull)
-            if film < 0.5:
-                errors.append(math.log(0.3 * found.factor.item() / contact))
-            assert cof > 0
+        for drag, film, pull, _ in rows:
+            borne = block_film(radius * 1e-3, drag)
+            assert borne == pytest.approx(min(film, 1.0), abs=0.13)
             if film < 0.05:
-                assert abs(errors[-1]) < 0.06
-    assert np.sqrt(np.mean(np.square(errors))) < 0.32
+                factor = friction(one_lug(edge=radius * 1e-3), drag=drag).factor.item()
+                assert (1 - borne) * factor == pytest.approx(1 - film + pull, rel=0.06)
+
+
+@pytest.mark.parametrize(("radius", "drag"), [(0.11e-3, 0.1), (0.83e-3, 0.01)])
+def test_film_under_a_block_does_not_depend_on_the_cells(radius, drag):
+    assert block_film(radius, drag, 0.5e-3) == pytest.approx(block_film(radius, drag), abs=0.03)
+
+
+def test_film_under_a_block_is_that_of_its_mirror_image_slid_back():
+    sole, law = block(1e-3), ExponentialLaw(3e6, 0.5, 2e-6)
+    body = layered_compliance(sole, modulus=3e6, poisson_ratio=0.49, thickness=0.02)
+    forth, back = (
+        solve_sliding(
+            sole,
+            body,
+            law,
+            viscosity=0.1,
+            speed=speed,
+            normal_force=40.0,
+            inlet=LugInlet(lug_edges(sole, 1e-4, worn_edge_radius=0.0), 0.3, 3e6),
+        )
+        for speed in (1.0, -1.0)
+    )
+    np.testing.assert_allclose(
+        back.fluid_pressure[::-1], forth.fluid_pressure, atol=1e-3 * forth.fluid_pressure.max()
+    )
 
 
 def test_sharp_edges_grip_more_than_round_ones_under_thick_fluid():
     """Ishizako et al. 2022: 0.11 mm above 0.83 mm."""
     for drag in (0.01, 0.03, 0.1):
-        sharp, rounded = (friction(one_lug(edge=r), drag=drag) for r in (0.11e-3, 0.83e-3))
-        assert sharp.factor.item() > 1.3 * rounded.factor.item()
+        sharp, rounded = (
+            (1 - block_film(r, drag)) * friction(one_lug(edge=r), drag=drag).factor.item()
+            for r in (0.11e-3, 0.83e-3)
+        )
+        assert sharp > 1.3 * rounded
+
+
+def test_a_lug_that_the_film_bears_has_no_suction():
+    pressed = {"pressure": 3e4, "drag": 0.05, "rq": 2e-6}
+    alone, afloat = (friction(film_load=film, **pressed).suction.item() for film in (0.0, 4e5))
+    assert alone > 0.3
+    assert afloat < 0.05
 
 
 def test_relaxation_by_aitkens_rule_ends_where_small_even_steps_do(monkeypatch):
@@ -84,7 +163,6 @@ def test_relaxation_by_aitkens_rule_ends_where_small_even_steps_do(monkeypatch):
     monkeypatch.setattr(module, "STEPS", 5000)
     monkeypatch.setattr(module, "STILL", 1e-9)
     assert quick == pytest.approx(friction(edges, drag=0.01).factor.item(), rel=1e-5)
-    assert quick == pytest.approx(1.168, abs=1e-3)
 
 
 def test_mean_pressure_of_a_lug_does_not_ask_which_cells_were_solved():
@@ -116,19 +194,15 @@ def test_fluid_from_the_sides_takes_two_parabolas_of_the_suction():
 
 
 def test_a_lug_longer_than_twice_its_height_wipes_no_better():
-    edges = (one_lug(length=length, height=2e-3, edge=0.83e-3) for length in (0.02, 0.04))
-    long, longer = (friction(each, suction=0.0) for each in edges)
-    assert 0.01 < long.film.item() < 0.99
-    assert longer.film.item() == pytest.approx(long.film.item(), rel=1e-9)
-    short = friction(one_lug(length=2e-3, height=2e-3, edge=0.83e-3), suction=0.0)
-    assert short.film.item() != pytest.approx(long.film.item(), rel=0.01)
+    edges = (one_lug(length=length, height=2e-3) for length in (2e-3, 0.02, 0.04))
+    short, long, longer = (each.reach.item() for each in edges)
+    assert short < long == longer
 
 
 def test_limits():
     slow = friction(drag=1e-9)
-    assert slow.film.item() == pytest.approx(0.0, abs=1e-6)
     assert slow.suction.item() == pytest.approx(0.0, abs=1e-6)  # fluid is drawn back in
-    assert friction(suction=0.0).factor.item() <= 1.0
+    assert friction(suction=0.0).factor.item() == 1.0
     assert friction(one_lug(fed=0.0)).factor.item() == 1.0  # no groove ahead of it
     assert friction(pressure=1e3).factor.item() == 1.0  # hardly bears
     assert friction(suction=1e5).factor.item() > friction(suction=5e4).factor.item()
@@ -176,7 +250,7 @@ def test_a_run_says_what_the_edges_do():
     assert "lug_edges" in with_edges.labels
     assert "lug_edges" not in without.labels
     assert with_edges.value("cof") > without.value("cof")
-    assert with_edges.value("fluid_load") == pytest.approx(without.value("fluid_load"), rel=1e-6)
+    assert with_edges.value("fluid_load") < without.value("fluid_load")  # edges wipe
     low, high = with_edges.scalars["cof"].interval
     assert low < with_edges.value("cof") < high
 
@@ -197,11 +271,8 @@ def test_wear_makes_the_edges_of_the_lugs_that_it_meets():
     moulded = lug_edges(worn, 0.4e-3, worn_edge_radius=WORN).edge
     assert moulded.min() < 0.2e-3  # wear takes a moulded round off
     assert moulded.max() == 0.4e-3
-    lifted = [
-        friction(one_lug(edge=float(edges.edge.max())), drag=0.03).film.item()
-        for edges in (before, after)
-    ]
-    assert lifted[1] > lifted[0]
+    let = let_in(0.03, np.full(2, 1e5), np.array([before.edge.max(), after.edge.max()]), 3e6, 0.0)
+    assert let[1] > let[0]
 
 
 @pytest.mark.parametrize(("forward", "fed"), [(True, 1.0), (False, 0.0)])
@@ -216,3 +287,109 @@ def test_a_lug_is_fed_by_the_groove_that_it_slides_into(forward, fed):
     assert edges.fed == pytest.approx([fed])
     assert edges.length == pytest.approx([4e-3])
     assert edges.width == pytest.approx([4e-3])
+
+
+WATER = 3e-4
+"""Viscosity times speed of water at 0.3 m/s, Pa m."""
+
+
+def probability(lug=None, drag=WATER, rq=2e-6, full_contact=7e5, dewetting=0.2, **more):
+    """Of the wiped state of one lug; full contact of a pair of Rq 2 um."""
+    states = {"cof_wiped": np.array([0.5]), "full_contact": full_contact, "dewetting": dewetting}
+    numbers = {"suction": 7e4, "modulus": 4e6, "viscosity": drag, "speed": 1.0} | states
+    lug = lug or one_lug(length=5e-3, width=5e-3, height=2.5e-3)
+    pair = ExponentialLaw(4e6, 0.5, rq)
+    found = lug_friction(lug, np.array([[3e5]]), np.array([0.15]), pair, **numbers | more)
+    assert 0 <= found.wiped.item() <= 1
+    return found.wiped.item()
+
+
+def test_a_contact_is_wiped_behind_an_edge_in_thin_fluids_on_smooth_pairs():
+    assert probability() > 0.5
+    assert probability(dewetting=0.0) == 0.0
+    assert probability(one_lug(length=5e-3, width=5e-3, fed=0.0)) == 0.0  # no edge
+    assert probability(drag=0.066) < 1e-9  # 90 % glycerol: the spots do not dry in time
+    assert probability(drag=WATER / 1e6) == 0.0  # so slow that the gap fills from behind
+    rough = {"rq": 18e-6, "full_contact": 3e6}  # of a rough sole: fluid is drawn back
+    assert probability(**rough) < 0.1
+    longer = one_lug(length=10e-3, width=20e-3)
+    assert probability(longer) > probability()  # it passes for longer
+
+
+def test_flow_through_the_gap_is_that_of_solved_contacts():
+    """At a twentieth and a fifth of E* h': a third of a smooth gap's, then sealed."""
+    surfaces = [
+        self_affine(128, 4.7e-6, 5e-6, 0.8, 600e-6, 18.8e-6, seed=seed, roll_off=150e-6)
+        for seed in (1, 2)
+    ]
+    slope = np.mean([rms_slope(one) for one in surfaces])
+    stiff = 4.4e6 / 0.75 * slope
+    nodes = np.array([0.02, 0.05, 0.1, 0.2]) * stiff
+    table = ContactTable.from_surfaces(surfaces, 4.4e6, nodes, [0.3])
+    flow = sum(table.values[f"flow_factor_{way}"][:, 0] for way in ("along", "across")) / 2
+    known = np.interp(nodes / stiff, module.PRESSING, module.FLOW)
+    np.testing.assert_allclose(flow, known, atol=0.08)
+
+
+@pytest.mark.parametrize(
+    ("pattern", "least", "most"), [("transverse", 0.5, 1.0), ("longitudinal", 0.0, 0.02)]
+)
+def test_draws_and_map_hold_the_mean_of_both_states(pattern, least, most):
+    """Grooves across wipe, grooves along do not; the law for draws has the sum of the map."""
+    smooth = {"contaminant.viscosity": "1 cP", "shoe.roughness.ra": "1 um"}
+    case = tread(pattern, **SIZES).replace({**smooth, "interface.roughness_beyond_cutoff": 1.0})
+    parts = prepared(case, 1e-3, {})
+    law = parts.local_law
+    pressure = np.where(parts.sole.land, 3e5, 0.0)
+    film = np.full_like(pressure, 1e-3)
+    lugs = law.lugs(pressure, 0.3, film)
+    assert least <= np.average(lugs.wiped, weights=lugs.load) < most
+    both, plain = law(pressure, 0.3, film), law.law(pressure, 0.3, film)
+    drawn = law.with_mean_state(pressure, 0.3, film)
+    sums = [
+        float((one.adhesion * weight * law.edges.area).sum())
+        for one, weight in ((both, 1.0), (drawn(pressure, 0.3, film), lugs.factor_map()))
+    ]
+    assert sums[0] == pytest.approx(sums[1], rel=1e-9)
+    if pattern == "transverse":
+        assert both.adhesion.sum() > 1.2 * plain.adhesion.sum()
+        assert isinstance(drawn, FrictionLaw)
+        spread = drawn.joint_draws(100, 0)
+        assert drawn.at({name: float(value[0]) for name, value in spread.items()}).share > 0
+        np.testing.assert_array_equal(both.hysteresis, plain.hysteresis * lugs.factor_map())
+    none = replace(law, dewetting=0.0)
+    assert not none.lugs(pressure, 0.3, film).wiped.any()
+    assert none.with_mean_state(pressure, 0.3, film) is law.law
+
+
+def test_laws_that_hold_no_real_area_have_one_state():
+    case = tread("transverse", **SIZES).replace(
+        {"friction.model": "stribeck", "contaminant": "water"}
+    )
+    law = prepared(case, 1e-3, {}).local_law
+    pressure = np.where(law.edges.label > 0, 3e5, 0.0)
+    assert not law.lugs(pressure, 0.3, np.full_like(pressure, 1e-3)).wiped.any()
+
+
+@pytest.mark.parametrize("fluid", ["water", "detergent", "glycerol_50pct", "canola_oil"])
+@pytest.mark.parametrize("floor", Catalogue.load().names("floor"))
+def test_no_floor_of_the_catalogue_grips_more_wet_than_dry_behind_an_edge(floor, fluid):
+    """Wiped, with suction: a lug of the sharpest edge."""
+    parts = {"shoe": "work_shoe_full_tread", "floor": floor, "motion": "slip_tester_g4"}
+    wet, dry = (resolved(Case(**parts, contaminant=name)) for name in (fluid, "none"))
+    lug = one_lug(length=5e-3, width=5e-3, height=2.5e-3)
+    plain = PairOption().build(wet)
+    edged = EdgedLaw(
+        plain,
+        lug,
+        ExponentialLaw(wet.youngs_modulus, 0.49, wet.rq_value),
+        wet.youngs_modulus,
+        wet.viscosity_value,
+        suction=70e3,
+        dewetting=0.2,
+    )
+    pressure, film = np.array([[3e5]]), np.array([[1e-3]])
+    limit = PairOption().build(dry)(pressure, 0.3, film)
+    for speed in (0.03, 0.3, 1.0):
+        found = edged(pressure, speed, film)
+        assert found.adhesion + found.hysteresis <= limit.adhesion + limit.hysteresis

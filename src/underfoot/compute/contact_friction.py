@@ -53,7 +53,7 @@ def contact_friction(
     samples: int = SAMPLES,
 ) -> ContactFriction:
     """Return the friction of a contact by the local law, drawn over the spread of its inputs."""
-    maps = law(contact.contact_pressure, case.motion.speed, contact.film_thickness)
+    maps = law_on(law, contact)(contact.contact_pressure, case.motion.speed, contact.film_thickness)
     at = contact.finest
     law = law_on(law, at)
     values = at.contact_pressure, case.motion.speed, at.film_thickness
@@ -64,7 +64,7 @@ def contact_friction(
         maps = replace(maps, viscous=np.where(contact.wet, maps.viscous, 0.0))
     lugs, suction, plain = None, None, law
     if isinstance(law, EdgedLaw):
-        plain, lugs = law.law, law.lugs(*values)
+        plain, lugs = law.with_mean_state(*values), law.lugs(*values)
         pull = case.sourced("film.suction")
         pull = pull if pull.uncertainty else replace(pull, uncertainty=numbers.SUCTION_SPREAD)
         suction = pull, lugs.suction_share(parts)

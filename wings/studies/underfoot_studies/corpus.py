@@ -80,7 +80,7 @@ def compute(options: Options) -> Computed:
     keys = [content_hash(asdict(split), content, options.seed) for split in splits]
     results: dict[tuple[str, str], SourceScore] = {}
     fits = part(options.progress, 0.0, 0.5)
-    work = kept("corpus-2", draws_of, splits, keys, processes=options.processes)
+    work = kept("corpus-3", draws_of, splits, keys, processes=options.processes)
     for number, (split, arrays) in enumerate(work, start=1):
         fits("leaving one source out", number / len(splits))
         own = tuple(c for c in conditions if c.source == split.source)
