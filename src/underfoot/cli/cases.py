@@ -50,7 +50,7 @@ def run(
     if folder is not None:
         check_writable_folder(folder, overwrite=shared.overwrite)
     with bar(given.name) as progress:
-        result = result_of(given, quick=shared.quick, progress=progress)
+        result = result_of(given, quick=shared.quick, processes=shared.processes, progress=progress)
     advice = None
     if result.usable and not (shared.quick or no_advice):
         with bar("effect of possible changes") as progress:

@@ -45,7 +45,8 @@ Processes = Annotated[
     typer.Option(
         "--processes",
         min=1,
-        help="Cases computed at the same time; by default the cores, at most 4.",
+        help="Cases, or positions of a tread, computed at the same time; by default the cores, "
+        "at most 4.",
         show_default=False,
     ),
 ]

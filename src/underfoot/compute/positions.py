@@ -1,14 +1,14 @@
 """A tread, not one position of it: the answer averaged over where its lugs happen to lie."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
 
 from underfoot.case import Case
-from underfoot.core import ConvergenceError, Progress, SourcedValue, display, silent
+from underfoot.core import SourcedValue, display
 from underfoot.core.arrays import Array
 from underfoot.friction import FrictionCoefficients, FrictionLaw, SampledCof
 from underfoot.shoe import SoleMap, Tread
@@ -216,55 +216,45 @@ def _golden_step(count: int) -> int:
 
 def tread_positions(
     case: Case,
-    law_on: Callable[[SoleMap], FrictionLaw | EdgedLaw],
-    sole: SoleMap,
-    contact: SoleContact,
-    solve: Callable[[Place, float, Progress], tuple[SoleMap, SoleContact]],
+    own: Mapping[str, float],
+    at_places: Callable[[Sequence[Place], float], Iterator[tuple[int, Mapping[str, float] | None]]],
     *,
-    viscosity: float | None,
     spacing: float,
     quick: bool,
-    progress: Progress = silent,
 ) -> TreadPositions | None:
     """Return the numbers of a run at more positions of its tread, or shoe angles without a tread.
 
     None where the case asks for one position. Positions are solved on the grid of the run, of
     ``spacing`` (m); shoe angles on the quick one, whose ratios are taken.
 
-    ``law_on`` returns the local friction on a sole, ``solve`` sole and contact at a place on a
-    grid.
+    ``own`` are the numbers at the case's own place; ``at_places`` solves places on a grid and gives
+    the index of each with its numbers as they end, None where a contact did not converge.
     """
     count = position_count(case, quick=quick)
     if count == 1:
         return None
-    own = place_numbers(case, law_on(sole), sole, contact, viscosity)
-    if treaded(case):
+    lugs = treaded(case)
+    if lugs:
         tread = _tread(case)
-        lying = places(file_periods(case) if tread is None else tread.periods, count)
-        kept = [(Place(), own)]
+        all_places = places(file_periods(case) if tread is None else tread.periods, count)
     else:
-        lying = shoe_angles()
-        kept = [(Place(), own)] if quick else []
+        all_places = shoe_angles()
         spacing = case.numerics.quick_grid_spacing
-    begun = len(kept)
-    for k, place in list(enumerate(lying))[begun:]:
-        try:
-            there = solve(place, spacing, _stage(progress, k, len(lying), begun))
-        except ConvergenceError:
-            continue
-        if there[1].status.usable:
-            kept.append((place, place_numbers(case, law_on(there[0]), *there, viscosity)))
-    if not kept or kept[0][0] != Place():  # nothing to compare the angles with
-        kept = [(Place(), own)]
-    lying, values = tuple(place for place, _ in kept), {}
+    known = {Place(): own} if lugs or quick else {}
+    others = all_places[len(known) :]
+    solved = dict(at_places(others, spacing))
+    numbers = known | {place: n for k, place in enumerate(others) if (n := solved[k])}
+    if Place() not in numbers:  # nothing to compare the angles with
+        numbers = {Place(): own}
+    values = {}
     for name, value in own.items():
-        there = np.array([numbers[name] for _, numbers in kept])
-        values[name] = there * (value / there[0]) if there[0] else there
+        each = np.array([at[name] for at in numbers.values()])
+        values[name] = each * (value / each[0]) if each[0] else each
     values["cof"] = sum(values[f"cof_{part}"] for part in ("adhesion", "hysteresis", "viscous"))
-    left_out = count - len(kept)
-    if treaded(case):
-        return TreadPositions(lying, values, left_out)
-    return ShoeAngles(lying, values, left_out, coarse=kept[0][1])
+    left_out = count - len(numbers)
+    if lugs:
+        return TreadPositions(tuple(numbers), values, left_out)
+    return ShoeAngles(tuple(numbers), values, left_out, coarse=numbers[Place()])
 
 
 def position_count(case: Case, *, quick: bool) -> int:
@@ -308,16 +298,6 @@ def run_cost(case: Case, *, quick: bool) -> Cost:
 def _tread(case: Case) -> Tread | None:
     tread = None if case.shoe.tread is None else case.shoe.tread.build()
     return tread if tread and tread.depth > 0 else None
-
-
-def _stage(progress: Progress, number: int, count: int, begun: int) -> Progress:
-    """Return the progress of a march, the ``number``-th of those from ``begun`` to ``count``."""
-
-    def report(stage: str, fraction: float, residual: float | None = None) -> None:
-        share = (number - begun + fraction) / (count - begun)
-        progress(f"Tread position {number + 1} of {count}", share, residual)
-
-    return report
 
 
 def place_numbers(

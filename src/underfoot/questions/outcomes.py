@@ -23,7 +23,7 @@ from underfoot.core import (
 )
 from underfoot.core.arrays import Array
 from underfoot.core.cache import Cache
-from underfoot.core.pool import available_processors, in_processes
+from underfoot.core.pool import in_processes, workers
 from underfoot.core.progress import part
 
 if TYPE_CHECKING:
@@ -147,9 +147,10 @@ def outcomes(
     ready = len(found) / max(len(set(keys)), 1)
     progress(stage, ready)
     compute = partial(_computed_alone, quick=quick, maps=maps)
-    workers = min(available_processors(), 4) if processes is None else processes
     names, items, rest = list(waiting), list(waiting.values()), part(progress, ready, 1.0)
-    for index, outcome in in_processes(compute, items, workers, progress=rest, stage=stage):
+    for index, outcome in in_processes(
+        compute, items, workers(processes), progress=rest, stage=stage
+    ):
         key = names[index]
         found[key] = outcome
         if cached and outcome.usable:
