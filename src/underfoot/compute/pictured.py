@@ -31,8 +31,8 @@ def pictured_fields(
     roll = contact.shoe_angle - map_angle
     lowest = _rolled(sole, roll)[sole.inside].min()
 
-    def height(there: SoleMap) -> Array:
-        return np.where(there.inside, _rolled(there, roll) - lowest - contact.approach, np.nan)
+    def height(shape: SoleMap) -> Array:
+        return np.where(shape.inside, _rolled(shape, roll) - lowest - contact.approach, np.nan)
 
     pressed = height(sole) + compliance.apply(contact.cell_load)
     variables: dict[str, Variable] = {

@@ -216,7 +216,7 @@ def _golden_step(count: int) -> int:
 
 def tread_positions(
     case: Case,
-    own: Mapping[str, float],
+    case_numbers: Mapping[str, float],
     at_places: Callable[[Sequence[Place], float], Iterator[tuple[int, Mapping[str, float] | None]]],
     *,
     spacing: float,
@@ -227,8 +227,8 @@ def tread_positions(
     None where the case asks for one position. Positions are solved on the grid of the run, of
     ``spacing`` (m); shoe angles on the quick one, whose ratios are taken.
 
-    ``own`` are the numbers at the case's own place; ``at_places`` solves places on a grid and gives
-    the index of each with its numbers as they end, None where a contact did not converge.
+    ``case_numbers`` are those at the case's own place; ``at_places`` solves places on a grid and
+    gives the index of each with its numbers as they end, None where a contact did not converge.
     """
     count = position_count(case, quick=quick)
     if count == 1:
@@ -240,14 +240,14 @@ def tread_positions(
     else:
         all_places = shoe_angles()
         spacing = case.numerics.quick_grid_spacing
-    known = {Place(): own} if lugs or quick else {}
+    known = {Place(): case_numbers} if lugs or quick else {}
     others = all_places[len(known) :]
     solved = dict(at_places(others, spacing))
     numbers = known | {place: n for k, place in enumerate(others) if (n := solved[k])}
     if Place() not in numbers:  # nothing to compare the angles with
-        numbers = {Place(): own}
+        numbers = {Place(): case_numbers}
     values = {}
-    for name, value in own.items():
+    for name, value in case_numbers.items():
         each = np.array([at[name] for at in numbers.values()])
         values[name] = each * (value / each[0]) if each[0] else each
     values["cof"] = sum(values[f"cof_{part}"] for part in ("adhesion", "hysteresis", "viscous"))

@@ -116,8 +116,10 @@ def averaged(
                 ),
             )
 
-    own = place_numbers(parts.case, parts.local_law, parts.sole, solution.contact, parts.viscosity)
-    return tread_positions(parts.case, own, at_places, spacing=parts.spacing, quick=quick)
+    case_numbers = place_numbers(
+        parts.case, parts.local_law, parts.sole, solution.contact, parts.viscosity
+    )
+    return tread_positions(parts.case, case_numbers, at_places, spacing=parts.spacing, quick=quick)
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ class DrawnSole:
     """Heights (nx, ny) in m at the centres ``x``, ``y`` (m) of square cells, nan outside the sole.
 
     ``pressed`` is the height under load, or None where the result does not hold it. ``computed``
-    are the rows and columns in which the contact was solved; ``own`` those of the data set that
+    are the rows and columns in which the contact was solved; ``in_data`` those of the data set that
     lie there.
     """
 
@@ -30,7 +30,7 @@ class DrawnSole:
     pressed: Floats | None
     land: NDArray[np.bool_]
     computed: tuple[slice, slice]
-    own: tuple[slice, slice]
+    in_data: tuple[slice, slice]
 
     @property
     def in_part(self) -> bool:
@@ -54,7 +54,7 @@ class DrawnSole:
     def placed(self, values: Floats) -> Floats:
         """Return a field of the data set, (..., nx, ny), on this grid, nan beside it."""
         placed = np.full((*values.shape[:-2], *self.height.shape), np.nan)
-        placed[(..., *self.computed)] = values[(..., *self.own)]
+        placed[(..., *self.computed)] = values[(..., *self.in_data)]
         return placed
 
 
@@ -101,9 +101,9 @@ def drawn_sole(dataset: Fields) -> DrawnSole:
 
 
 def _set_in(
-    dataset: Fields, name: str, there: tuple[slice, slice], values: np.ndarray
+    dataset: Fields, name: str, part: tuple[slice, slice], values: np.ndarray
 ) -> np.ndarray:
     """Return a field of the whole sole with the values of the part that was solved."""
     field = np.array(dataset[name].transpose("whole_x", "whole_y"), dtype=float)
-    field[there] = values
+    field[part] = values
     return field

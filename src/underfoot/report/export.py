@@ -103,7 +103,9 @@ def export_result(
     return write(_scene(result, found, chosen, pressed), path)
 
 
-def _scene(result: Result, found: tuple[Quantity, ...], chosen: Quantity, pressed: bool) -> _Scene:
+def _scene(
+    result: Result, quantities: tuple[Quantity, ...], chosen: Quantity, pressed: bool
+) -> _Scene:
     dataset, sole = result.data, drawn_sole(result.data)
     if pressed and sole.pressed is None:
         raise DataError(
@@ -116,8 +118,8 @@ def _scene(result: Result, found: tuple[Quantity, ...], chosen: Quantity, presse
         result.name,
         sole,
         mesh,
-        {each.name: sole.placed(raw(dataset, each.name)) for each in found},
-        {each.name: str(dataset[each.name].attrs.get("units", "1")) for each in found},
+        {each.name: sole.placed(raw(dataset, each.name)) for each in quantities},
+        {each.name: str(dataset[each.name].attrs.get("units", "1")) for each in quantities},
         _colours(dataset, sole, mesh, chosen),
         f"{chosen.title}, {chosen.unit}",
     )

@@ -222,10 +222,10 @@ def _draw_sensors(axes: Axes, dataset: Fields) -> None:
 
 
 def frame_sole(
-    axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], there: NDArray[np.bool_]
+    axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], covered: NDArray[np.bool_]
 ) -> None:
     """Frame the sole with room for a scale bar below and the walking direction above."""
-    ends_x, ends_y = x[there.any(axis=1)][[0, -1]], y[there.any(axis=0)][[0, -1]]
+    ends_x, ends_y = x[covered.any(axis=1)][[0, -1]], y[covered.any(axis=0)][[0, -1]]
     size = float(np.ptp(ends_x))
     axes.set_aspect("equal")
     axes.set_xlim(ends_y[0] - 0.06 * size, ends_y[1] + 0.06 * size)

@@ -63,7 +63,7 @@ class LugDrainage:
     groove_side: NDArray[np.intp]
     relief: Array
 
-    def words(self) -> str:
+    def advice(self) -> str:
         """Return which lug drains worst and to which side to open it; empty where all bear little.
 
         Parts more slender than high bend over: where the way is no longer than the lug is high, no

@@ -30,10 +30,10 @@ class SoleView(ui.element):
         ui.run_javascript(f"showSole({self.html_id!r}, {address!r})")
 
 
-def title(words: str, level: int = 1) -> ui.element:
+def title(heading: str, level: int = 1) -> ui.element:
     """Return a heading."""
     with ui.element(f"h{level}") as made:
-        ui.label(words)
+        ui.label(heading)
     return made
 
 

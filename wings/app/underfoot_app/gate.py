@@ -140,12 +140,16 @@ def _with_policy(send: Send) -> Send:
 
 
 async def _refused(
-    scope: Scope, send: Send, status: int, words: str, further: list[tuple[str, str]] | None = None
+    scope: Scope,
+    send: Send,
+    status: int,
+    message: str,
+    further: list[tuple[str, str]] | None = None,
 ) -> None:
     if scope["type"] == "websocket":
-        await send({"type": "websocket.close", "code": 1008, "reason": words[:120]})
+        await send({"type": "websocket.close", "code": 1008, "reason": message[:120]})
         return
-    page = f"<!doctype html><title>Underfoot</title><p>{escape(words)}</p>" if words else ""
+    page = f"<!doctype html><title>Underfoot</title><p>{escape(message)}</p>" if message else ""
     headers = [("content-type", "text/html; charset=utf-8"), *(further or [])]
     coded = [(key.encode(), value.encode("latin-1")) for key, value in headers]
     await send({"type": "http.response.start", "status": status, "headers": coded})

@@ -46,7 +46,7 @@ def computed(base: Case, job: Job) -> Record:
                 remedy="Run the study in a new folder",
             )
         result = run(case, quick=job.quick)
-        found = _found(case, result, job.fields)
+        found = _outcome(case, result, job.fields)
     except InputError as error:
         found = {"ending": Ending.INFEASIBLE, "reason": str(error)}
     except ConvergenceError as error:
@@ -76,7 +76,7 @@ def worker_name() -> str:
     return f"{platform.node() or 'host'}-{os.getpid()}"
 
 
-def _found(case: Case, result: Result, keep_fields: bool) -> dict[str, Any]:
+def _outcome(case: Case, result: Result, keep_fields: bool) -> dict[str, Any]:
     if not result.usable:
         ending = Ending.NOT_CONVERGED if result.status is Status.NOT_CONVERGED else Ending.FAILED
         return {"ending": ending, "reason": f"{result.status}. {result.status.remedy}"}

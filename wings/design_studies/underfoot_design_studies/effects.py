@@ -126,7 +126,7 @@ def effects(result: StudyResult, goal: AnyGoal) -> Effects:
     else:
         (surrogate,) = surrogates(result, [goal])
         points = _salib(plan, "sample")(ON_SURROGATE[method.analysis])
-        values, basis = surrogate.mean(points), surrogate.words
+        values, basis = surrogate.mean(points), surrogate.reliability
     given = (points, values) if method.analysis == "morris" else (values,)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # indices of an output that does not vary

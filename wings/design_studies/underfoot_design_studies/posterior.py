@@ -91,7 +91,7 @@ class Posterior(Presentable):
 
     def cautions(self) -> tuple[str, ...]:
         """Return where the surrogate is the weak part, and posteriors at the end of a prior."""
-        weak = [f"{one.name}: {one.words}" for one in self.models if one.q2 < 0.9]
+        weak = [f"{one.name}: {one.reliability}" for one in self.models if one.q2 < 0.9]
         edge = [
             f"The posterior of {path} lies at the end of its prior: widen that."
             for path, now, then in zip(self.paths, self.draws.T, self.prior.T, strict=True)
@@ -125,7 +125,7 @@ class Posterior(Presentable):
 
     def remarks(self) -> Mapping[str, Sequence[str]]:
         """Return the error of the surrogates."""
-        return {"Surrogates": [f"{one.name}: {one.words}" for one in self.models]}
+        return {"Surrogates": [f"{one.name}: {one.reliability}" for one in self.models]}
 
     def write(self, path: Path) -> None:
         """Write the draws as CSV, one column a path (SI): ``uncertain.posterior`` of a study."""

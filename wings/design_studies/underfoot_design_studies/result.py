@@ -328,8 +328,8 @@ class StudyResult(Presentable):
         found = found.assign_coords({"condition": labels, **inputs})
         return found.assign(ending=found["ending"].astype(str)).assign_attrs(title=plan.name)
 
-    def _goals_text(self, one: Design) -> str:
-        values = self.goal_values([one])[0]
+    def _goals_text(self, design: Design) -> str:
+        values = self.goal_values([design])[0]
         pairs = zip(self.plan.goals, values, strict=True)
         return ", ".join(f"{goal} {quantity_text(value, goal.unit)}" for goal, value in pairs)
 

@@ -219,25 +219,25 @@ def flat_paths(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str
             yield f"{prefix}{key}", value
 
 
-def _reading(one: Any, name: str, known: Catalogue) -> tuple[Condition, Reading]:
-    if not isinstance(one, Mapping) or not isinstance(one.get("when", {}), Mapping):
-        raise InputError(f"{one!r} is no table")
+def _reading(table: Any, name: str, known: Catalogue) -> tuple[Condition, Reading]:
+    if not isinstance(table, Mapping) or not isinstance(table.get("when", {}), Mapping):
+        raise InputError(f"{table!r} is no table")
     changes = {
         path: value_at(path, value, known, f".when.{path}")
-        for path, value in one.get("when", {}).items()
+        for path, value in table.get("when", {}).items()
     }
-    outputs = [key for key in one if key not in ("when", "sd", "name")]
-    if len(outputs) != 1 or outputs[0] not in UNITS or "sd" not in one:
+    outputs = [key for key in table if key not in ("when", "sd", "name")]
+    if len(outputs) != 1 or outputs[0] not in UNITS or "sd" not in table:
         raise InputError(
             f"{', '.join(outputs) or 'nothing'} was measured",
             allowed=f"one of {', '.join(UNITS)}, with its sd",
             remedy="Write cof = 0.24, sd = 0.02",
         )
     unit = UNITS[outputs[0]]
-    value, sd = (to_si(one[key], unit, where=f".{key}") for key in (outputs[0], "sd"))
+    value, sd = (to_si(table[key], unit, where=f".{key}") for key in (outputs[0], "sd"))
     if sd <= 0:
-        raise InputError(f"{one['sd']}", where=".sd", allowed="above 0")
-    return Condition(str(one.get("name", name)), changes), Reading(outputs[0], unit, value, sd)
+        raise InputError(f"{table['sd']}", where=".sd", allowed="above 0")
+    return Condition(str(table.get("name", name)), changes), Reading(outputs[0], unit, value, sd)
 
 
 class _Reader:

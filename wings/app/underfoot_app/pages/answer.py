@@ -127,7 +127,7 @@ class _Answer:
         with side:
             if not self._current():
                 ui.label(self.text("answer.changed")).classes("caution")
-            self.words = ui.element("div").props('aria-live="polite"')
+            self.summary = ui.element("div").props('aria-live="polite"')
             beside = self.session.query.get("beside", "")
             if beside in self.session.project.variants():
                 words = self.text("answer.beside", name=beside)
@@ -143,7 +143,7 @@ class _Answer:
     async def _answer(self) -> None:
         answer = await self.session.ask("underfoot_app.work:answer", str(self.folder))
         self.view.show(answer["html"])
-        with self.words:
+        with self.summary:
             self._headline(answer)
         with self.tables:
             self._tables(answer)
@@ -306,5 +306,5 @@ class _Answer:
         self.session.go(ROUTE, variant=new, run="1", beside=self.name)
 
 
-def _capital(words: str) -> str:
-    return words[:1].upper() + words[1:]
+def _capital(sentence: str) -> str:
+    return sentence[:1].upper() + sentence[1:]

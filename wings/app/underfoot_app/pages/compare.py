@@ -45,7 +45,7 @@ class _Compare:
             ):
                 button = ui.button(self.text(f"compare.{key}"), icon=icon, on_click=action)
                 button.props("flat no-caps dense")
-        self.words = ui.element("div").props('role="status"')
+        self.summary = ui.element("div").props('role="status"')
         self.sole = SoleView(session)
         self.rest = ui.element("div")
         self.rows: list[dict[str, Any]] = []
@@ -61,10 +61,10 @@ class _Compare:
             return
         found = await self.session.ask(f"{WORK}:comparison", self.folders())
         self.rows = found["rows"]
-        self.words.clear()
+        self.summary.clear()
         self.rest.clear()
         self.sole.show(found["html"])
-        with self.words:
+        with self.summary:
             ui.label(" ".join(found["headline"])).classes("lead")
             sentences(found["cautions"], "soft")
         with self.rest:

@@ -24,15 +24,15 @@ class Text:
 
     def __init__(self, language: str = "en") -> None:
         self.language = language
-        self._words = catalogue(language)
+        self._messages = catalogue(language)
 
     def __call__(self, key: str, **values: Any) -> str:
         """Return the words of a key with its placeholders filled."""
-        return self._words[key].format(**values)
+        return self._messages[key].format(**values)
 
     def get(self, key: str, otherwise: str) -> str:
         """Return the words of a key, or ``otherwise`` where there is none."""
-        return self._words.get(key, otherwise)
+        return self._messages.get(key, otherwise)
 
 
 @cache
