@@ -77,11 +77,11 @@ def composed(
         if name is not None and not (section == "contaminant" and name == DRY):
             _lay(composition, laid, section, name)
     try:
-        own = leaves(_without_from(tables), source="")
+        given_leaves = leaves(_without_from(tables), source="")
     except InputError as error:
         raise CaseError([*composition.errors, placed(error, places)]) from error
     record = _friction_record(composition, tables)
-    for path, leaf in own.items():
+    for path, leaf in given_leaves.items():
         origin = leaf.given if isinstance(leaf.given, Origin) else origin_of(leaf.given)
         if origin is None:
             origin = Origin(GIVEN, leaf)
@@ -295,10 +295,10 @@ def _from(tables: Mapping[str, Any], section: str) -> Any:
 
 
 def _without_from(table: Mapping[str, Any], path: str = "") -> dict[str, Any]:
-    kept: dict[str, Any] = {}
+    rest: dict[str, Any] = {}
     for key, item in table.items():
         here = f"{path}.{key}" if path else key
         if key == "from" and path in CATALOGUE_SECTIONS:
             continue
-        kept[key] = _without_from(item, here) if isinstance(item, Mapping) else item
-    return kept
+        rest[key] = _without_from(item, here) if isinstance(item, Mapping) else item
+    return rest

@@ -159,8 +159,8 @@ def undetermined(case: Case, status: Status) -> dict[str, SourcedValue]:
         "minimum_film_thickness": "m",
     }
     names = ("cof", "cof_adhesion", "cof_hysteresis", "cof_viscous", *units, "slip_probability")
-    found = {name: SourcedValue(None, units.get(name, "1"), reason=str(status)) for name in names}
-    return {**found, "normal_force": case.sourced("motion.normal_force")}
+    scalars = {name: SourcedValue(None, units.get(name, "1"), reason=str(status)) for name in names}
+    return {**scalars, "normal_force": case.sourced("motion.normal_force")}
 
 
 def regime(share: float) -> dict[str, str]:
@@ -203,8 +203,8 @@ def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
     """Return in words which inputs the spread of COF comes from, and how it was sampled."""
     if sampled is None:
         return {}
-    words = sorted(sampled.share.items(), key=lambda one: -one[1])
-    parts = [f"{_INPUTS.get(name, name)} {share:.0%}" for name, share in words if share >= 0.005]
+    shares = sorted(sampled.share.items(), key=lambda one: -one[1])
+    parts = [f"{_INPUTS.get(name, name)} {share:.0%}" for name, share in shares if share >= 0.005]
     if sampled.left_out:
         names = ", ".join(_INPUTS.get(name, name) for name in sampled.left_out)
         parts.append(f"taken as exact: {names}")

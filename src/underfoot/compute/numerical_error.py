@@ -75,10 +75,10 @@ class NumericalErrors:
                 for name, error in errors.items()
             )
 
-        words = f"grid: {parts(self.grid)} ({self.origin})"
+        text = f"grid: {parts(self.grid)} ({self.origin})"
         if self.steps:
-            words += f"; steps in time: {parts(self.steps)} (from twice as many)"
-        return words
+            text += f"; steps in time: {parts(self.steps)} (from twice as many)"
+        return text
 
 
 def with_numerical_error(sampled: SampledCof, error: float, *, cof: float, sole: str) -> SampledCof:
@@ -92,12 +92,15 @@ def with_numerical_error(sampled: SampledCof, error: float, *, cof: float, sole:
     width = math.sqrt(math.log1p((error / cof) ** 2))
     normal = normal_draws(sampled.seed, f"numerical error {sole}", sampled.cof.size)
     factor = np.exp(width * normal)
-    own, law = error**2, float(np.var(sampled.cof))
-    share = {name: each * law / (law + own) for name, each in sampled.share.items()}
+    variance, law_variance = error**2, float(np.var(sampled.cof))
+    share = {
+        name: each * law_variance / (law_variance + variance)
+        for name, each in sampled.share.items()
+    }
     parts = ("cof", "adhesion", "hysteresis", "viscous")
     return replace(
         sampled,
-        share={**share, "numerical": own / (law + own)},
+        share={**share, "numerical": variance / (law_variance + variance)},
         **{name: getattr(sampled, name) * factor for name in parts},
     )
 

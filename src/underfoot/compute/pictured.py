@@ -48,10 +48,10 @@ def pictured_fields(
     axes = ("whole_x", "whole_y")
     clearance = np.where(whole.inside, whole.clearance, np.nan).astype(np.float32)
     lowered = np.maximum(height(whole), 0.0).astype(np.float32)
-    words = "height of the whole sole over the floor,"
+    title = "height of the whole sole over the floor,"
     variables |= {
-        "whole_clearance": (axes, clearance, {"units": "m", "long_name": f"{words} undeformed"}),
-        "whole_pressed_height": (axes, lowered, {"units": "m", "long_name": f"{words} lowered"}),
+        "whole_clearance": (axes, clearance, {"units": "m", "long_name": f"{title} undeformed"}),
+        "whole_pressed_height": (axes, lowered, {"units": "m", "long_name": f"{title} lowered"}),
         "whole_land": (axes, whole.land, {"units": "1", "long_name": "can touch the floor"}),
     }
     return variables, {

@@ -70,7 +70,7 @@ class TreadPositions:
         values = {name: values for name, values in self.values.items() if name.startswith("cof")}
         new = {name: replace(getattr(friction, name), value=self.answer(name)) for name in values}
         if sampled is not None:
-            law, own = float(np.var(sampled.cof)), float(np.var(values["cof"]))
+            law_variance, place_variance = float(np.var(sampled.cof)), float(np.var(values["cof"]))
             at = np.arange(sampled.cof.size) % len(self.places)
             draws = {
                 name.removeprefix("cof_"): getattr(sampled, name.removeprefix("cof_"))
@@ -78,8 +78,11 @@ class TreadPositions:
                 for name in values
             }
             draws["cof"] = draws["adhesion"] + draws["hysteresis"] + draws["viscous"]
-            share = {name: each * law / (law + own) for name, each in sampled.share.items()}
-            share[self.origin] = own / (law + own)
+            share = {
+                name: each * law_variance / (law_variance + place_variance)
+                for name, each in sampled.share.items()
+            }
+            share[self.origin] = place_variance / (law_variance + place_variance)
             sampled = replace(sampled, share=share, **draws)
             for name, value in new.items():
                 if value.uncertainty is not None:  # what the law leaves open stays open
@@ -91,23 +94,23 @@ class TreadPositions:
 
     def averaged(self, numbers: Mapping[str, SourcedValue]) -> dict[str, SourcedValue]:
         """Return the numbers with means over the positions, and the spread of COF over them."""
-        found = dict(numbers)
+        means = dict(numbers)
         if len(self.places) == 1:
-            return found
+            return means
         for name in self.values:
             if not name.startswith("cof"):
-                found[name] = replace(numbers[name], value=self.answer(name))
+                means[name] = replace(numbers[name], value=self.answer(name))
         over = f"over {len(self.places)} {self.several}"
-        found["fluid_load"] = replace(
-            found["fluid_load"], note=f"{self._range('fluid_load', 'N')} {over}"
+        means["fluid_load"] = replace(
+            means["fluid_load"], note=f"{self._range('fluid_load', 'N')} {over}"
         )
-        found[f"cof_{self.origin}"] = SourcedValue(
+        means[f"cof_{self.origin}"] = SourcedValue(
             float(np.std(self.values["cof"])),
             source=f"contact and film at another {self.held}",
             reason="itself a standard deviation",
             note=f"{self._range('cof')} {over}",
         )
-        return found
+        return means
 
     def labels(self) -> dict[str, str]:
         """Return what was averaged in words."""
@@ -198,13 +201,13 @@ def places(periods: Array, count: int) -> tuple[Place, ...]:
     """
     step = _golden_step(count)
     rounds = 2 if count >= 5 else 1
-    found = []
+    lattice = []
     for k in range(count):
         shares = np.array([k / count, k * step % count / count])[: len(periods)]
         x, y = shares @ periods
         turn = math.sqrt(2 / 3) * math.sin(2 * math.pi * rounds * k / count)
-        found.append(Place((float(x), float(y)), ANGLE_BAND * turn))
-    return tuple(found)
+        lattice.append(Place((float(x), float(y)), ANGLE_BAND * turn))
+    return tuple(lattice)
 
 
 def _golden_step(count: int) -> int:

@@ -110,8 +110,8 @@ class Catalogue(Presentable):
         return _loaded(chosen, tuple(map(_content, (*chosen, *_offered_folders()))))
 
     def __repr__(self) -> str:
-        own = f", with {', '.join(self.folders)}" if self.folders else ""
-        return f"<Catalogue of {len(self.entries)} entries{own:.120}>"
+        folders = f", with {', '.join(self.folders)}" if self.folders else ""
+        return f"<Catalogue of {len(self.entries)} entries{folders:.120}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Travel between processes by the folders where those still hold the same."""

@@ -43,12 +43,12 @@ class DrawnSole:
     @property
     def plane(self) -> tuple[float, float, float]:
         """Return (a, b, c) of the plane a + b x + c y (m) through the land, least squares."""
-        there = self.land & np.isfinite(self.height)
-        if np.count_nonzero(there) < 3:
-            there = np.isfinite(self.height)
+        known = self.land & np.isfinite(self.height)
+        if np.count_nonzero(known) < 3:
+            known = np.isfinite(self.height)
         along, across = np.meshgrid(self.x, self.y, indexing="ij")
-        design = np.stack([np.ones(there.sum()), along[there], across[there]], axis=1)
-        a, b, c = np.linalg.lstsq(design, self.height[there], rcond=None)[0]
+        design = np.stack([np.ones(known.sum()), along[known], across[known]], axis=1)
+        a, b, c = np.linalg.lstsq(design, self.height[known], rcond=None)[0]
         return float(a), float(b), float(c)
 
     def placed(self, values: Floats) -> Floats:
@@ -67,20 +67,20 @@ def drawn_sole(dataset: Fields) -> DrawnSole:
     land = np.asarray(dataset["land"].transpose("x", "y"), bool) if "land" in dataset else mask
     pressed = raw(dataset, "pressed_height") if "pressed_height" in dataset else None
     x, y, side = dataset["x"].values, dataset["y"].values, spacing(dataset)
-    along, across, there = x, y, (slice(0, x.size), slice(0, y.size))
+    along, across, solved = x, y, (slice(0, x.size), slice(0, y.size))
     if "whole_clearance" in dataset:
         along, across = dataset["whole_x"].values, dataset["whole_y"].values
         begin = (round((x[0] - along[0]) / side), round((y[0] - across[0]) / side))
-        there = (slice(begin[0], begin[0] + x.size), slice(begin[1], begin[1] + y.size))
-        height = _set_in(dataset, "whole_clearance", there, height)
-        land = _set_in(dataset, "whole_land", there, land)
+        solved = (slice(begin[0], begin[0] + x.size), slice(begin[1], begin[1] + y.size))
+        height = _set_in(dataset, "whole_clearance", solved, height)
+        land = _set_in(dataset, "whole_land", solved, land)
         if pressed is not None:
-            pressed = _set_in(dataset, "whole_pressed_height", there, pressed)
+            pressed = _set_in(dataset, "whole_pressed_height", solved, pressed)
     rows, columns = (np.nonzero(np.isfinite(height).any(axis=axis))[0] for axis in (1, 0))
-    kept = (slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1))
+    shown = (slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1))
     both = [
         (max(part.start, keep.start), min(part.stop, keep.stop))
-        for part, keep in zip(there, kept, strict=True)
+        for part, keep in zip(solved, shown, strict=True)
     ]
 
     def counted_from(begins: tuple[slice, slice]) -> tuple[slice, slice]:
@@ -89,14 +89,14 @@ def drawn_sole(dataset: Fields) -> DrawnSole:
         return slice(low - first, high - first), slice(left - second, right - second)
 
     return DrawnSole(
-        along[kept[0]],
-        across[kept[1]],
+        along[shown[0]],
+        across[shown[1]],
         side,
-        height[kept],
-        None if pressed is None else pressed[kept],
-        land[kept].astype(bool),
-        counted_from(kept),
-        counted_from(there),
+        height[shown],
+        None if pressed is None else pressed[shown],
+        land[shown].astype(bool),
+        counted_from(shown),
+        counted_from(solved),
     )
 
 

@@ -89,8 +89,8 @@ def drop_zone(
         await on_files(list(event.args["detail"]["paths"]))
 
     zone.on("files", arrived, args=["detail"])
-    words = {key: session.text(f"files.{key}") for key in ("sending", "too_large", "failed")}
-    ui.run_javascript(f"takeFiles({zone.html_id!r}, {as_json(settings)}, {as_json(words)})")
+    messages = {key: session.text(f"files.{key}") for key in ("sending", "too_large", "failed")}
+    ui.run_javascript(f"takeFiles({zone.html_id!r}, {as_json(settings)}, {as_json(messages)})")
     return zone
 
 

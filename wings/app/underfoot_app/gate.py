@@ -62,11 +62,11 @@ class Gate:
             further = [("location", "/" + place.lstrip("/")), ("set-cookie", cookie)]
             await _refused(scope, send, 303, "", further)
         elif not self._has_token(self._given(headers)):
-            words = (
+            message = (
                 "Open the address that the terminal shows where the app was started: it ends with "
                 "a key that is yours alone."
             )
-            await _refused(scope, send, 403, words)
+            await _refused(scope, send, 403, message)
         elif (excess := self._excess(scope, headers)) is not None:
             await _refused(scope, send, *excess)
         else:

@@ -121,12 +121,12 @@ def step_plot(
 
 def _slip_events(heel: Mapping[str, Any], contact: float, panel: int) -> list[dict[str, Any]]:
     """Return start, peak and end of a slip, which a heel's curve gives in seconds after contact."""
-    found = []
+    events = []
     for name, key in (("slip start", "start"), ("slip end", "end"), ("slip peak", "peak_time")):
         if heel[key] is not None:
             event = {"id": name, "time": contact + heel[key], "panel": panel}
-            found.append(event | ({"value": heel["peak"]} if key == "peak_time" else {}))
-    return found
+            events.append(event | ({"value": heel["peak"]} if key == "peak_time" else {}))
+    return events
 
 
 def run_plot(record: FileResult) -> dict[str, Any] | None:

@@ -80,16 +80,16 @@ def design(file: str, folder: str, number: int, *, progress: Progress) -> dict[s
 
 def comparison(folders: Sequence[str], *, progress: Progress) -> dict[str, Any]:
     """Return stored results side by side: words, a row each, every pair, and the page's part."""
-    found = compare(*(Result.load(folder) for folder in folders))
+    compared = compare(*(Result.load(folder) for folder in folders))
     rows = []
-    for letter, result in zip(found.letters, found.results, strict=True):
+    for letter, result in zip(compared.letters, compared.results, strict=True):
         known = {name: result.scalars[name] for name in COLUMNS if name in result.scalars}
         numbers = {name: each.value for name, each in known.items()}
         texts = {f"{name}_text": value_text(name, each) for name, each in known.items()}
         rows.append({"letter": letter, "name": result.name, **numbers, **texts})
-    chances = [[_chance(one, other) for other in found.results] for one in found.results]
-    html = scene_section(viewer_scene(found.results))
-    return {**presented(found), "rows": rows, "chances": chances, "html": html}
+    chances = [[_chance(one, other) for other in compared.results] for one in compared.results]
+    html = scene_section(viewer_scene(compared.results))
+    return {**presented(compared), "rows": rows, "chances": chances, "html": html}
 
 
 def exported(folder: str, file: str, *, progress: Progress) -> str:

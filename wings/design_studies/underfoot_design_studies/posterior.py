@@ -172,12 +172,12 @@ def posterior(
         inside = ((places > 0) & (places < 1)).all(axis=1)
         points = np.clip(places, 0.0, 1.0)
         delta = DISCREPANCY * _half_normal(points[:, -1])
-        found = np.where(inside, 0.0, -np.inf)
+        log_density = np.where(inside, 0.0, -np.inf)
         for model, value, sd in zip(models, measured, deviation, strict=True):
             mean, error = model.predicted(points[:, :size])
             variance = sd**2 + error**2 + (delta * mean) ** 2
-            found -= 0.5 * ((value - mean) ** 2 / variance + np.log(variance))
-        return found
+            log_density -= 0.5 * ((value - mean) ** 2 / variance + np.log(variance))
+        return log_density
 
     emcee = optional_module("emcee", "study", "A posterior")
     generator = np.random.default_rng(plan.method.seed)

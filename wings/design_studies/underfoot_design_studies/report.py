@@ -86,13 +86,13 @@ def design_sole(study: Study, result: StudyResult, number: int) -> Fields:
 
 def _soles(study: Study, result: StudyResult, progress: Progress) -> Mapping[int, Fields]:
     """Return the soles of the best designs that can be built."""
-    found = {}
+    soles = {}
     chosen = dict.fromkeys(one.number for one in (result.front or result.designs)[:MOST_SOLES])
     for count, number in enumerate(chosen, start=1):
         progress("Soles", count / len(chosen))
         with suppress(UnderfootError):
-            found[number] = design_sole(study, result, number)
-    return found
+            soles[number] = design_sole(study, result, number)
+    return soles
 
 
 def write_study_report(

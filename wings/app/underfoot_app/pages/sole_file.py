@@ -74,8 +74,8 @@ class _Inspection:
         self._read()
 
     def _choice(self, key: str, options: tuple[str, ...]) -> None:
-        words = {each: self.text.get(f"sole_file.{each}", each) for each in options}
-        choice = ui.select(words, value=options[0], label=self.text(f"sole_file.{key}"))
+        labels = {each: self.text.get(f"sole_file.{each}", each) for each in options}
+        choice = ui.select(labels, value=options[0], label=self.text(f"sole_file.{key}"))
         choice.props("dense outlined options-dense")
         choice.on_value_change(lambda event: self._set(key, event.value))
 
@@ -101,8 +101,8 @@ class _Inspection:
             raise
         self.reading.clear()
         self.view.show(answer["html"])
-        words = {"measures": " ".join(answer["headline"])}
-        ui.run_javascript(f"showTexts({as_json(words)})")
+        values = {"measures": " ".join(answer["headline"])}
+        ui.run_javascript(f"showTexts({as_json(values)})")
         with self.reading:
             sentences(answer["headline"])
             use = ui.button(

@@ -49,8 +49,8 @@ def chosen_language(cookie: str | None, accepted: str) -> str:
 
 
 def _flat(table: Mapping[str, Any], start: str = "") -> dict[str, str]:
-    found: dict[str, str] = {}
+    flat: dict[str, str] = {}
     for key, value in table.items():
         path = f"{start}{key}"
-        found |= _flat(value, f"{path}.") if isinstance(value, Mapping) else {path: value}
-    return found
+        flat |= _flat(value, f"{path}.") if isinstance(value, Mapping) else {path: value}
+    return flat
