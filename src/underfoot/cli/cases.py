@@ -14,7 +14,7 @@ from .output import finish
 @sharing(without=("out", "quick", "processes", "overwrite"))
 def check(shared: Shared, case: CasePath) -> None:
     """Read a case and print its values, sources, assumptions and the cost of a run."""
-    from underfoot.questions.check import case_check
+    from underfoot.compute.check import case_check
 
     answer = case_check(shared.case(case))
     finish(answer, None, json=shared.json, everything=shared.everything)
