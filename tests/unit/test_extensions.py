@@ -515,6 +515,13 @@ def test_two_packages_of_one_name(site):
         Case(**PARTS, friction={"model": "broken_ext.law:Sticky", "at_water": 0.1})
 
 
+def test_a_package_without_a_version_is_computed_and_counts(site):
+    install(site, "tribo_ext", {"law": EXTENSIONS["law"]}, {"friction": DOORS["friction"]})
+    next(site.glob("*.dist-info/METADATA")).write_text("Metadata-Version: 2.1\nName: tribo_ext\n")
+    case = Case(**PARTS, friction={"model": "sticky", "at_water": 0.1})
+    assert run(case, quick=True).provenance.case_hash == case.hash != Case(**PARTS).hash
+
+
 def test_nobody_offers_what_nobody_offers(site):
     assert offered("friction", "sticky") is None
     assert list(broken_offers()) == []
