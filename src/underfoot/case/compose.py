@@ -69,23 +69,23 @@ def composed(
     sub-section), then what is given. Catalogue values that the chosen options don't take are left
     out; given ones too where ``lenient`` says so of their path, else they are an error later.
     """
-    composition = Composition(catalogue, places, folder, lenient)
-    tables = {key: expanded(item, key, composition.entries) for key, item in given.items()}
+    found = Composition(catalogue, places, folder, lenient)
+    tables = {key: expanded(item, key, found.entries) for key, item in given.items()}
     laid: dict[str, Origin] = {}
     for section in sorted(CATALOGUE_SECTIONS, key=lambda path: path.count(".")):
         name = _from(tables, section)
         if name is not None and not (section == "contaminant" and name == DRY):
-            _lay(composition, laid, section, name)
+            _lay(found, laid, section, name)
     try:
-        given_leaves = leaves(_without_from(tables), source="")
+        own = leaves(_without_from(tables), source="")
     except InputError as error:
-        raise CaseError([*composition.errors, placed(error, places)]) from error
-    record = _friction_record(composition, tables)
-    for path, leaf in given_leaves.items():
+        raise CaseError([*found.errors, placed(error, places)]) from error
+    record = _friction_record(found, tables)
+    for path, leaf in own.items():
         origin = leaf.given if isinstance(leaf.given, Origin) else origin_of(leaf.given)
         if origin is None:
             origin = Origin(GIVEN, leaf)
-        if path.startswith("friction.") and _of_another_fluid(origin, composition.entries):
+        if path.startswith("friction.") and _of_another_fluid(origin, found.entries):
             continue
         for other in _ALTERNATIVES.get(path, ()):
             if other in laid and laid[other].kind == CATALOGUE:
@@ -95,10 +95,10 @@ def composed(
     tree = _nested({**record, **laid}, tables)
     if tables.get("contaminant") is not None and _from(tables, "contaminant") == DRY:
         tree["contaminant"] = None
-    composition.tree = _settled(composition, CaseParts, tree, "")
-    _settle_hardness(composition)
-    _settle_reads(composition)
-    return composition
+    found.tree = _settled(found, CaseParts, tree, "")
+    _settle_hardness(found)
+    _settle_reads(found)
+    return found
 
 
 def expanded(item: Any, path: str, entries: dict[str, str] | None = None) -> Any:
@@ -117,21 +117,21 @@ def expanded(item: Any, path: str, entries: dict[str, str] | None = None) -> Any
     return {key: expanded(below, f"{path}.{key}", entries) for key, below in item.items()}
 
 
-def _lay(composition: Composition, laid: dict[str, Origin], section: str, name: Any) -> None:
+def _lay(found: Composition, laid: dict[str, Origin], section: str, name: Any) -> None:
     kind, part = CATALOGUE_SECTIONS[section]
-    catalogue, where = composition.catalogue, composition.places(f"{section}.from")
+    catalogue, where = found.catalogue, found.places(f"{section}.from")
     if not isinstance(name, str):
-        composition.errors.append(InputError(f"{name!r} is no name", where=where, allowed="text"))
+        found.errors.append(InputError(f"{name!r} is no name", where=where, allowed="text"))
         return
     try:
         entry = catalogue.entry(kind, name, where=where)
     except InputError as error:
-        composition.errors.append(error)
-        composition.failed.append(section)
+        found.errors.append(error)
+        found.failed.append(section)
         return
     if part and not entry.under(part):
         known = [n for n in catalogue.names(kind) if catalogue.entry(kind, n).under(part)]
-        composition.errors.append(unknown_name(f"{kind} with {part}", name, known, where=where))
+        found.errors.append(unknown_name(f"{kind} with {part}", name, known, where=where))
     for path in [path for path in laid if path.startswith(section + ".")]:
         del laid[path]
     for path, leaf in _part(entry, part, section).items():
@@ -139,7 +139,7 @@ def _lay(composition: Composition, laid: dict[str, Origin], section: str, name: 
         laid[RENAMED.get(full) or SHORT.get(full) or full] = Origin(
             CATALOGUE, leaf, f"{kind} {name}"
         )
-    composition.entries[section] = name
+    found.entries[section] = name
 
 
 def _part(entry: Entry, part: str, section: str) -> dict[str, Leaf]:
@@ -149,9 +149,9 @@ def _part(entry: Entry, part: str, section: str) -> dict[str, Leaf]:
     return {path: leaf for path, leaf in entry.values.items() if not path.startswith(other)}
 
 
-def _friction_record(composition: Composition, tables: Mapping[str, Any]) -> dict[str, Origin]:
+def _friction_record(found: Composition, tables: Mapping[str, Any]) -> dict[str, Origin]:
     """Return what the catalogue knows of friction under the fluid and the chosen law takes."""
-    catalogue, name = composition.catalogue, composition.entries.get("contaminant")
+    catalogue, name = found.catalogue, found.entries.get("contaminant")
     if name is None or ("fluid", name) not in catalogue.entries:
         return {}
     try:
@@ -193,7 +193,7 @@ def _sections(table: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _settled(
-    composition: Composition, model: type[Section], table: dict[str, Any], path: str
+    found: Composition, model: type[Section], table: dict[str, Any], path: str
 ) -> dict[str, Any]:
     """Return a section's table without what its option does not take, with what files hold."""
     if issubclass(model, Option) and not model.name:
@@ -208,66 +208,64 @@ def _settled(
                 continue
             if from_catalogue(table[key]):
                 del table[key]
-            elif composition.lenient(here):
+            elif found.lenient(here):
                 del table[key]
-                composition.dropped[here] = f'not used by {model.key} = "{model.name}"'
+                found.dropped[here] = f'not used by {model.key} = "{model.name}"'
     try:
-        table = model.completed(table, composition.folder, path)
+        table = model.completed(table, found.folder, path)
     except InputError as error:
-        composition.errors.append(placed(error, composition.places))
-        composition.failed.append(path)
+        found.errors.append(placed(error, found.places))
+        found.failed.append(path)
     for key, info in model.model_fields.items():
         section = section_in(info)
         if section is not None and isinstance(table.get(key), dict):
             below = f"{path}.{key}" if path else key
-            table[key] = _settled(composition, section, table[key], below)
+            table[key] = _settled(found, section, table[key], below)
     return table
 
 
-def _settle_hardness(composition: Composition) -> None:
-    material = composition.tree.get("shoe", {})
+def _settle_hardness(found: Composition) -> None:
+    material = found.tree.get("shoe", {})
     for part in ("material", "modulus"):
         material = material.get(part) if isinstance(material, dict) else None
     if material is None or (isinstance(material, Origin) and material.leaf.given is None):
         return
-    given = composition.tree.pop("hardness", None)
-    composition.tree["hardness"] = None
+    given = found.tree.pop("hardness", None)
+    found.tree["hardness"] = None
     if not isinstance(given, dict) or not given:
         return
-    if composition.lenient("hardness.model"):
-        composition.dropped["hardness.model"] = "not used beside a measured modulus"
+    if found.lenient("hardness.model"):
+        found.dropped["hardness.model"] = "not used beside a measured modulus"
         return
-    composition.errors.append(
+    found.errors.append(
         InputError(
             "is not used: the modulus of the compound is given",
-            where=composition.places("hardness.model"),
+            where=found.places("hardness.model"),
             remedy="Remove it, or shoe.material.modulus",
         )
     )
 
 
-def _settle_reads(composition: Composition) -> None:
+def _settle_reads(found: Composition) -> None:
     """Take out, or refuse, what only options that were not chosen would read."""
     chosen = set()
     for name, slot in _top_slots().items():
         try:
-            chosen |= set(slot.pick(composition.tree.get(name) or {}).reads)
+            chosen |= set(slot.pick(found.tree.get(name) or {}).reads)
         except (ValidationError, PydanticCustomError):
             return
     for path, readers in optional_reads().items():
         section, _, key = path.rpartition(".")
-        table = composition.tree.get(section)
+        table = found.tree.get(section)
         if path in chosen or not isinstance(table, dict) or key not in table:
             continue
         if not from_catalogue(table[key]):
-            if not composition.lenient(path):
+            if not found.lenient(path):
                 remedy = f"Remove it, or choose {' or '.join(readers)}"
                 what = "is not read by any chosen option"
-                composition.errors.append(
-                    InputError(what, where=composition.places(path), remedy=remedy)
-                )
+                found.errors.append(InputError(what, where=found.places(path), remedy=remedy))
                 continue
-            composition.dropped[path] = "not read by any chosen option"
+            found.dropped[path] = "not read by any chosen option"
         del table[key]
 
 
@@ -295,10 +293,10 @@ def _from(tables: Mapping[str, Any], section: str) -> Any:
 
 
 def _without_from(table: Mapping[str, Any], path: str = "") -> dict[str, Any]:
-    rest: dict[str, Any] = {}
+    kept: dict[str, Any] = {}
     for key, item in table.items():
         here = f"{path}.{key}" if path else key
         if key == "from" and path in CATALOGUE_SECTIONS:
             continue
-        rest[key] = _without_from(item, here) if isinstance(item, Mapping) else item
-    return rest
+        kept[key] = _without_from(item, here) if isinstance(item, Mapping) else item
+    return kept

@@ -114,8 +114,8 @@ def slip(
 
     settings = []
     if rcof_from is not None:
-        mean, sd, source = measured_rcof(rcof_from)
-        say(source)
+        mean, sd, words = measured_rcof(rcof_from)
+        say(words)
         settings = [f"risk.rcof_mean={mean:.6g}", f"risk.rcof_sd={sd:.6g}"]
     given = shared.case(case, settings)
     steps = [step for path in history or () for step in own_histories(path)]

@@ -203,8 +203,8 @@ def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
     """Return in words which inputs the spread of COF comes from, and how it was sampled."""
     if sampled is None:
         return {}
-    shares = sorted(sampled.share.items(), key=lambda one: -one[1])
-    parts = [f"{_INPUTS.get(name, name)} {share:.0%}" for name, share in shares if share >= 0.005]
+    words = sorted(sampled.share.items(), key=lambda one: -one[1])
+    parts = [f"{_INPUTS.get(name, name)} {share:.0%}" for name, share in words if share >= 0.005]
     if sampled.left_out:
         names = ", ".join(_INPUTS.get(name, name) for name in sampled.left_out)
         parts.append(f"taken as exact: {names}")

@@ -224,7 +224,7 @@ def named(progress: Progress, name: str) -> Progress:
     return report
 
 
-def cached_arrays(
+def kept(
     room: str,
     function: Callable[[Any], Mapping[str, Any]],
     items: Sequence[Any],

@@ -28,7 +28,7 @@ from underfoot.studies.figure import (
     level,
     line,
 )
-from underfoot.studies.runner import Computed, Options, Table, cached_arrays
+from underfoot.studies.runner import Computed, Options, Table, kept
 from underfoot.studies.verdict import Quantity
 from underfoot_block import condensed, explicit
 
@@ -253,7 +253,7 @@ def outcomes(
     if settings.solver == "explicit":
         items = [(case, settings) for case in cases]
         keys = [_key(case, settings) for case in cases]
-        for _, arrays in cached_arrays(ROOM, explicit_outcome, items, keys, processes=processes):
+        for _, arrays in kept(ROOM, explicit_outcome, items, keys, processes=processes):
             yield Row(**json.loads(str(arrays.pop("row")))), arrays
         return
     block: condensed.CondensedBlock | None = None

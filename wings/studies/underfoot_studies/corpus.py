@@ -15,7 +15,7 @@ from underfoot.compute.run import run
 from underfoot.core import UnderfootError, content_hash
 from underfoot.core.arrays import Array
 from underfoot.studies.figure import PRINTED, Figure, Panel, line, points
-from underfoot.studies.runner import Computed, Options, Table, cached_arrays, part
+from underfoot.studies.runner import Computed, Options, Table, kept, part
 from underfoot.studies.verdict import Quantity
 
 from .corpus_cases import (
@@ -80,7 +80,7 @@ def compute(options: Options) -> Computed:
     keys = [content_hash(asdict(split), content, options.seed) for split in splits]
     results: dict[tuple[str, str], SourceScore] = {}
     fits = part(options.progress, 0.0, 0.5)
-    work = cached_arrays("corpus-2", draws_of, splits, keys, processes=options.processes)
+    work = kept("corpus-2", draws_of, splits, keys, processes=options.processes)
     for number, (split, arrays) in enumerate(work, start=1):
         fits("leaving one source out", number / len(splits))
         own = tuple(c for c in conditions if c.source == split.source)
@@ -157,7 +157,7 @@ def _compared(
     cases = {case.hash: case for stand in stands for case in stand.cases}
     values: dict[str, Mapping[str, Any]] = {}
     runs = part(options.progress, 0.5, 1.0)
-    work = cached_arrays(
+    work = kept(
         "corpus_cases-1", whole_cof, list(cases.values()), list(cases), processes=options.processes
     )
     for number, (case, arrays) in enumerate(work, start=1):

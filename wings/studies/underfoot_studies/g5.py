@@ -20,7 +20,7 @@ from underfoot.core.catalogue import Catalogue
 from underfoot.friction import FrictionLaw, PairContactLaw
 from underfoot.slip.dynamics import ReducedSole, SlipStudy
 from underfoot.studies.figure import GREY, OURS, PRINTED, SECOND, Figure, Panel, line, points
-from underfoot.studies.runner import Computed, Options, Table, cached_arrays, named, part
+from underfoot.studies.runner import Computed, Options, Table, kept, named, part
 from underfoot.studies.verdict import Quantity
 from underfoot_trial_analysis.statistics.linear import all_subsets
 
@@ -74,7 +74,7 @@ def compute(options: Options) -> Computed:
     cases = {(s, grid): slip_case(s, grid=grid, quick=options.quick) for s, grid in plan}
     if options.processes != 1:
         keys = [case.hash for case in cases.values()]
-        filled = cached_arrays("g5_filled-1", fill_cache, list(cases.values()), keys, processes=2)
+        filled = kept("g5_filled-1", fill_cache, list(cases.values()), keys, processes=2)
         for number, _ in enumerate(filled):
             options.progress("full slips", 0.8 * (number + 1) / len(cases))
     found: dict[tuple[str, str], SlipStudy] = {}
