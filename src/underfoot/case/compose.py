@@ -246,28 +246,26 @@ def _settle_hardness(composition: Composition) -> None:
     )
 
 
-def _settle_reads(composition: Composition) -> None:
+def _settle_reads(found: Composition) -> None:
     """Take out, or refuse, what only options that were not chosen would read."""
     chosen = set()
     for name, slot in _top_slots().items():
         try:
-            chosen |= set(slot.pick(composition.tree.get(name) or {}).reads)
+            chosen |= set(slot.pick(found.tree.get(name) or {}).reads)
         except (ValidationError, PydanticCustomError):
             return
     for path, readers in optional_reads().items():
         section, _, key = path.rpartition(".")
-        table = composition.tree.get(section)
+        table = found.tree.get(section)
         if path in chosen or not isinstance(table, dict) or key not in table:
             continue
         if not from_catalogue(table[key]):
-            if not composition.lenient(path):
+            if not found.lenient(path):
                 remedy = f"Remove it, or choose {' or '.join(readers)}"
                 what = "is not read by any chosen option"
-                composition.errors.append(
-                    InputError(what, where=composition.places(path), remedy=remedy)
-                )
+                found.errors.append(InputError(what, where=found.places(path), remedy=remedy))
                 continue
-            composition.dropped[path] = "not read by any chosen option"
+            found.dropped[path] = "not read by any chosen option"
         del table[key]
 
 
