@@ -15,6 +15,11 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 SOURCE = REPOSITORY / "src"
 LARGEST = 66_000  # lines of the core: what one person can know; the rest stands in wings beside it
 START = 0.15  # s of CPU that `import underfoot` may take
+SAY_NOTHING = {"found", "kept", "one", "own", "said", "there", "words"}
+SPEAKING = [
+    *(SOURCE / "underfoot" / room for room in "core compute questions report cli".split()),
+    *(REPOSITORY / "wings" / wing for wing in ("app", "design_studies")),
+]
 FIRST = 0.8  # s of CPU until a case is read and all that `run` needs is imported
 
 
@@ -185,3 +190,30 @@ def test_the_map_for_contributors_names_every_room():
     told = (REPOSITORY / "CONTRIBUTING.md").read_text().split("```")[1]
     rooms = {path.parent.name for path in (SOURCE / "underfoot").glob("*/__init__.py")}
     assert rooms - {"data"} <= set(re.findall(r"\w+", told))
+
+
+def names_of(path):
+    """Yield the names of functions, their parameters and fields in a file, with their lines."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            yield node.name, node.lineno
+            yield from (
+                (each.arg, each.lineno) for each in ast.walk(node.args) if hasattr(each, "arg")
+            )
+        elif isinstance(node, ast.ClassDef):
+            for field in node.body:
+                if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name):
+                    yield field.target.id, field.lineno
+        elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
+            yield node.attr, node.lineno
+
+
+def test_names_of_functions_parameters_and_fields_say_what_they_are():
+    empty = [
+        f"{path.relative_to(REPOSITORY)}:{line} {name}"
+        for folder in SPEAKING
+        for path in sorted(folder.rglob("*.py"))
+        for name, line in names_of(path)
+        if name.strip("_") in SAY_NOTHING
+    ]
+    assert not empty
