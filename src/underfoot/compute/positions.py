@@ -224,19 +224,16 @@ def tread_positions(
     *,
     spacing: float,
     quick: bool,
-) -> TreadPositions | None:
+) -> TreadPositions:
     """Return the numbers of a run at more positions of its tread, or shoe angles without a tread.
 
-    None where the case asks for one position. Positions are solved on the grid of the run, of
-    ``spacing`` (m); shoe angles on the quick one, whose ratios are taken.
+    Positions are solved on the grid of the run, of ``spacing`` (m); shoe angles on the quick one,
+    whose ratios are taken.
 
     ``case_numbers`` are those at the case's own place; ``at_places`` solves places on a grid and
     gives the index of each with its numbers as they end, None where a contact did not converge.
     """
-    count = position_count(case, quick=quick)
-    if count == 1:
-        return None
-    lugs = treaded(case)
+    count, lugs = position_count(case, quick=quick), treaded(case)
     if lugs:
         tread = _tread(case)
         all_places = places(file_periods(case) if tread is None else tread.periods, count)

@@ -20,7 +20,7 @@ from underfoot.sole_contact.solver import SoleContact, solve_sliding
 
 from .contact_friction import ContactFriction, contact_friction
 from .histories import Recorder
-from .positions import Place, TreadPositions, place_numbers, tread_positions
+from .positions import Place, TreadPositions, place_numbers, position_count, tread_positions
 from .prepare import Prepared, prepared
 from .sensors import scanned
 from .sole import sole_map
@@ -89,12 +89,14 @@ def averaged(
     processes: int = 1,
     progress: Progress = silent,
 ) -> TreadPositions | None:
-    """Return the numbers at more positions of the tread or shoe angles; None without a contact.
+    """Return the numbers at more positions of the tread or shoe angles.
 
+    None without a contact, and where the case asks for one position.
     Up to ``processes`` positions are solved at the same time, each on one thread: the digits are
     those of one process. A compliance that was given holds for the position of the run alone.
     """
-    if "compliance" in parts.objects or not solution.contact.status.usable:
+    total = position_count(parts.case, quick=quick)
+    if total == 1 or "compliance" in parts.objects or not solution.contact.status.usable:
         return None
 
     def at_places(
@@ -108,13 +110,9 @@ def averaged(
             return
         count = len(places)
         for k, place in enumerate(places):
-            name = f"Tread position {k + 1} of {count}"
-            yield (
-                k,
-                _numbers_at(
-                    parts, place, spacing, part(progress, k / count, (k + 1) / count, name)
-                ),
-            )
+            name = f"Tread position {total - count + k + 1} of {total}"
+            march = part(progress, k / count, (k + 1) / count, name)
+            yield k, _numbers_at(parts, place, spacing, march)
 
     case_numbers = place_numbers(
         parts.case, parts.local_law, parts.sole, solution.contact, parts.viscosity
