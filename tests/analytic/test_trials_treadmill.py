@@ -35,9 +35,10 @@ def test_a_belt_recording_of_45_stances(tmp_path, speeds):
     for plate, speed, side in zip(("plate 1", "plate 2"), speeds, ("right", "left"), strict=True):
         assert walk.belts[plate].speed(10.0) == pytest.approx(speed, rel=0.03)
         assert {step.stance.side for step in steps if step.stance.plate == plate} == {side}
-    words = accepted[0].measurement.conventions["surface"]
-    assert words.startswith(f"treadmill belt at {speeds[0]:.1f}"[:-1])
-    assert "foot markers" in words
+    said = accepted[0].measurement.conventions
+    assert said["surface"] == "treadmill belt, level"
+    assert said["belt"].startswith(f"{speeds[0]:.1f}"[:-1])
+    assert "foot markers" in said["belt"]
 
 
 def test_without_markers_the_centre_of_pressure_tells_the_belt(tmp_path):
