@@ -323,8 +323,8 @@ def _logistic(
                 cautions.append(f"estimating equations: {error.what}")
         columns = ("method", "intercept", "slope", "95 % low", "95 % high", "p")
         note = (
-            "Intervals of the first lines are profile likelihoods, p from likelihood ratios; errors by "
-            "person are those of Kauermann and Carroll with t, p from flipped signs of the persons."
+            "Intervals of the first lines are profile likelihoods, p from likelihood ratios; those "
+            "by person are Kauermann and Carroll's errors with t, p from flipped signs of persons."
         )
         cautions = list(dict.fromkeys(cautions))
         findings.append(finding(f"logistic_{name}", title, columns, rows, note, cautions))

@@ -421,9 +421,9 @@ def clustered_logistic(
     Two slips of one person are not two persons. Errors are the sandwich of Liang and Zeger and
     its bias-corrected form of Kauermann and Carroll; intervals take the corrected error and t with
     (clusters - parameters) degrees of freedom. p of a predictor compares its score, where it has no
-    effect, with the scores of the same clusters with their signs flipped at random: all flips of up
-    to 14 clusters, else 9,999. In small studies t with either error says less often than 5 % that
-    there is an effect where there is none, the flips do so in 5 % (docs/physics/trial_statistics.md).
+    effect, with the scores of the same clusters with their signs flipped: all flips of up to 14
+    clusters, else 9,999 at random. In small studies t with either error calls less than 5 % of
+    effects of zero significant, flips 5 % (docs/physics/trial_statistics.md).
 
     ``outcome`` and ``predictors``: as for ``logistic_regression``. ``cluster``: whom each row
     belongs to, shape (n,).
