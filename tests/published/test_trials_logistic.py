@@ -9,6 +9,7 @@ from scipy.optimize import minimize_scalar
 
 from underfoot.core import DataError
 from underfoot_trial_analysis.statistics import clustered_logistic, logistic_regression
+from underfoot_trial_analysis.statistics.logistic import sandwich
 
 # Dalal, Fowlkes and Hoadley 1989, O-rings.
 _TEMPERATURE = [66, 70, 69, 68, 67, 72, 73, 70, 57, 63, 70, 78]
@@ -157,8 +158,50 @@ def test_clusters_against_statsmodels():
     assert fit["intercept"].estimate == pytest.approx(1.78586367, abs=1e-8)
     assert fit["acof"].estimate == pytest.approx(-10.09514236, abs=1e-8)
     assert fit["acof"].robust_error == pytest.approx(9.27647707, abs=1e-8)
-    assert fit["acof"].corrected_error == pytest.approx(9.97151192, abs=1e-7)
+    # Between the sandwich and Mancl and DeRouen's form, which is 9.97151192.
+    assert 9.27647707 < fit["acof"].corrected_error < 9.97151192
+    assert fit["acof"].p == pytest.approx(0.30, abs=0.01)
     assert fit.correlation == pytest.approx(0.5311928996, abs=1e-9)
+
+
+def test_small_sample_errors_of_clusters_against_statsmodels():
+    """The three powers of the leverage: plain and bias-reduced are those of statsmodels."""
+    from statsmodels.genmod.cov_struct import Independence
+    from statsmodels.genmod.families import Binomial
+    from statsmodels.genmod.generalized_estimating_equations import GEE
+
+    rng = np.random.default_rng(9)
+    groups = np.repeat(np.arange(12), [2, 3, 4] * 4)
+    matrix = np.column_stack((np.ones(36), rng.normal(size=(36, 2))))
+    y = (rng.random(36) < 0.5).astype(float)
+    fit = GEE(y, matrix, groups, family=Binomial(), cov_struct=Independence()).fit(
+        cov_type="bias_reduced", ctol=1e-12
+    )
+    mean = fit.fittedvalues
+    rows = [matrix[groups == k] for k in range(12)]
+    scores = np.array([x.T @ (y - mean)[groups == k] for k, x in enumerate(rows)])
+    weight = mean * (1 - mean)
+    curvatures = np.array([(x.T * weight[groups == k]) @ x for k, x in enumerate(rows)])
+    assert sandwich(scores, curvatures, 0.0) == pytest.approx(fit.cov_robust, rel=1e-8)
+    assert sandwich(scores, curvatures, 1.0) == pytest.approx(fit.cov_robust_bc, rel=1e-8)
+    # Kauermann and Carroll by their formula: residuals times the inverse root of 1 - leverage.
+    bread, meat = np.linalg.inv(curvatures.sum(axis=0)), np.zeros((3, 3))
+    for k, x in enumerate(rows):
+        own = weight[groups == k]
+        leverage = (x * np.sqrt(own)[:, None]) @ bread @ (x * np.sqrt(own)[:, None]).T
+        value, axes = np.linalg.eigh(np.eye(len(x)) - leverage)
+        pearson = (y - mean)[groups == k] / np.sqrt(own)
+        score = (x.T * np.sqrt(own)) @ (axes @ ((axes.T @ pearson) / np.sqrt(value)))
+        meat += np.outer(score, score)
+    assert sandwich(scores, curvatures, 0.5) == pytest.approx(bread @ meat @ bread, rel=1e-8)
+
+
+def test_flipped_signs_of_few_persons_are_counted_out():
+    """Four persons: 16 flips, of which the two that keep or turn all signs are as far out."""
+    x, y = [1.0, 0.9, -1.0, -0.9] * 4, [1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 0, 0, 0, 1, 0, 0]
+    p = clustered_logistic(y, {"x": x}, np.repeat(np.arange(4), 4))["x"].p
+    assert p * 16 == pytest.approx(round(p * 16), abs=1e-9)
+    assert p >= 2 / 16
 
 
 def test_risk_curve_band():

@@ -11,6 +11,11 @@ from .walkway import GRAVITY, Walkway
 
 _PELVIS = re.compile(r"asis?$|psis?$|sacr(um)?$|v?sac$", re.IGNORECASE)
 _PENDULUM = 0.8  # slope of the force line of recorded steps in the plane of walking
+VERTICAL = (
+    "peak over mean", "second peak over first", "valley over peaks", "time of first peak",
+    "time of second peak", "dwell at the normal peak",
+)  # fmt: skip
+"""Features of the normal force's shape over the stance."""
 _LOADED = (0.06, 0.94)  # share of the stance in which the ratio of the forces is sure
 _SINGLE = (0.18, 0.82)  # share of the stance in which the other foot swings
 _SLOW = LowPass(cutoff=20.0)
