@@ -6,7 +6,7 @@ intervals are ours: no maintained package has them, or converges on predictors a
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -150,9 +150,11 @@ def separation(matrix: np.ndarray, outcome: np.ndarray) -> Separation:
 
 @dataclass(frozen=True, slots=True)
 class Coefficient:
-    """One coefficient: estimate, standard error, profile interval, likelihood-ratio p.
+    """One coefficient: estimate, standard error, interval and p of zero.
 
-    ``low`` or ``high`` is None where the profile does not close.
+    Interval and p are those of the profile of the likelihood and its ratio; of clustered data see
+    ``clustered_logistic``. ``low`` or ``high`` is None where the profile does not close, ``p``
+    where zero is not tested.
     """
 
     name: str
@@ -160,42 +162,16 @@ class Coefficient:
     standard_error: float
     low: float | None
     high: float | None
-    p: float
-
-    def wald(self, confidence: float = 0.95) -> tuple[float, float]:
-        """Return the symmetric interval estimate +- z SE (poor in small or separated data)."""
-        from scipy.stats import norm
-
-        reach = float(norm.ppf(0.5 + confidence / 2)) * self.standard_error
-        return self.estimate - reach, self.estimate + reach
-
-
-@dataclass(frozen=True, slots=True)
-class ClusteredCoefficient:
-    """Estimate with the sandwich error, its small-sample form, and its interval.
-
-    ``p`` of zero by flipping the signs of clusters; None for the intercept, which is not tested.
-    """
-
-    name: str
-    estimate: float
-    robust_error: float
-    corrected_error: float
-    low: float
-    high: float
     p: float | None
 
 
-_Term = TypeVar("_Term", Coefficient, ClusteredCoefficient)
-
-
 @dataclass(frozen=True, slots=True)
-class _Fit(Generic[_Term]):
+class _Fit:
     method: str
-    coefficients: tuple[_Term, ...]
+    coefficients: tuple[Coefficient, ...]
     covariance: np.ndarray
 
-    def __getitem__(self, name: str) -> _Term:
+    def __getitem__(self, name: str) -> Coefficient:
         return next(c for c in self.coefficients if c.name == name)
 
     @property
@@ -205,11 +181,10 @@ class _Fit(Generic[_Term]):
 
 
 @dataclass(frozen=True, slots=True)
-class LogisticFit(_Fit[Coefficient]):
+class LogisticFit(_Fit):
     """A fitted logistic model log(p / (1 - p)) = b0 + b1 x1 + ..."""
 
     log_likelihood: float
-    null_log_likelihood: float
     penalised_log_likelihood: float | None
     n: int
     events: int
@@ -220,11 +195,6 @@ class LogisticFit(_Fit[Coefficient]):
     def deviance(self) -> float:
         """-2 log-likelihood (of the unpenalised likelihood)."""
         return -2.0 * self.log_likelihood
-
-    @property
-    def null_deviance(self) -> float:
-        """-2 log-likelihood of the intercept alone."""
-        return -2.0 * self.null_log_likelihood
 
     def probability(self, **values: float | np.ndarray) -> np.ndarray:
         """Return the modelled probability at predictor values."""
@@ -297,8 +267,7 @@ def logistic_regression(
         *ends, p = _profile(work, y, at, j, firth, best, confidence, errors[j] * unit)
         low, high = (None if end is None else float(end / unit) for end in ends)
         coefficients.append(Coefficient(name, float(beta[j]), float(errors[j]), low, high, p))
-    null = float(np.sum(y * np.log(mean) + (1 - y) * np.log(1 - mean)))
-    likelihoods = log_likelihood(eta, y), null, objective(matrix, eta, y, True) if firth else None
+    likelihoods = log_likelihood(eta, y), objective(matrix, eta, y, True) if firth else None
     counted = len(y), int(y.sum()), found, tuple(warnings)
     return LogisticFit(method, tuple(coefficients), covariance, *likelihoods, *counted)
 
@@ -398,7 +367,7 @@ _ALL_FLIPS, _FLIPS = 14, 10_000
 
 
 @dataclass(frozen=True, slots=True)
-class ClusteredFit(_Fit[ClusteredCoefficient]):
+class ClusteredFit(_Fit):
     """Population-averaged logistic model with exchangeable working correlation.
 
     ``covariance`` is the small-sample one, shape (p, p), intercept first.
@@ -418,12 +387,12 @@ def clustered_logistic(
 ) -> ClusteredFit:
     """Return generalised estimating equations with exchangeable correlation within clusters.
 
-    Two slips of one person are not two persons. Errors are the sandwich of Liang and Zeger and
-    its bias-corrected form of Kauermann and Carroll; intervals take the corrected error and t with
-    (clusters - parameters) degrees of freedom. p of a predictor compares its score, where it has no
+    Two slips of one person are not two persons. Errors are the sandwich of Liang and Zeger in
+    the bias-corrected form of Kauermann and Carroll; intervals take t with (clusters - parameters)
+    degrees of freedom. p of a predictor compares its score, where it has no
     effect, with the scores of the same clusters with their signs flipped: all flips of up to 14
-    clusters, else 9,999 at random. In small studies t with either error calls less than 5 % of
-    effects of zero significant, flips 5 % (docs/physics/trial_statistics.md).
+    clusters, else 9,999 at random. In small studies t calls less than 5 % of effects of
+    zero significant, flips 5 % (docs/physics/trial_statistics.md).
 
     ``outcome`` and ``predictors``: as for ``logistic_regression``. ``cluster``: whom each row
     belongs to, shape (n,).
@@ -452,13 +421,13 @@ def clustered_logistic(
     groups = np.array([order[label] for label in labels])
     params, dependence = _estimated(y, centred, groups, np.linalg.solve(back, start))
     clusters = _cluster_scores(y, centred, groups, centred @ params, dependence)
-    robust, corrected = (back @ sandwich(*clusters, power) @ back.T for power in (0.0, 0.5))
+    corrected = back @ sandwich(*clusters, 0.5) @ back.T
     estimates, errors = back @ params, np.sqrt(np.diag(corrected))
     reach = float(student.ppf(0.5 + confidence / 2, df)) * errors
     p = [None, *(_flipped_p(y, centred, groups, j) for j in range(1, len(names)))]
-    columns = estimates, np.sqrt(np.diag(robust)), errors, estimates - reach, estimates + reach
+    columns = estimates, errors, estimates - reach, estimates + reach
     coefficients = tuple(
-        ClusteredCoefficient(name, *numbers, p=own)
+        Coefficient(name, *numbers, p=own)
         for name, own, *numbers in zip(names, p, *(c.tolist() for c in columns), strict=True)
     )
     return ClusteredFit("clustered", coefficients, corrected, dependence, len(order), len(y))
