@@ -193,6 +193,18 @@ def test_small_sample_errors_of_clusters_against_statsmodels():
     assert sandwich(scores, curvatures, 0.5) == pytest.approx(bread @ meat @ bread, rel=1e-8)
 
 
+def test_persons_who_always_do_the_same_have_an_answer():
+    """No correlation fits them: as many rows tell no more than one of each person."""
+    rng = np.random.default_rng(2)
+    x, y = rng.normal(size=12), np.array([0, 1, 1, 0, 1, 0, 0, 1, 0, 1, 1, 0])
+    who = np.arange(12)
+    once = clustered_logistic(y, {"x": x}, who)["x"]
+    thrice = clustered_logistic(np.repeat(y, 3), {"x": np.repeat(x, 3)}, np.repeat(who, 3))["x"]
+    assert thrice.estimate == pytest.approx(once.estimate, rel=1e-6)
+    assert thrice.standard_error == pytest.approx(once.standard_error, rel=1e-6)
+    assert thrice.p == once.p
+
+
 def test_flipped_signs_of_few_persons_are_counted_out():
     """Four persons: 16 flips, of which the two that keep or turn all signs are as far out."""
     x, y = [1.0, 0.9, -1.0, -0.9] * 4, [1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 0, 0, 0, 1, 0, 0]

@@ -394,6 +394,9 @@ def clustered_logistic(
     clusters, else 9,999 at random. In small studies t calls less than 5 % of effects of
     zero significant, flips 5 % (docs/physics/trial_statistics.md).
 
+    Where the outcomes of a cluster are so alike that no correlation fits, clusters are taken as
+    independent rows (correlation 0) and the errors alone allow for it.
+
     ``outcome`` and ``predictors``: as for ``logistic_regression``. ``cluster``: whom each row
     belongs to, shape (n,).
 
@@ -437,17 +440,20 @@ def _estimated(
     y: np.ndarray, matrix: np.ndarray, groups: np.ndarray, start: np.ndarray
 ) -> tuple[np.ndarray, float]:
     """Coefficients (p,) of the estimating equations and the correlation within clusters."""
-    from statsmodels.genmod.cov_struct import Exchangeable
+    from statsmodels.genmod.cov_struct import Exchangeable, Independence
     from statsmodels.genmod.families import Binomial
     from statsmodels.genmod.generalized_estimating_equations import GEE
 
-    structure = Exchangeable()
-    fit: Any = GEE(y, matrix, groups, family=Binomial(), cov_struct=structure).fit(
-        maxiter=200, ctol=1e-12, start_params=start, first_dep_update=0
-    )
-    if not fit.converged:
-        raise ConvergenceError("the estimating equations did not settle", where="clusters")
-    return np.asarray(fit.params), float(np.asarray(structure.dep_params))
+    largest = int(np.bincount(groups).max())
+    for structure in (Exchangeable(), Independence()):
+        model = GEE(y, matrix, groups, family=Binomial(), cov_struct=structure)
+        with np.errstate(all="ignore"):
+            fit: Any = model.fit(maxiter=200, ctol=1e-12, start_params=start, first_dep_update=0)
+        alike = float(np.asarray(structure.dep_params or 0.0))
+        # Of persons who always do the same the moments give 1 and more: no correlation matrix.
+        if fit.converged and (largest == 1 or -1.0 / (largest - 1) < alike < 1.0):
+            return np.asarray(fit.params), alike
+    raise ConvergenceError("the estimating equations did not settle", where="clusters")
 
 
 def _cluster_scores(
