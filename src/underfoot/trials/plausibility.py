@@ -123,8 +123,11 @@ def step_flags(
 ) -> tuple[Flag, ...]:
     """Return what is doubtful about signals, markers and features of one accepted step."""
     plate = walk.plate(stance.plate)
+    forces = tuple(_force_flags(plate, stance, walk.up, walk.weight))
+    if any(flag.name == FILTERED.name for flag in forces):  # says why there are no bumps
+        features = {name: v for name, v in features.items() if not name.startswith("bump of ")}
     return (
-        *_force_flags(plate, stance, walk.up, walk.weight),
+        *forces,
         *_level_flags(plate, stance, walk.up, low_pass),
         *_path_flags(walk, stance),
         *_marker_flags(walk, stance),
