@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from underfoot.trials import Trial, finished_plate, walkway_of
+from underfoot.trials import Plate, Trial, finished_plate, walkway_of
 
 TrialFault = Callable[[Trial, np.random.Generator], Trial]
 Change = Callable[[np.ndarray, float, np.random.Generator], np.ndarray]
@@ -33,16 +33,16 @@ def _forces(change: Change, plates: str = "all") -> TrialFault:
     return fault
 
 
-def _with(trial: Trial, plate, force: np.ndarray, rate: float = 1.0, start: float = 0.0):
+def _with(trial: Trial, plate: Plate, force: np.ndarray, rate: float = 1.0) -> Plate:
     return finished_plate(
-        plate.name, force, rate=plate.rate * rate, start=plate.start / rate + start,
+        plate.name, force, rate=plate.rate * rate, start=plate.start / rate,
         up=walkway_of(trial).up, centre_of_pressure=plate.centre_of_pressure,
         corners=plate.corners,
     )  # fmt: skip
 
 
-def _plates(how: Callable) -> TrialFault:
-    """Something done to the list of raw forces of all plates of one length."""
+def _plates(how: Callable[[list[np.ndarray], Trial, np.random.Generator], list]) -> TrialFault:
+    """Something done to the list of raw forces of all plates."""
 
     def fault(trial: Trial, rng: np.random.Generator) -> Trial:
         forces = how([p.force.copy() for p in trial.plates], trial, rng)
@@ -245,7 +245,7 @@ def _channels_exchanged(forces: list[np.ndarray], trial: Trial, rng: np.random.G
 
 
 def _other_person(forces: list[np.ndarray], trial: Trial, rng: np.random.Generator) -> list:
-    """The shear of a lighter or heavier person at another pace: stretched about each contact."""
+    """The shear over the weight of a lighter or heavier person."""
     up, gain = walkway_of(trial).up, float(rng.choice([0.55, 0.65, 1.45, 1.6]))
     made = []
     for force in forces:
