@@ -49,8 +49,8 @@ def _shapes(normal: np.ndarray, along: np.ndarray, beside: np.ndarray) -> dict[s
     """Impulses and instants of the filtered forces (n,) over one stance."""
     count, mean = len(normal), float(normal.mean())
     third, half = count // 3, count // 2
-    braking = -float(np.minimum(along[: 2 * third], 0.0).sum()) / (count * mean)
-    driving = float(np.maximum(along[third:], 0.0).sum()) / (count * mean)
+    pushes = np.maximum(-along[: 2 * third], 0.0).sum(), np.maximum(along[third:], 0.0).sum()
+    braking, driving = (max(float(push) / (count * mean), 1e-6) for push in pushes)
     first, second = float(normal[:half].max()), float(normal[half:].max())
     valley = float(normal[third : 2 * third].min())
     ratio = along / np.maximum(normal, 0.05 * mean)
@@ -60,9 +60,9 @@ def _shapes(normal: np.ndarray, along: np.ndarray, beside: np.ndarray) -> dict[s
     landed, left = np.flatnonzero(normal > 0.3 * mean)[[0, -1]]
     inner = slice(round(0.1 * count), round(0.9 * count))
     return {
-        "braking impulse": math.log(max(braking, 1e-6)),
-        "driving impulse": math.log(max(driving, 1e-6)),
-        "both impulses": 0.5 * math.log(max(braking, 1e-6) * max(driving, 1e-6)),
+        "braking impulse": math.log(braking),
+        "driving impulse": math.log(driving),
+        "both impulses": 0.5 * math.log(braking * driving),
         "net impulse": driving - braking,
         "peak over mean": math.log(max(first, second) / mean),
         "second peak over first": math.log(second / first),
