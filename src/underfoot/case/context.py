@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,7 @@ from .surfaces import Floor, Interface
 
 if TYPE_CHECKING:
     from underfoot.material import Elastomer
+    from underfoot.rough_contact import ContactTable
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +31,7 @@ class Context:
         rq: Rq of the interface, m; ``rq_deviation`` is its standard deviation over itself.
         fluid: Name of the contaminant.
         catalogue: Entries of the kinds that the options of the case name in ``consults``.
+        rough_contact: Returns the rough contact that friction shares, from a context; or None.
     """
 
     shoe: Shoe
@@ -44,6 +47,7 @@ class Context:
     fluid: str
     catalogue: Catalogue
     progress: Progress = silent
+    rough_contact: Callable[[Context], ContactTable | None] = lambda _: None
 
     @property
     def youngs_modulus(self) -> float:

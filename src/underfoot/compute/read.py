@@ -13,6 +13,7 @@ from underfoot.sole_contact.edge_peak import peak_pressure
 from underfoot.sole_contact.slits import slit_words
 
 from . import numbers
+from .micro_contact import micro_contact
 from .numerical_error import NumericalErrors, numerical_errors, with_numerical_error
 from .positions import TreadPositions
 from .prepare import Prepared
@@ -72,6 +73,8 @@ def readings(
     sensor = solution.sensor
     values, risk = numbers.scalars(case, contact, friction, sensor, sampled, parts.slip_model)
     values |= solution.recorder.array_scalars()
+    micro = micro_contact(parts, contact)
+    values |= {} if micro is None else micro.scalars()
     if positions:
         values = positions.averaged(values)
     drainage = None

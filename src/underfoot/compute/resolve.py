@@ -24,6 +24,7 @@ def resolved(case: Case, progress: Progress = silent) -> Context:
         fluid=case.entries.get("contaminant", "the fluid"),
         catalogue=case.consulted,
         progress=progress,
+        rough_contact=case.rough_contact.table,
     )
 
 

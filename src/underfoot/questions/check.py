@@ -25,7 +25,7 @@ USUAL_AREA = 2e-3
 """m^2: a heel touches on some 20 cm2, for the pressure at which ranges are checked."""
 DEAR = {
     "finite_element": "The finite-element sole takes up to a minute and 2 GB more, once.",
-    "contact_table": "The contact table takes minutes more, once.",
+    "contact_table": "The contact table takes about 10 s more, once.",
     "history": "A history takes several times as long.",
 }
 """Extra cost of the options that are dear, by their name."""

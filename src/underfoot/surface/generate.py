@@ -1,5 +1,7 @@
 """Surfaces that are generated: waves, checkerboards, self-affine ones, ones of a given spectrum."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from underfoot.core import InputError, RangeError
@@ -263,3 +265,36 @@ def surface_from_spectrum(
         f"periodic, nothing extrapolated, seed {seed}"
     )
     return _generated(heights, spacing, shortest, *spectrum.notes, note)
+
+
+def surface_of_density(
+    density: Callable[[np.ndarray], np.ndarray],
+    waves: tuple[float, float],
+    shape: int | tuple[int, int],
+    spacing: float,
+    seed: int,
+) -> HeightMap:
+    """Return a periodic Gaussian surface with the waves of an isotropic spectrum in a range.
+
+    ``density`` gives C(q) (m^4) of wave numbers (rad/m), <h^2> = 2 pi int q C dq; ``waves`` are the
+    longest and the shortest, m. The mean square height is that of the range exactly.
+    """
+    q = _wave_numbers(shape, spacing, 1.0)
+    nx, ny = _points(shape)
+    low, high = (2.0 * np.pi / wave for wave in waves)
+    band = (q >= low * (1.0 - 1e-9)) & (q <= high * (1.0 + 1e-9))
+    if not band.any():
+        raise RangeError(
+            f"no wave of {metres(waves[1])} to {metres(waves[0])} on a grid of {nx} x {ny} points "
+            f"{metres(spacing)} apart",
+            where="waves",
+        )
+    amplitude = np.zeros_like(q)
+    amplitude[band] = np.sqrt(density(q[band]))
+    heights = random_phases(amplitude, (nx, ny), seed)
+    fine = np.geomspace(low, high, 200)
+    whole = 2.0 * np.pi * float(np.trapezoid(fine * density(fine), fine))
+    size = float(np.sqrt(np.mean(heights**2)))
+    heights *= np.sqrt(whole) / size if size > 0.0 else 0.0
+    note = f"generated from a spectrum, waves {metres(waves[1])} to {metres(waves[0])}, seed {seed}"
+    return _generated(heights, spacing, waves[1], note)
