@@ -127,7 +127,8 @@ class PairOption(FrictionOption):
             area = float(table.real_contact_fraction(*at))
             full_contact = HYSTERESIS_PRESSURE / float(erfinv(min(area, 1 - 1e-9)))
             deviation = contact_deviation(table, *at, context)
-            if table.values["cof_hysteresis"].max() > NO_LOSS:
+            lossy = bool(self.contact_table) or _loss_tested(context)
+            if lossy and table.values["cof_hysteresis"].max() > NO_LOSS:
                 hysteresis = float(table.cof_hysteresis(*at))
         if hysteresis is None:
             hysteresis, origin = _hysteresis(context)
@@ -592,13 +593,14 @@ def _span(roughness: SurfaceRoughness, unknown: tuple[float, float]) -> tuple[fl
 def _hysteresis(context: Context) -> tuple[float | None, str]:
     """Return the hysteresis COF of the compound's spectrum on the floor's, and what it is from.
 
-    Where one of the two spectra is not known its usual form stands for it; None without both.
+    Where one of the two spectra is not known its usual form stands for it; None without both. A
+    compound tested at slower rates than those of sliding has no known loss.
     """
     from underfoot.friction.pair_contact import HYSTERESIS, SLOPE
     from underfoot.rough_contact import persson
 
     floor, (shortest, roll_off, longest) = context.floor.roughness, HYSTERESIS_WAVES
-    if context.shoe.material.relaxation is None:
+    if not _loss_tested(context):
         if floor.file is None:
             return None, ""
         slope = floor.moment(1, shortest, longest)
@@ -622,6 +624,12 @@ def _hysteresis(context: Context) -> tuple[float | None, str]:
     assert contact.cof_hysteresis is not None  # the rubber is viscoelastic
     surface = "" if floor.file is None else " on the floor's scan"
     return float(contact.cof_hysteresis[0]), f"Persson theory{surface}"
+
+
+def _loss_tested(context: Context) -> bool:
+    """Return whether the compound's loss is known at the slowest rate of sliding asperities."""
+    rate = 2 * math.pi * abs(context.motion.speed) / HYSTERESIS_WAVES[2]
+    return context.shoe.material.loss_tested_at(rate)
 
 
 def _full_contact(context: Context) -> float | None:

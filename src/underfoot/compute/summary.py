@@ -60,6 +60,7 @@ PARTS: Mapping[str, str] = {
     "pair": "the friction of this sole on this floor",
     "stribeck": "the friction of this sole on this floor",
     "speed_table": "the friction of this sole on this floor",
+    "compound": "how the rubber answers at the rates of sliding",
     "grid": "the tread, which has few cells of the grid across its details",
     "forefoot": "push-off: the forefoot of a shoe bends where this sole stays straight",
     "compliance": "how the rubber gives way under the load",
