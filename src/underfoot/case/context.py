@@ -6,8 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from underfoot.core import Breach, Progress, SourcedValue, silent
 from underfoot.core.catalogue import Catalogue
 
@@ -83,11 +81,4 @@ class Context:
         relaxation = self.shoe.material.relaxation
         if relaxation is None:
             return material.Elastomer(self.youngs_modulus, self.poisson_ratio)
-        shear = material.RelaxationSpectrum(
-            relaxation.equilibrium_shear_modulus,
-            np.array([term.shear_modulus for term in relaxation.terms]),
-            np.array([term.time for term in relaxation.terms]),
-        )
-        return material.Elastomer(
-            material.young_from_shear(shear, self.poisson_ratio), self.poisson_ratio
-        )
+        return material.Elastomer(relaxation.young(self.poisson_ratio), self.poisson_ratio)

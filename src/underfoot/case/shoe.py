@@ -1,12 +1,15 @@
 """Sections for the shoe: compound, surface, shape or outsole file, tread, wear, layers."""
 
+from __future__ import annotations
+
 import math
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
+import numpy as np
 from pydantic import Field
 
 from underfoot.core import InputError, RangeError, display, nearest_match
@@ -29,6 +32,9 @@ from .sole import SolePlan, TreadPattern
 from .surfaces import SurfaceRoughness
 from .tables import meant_file, plain, with_checksum
 from .wear import Wear
+
+if TYPE_CHECKING:
+    from underfoot.material import RelaxationSpectrum
 
 Modulus = Annotated[float, Quantity("Pa", 1e4, 1e12)]
 Rate = Annotated[float, Quantity("rad/s", 0.0, 1e15, open_low=True)]
@@ -54,6 +60,17 @@ class Relaxation(Section):
 
     equilibrium_shear_modulus: TermModulus
     terms: tuple[RelaxationTerm, ...]
+
+    def young(self, poisson_ratio: float) -> RelaxationSpectrum:
+        """Return the spectrum of Young's modulus, Pa."""
+        from underfoot.material import RelaxationSpectrum, young_from_shear
+
+        shear = RelaxationSpectrum(
+            self.equilibrium_shear_modulus,
+            np.array([term.shear_modulus for term in self.terms]),
+            np.array([term.time for term in self.terms]),
+        )
+        return young_from_shear(shear, poisson_ratio)
 
 
 class Material(Section):

@@ -1,5 +1,6 @@
 """Rubber on one rough surface, dry, at rest or sliding: real contact, hysteresis, gap, leakage."""
 
+import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -333,8 +334,24 @@ def rubber_from(
     return _spectrum(spectrum)
 
 
+def _compound(path: Path) -> tuple[Any, str, list[str]] | None:
+    """Return the spectrum of a compound of ``underfoot material``; None where the file is none."""
+    from underfoot.case.shoe import Material
+
+    if path.suffix.lower() != ".toml" or not path.is_file():
+        return None
+    read = tomllib.loads(path.read_text(encoding="utf-8"))
+    if "relaxation" not in read:
+        return None
+    compound = Material.model_validate(read)
+    assert compound.relaxation is not None
+    return compound.relaxation.young(compound.poisson_ratio), f"compound of {path.name}", []
+
+
 def _spectrum(path: Path) -> tuple[Any, str, list[str]]:
-    """Return a Prony series, or the spectrum fitted to one dynamic sweep."""
+    """Return a compound, a Prony series, or the spectrum fitted to one dynamic sweep."""
+    if (compound := _compound(path)) is not None:
+        return compound
     try:
         return material.read_prony(path), f"Prony series of {path.name}", []
     except DataError as first:

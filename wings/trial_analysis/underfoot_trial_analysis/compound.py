@@ -232,10 +232,11 @@ class Compound(Presentable):
         found = self.shifts
         errors = zip(found.log10_shift_factors, found.log10_errors, strict=True)
         rows = [
-            (display(kelvin, "K"), f"{shift:.2f} ± {error:.2f}")
+            (_celsius(kelvin), f"{shift:.2f} ± {error:.2f}")
             for kelvin, (shift, error) in zip(found.temperatures.tolist(), errors, strict=True)
         ]
-        title = f"Shift factors ({found.law})"
+        at = _celsius(found.reference_temperature)
+        title = f"Shift factors to {at} ({found.law})"
         return Table(title, ("Temperature", "log10 of the shift factor"), rows)
 
     def data_tables(self) -> dict[str, Table]:
@@ -517,14 +518,14 @@ def _swept(
         only = sweeps[0]
         warnings.append(
             "One temperature was tested: no shift factors, and nothing is known beyond its "
-            "frequencies. Sweeps at 0 C and below reach the rates of sliding."
+            "frequencies. Sweeps at 0 °C and below reach the rates of sliding."
         )
         if temperature is not None and only.temperature is not None:
             apart = abs(temperature - only.temperature)
             if apart > 2:
                 warnings.append(
-                    f"Tested at {display(only.temperature, 'K')}, used at "
-                    f"{display(temperature, 'K')}: not shifted."
+                    f"Tested at {_celsius(only.temperature)}, used at {_celsius(temperature)}: "
+                    "not shifted."
                 )
         return only, None, only.temperature
     at = _reference([sweep.temperature for sweep in sweeps], temperature)
@@ -590,6 +591,10 @@ def _beside(fit: SpectrumFit, relaxed: SpectrumFit) -> str:
         f"the relaxation test gives {ratio:.2f} times the modulus of the sweep at "
         f"{display(time, 's')}; the spectrum is that of the sweep"
     )
+
+
+def _celsius(kelvin: float) -> str:
+    return f"{kelvin - 273.15:.0f} °C"
 
 
 def _names(files: Sequence[Path]) -> str:
