@@ -462,7 +462,9 @@ def _averages(contact: SteadySliding, friction: SteadySliding, part: _Part) -> l
         return [area, hysteresis, contact.mean_gap, flow.along, flow.across]
     pressure, loaded, speed = contact.pressure, friction.pressure, part.speed
     area = float(finer.real_contact_fraction(pressure, speed, "extend").mean())
-    more = float(np.vdot(loaded, finer.cof_hysteresis(loaded, speed, "extend")) / loaded.sum())
+    # above the nodes the finer waves are in full contact: their loss no longer grows with pressure
+    bearing = np.minimum(loaded, finer.pressure[-1])
+    more = float(np.vdot(bearing, finer.cof_hysteresis(bearing, speed, "extend")) / loaded.sum())
     closed = pressure > 0.0
     felt = np.where(closed, pressure, pressure.sum() / max(int(closed.sum()), 1))
     below = finer.mean_gap(felt, speed, "extend")

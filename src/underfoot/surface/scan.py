@@ -237,7 +237,7 @@ def read_scan(
         notes.append(f"waves below {display(resolved.wavelength, 'm')} not seen: {resolved.reason}")
     if short:
         values = {
-            name: replace(value, source=f"{value.source}; {short}")
+            name: replace(value, source=f"{value.source}; {short}", assumed=True)
             for name, value in values.items()
         }
     unlikely = _unlikely(values["rq"].value or 0.0)
