@@ -251,7 +251,11 @@ def _settle_hardness(found: Composition) -> None:
 
 
 def _settle_contact(found: Composition) -> None:
-    """Let two measured surfaces meet with a measured compound, where no contact is chosen."""
+    """Let two measured surfaces meet with a measured spectrum, where no contact is chosen.
+
+    A modulus alone is that at rest: at the rates of sliding the rubber is stiffer and lets more
+    fluid through.
+    """
     given = found.tree.get("rough_contact") or {}
     origin = origin_of(given.get("model"))
     if given and not (given.keys() == {"model"} and origin and origin.kind == DEFAULT):
@@ -271,9 +275,8 @@ def _settle_contact(found: Composition) -> None:
         origin = origin_of(item)
         return item is not None and not (origin and (origin.leaf.assumed or not origin.leaf.given))
 
-    compound = (value("shoe", "material", name) for name in ("relaxation", "modulus"))
-    surfaces = (value(part, "roughness", "file") for part in ("shoe", "floor"))
-    if any(map(measured, compound)) and all(map(measured, surfaces)):
+    inputs = [value(part, "roughness", "file") for part in ("shoe", "floor")]
+    if all(map(measured, [*inputs, value("shoe", "material", "relaxation")])):
         why = "both surfaces and the compound are measured"
         leaf = Leaf(MEASURED_CONTACT, source=why)
         found.tree["rough_contact"] = {"model": Origin(DEFAULT, leaf, value=MEASURED_CONTACT)}

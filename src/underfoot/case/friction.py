@@ -148,6 +148,10 @@ class PairOption(FrictionOption):
             full_contact=full_contact,
             polymer=material.polymer,
             contact_deviation=deviation,
+            measured=(
+                context.shoe.roughness.rq_or_estimate is not None,
+                context.floor.roughness.rq_or_estimate is not None,
+            ),
             shore_a_deviation=(material.shore_a and material.sourced("shore_a").uncertainty) or 0.0,
         )
         return PairContactLaw(pair, context.viscosity_value, draws)

@@ -226,7 +226,7 @@ class Pair:
     table gives it. ``contact_deviation`` is the standard deviation of ln of both where a contact
     table gives them: finer waves make more of either. ``polymer`` names what soles of one compound
     share, whatever their hardness and roughness. ``shore_a_deviation`` is the standard deviation of
-    the hardness.
+    the hardness. ``measured`` says of which of the two the range is that of a measurement.
     """
 
     shore_a: float
@@ -239,6 +239,7 @@ class Pair:
     polymer: str | None = None
     shore_a_deviation: float = 0.0
     contact_deviation: float = 0.0
+    measured: tuple[bool, bool] = (False, False)
 
     @property
     def compound_and_floor(self) -> str:
@@ -348,8 +349,9 @@ class PairContactLaw(UncertainInputs):
                 "friction.pair: no dry reading stands behind the law; dry adhesion is what water "
                 "leaves at rest, with the real contact area of the roughness (Persson 2001)"
             )
-        for part, (low, high) in (("shoe", self.pair.sole_rq), ("floor", self.pair.floor_rq)):
-            if high > low:
+        both = zip(("shoe", "floor"), self.pair._rq, self.pair.measured, strict=True)
+        for part, (low, high), measured in both:
+            if high > low and not measured:
                 words.append(
                     f"{part}.roughness: not given; the friction is drawn over Rq = "
                     f"{1e6 * low:.2g} to {1e6 * high:.2g} um"

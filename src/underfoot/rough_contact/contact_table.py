@@ -467,17 +467,17 @@ def _averages(contact: SteadySliding, friction: SteadySliding, part: _Part) -> l
     more = float(np.vdot(bearing, finer.cof_hysteresis(bearing, speed, "extend")) / loaded.sum())
     closed = pressure > 0.0
     felt = np.where(closed, pressure, pressure.sum() / max(int(closed.sum()), 1))
-    below = finer.mean_gap(felt, speed, "extend")
+    below = np.maximum(finer.mean_gap(felt, speed, "extend"), 0.0)
     factor = finer.flow_factor(felt, speed, outside="extend")
-    whole = gap + below
-    factor = (
-        1.0
-        - (1.0 - factor) * np.divide(below, whole, out=np.ones_like(whole), where=whole > 0) ** 2
-    )
-    flow = flow_factors(whole * np.cbrt(np.clip(factor, 0.0, 1.0)), part.spacing)
-    scale = (flow.mean_gap / float(whole.mean())) ** 3
-    hysteresis = friction.cof_hysteresis + more
-    return [area, hysteresis, float(whole.mean()), scale * flow.along, scale * flow.across]
+    whole, hysteresis = gap + below, friction.cof_hysteresis + more
+    mean = float(whole.mean())
+    if mean == 0.0:
+        return [area, hysteresis, 0.0, 0.0, 0.0]
+    share = np.divide(below, whole, out=np.ones_like(whole), where=whole > 0)
+    factor = np.clip(1.0 - (1.0 - factor) * share**2, 0.0, 1.0)
+    flow = flow_factors(whole * np.cbrt(factor), part.spacing)
+    scale = (flow.mean_gap / mean) ** 3
+    return [area, hysteresis, mean, scale * flow.along, scale * flow.across]
 
 
 def _check_sendable(modulus: Modulus) -> None:

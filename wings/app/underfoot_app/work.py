@@ -60,7 +60,7 @@ def compound(path: str, *, progress: Progress) -> str:
     from underfoot_trial_analysis.compound import compound_from_files
 
     test = Path(path)
-    write_text(test.with_suffix(".toml"), compound_from_files([test]).toml())
+    write_text(compound_from_files([test]).toml())(test.with_suffix(".toml"))
     return test.with_suffix(".toml").name
 
 
