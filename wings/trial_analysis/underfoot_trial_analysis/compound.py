@@ -430,10 +430,14 @@ def compression(
     Blocks of ``thickness`` (m) and ``area`` (m^2), taken as square for their shape factor. The
     travel between F_0.02 and F_0 is that recorded.
     """
-    forces = (reading.force_2_percent, reading.peak_force, reading.final_force)
-    values = (float(force.value or 0.0) for force in forces)
-    travel = reading.peak_displacement / thickness - 0.02
-    moduli = compression_moduli(*values, thickness, area, travel=travel)
+    moduli = compression_moduli(
+        reading.force_2_percent.value or 0.0,
+        reading.peak_force.value or 0.0,
+        reading.final_force.value or 0.0,
+        thickness,
+        area,
+        travel=reading.peak_displacement / thickness - 0.02,
+    )
     return Compression(name, reading, moduli, math.sqrt(area) / (4 * thickness))
 
 

@@ -46,7 +46,7 @@ def _sweep(shown: Compound) -> Figure:
     left.legend(fontsize=8)
     right.semilogx(own, tangent, "k.", ms=4, label="measured")
     right.semilogx(hertz, fit.spectrum.loss_tangent(fine), "C3", label="fit")
-    right.set(xlabel="Frequency, Hz", ylabel="Loss tangent", ylim=(0, None))
+    right.set(xlabel="Frequency, Hz", ylabel="Loss tangent", ylim=(0, 1.2 * tangent.max()))
     right.legend(fontsize=8)
     return figure
 
