@@ -5,11 +5,10 @@ import pytest
 
 from underfoot.core import Cache, InputError
 from underfoot.material import power_law_spectrum
-from underfoot.rough_contact import ContactTable
+from underfoot.rough_contact import ContactTable, table_over_scales
 from underfoot.rough_contact.persson import persson_cumulative_friction
-from underfoot.rough_contact.scales import RATIO, table_over_scales
-from underfoot.surface import HeightMap, rms_slope
-from underfoot.surface.generate import surface_of_density
+from underfoot.rough_contact.scales import RATIO
+from underfoot.surface import HeightMap, rms_slope, surface_of_density
 
 LONGEST, RQ, MODULUS = 2e-3, 8e-6, 5e6
 PRESSURE = np.array([3e4, 1e5, 3e5, 6e5])

@@ -183,7 +183,7 @@ class ContactTableOption(RoughContactOption):
     ) -> ContactTable:
         """Return the table of an elastic compound at ``ELASTIC_MODULUS``, of another as it is."""
         from underfoot.material import Elastomer
-        from underfoot.rough_contact.scales import table_over_scales
+        from underfoot.rough_contact import table_over_scales
 
         elastic = context.shoe.material.relaxation is None
         rubber = Elastomer(ELASTIC_MODULUS, context.poisson_ratio) if elastic else context.rubber()
@@ -255,7 +255,7 @@ class GreenwoodWilliamsonContact(_Theory):
     source: ClassVar[str] = "Greenwood and Williamson 1966"
 
     def _law(self, q: Array, density: Array, modulus: float, poisson: float) -> PressureGapLaw:
-        from underfoot.rough_contact.greenwood_williamson_1966 import greenwood_williamson_law
+        from underfoot.rough_contact import greenwood_williamson_law
 
         return greenwood_williamson_law(q, density, modulus, poisson, _passing(q, density))
 

@@ -12,11 +12,16 @@ from underfoot import material, surface
 from underfoot.core import Cache, DataError, InputError, Progress, display, silent, to_si
 from underfoot.core.checks import exactly_one
 from underfoot.core.presentation import Presentable, Table
-from underfoot.rough_contact import ContactTable, SteadySliding, steady_sliding
+from underfoot.rough_contact import (
+    ContactTable,
+    SteadySliding,
+    steady_sliding,
+    table_over_scales,
+)
 from underfoot.rough_contact.cutoff import CutoffDependence, cutoff_dependence
 from underfoot.rough_contact.flow_factor import FlowFactors, flow_factors
-from underfoot.rough_contact.scales import table_over_scales
 from underfoot.surface import HeightMap, Profile, levelled, read_scan
+from underfoot.surface.scan import unlikely_height
 
 ROWS = (
     ("Mean pressure", "pressure_Pa", "Pa", ""),
@@ -68,6 +73,10 @@ class RoughContact(Presentable):
             f"Real contact {100.0 * found.real_contact_fraction_corrected:.3g} %, hysteresis COF "
             f"{found.cof_hysteresis:.3g} at {at} ({self.rubber}).",
         )
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return why the heights are none of a floor."""
+        return tuple(filter(None, [unlikely_height(self.floor.rms_height)]))
 
     def table(self) -> Table:
         content = self.to_dict()

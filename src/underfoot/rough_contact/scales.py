@@ -16,8 +16,7 @@ from numpy.typing import ArrayLike
 from underfoot import core
 from underfoot.core.arrays import Array
 from underfoot.core.progress import part
-from underfoot.surface import HeightMap
-from underfoot.surface.generate import surface_of_density
+from underfoot.surface import HeightMap, rms_slope, surface_of_density
 
 from .contact_table import ContactTable
 from .sliding_input import Modulus, modulus_function
@@ -107,8 +106,6 @@ def _pressures(
     speed: ArrayLike,
 ) -> Array:
     """Return the nodes of pressure for a range of fine waves, Pa."""
-    from underfoot.surface import rms_slope
-
     slope = math.hypot(rms_slope(floors[0]), rms_slope(shoes[0]) if shoes else 0.0)
     frequency = np.array([2.0 * math.pi / math.sqrt(math.prod(band)) * float(np.max(speed))])
     stiffness = float(np.abs(modulus_function(modulus, frequency)(frequency)[0]))
