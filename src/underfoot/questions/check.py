@@ -52,9 +52,11 @@ class CaseCheck(Presentable):
     def headline(self) -> tuple[str, ...]:
         case = self.case
         options = (case.compliance.name, case.rough_contact.name, case.motion.name)
+        made = not case.value("rough_contact.file")
+        dear = [name for name in options if name in DEAR and (made or name != "contact_table")]
         return (
             f"Cost: {self.full}, on one core; with --quick {self.quick}.",
-            *(DEAR[name] for name in options if name in DEAR),
+            *(DEAR[name] for name in dear),
         )
 
     def cautions(self) -> tuple[str, ...]:

@@ -40,11 +40,11 @@ def material(
     taken by a case as shoe.material.file.
     """
     from underfoot.cli.output import answer
-    from underfoot.core import InputError, to_si
+    from underfoot.core import InputError, Progress, to_si
     from underfoot.core.files import whole_file
     from underfoot.material.durometer_scales import durometer_reading
 
-    from .compound import compound_from_files
+    from .compound import Compound, compound_from_files
 
     if out is not None and out.exists() and not shared.overwrite:
         raise InputError(f"{out} exists", where="--out", remedy="Add --overwrite to replace it")
@@ -59,15 +59,19 @@ def material(
     }
     reading = None if shore is None else durometer_reading(shore, where="--shore")
     more = {"shear": shear, "poisson_ratio": poisson, "polymer": polymer, "hardness": reading}
-    made = compound_from_files(files or [], **sizes, **more)
-    folder = None if out is None or made.spectrum is None else out.with_suffix("")
-    if out is not None:
-        with whole_file(out) as part:
-            part.write_text(made.toml(), encoding="utf-8")
+
+    def made(progress: Progress) -> Compound:
+        progress("Reading the tests", 0.0)
+        found = compound_from_files(files or [], **sizes, **more)
+        if out is not None:
+            with whole_file(out) as part:
+                part.write_text(found.toml(), encoding="utf-8")
+        return found
+
     answer(
-        made.name,
-        lambda progress: made,
-        out=folder,
+        "compound",
+        made,
+        out=out.with_suffix("") if out is not None and files else None,
         overwrite=shared.overwrite,
         json=shared.json,
         everything=shared.everything,
