@@ -387,7 +387,8 @@ class ContactTable(Presentable):
                 raise core.RangeError(
                     str(outside_grid[0]),
                     where=self.name,
-                    remedy='Compute one there (underfoot contact --speed), or extend it with outside="extend"',
+                    remedy="Compute one there (underfoot contact --speed), or extend it with "
+                    'outside="extend"',
                 )
         x = np.log(np.clip(p, self.pressure[0], self.pressure[-1]))
         return p, x, np.log(np.clip(v, self.speed[0], self.speed[-1]))
