@@ -87,6 +87,9 @@ def readings(
         **(positions.labels() if positions else {}),
     }
     labels = numbers.regime(share) | numbers.spread_origin(sampled)
+    if micro is not None and sampled is not None and share > FILM_MATTERS:
+        if "gap" not in sampled.share:
+            labels["cof_spread_from"] += ", gap and flow of the rough contact: not estimated"
     labels |= _remarks(parts, solution, remarks)
     if isinstance(errors, NumericalErrors):
         values = errors.added(values)

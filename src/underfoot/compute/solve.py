@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from underfoot.case import Case
-from underfoot.core import Progress, silent
+from underfoot.core import ConvergenceError, Progress, silent
 from underfoot.film import FilmModel, NewtonianFilm
 from underfoot.friction.sampled_cof import FLOW, GAP
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw, TabulatedLaw
@@ -71,7 +71,8 @@ def film_spreads(
     """Return what a standard deviation of a rough contact's gap and flow adds to ln F / (W - F).
 
     F is the load on the film, W the whole; on the quick grid, as the tread lies. Empty where the
-    rough contact is none of measured surfaces, or the film bears too little to matter.
+    rough contact is none of measured surfaces, the film bears too little to matter, or one of the
+    contacts could not be solved.
     """
     case = parts.case
     rough = micro_contact(parts, contact)
@@ -85,14 +86,19 @@ def film_spreads(
 
     def odds(asperities: TabulatedLaw) -> float:
         here = solved_motion(case, sole, compliance, asperities, parts.film, progress=progress)
+        if not here.status.usable:
+            raise ConvergenceError(str(here.status), history=[])
         share = min(max(here.fluid_load / here.normal_force, 1e-6), 1 - 1e-6)
         return math.log(share / (1 - share))
 
     law = parts.asperities
     wider = law.changed(1 + rough.gap_deviation, 1.0)
     freer = law.changed(1.0, 1 + rough.flow_deviation)
-    own = odds(law)
-    return {GAP: odds(wider) - own, FLOW: odds(freer) - own}
+    try:
+        own = odds(law)
+        return {GAP: odds(wider) - own, FLOW: odds(freer) - own}
+    except ConvergenceError:
+        return {}
 
 
 def solved_at(
