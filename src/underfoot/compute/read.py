@@ -7,6 +7,7 @@ import numpy as np
 from underfoot.case import Case
 from underfoot.core import Breach, Progress, SourcedValue, display, silent
 from underfoot.friction import SampledCof
+from underfoot.friction.sampled_cof import GAP
 from underfoot.shoe.lug_drainage import LugDrainage, lug_drainage
 from underfoot.slip import SlipRisk
 from underfoot.sole_contact.edge_peak import peak_pressure
@@ -87,9 +88,9 @@ def readings(
         **(positions.labels() if positions else {}),
     }
     labels = numbers.regime(share) | numbers.spread_origin(sampled)
-    if micro is not None and sampled is not None and share > FILM_MATTERS:
-        if "gap" not in sampled.share:
-            labels["cof_spread_from"] += ", gap and flow of the rough contact: not estimated"
+    solved = sampled is None or GAP in sampled.share or share < FILM_MATTERS
+    if micro is not None and not solved:
+        labels["cof_spread_from"] += ", gap and flow of the rough contact: not estimated"
     labels |= _remarks(parts, solution, remarks)
     if isinstance(errors, NumericalErrors):
         values = errors.added(values)
