@@ -89,9 +89,12 @@ def film_spreads(
         return {}
     sole = sole_map(case, case.numerics.quick_grid_spacing)
     compliance = parts.compliance if "compliance" in parts.objects else parts.compliance_on(sole)
+    local_law = parts.law_on(sole)
 
     def odds(asperities: TabulatedLaw) -> float:
-        here = solved_motion(case, sole, compliance, asperities, parts.film, progress=progress)
+        here = solved_motion(
+            case, sole, compliance, asperities, parts.film, local_law, progress=progress
+        )
         if not here.status.usable:
             raise ConvergenceError(str(here.status), history=[])
         share = min(max(here.fluid_load / here.normal_force, 1e-6), 1 - 1e-6)
