@@ -621,8 +621,8 @@ def _slope(roughness: SurfaceRoughness) -> float | None:
 def _hysteresis(context: Context) -> tuple[float | None, str]:
     """Return the hysteresis COF of the compound's spectrum on the floor's, and what it is from.
 
-    None without a spectrum of the compound, or one that was tested at slower rates than those of
-    sliding; that of a floor without a scan has its usual form.
+    None without a spectrum of the compound, or one tested at slower rates than those of sliding;
+    the spectrum of a floor without a scan has its usual form.
     """
     from underfoot.friction.pair_contact import CONTACT_PRESSURE, SLOPE, real_slope
     from underfoot.rough_contact import persson

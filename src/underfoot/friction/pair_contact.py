@@ -290,14 +290,14 @@ class Pair:
     """What is known of a sole, a floor and a fluid.
 
     ``sole_rq`` and ``floor_rq`` (m) of waves up to 0.8 mm and ``loss_tangent`` are (low, high):
-    equal where measured, else the range over which it is drawn, evenly in its logarithm;
-    ``measured`` says of which roughness the range is that of a measurement. ``sole_slope`` and
-    ``floor_slope`` are rms slopes of scans. ``hysteresis`` is the COF that the package's own theory
-    gives for the compound's spectrum, ``hysteresis_origin`` names where it comes from; None takes
-    the closed form. ``full_contact`` is p_R (Pa) where a contact table gives it,
-    ``contact_deviation`` the standard deviation of ln of both there: finer waves make more of
-    either. ``polymer`` names what soles of one compound share, whatever their hardness and
-    roughness. ``shore_a_deviation`` is the standard deviation of the hardness.
+    equal where measured, else the range over which it is drawn, evenly in its logarithm.
+    ``sole_slope`` and ``floor_slope`` are rms slopes of scans. ``hysteresis`` is the COF that the
+    package's own theory gives for the compound's spectrum, ``hysteresis_origin`` names where it
+    comes from; None takes the closed form. ``full_contact`` is p_R (Pa) where a contact table gives
+    it. ``contact_deviation`` is the standard deviation of ln of both where a contact table gives
+    them: finer waves make more of either. ``polymer`` names what soles of one compound share,
+    whatever their hardness and roughness. ``shore_a_deviation`` is the standard deviation of the
+    hardness. ``measured`` says of which of the two roughnesses the range is that of a measurement.
     """
 
     shore_a: float
@@ -336,15 +336,13 @@ class Pair:
         for name, (low, high) in (spans | {"loss_tangent": self.loss_tangent}).items():
             share = named_shares(seed, f"{name} {low:.3g} {high:.3g}", draws.count)
             numbers[name] = low * (high / low) ** share
-        finer = np.exp(
-            self.contact_deviation * ndtri(named_shares(seed, "shortest wave", draws.count))
-            if self.contact_deviation
-            else 0.0
-        )
         for name in ("hysteresis", "full_contact", "sole_slope", "floor_slope"):
-            value = getattr(self, name)
-            if value is not None:
-                numbers[name] = value if "slope" in name else value * finer
+            if getattr(self, name) is not None:
+                numbers[name] = getattr(self, name)
+        if self.contact_deviation:
+            apart = ndtri(named_shares(seed, "shortest wave", draws.count))
+            for name in {"hysteresis", "full_contact"} & numbers.keys():
+                numbers[name] = numbers[name] * np.exp(self.contact_deviation * apart)
         dry = draws.constants.dry * np.exp(draws.error(DRY_PART, draws.sd_dry_part, seed))
         terms = contact_terms(replace(draws.constants, dry=dry), numbers, family=self.family)
         return {
@@ -428,8 +426,8 @@ class PairContactLaw(UncertainInputs):
         for part, (low, high), measured in both:
             if high > low and not measured:
                 words.append(
-                    f"{part}.roughness: not known better than Rq = "
-                    f"{1e6 * low:.2g} to {1e6 * high:.2g} um, over which the friction is drawn"
+                    f"{part}.roughness: not given; the friction is drawn over Rq = "
+                    f"{1e6 * low:.2g} to {1e6 * high:.2g} um"
                 )
         low, high = self.pair.loss_tangent
         if self.pair.hysteresis is None and high > low:
