@@ -1,4 +1,4 @@
-"""What a study leaves on disk: its folder, and one offline page of all studies."""
+"""What a study leaves on disk: its folder, and one offline page of it or of all studies."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ COLOURS = {
     "agrees": "good",
     "overlaps": "half",
     "trend only": "half",
+    "undecided": "none",
     "disagrees": "bad",
     "not converged": "none",
     "not comparable": "none",
@@ -59,7 +60,10 @@ def studies_page(
             "result": result,
             "study": result.study,
             "tables": result.computed.tables,
-            "kinds": [(kind.heading, some) for kind, some in tables_by_kind(result.judgements)],
+            "kinds": [
+                (kind.heading, some, number == 0)
+                for number, (kind, some) in enumerate(tables_by_kind(result.judgements))
+            ],
             "remarks": result.remarks(),
             "images": [
                 (name, embedded(data), remarks.get((study, name), ""))
@@ -69,8 +73,11 @@ def studies_page(
         }
         for result in results
     ]
+    several = len(results) > 1
     page = environment().get_template("studies.html")
     return page.render(
+        title="Printed numbers beside ours" if several else results[0].study.title,
+        several=several,
         sections=sections,
         headline=headline(results),
         rules={str(verdict): verdict.rule for verdict in Verdict},
