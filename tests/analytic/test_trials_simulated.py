@@ -265,3 +265,34 @@ def test_boundary_folder(tmp_path):
     titles = [finding.title for finding in analysis.study.findings]
     assert any("type II " in title for title in titles)
     assert any("type III " in title for title in titles)
+    for response in ("dry adhesion", "hysteresis", "lubricated adhesion"):
+        # hard is on marble alone, the others on vinyl: shoe and floor can't be told apart
+        own = [one for one in analysis.study.findings if f"variance of {response}" in one.title]
+        assert len(own) == 1, titles
+
+
+def test_boundary_folder_tells_shoe_floor_and_lubricant_apart():
+    """Adhesion made of a shoe, a lubricant and one interaction: the terms that are there show."""
+    from underfoot_trial_analysis.study import _crossed_findings
+
+    rng = np.random.default_rng(2)
+    readings = [
+        (
+            3.0 + 2.0 * (shoe == "hard") + 1.5 * (fluid == "water")
+            + 1.0 * (shoe == "hard" and fluid == "water") + 0.2 * rng.normal(),
+            {"shoe": shoe, "floor": floor, "lubricant": fluid},
+        )
+        for shoe in ("hard", "soft", "pu")
+        for floor in ("vinyl", "marble")
+        for fluid in ("water", "oil")
+        for _ in range(5)
+    ]  # fmt: skip
+    found = _crossed_findings("lubricated_adhesion", readings)
+    anova = next(one for one in found if one.name.startswith("anova")).table
+    place = anova.columns.index("p")
+    p = {row[0]: row[place] for row in anova.rows}
+    assert {"shoe:floor", "shoe:lubricant", "floor:lubricant", "shoe:floor:lubricant"} <= set(p)
+    for term in ("shoe", "lubricant", "shoe:lubricant"):
+        assert p[term] < 0.001, term
+    for term in ("floor", "shoe:floor", "floor:lubricant", "shoe:floor:lubricant"):
+        assert p[term] > 0.01, term

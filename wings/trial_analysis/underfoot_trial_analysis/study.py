@@ -138,6 +138,11 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
     dry, blocked = protocol.text("dry", "dry"), protocol.text("blocked", "sae_75w140")
     keys = protocol.words("pair")
     rows, notes, fluids, dry_adhesions, wet = [], [], [], [], []
+    parts: dict[str, list[tuple[float, dict[str, str]]]] = {
+        "dry_adhesion": [],
+        "hysteresis": [],
+        "lubricated_adhesion": [],
+    }
     for pair, members in tables.grouped(files, keys).items():
         by_fluid: dict[str, list[float]] = {}
         for f in members:
@@ -149,6 +154,15 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
             continue
         others = {k: v for k, v in by_fluid.items() if k not in (dry, blocked)}
         split = friction_split(by_fluid[dry], by_fluid[blocked], others)
+        own = dict(zip(keys, pair, strict=True))
+        oiled = split.hysteresis.value or 0.0
+        parts["dry_adhesion"] += [(force - oiled, own) for force in by_fluid[dry]]
+        parts["hysteresis"] += [(force, own) for force in by_fluid[blocked]]
+        parts["lubricated_adhesion"] += [
+            (force - oiled, {**own, "lubricant": fluid})
+            for fluid, forces in others.items()
+            for force in forces
+        ]
         for name, m in (
             ("dry", split.dry),
             ("hysteresis", split.hysteresis),
@@ -183,7 +197,24 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
         curves["alpha_beta"] = {"fluid": fluids, "dry": dry_adhesions, "wet": wet, "lines": drawn}
     except (UnderfootError, ValueError) as error:
         notes.append(f"Eq. 26 was not fitted: {getattr(error, 'what', error)}")
+    for name, readings in parts.items():
+        findings += _crossed_findings(name, readings)
     return Study(tuple(made), tuple(findings), curves, tuple(notes))
+
+
+def _crossed_findings(
+    response: str, readings: Sequence[tuple[float, Mapping[str, str]]]
+) -> list[Finding]:
+    """Return the analysis of variance of a force on all conditions with every interaction.
+
+    Tukey's comparisons of the levels follow. Adhesions of a pair share its mean under the oil.
+    """
+    if not readings:
+        return []
+    values = [value for value, _ in readings]
+    factors = {key: [own[key] for _, own in readings] for key in readings[0][1]}
+    factors = {key: levels for key, levels in factors.items() if len(set(levels)) > 1}
+    return comparison_findings(response, values, factors)
 
 
 def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
