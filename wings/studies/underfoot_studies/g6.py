@@ -285,14 +285,19 @@ def risk_by_rcof(count: int = 29) -> tuple[float, float, float]:
 
     Lowest and highest are the expected extremes of normal values (0.20 ± 0.03).
     """
+    rcof = risk_places(count)
+    found = np.mean([ReportG6()(acof, rcof) for acof in PRINTED_ACOF.values()], axis=0)
+    return float(found[0]), float(found[1]), float(found[2])
+
+
+def risk_places(count: int = 29) -> Array:
+    """Return the lowest, median and highest RCOF to be expected of ``count`` persons, (3,)."""
     from scipy.stats import norm
 
     z = np.linspace(-8, 8, 4001)
     highest = np.gradient(norm.cdf(z) ** count, z)
     reach = float(np.trapezoid(z * highest, z)) * ADULTS.sd
-    rcof = np.array([ADULTS.mean - reach, ADULTS.mean, ADULTS.mean + reach])
-    found = np.mean([ReportG6()(acof, rcof) for acof in PRINTED_ACOF.values()], axis=0)
-    return float(found[0]), float(found[1]), float(found[2])
+    return np.array([ADULTS.mean - reach, ADULTS.mean, ADULTS.mean + reach])
 
 
 def precision_of_published(*, draws: int = 200, seed: int = 0) -> tuple[Array, Array]:
@@ -552,11 +557,45 @@ def outsole_figure(frictions: Sequence[SoleFriction], steps: Mapping[str, Slips]
 
 
 def logistic_figure(steps: Mapping[str, Slips], drawn: tuple[Array, Array]) -> Figure:
-    """Return simulated slips over ACOF - RCOF with fitted and printed logistic curves."""
-    panels = []
+    """Return simulated slips over ACOF, RCOF and their difference, with what is printed of each."""
+    columns = len(steps)
+    rows: list[list[Panel]] = [[], [], []]
+    reach = risk_places()
     for name, one in steps.items():
         difference = one.acof - one.rcof
         noise = np.random.default_rng(0).uniform(-0.02, 0.02, difference.size)
+        shares = [float(one.slipped[one.acof == level].mean()) for level in np.unique(one.acof)]
+        rows[0].append(
+            Panel(
+                (
+                    points(
+                        [*PRINTED_RATES], [*PRINTED_RATES.values()], "report", **_PRINTED_POINTS
+                    ),
+                    points(np.unique(one.acof), shares, "steps", marker="o"),
+                ),
+                "ACOF",
+                "share that slips",
+                f"A: {STEPS[name]}",
+                x_limits=(0.15, 0.19),
+                y_limits=(0.0, 1.0),
+            )
+        )
+        bins = np.quantile(one.rcof, np.linspace(0, 1, 9))
+        place = np.clip(np.searchsorted(bins, one.rcof, side="right") - 1, 0, 7)
+        middle = [float(one.rcof[place == k].mean()) for k in range(8)]
+        by_rcof = [float(one.slipped[place == k].mean()) for k in range(8)]
+        rows[1].append(
+            Panel(
+                (
+                    points(reach, PRINTED_BY_RCOF, "report's model", **_PRINTED_POINTS),
+                    points(middle, by_rcof, "steps, by eighths", marker="o"),
+                ),
+                "RCOF",
+                "share that slips",
+                "B",
+                y_limits=(0.0, 1.0),
+            )
+        )
         x = np.linspace(min(difference.min(), -0.13), max(difference.max(), 0.06), 201)
         curves = _curve(x[:, None], drawn[0][None, :], drawn[1][None, :])
         low, high = np.percentile(curves, [2.5, 97.5], axis=1)
@@ -568,9 +607,16 @@ def logistic_figure(steps: Mapping[str, Slips], drawn: tuple[Array, Array]) -> F
             line(x, _curve(x, PRINTED_SLOPE, PRINTED_HALF), "report: slope -49.2", colour=PRINTED),
             line(x, fitted, f"steps: {_logistic_words(one)}"),
         )
-        panels.append(Panel(layers, "ACOF - RCOF", "chance of a slip", STEPS[name]))
-    title = "Fig. 37 C: computed slips and logistic curves"
-    return Figure(panels, title, columns=2, size=(5.2, 3.8), share_y=True)
+        rows[2].append(Panel(layers, "ACOF - RCOF", "chance of a slip", "C"))
+    title = "Fig. 37: computed slips over available and required friction and their difference"
+    panels = [panel for row in rows for panel in row]
+    return Figure(panels, title, columns=columns, size=(5.0, 3.0))
+
+
+PRINTED_RATES = {0.159: 0.41, 0.182: 0.06}
+PRINTED_BY_RCOF = (0.03, 0.26, 0.83)
+"""Risk at the lowest, median and highest RCOF (G.6.2)."""
+_PRINTED_POINTS: dict[str, Any] = {"colour": PRINTED, "marker": "D"}
 
 
 def _who(steps: Slips) -> str:
