@@ -292,7 +292,7 @@ def judge(statement: Statement, quantities: Mapping[str, Quantity]) -> Judgement
         verdict = Verdict.AGREES
     elif ours_low <= high and ours_high >= low:
         likely = chance is None or chance >= LEAST_OVERLAP
-        narrow = ours_high - ours_low <= statement.half_scale
+        narrow = ours_high - ours_low - 2.0 * error <= statement.half_scale
         verdict = Verdict.OVERLAPS if likely and narrow else Verdict.UNDECIDED
     elif statement.effect and min(statement.effect * v for v in values) > statement.tolerance:
         verdict = Verdict.TREND_ONLY
