@@ -38,7 +38,7 @@ def result(name):
     """Every quantity a study is asked for, as the number 1 on one grid; a figure, a table."""
     asked = {one.quantity: one for one in study(name).statements if one.quantity}
     values = {
-        path: Quantity.of([3.0 - k for k in range(len(one.names))], names=one.names)
+        path: Quantity.of([3.0 - k for k in range(len(one.names))], one.si_unit, names=one.names)
         if one.names
         else Quantity.of(1.0, one.si_unit)
         for path, one in asked.items()
@@ -166,7 +166,7 @@ def test_a_finished_folder_is_judged_again_as_a_process(tmp_path):
     found = called("studies", "summary", str(out), "--json")
     assert found.returncode == 0, found.stderr
     verdicts = {row["statement"]: row["verdict"] for row in json.loads(found.stdout)}
-    assert verdicts["g3.order_dry"] == "disagrees"
+    assert verdicts["g3.order_dry_real_contact_area_and_one_strength"] == "disagrees"
     empty = tmp_path / "empty"
     empty.mkdir()
     nothing = called("studies", "summary", str(empty))

@@ -185,6 +185,7 @@ def test_a_population_on_two_grids_becomes_judged_quantities():
                "r2_row_lateral_speed": 0.41}  # fmt: skip
     grids = [(1.4e-3, numbers | {"peak_speed": 2.0}), (1e-3, numbers)]
     found = g5.quantities({"untreaded": grids, "treaded": grids}, {"untreaded": {}, "treaded": {}})
+    found |= {f"film.{name}": Quantity.none("made up") for name in ("viscosity", "dwell", "speed")}
     said = {s.id: str(judge(s, found).verdict) for s in study("g5").statements}
     assert said["speed_untreaded"] == "not converged"
     assert said["pressure_untreaded"] == said["duration"] == said["correlation"] == "agrees"
