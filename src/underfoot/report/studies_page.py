@@ -25,6 +25,10 @@ COLOURS = {
 }
 
 
+BROAD = 2.0
+"""Width over height from which a figure stands alone."""
+
+
 def write_study(result: StudyResult, folder: Path) -> list[str]:
     """Write study.json, tables, statements and figures (PNG and their data) into a folder.
 
@@ -66,7 +70,7 @@ def studies_page(
             ],
             "remarks": result.remarks(),
             "images": [
-                (name, embedded(data), remarks.get((study, name), ""))
+                (name, embedded(data), remarks.get((study, name), ""), _broad(data))
                 for (study, name), data in images.items()
                 if study == result.study.name
             ],
@@ -86,6 +90,12 @@ def studies_page(
         cell=_cell,
         quick=quick,
     )
+
+
+def _broad(png: bytes) -> bool:
+    """Return whether a picture needs the page's whole width: its header has width and height."""
+    width, height = (int.from_bytes(png[at : at + 4], "big") for at in (16, 20))
+    return width > BROAD * height
 
 
 def _write_csv(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:

@@ -400,7 +400,7 @@ def _fluid_figure(
                         high=high,
                         colour=PRINTED,
                         style="horizontal",
-                        label=f"printed range {low:g} to {high:g} N",
+                        label="printed range",
                     ),
                     points(
                         places,
@@ -413,7 +413,7 @@ def _fluid_figure(
                     points(places, left[sole], "Eq. 26", colour=GREY, marker="s"),
                 ),
                 y_label="adhesion (N)",
-                title=sole,
+                title=f"{sole}: printed {low:g} to {high:g} N",
                 x_ticks=[
                     name.replace("glycerol ", "gly. ").replace(" 1.5 %", "") for name in FLUIDS
                 ],
@@ -424,6 +424,7 @@ def _fluid_figure(
         panels,
         "Fig. 24: adhesion left under a fluid (friction less that under gear oil)",
         columns=3,
+        legend_below=True,
         size=(4.6, 3.6),
         share_y=True,
     )
