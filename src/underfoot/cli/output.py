@@ -165,7 +165,7 @@ def print_table(table: Table, *, everything: bool = True) -> None:
     for number, name in enumerate(table.columns):
         drawn.add_column(
             escaped(name),
-            no_wrap=roomy and number != last,
+            no_wrap=(roomy or last == 1) and number != last,
             overflow="fold",
             style="dim" if number == last > 1 and name in REMARKS else None,
         )
