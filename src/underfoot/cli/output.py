@@ -26,6 +26,8 @@ NOT_USABLE = 4
 """Exit code where a computation did not end with a result."""
 MOST_RECORDS, MOST_ROWS = 40, 12
 """Rows of a wide table on the terminal; ``--all`` prints all."""
+SHORT = 12
+"""Longest text of a second column that names a row together with the first."""
 MOST_LINES = 3
 """Lines of a list of remarks on the terminal; ``--all`` prints all."""
 REMARKS = ("", "Remark", "Source", "Basis", "origin")
@@ -199,22 +201,25 @@ def _print_blocks(
     *,
     everything: bool,
 ) -> None:
-    """Print a table of many columns as blocks that fit, the first column before each."""
+    """Print a table of many columns as blocks that fit, the columns that name a row before each."""
     rows = cells if everything else cells[:MOST_ROWS]
+    worded = all(row[1] and not row[1][0].isdigit() and len(row[1]) <= SHORT for row in cells)
+    keys = range(2 if worded and len(widths) > 3 else 1)
     blocks: list[list[int]] = [[]]
-    used = widths[0]
-    for number in range(1, len(widths)):
+    start = sum(widths[k] + 2 for k in keys) - 2
+    used = start
+    for number in range(len(keys), len(widths)):
         if blocks[-1] and used + 2 + widths[number] > console.width:
             blocks.append([])
-            used = widths[0]
+            used = start
         blocks[-1].append(number)
         used += 2 + widths[number]
-    for block in blocks:
-        lines = [table.columns, *rows]
-        for line in lines:
-            shown = [f"{line[k]:{min(widths[k], console.width)}}" for k in (0, *block)]
+    for count, block in enumerate(blocks):
+        if count:
+            console.print()
+        for line in (table.columns, *rows):
+            shown = [f"{line[k]:{min(widths[k], console.width)}}" for k in (*keys, *block)]
             console.print("  ".join(shown).rstrip(), markup=False)
-        console.print()
     _say_rest(console, len(cells) - len(rows))
 
 
