@@ -399,7 +399,7 @@ def quantities(
                 normal = np.random.default_rng(seed).normal(size=400)
                 draws = one.cof * np.exp(one.spread / one.cof * normal)
             found[f"acof.{law}.{sole}"] = Quantity.of(one.cof, draws=draws, levels=levels)
-            risks = [population_risk(float(v))["report_g6"] for v in draws]
+            risks = [population_risk(min(float(v), 1.0))["report_g6"] for v in draws]
             found[f"risk.{law}.{sole}"] = Quantity.of(
                 population_risk(one.cof)["report_g6"], draws=risks
             )
