@@ -77,9 +77,10 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
             {"label": label, "group": first, "speed": speed, "cof": cof, "raw": list(fit.raw),
              "mean": mean, "verdict": fit.verdict, "r_squared": fit.r_squared}
         )  # fmt: skip
+        levels = dict(zip(keys, group, strict=True)) or {"group": ""}
         for parameter in own:
             keep = parameter.value is not None and not parameter.remark.startswith("not identified")
-            parameters[parameter.name].append((first, parameter.value) if keep else None)
+            parameters[parameter.name].append((levels, parameter.value) if keep else None)
     intervals = (
         (name, "95 % low", "95 % high", "remark")
         for name in ("COF_BL", "tau_hydro (m/s)", "COF_asymptote")
@@ -96,11 +97,16 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
     )
     made = [Table("stribeck", title, columns, tuple(rows), explained)]
     findings: list[Finding] = []
+    compared = protocol.words("compare") or keys[:1]
     for name, values in parameters.items():
         kept = [pair for pair in values if pair is not None]
-        if len({group for group, _ in kept}) > 1:
-            factor = protocol.text("compare", keys[0] if keys else "group")
-            tests = comparison_findings(name, [v for _, v in kept], {factor: [g for g, _ in kept]})
+        factors = {
+            key: [levels[key] for levels, _ in kept]
+            for key in compared
+            if len({levels.get(key) for levels, _ in kept}) > 1
+        }
+        if factors:
+            tests = comparison_findings(name, [value for _, value in kept], factors)
             lost = len(values) - len(kept)
             if lost and tests:
                 text = f"{lost} of {len(values)} series left out: not identified, or no good fit"
