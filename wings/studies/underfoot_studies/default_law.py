@@ -73,11 +73,13 @@ def draws_without_report(seed: int = 0) -> PairDraws:
         found = fitted(law, others, steps=STEPS, seed=seed).draws(count, seed)
         stored = {name: np.asarray(values) for name, values in found.columns().items()}
         store.store(key, stored)
-    spreads = {name: stored[name] for name in stored if name.startswith("sd_")}
     constants = {name: stored[name] for name in stored if not name.startswith("sd_")}
     return PairDraws(
         replace(packaged_pair_draws().constants, **constants),
-        **spreads,
+        stored["sd_laboratory"],
+        stored["sd_dry_part"],
+        stored["sd_pair"],
+        stored["sd_reading"],
         source="law of the pair, fitted to everybody's readings but the report's",
     )
 

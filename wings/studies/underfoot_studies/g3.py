@@ -87,7 +87,9 @@ def compute(options: Options) -> Computed:
                 for sole in SOLES
                 for name, end in (("lowest", np.min), ("highest", np.max))
             },
-            "contact_area": Quantity.of(strength * np.array(by_sole), "N", names=tuple(SOLES)),
+            "contact_area": Quantity.of(
+                float(strength) * np.array(by_sole), "N", names=tuple(SOLES)
+            ),
             **table_5_orders(),
         },
         (
@@ -176,8 +178,7 @@ def default_quantities(splits: Mapping[tuple[str, str], Split]) -> dict[str, Qua
 
     def over_floors(sole: str, take: str) -> tuple[float, Array]:
         own = [splits[sole, floor] for floor in FLOORS]
-        place = ("adhesion", "hysteresis").index(take)
-        medians = [one.medians[place] for one in own]
+        medians = [one.medians[0] if take == "adhesion" else one.medians[1] for one in own]
         return float(np.mean(medians)), np.mean([getattr(one, take) for one in own], axis=0)
 
     found: dict[str, Quantity] = {}
@@ -239,7 +240,7 @@ def default_quantities(splits: Mapping[tuple[str, str], Split]) -> dict[str, Qua
         name = sole.replace(" ", "_")
         for end, take in (("lowest", np.min), ("highest", np.max)):
             drawn = take(by_fluid, axis=0)
-            found[f"default.{name}.{end}"] = Quantity.of(take(medians_of), "N", draws=drawn)
+            found[f"default.{name}.{end}"] = Quantity.of(float(take(medians_of)), "N", draws=drawn)
         spreads[sole] = (float(np.ptp(medians_of)), np.ptp(by_fluid, axis=0))
     order = ("hard rubber", "soft rubber", "polyurethane")
     found["default.fluid_spread"] = Quantity.of(
