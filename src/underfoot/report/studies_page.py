@@ -25,7 +25,7 @@ COLOURS = {
 }
 
 
-BROAD = 2.0
+BROAD = 2.6
 """Width over height from which a figure stands alone."""
 
 

@@ -75,7 +75,7 @@ class SoleFriction:
 
     ``deviation`` is the law's own standard deviation (nan: none known); ``low`` and ``high`` are
     the COF at the hardness band's ends, ``coarse`` is on the quick grid (nan: not run); ``draws``
-    (n,) of the law and the hardness, joint over the soles, are those of the judged law.
+    (n,) of the law and the hardness, joint over the soles, are those of the law of the pair.
     """
 
     sole: str
@@ -231,7 +231,7 @@ def sole_frictions(
     frictions = [
         _friction(*one, found[i * width : (i + 1) * width], coarse[i]) for i, one in enumerate(plan)
     ]
-    return [_with_draws(one) if one.law == JUDGED else one for one in frictions]
+    return [_with_draws(one) if one.law in (JUDGED, "pair") else one for one in frictions]
 
 
 def _with_draws(one: SoleFriction) -> SoleFriction:
