@@ -227,6 +227,19 @@ def test_the_share_done_of_a_run_rises_over_all_its_positions(bars, quick):
     assert steps.max() < 0.2
 
 
+def test_positions_in_processes_of_their_own_have_the_same_digits(bars):
+    told = []
+    case = bars.replace({"numerics.grid_spacing": "2 mm", "numerics.tread_positions": 3})
+    alone = run(case)
+    beside = run(case, processes=2, progress=lambda stage, *_: told.append(stage))
+    assert "Tread positions" in told
+    assert beside.to_frame().equals(alone.to_frame())
+    assert beside.labels == alone.labels
+    assert beside.provenance.result_hash == alone.provenance.result_hash
+    for name, field in alone.data.data_vars.items():
+        np.testing.assert_array_equal(beside.data[name].values, field.values)
+
+
 @pytest.mark.slow
 def test_one_position_is_the_case_s_own(bars):
     coarse = bars.replace(

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from underfoot.case.equations import EQUATIONS
 from underfoot.core.catalogue import Catalogue
-from underfoot.questions.equations import EQUATIONS
 from underfoot.studies import studies, study
 from underfoot.trials.protocols import protocol
 from underfoot_studies import report_ledger

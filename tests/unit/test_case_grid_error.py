@@ -45,7 +45,7 @@ def test_the_error_joins_spread_and_interval_and_is_told():
     assert "tracks; numerical error 12 N" in found["fluid_load_sensor"].note
     assert found["peak_fluid_pressure"].uncertainty == pytest.approx(5e4)
     assert found["peak_fluid_pressure"].reason == ""
-    words = errors.words(found)
+    words = errors.sentence(found)
     assert "fluid load ± 40 N" in words
     assert "difference to cells of 1 mm" in words
     assert "steps in time: cof ± 0" in words

@@ -6,9 +6,9 @@ from importlib import import_module
 import pytest
 from typer.testing import CliRunner
 
+from underfoot.case.equations import EQUATIONS
+from underfoot.case.explanation import equations
 from underfoot.cli.app import app
-from underfoot.questions.equations import EQUATIONS
-from underfoot.questions.explanation import equations
 
 NUMBERS = range(1, 28)
 KNOWN = {

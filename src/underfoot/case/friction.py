@@ -173,11 +173,11 @@ class BoundaryOption(_Measured):
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import BoundaryLaw, boundary_friction_at
 
-        others, own = measured_fluids(context.catalogue), self.measured(context)
-        if own is None:
-            own = boundary_friction_at(_viscosity(context), others, fluid=context.fluid)
+        others, measured = measured_fluids(context.catalogue), self.measured(context)
+        if measured is None:
+            measured = boundary_friction_at(_viscosity(context), others, fluid=context.fluid)
         hysteresis = self._optional("hysteresis_cof")
-        return BoundaryLaw.measured(own, cof_hysteresis=hysteresis, others=others)
+        return BoundaryLaw.measured(measured, cof_hysteresis=hysteresis, others=others)
 
 
 class StribeckOption(_Measured):
@@ -197,13 +197,13 @@ class StribeckOption(_Measured):
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import BoundaryLaw, StribeckLaw, stribeck_law_at
 
-        others, own = measured_fluids(context.catalogue), self.measured(context)
+        others, measured = measured_fluids(context.catalogue), self.measured(context)
         hysteresis = self._optional("hysteresis_cof")
-        if own is None:
+        if measured is None:
             return stribeck_law_at(_viscosity(context), others, fluid=context.fluid)
-        if own.tau_hydro is None or own.cof_asymptote is None:
-            return BoundaryLaw.measured(own, cof_hysteresis=hysteresis, others=others)
-        return StribeckLaw.measured(own, cof_hysteresis=hysteresis, others=others)
+        if measured.tau_hydro is None or measured.cof_asymptote is None:
+            return BoundaryLaw.measured(measured, cof_hysteresis=hysteresis, others=others)
+        return StribeckLaw.measured(measured, cof_hysteresis=hysteresis, others=others)
 
 
 class AdhesionBlockingOption(FrictionOption):

@@ -111,8 +111,8 @@ class SurfaceRoughness(Section):
         scan = self.scan()
         assert scan is not None
         assert self.rq_or_estimate is not None
-        own = scan.values["rq"].value or 0.0
-        return scan.density(wavenumber) * (self.rq_or_estimate / own) ** 2
+        scanned = scan.values["rq"].value or 0.0
+        return scan.density(wavenumber) * (self.rq_or_estimate / scanned) ** 2
 
     def moment(self, order: int, shortest: float, longest: float) -> float:
         """Return rms height (order 0, m) or rms slope (order 1, 1) of the scan between two waves.

@@ -14,7 +14,7 @@ from .output import finish
 @sharing(without=("out", "quick", "processes", "overwrite"))
 def check(shared: Shared, case: CasePath) -> None:
     """Read a case and print its values, sources, assumptions and the cost of a run."""
-    from underfoot.questions.check import case_check
+    from underfoot.compute.check import case_check
 
     answer = case_check(shared.case(case))
     finish(answer, None, json=shared.json, everything=shared.everything)
@@ -50,7 +50,7 @@ def run(
     if folder is not None:
         check_writable_folder(folder, overwrite=shared.overwrite)
     with bar(given.name) as progress:
-        result = result_of(given, quick=shared.quick, progress=progress)
+        result = result_of(given, quick=shared.quick, processes=shared.processes, progress=progress)
     advice = None
     if result.usable and not (shared.quick or no_advice):
         with bar("effect of possible changes") as progress:

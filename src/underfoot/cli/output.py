@@ -123,11 +123,11 @@ def show(shown: Presentable, *, everything: bool = False) -> None:
             continue
         count = f" ({len(lines)})" if len(lines) > 1 else ""
         console.print(f"\n{title}{count}:", markup=False)
-        kept = lines if everything else lines[:MOST_LINES]
-        for line in kept:
+        told = lines if everything else lines[:MOST_LINES]
+        for line in told:
             console.print(f"  - {line if everything else shortened(line)}", markup=False)
-        if len(kept) < len(lines):
-            console.print(f"  … {len(lines) - len(kept)} more: --all", markup=False)
+        if len(told) < len(lines):
+            console.print(f"  … {len(lines) - len(told)} more: --all", markup=False)
 
 
 def shortened(line: str) -> str:

@@ -159,8 +159,8 @@ def undetermined(case: Case, status: Status) -> dict[str, SourcedValue]:
         "minimum_film_thickness": "m",
     }
     names = ("cof", "cof_adhesion", "cof_hysteresis", "cof_viscous", *units, "slip_probability")
-    found = {name: SourcedValue(None, units.get(name, "1"), reason=str(status)) for name in names}
-    return {**found, "normal_force": case.sourced("motion.normal_force")}
+    scalars = {name: SourcedValue(None, units.get(name, "1"), reason=str(status)) for name in names}
+    return {**scalars, "normal_force": case.sourced("motion.normal_force")}
 
 
 def regime(share: float) -> dict[str, str]:

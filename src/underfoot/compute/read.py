@@ -79,7 +79,7 @@ def readings(
         drainage = lug_drainage(parts.sole, contact.fluid_pressure, contact.film_thickness)
     share = (values["fluid_load"].value or 0.0) / contact.normal_force
     remarks = {
-        "drainage": drainage.words() if drainage else "",
+        "drainage": drainage.advice() if drainage else "",
         "overload": numbers.overload_words(overload),
         **(positions.labels() if positions else {}),
     }
@@ -87,7 +87,7 @@ def readings(
     labels |= _remarks(parts, solution, remarks)
     if isinstance(errors, NumericalErrors):
         values = errors.added(values)
-        errors = errors.words(values)
+        errors = errors.sentence(values)
     labels["grid_error"] = errors
     if overload:
         reason = "not resolved: pressures above the modulus of the rubber, which gives way"

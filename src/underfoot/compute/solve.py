@@ -1,11 +1,14 @@
 """Contact and film of a prepared case in time, with the friction and the readings at its end."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from underfoot.case import Case
-from underfoot.core import Progress, silent
+from underfoot.core import ConvergenceError, Progress, silent
+from underfoot.core.pool import in_processes
+from underfoot.core.progress import part
 from underfoot.film import FilmModel, NewtonianFilm
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
 from underfoot.shoe import SoleMap
@@ -17,8 +20,8 @@ from underfoot.sole_contact.solver import SoleContact, solve_sliding
 
 from .contact_friction import ContactFriction, contact_friction
 from .histories import Recorder
-from .positions import Place, TreadPositions, tread_positions
-from .prepare import Prepared
+from .positions import Place, TreadPositions, place_numbers, position_count, tread_positions
+from .prepare import Prepared, prepared
 from .sensors import scanned
 from .sole import sole_map
 
@@ -79,29 +82,71 @@ def solved_at(
 
 
 def averaged(
-    parts: Prepared, solution: Solution, *, quick: bool, progress: Progress = silent
+    parts: Prepared,
+    solution: Solution,
+    *,
+    quick: bool,
+    processes: int = 1,
+    progress: Progress = silent,
 ) -> TreadPositions | None:
-    """Return the numbers at more positions of the tread or shoe angles; None without a contact.
+    """Return the numbers at more positions of the tread or shoe angles.
 
-    A compliance that was given holds for the position of the run alone.
+    None without a contact, and where the case asks for one position.
+    Up to ``processes`` positions are solved at the same time, each on one thread: the digits are
+    those of one process. A compliance that was given holds for the position of the run alone.
     """
-    if "compliance" in parts.objects or not solution.contact.status.usable:
+    total = position_count(parts.case, quick=quick)
+    if total == 1 or "compliance" in parts.objects or not solution.contact.status.usable:
         return None
 
-    def at_place(place: Place, spacing: float, progress: Progress) -> tuple[SoleMap, SoleContact]:
-        return solved_at(parts, place, spacing, progress=progress)
+    def at_places(
+        places: Sequence[Place], spacing: float
+    ) -> Iterator[tuple[int, Mapping[str, float] | None]]:
+        if processes > 1 and not parts.objects:
+            numbers_at = _PlaceNumbers(parts.case, parts.spacing, spacing)
+            yield from in_processes(
+                numbers_at, places, processes, progress=progress, stage="Tread positions"
+            )
+            return
+        count = len(places)
+        for k, place in enumerate(places):
+            name = f"Tread position {total - count + k + 1} of {total}"
+            march = part(progress, k / count, (k + 1) / count, name)
+            yield k, _numbers_at(parts, place, spacing, march)
 
-    return tread_positions(
-        parts.case,
-        parts.law_on,
-        parts.sole,
-        solution.contact,
-        at_place,
-        viscosity=parts.viscosity,
-        spacing=parts.spacing,
-        quick=quick,
-        progress=progress,
+    case_numbers = place_numbers(
+        parts.case, parts.local_law, parts.sole, solution.contact, parts.viscosity
     )
+    return tread_positions(parts.case, case_numbers, at_places, spacing=parts.spacing, quick=quick)
+
+
+@dataclass(frozen=True)
+class _PlaceNumbers:
+    """The numbers of a case at places of its tread; each process prepares the case by itself."""
+
+    case: Case
+    own_spacing: float
+    spacing: float
+
+    @cached_property
+    def _parts(self) -> Prepared:
+        return prepared(self.case, self.own_spacing)
+
+    def __call__(self, place: Place) -> Mapping[str, float] | None:
+        return _numbers_at(self._parts, place, self.spacing)
+
+
+def _numbers_at(
+    parts: Prepared, place: Place, spacing: float, progress: Progress = silent
+) -> Mapping[str, float] | None:
+    """Return the numbers of a result at a place; None where its contact did not converge."""
+    try:
+        sole, contact = solved_at(parts, place, spacing, progress=progress)
+    except ConvergenceError:
+        return None
+    if not contact.status.usable:
+        return None
+    return place_numbers(parts.case, parts.law_on(sole), sole, contact, parts.viscosity)
 
 
 def pool_depth(case: Case) -> float:

@@ -152,10 +152,10 @@ def broken_offers() -> Iterator[str]:
 @cache
 def all_offers() -> tuple[Offer, ...]:
     """Return what the packages on Python's path offer; ``all_offers.cache_clear`` looks again."""
-    found = {
+    offers = {
         Offer(entry.group.removeprefix(PREFIX), entry.name, entry.value, each.name or "a package")
         for each in metadata.distributions()
         for entry in each.entry_points
         if entry.group.startswith(PREFIX)
     }
-    return tuple(sorted(found, key=str))
+    return tuple(sorted(offers, key=str))

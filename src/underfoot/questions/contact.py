@@ -52,13 +52,13 @@ class RoughContact(Presentable):
         return self.contact.status.usable
 
     def headline(self) -> tuple[str, ...]:
-        found = self.contact
-        at = f"{display(found.nominal_pressure, 'Pa')}, {display(found.speed, 'm/s')}"
+        contact = self.contact
+        at = f"{display(contact.nominal_pressure, 'Pa')}, {display(contact.speed, 'm/s')}"
         if not self.usable:
-            return (f"No result at {at}: {found.status}. {found.status.remedy}",)
+            return (f"No result at {at}: {contact.status}. {contact.status.remedy}",)
         return (
-            f"Real contact {100.0 * found.real_contact_fraction_corrected:.3g} %, hysteresis COF "
-            f"{found.cof_hysteresis:.3g} at {at} ({self.rubber}).",
+            f"Real contact {100.0 * contact.real_contact_fraction_corrected:.3g} %, hysteresis COF "
+            f"{contact.cof_hysteresis:.3g} at {at} ({self.rubber}).",
         )
 
     def table(self) -> Table:
@@ -90,29 +90,29 @@ class RoughContact(Presentable):
         }
 
     def to_dict(self) -> dict[str, Any]:
-        found, floor, flow = self.contact, self.floor, self.flow
+        contact, floor, flow = self.contact, self.floor, self.flow
         values = {
-            "real_contact_fraction": found.real_contact_fraction_corrected,
-            "cof_hysteresis": found.cof_hysteresis,
-            "mean_gap_m": found.mean_gap,
+            "real_contact_fraction": contact.real_contact_fraction_corrected,
+            "cof_hysteresis": contact.cof_hysteresis,
+            "mean_gap_m": contact.mean_gap,
             "flow_factor_along": flow.along,
             "flow_factor_across": flow.across,
         }
         content: dict[str, Any] = {
             "rubber": self.rubber,
-            "pressure_Pa": found.nominal_pressure,
-            "speed_m_per_s": found.speed,
+            "pressure_Pa": contact.nominal_pressure,
+            "speed_m_per_s": contact.speed,
             "rms_height_m": floor.rms_height,
             "rms_slope": surface.rms_slope(floor),
             "grid": list(floor.shape),
             "spacing_m": floor.spacing,
             "shortest_wave_m": floor.resolution,
             **{name: float(value) if self.usable else None for name, value in values.items()},
-            "status": str(found.status),
-            "iterations": found.iterations,
-            "complementarity_error": found.complementarity_error,
+            "status": str(contact.status),
+            "iterations": contact.iterations,
+            "complementarity_error": contact.complementarity_error,
             "notes": list(self._notes()),
-            "breaches": [str(breach) for breach in found.breaches],
+            "breaches": [str(breach) for breach in contact.breaches],
         }
         if self.scales is not None:
             content["shortest_waves"] = self._scale_entries(self.scales)

@@ -309,10 +309,10 @@ def measured_rcof(path: Path) -> tuple[float, float, str]:
         )
     mean, sd = float(np.mean(means)), float(np.std(means, ddof=1))
     count = sum(map(len, steps.values()))
-    words = f"RCOF mean {mean:.3f}, SD {sd:.3f} between {len(means)} {kind}, {count} steps" + (
+    text = f"RCOF mean {mean:.3f}, SD {sd:.3f} between {len(means)} {kind}, {count} steps" + (
         f", {cautions} of them with a caution" if cautions else ""
     )
-    return mean, sd, words
+    return mean, sd, text
 
 
 def shown_motion(study: SlipStudy) -> SlipMotion:

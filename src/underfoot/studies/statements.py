@@ -163,8 +163,11 @@ class Study:
 def studies() -> tuple[str, ...]:
     """Return the names of all studies: ours in their order, then those of other packages."""
     ours = [name for door, name in WINGS if door == "studies"]
-    there = offers("studies")
-    return (*(name for name in ours if name in there), *sorted(there.keys() - set(ours)))
+    offered_studies = offers("studies")
+    return (
+        *(name for name in ours if name in offered_studies),
+        *sorted(offered_studies.keys() - set(ours)),
+    )
 
 
 @cache

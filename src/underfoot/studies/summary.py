@@ -18,9 +18,9 @@ def headline(results: Iterable[StudyResult]) -> list[tuple[str, list[int]]]:
     """Return (study, independent statements by verdict) and the sum over all studies last."""
     rows = []
     for result in results:
-        found = counts(result.judgements)
-        if sum(found.values()):
-            rows.append((result.study.name, [found[verdict] for verdict in Verdict]))
+        number = counts(result.judgements)
+        if sum(number.values()):
+            rows.append((result.study.name, [number[verdict] for verdict in Verdict]))
     if rows:
         rows.append(("all", [sum(column) for column in zip(*(r for _, r in rows), strict=True)]))
     return rows

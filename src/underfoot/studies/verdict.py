@@ -327,11 +327,11 @@ def judged(statements: Iterable[Statement], quantities: Mapping[str, Quantity]) 
 
 def counts(judgements: Iterable[Judgement]) -> dict[Verdict, int]:
     """Return how many *independent* statements got each verdict; no other kind is counted."""
-    found = dict.fromkeys(Verdict, 0)
+    number = dict.fromkeys(Verdict, 0)
     for one in judgements:
         if one.statement.kind is Kind.INDEPENDENT:
-            found[one.verdict] += 1
-    return found
+            number[one.verdict] += 1
+    return number
 
 
 def tables_by_kind(judgements: Sequence[Judgement]) -> list[tuple[Kind, list[Judgement]]]:
@@ -362,8 +362,8 @@ def _judgement(
             difference = f"{farthest:+.2g} {unit}".strip()
     likely = ""
     if chance is not None:
-        words = "above 0.99" if chance > 0.995 else "below 0.01" if chance < 0.005 else ""
-        likely = f"probability of agreement {words or f'{chance:.2f}'}"
+        text = "above 0.99" if chance > 0.995 else "below 0.01" if chance < 0.005 else ""
+        likely = f"probability of agreement {text or f'{chance:.2f}'}"
     reason = "; ".join(filter(None, (note, likely, statement.remark)))
     return Judgement(statement, verdict, ours or "-", difference, chance, reason)
 

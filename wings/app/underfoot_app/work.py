@@ -93,7 +93,7 @@ def inspected_sole(path: str, settings: Mapping[str, Any], *, progress: Progress
         {"x": ("x", surface.x[::step]), "y": ("y", surface.y[::step])},
     )  # fmt: skip
     html = _html(Drawn(inspection.file.name, fields))
-    return {**said(inspection), "html": html, "sha256": checksum(path)}
+    return {**presented(inspection), "html": html, "sha256": checksum(path)}
 
 
 def effects(path: str, folder: str, *, progress: Progress) -> None:
@@ -135,7 +135,7 @@ def answer(folder: str, *, progress: Progress) -> dict[str, Any]:
         "slip": None if slip is None else slip.value,
         "limit": str(friction_limit(result.scalars)) if result.usable else "",
     }
-    return {**said(result), **numbers, "html": _html(result)}
+    return {**presented(result), **numbers, "html": _html(result)}
 
 
 def previewed(path: str, changes: Mapping[str, Any], *, progress: Progress) -> dict[str, Any]:
@@ -161,7 +161,7 @@ def previewed(path: str, changes: Mapping[str, Any], *, progress: Progress) -> d
     }
 
 
-def said(shown: Presentable) -> dict[str, Any]:
+def presented(shown: Presentable) -> dict[str, Any]:
     """Return what an object says of itself as plain data."""
     tables = [
         {"title": table.title, "columns": list(table.columns), "rows": table.cells()}

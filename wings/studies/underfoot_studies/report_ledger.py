@@ -18,10 +18,10 @@ from typing import Any
 
 import numpy as np
 
+from underfoot.case.equations import EQUATIONS
 from underfoot.core.files import read_toml
 from underfoot.friction import Pair, PairContactLaw, PairDraws, packaged_pair_draws
 from underfoot.friction.pair_contact import Family
-from underfoot.questions.equations import EQUATIONS
 from underfoot.reference import soft_ehl_film
 from underfoot.studies import studies, study
 

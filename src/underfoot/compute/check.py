@@ -10,13 +10,14 @@ import numpy as np
 
 from underfoot.case import assumptions
 from underfoot.case.describe import tested_range_breaches
-from underfoot.compute.positions import run_cost
-from underfoot.compute.resolve import resolved
-from underfoot.compute.sole import outsole_notes
-from underfoot.compute.summary import ranked_assumptions
 from underfoot.core import InputError
 from underfoot.core.presentation import Presentable, Table
 from underfoot.sole_contact.cost import Cost, megabytes
+
+from .positions import run_cost
+from .resolve import resolved
+from .sole import outsole_notes
+from .summary import ranked_assumptions
 
 if TYPE_CHECKING:
     from underfoot.case import Case

@@ -9,14 +9,13 @@ from dataclasses import fields, is_dataclass
 from importlib import import_module
 from typing import Any
 
-from underfoot.case import paths, unit_at
-from underfoot.case.parts import field_at
-from underfoot.case.quantity import default_of
-from underfoot.case.section import quantity_of
 from underfoot.core import InputError, display, unknown_name
 from underfoot.core.catalogue import Catalogue
 
 from .equations import EQUATIONS
+from .parts import field_at, paths, unit_at
+from .quantity import default_of
+from .section import quantity_of
 from .terms import TERMS
 
 WIDTH = 80
