@@ -17,6 +17,7 @@ from .friction import FrictionOption
 from .parts import CATALOGUE_SECTIONS, CaseParts, slot_table
 from .section import (
     CATALOGUE,
+    DEFAULT,
     GIVEN,
     Option,
     Origin,
@@ -28,6 +29,8 @@ from .section import (
 from .versions import RENAMED, SHORT
 
 DRY = "none"
+MEASURED_CONTACT = "contact_table"
+"""Option of ``rough_contact`` where nobody chose one and its inputs are measured."""
 _ALTERNATIVES = {
     "contaminant.viscosity": ("contaminant.glycerol_fraction", "contaminant.fraction_basis"),
     "contaminant.glycerol_fraction": ("contaminant.viscosity",),
@@ -97,6 +100,7 @@ def composed(
         tree["contaminant"] = None
     found.tree = _settled(found, CaseParts, tree, "")
     _settle_hardness(found)
+    _settle_contact(found)
     _settle_reads(found)
     return found
 
@@ -244,6 +248,38 @@ def _settle_hardness(composition: Composition) -> None:
             remedy="Remove it, or shoe.material.modulus",
         )
     )
+
+
+def _settle_contact(found: Composition) -> None:
+    """Let two measured surfaces meet with a measured spectrum, where no contact is chosen.
+
+    A modulus alone is that at rest: at the rates of sliding the rubber is stiffer and lets more
+    fluid through.
+    """
+    given = found.tree.get("rough_contact") or {}
+    origin = origin_of(given.get("model"))
+    if given and not (given.keys() == {"model"} and origin and origin.kind == DEFAULT):
+        return
+    found.tree.pop("rough_contact", None)
+
+    def value(*path: str) -> Any:
+        item: Any = found.tree
+        for part in path:
+            item = item.get(part) if isinstance(item, dict) else None
+        return item
+
+    def measured(item: Any) -> bool:
+        """Return whether a value, or every value of a table, is given and not assumed."""
+        if isinstance(item, dict):
+            return bool(item) and all(map(measured, item.values()))
+        origin = origin_of(item)
+        return item is not None and not (origin and (origin.leaf.assumed or not origin.leaf.given))
+
+    inputs = [value(part, "roughness", "file") for part in ("shoe", "floor")]
+    if all(map(measured, [*inputs, value("shoe", "material", "relaxation")])):
+        why = "both surfaces and the compound are measured"
+        leaf = Leaf(MEASURED_CONTACT, source=why)
+        found.tree["rough_contact"] = {"model": Origin(DEFAULT, leaf, value=MEASURED_CONTACT)}
 
 
 def _settle_reads(found: Composition) -> None:

@@ -247,8 +247,10 @@ class CompositeInterface(Interface):
         return roughness.moment(0, STYLUS_WAVES[0], self.longest_wave)
 
     def unused(self, case: CaseView) -> tuple[str, ...]:
-        scanned = case.shoe.roughness.file and case.floor.roughness.file
-        return ("roughness_beyond_cutoff",) if scanned else ()
+        if not (case.shoe.roughness.file and case.floor.roughness.file):
+            return ()
+        read = WAVES[0] in case.friction.reads
+        return ("roughness_beyond_cutoff",) if read else ("roughness_beyond_cutoff", "hurst")
 
     def rq_deviation(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> float | None:
         heights = [(part.rq_or_estimate or 0.0, part.rq_uncertainty) for part in (shoe, floor)]

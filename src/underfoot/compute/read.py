@@ -7,12 +7,14 @@ import numpy as np
 from underfoot.case import Case
 from underfoot.core import Breach, Progress, SourcedValue, display, silent
 from underfoot.friction import SampledCof
+from underfoot.friction.sampled_cof import GAP
 from underfoot.shoe.lug_drainage import LugDrainage, lug_drainage
 from underfoot.slip import SlipRisk
 from underfoot.sole_contact.edge_peak import peak_pressure
 from underfoot.sole_contact.slits import slit_words
 
 from . import numbers
+from .micro_contact import micro_contact
 from .numerical_error import NumericalErrors, numerical_errors, with_numerical_error
 from .positions import TreadPositions
 from .prepare import Prepared
@@ -72,6 +74,8 @@ def readings(
     sensor = solution.sensor
     values, risk = numbers.scalars(case, contact, friction, sensor, sampled, parts.slip_model)
     values |= solution.recorder.array_scalars()
+    micro = micro_contact(parts, contact)
+    values |= {} if micro is None else micro.scalars()
     if positions:
         values = positions.averaged(values)
     drainage = None
@@ -84,6 +88,9 @@ def readings(
         **(positions.labels() if positions else {}),
     }
     labels = numbers.regime(share) | numbers.spread_origin(sampled)
+    solved = sampled is None or GAP in sampled.share or share < FILM_MATTERS
+    if micro is not None and not solved:
+        labels["cof_spread_from"] += ", gap and flow of the rough contact: not estimated"
     labels |= _remarks(parts, solution, remarks)
     if isinstance(errors, NumericalErrors):
         values = errors.added(values)

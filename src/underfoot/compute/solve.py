@@ -1,5 +1,6 @@
 """Contact and film of a prepared case in time, with the friction and the readings at its end."""
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,7 +11,8 @@ from underfoot.core import ConvergenceError, Progress, silent
 from underfoot.core.pool import in_processes
 from underfoot.core.progress import part
 from underfoot.film import FilmModel, NewtonianFilm
-from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
+from underfoot.friction.sampled_cof import FLOW, GAP
+from underfoot.rough_contact.pressure_gap_law import PressureGapLaw, TabulatedLaw
 from underfoot.shoe import SoleMap
 from underfoot.sole_contact import SensorReading
 from underfoot.sole_contact.compliance import Compliance
@@ -20,10 +22,12 @@ from underfoot.sole_contact.solver import SoleContact, solve_sliding
 
 from .contact_friction import ContactFriction, contact_friction
 from .histories import Recorder
+from .micro_contact import micro_contact
 from .positions import Place, TreadPositions, place_numbers, position_count, tread_positions
 from .prepare import Prepared, prepared
 from .sensors import scanned
 from .sole import sole_map
+from .summary import FILM_MATTERS
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,9 +62,46 @@ def solved(parts: Prepared, progress: Progress = silent) -> Solution:
         watch=recorder,
         progress=progress,
     )
-    friction = contact_friction(case, parts.context, parts.local_law, sole, contact)
+    rough = film_spreads(parts, contact, progress)
+    friction = contact_friction(case, parts.context, parts.local_law, sole, contact, rough=rough)
     sensor = scanned(case, sole, contact, viscosity=parts.viscosity)
     return Solution(contact, recorder, friction, sensor)
+
+
+def film_spreads(
+    parts: Prepared, contact: SoleContact, progress: Progress = silent
+) -> dict[str, float]:
+    """Return what a standard deviation of a rough contact's gap and flow adds to ln F / (W - F).
+
+    F is the load on the film, W the whole; on the quick grid, as the tread lies. Empty where the
+    rough contact is none of measured surfaces, the film bears too little to matter, or one of the
+    contacts could not be solved.
+    """
+    case = parts.case
+    rough = micro_contact(parts, contact)
+    film = contact.fluid_load / contact.normal_force
+    if rough is None or parts.film is None or not contact.status.usable:
+        return {}
+    if not (FILM_MATTERS < film < 1) or not isinstance(parts.asperities, TabulatedLaw):
+        return {}
+    sole = sole_map(case, case.numerics.quick_grid_spacing)
+    compliance = parts.compliance if "compliance" in parts.objects else parts.compliance_on(sole)
+
+    def odds(asperities: TabulatedLaw) -> float:
+        here = solved_motion(case, sole, compliance, asperities, parts.film, progress=progress)
+        if not here.status.usable:
+            raise ConvergenceError(str(here.status), history=[])
+        share = min(max(here.fluid_load / here.normal_force, 1e-6), 1 - 1e-6)
+        return math.log(share / (1 - share))
+
+    law = parts.asperities
+    wider = law.changed(1 + rough.gap_deviation, 1.0)
+    freer = law.changed(1.0, 1 + rough.flow_deviation)
+    try:
+        own = odds(law)
+        return {GAP: odds(wider) - own, FLOW: odds(freer) - own}
+    except ConvergenceError:
+        return {}
 
 
 def solved_at(

@@ -223,8 +223,10 @@ class Pair:
     which it is drawn, evenly in its logarithm. ``hysteresis`` is the COF that the package's own
     theory gives for the compound's spectrum; None takes the closed form at a loss tangent of 0.2.
     ``hysteresis_origin`` names where it comes from. ``full_contact`` is p_R (Pa) where a contact
-    table gives it. ``polymer`` names what soles of one compound share, whatever their hardness and
-    roughness. ``shore_a_deviation`` is the standard deviation of the hardness.
+    table gives it. ``contact_deviation`` is the standard deviation of ln of both where a contact
+    table gives them: finer waves make more of either. ``polymer`` names what soles of one compound
+    share, whatever their hardness and roughness. ``shore_a_deviation`` is the standard deviation of
+    the hardness. ``measured`` says of which of the two the range is that of a measurement.
     """
 
     shore_a: float
@@ -236,6 +238,8 @@ class Pair:
     full_contact: float | None = None
     polymer: str | None = None
     shore_a_deviation: float = 0.0
+    contact_deviation: float = 0.0
+    measured: tuple[bool, bool] = (False, False)
 
     @property
     def compound_and_floor(self) -> str:
@@ -257,8 +261,13 @@ class Pair:
         for name, (low, high) in zip(("sole_rq", "floor_rq"), self._rq, strict=True):
             share = named_shares(seed, f"{name} {low:.3g} {high:.3g}", draws.count)
             numbers[name] = low * (high / low) ** share
+        finer = np.exp(
+            self.contact_deviation * ndtri(named_shares(seed, "shortest wave", draws.count))
+            if self.contact_deviation
+            else 0.0
+        )
         if self.hysteresis is not None:
-            numbers["hysteresis"] = self.hysteresis
+            numbers["hysteresis"] = self.hysteresis * finer
         film, hysteresis, dry, kappa = contact_terms(draws.constants, numbers, family=self.family)
         drawn = {
             "film": film,
@@ -270,7 +279,7 @@ class Pair:
         }
         if self.family == "dry":
             rq = np.hypot(numbers["sole_rq"], numbers["floor_rq"])
-            full = self.full_contact or FULL_CONTACT * rq
+            full = self.full_contact * finer if self.full_contact else FULL_CONTACT * rq
             drawn["full_contact"] = np.broadcast_to(full, film.shape)
         return drawn
 
@@ -340,8 +349,9 @@ class PairContactLaw(UncertainInputs):
                 "friction.pair: no dry reading stands behind the law; dry adhesion is what water "
                 "leaves at rest, with the real contact area of the roughness (Persson 2001)"
             )
-        for part, (low, high) in (("shoe", self.pair.sole_rq), ("floor", self.pair.floor_rq)):
-            if high > low:
+        both = zip(("shoe", "floor"), self.pair._rq, self.pair.measured, strict=True)
+        for part, (low, high), measured in both:
+            if high > low and not measured:
                 words.append(
                     f"{part}.roughness: not given; the friction is drawn over Rq = "
                     f"{1e6 * low:.2g} to {1e6 * high:.2g} um"

@@ -55,6 +55,15 @@ def case_of(path: str, changes: Mapping[str, Any] | None = None) -> Case:
     return case.replace(changes) if changes else case
 
 
+def compound(path: str, *, progress: Progress) -> str:
+    """Write the compound of a rubber's test beside it; return the name of its file."""
+    from underfoot_trial_analysis.compound import compound_from_files
+
+    test = Path(path)
+    write_text(compound_from_files([test]).toml())(test.with_suffix(".toml"))
+    return test.with_suffix(".toml").name
+
+
 def sole(path: str, changes: Mapping[str, Any], *, progress: Progress) -> dict[str, Any]:
     """Return the sole of a case as a part of a page (``html``), and its measures."""
     case = case_of(path, changes)

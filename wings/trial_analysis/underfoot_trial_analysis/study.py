@@ -345,10 +345,17 @@ def _person_table(files: Sequence[FileResult], factors: tuple[str, ...], person:
     return Table("persons", "Persons", columns, rows, (note,), {"RCOF": 4})
 
 
+MODULI = tuple(
+    f"{time}-time {what}"
+    for what in ("stiffness", "modulus", "Young's modulus")
+    for time in ("short", "long")
+)
+
+
 def _relaxation(files: list[FileResult], protocol: Protocol) -> Study:
     keys = _keys(files, (protocol.text("compare", "material"),))
-    forces = ("force_2_percent", "peak_force", "final_force")
-    table = condition_table(files, keys, forces, person=_sample(files))
+    numbers = ("force_2_percent", "peak_force", "final_force", *MODULI)
+    table = condition_table(files, keys, numbers, person=_sample(files))
     return Study((table,) if table else ())
 
 
