@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from underfoot.cli.app import app
 from underfoot.core import InputError
-from underfoot.trials.run_sheet import factors_from, run_sheet
+from underfoot_trial_analysis.run_sheet import factors_from, run_sheet
 
 FACTORS = {"shoe": ("A", "B", "C"), "fluid": ("dry", "water")}
 

@@ -11,8 +11,7 @@ from itertools import product
 import numpy as np
 
 from underfoot.core import InputError
-
-from .readers import trial_suffixes
+from underfoot.trials.readers import trial_suffixes
 
 REPEAT = "repeat"
 MOST_RUNS = 10_000
