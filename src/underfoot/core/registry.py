@@ -21,10 +21,11 @@ PREFIX = "underfoot."
 WINGS = {
     ("commands", "app"): "underfoot-app",
     ("commands", "micro"): "underfoot-block",
+    ("commands", "material"): "underfoot-trial-analysis",
     ("commands", "study"): "underfoot-design-studies",
     **{
         ("commands", f"trials.{name}"): "underfoot-trial-analysis"
-        for name in ("analyse", "bundle", "definitions", "edit", "export", "persons")
+        for name in ("analyse", "bundle", "definitions", "edit", "export", "persons", "plan")
     },
     ("commands", "calibrate.posterior"): "underfoot-design-studies",
     **{("names", name): "underfoot-design-studies" for name in ("Study", "optimise", "sweep")},

@@ -124,7 +124,7 @@ class StudyResult(Presentable):
         return (f"Of {sum(verdicts.values())} independent statements: {', '.join(parts)}.",)
 
     def cautions(self) -> tuple[str, ...]:
-        text = "One coarse grid (--quick): what depends on a grid is not judged."
+        text = "One coarse grid (--quick): what that can be off by is part of each tolerance."
         return (text,) if self.quick else ()
 
     def remarks(self) -> dict[str, Sequence[str]]:

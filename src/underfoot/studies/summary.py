@@ -63,7 +63,10 @@ def summary_markdown(results: Sequence[StudyResult]) -> str:
         text += [f"## {result.study.name}: {result.study.title}", ""]
         text += [f"Source: {result.study.source}.", ""]
         if result.quick:
-            text += ["Run with --quick: what depends on a grid is not judged.", ""]
+            text += [
+                "Run with --quick: what one coarse grid can be off by is part of each tolerance.",
+                "",
+            ]
         if result.error:
             text += [f"Failed: {result.error}", ""]
             continue

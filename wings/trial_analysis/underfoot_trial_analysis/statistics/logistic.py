@@ -264,7 +264,9 @@ def logistic_regression(
         work, at, unit = centred, scaled, scale[j]
         if j == 0:
             work, at, unit = centred @ axes, axes.T @ scaled, 1 / abs(reach[0, 0])
-        *ends, p = _profile(work, y, at, j, firth, best, confidence, errors[j] * unit)
+        *ends, p, open_ends = _profile(work, y, at, j, firth, best, confidence, errors[j] * unit)
+        if open_ends:
+            warnings.append(f"{name}: {open_ends}")
         low, high = (None if end is None else float(end / unit) for end in ends)
         coefficients.append(Coefficient(name, float(beta[j]), float(errors[j]), low, high, p))
     likelihoods = log_likelihood(eta, y), objective(matrix, eta, y, True) if firth else None
@@ -299,10 +301,13 @@ def _profile(
     best: float,
     confidence: float,
     error: float,
-) -> tuple[float | None, float | None, float]:
-    """Return the profile interval of coefficient ``j`` and the likelihood-ratio p of zero."""
+) -> tuple[float | None, float | None, float, str]:
+    """Return the profile interval of coefficient ``j``, the p of zero, and what is left open.
+
+    An end whose profile does not settle is None, and p is then Wald's where its own does not.
+    """
     from scipy.optimize import brentq
-    from scipy.stats import chi2
+    from scipy.stats import chi2, norm
 
     free = np.ones(len(best_beta), dtype=bool)
     free[j] = False
@@ -333,10 +338,22 @@ def _profile(
             inner, step = outer, 1.6 * step
         return None
 
-    low, high = end(-1.0), end(1.0)
+    ends: list[float | None] = []
+    lost = []
+    for direction, side in ((-1.0, "lower"), (1.0, "upper")):
+        try:
+            ends.append(end(direction))
+        except ConvergenceError:
+            ends.append(None)
+            lost.append(f"{side} end")
     last[0] = best_beta.copy()
-    p = float(chi2.sf(max(2.0 * drop(0.0), 0.0), 1))
-    return low, high, p
+    try:
+        p = float(chi2.sf(max(2.0 * drop(0.0), 0.0), 1))
+    except ConvergenceError:
+        p = 2.0 * float(norm.sf(abs(best_beta[j]) / error))
+        lost.append("likelihood-ratio p (Wald's in its place)")
+    text = f"the profile did not settle at its {', '.join(lost)}" if lost else ""
+    return ends[0], ends[1], p, text
 
 
 def _checked(
