@@ -12,9 +12,10 @@ from underfoot.material.prony_march import (
     relaxed_memory,
 )
 from underfoot.reference import sliding_sinusoid_cof
-from underfoot.rough_contact import TransientSettings as Settings
-from underfoot.rough_contact import steady_sliding, transient_sliding
+from underfoot.rough_contact import steady_sliding
 from underfoot.rough_contact._kernels.periodic import ShiftedMap
+from underfoot_studies.transient import TransientSettings as Settings
+from underfoot_studies.transient import transient_sliding
 
 LENGTH = 0.4e-3
 MATERIAL = RelaxationSpectrum(1e6, [6e5, 6e5, 6e5], [1e-3, 1e-4, 1e-5])

@@ -19,6 +19,3 @@ from .steady import SlidingSettings as SlidingSettings
 from .steady import SteadySliding as SteadySliding
 from .steady import steady_sliding as steady_sliding
 from .theory import TheoryContact as TheoryContact
-from .transient import TransientSettings as TransientSettings
-from .transient import TransientSliding as TransientSliding
-from .transient import transient_sliding as transient_sliding

@@ -16,12 +16,11 @@ from underfoot.material.prony_march import (
     prony_step,
     relaxed_memory,
 )
-
-from ._kernels.complementarity import ContactState, Search, solved_contact
-from ._kernels.krylov import Workspace
-from ._kernels.operators import Body, Operators
-from ._kernels.periodic import ShiftedMap, unit_compliance
-from .sliding_input import checked_contact_input
+from underfoot.rough_contact._kernels.complementarity import ContactState, Search, solved_contact
+from underfoot.rough_contact._kernels.krylov import Workspace
+from underfoot.rough_contact._kernels.operators import Body, Operators
+from underfoot.rough_contact._kernels.periodic import ShiftedMap, unit_compliance
+from underfoot.rough_contact.sliding_input import checked_contact_input
 
 
 @dataclass(frozen=True, slots=True)
