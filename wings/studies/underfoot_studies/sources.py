@@ -141,6 +141,7 @@ class Source:
     name: str
     reference: str
     read: str
+    laboratory: str
     verified: bool
     conditions: tuple[Condition, ...]
     effects: tuple[Effect, ...]
@@ -183,6 +184,7 @@ def read_source(path: Path) -> Source:
         name=path.stem,
         reference=table["reference"],
         read=table["read"],
+        laboratory=laboratory,
         verified=bool(table.get("verified", True)),
         conditions=tuple(
             replace(condition, laboratory=laboratory)
