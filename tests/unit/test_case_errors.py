@@ -213,3 +213,11 @@ def test_key_lines_read_tables_dotted_keys_and_skip_text_blocks():
     assert Places("f", text)("b.c.d.e.f") == "b.c.d.e.f (f, line 3)"
     assert Places("f", text)("nowhere") == "nowhere (f)"
     assert Places()("a") == "a"
+
+
+@pytest.mark.parametrize("part", ["shoe", "floor"])
+def test_a_roughness_of_nothing_and_of_a_millimetre_is_refused_where_it_stands(part):
+    none, most = (refused(f"{part}.roughness.rq", rq).errors for rq in ("0 um", "1 mm"))
+    assert [(e.where, e.allowed) for e in none] == [(f"{part}.roughness.rq", "from 1 nm to 1 mm")]
+    assert [e.where for e in most] == [f"{part}.roughness"]
+    assert "1 mm is no roughness of a sole on a floor" in most[0].what

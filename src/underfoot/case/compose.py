@@ -76,6 +76,7 @@ def composed(
         name = _from(tables, section)
         if name is not None and not (section == "contaminant" and name == DRY):
             _lay(found, laid, section, name)
+    _lay_roughness_of_compound(found, laid)
     try:
         own = leaves(_without_from(tables), source="")
     except InputError as error:
@@ -140,6 +141,17 @@ def _lay(found: Composition, laid: dict[str, Origin], section: str, name: Any) -
             CATALOGUE, leaf, f"{kind} {name}"
         )
     found.entries[section] = name
+
+
+def _lay_roughness_of_compound(found: Composition, laid: dict[str, Origin]) -> None:
+    """Put the roughness of a compound, if known, in place of that read on a shoe of another."""
+    compound = found.entries.get("shoe.material")
+    if compound is None or "shoe.roughness" in found.entries:
+        return
+    for path in [path for path in laid if path.startswith("shoe.roughness.")]:
+        del laid[path]
+    for path, leaf in found.catalogue.entry("material", compound).under("roughness").items():
+        laid[f"shoe.roughness.{path}"] = Origin(CATALOGUE, leaf, f"material {compound}")
 
 
 def _part(entry: Entry, part: str, section: str) -> dict[str, Leaf]:

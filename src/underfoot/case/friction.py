@@ -30,8 +30,6 @@ RIVAL_DEVIATION = {"mean_film_sharing": 0.095, "viscoelastic_area": 0.241}
 HYSTERESIS_WAVES = (2.5e-6, 0.2e-3, 0.8e-3)
 """Shortest wave, roll-off and longest wave (m) of the floor that make hysteresis: with these and a
 loss tangent of 0.2 theory gives the closed form of ``friction.pair_contact``."""
-HYSTERESIS_PRESSURE = 300e3
-"""Pa: hysteresis in partial contact hardly depends on it."""
 SAME_VISCOSITY = 0.01
 """Relative difference up to which two viscosities are the same fluid."""
 COLUMNS = {
@@ -104,34 +102,39 @@ class PairOption(FrictionOption):
         from scipy.special import erfinv
 
         from underfoot.friction import Pair, PairContactLaw, packaged_pair_draws, read_pair_draws
+        from underfoot.friction.pair_contact import CONTACT_PRESSURE, LOSS_TANGENTS
         from underfoot.rough_contact import ContactTable
 
-        material = context.shoe.material
+        material, hurst = context.shoe.material, context.interface.hurst
+        surfaces = context.shoe.roughness, context.floor.roughness
         hysteresis, origin = _hysteresis(context)
-        full_contact = _full_contact(context)
+        full_contact = None
         if self.contact_table:
             with meant_file(
                 self.contact_table, self.contact_table_sha256, "friction.contact_table"
             ) as path:
                 table = ContactTable.load(path)
-            at = HYSTERESIS_PRESSURE, context.motion.speed
+            at = CONTACT_PRESSURE, context.motion.speed
             area = float(table.real_contact_fraction(*at))
             hysteresis, origin = float(table.cof_hysteresis(*at)), Path(self.contact_table).name
-            full_contact = HYSTERESIS_PRESSURE / float(erfinv(min(area, 1 - 1e-9)))
+            full_contact = CONTACT_PRESSURE / float(erfinv(min(area, 1 - 1e-9)))
         draws = packaged_pair_draws()
         if self.draws_file:
             with meant_file(self.draws_file, self.sha256, "friction.draws_file") as path:
                 draws = read_pair_draws(path)
         pair = Pair(
             shore_a=_hardness(context),
-            sole_rq=_span(context.shoe.roughness, SOLE_RQ),
-            floor_rq=_span(context.floor.roughness, FLOOR_RQ),
+            sole_rq=_span(surfaces[0], SOLE_RQ, hurst),
+            floor_rq=_span(surfaces[1], FLOOR_RQ, hurst),
             family=context.contaminant.chemistry if context.contaminant else "dry",
             hysteresis=hysteresis,
             hysteresis_origin=origin,
             full_contact=full_contact,
             polymer=material.polymer,
             shore_a_deviation=(material.shore_a and material.sourced("shore_a").uncertainty) or 0.0,
+            loss_tangent=_spread(material.sourced("loss_tangent")) or LOSS_TANGENTS,
+            sole_slope=_slope(surfaces[0]),
+            floor_slope=_slope(surfaces[1]),
         )
         return PairContactLaw(pair, context.viscosity_value, draws)
 
@@ -551,39 +554,60 @@ def _hardness(context: Context) -> float:
     return REFERENCE_HARDNESS + math.log(ratio) / GENT_SLOPE
 
 
-def _span(roughness: SurfaceRoughness, unknown: tuple[float, float]) -> tuple[float, float]:
-    """Return Rq (m) twice, or its 95 % range where it has a spread; ``unknown`` without one."""
-    rq, spread = roughness.rq_or_estimate, roughness.rq_uncertainty
+def _span(
+    roughness: SurfaceRoughness, unknown: tuple[float, float], hurst: float
+) -> tuple[float, float]:
+    """Return Rq (m) of waves up to 0.8 mm twice, or its 95 % range where it has a spread.
+
+    ``unknown`` without one. Longer waves, of a scan or a longer cut-off, are left out.
+    """
+    rq = roughness.rq_or_estimate
     if rq is None:
         return unknown
-    factor = math.exp(1.96 * (spread or 0.0) / rq)
-    return rq / factor, rq * factor
+    spread = _spread(SourcedValue(rq, "m", uncertainty=roughness.rq_uncertainty))
+    assert spread is not None
+    longest = HYSTERESIS_WAVES[2]
+    share = min(1.0, (longest / (roughness.cutoff or longest)) ** hurst)
+    if roughness.file is not None:
+        share = roughness.moment(0, HYSTERESIS_WAVES[0], longest) / rq
+    return spread[0] * share, spread[1] * share
+
+
+def _spread(given: SourcedValue) -> tuple[float, float] | None:
+    """Return a value twice, or its 95 % range where it has a spread; None without a value."""
+    if given.value is None:
+        return None
+    factor = math.exp(1.96 * (given.uncertainty or 0.0) / given.value)
+    return given.value / factor, given.value * factor
+
+
+def _slope(roughness: SurfaceRoughness) -> float | None:
+    """Return the rms slope of a scan's waves up to 0.8 mm; None without a scan."""
+    return None if roughness.file is None else roughness.moment(1, *HYSTERESIS_WAVES[::2])
 
 
 def _hysteresis(context: Context) -> tuple[float | None, str]:
     """Return the hysteresis COF of the compound's spectrum on the floor's, and what it is from.
 
-    Where one of the two spectra is not known its usual form stands for it; None without both.
+    None without a spectrum of the compound; that of a floor without a scan has its usual form.
     """
-    from underfoot.friction.pair_contact import HYSTERESIS, SLOPE
+    from underfoot.friction.pair_contact import CONTACT_PRESSURE, SLOPE, real_slope
     from underfoot.rough_contact import persson
 
     floor, (shortest, roll_off, longest) = context.floor.roughness, HYSTERESIS_WAVES
     if context.shoe.material.relaxation is None:
-        if floor.file is None:
-            return None, ""
-        slope = floor.moment(1, shortest, longest)
-        return HYSTERESIS * slope / SLOPE, "the slope of the floor's scan, loss tangent 0.2 assumed"
+        return None, ""
     wavenumber = np.geomspace(2 * math.pi / longest, 2 * math.pi / shortest, 60)
     if floor.file is None:
-        rq = floor.rq_or_estimate or math.sqrt(FLOOR_RQ[0] * FLOOR_RQ[1])
+        rq = math.sqrt(math.prod(_span(floor, FLOOR_RQ, context.interface.hurst)))
+        rq = float(real_slope(rq)) / SLOPE
         shape = wavenumber * roll_off / (2 * math.pi)
         spectrum = np.where(shape < 1, 1.0, shape ** (-2 * (1 + context.interface.hurst)))
         spectrum *= rq**2 / (2 * math.pi * np.trapezoid(wavenumber * spectrum, wavenumber))
     else:
         spectrum = floor.density(wavenumber)
     contact = persson(
-        HYSTERESIS_PRESSURE,
+        CONTACT_PRESSURE,
         wavenumber,
         spectrum,
         context.rubber().complex_modulus,
@@ -593,24 +617,6 @@ def _hysteresis(context: Context) -> tuple[float | None, str]:
     assert contact.cof_hysteresis is not None  # the rubber is viscoelastic
     surface = "" if floor.file is None else " on the floor's scan"
     return float(contact.cof_hysteresis[0]), f"Persson theory{surface}"
-
-
-def _full_contact(context: Context) -> float | None:
-    """Return the pressure p_R of dry real area (Pa) from the slopes of both; None without a scan.
-
-    A surface without a scan has the usual slope of its Rq; without an Rq either nothing is known.
-    """
-    from underfoot.friction.pair_contact import FULL_CONTACT, SLOPE
-
-    both = context.shoe.roughness, context.floor.roughness
-    if not any(part.file for part in both) or any(part.rq_or_estimate is None for part in both):
-        return None
-    shortest, _, longest = HYSTERESIS_WAVES
-    slopes = [
-        part.moment(1, shortest, longest) if part.file else SLOPE * (part.rq_or_estimate or 0.0)
-        for part in both
-    ]
-    return FULL_CONTACT / SLOPE * math.hypot(*slopes)
 
 
 def _viscosity(context: Context) -> float:

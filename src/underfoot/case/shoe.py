@@ -22,6 +22,7 @@ TermModulus = Annotated[float, Quantity("Pa", 0.0, 1e12, open_low=True)]
 RelaxationTime = Annotated[float, Quantity("s", 0.0, 1e12, open_low=True)]
 Hardness = Annotated[float, Quantity("1", 0.0, 100.0, open_low=True)]
 Poisson = Annotated[float, Quantity("1", 0.0, 0.5)]
+LossTangent = Annotated[float, Quantity("1", 0.0, 3.0, open_low=True)]
 Density = Annotated[float, Quantity("kg/m^3", 10.0, 3e4)]
 Direction = Literal["auto", "flip", "+x", "-x", "+y", "-y", "+z", "-z"]
 _mm = 1e-3
@@ -55,6 +56,10 @@ class Material(Section):
     poisson_ratio: Poisson = default(0.49, 0.49, "rubber, nearly incompressible", assumed=True)
     bulk_modulus: Modulus | None = None
     density: Density | None = None
+    loss_tangent: LossTangent | None = optional(
+        "at 100 Hz to 10 kHz and room temperature, about -ln(rebound resilience) / pi; a "
+        "relaxation spectrum goes before it"
+    )
     relaxation: Relaxation | None = None
 
     @classmethod
@@ -189,4 +194,6 @@ class Shoe(Section):
                     where=f"{where}.{part}",
                     remedy=f"Remove [shoe.{part}], or shoe.outsole.file",
                 )
+        if from_catalogue(table.get("roughness", {})):
+            table = {**table, "roughness": {}}  # read on another sole
         return {**table, "heel": None, "tread": None}

@@ -153,6 +153,8 @@ class Interface(Option):
 
     slot: ClassVar[str] = "interface"
     usual: ClassVar[str | None] = "composite"
+    own_roughness: ClassVar[tuple[str, ...]] = ("shoe", "floor")
+    """Sections whose roughness makes that of the interface."""
 
     hurst: Annotated[float, Quantity("1", 0.1, 1.0)] = default(
         0.8, 0.8, "common for worn and abraded surfaces", assumed=True
@@ -192,6 +194,10 @@ class Interface(Option):
                 pool / 3
             )
         why, limit = min(limits.items(), key=lambda item: item[1])
+        for name in self.own_roughness:
+            own = getattr(case, name).roughness.rq_or_estimate or 0.0
+            if own > limit:
+                rq, where = own, f"{name}.roughness"
         if rq > limit:
             yield RangeError(
                 f"an Rq of {display(rq, 'm')} is no roughness of a sole on a floor: {why}",
@@ -266,6 +272,7 @@ class MeasuredInterface(Interface):
     name: ClassVar[str] = "measured"
     source: ClassVar[str] = "given in the case"
     chosen_by: ClassVar[tuple[str, ...]] = ("effective_rq",)
+    own_roughness: ClassVar[tuple[str, ...]] = ()
 
     effective_rq: Roughness = Field(
         description="roughness that lets fluid leak and asperities touch"

@@ -1,24 +1,29 @@
 """Contact friction of a sole, a floor and a fluid from what is known of the pair.
 
-Where sole and floor touch under a fluid, friction has a part that a boundary film leaves, a
-hysteresis part, and a dry-like part that fades as the fluid is dragged in faster than it can leave
-the spots of contact:
+Dry, adhesion follows the real contact area of both roughnesses (Persson 2001), and the floor's
+roughness adds hysteresis:
 
-    mu_c = [s film + hysteresis + s dry exp(-eta V / kappa)] (E / E_60)^-c
-    kappa = kappa_0 (R / 8.3 um)^n,  R^2 = Rq_sole^2 + Rq_floor^2
-    hysteresis = min(0.0125 (loss tangent / 0.2) Rq_floor / um, 0.15)
+    mu_dry = rest a(p) + hysteresis,  rest = s (film + dry) (E / E_60)^-c
+    a(p) = (p_0 / p) erf(p / p_R) / erf(p_0 / p_8.3)
+    hysteresis = 0.0125 (loss tangent / 0.2) (slope of the floor / 0.105)
 
-s is the share of adhesion that a surfactant leaves (detergents; else 1). On a dry floor nothing
-fades, and adhesion follows the real contact area of the roughness (Persson 2001),
+Under a fluid the same contact carries less: where the fluid has been pressed out of a spot it is
+dry, else a boundary film is left, which is never stronger than the dry contact:
 
-    mu_dry = [(film + dry) (p_0 / p) erf(p / p_R) / erf(p_0 / p_8.3) + hysteresis] (E / E_60)^-c
+    mu_c = rest min(a, 1) D + min(s film (E / E_60)^-c, rest a) (1 - D) + hysteresis
+    D = exp(-eta V / kappa),  kappa = kappa_0 (R / 8.3 um)^n,  R^2 = Rq_floor^2 + (o Rq_sole)^2
 
-with p_R in proportion to R: rough pairs grip less dry and more wet. No dry reading stands behind
-it: adhesion at 8.3 um is taken as what water leaves of it at rest.
+so that no floor grips more wet than dry. Rough pairs lose area, smooth ones keep their film: wet
+friction has a maximum over roughness. The larger area of a pair smoother than 8.3 um is not
+reached under a fluid, which such a pair seals in (min(a, 1)). o is the share of the sole's own
+roughness that a floor does not press flat, 1 - erf(p / p_R) of the sole alone: what is flat drains
+nothing. s is the share of adhesion that a surfactant leaves (detergents; else 1). p_R goes with the
+slope of both surfaces, which grows with Rq up to that of the steepest floors: longer and higher
+waves do not lower the real area.
 
-The form under a fluid is the film at single asperities (rougher pairs shed it at higher eta V); its
-constants are calibrated on published measurements (``underfoot_studies.pair_law``) and are
-measurements of no single pair. A laboratory, its dry-like part and a pair each have an error of
+No dry reading stands behind the level: adhesion at 8.3 um is taken as what water leaves of it at
+rest. The constants are calibrated on published measurements (``underfoot_studies.pair_law``) and
+are measurements of no single pair. A laboratory, its dry-like part and a pair each have an error of
 their own, learned between the sources; they are the largest part of the interval.
 """
 
@@ -26,7 +31,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -48,16 +53,45 @@ ROUGHNESS = 8.3e-6
 HYSTERESIS = 0.0125 / 1e-6
 """Hysteresis COF per metre of floor Rq at a loss tangent of 0.2: Persson theory, Hurst exponent
 0.8, waves 2.5 um to 0.8 mm, roll-off 0.2 mm; the solved contact is 6 to 31 % higher."""
+LOSS_TANGENTS = (0.1, 0.4)
+"""Loss tangent of a compound of which it is not known (assumed; drawn evenly in its logarithm)."""
 LOSS_TANGENT = 0.2
-MOST_HYSTERESIS = 0.15
 GENT_SLOPE = 0.045
 """d ln E / d Shore A near 65 (Gent 1958)."""
 REFERENCE_HARDNESS = 60.0
 SLOPE = 0.105 / 1e-6
 """rms slope h' over Rq (1/m) of the waves of ``HYSTERESIS``."""
-FULL_CONTACT = 2.97e6 / ROUGHNESS
-"""p_R over R (Pa/m): E* h' / sqrt(2), with E* of Shore A 60 and the slope of ``SLOPE``. Stiffer
+STEEPEST = 1.26
+"""rms slope that no floor passes, however high its waves (assumed): a hysteresis of 0.15."""
+CONTACT_PRESSURE = 300e3
+"""Pa, of lugs under a shoe: where no pressure is known."""
+LEAST_PRESSURE = 1.0
+"""Pa below which the real area a load is that of light loads."""
+
+
+def real_slope(rq: ArrayLike) -> Array:
+    """Return the rms slope (1) of the waves that a stylus sees of a surface of Rq (m)."""
+    slope = SLOPE * np.asarray(rq)
+    return slope / np.sqrt(1 + (slope / STEEPEST) ** 2)
+
+
+FULL_CONTACT = 3.4e6
+"""p_R over the rms slope (Pa): E* / sqrt(2), with E* of Shore A 60 (2.97 MPa at 8.3 um). Stiffer
 compounds have less area and more strength; c holds the rest."""
+REFERENCE_FULL_CONTACT = FULL_CONTACT * float(real_slope(ROUGHNESS))
+
+
+def relative_area(pressure: ArrayLike, full_contact: ArrayLike) -> Array:
+    """Return a(p): real contact area a load, over that of Rq 8.3 um at the pressure of the pins.
+
+    Parameters:
+        pressure: Pa, above 0.
+        full_contact: p_R of the pair, Pa.
+    """
+    share = erf(np.asarray(pressure) / full_contact) / pressure
+    return share * PIN_PRESSURE / erf(PIN_PRESSURE / REFERENCE_FULL_CONTACT)
+
+
 SOURCE = "law of the pair, calibrated on published measurements (underfoot studies run corpus)"
 RANGES = {
     "sliding speed": Range(0.01, 1.0, "m/s", "speeds of the measurements behind the law"),
@@ -91,33 +125,69 @@ class PairConstants:
     hardness_exponent: Array
 
 
+@dataclass(frozen=True, slots=True)
+class ContactTerms:
+    """What contact friction is made of, each of one shape.
+
+    ``film`` and ``rest``: adhesion COF that a boundary film leaves and that of the contact at rest
+    at the real area of Rq 8.3 um; ``hysteresis`` COF; ``kappa`` (Pa m); ``full_contact`` p_R (Pa).
+    """
+
+    film: Array
+    rest: Array
+    hysteresis: Array
+    kappa: Array
+    full_contact: Array
+
+    def adhesion(self, pressure: ArrayLike, drag: ArrayLike | None) -> Array:
+        """Return the adhesion COF at a pressure (Pa, above 0) and viscosity x speed (None: dry)."""
+        area = relative_area(pressure, self.full_contact)
+        dry = self.rest * area
+        if drag is None:
+            return dry
+        shed = np.exp(-np.asarray(drag) / self.kappa)
+        return np.minimum(dry, self.rest) * shed + np.minimum(dry, self.film) * (1 - shed)
+
+
+TERMS = tuple(ContactTerms.__dataclass_fields__)
+
+
 def contact_terms(
     constants: PairConstants, numbers: Mapping[str, ArrayLike], *, family: Family
-) -> tuple[Array, Array, Array, Array]:
-    """Return film, hysteresis and dry-like part (at rest) of the contact friction, and kappa.
+) -> ContactTerms:
+    """Return the terms of the contact friction.
 
     Parameters:
         constants: Numbers or draws that broadcast with ``numbers``.
         numbers: ``sole_rq`` and ``floor_rq`` (m), ``shore_a`` of the compound; where known its
-            ``loss_tangent``, or its ``hysteresis`` (COF) in place of the closed form.
+            ``loss_tangent``, ``sole_slope`` and ``floor_slope`` of scans, and in place of closed
+            forms the ``hysteresis`` (COF) and ``full_contact`` p_R (Pa) of the pair.
         family: Of the fluid; "aqueous" are water and its mixtures without a surfactant.
-
-    Returns:
-        tuple: Three parts of COF (1) and kappa (Pa m).
     """
-    floor = np.asarray(numbers["floor_rq"])
-    roughness = np.hypot(numbers["sole_rq"], floor)
-    kappa = constants.kappa_0 * (roughness / ROUGHNESS) ** constants.roughness_exponent
-    softness = np.exp(
+    slopes = [
+        np.asarray(numbers.get(f"{part}_slope", real_slope(numbers[f"{part}_rq"])))
+        for part in ("sole", "floor")
+    ]
+    flat = erf(CONTACT_PRESSURE / (FULL_CONTACT * slopes[0]))
+    draining = np.hypot(np.asarray(numbers["sole_rq"]) * (1 - flat), numbers["floor_rq"])
+    kappa = constants.kappa_0 * (draining / ROUGHNESS) ** constants.roughness_exponent
+    strength = np.exp(
         -constants.hardness_exponent
         * GENT_SLOPE
         * (np.asarray(numbers["shore_a"]) - REFERENCE_HARDNESS)
     )
+    if family == "detergent":
+        strength = strength * constants.surfactant
     loss = np.asarray(numbers.get("loss_tangent", LOSS_TANGENT)) / LOSS_TANGENT
-    hysteresis = np.minimum(numbers.get("hysteresis", HYSTERESIS * loss * floor), MOST_HYSTERESIS)
+    hysteresis = numbers.get("hysteresis", HYSTERESIS / SLOPE * loss * slopes[1])
     film = constants.film_oil if family == "oil" else constants.film_aqueous
-    adhesion = softness * constants.surfactant if family == "detergent" else softness
-    return film * adhesion, hysteresis * softness, constants.dry * adhesion, kappa
+    return ContactTerms(
+        film * strength,
+        (constants.film_aqueous + constants.dry) * strength,
+        np.asarray(hysteresis),
+        kappa,
+        np.asarray(numbers.get("full_contact", FULL_CONTACT * np.hypot(*slopes))),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,12 +289,13 @@ def packaged_pair_draws() -> PairDraws:
 class Pair:
     """What is known of a sole, a floor and a fluid.
 
-    ``sole_rq`` and ``floor_rq`` (m) are (low, high): equal where measured, else the range over
-    which it is drawn, evenly in its logarithm. ``hysteresis`` is the COF that the package's own
-    theory gives for the compound's spectrum; None takes the closed form at a loss tangent of 0.2.
-    ``hysteresis_origin`` names where it comes from. ``full_contact`` is p_R (Pa) where a contact
-    table gives it. ``polymer`` names what soles of one compound share, whatever their hardness and
-    roughness. ``shore_a_deviation`` is the standard deviation of the hardness.
+    ``sole_rq`` and ``floor_rq`` (m) of waves up to 0.8 mm and ``loss_tangent`` are (low, high):
+    equal where measured, else the range over which it is drawn, evenly in its logarithm.
+    ``sole_slope`` and ``floor_slope`` are rms slopes of scans. ``hysteresis`` is the COF that the
+    package's own theory gives for the compound's spectrum, ``hysteresis_origin`` names where it
+    comes from; None takes the closed form. ``full_contact`` is p_R (Pa) where a contact table gives
+    it. ``polymer`` names what soles of one compound share, whatever their hardness and roughness.
+    ``shore_a_deviation`` is the standard deviation of the hardness.
     """
 
     shore_a: float
@@ -236,6 +307,9 @@ class Pair:
     full_contact: float | None = None
     polymer: str | None = None
     shore_a_deviation: float = 0.0
+    loss_tangent: tuple[float, float] = LOSS_TANGENTS
+    sole_slope: float | None = None
+    floor_slope: float | None = None
 
     @property
     def compound_and_floor(self) -> str:
@@ -254,30 +328,25 @@ class Pair:
         numbers: dict[str, ArrayLike] = {
             "shore_a": self.shore_a + self.shore_a_deviation * apart,
         }
-        for name, (low, high) in zip(("sole_rq", "floor_rq"), self._rq, strict=True):
+        spans = {"sole_rq": self.sole_rq, "floor_rq": self.floor_rq}
+        for name, (low, high) in (spans | {"loss_tangent": self.loss_tangent}).items():
             share = named_shares(seed, f"{name} {low:.3g} {high:.3g}", draws.count)
             numbers[name] = low * (high / low) ** share
-        if self.hysteresis is not None:
-            numbers["hysteresis"] = self.hysteresis
-        film, hysteresis, dry, kappa = contact_terms(draws.constants, numbers, family=self.family)
-        drawn = {
-            "film": film,
-            "hysteresis": np.broadcast_to(hysteresis, film.shape),
-            "dry": dry * np.exp(draws.error(DRY_PART, draws.sd_dry_part, seed)),
-            "kappa": kappa,
+        for name in ("hysteresis", "full_contact", "sole_slope", "floor_slope"):
+            if getattr(self, name) is not None:
+                numbers[name] = getattr(self, name)
+        dry = draws.constants.dry * np.exp(draws.error(DRY_PART, draws.sd_dry_part, seed))
+        terms = contact_terms(replace(draws.constants, dry=dry), numbers, family=self.family)
+        return {
+            **{name: np.broadcast_to(getattr(terms, name), dry.shape) for name in TERMS},
             "laboratory": np.exp(draws.error(LABORATORY, draws.sd_laboratory, seed)),
             "pair": np.exp(draws.error(self.compound_and_floor, draws.sd_pair, seed)),
         }
-        if self.family == "dry":
-            rq = np.hypot(numbers["sole_rq"], numbers["floor_rq"])
-            full = self.full_contact or FULL_CONTACT * rq
-            drawn["full_contact"] = np.broadcast_to(full, film.shape)
-        return drawn
 
 
 @dataclass(frozen=True, slots=True, repr=False)
 class PairContactLaw(UncertainInputs):
-    """tau = l (film + hysteresis + dry exp(-eta V / kappa)) p_c + eta V / h.
+    """tau = l mu_c p_c + eta V / h, mu_c as above.
 
     l is the factor of laboratory and pair, 1 at the median. No COF of the contact is above what was
     ever read (``HIGHEST_WET``).
@@ -343,11 +412,17 @@ class PairContactLaw(UncertainInputs):
         for part, (low, high) in (("shoe", self.pair.sole_rq), ("floor", self.pair.floor_rq)):
             if high > low:
                 words.append(
-                    f"{part}.roughness: not given; the friction is drawn over Rq = "
-                    f"{1e6 * low:.2g} to {1e6 * high:.2g} um"
+                    f"{part}.roughness: not known better than Rq = "
+                    f"{1e6 * low:.2g} to {1e6 * high:.2g} um, over which the friction is drawn"
                 )
-        if self.pair.hysteresis is None:
-            words.append("shoe.material: loss tangent 0.2 for the hysteresis, no spectrum is given")
+        low, high = self.pair.loss_tangent
+        if self.pair.hysteresis is None and high > low:
+            words.append(
+                "shoe.material.loss_tangent: not given; the hysteresis is drawn over "
+                f"{low:g} to {high:g}"
+            )
+        elif self.pair.hysteresis is None:
+            words.append(f"friction.pair: hysteresis from a loss tangent of {low:g}")
         else:
             given = f"hysteresis COF {self.pair.hysteresis:.3f} from {self.pair.hysteresis_origin}"
             words.append(f"friction.pair: {given}")
@@ -380,15 +455,11 @@ class PairContactLaw(UncertainInputs):
 
     def contact_shear(self, pressure: Array, velocity: Array) -> tuple[Array, ...]:
         m = self.medians
-        factor = m["laboratory"] * m["pair"]
-        hysteresis = factor * m["hysteresis"] * pressure
-        if self.viscosity is None:
-            area = erf(pressure / m["full_contact"])
-            area *= PIN_PRESSURE / erf(PIN_PRESSURE / (FULL_CONTACT * ROUGHNESS))
-            adhesion = factor * (m["film"] + m["dry"]) * area
-        else:
-            left = np.exp(-self.viscosity * velocity / m["kappa"])
-            adhesion = factor * (m["film"] + m["dry"] * left) * pressure
+        terms = ContactTerms(*(np.asarray(m[name]) for name in TERMS))
+        factor = m["laboratory"] * m["pair"] * pressure
+        drag = None if self.viscosity is None else self.viscosity * velocity
+        adhesion = factor * terms.adhesion(np.maximum(pressure, LEAST_PRESSURE), drag)
+        hysteresis = factor * terms.hysteresis
         most = np.minimum(1.0, self.highest * pressure / np.maximum(adhesion + hysteresis, 1e-30))
         return adhesion * most, hysteresis * most
 

@@ -255,7 +255,7 @@ from = "work_shoe_half_tread"   # stands in for what is not given below
 [shoe.material]
 shore_a = "62 A"                # set your own; "40 Shore D" and "55 Asker C" are converted
 # modulus = "5 MPa"             # measured in compression: goes before the hardness
-# [shoe.roughness]              # of the outsole's surface, from a profilometer
+# [shoe.roughness]              # of the outsole's surface, from a profilometer; without it drawn
 # rq = "8 um"
 
 [shoe.outsole]

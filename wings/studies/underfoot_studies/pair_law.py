@@ -23,19 +23,18 @@ from scipy.stats import norm, qmc, spearmanr
 
 from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
-from underfoot.friction.law import PIN_PRESSURE
 from underfoot.friction.pair_contact import (
-    LOSS_TANGENT,
+    CONTACT_PRESSURE,
+    LOSS_TANGENTS,
     Family,
     PairConstants,
     PairDraws,
     contact_terms,
-    dry_area,
 )
 from underfoot.friction.tread_error import PRIOR as TREAD_PRIOR
 from underfoot.friction.tread_error import fluid_class, learned_deviation, tread_pairs
 
-from .sources import NUMBERS, Condition, corpus, sampled_numbers
+from .sources import NUMBERS, Condition, Span, corpus, sampled_numbers
 
 DRAWS = 8
 """Points over the open ranges of a condition."""
@@ -53,8 +52,11 @@ FAMILIES: dict[str, Family] = {
     "oil": "oil",
 }
 """Family of the law's fluids by that of the corpus."""
-DEFAULTS = {"loss_tangent": LOSS_TANGENT, "pressure": PIN_PRESSURE}
-"""Of a condition where they are not printed (assumed)."""
+OPEN = {
+    "loss_tangent": Span(*LOSS_TANGENTS),
+    "pressure": Span(CONTACT_PRESSURE, CONTACT_PRESSURE),
+}
+"""Of a condition whose loss tangent or pressure is not printed (assumed)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,13 +80,9 @@ def _constants(columns: Array) -> PairConstants:
 
 def _pair(theta: Array, numbers: dict[str, Array], fluid: str) -> Array:
     columns = theta.T[..., None]
-    constants = _constants(columns)
-    film, hysteresis, dry, kappa = contact_terms(constants, numbers, family=FAMILIES[fluid])
-    if fluid == "dry":
-        roughness = np.hypot(numbers["sole_rq"], numbers["floor_rq"])
-        return np.log((film + dry) * dry_area(numbers["pressure"], roughness) + hysteresis)
-    drag = numbers["viscosity"] * np.abs(numbers["speed"])
-    return np.log(film + hysteresis + dry * np.exp(-drag / kappa))
+    terms = contact_terms(_constants(columns), numbers, family=FAMILIES[fluid])
+    drag = None if fluid == "dry" else numbers["viscosity"] * np.abs(numbers["speed"])
+    return np.log(terms.adhesion(numbers["pressure"], drag) + terms.hysteresis)
 
 
 def _without_roughness(theta: Array, numbers: dict[str, Array], fluid: str) -> Array:
@@ -173,11 +171,11 @@ class Rows:
         self._blocks: list[tuple[str, NDArray[np.intp], dict[str, Array]]] = []
         for fluid in dict.fromkeys(member.fluid for _, member in members):
             at = [index for index, (_, member) in enumerate(members) if member.fluid == fluid]
-            each = [{**DEFAULTS, **sampled_numbers(members[index][1], shares)} for index in at]
-            names = set().union(*each) | {"viscosity"}
+            drawn = [sampled_numbers(members[index][1], shares, OPEN) for index in at]
+            names = set().union(*drawn) | {"viscosity"}
             numbers = {
                 name: np.concatenate(
-                    [np.broadcast_to(item.get(name, np.nan), DRAWS) for item in each]
+                    [np.broadcast_to(item.get(name, np.nan), DRAWS) for item in drawn]
                 )
                 for name in names
             }

@@ -323,13 +323,17 @@ def _unknown(what: str, given: object, known: Iterable[str], where: str) -> Data
     return DataError(f"unknown {what}", where=where, allowed=", ".join(known), nearest=near)
 
 
-def sampled_numbers(condition: Condition, shares: Array) -> dict[str, Array]:
+def sampled_numbers(
+    condition: Condition, shares: Array, unknown: Mapping[str, Span] | None = None
+) -> dict[str, Array]:
     """Return the numbers of a condition at ``shares`` (draws, numbers), open ones over their range.
 
     The columns belong to the names of ``NUMBERS`` in their order; values in SI, shape (draws,).
+    ``unknown`` are the ranges of numbers that a condition does not name.
     """
+    numbers = {**(unknown or {}), **condition.numbers}
     return {
         key: span.at(shares[:, column]) if span.is_open else np.full(shares.shape[0], span.low)
         for column, key in enumerate(NUMBERS)
-        if (span := condition.numbers.get(key)) is not None
+        if (span := numbers.get(key)) is not None
     }
