@@ -29,6 +29,7 @@ from underfoot.sole_contact.sole_state import CellState, SoleState
 from underfoot.sole_contact.solver import SoleContact
 
 from . import numbers
+from .sole import sole_map
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,6 +144,9 @@ def of_known_class(law: FrictionLaw, case: Case, sole: SoleMap) -> FrictionLaw:
     known = case.shoe.known_class()
     if known is None or not isinstance(law, PairContactLaw):
         return law
+    if case.shoe.wear.depth > 0:  # the new sole was tested
+        case = case.replace("shoe.wear.depth", 0.0)
+        sole = sole_map(case, sole.spacing)
     return of_class(law, known, place_of_tread(case, sole), case.numerics.seed).law
 
 

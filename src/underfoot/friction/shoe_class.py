@@ -104,7 +104,9 @@ def shoe_class(name: str, where: str = "shoe.class") -> ShoeClass:
     entry = _table()["class"].get(name)
     if entry is None:
         raise unknown_name("slip class", name, shoe_classes(), where=where)
-    readings = tuple(Certified(slip_tests()[test], cof) for test, cof in entry["limits"].items())
+    how = entry.get("kind", "lower"), entry.get("sd")
+    limits = entry["limits"].items()
+    readings = tuple(Certified(slip_tests()[test], cof, *how) for test, cof in limits)
     return ShoeClass(name, entry["source"], readings, entry.get("fails", False))
 
 
@@ -149,7 +151,7 @@ def of_class(law: PairContactLaw, known: ShoeClass, place: Array, seed: int) -> 
     Parameters:
         law: Of the case's pair, with the errors that readings determined, if any.
         known: What the class says.
-        place: Of the sole's tread (``tread_place``).
+        place: Of the tread of the new sole (``tread_place``): that was tested.
         seed: Of the draws.
     """
     calibrated = bool(law.draws.errors)
@@ -202,7 +204,7 @@ def of_class(law: PairContactLaw, known: ShoeClass, place: Array, seed: int) -> 
     basis += ", calibrated to readings" if calibrated else ", of a pair that was not measured"
     note = f"shoe.class: {known.name} ({known.source}): " + "; ".join(map(str, known.readings))
     note += " is not reached" if known.fails else ""
-    note += f". Before the class was known, {passing:.0%} of such soles would have it."
+    note += f". Before that was known, {passing:.0%} of such soles would have it."
     kept = replace(kept, basis=basis, notes=(*start.notes, note))
     return Classed(PairContactLaw(law.pair, law.viscosity, kept), passing)
 
