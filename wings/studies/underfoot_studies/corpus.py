@@ -6,6 +6,7 @@ import inspect
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from underfoot.case import Case
 from underfoot.compute.run import run
 from underfoot.core import UnderfootError, content_hash
 from underfoot.core.arrays import Array
-from underfoot.friction import pair_contact
+from underfoot.friction import packaged_pair_draws, pair_contact
 from underfoot.friction.tread_error import tread_pairs
 from underfoot.studies.figure import PRINTED, Figure, Panel, line, points
 from underfoot.studies.runner import Computed, Options, Table, kept, part
@@ -42,6 +43,7 @@ from .pair_law import (
     r2,
     scored,
 )
+from .slips import POINTS, predicted, published
 from .sources import Condition, Reading, corpus
 
 STATEMENTS = Path(__file__).with_name("corpus.toml")
@@ -54,8 +56,24 @@ QUICK_LAWS = ("one constant", *FEATURE_RIVALS, PRIORS, LAW)
 QUICK_SOURCES = ("khaday_2021", "li_2006", "mohamed_2011", "report_g6", "strobel_2012")
 """Whose effects and whole shoes the quick form computes."""
 NEVER_ABSENT = {"hardness", "roughness", "groove direction", "depth", "edge radius"}
+HUMAN_SLIPS = {
+    "name": "human slips, treaded (G.5)",
+    "shoe": "slip_resistant_shoe_treaded",
+    "floor": "vinyl_g4",
+    "contaminant": "glycerol_90pct",
+    "motion": {"from": "slip_tester_g4"},
+}
+CASES = "corpus_cases-2"
+FEWEST_VALUES = 3
+"""Of a source for an R2 about its own mean: of two, an order is all there is."""
 CODE = ("pair_law.py", "sources.py")
 """What the fits depend on beside the readings and the law."""
+
+
+@cache
+def draws_hash() -> str:
+    """Return the content of the packaged draws of the law."""
+    return content_hash(packaged_pair_draws().columns())
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +136,7 @@ def compute(options: Options) -> Computed:
     sides, shoes = _compared(options)
     effects, shares = _effects(sides)
     whole, inside = _whole(shoes)
+    slips, shares_of_slips = _slips(options)
     words = Counter(row[effects.columns.index("verdict")] for row in effects.rows)
     strongest = max(rivals, key=lambda one: one.r2)
     return Computed(
@@ -125,6 +144,7 @@ def compute(options: Options) -> Computed:
             **shares,
             **inside,
             **known,
+            **shares_of_slips,
             **{
                 f"others.{name}": Quantity.of(getattr(best, name))
                 for name in ("r2", "inside_50", "inside_95")
@@ -148,6 +168,7 @@ def compute(options: Options) -> Computed:
             _constants(posterior),
             effects,
             whole,
+            slips,
             _basis(sides, shoes),
         ),
         {"predicted": _figure(own)},
@@ -196,7 +217,11 @@ def _compared(
     values: dict[str, Mapping[str, Any]] = {}
     runs = part(options.progress, 0.5, 1.0)
     work = kept(
-        "corpus_cases-1", whole_cof, list(cases.values()), list(cases), processes=options.processes
+        CASES,
+        whole_cof,
+        list(cases.values()),
+        [_key(case) for case in cases.values()],
+        processes=options.processes,
     )
     for number, (case, arrays) in enumerate(work, start=1):
         runs("whole cases", number / len(cases))
@@ -285,6 +310,25 @@ def _whole(shoes: list[tuple[Condition, Stand, Side]]) -> tuple[Table, dict[str,
     }
 
 
+def _slips(options: Options) -> tuple[Table, dict[str, Quantity]]:
+    """Return shares of slips of four sources against the slip model."""
+    case = Case.from_mapping(HUMAN_SLIPS)
+    ((_, arrays),) = kept(CASES, whole_cof, [case], [_key(case)], processes=options.processes)
+    rows = predicted(published(arrays["draws"][::4]))
+    title = "Shares of steps that slipped: report's curve, and what the other sources say"
+    worst: dict[str, float] = {}
+    for row in rows:
+        off = abs(float(row["report's curve off by, points"]))
+        worst[str(row["source"])] = max(off, worst.get(str(row["source"]), 0.0))
+    return Table.of("slips", title, rows), {
+        "slips.within": Quantity.of(sum(off <= POINTS for off in worst.values())),
+    }
+
+
+def _key(case: Case) -> str:
+    return content_hash(case.hash, inspect.getsource(pair_contact), draws_hash())
+
+
 def _basis(
     sides: list[tuple[Contrast, Side, Side]], shoes: list[tuple[Condition, Stand, Side]]
 ) -> Table:
@@ -345,7 +389,7 @@ def _sources(left_out: list[LaboratoryScore], priors: list[LaboratoryScore]) -> 
         for source in dict.fromkeys(c.source for c in one.conditions):
             at = [i for i, c in enumerate(one.conditions) if c.source == source]
             measured = middle([one.conditions[i] for i in at])
-            few = np.isfinite(measured).sum() < 2 or np.nanstd(measured) == 0
+            few = np.isfinite(measured).sum() < FEWEST_VALUES
             own, alone = (
                 np.nan if few else r2(measured, np.median(x.draws, axis=0)[at], np.ones(len(at)))
                 for x in (one, prior)

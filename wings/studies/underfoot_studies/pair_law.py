@@ -121,10 +121,10 @@ _CONTACT = (
     # a surfactant may halve adhesion or raise it
     (_LEVEL, _LEVEL, _DRY, _SCALE, (0.0, 0.7)),
 )
-_ROUGHNESS = (1.5, 0.75)
-"""From no effect to the cube of the gap that a film leaves by (Reynolds)."""
-_HARDNESS = (0.5, 0.35)
-"""From no effect to that of a real contact area that falls as 1 / E."""
+_ROUGHNESS = (0.0, 1.5)
+"""None, to the cube of the gap that a film leaves by (Reynolds); its sign is left to readings."""
+_HARDNESS = (0.0, 0.5)
+"""None, to that of a real contact area that falls as 1 / E; its sign is left to readings."""
 LAWS = (
     PairLaw("one constant", ("ln COF",), (_LEVEL,), _constant),
     PairLaw(
@@ -334,7 +334,8 @@ def log_likelihood(mean: Array, covariance: Array, low: Array, high: Array) -> A
         found += np.log(mass)
         at_a, at_b = norm.pdf(a), norm.pdf(b)
         step = (at_a - at_b) / mass
-        ends = np.nan_to_num(a * at_a, nan=0.0) - np.nan_to_num(b * at_b, nan=0.0)
+        with np.errstate(invalid="ignore"):  # an end at infinity times a density of 0 is 0
+            ends = np.nan_to_num(a * at_a, nan=0.0) - np.nan_to_num(b * at_b, nan=0.0)
         gone = np.clip(step**2 - ends / mass, 0.0, 1.0)
         column = inner[:, i] / sd[:, None]
         centre = centre + (sign * step)[:, None] * column
