@@ -48,7 +48,7 @@ from .sources import Condition, Reading, corpus
 
 STATEMENTS = Path(__file__).with_name("corpus.toml")
 
-STEPS, QUICK_STEPS = 600, 150
+STEPS, QUICK_STEPS = 400, 150
 """Of the sampler's walkers."""
 LAW, PRIORS, REPORT = "pair", "pair, priors alone", "report"
 """REPORT is the laboratory of the report's own studies; everybody else is scored beside all."""
@@ -149,7 +149,7 @@ def compute(options: Options) -> Computed:
                 f"others.{name}": Quantity.of(getattr(best, name))
                 for name in ("r2", "inside_50", "inside_95")
             },
-            "others.width": Quantity.of(float(np.exp(best.width))),
+            "pair.width": Quantity.of(_width_where_known(own)),
             "others.above_rivals": Quantity.of(best.r2 - strongest.r2),
             "others.gain": Quantity.of(best.log_density - max(one.log_density for one in rivals)),
             "priors.r2": Quantity.of(highest_prior),
@@ -380,6 +380,18 @@ def _scores(scores: Mapping[str, tuple[CorpusScore, CorpusScore]]) -> Table:
             for name, (others, every) in scores.items()
         ],
     )
+
+
+def _width_where_known(left_out: list[LaboratoryScore]) -> float:
+    """Return the 95 % interval, a factor, of wet readings with roughness of both sides printed."""
+    widths = [
+        width
+        for one in left_out
+        for c, width in zip(one.conditions, one.score.width, strict=True)
+        if not c.members and c.fluid != "dry"
+        if not (c.numbers["sole_rq"].is_open or c.numbers["floor_rq"].is_open)
+    ]
+    return float(np.exp(np.mean(widths)))
 
 
 def _sources(left_out: list[LaboratoryScore], priors: list[LaboratoryScore]) -> tuple[Table, float]:
