@@ -348,7 +348,7 @@ def test_a_contact_table_gives_hysteresis_and_dry_area(tmp_path):
         friction={"model": "pair", "contact_table": str(tmp_path / "rubber.npz")},
     )
     found = case.friction.build(resolved(case))
-    assert found.pair.hysteresis == pytest.approx(0.06)
+    assert found.medians["hysteresis"] == pytest.approx(0.06)  # whatever the hardness
     assert erf(3e5 / found.pair.full_contact) == pytest.approx(0.1)
     assert any("0.060 from rubber.npz" in line for line in found.assumptions)
 

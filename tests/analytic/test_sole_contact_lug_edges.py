@@ -1,18 +1,25 @@
 """Edges of lugs: the closed forms against finite elements with film, their limits, the geometry."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
 from underfoot.case import Case
+from underfoot.case.friction import PairOption
+from underfoot.compute.prepare import prepared
+from underfoot.compute.resolve import resolved
 from underfoot.compute.run import run
 from underfoot.compute.sole import sole_map
-from underfoot.rough_contact import ExponentialLaw
+from underfoot.core.catalogue import Catalogue
+from underfoot.friction import FrictionLaw
+from underfoot.rough_contact import ContactTable, ExponentialLaw
 from underfoot.shoe import SoleMap
 from underfoot.sole_contact import lug_edges as module
-from underfoot.sole_contact.lug_edges import LugEdges, lug_edges, lug_friction
+from underfoot.sole_contact.lug_edges import EdgedLaw, LugEdges, lug_edges, lug_friction
+from underfoot.surface import rms_slope, self_affine
 
 # A block 10 mm long and 5 mm high of 3 MPa at 100 kPa, pair of Rq 2 um, contact COF 0.3, full
 # suction: plane-strain elements coupled with Reynolds and rough contact, in time.
@@ -216,3 +223,109 @@ def test_a_lug_is_fed_by_the_groove_that_it_slides_into(forward, fed):
     assert edges.fed == pytest.approx([fed])
     assert edges.length == pytest.approx([4e-3])
     assert edges.width == pytest.approx([4e-3])
+
+
+WATER = 3e-4
+"""Viscosity times speed of water at 0.3 m/s, Pa m."""
+
+
+def probability(lug=None, drag=WATER, rq=2e-6, full_contact=7e5, dewetting=0.2, **more):
+    """Of the wiped state of one lug; full contact of a pair of Rq 2 um."""
+    states = {"cof_wiped": np.array([0.5]), "full_contact": full_contact, "dewetting": dewetting}
+    numbers = {"suction": 7e4, "modulus": 4e6, "viscosity": drag, "speed": 1.0} | states
+    lug = lug or one_lug(length=5e-3, width=5e-3, height=2.5e-3)
+    pair = ExponentialLaw(4e6, 0.5, rq)
+    found = lug_friction(lug, np.array([[3e5]]), np.array([0.15]), pair, **numbers | more)
+    assert 0 <= found.wiped.item() <= 1
+    return found.wiped.item()
+
+
+def test_a_contact_is_wiped_behind_an_edge_in_thin_fluids_on_smooth_pairs():
+    assert probability() > 0.5
+    assert probability(dewetting=0.0) == 0.0
+    assert probability(one_lug(length=5e-3, width=5e-3, fed=0.0)) == 0.0  # no edge
+    assert probability(drag=0.066) < 1e-9  # 90 % glycerol: the spots do not dry in time
+    assert probability(drag=WATER / 1e6) == 0.0  # so slow that the gap fills from behind
+    rough = {"rq": 18e-6, "full_contact": 3e6}  # of a rough sole: fluid is drawn back
+    assert probability(**rough) < 0.1
+    longer = one_lug(length=10e-3, width=20e-3)
+    assert probability(longer) > probability()  # it passes for longer
+
+
+def test_flow_through_the_gap_is_that_of_solved_contacts():
+    """At a twentieth and a fifth of E* h': a third of a smooth gap's, then sealed."""
+    surfaces = [
+        self_affine(128, 4.7e-6, 5e-6, 0.8, 600e-6, 18.8e-6, seed=seed, roll_off=150e-6)
+        for seed in (1, 2)
+    ]
+    slope = np.mean([rms_slope(one) for one in surfaces])
+    stiff = 4.4e6 / 0.75 * slope
+    nodes = np.array([0.02, 0.05, 0.1, 0.2]) * stiff
+    table = ContactTable.from_surfaces(surfaces, 4.4e6, nodes, [0.3])
+    flow = sum(table.values[f"flow_factor_{way}"][:, 0] for way in ("along", "across")) / 2
+    known = np.interp(nodes / stiff, module.PRESSING, module.FLOW)
+    np.testing.assert_allclose(flow, known, atol=0.08)
+
+
+@pytest.mark.parametrize(
+    ("pattern", "least", "most"), [("transverse", 0.5, 1.0), ("longitudinal", 0.0, 0.02)]
+)
+def test_draws_and_map_hold_the_mean_of_both_states(pattern, least, most):
+    """Grooves across wipe, grooves along do not; the law for draws has the sum of the map."""
+    smooth = {"contaminant.viscosity": "1 cP", "shoe.roughness.ra": "1 um"}
+    case = tread(pattern, **SIZES).replace({**smooth, "interface.roughness_beyond_cutoff": 1.0})
+    parts = prepared(case, 1e-3, {})
+    law = parts.local_law
+    pressure = np.where(parts.sole.land, 3e5, 0.0)
+    film = np.full_like(pressure, 1e-3)
+    lugs = law.lugs(pressure, 0.3, film)
+    assert least <= np.average(lugs.wiped, weights=lugs.load) < most
+    both, plain = law(pressure, 0.3, film), law.law(pressure, 0.3, film)
+    drawn = law.with_mean_state(pressure, 0.3, film)
+    sums = [
+        float((one.adhesion * weight * law.edges.area).sum())
+        for one, weight in ((both, 1.0), (drawn(pressure, 0.3, film), lugs.factor_map()))
+    ]
+    assert sums[0] == pytest.approx(sums[1], rel=1e-9)
+    if pattern == "transverse":
+        assert both.adhesion.sum() > 1.2 * plain.adhesion.sum()
+        assert isinstance(drawn, FrictionLaw)
+        spread = drawn.joint_draws(100, 0)
+        assert drawn.at({name: float(value[0]) for name, value in spread.items()}).share > 0
+        np.testing.assert_array_equal(both.hysteresis, plain.hysteresis * lugs.factor_map())
+    none = replace(law, dewetting=0.0)
+    assert not none.lugs(pressure, 0.3, film).wiped.any()
+    assert none.with_mean_state(pressure, 0.3, film) is law.law
+
+
+def test_laws_that_hold_no_real_area_have_one_state():
+    case = tread("transverse", **SIZES).replace(
+        {"friction.model": "stribeck", "contaminant": "water"}
+    )
+    law = prepared(case, 1e-3, {}).local_law
+    pressure = np.where(law.edges.label > 0, 3e5, 0.0)
+    assert not law.lugs(pressure, 0.3, np.full_like(pressure, 1e-3)).wiped.any()
+
+
+@pytest.mark.parametrize("fluid", ["water", "detergent", "glycerol_50pct", "canola_oil"])
+@pytest.mark.parametrize("floor", Catalogue.load().names("floor"))
+def test_no_floor_of_the_catalogue_grips_more_wet_than_dry_behind_an_edge(floor, fluid):
+    """Wiped, with suction: a lug of the sharpest edge."""
+    parts = {"shoe": "work_shoe_full_tread", "floor": floor, "motion": "slip_tester_g4"}
+    wet, dry = (resolved(Case(**parts, contaminant=name)) for name in (fluid, "none"))
+    lug = one_lug(length=5e-3, width=5e-3, height=2.5e-3)
+    plain = PairOption().build(wet)
+    edged = EdgedLaw(
+        plain,
+        lug,
+        ExponentialLaw(wet.youngs_modulus, 0.49, wet.rq_value),
+        wet.youngs_modulus,
+        wet.viscosity_value,
+        suction=70e3,
+        dewetting=0.2,
+    )
+    pressure, film = np.array([[3e5]]), np.array([[1e-3]])
+    limit = PairOption().build(dry)(pressure, 0.3, film)
+    for speed in (0.03, 0.3, 1.0):
+        found = edged(pressure, speed, film)
+        assert found.adhesion + found.hysteresis <= limit.adhesion + limit.hysteresis

@@ -66,7 +66,7 @@ def contact_friction(
         maps = replace(maps, viscous=np.where(contact.wet, maps.viscous, 0.0))
     lugs, suction, plain = None, None, law
     if isinstance(law, EdgedLaw):
-        plain, lugs = law.law, law.lugs(*values)
+        plain, lugs = law.with_mean_state(*values), law.lugs(*values)
         pull = case.sourced("film.suction")
         pull = pull if pull.uncertainty else replace(pull, uncertainty=numbers.SUCTION_SPREAD)
         suction = pull, lugs.suction_share(parts)

@@ -192,5 +192,5 @@ def edged_law(
     edges = lug_edges(sole, moulded, worn_edge_radius=worn, forward=case.motion.forward)
     if edges is None:
         return None
-    suction = case.value("film.suction")
-    return EdgedLaw(law, edges, asperities, context.youngs_modulus, viscosity, suction)
+    pull = case.value("film.suction"), case.value("film.dewetting")
+    return EdgedLaw(law, edges, asperities, context.youngs_modulus, viscosity, *pull)

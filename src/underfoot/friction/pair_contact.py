@@ -399,6 +399,11 @@ class PairContactLaw(UncertainInputs):
             object.__setattr__(self, "spread_basis", basis)
 
     @property
+    def full_contact(self) -> float:
+        """Pressure p_R (Pa) of the pair's real area."""
+        return self.medians["full_contact"]
+
+    @property
     def highest(self) -> float:
         """COF that no contact is above."""
         return HIGHEST_DRY if self.viscosity is None else HIGHEST_WET

@@ -18,10 +18,21 @@ the trailing part lifts off (lambda) beyond 0.12 of the length. Closed forms fit
 finite elements coupled with Reynolds' equation and rough contact; over blocks they miss ln of the
 contact friction by 0.31 (root mean square), nearly all of it where the film sets in. A rib along
 the sliding has no such edge.
+
+A contact under a lug is in one of two states: sealed, as the mean over pairs without edges has it,
+or wiped, and nearly as it is at rest. Its adhesion is the mean of both with the probability
+
+    W = lambda (1 - (h0 / u)^4) (1 - m / w) (1 - 4/3 (m w)^0.5 / b) exp(-eta V / (S w)),  m = phi l
+
+that the edge let in too little, that nothing was drawn back through the gap (phi its flow factor,
+0 where roughness seals) and that the boundary film drew off the spots while the lug passed: the
+dry front moves on at S / eta per metre, S the one constant that is fitted (``dewetting``). Behind
+no edge W is 0; on rough pairs, and in thick fluids, next to nothing.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -30,6 +41,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from underfoot.core.arrays import Array, Mask
 from underfoot.friction import FrictionLaw, FrictionParts
+from underfoot.friction.two_states import TwoStateLaw, between_states
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
 from underfoot.shoe import SoleMap
 
@@ -50,6 +62,10 @@ STEPS, STILL = 200, 1e-9
 RELAXATION = 0.1, 1.0
 IDLE = 20e3
 """Pa: a lug whose contact bears less on the mean hardly touches."""
+PRESSING = np.array([0.01, 0.02, 0.05, 0.1, 0.2, 0.4])
+"""Pressure over E* h' of a pair, h' its rms slope."""
+FLOW = np.array([0.64, 0.54, 0.34, 0.14, 0.005, 0.0])
+"""Flow factor of the gap there: solved contacts of self-affine roughness, Hurst exponent 0.8."""
 GAPS = 400
 FAR_FILM = 1e-3  # m, a film that no wall shear comes from
 
@@ -86,7 +102,8 @@ class LugFriction:
     """What the edges do to each lug, (lugs,).
 
     ``load`` on its contact (pressure times cells, Pa; 0 of a lug that hardly bears, which is
-    left as it is), the shares of it on film and of suction, and the factor on its contact friction.
+    left as it is), the shares of it on film and of suction, the factor on its contact friction, and
+    the probability that it is ``wiped``.
     """
 
     edges: LugEdges
@@ -94,10 +111,16 @@ class LugFriction:
     film: Array
     suction: Array
     factor: Array
+    wiped: Array
 
     def factor_map(self) -> Array:
         """Return the factor on contact friction (nx, ny), 1 outside lugs."""
         return self.edges.map(self.factor, 1.0)
+
+    def wiped_share(self, sealed: FrictionParts, wiped: FrictionParts) -> float:
+        """Return the mean probability of the wiped state, by what it adds to friction."""
+        more = (wiped.adhesion - sealed.adhesion) * self.factor_map() * self.edges.area
+        return float((more * self.edges.map(self.wiped, 0.0)).sum() / max(more.sum(), 1e-30))
 
     def suction_share(self, parts: FrictionParts) -> float:
         """Return the share of the contact friction, factor included, that suction makes."""
@@ -108,12 +131,13 @@ class LugFriction:
     def words(self) -> str:
         """Return what the edges do in one sentence."""
         weight = self.load / max(self.load.sum(), 1e-30)
-        factor, film, pull = (
-            float(weight @ each) for each in (self.factor, self.film, self.suction)
+        factor, film, pull, wiped = (
+            float(weight @ each) for each in (self.factor, self.film, self.suction, self.wiped)
         )
         return (
             f"contact friction of {np.count_nonzero(self.load)} lugs times {factor:.2f}: film at "
             f"their edges carries {film:.0%} of their load, suction adds {pull:.0%}"
+            + (f"; {wiped:.0%} of it is wiped nearly dry" if wiped > 0.005 else "")
         )
 
 
@@ -175,6 +199,9 @@ def lug_friction(
     viscosity: float,
     speed: float,
     suction: float,
+    cof_wiped: Array | None = None,
+    full_contact: float = math.inf,
+    dewetting: float = 0.0,
 ) -> LugFriction:
     """Return what their edges do to lugs that slide.
 
@@ -186,6 +213,9 @@ def lug_friction(
         modulus: Young's modulus of the lugs, Pa.
         viscosity, speed: Pa s and m/s.
         suction: Highest pull p_a that an emptied contact holds, Pa, 0 or more.
+        cof_wiped: Friction of each contact that was wiped, (lugs,); None has no such state.
+        full_contact: Pressure E* h' / 2^0.5 of the pair, Pa.
+        dewetting: S, Pa; at 0 no contact is wiped.
     """
     cells = _sums(edges.label, edges.length.size, edges.area)
     load = sum_by_lug(edges, contact_pressure)
@@ -200,7 +230,8 @@ def lug_friction(
     pressures = asperities.pressure(gaps)
     reach = np.sqrt(np.minimum(edges.length, 2 * edges.height) / edges.edge)
     mu, pull = np.array(cof_contact), np.zeros_like(p)
-    film = np.zeros_like(p)
+    film, wiped = np.zeros_like(p), np.zeros_like(p)
+    drawn = np.exp(-drag / (max(dewetting, 1e-300) * edges.length))
     # fixed point a lug, relaxed by what the last step turned the change by (Aitken's rule)
     share, before = np.full_like(p, RELAXATION[0]), np.zeros((2, p.size))
     for _ in range(STEPS):
@@ -213,11 +244,15 @@ def lug_friction(
         gap = (dry**4 + inlet**4) ** 0.25
         film = np.clip(1 - np.interp(gap, gaps, pressures) / most, 0.0, 1.0) * (1 + pull)
         back = dry**2 * suction / (6 * LACKING * max(drag, 1e-12))
-        emptied = lifted * np.maximum(1 - (inlet / dry) ** 4, 0.0)
-        emptied *= np.maximum(1 - back / edges.length, 0.0)
-        emptied *= np.maximum(1 - 4 / 3 * np.sqrt(back * edges.length) / edges.width, 0.0)
+        lacking = lifted * np.maximum(1 - (inlet / dry) ** 4, 0.0)
+        emptied = lacking * _kept_empty(edges, back)
         sheared = drag / gap * (lifted - 0.5 * emptied) / p
-        now = cof_contact * np.maximum(1 - film + pull, 0.0) + sheared
+        contact = cof_contact
+        if cof_wiped is not None:
+            flow = np.interp(most / (2**0.5 * full_contact), PRESSING, FLOW)
+            wiped = edges.fed * lacking * _kept_empty(edges, flow * back) * drawn
+            contact = cof_contact + wiped * (cof_wiped - cof_contact)
+        now = contact * np.maximum(1 - film + pull, 0.0) + sheared
         change = np.stack([now - mu, emptied * suction / p - pull])
         if np.abs(change[:, bears]).max(initial=0.0) < STILL:
             break
@@ -227,8 +262,14 @@ def lug_friction(
         before = change
         mu, pull = np.stack([mu, pull]) + share * change
     film, pull = (np.where(bears, edges.fed * each, 0.0) for each in (film, pull))
-    load = np.where(bears, load, 0.0)
-    return LugFriction(edges, load, film, pull, np.maximum(1 - film + pull, 0.0))
+    load, wiped = np.where(bears, load, 0.0), np.where(bears, wiped, 0.0)
+    return LugFriction(edges, load, film, pull, np.maximum(1 - film + pull, 0.0), wiped)
+
+
+def _kept_empty(edges: LugEdges, back: Array) -> Array:
+    """Return the share of each lug that fluid drawn back over a length (m) does not reach."""
+    behind = np.maximum(1 - back / edges.length, 0.0)
+    return behind * np.maximum(1 - 4 / 3 * np.sqrt(back * edges.length) / edges.width, 0.0)
 
 
 def sum_by_lug(edges: LugEdges, values: Array | Mask) -> Array:
@@ -251,7 +292,11 @@ def _widest_gap(asperities: PressureGapLaw) -> float:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EdgedLaw:
-    """Local friction of a sole whose lugs have edges: a law and the factor on its contact part."""
+    """Local friction of a sole whose lugs have edges: a law, its factor, and the two states.
+
+    ``dewetting`` is S (Pa); the states are those of laws that know the real area of the pair
+    (``full_contact``), others hold their mean.
+    """
 
     law: FrictionLaw
     edges: LugEdges
@@ -259,6 +304,11 @@ class EdgedLaw:
     modulus: float
     viscosity: float
     suction: float
+    dewetting: float = 0.0
+
+    @property
+    def _full_contact(self) -> float | None:
+        return getattr(self.law, "full_contact", None) if self.dewetting else None
 
     def on(self, state: SoleState | CellState) -> EdgedLaw:
         """Return the law on the cells of a state."""
@@ -266,37 +316,64 @@ class EdgedLaw:
 
     def lugs(self, contact_pressure: Array, speed: float, film_thickness: Array) -> LugFriction:
         """Return what the edges do at contact pressure (Pa), speed (m/s) and film (m), (nx, ny)."""
-        return self._lugs(
-            self.law(contact_pressure, speed, film_thickness), contact_pressure, speed
-        )
+        return self._lugs(contact_pressure, *self._states(contact_pressure, speed, film_thickness))
 
-    def _lugs(self, parts: FrictionParts, contact_pressure: Array, speed: float) -> LugFriction:
-        touching = np.where(contact_pressure > 0, contact_pressure, 1.0)
-        cof = (parts.adhesion + parts.hysteresis) / touching
-        load = np.maximum(sum_by_lug(self.edges, contact_pressure), 1e-9)
+    def _states(self, pressure: Array, speed: float, film: Array) -> tuple[Any, ...]:
+        """Return speed, friction of the mean state, and that of a wiped contact: at rest."""
+        sealed = self.law(pressure, speed, film)
+        wiped = None if self._full_contact is None else self.law(pressure, 0.0, film)
+        return speed, sealed, wiped
+
+    def _lugs(
+        self, pressure: Array, speed: float, sealed: FrictionParts, wiped: FrictionParts | None
+    ) -> LugFriction:
+        load = np.maximum(sum_by_lug(self.edges, pressure), 1e-9)
+
+        def of_contact(parts: FrictionParts) -> Array:
+            return sum_by_lug(self.edges, parts.adhesion + parts.hysteresis) / load
+
         return lug_friction(
             self.edges,
-            contact_pressure,
-            sum_by_lug(self.edges, cof * contact_pressure) / load,
+            pressure,
+            of_contact(sealed),
             self.asperities,
             modulus=self.modulus,
             viscosity=self.viscosity,
             speed=speed,
             suction=self.suction,
+            cof_wiped=None if wiped is None else of_contact(wiped),
+            full_contact=self._full_contact or math.inf,
+            dewetting=self.dewetting,
         )
 
     def mean_factor(self, pressure: float, speed: float) -> float:
         """Return the mean factor on contact friction if every lug bore ``pressure`` (Pa), 1."""
         borne = np.where(self.edges.label > 0, pressure, 0.0)
-        lugs = self.lugs(borne, speed, np.full_like(borne, FAR_FILM))
-        return float(np.average(lugs.factor, weights=self.edges.length * self.edges.width))
+        film = np.full_like(borne, FAR_FILM)
+        edged, plain = (
+            float(((parts.adhesion + parts.hysteresis) * self.edges.area).sum())
+            for parts in (self(borne, speed, film), self.law(borne, speed, film))
+        )
+        return edged / plain
+
+    def with_mean_state(self, pressure: Array, speed: float, film: Array) -> FrictionLaw:
+        """Return the law with the mean probability of the wiped state, for draws of its inputs."""
+        states = self._states(pressure, speed, film)
+        if states[2] is None:
+            return self.law
+        share = self._lugs(pressure, *states).wiped_share(*states[1:])
+        return TwoStateLaw(self.law, share) if share > 0 else self.law
 
     def __call__(
         self, contact_pressure: Array, speed: float, film_thickness: Array
     ) -> FrictionParts:
         """Return the shear stresses in Pa."""
-        parts = self.law(contact_pressure, speed, film_thickness)
-        factor = self._lugs(parts, contact_pressure, speed).factor_map()
+        states = self._states(contact_pressure, speed, film_thickness)
+        lugs = self._lugs(contact_pressure, *states)
+        _, parts, wiped = states
+        if wiped is not None:
+            parts = between_states(parts, wiped, self.edges.map(lugs.wiped, 0.0))
+        factor = lugs.factor_map()
         return replace(
             parts, adhesion=parts.adhesion * factor, hysteresis=parts.hysteresis * factor
         )

@@ -6,7 +6,8 @@ learned from (``underfoot.friction.tread_error``).
 
 import csv
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +26,10 @@ from .sources import corpus
 
 TREAD = {"groove direction", "depth", "tread area", "edge radius", "wear"}
 """What an effect of the tread alone is about."""
+FITTED = ("blanchette_2015", "report_g6")
+"""Sources that the two states under a lug were fitted to (``lug_states``): a tread in water that
+grips four times another's, where wiping is most seen, and two outsoles in 50 % glycerol, where the
+pair is known. Both named before the fit."""
 
 
 def tread_contrasts() -> list[Contrast]:
@@ -33,16 +38,24 @@ def tread_contrasts() -> list[Contrast]:
     return [one for one in every if set(one.topic.split(", ")) <= TREAD and not one.reason]
 
 
-def computed_pairs() -> Iterator[TreadPair]:
-    """Yield each published pair with its computed ln ratio, on the quick grid.
+def cof_and_draws(case: Case) -> Array:
+    """Return COF of a case on the quick grid, and its draws (1 + draws,)."""
+    result = run(case, quick=True)
+    return np.append(result.value("cof"), result.data["cof_draws"].values)
+
+
+def computed_pairs(of_case: Callable[[Case], Array] = cof_and_draws) -> Iterator[TreadPair]:
+    """Yield each published pair with its computed ln ratio, from ``of_case``.
 
     Then each reading of a treaded shoe beside the COF computed of it, as the ratio to a sole
     without tread that is known: the second place is 0. The extremes of many treads count as a pair
     alone, means over several fluids do not count. Its spread is without the error of the tread
-    model itself: of contact law, film and suction.
+    model itself: of contact law, film and suction. Sources that the two states of lugs were fitted
+    to are computed with one: a fit makes no error smaller.
     """
     for one in tread_contrasts():
-        over, under = (_drawn(stand) for stand in (one.over, one.under))
+        stands = (_unfitted(stand, one.source) for stand in (one.over, one.under))
+        over, under = (_drawn(stand, of_case) for stand in stands)
         ends = _published(one, under[0])
         second = _place(one.under.cases[0])
         names, case = (one.source, one.effect), one.over.cases[0]
@@ -55,7 +68,19 @@ def computed_pairs() -> Iterator[TreadPair]:
                 names, reading = (source.name, condition.id), condition.reading
                 with np.errstate(divide="ignore"):
                     ends = tuple(np.log((reading.low, reading.high)))
-                yield _pair(*names, stand.cases[0], ends, _drawn(stand), np.zeros(6))
+                yield _pair(
+                    *names,
+                    stand.cases[0],
+                    ends,
+                    _drawn(_unfitted(stand, source.name), of_case),
+                    np.zeros(6),
+                )
+
+
+def _unfitted(stand: Stand, source: str) -> Stand:
+    if source not in FITTED:
+        return stand
+    return replace(stand, cases=tuple(one.replace("film.dewetting", 0.0) for one in stand.cases))
 
 
 def _pair(
@@ -76,14 +101,13 @@ def _pair(
     return TreadPair(source, effect, fluid, low, high, ratio, sd, first, second, extremes_of)
 
 
-def _drawn(stand: Stand) -> Array:
+def _drawn(stand: Stand, of_case: Callable[[Case], Array]) -> Array:
     """Return COF of what stands for a condition, and its draws (1 + draws,)."""
     rows = []
     for case in stand.cases:
-        result, error = run(case, quick=True), tread_error(resolved(case).viscosity_value)
-        draws = result.data["cof_draws"].values
-        off = error.draws(_place(case), samples=draws.size, seed=case.numerics.seed)
-        rows.append(np.append(result.value("cof"), draws * np.exp(-off)))
+        (cof, *draws), error = of_case(case), tread_error(resolved(case).viscosity_value)
+        off = error.draws(_place(case), samples=len(draws), seed=case.numerics.seed)
+        rows.append(np.append(cof, draws * np.exp(-off)))
     return np.mean(rows, axis=0) * stand.contact_time
 
 

@@ -1,0 +1,56 @@
+"""A friction law that is another one with something changed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from underfoot.core import Breach, SourcedValue
+
+from .law import FrictionLaw
+
+
+@dataclass(frozen=True, slots=True)
+class LawAround:
+    """Everything of ``law`` but what a class derived from this one says: its call and ``at``."""
+
+    law: FrictionLaw
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.law, name)
+
+    @property
+    def name(self) -> str:
+        """Of the law."""
+        return self.law.name
+
+    @property
+    def source(self) -> str:
+        """Of the law."""
+        return self.law.source
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """Of the law."""
+        return self.law.assumptions
+
+    @property
+    def inputs(self) -> Mapping[str, SourcedValue]:
+        """Of the law."""
+        return self.law.inputs
+
+    @property
+    def error_of_model(self) -> float | None:
+        """Of the law."""
+        return self.law.error_of_model
+
+    def breaches(
+        self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
+    ) -> list[Breach]:
+        """Return what leaves the range on which the law was measured."""
+        return self.law.breaches(
+            contact_pressure=contact_pressure, speed=speed, film_thickness=film_thickness
+        )
