@@ -7,7 +7,8 @@ of the friction), v the pair's, t that of the tread (learned from other laborato
 that of the reading and of what the source leaves open. The points of a printed curve count once
 together. Bounds and ranges count by the probability between them given the values of the same
 laboratory, one after another with the moments of what is left (Mendell and Elston 1974, Biometrics
-30:41; exact for one). Sampling by emcee (Foreman-Mackey et al. 2013).
+30:41; exact for one). The posterior is sampled by adaptive importance sampling from its mode
+(Cornuet et al. 2012, Scand. J. Statist. 39:798).
 
 No prior knows a source that is scored: each is a range that physics leaves, with its reason.
 """
@@ -15,14 +16,13 @@ No prior knows a source that is scored: each is a range that physics leaves, wit
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import minimize
 from scipy.stats import norm, qmc, spearmanr
 
 from underfoot.core.arrays import Array
-from underfoot.core.optional import optional_module
 from underfoot.friction.pair_contact import (
     CONTACT_PRESSURE,
     LOSS_TANGENTS,
@@ -36,6 +36,10 @@ from underfoot.friction.tread_error import fluid_class, learned_deviation, tread
 
 from .sources import NUMBERS, Condition, Span, corpus, sampled_numbers
 
+DRAWS_KEPT = 2000
+"""Of a posterior."""
+FREEDOM = 5.0
+"""Degrees of freedom of the sampler's proposals."""
 DRAWS = 8
 """Points over the open ranges of a condition."""
 SD_SOURCE = 0.33
@@ -253,12 +257,15 @@ def tread_spreads(left: str = "") -> dict[str, float]:
 
 @dataclass(frozen=True, slots=True)
 class PairPosterior:
-    """Draws of a law's parameters (draws, parameters) and of the spreads (draws, 4)."""
+    """Draws of a law's parameters (draws, parameters) and of the spreads (draws, 4).
+
+    ``effective`` is the number of equal draws that those of the sampler are worth.
+    """
 
     law: PairLaw
     theta: Array
     spreads: Array
-    acceptance: float
+    effective: float
     left: str = ""
 
     def draws(self, count: int, seed: int = 0) -> PairDraws:
@@ -356,20 +363,19 @@ def fitted(
     Parameters:
         law: One of ``LAWS`` or of your own.
         conditions: With readings; those of one laboratory share its errors.
-        steps: Of each of the walkers; the first third is dropped.
+        steps: A fifth of the points of the last round.
         seed: Of the sampler.
         left: Laboratory that is left out, of whose treads nothing is learned either.
     """
     prior = np.array(law.prior)
     count = len(law.parameters)
     generator = np.random.default_rng(seed)
-    walkers = 6 * (count + 4)
     if not conditions:
-        size = walkers * 40
+        size = DRAWS_KEPT
         theta = prior[:, 0] + prior[:, 1] * generator.normal(size=(size, count))
         spread = np.array(SPREAD_PRIOR) * np.abs(generator.normal(size=(size, 4)))
         spread[:, 0] = SD_SOURCE * np.exp(0.35 * generator.normal(size=size))
-        return PairPosterior(law, theta, spread, 1.0, left)
+        return PairPosterior(law, theta, spread, float(size), left)
     rows = Rows(conditions, left)
 
     def log_posterior(points: Array) -> Array:
@@ -391,21 +397,58 @@ def fitted(
             value += log_likelihood(mean[:, group], covariance, rows.low[group], rows.high[group])
         return np.where(outside, -np.inf, value)
 
-    start = np.empty((walkers, count + 4))
-    start[:, :count] = prior[:, 0] + 0.3 * prior[:, 1] * generator.normal(size=(walkers, count))
-    start[:, count:] = np.log((0.33, 0.2, 0.1, 0.3)) + 0.1 * generator.normal(size=(walkers, 4))
-    emcee = optional_module("emcee", "study", "fitting the law of a pair")
-    sampler = emcee.EnsembleSampler(walkers, count + 4, log_posterior, vectorize=True)
-    sampler.random_state = np.random.RandomState(seed).get_state()
-    sampler.run_mcmc(start, steps)
-    chain: Any = sampler.get_chain(discard=steps // 3, thin=max(1, steps // 60), flat=True)
+    first = np.append(prior[:, 0], np.log((SD_SOURCE, 0.3, 0.1, 0.4)))
+    width = np.append(prior[:, 1], np.full(4, 0.5))
+    points, weight = _sampled(log_posterior, first, width, 5 * steps, generator)
+    rows_kept = generator.choice(weight.size, DRAWS_KEPT, p=weight)
     return PairPosterior(
         law,
-        chain[:, :count],
-        np.exp(chain[:, count:]),
-        float(np.mean(sampler.acceptance_fraction)),
+        points[rows_kept, :count],
+        np.exp(points[rows_kept, count:]),
+        float(1 / (weight**2).sum()),
         left,
     )
+
+
+def _sampled(
+    log_density: Callable[[Array], Array],
+    first: Array,
+    width: Array,
+    size: int,
+    generator: np.random.Generator,
+) -> tuple[Array, Array]:
+    """Return points (size, dimensions) of a density and their weights, which add up to 1.
+
+    From the mode, which lies near ``first`` on the scale ``width``, a Student t of five degrees
+    of freedom takes mean and covariance of the weighted points, round after round.
+    """
+    step = 1e-3 * width
+
+    def slope(x: Array) -> tuple[float, Array]:
+        near = x * width + np.concatenate([np.zeros((1, x.size)), np.diag(step), -np.diag(step)])
+        value = -np.maximum(log_density(near), -1e12)
+        return value[0], (value[1 : x.size + 1] - value[x.size + 1 :]) / 2e-3
+
+    best = minimize(slope, first / width, jac=True, method="BFGS", options={"gtol": 0.05})
+    mean, covariance = best.x, 1.3 * np.atleast_2d(best.hess_inv)
+    points, weight = np.empty(0), np.empty(0)
+    for count in (size // 4, size // 4, size // 4, size):
+        lower = np.linalg.cholesky(covariance + 1e-6 * np.eye(mean.size))
+        normal = generator.normal(size=(count, mean.size))
+        tails = np.sqrt(FREEDOM / generator.chisquare(FREEDOM, size=(count, 1)))
+        scaled = normal * tails
+        points = mean + scaled @ lower.T
+        far = (scaled**2).sum(axis=1)
+        proposal = -0.5 * (FREEDOM + mean.size) * np.log1p(far / FREEDOM)
+        log_weight = log_density(points * width) - proposal
+        weight = np.exp(log_weight - log_weight.max())
+        weight /= weight.sum()
+        # a single point must not narrow the next round
+        tempered = np.minimum(weight, 20 / count)
+        tempered /= tempered.sum()
+        mean = tempered @ points
+        covariance = (points - mean).T @ (tempered[:, None] * (points - mean))
+    return points * width, weight
 
 
 def _ridge(x: Array, y: Array, weight: Array, at: Array) -> Array:
