@@ -11,11 +11,15 @@ laboratory, one after another with the moments of what is left (Mendell and Elst
 (Cornuet et al. 2012, Scand. J. Statist. 39:798).
 
 No prior knows a source that is scored: each is a range that physics leaves, with its reason.
+
+    python -m underfoot_studies.pair_law DRAWS.csv
 """
 
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,9 +49,10 @@ DRAWS = 8
 SD_SOURCE = 0.33
 """Between laboratories, sd of ln COF: reproducibility limits of 70 and 100 % of one shoe on eight
 machines, over 2.8 (Jung and Fischer 1993, Safety Science 16:115): 0.25 and 0.36."""
-SPREAD_PRIOR = (SD_SOURCE, 0.4, 0.2, 0.7)
+SPREAD_PRIOR = (SD_SOURCE, 0.4, 0.2, SD_SOURCE)
 """Of a laboratory, a pair, a reading and the dry part of a laboratory; the first log-normal with sd
-0.35 of its logarithm, the others half-normal."""
+0.35 of its logarithm, the others half-normal. The dry part of a laboratory is off by no more than
+its whole reading."""
 FAMILIES: dict[str, Family] = {
     "dry": "dry",
     "water": "aqueous",
@@ -708,3 +713,13 @@ def r2(measured: Array, predicted: Array, weight: Array) -> float:
     y, rest, weight = measured[known], (measured - predicted)[known], weight[known]
     variance = np.average((y - np.average(y, weights=weight)) ** 2, weights=weight)
     return float(1 - np.average(rest**2, weights=weight) / variance)
+
+
+def write_draws(path: Path, *, seed: int = 0) -> None:
+    """Write draws of the law "pair" fitted to every reading, as a case takes them."""
+    conditions = [c for source in corpus() if source.verified for c in source.conditions]
+    fitted(law_named("pair"), conditions, steps=3000, seed=seed).draws(1000, seed).write(path)
+
+
+if __name__ == "__main__":
+    write_draws(Path(sys.argv[1]))
