@@ -288,3 +288,17 @@ def test_studies_are_found_by_name():
     assert study("G1").name == "g1"
     with pytest.raises(InputError, match="unknown study"):
         study("h1")
+
+
+@pytest.mark.parametrize(
+    ("value", "deviation", "scale"),
+    [(0.167, 0.137, "log"), (0.02, 0.03, "logit"), (0.0, 1 / 34, "logit"), (1.0, 0.02, "logit")],
+)
+def test_no_interval_of_a_cof_or_a_share_leaves_what_it_can_be(value, deviation, scale):
+    quantiles = np.array(Quantity.of(value, deviation=deviation, scale=scale).quantiles)
+    assert (quantiles > 0).all()
+    assert scale == "log" or (quantiles < 1).all()
+    assert (np.diff(quantiles) > 0).all()
+    near = Quantity.of(0.5, deviation=1e-4, scale=scale).quantiles
+    linear = Quantity.of(0.5, deviation=1e-4).quantiles
+    assert near == pytest.approx(linear, abs=1e-6)

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from enum import StrEnum
 from itertools import pairwise
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -52,6 +52,20 @@ class Verdict(StrEnum):
         }[self]
 
 
+def _moved(value: float, deviation: float, z: np.ndarray, scale: str) -> np.ndarray:
+    """Return a value moved by ``z`` deviations on a scale that its interval can't leave.
+
+    A share nearer to 0 or 1 than its deviation is moved from there.
+    """
+    if scale == "log" and value > 0:
+        return value * np.exp(deviation / value * z)
+    if scale == "logit" and deviation < 0.5:
+        share = min(max(value, deviation), 1 - deviation)
+        odds = share / (1 - share) * np.exp(deviation / (share * (1 - share)) * z)
+        return odds / (1 + odds)
+    return value + deviation * z
+
+
 @dataclass(frozen=True, slots=True)
 class Quantity:
     """A computed quantity, SI.
@@ -84,12 +98,16 @@ class Quantity:
         unit: str = "1",
         *,
         deviation: float | None = None,
+        scale: Literal["linear", "log", "logit"] = "linear",
         draws: ArrayLike | None = None,
         levels: Sequence[tuple[float, ArrayLike]] | None = None,
         names: Sequence[str] = (),
         chance: float | None = None,
     ) -> Quantity:
         """Return a quantity; a ``deviation`` stands for a normal distribution, ``draws`` for any.
+
+        On ``scale``: "log" for what can't be negative (COF, speeds), "logit" for shares, each by
+        the delta method.
 
         ``levels`` (also empty) mark a number that a grid enters. Values that are not finite make
         the quantity missing, not converged.
@@ -107,7 +125,8 @@ class Quantity:
             from scipy.stats import norm
 
             places = np.clip(QUANTILES, 1e-4, 1.0 - 1e-4)
-            quantiles = tuple(float(q) for q in numbers[0] + deviation * norm.ppf(places))
+            moved = _moved(numbers[0], deviation, norm.ppf(places), scale)
+            quantiles = tuple(float(q) for q in moved)
         grids = tuple(
             (float(h), tuple(np.atleast_1d(np.asarray(v, float)).tolist())) for h, v in levels or ()
         )

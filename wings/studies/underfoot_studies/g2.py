@@ -117,6 +117,7 @@ def _decay(fluids: Mapping[str, BoundaryFriction]) -> dict[str, Quantity]:
             (rest.value or 0.0) / one.viscosity,
             "m/s",
             deviation=(rest.uncertainty or 0.0) / one.viscosity,
+            scale="log",
         )
     return found
 

@@ -363,7 +363,7 @@ def quantities(
         soles = of_law(frictions, law)
         for sole, one in soles.items():
             levels = on_grids(one.coarse, one.cof)
-            acof = Quantity.of(one.cof, deviation=one.spread, levels=levels)
+            acof = Quantity.of(one.cof, deviation=one.spread, scale="log", levels=levels)
             found[f"acof.{law}.{sole}"] = acof
             draws = np.random.default_rng(seed).normal(one.cof, one.spread, 400)
             risks = [population_risk(max(float(v), 0.0))["report_g6"] for v in draws]
@@ -390,7 +390,7 @@ def quantities(
         for sole, share in shares.items():
             trials = count * (len(one.share) if sole == "all" else 1)
             spread = math.sqrt(max(share * (1 - share), 1.0 / trials) / trials)
-            found[f"steps.{name}.{sole}"] = Quantity.of(share, deviation=spread)
+            found[f"steps.{name}.{sole}"] = Quantity.of(share, deviation=spread, scale="logit")
         spread = (one.fit.slope_high - one.fit.slope_low) / (2 * 1.96)
         if math.isnan(one.fit.slope):
             none = Quantity.none(f"{_who(one)} slips: there is no logistic")
