@@ -62,7 +62,8 @@ def _moved(value: float, deviation: float, z: np.ndarray, scale: str) -> np.ndar
     if scale == "logit" and deviation < 0.5:
         share = min(max(value, deviation), 1 - deviation)
         odds = share / (1 - share) * np.exp(deviation / (share * (1 - share)) * z)
-        return odds / (1 + odds)
+        moved = odds / (1 + odds)
+        return np.where(z < 0, np.minimum(moved, value), np.maximum(moved, value))
     return value + deviation * z
 
 
