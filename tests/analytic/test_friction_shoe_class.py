@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 
 from underfoot.case import Case
+from underfoot.compute.run import run
 from underfoot.core import InputError
 from underfoot.friction import Pair, PairContactLaw, packaged_pair_draws
 from underfoot.friction.shoe_class import ShoeClass, certified, of_class, shoe_class, shoe_classes
 
 ON_VINYL = Pair(58, (5e-6, 12e-6), (1e-6, 3e-6), "aqueous")
 PLACE = np.array([4.4, 2.4, 2.0, 0.0, 0.0, 0.6])
+ONE_PLACE = {"tread_positions": 1}
 CASE = {
     "name": "classed",
     "shoe": {"from": "work_shoe_full_tread"},
@@ -115,3 +117,21 @@ def test_a_class_is_part_of_the_case():
     assert 'class = "EN ISO 20345 SR"' in classed.to_toml()
     assert classed.shoe.known_class().name in shoe_classes()
     assert Case.from_mapping({**CASE, "shoe": "slip_resistant_shoe_treaded"}).shoe.known_class()
+
+
+@pytest.mark.slow
+def test_the_answer_of_a_run_knows_the_class_and_a_worn_sole_keeps_some_of_it():
+    def answer(**shoe):
+        case = Case.from_mapping({**CASE, "shoe": {**CASE["shoe"], **shoe}, "numerics": ONE_PLACE})
+        result = run(case, quick=True)
+        return result.value("cof"), result.headline()[0]
+
+    any_shoe, words = answer()
+    classed, class_words = answer(**{"class": "EN ISO 20345 SR"})
+    assert classed > 1.1 * any_shoe
+    assert "any shoe" in words
+    assert "class EN ISO 20345 SR" in class_words
+    worn, worn_classed = (
+        answer(wear={"depth": "2.5 mm"}, **known)[0] for known in ({}, {"class": "EN ISO 20345 SR"})
+    )
+    assert 1.0 < worn_classed / worn < classed / any_shoe
