@@ -70,20 +70,13 @@ def condition(name: str, spacing: float) -> dict[str, float]:
     """Return what one of the example cases took, in this process."""
 
     from underfoot.case import Case
-    from underfoot.compute.resolve import resolved
-    from underfoot.compute.sole import sole_map
-    from underfoot.compute.solve import solved_motion
+    from underfoot.compute.positions import Place
+    from underfoot.compute.prepare import prepared
+    from underfoot.compute.solve import solved_at
 
     case = Case.load(f"examples/{name}.toml")
     began = time.process_time()
-    context, sole = resolved(case), sole_map(case, spacing)
-    solved = solved_motion(
-        case,
-        sole,
-        case.compliance.build(context, sole),
-        case.rough_contact.build(context),
-        film=case.film.build(context),
-    )
+    _, solved = solved_at(prepared(case, spacing), Place(), spacing)
     counts = solved.counts
     return {
         "cells": counts.cells,

@@ -34,15 +34,22 @@ napoleon_use_ivar = True  # attributes as a list: as objects they would be descr
 napoleon_custom_sections = [("Errors", "Raises"), "Source"]
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
-autodoc_typehints_description_target = "documented"
+autodoc_typehints_description_target = "all"
 autodoc_typehints_format = "short"
 autodoc_default_options = {"members": True, "undoc-members": False}
 suppress_warnings = ["myst.header", "ref.python", "misc.highlighting_failure"]
 
 
 def _plain_formulas(app, what, name, object_, options, lines) -> None:
-    """Formulas in docstrings are plain text: |E*| is a modulus, no markup."""
-    lines[:] = [line.replace("|", "\\|").replace("*", "\\*") for line in lines]
+    """Formulas in docstrings are plain text: |E*| is a modulus, no markup; examples are code."""
+    shown, in_example = [], False
+    for line in lines:
+        begins = line.startswith(">>>")
+        if begins and ".. rubric:: Examples" not in shown:
+            shown += [".. rubric:: Examples", ""]
+        in_example = begins or (in_example and bool(line.strip()))
+        shown.append(line if in_example else line.replace("|", "\\|").replace("*", "\\*"))
+    lines[:] = shown
 
 
 def setup(app) -> None:

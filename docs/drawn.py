@@ -3,6 +3,7 @@
 Matplotlib's own directive cannot be used from Markdown (it writes reStructuredText).
 """
 
+import os
 from pathlib import Path
 
 import matplotlib
@@ -33,6 +34,7 @@ class Plot(SphinxDirective):
         if not self.config.draw:
             return []
         matplotlib.use("Agg")
+        os.environ.setdefault("UNDERFOOT", str(Path(__file__).parents[1]))
         from matplotlib import pyplot
 
         number = self.env.new_serialno("drawn")

@@ -442,6 +442,142 @@ def _a_walk(log: Log) -> Log:
     )  # fmt: skip
 
 
+def _rest(values: np.ndarray) -> float:
+    return float(np.median(values[:80]))
+
+
+def _shown(change: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> Callable[[Log], Log]:
+    """``change(time, friction over its unloaded level)`` of the horizontal forces."""
+    return lambda log: _friction(log, lambda t, v: _rest(v) + change(t, v - _rest(v)))
+
+
+def _lagged(values: np.ndarray, time: np.ndarray, seconds: float) -> np.ndarray:
+    """A first-order filter of that time constant, one way."""
+    from scipy.signal import lfilter
+
+    keep = float(np.exp(-time[1] / seconds))
+    return np.asarray(lfilter([1.0 - keep], [1.0, -keep], values))
+
+
+def _moved(values: np.ndarray, time: np.ndarray, seconds: float) -> np.ndarray:
+    return np.roll(values, round(seconds / time[1]))
+
+
+def _mean_of(values: np.ndarray, time: np.ndarray, seconds: float) -> np.ndarray:
+    count = round(seconds / time[1])
+    return np.convolve(values, np.ones(count) / count, "same")
+
+
+def _backlash(values: np.ndarray, width: float) -> np.ndarray:
+    out, state = values.copy(), 0.0
+    for i, value in enumerate(values):
+        state = min(max(state, value - width), value + width)
+        out[i] = state
+    return out
+
+
+def _stairs(seconds: float) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+    def change(time: np.ndarray, values: np.ndarray) -> np.ndarray:
+        step = max(1, round(seconds / time[1]))
+        return values[np.arange(len(values)) // step * step]
+
+    return change
+
+
+def _no_number(log: Log) -> Log:
+    at = _middle(log)
+    return _friction(log, lambda t, v: np.where(np.abs(t - at) < 0.06, np.nan, v))
+
+
+def _slide_ends(log: Log) -> Log:
+    at = _middle(log)
+    return _friction(log, lambda t, v: np.where(t > at, _rest(v), v))
+
+
+def _lifts(log: Log) -> Log:
+    """The load goes in the window, the friction channel still shows what it was."""
+    at = _middle(log)
+    return _normal(log, lambda t, v: np.where(t > at, _rest(v) + 0.7 * (v - _rest(v)), v))
+
+
+def _setpoint(log: Log) -> Log:
+    return _normal(log, lambda t, v: np.where(v > 0.5 * v.max(), 450.0, _rest(v)))
+
+
+def _computed(log: Log) -> Log:
+    normal = log.columns[log.normal]
+    return _friction(log, lambda t, v: _rest(v) + 1.2 * log.cof * (normal - _rest(normal)))
+
+
+def _uneven(log: Log) -> Log:
+    time = log.columns["time (s)"]
+    at = _middle(log) - 0.3
+    return _with(log, columns={**log.columns, "time (s)": time + 0.25 * (time > at)})
+
+
+def _block_back(log: Log) -> Log:
+    """A block of rows written twice: the window holds the start of the slide again."""
+    at = _middle(log)
+
+    def pick(time: np.ndarray) -> np.ndarray:
+        first = np.flatnonzero(time < at)
+        return np.concatenate((first, np.flatnonzero((time > at - 0.45) & (time < at)),
+                               np.flatnonzero(time >= at)))  # fmt: skip
+
+    return _rows(log, pick)
+
+
+def _reversed(log: Log) -> Log:
+    return _rows(log, lambda t: np.arange(len(t))[::-1])
+
+
+def _rings(time: np.ndarray, values: np.ndarray) -> np.ndarray:
+    on = np.abs(values) > 0.5 * np.abs(values).max()
+    return values + on * 0.6 * np.abs(values).max() * np.sin(2 * np.pi * 1.5 * time)
+
+
+FAULTS |= {
+    "friction compressed at its top, check of the day": lambda log: replace(
+        _shown(lambda t, v: (top := 0.6 * np.abs(v).max()) * np.tanh(v / top))(log),
+        checks=(1.0, 0.6),
+    ),
+    "friction behind a slow filter": _shown(lambda t, v: _lagged(v, t, 0.4)),
+    "friction late by 0.25 s": _shown(lambda t, v: _moved(v, t, 0.25)),
+    "friction early by 0.2 s": _shown(lambda t, v: _moved(v, t, -0.2)),
+    "friction as a mean of a second": _shown(lambda t, v: _mean_of(v, t, 1.0)),
+    "normal force as a mean of a second": lambda log: _normal(
+        log, lambda t, v: _mean_of(v, t, 1.0)
+    ),
+    "stairs of 0.25 s of friction": _shown(_stairs(0.25)),
+    "stairs of 50 ms of all": lambda log: _forces(log, _stairs(0.05)),
+    "backlash of 15 N": _shown(lambda t, v: _backlash(v, 15.0)),
+    "dead band of 12 N": _shown(lambda t, v: np.sign(v) * np.maximum(np.abs(v) - 12.0, 0)),
+    "friction without its sign": _shown(lambda t, v: np.abs(v) + 8.0),
+    "a bit of 32 N stuck": _shown(lambda t, v: (np.round(v).astype(int) | 32).astype(float)),
+    "friction wraps at half its size": _shown(
+        lambda t, v: (v + (top := 0.5 * np.abs(v).max())) % (2 * top) - top
+    ),
+    "friction without numbers in the window": _no_number,
+    "friction in gf called N": _gain(1.0, 101.97),
+    "normal force in lbf called N": _gain(1 / 4.4482, 1.0),
+    "both in lbf called N": _gain(1 / 4.4482, 1 / 4.4482),
+    "friction in V called N": _gain(1.0, 0.01),
+    "the column of COF as friction": lambda log: _friction(log, lambda t, v: v / 500.0),
+    "the column of per cent as friction": lambda log: _friction(log, lambda t, v: v / 5.0 / 9.0),
+    "the set value as normal force": _setpoint,
+    "friction computed from the normal force": _computed,
+    "slide ends in the window": _slide_ends,
+    "load goes in the window": _lifts,
+    "clock jumps before the window": _uneven,
+    "a block of rows twice": _block_back,
+    "rows in reverse": _reversed,
+    "friction swings by 60 %": _shown(_rings),
+    "zero creeps back after the load": _shown(lambda t, v: v - 0.3 * _lagged(v, t, 0.5)),
+    "amplifier coupled over a capacitor": _shown(lambda t, v: v - _lagged(v, t, 0.35)),
+    "cell tilted by 4 deg": lambda log: _crosstalk(0.07, preload=False)(log),
+}
+
+
 NEVER_RIGHT = ("calibration out of date", "tested before the calibration", "no check on the day")
 """Faults that leave the number as it is, and have to be told all the same."""
 NOTICED, RIGHT, SILENT = "noticed", "right", "silently wrong"

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .case import Case, load
+    from .case.explanation import explain
     from .compute.result import Result
     from .compute.run import run
     from .core.catalogue import catalogue
     from .questions.comparison import compare
-    from .questions.explanation import explain
 
     Study: Any
     optimise: Any
@@ -43,7 +43,7 @@ _HOMES = {
     "Result": ".compute.result",
     "catalogue": ".core.catalogue",
     "compare": ".questions.comparison",
-    "explain": ".questions.explanation",
+    "explain": ".case.explanation",
     "load": ".case",
     "run": ".compute.run",
 }

@@ -121,7 +121,7 @@ def test_interval_of_an_unmeasured_pair():
 def test_missing_roughness_is_drawn_and_named():
     open_pair = replace(TILE, sole_rq=(1.25e-6, 1e-5))
     found = PairContactLaw(open_pair, 1e-3)
-    assert any("shoe.roughness: not known better" in line for line in found.assumptions)
+    assert any("shoe.roughness: not given" in line for line in found.assumptions)
     assert not any("floor.roughness" in line for line in found.assumptions)
     assert (
         found.joint_draws(500, 0)["kappa"].std()
@@ -348,7 +348,7 @@ def test_a_contact_table_gives_hysteresis_and_dry_area(tmp_path):
         friction={"model": "pair", "contact_table": str(tmp_path / "rubber.npz")},
     )
     found = case.friction.build(resolved(case))
-    assert found.medians["hysteresis"] == pytest.approx(0.06)  # whatever the hardness
+    assert found.medians["hysteresis"] == pytest.approx(0.06, rel=2e-3)  # whatever the hardness
     assert erf(3e5 / found.pair.full_contact) == pytest.approx(0.1)
     assert any("0.060 from rubber.npz" in line for line in found.assumptions)
 

@@ -98,7 +98,7 @@ def test_a_lug_whose_channels_back_up_on_three_sides_is_opened_to_the_fourth(sid
     assert found.load[0] == pytest.approx(film(closed)[LUG, LUG].sum() * CELL**2)
     # p = p_0 (1 - (s / L)^2) from the wall across: above 0.99 p_0 in a tenth of the length
     assert found.way[0] == pytest.approx(9.5e-3, abs=CELL)
-    assert f"to go to the {side}: open it to the {side}, a groove of" in found.words()
+    assert f"to go to the {side}: open it to the {side}, a groove of" in found.advice()
 
 
 @pytest.mark.parametrize("side", SIDES)
@@ -184,9 +184,9 @@ def test_a_lug_of_one_cell_is_all_groove():
 def test_short_ways_and_small_loads_get_no_advice():
     pressure = np.zeros((SIZE, SIZE))
     pressure[LUG, LUG] = 1e5
-    assert "leave it" in drainage(framed_lug("front", height=20e-3), pressure).words()
+    assert "leave it" in drainage(framed_lug("front", height=20e-3), pressure).advice()
     pressure[~framed_lug("front").land] = 4e6  # nearly all of the film lies in the channels
-    assert drainage(framed_lug("front"), pressure).words() == ""
+    assert drainage(framed_lug("front"), pressure).advice() == ""
     assert drainage(sole(np.ones((SIZE, SIZE), dtype=bool)), pressure) is None
     assert drainage(framed_lug("front"), np.zeros((SIZE, SIZE))) is None
 

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -17,8 +18,17 @@ from underfoot.core.catalogue import Catalogue
 from underfoot.friction import FrictionLaw
 from underfoot.rough_contact import ContactTable, ExponentialLaw
 from underfoot.shoe import SoleMap
+from underfoot.sole_contact import layered_compliance, solve_sliding
 from underfoot.sole_contact import lug_edges as module
-from underfoot.sole_contact.lug_edges import EdgedLaw, LugEdges, lug_edges, lug_friction
+from underfoot.sole_contact.lug_edges import (
+    EdgedLaw,
+    LugEdges,
+    LugInlet,
+    let_in,
+    lug_edges,
+    lug_friction,
+)
+from underfoot.sole_contact.solver import SolverSettings
 from underfoot.surface import rms_slope, self_affine
 
 # A block 10 mm long and 5 mm high of 3 MPa at 100 kPa, pair of Rq 2 um, contact COF 0.3, full
@@ -47,7 +57,9 @@ def one_lug(length=0.01, width=1.0, height=0.005, edge=1e-4, fed=1.0):
     return LugEdges(np.array([[1]]), np.ones((1, 1)), *arrays)
 
 
-def friction(edges=None, pressure=1e5, cof=0.3, drag=0.01, suction=1e5, rq=2e-6, modulus=3e6):
+def friction(
+    edges=None, pressure=1e5, cof=0.3, drag=0.01, suction=1e5, rq=2e-6, modulus=3e6, film_load=0.0
+):
     return lug_friction(
         edges or one_lug(),
         np.array([[pressure]]),
@@ -57,30 +69,90 @@ def friction(edges=None, pressure=1e5, cof=0.3, drag=0.01, suction=1e5, rq=2e-6,
         viscosity=drag,
         speed=1.0,
         suction=suction,
+        film_load=film_load,
     )
 
 
-def test_blocks_of_the_coupled_finite_elements():
-    """Within 6 % where the edge wipes; where the film sets in, off by up to a factor 1.7."""
-    errors = []
+def block(spacing, length=10e-3, height=5e-3):
+    """Return one lug across a sole 40 mm wide, a groove before and behind it."""
+    nx, ny = round(2 * length / spacing), round(0.04 / spacing)
+    x, y = ((np.arange(n) - 0.5 * (n - 1)) * spacing for n in (nx, ny))
+    land = np.broadcast_to((np.abs(x) < 0.5 * length)[:, None], (nx, ny)).copy()
+    depth, inside = np.full((nx, ny), height), np.ones((nx, ny), dtype=bool)
+    clearance = np.where(land, 0.0, height)
+    return SoleMap(x, y, clearance, inside, land, depth, spacing, np.zeros((4, 2)))
+
+
+@cache
+def block_film(radius, drag, spacing=1e-3):
+    """Return the share of its load that the film bears under the block of the finite elements."""
+    sole = block(spacing)
+    edges = lug_edges(sole, radius, worn_edge_radius=0.0)
+    load = 1e5 * np.count_nonzero(sole.land) * spacing**2
+    solved = solve_sliding(
+        sole,
+        layered_compliance(sole, modulus=3e6, poisson_ratio=0.49, thickness=0.02),
+        ExponentialLaw(3e6, 0.5, 2e-6),
+        viscosity=drag,
+        speed=1.0,
+        normal_force=load,
+        settings=SolverSettings(end_time=0.3),
+        inlet=LugInlet(edges, 0.3, 3e6),
+    )
+    return solved.fluid_load / load
+
+
+def test_film_and_friction_of_blocks_of_the_coupled_finite_elements():
+    """Film within 0.13 of the load; suction within 6 % of friction where the edge wipes."""
     for radius, rows in COUPLED.items():
-        for drag, film, pull, cof in rows:
-            found = friction(one_lug(edge=radius * 1e-3), drag=drag)
-            assert found.film.item() == pytest.approx(min(film, 1.0), abs=0.25)
-            contact = 0.3 * (1 - film + pull)
-            if film < 0.5:
-                errors.append(math.log(0.3 * found.factor.item() / contact))
-            assert cof > 0
+        for drag, film, pull, _ in rows:
+            borne = block_film(radius * 1e-3, drag)
+            assert borne == pytest.approx(min(film, 1.0), abs=0.13)
             if film < 0.05:
-                assert abs(errors[-1]) < 0.06
-    assert np.sqrt(np.mean(np.square(errors))) < 0.32
+                factor = friction(one_lug(edge=radius * 1e-3), drag=drag).factor.item()
+                assert (1 - borne) * factor == pytest.approx(1 - film + pull, rel=0.06)
+
+
+@pytest.mark.parametrize(("radius", "drag"), [(0.11e-3, 0.1), (0.83e-3, 0.01)])
+def test_film_under_a_block_does_not_depend_on_the_cells(radius, drag):
+    assert block_film(radius, drag, 0.5e-3) == pytest.approx(block_film(radius, drag), abs=0.03)
+
+
+def test_film_under_a_block_is_that_of_its_mirror_image_slid_back():
+    sole, law = block(1e-3), ExponentialLaw(3e6, 0.5, 2e-6)
+    body = layered_compliance(sole, modulus=3e6, poisson_ratio=0.49, thickness=0.02)
+    forth, back = (
+        solve_sliding(
+            sole,
+            body,
+            law,
+            viscosity=0.1,
+            speed=speed,
+            normal_force=40.0,
+            inlet=LugInlet(lug_edges(sole, 1e-4, worn_edge_radius=0.0), 0.3, 3e6),
+        )
+        for speed in (1.0, -1.0)
+    )
+    np.testing.assert_allclose(
+        back.fluid_pressure[::-1], forth.fluid_pressure, atol=1e-3 * forth.fluid_pressure.max()
+    )
 
 
 def test_sharp_edges_grip_more_than_round_ones_under_thick_fluid():
     """Ishizako et al. 2022: 0.11 mm above 0.83 mm."""
     for drag in (0.01, 0.03, 0.1):
-        sharp, rounded = (friction(one_lug(edge=r), drag=drag) for r in (0.11e-3, 0.83e-3))
-        assert sharp.factor.item() > 1.3 * rounded.factor.item()
+        sharp, rounded = (
+            (1 - block_film(r, drag)) * friction(one_lug(edge=r), drag=drag).factor.item()
+            for r in (0.11e-3, 0.83e-3)
+        )
+        assert sharp > 1.3 * rounded
+
+
+def test_a_lug_that_the_film_bears_has_no_suction():
+    pressed = {"pressure": 3e4, "drag": 0.05, "rq": 2e-6}
+    alone, afloat = (friction(film_load=film, **pressed).suction.item() for film in (0.0, 4e5))
+    assert alone > 0.3
+    assert afloat < 0.05
 
 
 def test_relaxation_by_aitkens_rule_ends_where_small_even_steps_do(monkeypatch):
@@ -91,7 +163,6 @@ def test_relaxation_by_aitkens_rule_ends_where_small_even_steps_do(monkeypatch):
     monkeypatch.setattr(module, "STEPS", 5000)
     monkeypatch.setattr(module, "STILL", 1e-9)
     assert quick == pytest.approx(friction(edges, drag=0.01).factor.item(), rel=1e-5)
-    assert quick == pytest.approx(1.168, abs=1e-3)
 
 
 def test_mean_pressure_of_a_lug_does_not_ask_which_cells_were_solved():
@@ -123,19 +194,15 @@ def test_fluid_from_the_sides_takes_two_parabolas_of_the_suction():
 
 
 def test_a_lug_longer_than_twice_its_height_wipes_no_better():
-    edges = (one_lug(length=length, height=2e-3, edge=0.83e-3) for length in (0.02, 0.04))
-    long, longer = (friction(each, suction=0.0) for each in edges)
-    assert 0.01 < long.film.item() < 0.99
-    assert longer.film.item() == pytest.approx(long.film.item(), rel=1e-9)
-    short = friction(one_lug(length=2e-3, height=2e-3, edge=0.83e-3), suction=0.0)
-    assert short.film.item() != pytest.approx(long.film.item(), rel=0.01)
+    edges = (one_lug(length=length, height=2e-3) for length in (2e-3, 0.02, 0.04))
+    short, long, longer = (each.reach.item() for each in edges)
+    assert short < long == longer
 
 
 def test_limits():
     slow = friction(drag=1e-9)
-    assert slow.film.item() == pytest.approx(0.0, abs=1e-6)
     assert slow.suction.item() == pytest.approx(0.0, abs=1e-6)  # fluid is drawn back in
-    assert friction(suction=0.0).factor.item() <= 1.0
+    assert friction(suction=0.0).factor.item() == 1.0
     assert friction(one_lug(fed=0.0)).factor.item() == 1.0  # no groove ahead of it
     assert friction(pressure=1e3).factor.item() == 1.0  # hardly bears
     assert friction(suction=1e5).factor.item() > friction(suction=5e4).factor.item()
@@ -183,7 +250,7 @@ def test_a_run_says_what_the_edges_do():
     assert "lug_edges" in with_edges.labels
     assert "lug_edges" not in without.labels
     assert with_edges.value("cof") > without.value("cof")
-    assert with_edges.value("fluid_load") == pytest.approx(without.value("fluid_load"), rel=1e-6)
+    assert with_edges.value("fluid_load") != pytest.approx(without.value("fluid_load"), rel=0.01)
     low, high = with_edges.scalars["cof"].interval
     assert low < with_edges.value("cof") < high
 
@@ -204,11 +271,8 @@ def test_wear_makes_the_edges_of_the_lugs_that_it_meets():
     moulded = lug_edges(worn, 0.4e-3, worn_edge_radius=WORN).edge
     assert moulded.min() < 0.2e-3  # wear takes a moulded round off
     assert moulded.max() == 0.4e-3
-    lifted = [
-        friction(one_lug(edge=float(edges.edge.max())), drag=0.03).film.item()
-        for edges in (before, after)
-    ]
-    assert lifted[1] > lifted[0]
+    let = let_in(0.03, np.full(2, 1e5), np.array([before.edge.max(), after.edge.max()]), 3e6, 0.0)
+    assert let[1] > let[0]
 
 
 @pytest.mark.parametrize(("forward", "fed"), [(True, 1.0), (False, 0.0)])

@@ -15,7 +15,8 @@ from underfoot.trials.likelihood import (
     references,
     unlikely_flags,
 )
-from underfoot.trials.step_features import step_features
+from underfoot.trials.plausibility import judged_features
+from underfoot.trials.step_features import VERTICAL, step_features
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
 SOUND = ["biomechzoo/HC030A05.c3d", "bmc/Gait.c3d", "kineticstoolkit/c3d_sample.c3d"]
@@ -77,11 +78,11 @@ def test_the_force_points_to_the_pelvis_and_the_mass_follows_from_its_accelerati
         for t in (trial, _changed(trial, lambda f, up: f - 0.3 * np.outer(f @ up, up)))
     )
     assert np.exp(features["mass by acceleration"]) == pytest.approx(1.0, abs=0.05)
-    assert 0.65 < features["slope of the force line"] < 0.95
+    assert 0.65 < np.exp(features["slope of the force line"]) < 0.95
     ratio = np.exp(halved["mass by acceleration"] - features["mass by acceleration"])
     assert ratio == pytest.approx(0.7, abs=0.01)
-    slope = halved["slope of the force line"] / features["slope of the force line"]
-    assert slope == pytest.approx(1 / 0.7, rel=0.01)
+    slope = halved["slope of the force line"] - features["slope of the force line"]
+    assert np.exp(slope) == pytest.approx(1 / 0.7, rel=0.01)
 
 
 def test_an_impossible_step_is_rejected_with_the_reason():
@@ -145,6 +146,52 @@ def test_the_sideways_line_to_the_pelvis_sees_crosstalk():
         for t in (trial, _changed(trial, lambda f, up: f + np.outer(f @ up, [0.05, 0.0, 0.0])))
     ]
     assert abs(offsets[1] - offsets[0]) == pytest.approx(0.05, abs=0.002)
+
+
+def test_leaks_between_channels_move_their_feature_by_themselves():
+    """By mechanics: of the shear 0.5 that goes into another channel moves its slope by 0.5."""
+    trial = read_trial(DATA / SOUND[0])  # walks along y
+    plain, aside, normal = (
+        step_features(walk := walkway_of(t), required_frictions(walk)[0].stance)
+        for t in (
+            trial,
+            _changed(trial, lambda f, _: f + np.outer(f[:, 1], [0.5, 0.0, 0.0])),
+            _changed(trial, lambda f, _: f + np.outer(f[:, 1], [0.0, 0.0, 0.5])),
+        )
+    )
+    change = aside["shear in the sideways force"] - plain["shear in the sideways force"]
+    assert abs(change) == pytest.approx(0.5, abs=0.03)  # she walks a few degrees off y
+    assert abs(normal["shear in the mass"] - plain["shear in the mass"]) == pytest.approx(
+        0.5, abs=0.1
+    )
+
+
+def test_a_plate_that_rings_is_noticed():
+    trial = read_trial(DATA / SOUND[0])
+
+    def ringing(force, _):
+        out, at = force.copy(), int(np.flatnonzero(force[:, 2] > 20.0)[0])
+        time = np.arange(len(out) - at) / 1000.0
+        out[at:, :2] += (60 * np.exp(-time / 0.1) * np.sin(2 * np.pi * 20 * time))[:, None]
+        return out
+
+    for step in required_frictions(_changed(trial, ringing)):
+        assert "turns of the shear" in {flag.name for flag in step.measurement.caution_flags}
+
+
+def test_the_shape_of_the_normal_force_is_not_judged_in_fast_walks():
+    trial = read_trial(DATA / SOUND[0])
+    (first, *_) = required_frictions(trial)
+    way = first.stance.walking
+    faster = {
+        name: replace(m, positions=m.positions + np.outer(m.time, 0.8 * way))
+        for name, m in trial.markers.items()
+    }
+    slow, fast = (
+        judged_features(walkway_of(t), first.stance)
+        for t in (trial, replace(trial, markers=faster))
+    )
+    assert set(slow) - set(fast) == set(VERTICAL)
 
 
 @pytest.mark.parametrize("rate", [25.0, 100.0])

@@ -265,3 +265,63 @@ def test_boundary_folder(tmp_path):
     titles = [finding.title for finding in analysis.study.findings]
     assert any("type II " in title for title in titles)
     assert any("type III " in title for title in titles)
+    for response in ("dry adhesion", "hysteresis", "lubricated adhesion"):
+        # hard is on marble alone, the others on vinyl: shoe and floor can't be told apart
+        own = [one for one in analysis.study.findings if f"variance of {response}" in one.title]
+        assert own, titles
+
+
+def test_boundary_folder_tells_shoe_floor_and_lubricant_apart():
+    """Adhesion made of a shoe, a lubricant and one interaction: the terms that are there show."""
+    from underfoot_trial_analysis.study import _crossed_findings
+
+    rng = np.random.default_rng(2)
+    readings = [
+        (
+            3.0 + 2.0 * (shoe == "hard") + 1.5 * (fluid == "water")
+            + 1.0 * (shoe == "hard" and fluid == "water") + 0.2 * rng.normal(),
+            {"shoe": shoe, "floor": floor, "lubricant": fluid},
+        )
+        for shoe in ("hard", "soft", "pu")
+        for floor in ("vinyl", "marble")
+        for fluid in ("water", "oil")
+        for _ in range(5)
+    ]  # fmt: skip
+    found = _crossed_findings("lubricated_adhesion", readings)
+    anova = next(one for one in found if one.name.startswith("anova")).table
+    place = anova.columns.index("p")
+    p = {row[0]: row[place] for row in anova.rows}
+    assert {"shoe:floor", "shoe:lubricant", "floor:lubricant", "shoe:floor:lubricant"} <= set(p)
+    for term in ("shoe", "lubricant", "shoe:lubricant"):
+        assert p[term] < 0.001, term
+    for term in ("floor", "shoe:floor", "floor:lubricant", "shoe:floor:lubricant"):
+        assert p[term] > 0.01, term
+
+
+def test_pin_on_disk_tells_fluid_and_roughness_apart(tmp_path):
+    """G.2's second question: COF_BL by fluid and by the roughness of the pin, and both together."""
+    from underfoot_simulator.folder import disk_run
+
+    rng = np.random.default_rng(4)
+    lines = ["file,fluid,roughness,repeat,speed (m/s)"]
+    for fluid, level in (("thin", 0.6), ("thick", 0.4)):
+        for roughness, more in (("fine", 0.0), ("coarse", 0.12)):
+            for repeat in range(3):
+                for speed in (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0):
+                    own = level + more + 0.005 * rng.normal()
+                    cof = 0.1 + (own - 0.1) * np.exp(-speed / 0.3)
+                    name = f"{fluid}_{roughness}_{repeat}_{speed:g}.csv"
+                    columns = disk_run(cof, speed, rng)
+                    data = np.column_stack(list(columns.values()))
+                    np.savetxt(
+                        tmp_path / name, data, delimiter=",", header=",".join(columns), comments=""
+                    )
+                    lines.append(f"{name},{fluid},{roughness},{repeat},{speed:g}")
+    (tmp_path / "conditions.csv").write_text("\n".join(lines) + "\n")
+    analysis = analyse_folder(tmp_path, protocol("report_g2"), processes=1)
+    anova = next(f for f in analysis.study.findings if f.name.startswith("anova_cof_bl"))
+    place = anova.table.columns.index("p")
+    p = {row[0]: row[place] for row in anova.table.rows}
+    assert p["fluid"] < 0.001
+    assert p["roughness"] < 0.001
+    assert p["fluid:roughness"] > 0.01

@@ -11,11 +11,15 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from underfoot.core import InputError
+from underfoot.trials import Plate, read_trial
 from underfoot.trials.protocols import protocol
+from underfoot_simulator import walk_c3d
 from underfoot_simulator.folder import simulated_study
+from underfoot_simulator.walk import WalkRecording
 from underfoot_trial_analysis import FolderAnalysis, analyse_folder
 
 Rows = list[dict[str, str]]
@@ -100,6 +104,45 @@ def in_a_backup_folder(folder: Path, _: Rows) -> None:
     shutil.copy(folder / "S02_hard_1.c3d", folder / "old" / "walk_17.c3d")
 
 
+def exported_again(
+    source: str,
+    target: str = "",
+    *,
+    part: tuple[float, float] = (0.0, 1.0),
+    force: Callable[[np.ndarray], np.ndarray] = lambda force: force,
+) -> Callable[[Path, Rows], None]:
+    """A recording written anew: a part of it, with other forces (n, 3)."""
+
+    def change(folder: Path, _: Rows) -> None:
+        trial = read_trial(folder / source, subtract_baseline=False)
+        count = len(next(iter(trial.markers.values())).positions)
+        ratio = len(trial.plates[0].force) // count
+        first, last = (round(share * count) for share in part)
+        samples = slice(first * ratio, last * ratio)
+        first_plate, second_plate = trial.plates
+        written = WalkRecording(
+            markers={name: m.positions[first:last] for name, m in trial.markers.items()},
+            force=(force(first_plate.force[samples]), force(second_plate.force[samples])),
+            centre=(_centre(first_plate, samples), _centre(second_plate, samples)),
+            corners=(first_plate.corners, second_plate.corners),
+            pressures={},
+            sensors={},
+        )
+        path = folder / (target or source)
+        path.unlink()
+        path.write_bytes(walk_c3d(written))
+
+    return change
+
+
+def _centre(plate: Plate, samples: slice) -> np.ndarray:
+    return np.nan_to_num(plate.centre_of_pressure[samples])
+
+
+def two_tables(folder: Path, _: Rows) -> None:
+    shutil.copy(Path(__file__), folder / "conditions.xlsx")
+
+
 def without_rows(folder: Path, rows: Rows) -> Rows:
     return [row for row in rows if not row["file"].startswith("S04_soft")]
 
@@ -159,6 +202,58 @@ FAULTS: dict[str, tuple[Callable[[Path, Rows], Rows | None], str]] = {
     ),
     "person empty in one row": (setting(of("S02_hard_1"), subject=""), '"subject" is noted for 44'),
     "rows of one person's shoe missing": (without_rows, "is noted for 42 of 45"),
+    "a copy cut short": (
+        exported_again("S01_soft_1.c3d", "S01_soft_3.c3d", part=(0.0, 0.72)),
+        "the same steps as S01_soft_1.c3d",
+    ),
+    "a copy with another start": (
+        exported_again("S01_soft_1.c3d", "S03_soft_1.c3d", part=(0.08, 1.0)),
+        "the same steps, noted differently",
+    ),
+    "a copy in whole newtons": (
+        exported_again("S01_soft_1.c3d", "S01_hard_1.c3d", force=np.round),
+        "the same steps, noted differently",
+    ),
+    "a copy with noise": (
+        exported_again(
+            "S02_soft_1.c3d",
+            "S02_medium_1.c3d",
+            force=lambda f: f + np.random.default_rng(1).normal(0.0, 0.3, f.shape),
+        ),
+        "the same steps, noted differently",
+    ),
+    "a copy with another gain": (
+        exported_again("S02_soft_1.c3d", "S04_soft_1.c3d", force=lambda f: 0.95 * f),
+        "the same steps, noted differently",
+    ),
+    "another gain of the shear in one file": (
+        exported_again("S03_soft_1.c3d", force=lambda f: f * [0.6, 0.6, 1.0]),
+        "against the other trials of S03",
+    ),
+    "a question mark for a shoe": (
+        setting(of("S02_hard_1", "S03_soft_2", "S04_medium_1"), shoe="?"),
+        '"shoe" is noted for 42',
+    ),
+    "n/a for a shoe": (
+        setting(of("S02_hard_1", "S03_soft_2", "S04_medium_1"), shoe="n/a"),
+        '"shoe" is noted for 42',
+    ),
+    "unknown persons": (
+        setting(of("S02_hard_1", "S03_soft_2", "S04_medium_1"), subject="unknown"),
+        '"subject" is noted for 42',
+    ),
+    "one shoe noted for all trials of a person": (
+        setting(of("S03"), shoe="hard"),
+        'S03 has 9 trials with shoe "hard" and none with "medium"',
+    ),
+    "person and shoe exchanged in a row": (
+        setting(of("S02_hard_1"), subject="hard", shoe="S02"),
+        'subject "hard" has one trial',
+    ),
+    "mass missing for one person": (
+        setting(of("S03"), **{"body_mass_(kg)": ""}),
+        '"body mass" is noted for 36',
+    ),
     "a condition of one person only": (one_person_noted, '"socks" is noted for 9 of 45 files only'),
 }
 SPELLINGS: dict[str, Callable[[Path, Rows], None]] = {
@@ -189,14 +284,28 @@ def test_a_fault_is_told_with_its_files(study, tmp_path, fault):
     assert analysis.tables[0].name == "doubts"
 
 
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (two_tables, "two tables of conditions"),
+        (setting(of("S03"), **{"height_(m)": "170"}), "0.5 to 2.5 m"),
+        (setting(of("S03"), **{"body_mass_(kg)": "-70"}), "10 to 300 kg"),
+        (lambda _, rows: [*rows, {**rows[0], "shoe": "soft"}], "named twice"),
+    ],
+)
+def test_a_wrong_table_is_refused(study, tmp_path, change, words):
+    with pytest.raises(InputError, match=words):
+        analysed(study, tmp_path, change)
+
+
 @pytest.mark.parametrize("fault", SPELLINGS)
 def test_spellings_of_one_name_are_refused(study, tmp_path, fault):
     with pytest.raises(InputError, match="is written"):
         analysed(study, tmp_path, SPELLINGS[fault])
 
 
-def test_there_are_fifteen_faults_of_a_study():
-    assert len(FAULTS) + len(SPELLINGS) >= 15
+def test_there_are_thirty_faults_of_a_study():
+    assert len(FAULTS) + len(SPELLINGS) >= 30
 
 
 def unbalanced(folder: Path, rows: Rows) -> Rows:

@@ -33,8 +33,8 @@ def test_a_fault_is_noticed_or_leaves_the_number_right(fault, tmp_path):
     assert found.count(SILENT) == 0, found
 
 
-def test_there_are_more_than_thirty_faults():
-    assert len(FAULTS) >= 30
+def test_there_are_more_than_seventy_faults():
+    assert len(FAULTS) >= 70
 
 
 def test_sound_logs_are_accepted_and_right(tmp_path):

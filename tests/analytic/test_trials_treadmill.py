@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from underfoot.core import DataError
-from underfoot.trials import read_trial, required_frictions, walkway_of
+from underfoot.trials import mean_of, read_trial, required_frictions, walkway_of
 from underfoot.trials.protocols import protocol
+from underfoot.trials.trial import MADE_UP
 from underfoot_simulator import simulated_folder, treadmill_walk, walk_c3d
 from underfoot_trial_analysis import analyse_folder
 
@@ -35,9 +36,10 @@ def test_a_belt_recording_of_45_stances(tmp_path, speeds):
     for plate, speed, side in zip(("plate 1", "plate 2"), speeds, ("right", "left"), strict=True):
         assert walk.belts[plate].speed(10.0) == pytest.approx(speed, rel=0.03)
         assert {step.stance.side for step in steps if step.stance.plate == plate} == {side}
-    words = accepted[0].measurement.conventions["surface"]
-    assert words.startswith(f"treadmill belt at {speeds[0]:.1f}"[:-1])
-    assert "foot markers" in words
+    said = accepted[0].measurement.conventions
+    assert said["surface"] == "treadmill belt, level"
+    assert said["belt"].startswith(f"{speeds[0]:.1f}"[:-1])
+    assert "foot markers" in said["belt"]
 
 
 def test_without_markers_the_centre_of_pressure_tells_the_belt(tmp_path):
@@ -62,6 +64,30 @@ def test_a_heel_that_slides_on_the_belt_has_no_required_friction(tmp_path):
 )
 def test_a_floor_is_no_belt(name):
     assert not walkway_of(read_trial(DATA / name)).belts
+
+
+def test_a_recorded_walk_on_a_split_belt():
+    """Twelve seconds of one person on two narrow belts, forces filtered at some 6 Hz (gaitalytics).
+
+    Both feet are on one belt again and again: such contacts are rejected, the others are doubted.
+    """
+    walk = walkway_of(read_trial(DATA / "gaitalytics" / "treadmill_events.c3d"))
+    assert [belt.source for belt in walk.belts.values()] == ["foot markers"] * 2
+    assert [belt.speed(5.0) for belt in walk.belts.values()] == pytest.approx(
+        [1.10, 1.10], abs=0.01
+    )
+    steps = required_frictions(walk)
+    assert len(steps) == 22
+    assert not any("slides" in step.measurement.reason for step in steps)
+    # The first contact is cut by the record: when it began says nothing of the second.
+    assert [s.stance.accepted for s in steps[:3]] == [False, True, True]
+    kept = [step.measurement for step in steps if step.measurement.estimated]
+    assert len(kept) == 8
+    assert all("already filtered" in {f.name for f in m.caution_flags} for m in kept)
+    mean = mean_of(kept)
+    assert mean.value == pytest.approx(0.149, abs=0.001)
+    assert mean.conventions["surface"] == "treadmill belt, level"
+    assert "belt" not in mean.conventions
 
 
 def test_a_recorded_leg_on_a_belt(tmp_path):
@@ -149,6 +175,8 @@ def test_dflow_text_gives_plates_markers_and_even_time(tmp_path):
     assert read.plates[0].rate == pytest.approx(100.0, rel=1e-3)
     assert read.markers["LTOE"].missing.nonzero()[0].tolist() == [*range(40, 45), 60]
     assert any("1 frames are not in the file" in note for note in read.notes)
+    # The export has lost that it is made up: its force line is not that of a body.
+    read = replace(read, settings={"software": MADE_UP})
     steps = [s for s in required_frictions(read) if s.measurement.value is not None]
     assert len(steps) >= 8
     mean = np.mean([step.measurement.value for step in steps])

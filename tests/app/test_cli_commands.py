@@ -10,10 +10,10 @@ import pytest
 from typer.testing import CliRunner
 
 from underfoot.case import Case
+from underfoot.case.terms import TERMS
 from underfoot.cli.app import app
 from underfoot.cli.output import shortened
 from underfoot.compute.summary import ranked_assumptions
-from underfoot.questions.terms import TERMS
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 EXAMPLE = EXAMPLES / "work_shoe_untreaded_glycerol.toml"
@@ -309,7 +309,7 @@ def test_a_fault_of_the_program_is_told_without_a_traceback(underfoot, monkeypat
     def broken(case, *, quick):
         raise RuntimeError("a bug")
 
-    monkeypatch.setattr("underfoot.questions.check.run_cost", broken)
+    monkeypatch.setattr("underfoot.compute.check.run_cost", broken)
     found = underfoot("check", EXAMPLE)
     assert found.exit_code == 70
     assert "internal error: RuntimeError: a bug" in found.stderr

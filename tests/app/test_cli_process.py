@@ -144,8 +144,8 @@ def test_a_bad_case_ends_with_its_exit_code_and_no_files(tmp_path):
     ("number", "code", "message"),
     [
         (signal.SIGINT, 130, "stopped"),
-        (signal.SIGTERM, 143, "terminated"),
-        (signal.SIGKILL, -signal.SIGKILL, ""),
+        pytest.param(signal.SIGTERM, 143, "terminated", marks=pytest.mark.slow),
+        pytest.param(signal.SIGKILL, -signal.SIGKILL, "", marks=pytest.mark.slow),
     ],
 )
 def test_a_run_ended_by_a_signal_leaves_nothing_behind(tmp_path, number, code, message):

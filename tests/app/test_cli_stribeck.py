@@ -112,7 +112,8 @@ def test_every_law_explains_itself(name):
         ("soft_ehl", "Eq. 18 of the report"),
         ("Eq. 17", "stribeck_cof"),
         ("eq 26", "AdhesionBlockingLaw"),
-        ("film_pressure", "not in the report"),
+        ("film_pressure", "Eq. 4 of the report"),
+        ("glycerol_water_density", "not in the report"),
         ("regime", "They can differ"),
     ],
 )

@@ -123,9 +123,9 @@ def test_the_pressed_sole_lies_flat_where_it_touches(worn_shoe_case):
     free, pressed = sole_mesh(sole), sole_mesh(sole, pressed=True)
     assert free.quads.shape == pressed.quads.shape
     fields = worn_shoe_result.fields
-    pressure = (fields.contact_pressure + fields.fluid_pressure).values[sole.own]
+    pressure = (fields.contact_pressure + fields.fluid_pressure).values[sole.in_data]
     loaded = pressure > 0.5 * pressure.max()
-    film = fields.film_thickness.values[sole.own]
+    film = fields.film_thickness.values[sole.in_data]
     # under load it lies as high as the film is thick
     np.testing.assert_allclose(sole.pressed[loaded], film[loaded], atol=2e-6)
 

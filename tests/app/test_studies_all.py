@@ -38,7 +38,7 @@ def result(name):
     """Every quantity a study is asked for, as the number 1 on one grid; a figure, a table."""
     asked = {one.quantity: one for one in study(name).statements if one.quantity}
     values = {
-        path: Quantity.of([3.0 - k for k in range(len(one.names))], names=one.names)
+        path: Quantity.of([3.0 - k for k in range(len(one.names))], one.si_unit, names=one.names)
         if one.names
         else Quantity.of(1.0, one.si_unit)
         for path, one in asked.items()
@@ -166,9 +166,48 @@ def test_a_finished_folder_is_judged_again_as_a_process(tmp_path):
     found = called("studies", "summary", str(out), "--json")
     assert found.returncode == 0, found.stderr
     verdicts = {row["statement"]: row["verdict"] for row in json.loads(found.stdout)}
-    assert verdicts["g3.order_dry"] == "disagrees"
+    assert verdicts["g3.order_dry_real_contact_area_and_one_strength"] == "disagrees"
     empty = tmp_path / "empty"
     empty.mkdir()
     nothing = called("studies", "summary", str(empty))
     assert nothing.returncode == 2
     assert "studies run --out" in nothing.stderr
+
+
+def test_a_single_study_writes_its_page_with_figures_first(tmp_path):
+    out = tmp_path / "g3"
+    found = process("studies", "run", "g3", "--out", out)
+    assert found.returncode == 0, found.stderr
+    assert "report.html" in found.stdout
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert page.index("data:image/png") < page.index("<th>Statement</th>")
+    assert page.count("data:image/png") == len(list(out.glob("*.png")))
+    assert not re.search(r"(src|href)=[\"']https?:", page)
+
+
+def test_a_study_fits_a_terminal_of_80_columns(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    found = called("studies", "run", "g3", "--quick")
+    assert found.returncode == 0
+    too_long = [line for line in found.stdout.splitlines() if len(line) > 80]
+    assert not too_long
+    assert "  verdict" in found.stdout  # a record a statement, no columns of three letters
+
+
+def test_errata_are_listed_by_one_command():
+    found = json.loads(called("studies", "errata", "--json").stdout)
+    assert len(found) == sum(len(study(name).errata) for name in studies()) >= 26
+    assert all(row["where"] and row["printed"] and row["used"] and row["why"] for row in found)
+    own = json.loads(called("studies", "errata", "g6", "--json").stdout)
+    assert len(own) == len(study("g6").errata)
+    assert any("thirty-one" in row["printed"] for row in own)
+
+
+@pytest.mark.parametrize("width", [50, 80])
+def test_the_catalogue_never_cuts_a_name(monkeypatch, width):
+    from underfoot.core.catalogue import Catalogue
+
+    monkeypatch.setenv("COLUMNS", str(width))
+    printed = called("catalogue").stdout.split()
+    for _, name in Catalogue.load().entries:
+        assert name in printed

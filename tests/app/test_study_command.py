@@ -123,7 +123,10 @@ def test_killed_at_any_time_it_goes_on_and_gives_the_same(finished, tmp_path):
 
 @pytest.mark.parametrize(
     ("number", "word", "code"),
-    [(signal.SIGINT, "stopped", 130), (signal.SIGTERM, "terminated", 143)],
+    [
+        (signal.SIGINT, "stopped", 130),
+        pytest.param(signal.SIGTERM, "terminated", 143, marks=pytest.mark.slow),
+    ],
 )
 def test_stopped_it_says_what_is_kept_and_leaves_no_claim(tmp_path, number, word, code):
     (tmp_path / "heel.toml").write_text(STUDY.replace("STEPS", "20"))

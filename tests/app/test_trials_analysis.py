@@ -40,6 +40,7 @@ def _hashes(folder: Path) -> dict[str, str]:
     }
 
 
+@pytest.mark.slow
 def test_the_same_folder_gives_the_same_bytes(tester, tmp_path):
     for name, processes in (("a", 1), ("b", 2)):
         analysis = analyse_folder(

@@ -12,11 +12,13 @@ import struct
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 from web_app import PATHS, Cost, begin, drawn, page_of, served
 
+from underfoot.case import Case
 from underfoot.shoe.files import FileSettings, outsole_from_file
 
 pytest.importorskip("nicegui")
@@ -228,6 +230,27 @@ def test_fifty_megabytes_of_stl_are_inspected_and_used(app, tmp_path):
         page.get_by_role("button", name="Use this sole").click()
         page.get_by_text("The sole comes from big.stl").wait_for()
         assert page.complaints == []
+
+
+def test_measured_files_are_dropped_and_used(app):
+    measured = Path(__file__).parents[2] / "examples" / "measured"
+
+    def dropped(label, file, words):
+        zone = page.locator(f".drop[aria-label^='{label}'] input[type=file]")
+        zone.set_input_files(measured / file)
+        page.get_by_text(words).wait_for()
+
+    with page_of(app.link) as page:
+        begin(page, app.base)
+        dropped("Drop a scan of the sole", "sole.csv", "Scan of the sole: sole.csv")
+        dropped("Drop a test of the rubber", "dma.csv", "Compound: dma.toml")
+        page.get_by_role("tab", name="Floor").click()  # not opened before: its place waits
+        dropped("Drop a scan of the floor", "floor.csv", "Scan of the floor: floor.csv")
+        assert page.complaints == []
+    variant = max((app.folder / "variants").glob("*.toml"), key=lambda path: path.stat().st_mtime)
+    case = Case.load(variant)
+    assert case.rough_contact.name == "contact_table"
+    assert case.value("shoe.material.modulus") == pytest.approx(5.07e6, rel=0.02)
 
 
 @pytest.mark.parametrize(

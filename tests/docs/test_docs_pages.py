@@ -11,7 +11,7 @@ from pages import ROOT, agrees, blocks_of, held, numbers_compared
 
 TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
 PHYSICS = [p for p in sorted((ROOT / "docs/physics").glob("*.md")) if p.stem != "index"]
-LONG_PAGES = {"lug_edges", "block"}
+LONG_PAGES = {"lug_edges", "block", "coupled_contact"}
 
 
 @pytest.mark.slow

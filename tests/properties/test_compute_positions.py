@@ -153,8 +153,8 @@ def test_the_offset_of_a_case_moves_the_pattern_with_its_sipes(bars):
 
 
 def test_the_number_of_positions_is_a_field_with_a_range(bars):
-    assert position_count(bars, quick=False) == 4
-    assert position_count(bars, quick=True) == 2
+    assert position_count(bars, quick=False) == 8
+    assert position_count(bars, quick=True) == 4
     plain = bars.replace("shoe.tread", {"pattern": "none"})
     assert position_count(plain, quick=False) == position_count(plain, quick=True) == 3
     assert position_count(plain.replace("numerics.tread_positions", 1), quick=False) == 1
@@ -165,7 +165,7 @@ def test_the_number_of_positions_is_a_field_with_a_range(bars):
 
 def test_an_averaged_run_is_estimated_at_as_many_marches_as_it_takes(bars):
     alone = bars.replace("numerics.tread_positions", 1)
-    for quick, count in ((False, 4), (True, 2)):
+    for quick, count in ((False, 8), (True, 4)):
         one, more = run_cost(alone, quick=quick), run_cost(bars, quick=quick)
         assert more.seconds == pytest.approx(np.multiply(count, one.seconds))
         assert more.memory == one.memory
@@ -225,6 +225,19 @@ def test_the_share_done_of_a_run_rises_over_all_its_positions(bars, quick):
     steps = np.diff(told)
     assert steps.min() > -0.05  # a step in time that is tried again is shorter
     assert steps.max() < 0.2
+
+
+def test_positions_in_processes_of_their_own_have_the_same_digits(bars):
+    told = []
+    case = bars.replace({"numerics.grid_spacing": "2 mm", "numerics.tread_positions": 3})
+    alone = run(case)
+    beside = run(case, processes=2, progress=lambda stage, *_: told.append(stage))
+    assert "Tread positions" in told
+    assert beside.to_frame().equals(alone.to_frame())
+    assert beside.labels == alone.labels
+    assert beside.provenance.result_hash == alone.provenance.result_hash
+    for name, field in alone.data.data_vars.items():
+        np.testing.assert_array_equal(beside.data[name].values, field.values)
 
 
 @pytest.mark.slow

@@ -127,9 +127,9 @@ def test_a_wide_spread_is_drawn_log_normal_with_the_same_mean_and_deviation():
 EXACT = BoundaryLaw(SourcedValue(0.4, "1", "", 1e-9), SourcedValue(0.1, "1", "", 1e-9))
 
 
-def drawn_cof(**options):
+def drawn_cof(law=EXACT, **options):
     contact, fluid, film, wet = sole(5)
-    return sampled_cof(EXACT, contact, fluid, film, speed=0.3, wet=wet, **options)
+    return sampled_cof(law, contact, fluid, film, speed=0.3, wet=wet, **options)
 
 
 def test_the_error_of_the_film_load_spreads_the_odds_of_the_contact():
@@ -157,11 +157,13 @@ def test_the_error_of_the_tread_is_a_factor_up_to_the_highest_cof():
 
 def test_warmth_and_zero_move_the_film_s_part_alone():
     warmth, zero = (0.2 * normal_draws(0, name, 500) for name in ("warmth", "zero"))
-    plain = drawn_cof(samples=500)
-    warm = drawn_cof(film_shear=warmth, samples=500)
+    law = asperity_law(viscosity=2.0)
+    plain = drawn_cof(law, samples=500)
+    warm = drawn_cof(law, film_shear=warmth, samples=500)
+    assert plain.viscous.min() > 0.05
     assert warm.viscous == pytest.approx(plain.viscous * np.exp(warmth), rel=1e-6)
     assert warm.adhesion == pytest.approx(plain.adhesion, rel=1e-9)
-    off = drawn_cof(zero=0.01 * zero, samples=500)
+    off = drawn_cof(law, zero=0.01 * zero, samples=500)
     assert off.cof - plain.cof == pytest.approx(np.maximum(0.01 * zero, -plain.viscous), abs=1e-9)
     contact, _, film, wet = sole(5)
     dry = [

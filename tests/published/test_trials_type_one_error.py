@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from scipy.stats import f
 
+from underfoot.core import DataError
 from underfoot_trial_analysis.statistics import (
+    clustered_logistic,
     equivalence,
     mixed_model,
     paired_curve_test,
@@ -57,6 +59,18 @@ def area(rng):
     return not found.low < 0.5 < found.high
 
 
+def slips(rng):
+    """16 persons of very different risk, three trials each, no effect of the COF."""
+    who = np.repeat(np.arange(16), 3)
+    person, cof = rng.normal(0, 2, 16)[who], 0.2 + rng.normal(0, 0.015, 16)[who]
+    y = (rng.random(48) < 1 / (1 + np.exp(0.5 - person))).astype(int)
+    try:
+        fit = clustered_logistic(y, {"acof": cof + rng.normal(0, 0.02, 48)}, who)
+    except DataError:  # separated: no estimate, nothing claimed
+        return False
+    return fit["acof"].p < 0.05
+
+
 @pytest.mark.parametrize(
     ("one", "seed", "exact"),
     [
@@ -64,6 +78,7 @@ def area(rng):
         (equal_at_the_margin, 3, 0.05),
         (curves, 4, 0.05),
         (area, 5, 0.05),
+        (slips, 6, 0.05),
     ],
 )
 def test_type_one_error(one, seed, exact):

@@ -45,7 +45,7 @@ def test_the_error_joins_spread_and_interval_and_is_told():
     assert "tracks; numerical error 12 N" in found["fluid_load_sensor"].note
     assert found["peak_fluid_pressure"].uncertainty == pytest.approx(5e4)
     assert found["peak_fluid_pressure"].reason == ""
-    words = errors.words(found)
+    words = errors.sentence(found)
     assert "fluid load ± 40 N" in words
     assert "difference to cells of 1 mm" in words
     assert "steps in time: cof ± 0" in words
@@ -77,7 +77,7 @@ def test_every_run_tells_its_numerical_error(name):
         assert "difference to cells of 3 mm, 8 along the sliding" in words
         assert result.scalars["fluid_load"].interval is not None
     else:
-        assert "4 positions, and other grids under lugs" in words
+        assert "8 positions, and other grids under lugs" in words
     assert "numerical error" in cof.note
 
 

@@ -357,10 +357,10 @@ def test_a_recording_of_another_tribometer(tribo, tmp_path):
 
 
 def sole_block():
-    """Return the triangles of a block of 270 x 106 x 10 mm with an oval plan, narrower behind."""
+    """Return the triangles of a block of 135 x 53 x 10 mm with an oval plan, narrower behind."""
     angle = np.linspace(0, 2 * np.pi, 91)
-    width = 45 - 8 * np.cos(angle)
-    rim = np.column_stack([135 * np.cos(angle), width * np.sin(angle), 0 * angle])
+    width = 22.5 - 4 * np.cos(angle)
+    rim = np.column_stack([67.5 * np.cos(angle), width * np.sin(angle), 0 * angle])
     up = np.array([0.0, 0.0, 10.0])
     faces = []
     for one, other in pairwise(rim):
@@ -374,7 +374,7 @@ def test_an_outsole_file_of_another_format(tribo, tmp_path):
     np.save(path, sole_block())
     sole = outsole_from_file(path)
     assert sole.format == "NPY"
-    assert sole.surface.length == pytest.approx(0.27, abs=2e-3)
+    assert sole.surface.length == pytest.approx(0.135, abs=2e-3)
     shoe = {
         "outsole": {"file": str(path)},
         "material": {"shore_a": 60},
@@ -513,6 +513,13 @@ def test_two_packages_of_one_name(site):
     assert type(own.friction).__module__ == "tribo_ext.law"
     with pytest.raises(CaseError, match="is defined by tribo_ext"):
         Case(**PARTS, friction={"model": "broken_ext.law:Sticky", "at_water": 0.1})
+
+
+def test_a_package_without_a_version_is_computed_and_counts(site):
+    install(site, "tribo_ext", {"law": EXTENSIONS["law"]}, {"friction": DOORS["friction"]})
+    next(site.glob("*.dist-info/METADATA")).write_text("Metadata-Version: 2.1\nName: tribo_ext\n")
+    case = Case(**PARTS, friction={"model": "sticky", "at_water": 0.1})
+    assert run(case, quick=True).provenance.case_hash == case.hash != Case(**PARTS).hash
 
 
 def test_nobody_offers_what_nobody_offers(site):

@@ -191,7 +191,16 @@ def test_a_grid_check_is_saved_under_the_hash_of_its_case(smooth, tmp_path):
     file = tmp_path / "case.toml"
     checked.save(file)
     done = subprocess.run(
-        [sys.executable, "-c", COMMAND, "run", str(file), "--out", str(tmp_path / "out")],
+        [
+            sys.executable,
+            "-c",
+            COMMAND,
+            "run",
+            str(file),
+            "--no-advice",
+            "--out",
+            str(tmp_path / "out"),
+        ],
         capture_output=True,
         text=True,
         check=False,

@@ -285,8 +285,9 @@ def _whole_cof(case: Case, law: PairContactLaw, quick: bool, progress: Progress)
         raise ConvergenceError(
             f"the case {case.name} gave no result: {contact.status}", history=(), where=case.name
         )
-    samples = {"samples": law.draws.count}
-    found = contact_friction(case, parts.context, parts.local_law, parts.sole, contact, **samples)
+    found = contact_friction(
+        case, parts.context, parts.local_law, parts.sole, contact, samples=law.draws.count
+    )
     sums, sampled = found.sums, found.sampled
     positions = averaged(parts, solution, quick=quick, progress=part(progress, 0.5, 1.0))
     if positions is not None:

@@ -191,27 +191,29 @@ class Case(Presentable):
             )
             raise CaseError([error])
         allow = lenient if callable(lenient) else (lambda _path: lenient)
-        found = composed(given, catalogue, places, folder, allow)
+        composition = composed(given, catalogue, places, folder, allow)
         try:
-            parts = CaseParts.model_validate(found.tree, context=context)
+            parts = CaseParts.model_validate(composition.tree, context=context)
         except ValidationError as error:
-            more = translated(error, CaseParts, found.tree, places, without=found.failed)
-            raise CaseError([*found.errors, *more]) from None
-        for path, entry in found.entries.items():
+            more = translated(
+                error, CaseParts, composition.tree, places, without=composition.failed
+            )
+            raise CaseError([*composition.errors, *more]) from None
+        for path, entry in composition.entries.items():
             section: Any = parts
             for part in path.split("."):
                 section = getattr(section, part)
             if isinstance(section, Section):
                 section._entry = entry
         problems = [p for path, section in walk(parts) for p in section.problems(parts, path)]
-        if found.errors or problems:
-            raise CaseError([*found.errors, *(placed(error, places) for error in problems)])
-        dropped = dict.fromkeys(found.dropped)
-        said = [f"{path} is left out: {why}" for path, why in found.dropped.items()]
+        if composition.errors or problems:
+            raise CaseError([*composition.errors, *(placed(error, places) for error in problems)])
+        dropped = dict.fromkeys(composition.dropped)
+        left_out = [f"{path} is left out: {why}" for path, why in composition.dropped.items()]
         vars(self).update(
             {name: getattr(parts, name) for name in _SECTIONS},
             catalogue=catalogue,
-            changes=(*(remarks or ()), *(said if remarks or callable(lenient) else ())),
+            changes=(*(remarks or ()), *(left_out if remarks or callable(lenient) else ())),
             _parts=parts,
             _given=_edited(given, dropped),
             _text=text,
@@ -322,8 +324,8 @@ class Case(Presentable):
         for path, section, name in self._values():
             cls, here = type(section), f"{path}.{name}"
             if isinstance(section, Option) and name == section.key:
-                own = cls.__module__.startswith("underfoot.")
-                content[here] = section.name if own else cls
+                packaged = cls.__module__.startswith("underfoot.")
+                content[here] = section.name if packaged else cls
                 continue
             value = getattr(section, name)
             if here in self.idle_paths or value is None or isinstance(value, Section):
@@ -476,10 +478,10 @@ def value_text(origin: Origin, unit: str) -> str:
 def _origin_text(origin: Origin) -> str:
     leaf = origin.leaf
     plain = {GIVEN: "given", DEFAULT: "default"}
-    words = plain.get(origin.kind, f"{origin.kind}: {origin.entry}")
-    words += ", assumed" if leaf.assumed else ""
-    words += "" if leaf.verified else ", from memory"
-    return words + (f" ({leaf.source})" if leaf.source else "")
+    sentence = plain.get(origin.kind, f"{origin.kind}: {origin.entry}")
+    sentence += ", assumed" if leaf.assumed else ""
+    sentence += "" if leaf.verified else ", from memory"
+    return sentence + (f" ({leaf.source})" if leaf.source else "")
 
 
 def _version(mapping: Mapping[str, Any], places: toml.Places) -> int:

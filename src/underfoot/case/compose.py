@@ -17,6 +17,7 @@ from .friction import FrictionOption
 from .parts import CATALOGUE_SECTIONS, CaseParts, slot_table
 from .section import (
     CATALOGUE,
+    DEFAULT,
     GIVEN,
     Option,
     Origin,
@@ -28,6 +29,8 @@ from .section import (
 from .versions import RENAMED, SHORT
 
 DRY = "none"
+MEASURED_CONTACT = "contact_table"
+"""Option of ``rough_contact`` where nobody chose one and its inputs are measured."""
 _ALTERNATIVES = {
     "contaminant.viscosity": ("contaminant.glycerol_fraction", "contaminant.fraction_basis"),
     "contaminant.glycerol_fraction": ("contaminant.viscosity",),
@@ -98,6 +101,7 @@ def composed(
         tree["contaminant"] = None
     found.tree = _settled(found, CaseParts, tree, "")
     _settle_hardness(found)
+    _settle_contact(found)
     _settle_reads(found)
     return found
 
@@ -118,21 +122,21 @@ def expanded(item: Any, path: str, entries: dict[str, str] | None = None) -> Any
     return {key: expanded(below, f"{path}.{key}", entries) for key, below in item.items()}
 
 
-def _lay(found: Composition, laid: dict[str, Origin], section: str, name: Any) -> None:
+def _lay(composition: Composition, laid: dict[str, Origin], section: str, name: Any) -> None:
     kind, part = CATALOGUE_SECTIONS[section]
-    catalogue, where = found.catalogue, found.places(f"{section}.from")
+    catalogue, where = composition.catalogue, composition.places(f"{section}.from")
     if not isinstance(name, str):
-        found.errors.append(InputError(f"{name!r} is no name", where=where, allowed="text"))
+        composition.errors.append(InputError(f"{name!r} is no name", where=where, allowed="text"))
         return
     try:
         entry = catalogue.entry(kind, name, where=where)
     except InputError as error:
-        found.errors.append(error)
-        found.failed.append(section)
+        composition.errors.append(error)
+        composition.failed.append(section)
         return
     if part and not entry.under(part):
         known = [n for n in catalogue.names(kind) if catalogue.entry(kind, n).under(part)]
-        found.errors.append(unknown_name(f"{kind} with {part}", name, known, where=where))
+        composition.errors.append(unknown_name(f"{kind} with {part}", name, known, where=where))
     for path in [path for path in laid if path.startswith(section + ".")]:
         del laid[path]
     for path, leaf in _part(entry, part, section).items():
@@ -140,7 +144,7 @@ def _lay(found: Composition, laid: dict[str, Origin], section: str, name: Any) -
         laid[RENAMED.get(full) or SHORT.get(full) or full] = Origin(
             CATALOGUE, leaf, f"{kind} {name}"
         )
-    found.entries[section] = name
+    composition.entries[section] = name
 
 
 def _lay_roughness_of_compound(found: Composition, laid: dict[str, Origin]) -> None:
@@ -161,9 +165,9 @@ def _part(entry: Entry, part: str, section: str) -> dict[str, Leaf]:
     return {path: leaf for path, leaf in entry.values.items() if not path.startswith(other)}
 
 
-def _friction_record(found: Composition, tables: Mapping[str, Any]) -> dict[str, Origin]:
+def _friction_record(composition: Composition, tables: Mapping[str, Any]) -> dict[str, Origin]:
     """Return what the catalogue knows of friction under the fluid and the chosen law takes."""
-    catalogue, name = found.catalogue, found.entries.get("contaminant")
+    catalogue, name = composition.catalogue, composition.entries.get("contaminant")
     if name is None or ("fluid", name) not in catalogue.entries:
         return {}
     try:
@@ -205,7 +209,7 @@ def _sections(table: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _settled(
-    found: Composition, model: type[Section], table: dict[str, Any], path: str
+    composition: Composition, model: type[Section], table: dict[str, Any], path: str
 ) -> dict[str, Any]:
     """Return a section's table without what its option does not take, with what files hold."""
     if issubclass(model, Option) and not model.name:
@@ -220,42 +224,74 @@ def _settled(
                 continue
             if from_catalogue(table[key]):
                 del table[key]
-            elif found.lenient(here):
+            elif composition.lenient(here):
                 del table[key]
-                found.dropped[here] = f'not used by {model.key} = "{model.name}"'
+                composition.dropped[here] = f'not used by {model.key} = "{model.name}"'
     try:
-        table = model.completed(table, found.folder, path)
+        table = model.completed(table, composition.folder, path)
     except InputError as error:
-        found.errors.append(placed(error, found.places))
-        found.failed.append(path)
+        composition.errors.append(placed(error, composition.places))
+        composition.failed.append(path)
     for key, info in model.model_fields.items():
         section = section_in(info)
         if section is not None and isinstance(table.get(key), dict):
             below = f"{path}.{key}" if path else key
-            table[key] = _settled(found, section, table[key], below)
+            table[key] = _settled(composition, section, table[key], below)
     return table
 
 
-def _settle_hardness(found: Composition) -> None:
-    material = found.tree.get("shoe", {})
+def _settle_hardness(composition: Composition) -> None:
+    material = composition.tree.get("shoe", {})
     for part in ("material", "modulus"):
         material = material.get(part) if isinstance(material, dict) else None
     if material is None or (isinstance(material, Origin) and material.leaf.given is None):
         return
-    given = found.tree.pop("hardness", None)
-    found.tree["hardness"] = None
+    given = composition.tree.pop("hardness", None)
+    composition.tree["hardness"] = None
     if not isinstance(given, dict) or not given:
         return
-    if found.lenient("hardness.model"):
-        found.dropped["hardness.model"] = "not used beside a measured modulus"
+    if composition.lenient("hardness.model"):
+        composition.dropped["hardness.model"] = "not used beside a measured modulus"
         return
-    found.errors.append(
+    composition.errors.append(
         InputError(
             "is not used: the modulus of the compound is given",
-            where=found.places("hardness.model"),
+            where=composition.places("hardness.model"),
             remedy="Remove it, or shoe.material.modulus",
         )
     )
+
+
+def _settle_contact(found: Composition) -> None:
+    """Let two measured surfaces meet with a measured spectrum, where no contact is chosen.
+
+    A modulus alone is that at rest: at the rates of sliding the rubber is stiffer and lets more
+    fluid through.
+    """
+    given = found.tree.get("rough_contact") or {}
+    origin = origin_of(given.get("model"))
+    if given and not (given.keys() == {"model"} and origin and origin.kind == DEFAULT):
+        return
+    found.tree.pop("rough_contact", None)
+
+    def value(*path: str) -> Any:
+        item: Any = found.tree
+        for part in path:
+            item = item.get(part) if isinstance(item, dict) else None
+        return item
+
+    def measured(item: Any) -> bool:
+        """Return whether a value, or every value of a table, is given and not assumed."""
+        if isinstance(item, dict):
+            return bool(item) and all(map(measured, item.values()))
+        origin = origin_of(item)
+        return item is not None and not (origin and (origin.leaf.assumed or not origin.leaf.given))
+
+    inputs = [value(part, "roughness", "file") for part in ("shoe", "floor")]
+    if all(map(measured, [*inputs, value("shoe", "material", "relaxation")])):
+        why = "both surfaces and the compound are measured"
+        leaf = Leaf(MEASURED_CONTACT, source=why)
+        found.tree["rough_contact"] = {"model": Origin(DEFAULT, leaf, value=MEASURED_CONTACT)}
 
 
 def _settle_reads(found: Composition) -> None:

@@ -4,32 +4,38 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
+from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 
-from underfoot.core import Breach, Cache, SourcedValue
+from underfoot.core import Breach, Cache, SourcedValue, display
+from underfoot.core.arrays import Array
 
 from .context import Context
-from .quantity import Flag, Quantity, default
+from .quantity import Flag, Quantity, default, optional
 from .section import Option
-from .surfaces import WAVES
+from .surfaces import STYLUS_WAVES, WAVES
+from .tables import meant_file, with_checksum
 
 if TYPE_CHECKING:
     from underfoot.film import FilmModel
+    from underfoot.rough_contact import ContactTable
     from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
     from underfoot.shoe import SoleMap
     from underfoot.sole_contact.compliance import Compliance
 
+Density = Callable[[Array], Array]
+"""C(q) (m^4) of wave numbers (rad/m)."""
 HARDNESS_SPREAD = 0.3
 """Relative standard deviation of a modulus from hardness (assumed: tens of percent)."""
-TABLE_CELLS, TABLE_SURFACES, TABLE_WAVES = 128, 4, 4
-"""Contact table: cells along a side, surfaces, longest waves along a side."""
-TABLE_PRESSURES = (1e3, 2e6, 14)
+TABLE_PRESSURES = (1e3, 2e6, 12)
 """Contact table: lowest and highest nominal pressure, Pa, and their number."""
-ELASTIC_RQ, ELASTIC_MODULUS, ELASTIC_PRESSURES = 1e-6, 1e6, (1.0, 3e4, 22)
-"""Contact table of an elastic compound: Rq (m), Young's modulus and pressures (Pa) at which it is
-computed, once for every roughness and hardness."""
+ELASTIC_MODULUS = 1e6
+"""Young's modulus (Pa) at which the table of an elastic compound is computed; others scale it."""
+ELASTIC_RQ, ELASTIC_PRESSURES = 1e-6, (1.0, 3e4, 22)
+"""Rq (m) and pressures (Pa) of the table that all self-affine elastic interfaces share."""
 
 
 class HardnessOption(Option):
@@ -88,6 +94,10 @@ class RoughContactOption(Option):
     def build(self, context: Context) -> PressureGapLaw:
         """Return the law of pressure and permeability against the mean gap."""
 
+    def table(self, context: Context) -> ContactTable | None:
+        """Return the contact that friction takes too: of a file or of scans; else None."""
+        return None
+
 
 class ExponentialContact(RoughContactOption):
     """One formula, no flow factor."""
@@ -102,47 +112,152 @@ class ExponentialContact(RoughContactOption):
 
 
 class ContactTableOption(RoughContactOption):
-    """Self-affine surfaces of the interface's Rq in sliding contact with the outsole's rubber, with
-    the flow factors of their own gaps; computed once and cached. Elastic compounds of one set of
-    waves share one table: heights and pressures scale.
+    """Both surfaces in sliding contact by boundary elements, with the flow factors of their gap.
+
+    From a file of ``underfoot contact``; of two scans; else of self-affine surfaces with the
+    interface's Rq. Waves from the interface's longest to 2.5 um, in nested grids. Computed once and
+    cached. It is chosen by itself where both surfaces and the compound are measured.
     """
 
     name: ClassVar[str] = "contact_table"
     source: ClassVar[str] = "sliding rough contact by boundary elements"
-    reads: ClassVar[tuple[str, ...]] = WAVES
+    reads: ClassVar[tuple[str, ...]] = WAVES[:2]
+    chosen_by: ClassVar[tuple[str, ...]] = ("file",)
+    file_paths: ClassVar[tuple[str, ...]] = ("file",)
+
+    file: str | None = optional(
+        "contact table that underfoot contact wrote; the path counts from the case file's folder"
+    )
+    sha256: str | None = optional("checksum of the file that is meant")
+
+    @classmethod
+    def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+        return with_checksum(table, "file", folder, where)
 
     def build(self, context: Context) -> PressureGapLaw:
-        from underfoot.material import Elastomer
-        from underfoot.rough_contact import ContactTable
-        from underfoot.surface import self_affine
+        return (self.table(context) or self._self_affine(context)).law(context.motion.speed)
 
-        rq, waves, speed = context.rq_value, context.interface, context.motion.speed
+    def table(self, context: Context) -> ContactTable | None:
+        """Return the contact of the file or of two scans; None where neither is given."""
+        if self.file:
+            from underfoot.rough_contact import ContactTable
+
+            with meant_file(self.file, self.sha256, "rough_contact.file") as path:
+                return ContactTable.load(path)
+        shoe, floor = context.shoe.roughness, context.floor.roughness
+        if not (shoe.file and floor.file):
+            return None
+        modulus = context.youngs_modulus
         elastic = context.shoe.material.relaxation is None
-        height, rubber, pressures, speeds = (
-            (ELASTIC_RQ, Elastomer(ELASTIC_MODULUS, context.poisson_ratio), ELASTIC_PRESSURES, [1])
-            if elastic
-            else (rq, context.rubber(), TABLE_PRESSURES, [0.5 * speed, speed, 2.0 * speed])
-        )
-        side = TABLE_WAVES * waves.longest_wave
-        spacing = min(side / TABLE_CELLS, waves.shortest_wave / 2)
-        cells = 2 * math.ceil(side / spacing / 2)
-        shape = (height, waves.hurst, waves.longest_wave, waves.shortest_wave)
-        seeds = range(TABLE_SURFACES)
-        surfaces = [self_affine(cells, side / cells, *shape, seed) for seed in seeds]
-        table = ContactTable.from_surfaces(
-            surfaces,
+        scale = modulus / ELASTIC_MODULUS if elastic else 1.0
+        low, high, count = TABLE_PRESSURES
+        name = f"{Path(shoe.file).name} on {Path(floor.file).name}"
+        # pressures at a modulus of whole tenths of a decade: one table serves draws near to it
+        near = 10 ** (round(10 * math.log10(scale)) / 10)
+        nodes = np.geomspace(low / near, high / near, count)
+        made = self._made(context, floor.density, shoe.density, nodes, name)
+        return made.scaled(1.0, scale, context.motion.speed) if elastic else made
+
+    def _self_affine(self, context: Context) -> ContactTable:
+        """Return the contact of self-affine surfaces with the interface's Rq."""
+        rq, waves = context.rq_value, context.interface
+        elastic = context.shoe.material.relaxation is None
+        height = ELASTIC_RQ if elastic else rq
+        exponent, longest = -2 * (1 + waves.hurst), 2 * math.pi / waves.longest_wave
+        q = np.geomspace(longest, 2 * math.pi / STYLUS_WAVES[0], 400)
+        level = height**2 / (2 * math.pi * np.trapezoid(q * (q / longest) ** exponent, q))
+
+        def density(wavenumber: Array) -> Array:
+            return level * (wavenumber / longest) ** exponent
+
+        nodes = np.geomspace(*(ELASTIC_PRESSURES if elastic else TABLE_PRESSURES))
+        name = f"self-affine interface, Rq {display(rq, 'm')}"
+        made = self._made(context, density, None, nodes, name)
+        if not elastic:
+            return made
+        higher, stiffer = rq / ELASTIC_RQ, context.youngs_modulus / ELASTIC_MODULUS
+        return made.scaled(higher, higher * stiffer, context.motion.speed)
+
+    def _made(
+        self, context: Context, floor: Density, shoe: Density | None, pressure: Array, name: str
+    ) -> ContactTable:
+        """Return the table of an elastic compound at ``ELASTIC_MODULUS``, of another as it is."""
+        from underfoot.material import Elastomer
+        from underfoot.rough_contact import table_over_scales
+
+        elastic = context.shoe.material.relaxation is None
+        rubber = Elastomer(ELASTIC_MODULUS, context.poisson_ratio) if elastic else context.rubber()
+        return table_over_scales(
+            floor,
+            (context.interface.longest_wave, STYLUS_WAVES[0]),
             rubber,
-            np.geomspace(*pressures),
-            np.array(speeds, dtype=float),
+            pressure,
+            [1.0 if elastic else context.motion.speed],
+            shoe=shoe,
             poisson_ratio=context.poisson_ratio,
             cache=Cache("contact_table"),
-            description=f"self-affine interface, Rq {rq * 1e6:.3g} um",
+            description=name,
             progress=context.progress,
         )
-        if not elastic:
-            return table.law(speed)
-        higher, stiffer = rq / ELASTIC_RQ, context.youngs_modulus / ELASTIC_MODULUS
-        return table.law(1.0).scaled(higher, higher * stiffer)
+
+
+class _Theory(RoughContactOption):
+    """A theory on the spectra of both surfaces, fluid slowed as by Patir and Cheng 1978.
+
+    The spectra are those of the scans; a surface without one is self-affine with its Rq. A
+    viscoelastic compound has the modulus at the rate of the longest wave.
+    """
+
+    reads: ClassVar[tuple[str, ...]] = WAVES[:2]
+
+    def build(self, context: Context) -> PressureGapLaw:
+        wave = context.interface.longest_wave
+        q = np.geomspace(2 * math.pi / wave, 2 * math.pi / STYLUS_WAVES[0], 300)
+        parts = context.shoe.roughness, context.floor.roughness
+        if all(part.file for part in parts):
+            density = np.sum([part.density(q) for part in parts], axis=0)
+        else:
+            density = (q / q[0]) ** (-2 * (1 + context.interface.hurst))
+            density *= context.rq_value**2 / (2 * math.pi * np.trapezoid(q * density, q))
+        rate = 2 * math.pi * abs(context.motion.speed) / wave
+        modulus = float(np.abs(context.rubber().complex_modulus(rate)))
+        return self._law(q, density, modulus, context.poisson_ratio)
+
+    @abstractmethod
+    def _law(self, q: Array, density: Array, modulus: float, poisson: float) -> PressureGapLaw:
+        """Return the law of the theory."""
+
+
+def _passing(q: Array, density: Array) -> Callable[[Array], Array]:
+    """Return the flow factor of Patir and Cheng against the mean gap of a spectrum."""
+    from underfoot.film import patir_cheng_pressure_factors
+
+    rq = math.sqrt(2 * math.pi * np.trapezoid(q * density, q))
+    return lambda gap: np.clip(patir_cheng_pressure_factors(gap, rq)[0], 0.0, 1.0)
+
+
+class PerssonContact(_Theory):
+    """Persson's theory: mean gap of an elastic contact over all its waves."""
+
+    name: ClassVar[str] = "persson"
+    source: ClassVar[str] = "Yang and Persson 2008"
+
+    def _law(self, q: Array, density: Array, modulus: float, poisson: float) -> PressureGapLaw:
+        from underfoot.rough_contact import persson_law
+
+        return persson_law(q, density, modulus, poisson, _passing(q, density))
+
+
+class GreenwoodWilliamsonContact(_Theory):
+    """Greenwood and Williamson's independent summits: light loads only."""
+
+    name: ClassVar[str] = "greenwood_williamson"
+    source: ClassVar[str] = "Greenwood and Williamson 1966"
+
+    def _law(self, q: Array, density: Array, modulus: float, poisson: float) -> PressureGapLaw:
+        from underfoot.rough_contact import greenwood_williamson_law
+
+        return greenwood_williamson_law(q, density, modulus, poisson, _passing(q, density))
 
 
 class ComplianceOption(Option):

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from underfoot.core import Breach, Progress, SourcedValue, silent
 from underfoot.core.catalogue import Catalogue
@@ -17,6 +16,7 @@ from .surfaces import Floor, Interface
 
 if TYPE_CHECKING:
     from underfoot.material import Elastomer
+    from underfoot.rough_contact import ContactTable
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +29,7 @@ class Context:
         rq: Rq of the interface, m; ``rq_deviation`` is its standard deviation over itself.
         fluid: Name of the contaminant.
         catalogue: Entries of the kinds that the options of the case name in ``consults``.
+        rough_contact: Returns the rough contact that friction shares, from a context; or None.
     """
 
     shoe: Shoe
@@ -44,6 +45,7 @@ class Context:
     fluid: str
     catalogue: Catalogue
     progress: Progress = silent
+    rough_contact: Callable[[Context], ContactTable | None] = lambda _: None
 
     @property
     def youngs_modulus(self) -> float:
@@ -79,11 +81,4 @@ class Context:
         relaxation = self.shoe.material.relaxation
         if relaxation is None:
             return material.Elastomer(self.youngs_modulus, self.poisson_ratio)
-        shear = material.RelaxationSpectrum(
-            relaxation.equilibrium_shear_modulus,
-            np.array([term.shear_modulus for term in relaxation.terms]),
-            np.array([term.time for term in relaxation.terms]),
-        )
-        return material.Elastomer(
-            material.young_from_shear(shear, self.poisson_ratio), self.poisson_ratio
-        )
+        return material.Elastomer(relaxation.young(self.poisson_ratio), self.poisson_ratio)

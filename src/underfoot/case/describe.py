@@ -35,7 +35,8 @@ def assumptions(case: Case) -> list[str]:
                 lines.append(f"{path}.roughness: rq = {rq} (1.25 Ra, Gaussian heights)")
         rq = case.effective_rq
         value = display(rq.value or 0.0, rq.unit)
-        lines.append(f"interface: effective_rq = {value} ({rq.source}; {rq.note})")
+        if rq.assumed:
+            lines.append(f"interface: effective_rq = {value} ({rq.source}; {rq.note})")
     return lines
 
 

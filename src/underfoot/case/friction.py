@@ -21,6 +21,7 @@ from .tables import as_written, meant_file, plain, table_columns, table_source, 
 
 if TYPE_CHECKING:
     from underfoot.friction import AsperityScale, BoundaryFriction, FrictionLaw, SpeedEffectLaw
+    from underfoot.rough_contact import ContactTable
 
 PIN = ("setup", "pin_on_disk_g2")
 """Catalogue entry of the pin whose readings the laws of a mechanism are calibrated on."""
@@ -30,6 +31,11 @@ RIVAL_DEVIATION = {"mean_film_sharing": 0.095, "viscoelastic_area": 0.241}
 HYSTERESIS_WAVES = (2.5e-6, 0.2e-3, 0.8e-3)
 """Shortest wave, roll-off and longest wave (m) of the floor that make hysteresis: with these and a
 loss tangent of 0.2 theory gives the closed form of ``friction.pair_contact``."""
+SHORTEST_WAVE_DEVIATION = 0.3
+"""Standard deviation of ln of hysteresis and of real area by the shortest wave: hysteresis is 30 %
+lower down to 10 um and 65 % higher down to 0.3 um than down to 2.5 um (Persson theory)."""
+NO_LOSS = 1e-4
+"""Hysteresis COF below which a contact table is that of an elastic compound."""
 SAME_VISCOSITY = 0.01
 """Relative difference up to which two viscosities are the same fluid."""
 COLUMNS = {
@@ -86,8 +92,9 @@ class PairOption(FrictionOption):
     )
     sha256: str | None = optional("checksum of the file that is meant")
     contact_table: str | None = optional(
-        "contact table of the rubber on the floor (ContactTable.save), for hysteresis and, dry, "
-        "real contact area; default: theory where a spectrum is given, else a closed form"
+        "contact table of the rubber on the floor (underfoot contact), for hysteresis and, dry, "
+        "real contact area; default: that of rough_contact, theory where a spectrum is given, else "
+        "a closed form"
     )
     contact_table_sha256: str | None = optional("checksum of the contact table that is meant")
 
@@ -107,17 +114,24 @@ class PairOption(FrictionOption):
 
         material, hurst = context.shoe.material, context.interface.hurst
         surfaces = context.shoe.roughness, context.floor.roughness
-        hysteresis, origin = _hysteresis(context)
-        full_contact = None
+        table, full_contact, deviation = context.rough_contact(context), None, 0.0
+        origin = "the rough contact of both surfaces"
         if self.contact_table:
             with meant_file(
                 self.contact_table, self.contact_table_sha256, "friction.contact_table"
             ) as path:
-                table = ContactTable.load(path)
+                table, origin = ContactTable.load(path), Path(self.contact_table).name
+        hysteresis = None
+        if table is not None:
             at = CONTACT_PRESSURE, context.motion.speed
             area = float(table.real_contact_fraction(*at))
-            hysteresis, origin = float(table.cof_hysteresis(*at)), Path(self.contact_table).name
             full_contact = CONTACT_PRESSURE / float(erfinv(min(area, 1 - 1e-9)))
+            deviation = contact_deviation(table, *at, context)
+            lossy = bool(self.contact_table) or _loss_tested(context)
+            if lossy and table.values["cof_hysteresis"].max() > NO_LOSS:
+                hysteresis = float(table.cof_hysteresis(*at))
+        if hysteresis is None:
+            hysteresis, origin = _hysteresis(context)
         draws = packaged_pair_draws()
         if self.draws_file:
             with meant_file(self.draws_file, self.sha256, "friction.draws_file") as path:
@@ -131,6 +145,11 @@ class PairOption(FrictionOption):
             hysteresis_origin=origin,
             full_contact=full_contact,
             polymer=material.polymer,
+            contact_deviation=deviation,
+            measured=(
+                context.shoe.roughness.rq_or_estimate is not None,
+                context.floor.roughness.rq_or_estimate is not None,
+            ),
             shore_a_deviation=(material.shore_a and material.sourced("shore_a").uncertainty) or 0.0,
             loss_tangent=_spread(material.sourced("loss_tangent")) or LOSS_TANGENTS,
             sole_slope=_slope(surfaces[0]),
@@ -176,11 +195,11 @@ class BoundaryOption(_Measured):
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import BoundaryLaw, boundary_friction_at
 
-        others, own = measured_fluids(context.catalogue), self.measured(context)
-        if own is None:
-            own = boundary_friction_at(_viscosity(context), others, fluid=context.fluid)
+        others, measured = measured_fluids(context.catalogue), self.measured(context)
+        if measured is None:
+            measured = boundary_friction_at(_viscosity(context), others, fluid=context.fluid)
         hysteresis = self._optional("hysteresis_cof")
-        return BoundaryLaw.measured(own, cof_hysteresis=hysteresis, others=others)
+        return BoundaryLaw.measured(measured, cof_hysteresis=hysteresis, others=others)
 
 
 class StribeckOption(_Measured):
@@ -200,13 +219,13 @@ class StribeckOption(_Measured):
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import BoundaryLaw, StribeckLaw, stribeck_law_at
 
-        others, own = measured_fluids(context.catalogue), self.measured(context)
+        others, measured = measured_fluids(context.catalogue), self.measured(context)
         hysteresis = self._optional("hysteresis_cof")
-        if own is None:
+        if measured is None:
             return stribeck_law_at(_viscosity(context), others, fluid=context.fluid)
-        if own.tau_hydro is None or own.cof_asymptote is None:
-            return BoundaryLaw.measured(own, cof_hysteresis=hysteresis, others=others)
-        return StribeckLaw.measured(own, cof_hysteresis=hysteresis, others=others)
+        if measured.tau_hydro is None or measured.cof_asymptote is None:
+            return BoundaryLaw.measured(measured, cof_hysteresis=hysteresis, others=others)
+        return StribeckLaw.measured(measured, cof_hysteresis=hysteresis, others=others)
 
 
 class AdhesionBlockingOption(FrictionOption):
@@ -542,6 +561,19 @@ def measured_fluids(catalogue: Catalogue) -> tuple[BoundaryFriction, ...]:
     return tuple(fluids)
 
 
+def contact_deviation(
+    table: ContactTable, pressure: float, speed: float, context: Context
+) -> float:
+    """Return the standard deviation of ln of real area and hysteresis of a contact table.
+
+    Of the mean over its random surfaces, of the roughness measured, and of the shortest wave.
+    """
+    area = table.sourced("real_contact_fraction", pressure, speed)
+    count = float(table.realizations.min())
+    between = (area.uncertainty or 0.0) / (area.value or 1.0) / math.sqrt(count)
+    return math.hypot(between, context.rq_deviation or 0.0, SHORTEST_WAVE_DEVIATION)
+
+
 def _hardness(context: Context) -> float:
     """Return Shore A, or where a modulus is given that of an equal ratio to Shore A 60."""
     from underfoot.friction.pair_contact import GENT_SLOPE, REFERENCE_HARDNESS
@@ -589,13 +621,14 @@ def _slope(roughness: SurfaceRoughness) -> float | None:
 def _hysteresis(context: Context) -> tuple[float | None, str]:
     """Return the hysteresis COF of the compound's spectrum on the floor's, and what it is from.
 
-    None without a spectrum of the compound; that of a floor without a scan has its usual form.
+    None without a spectrum of the compound, or one tested at slower rates than those of sliding;
+    the spectrum of a floor without a scan has its usual form.
     """
     from underfoot.friction.pair_contact import CONTACT_PRESSURE, SLOPE, real_slope
     from underfoot.rough_contact import persson
 
     floor, (shortest, roll_off, longest) = context.floor.roughness, HYSTERESIS_WAVES
-    if context.shoe.material.relaxation is None:
+    if not _loss_tested(context):
         return None, ""
     wavenumber = np.geomspace(2 * math.pi / longest, 2 * math.pi / shortest, 60)
     if floor.file is None:
@@ -617,6 +650,12 @@ def _hysteresis(context: Context) -> tuple[float | None, str]:
     assert contact.cof_hysteresis is not None  # the rubber is viscoelastic
     surface = "" if floor.file is None else " on the floor's scan"
     return float(contact.cof_hysteresis[0]), f"Persson theory{surface}"
+
+
+def _loss_tested(context: Context) -> bool:
+    """Return whether the compound's loss is known at the slowest rate of sliding asperities."""
+    rate = 2 * math.pi * abs(context.motion.speed) / HYSTERESIS_WAVES[2]
+    return context.shoe.material.loss_tested_at(rate)
 
 
 def _viscosity(context: Context) -> float:

@@ -89,14 +89,16 @@ class Section(BaseModel):
         if not isinstance(given, Mapping):
             return handler(given)
         given = cls.in_own_terms(given)
-        origins = {key: found for key, item in given.items() if (found := origin_of(item))}
+        origins = {key: origin for key, item in given.items() if (origin := origin_of(item))}
         plain = {
             key: origins[key].leaf.given if key in origins else item for key, item in given.items()
         }
         if issubclass(cls, Option):
             plain.pop(cls.key, None)
         section = handler(plain)
-        section._origins = {key: cls._bound(section, key, found) for key, found in origins.items()}
+        section._origins = {
+            key: cls._bound(section, key, origin) for key, origin in origins.items()
+        }
         section._entry = entry
         return section
 
@@ -393,8 +395,8 @@ def with_file_values(
             given[key] = item
     origins = {}
     for key, value in values.items():
-        found = origin_of(value)
-        leaf = Leaf(value) if found is None else found.leaf
+        given_origin = origin_of(value)
+        leaf = Leaf(value) if given_origin is None else given_origin.leaf
         origins[key] = Origin(FILE, leaf, name)
     return {**origins, **given}
 

@@ -1,26 +1,44 @@
 """Sections for the shoe: compound, surface, shape or outsole file, tread, wear, layers."""
 
+from __future__ import annotations
+
+import math
+import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
+import numpy as np
 from pydantic import Field, create_model
 
-from underfoot.core import InputError, RangeError, display
+from underfoot.core import InputError, RangeError, display, nearest_match
 from underfoot.core.registry import offered
 
 from .quantity import Flag, Length, Quantity, default, optional
-from .section import GIVEN, CaseView, Origin, Section, from_catalogue, leaf_of, refused_at
+from .section import (
+    CATALOGUE,
+    GIVEN,
+    CaseView,
+    Origin,
+    Section,
+    from_catalogue,
+    leaf_of,
+    origin_of,
+    refused_at,
+    with_file_values,
+)
 from .sole import SolePlan, TreadPattern
 from .surfaces import SurfaceRoughness
-from .tables import plain, with_checksum
+from .tables import meant_file, plain, with_checksum
 from .wear import Wear
 
 if TYPE_CHECKING:
     from underfoot.friction.shoe_class import Certified, ShoeClass
+    from underfoot.material import RelaxationSpectrum
 
 Modulus = Annotated[float, Quantity("Pa", 1e4, 1e12)]
+Rate = Annotated[float, Quantity("rad/s", 0.0, 1e15, open_low=True)]
 TermModulus = Annotated[float, Quantity("Pa", 0.0, 1e12, open_low=True)]
 RelaxationTime = Annotated[float, Quantity("s", 0.0, 1e12, open_low=True)]
 Hardness = Annotated[float, Quantity("1", 0.0, 100.0, open_low=True)]
@@ -46,9 +64,22 @@ class Relaxation(Section):
     equilibrium_shear_modulus: TermModulus
     terms: tuple[RelaxationTerm, ...]
 
+    def young(self, poisson_ratio: float) -> RelaxationSpectrum:
+        """Return the spectrum of Young's modulus, Pa."""
+        from underfoot.material import RelaxationSpectrum, young_from_shear
+
+        shear = RelaxationSpectrum(
+            self.equilibrium_shear_modulus,
+            np.array([term.shear_modulus for term in self.terms]),
+            np.array([term.time for term in self.terms]),
+        )
+        return young_from_shear(shear, poisson_ratio)
+
 
 class Material(Section):
     """Outsole compound. A measured modulus goes before one from hardness."""
+
+    file_paths: ClassVar[tuple[str, ...]] = ("file",)
 
     polymer: str | None = optional(
         "TPU, PU, SBR, NBR, ...; soles of one polymer share the error of its friction"
@@ -65,6 +96,32 @@ class Material(Section):
         "relaxation spectrum goes before it"
     )
     relaxation: Relaxation | None = None
+    slowest_tested: Rate | None = optional("lowest frequency that the relaxation was measured at")
+    fastest_tested: Rate | None = optional("highest frequency that the relaxation was measured at")
+    file: str | None = optional(
+        "compound that underfoot material wrote; the path counts from the case file's folder"
+    )
+    sha256: str | None = optional("checksum of the file that is meant; another file is refused")
+
+    @classmethod
+    def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:
+        table = with_checksum(table, "file", folder, where)
+        name = plain(table.get("file"))
+        if not isinstance(name, str):
+            return table
+        values = _compound(Path(name), plain(table["sha256"]), f"{where}.file")
+        name = Path(name).name
+        if "modulus" in values:  # a measured modulus goes before a hardness of the catalogue
+            table = {k: item for k, item in table.items() if k != "shore_a" or not _laid(item)}
+        if "relaxation" in values:
+            given = table.get("relaxation") or {}
+            spectrum = with_file_values(given, values.pop("relaxation"), name)
+            table = {**table, "relaxation": spectrum}
+        return with_file_values(table, values, name)
+
+    def loss_tested_at(self, rate: float) -> bool:
+        """Return whether a test of the compound tells its loss at a rate (rad/s)."""
+        return self.relaxation is not None and rate <= (self.fastest_tested or math.inf)
 
     @classmethod
     def in_own_terms(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -96,6 +153,34 @@ class Material(Section):
                 allowed="below 100",
                 remedy='Write modulus = "50 MPa" from a measurement instead',
             )
+
+
+def _laid(item: Any) -> bool:
+    origin = origin_of(item)
+    return origin is not None and origin.kind == CATALOGUE
+
+
+def _compound(path: Path, sha256: str | None, where: str) -> dict[str, Any]:
+    """Return the values of a compound's file by field."""
+    with meant_file(str(path), sha256, where):
+        try:
+            read = tomllib.loads(path.read_text(encoding="utf-8"))
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            raise InputError(
+                f"{path.name} is no compound ({error})",
+                where=where,
+                allowed="a file that underfoot material wrote",
+                remedy=f"underfoot material {path.name} --out compound.toml",
+            ) from error
+    fields = set(Material.model_fields) - {"file", "sha256"}
+    if wrong := sorted(read.keys() - fields):
+        raise InputError(
+            f"{path.name}: a compound has no {wrong[0]}",
+            where=where,
+            allowed=", ".join(sorted(fields)),
+            nearest=nearest_match(wrong[0], sorted(fields)),
+        )
+    return read
 
 
 class Midsole(Section):

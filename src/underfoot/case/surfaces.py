@@ -111,8 +111,8 @@ class SurfaceRoughness(Section):
         scan = self.scan()
         assert scan is not None
         assert self.rq_or_estimate is not None
-        own = scan.values["rq"].value or 0.0
-        return scan.density(wavenumber) * (self.rq_or_estimate / own) ** 2
+        scanned = scan.values["rq"].value or 0.0
+        return scan.density(wavenumber) * (self.rq_or_estimate / scanned) ** 2
 
     def moment(self, order: int, shortest: float, longest: float) -> float:
         """Return rms height (order 0, m) or rms slope (order 1, 1) of the scan between two waves.
@@ -253,8 +253,10 @@ class CompositeInterface(Interface):
         return roughness.moment(0, STYLUS_WAVES[0], self.longest_wave)
 
     def unused(self, case: CaseView) -> tuple[str, ...]:
-        scanned = case.shoe.roughness.file and case.floor.roughness.file
-        return ("roughness_beyond_cutoff",) if scanned else ()
+        if not (case.shoe.roughness.file and case.floor.roughness.file):
+            return ()
+        read = WAVES[0] in case.friction.reads
+        return ("roughness_beyond_cutoff",) if read else ("roughness_beyond_cutoff", "hurst")
 
     def rq_deviation(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> float | None:
         heights = [(part.rq_or_estimate or 0.0, part.rq_uncertainty) for part in (shoe, floor)]

@@ -37,11 +37,10 @@ def parsed(text: str, file: str | None = None) -> dict[str, Any]:
     try:
         return tomllib.loads(text.removeprefix("\ufeff"))
     except tomllib.TOMLDecodeError as error:
-        raise InputError(
-            f"is no TOML file: {error}",
-            where=file,
-            remedy='Text and numbers with a unit stand in quotes, as in speed = "0.7 m/s"',
-        ) from error
+        remedy = 'Text and numbers with a unit stand in quotes, as in speed = "0.7 m/s"'
+        if "Cannot overwrite" in str(error):
+            remedy = 'Beside [shoe.material] write [shoe] with from = "NAME", not shoe = "NAME"'
+        raise InputError(f"is no TOML file: {error}", where=file, remedy=remedy) from error
     except RecursionError as error:
         raise InputError(
             "brackets are nested too deeply",

@@ -157,16 +157,16 @@ class ArchardWear(Wear):
         leaf = leaf_of(given.get("abrasion"))
         if leaf.given is None:
             return given
-        words = _ABRASION.fullmatch(leaf.given) if isinstance(leaf.given, str) else None
+        match = _ABRASION.fullmatch(leaf.given) if isinstance(leaf.given, str) else None
         try:
             if leaf_of(given.get("wear_rate")).given is not None:
                 raise InputError("abrasion and wear_rate say the same thing twice")
-            if words is None:
+            if match is None:
                 example = 'the volume lost, as "DIN 150 mm3"'
                 raise InputError(f"{leaf.given!r} is no abrasion", allowed=example)
         except InputError as error:
             raise refused_at(cls, ("abrasion",), error, leaf.given) from error
-        volume = float(words["volume"])
+        volume = float(match["volume"])
         rate = f"{volume / (DIN_FORCE * DIN_WAY):.6g} mm^3/(N*m)"
         source = f"{volume:g} mm^3 lost on the abrasive sheet of ISO 4649; floors are far gentler"
         leaf = replace(leaf, given=rate, source=source)

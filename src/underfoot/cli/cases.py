@@ -7,14 +7,30 @@ from typing import Annotated
 import typer
 
 from .guard import say
-from .options import CasePath, Shared, catalogue_for, sharing
+from .options import CasePath, Shared, catalogue_for, optional, sharing
 from .output import finish
+
+RcofFrom = Annotated[
+    Path | None,
+    optional("measurements.csv of `underfoot trials analyse`: its RCOF replace risk.rcof_*."),
+]
+
+
+def _measured_rcof(path: Path | None) -> list[str]:
+    """Return the settings of a case that hold the RCOF of measured walkers."""
+    if path is None:
+        return []
+    from underfoot.questions.slips import measured_rcof
+
+    mean, sd, words = measured_rcof(path)
+    say(words)
+    return [f"risk.rcof_mean={mean:.6g}", f"risk.rcof_sd={sd:.6g}"]
 
 
 @sharing(without=("out", "quick", "processes", "overwrite"))
 def check(shared: Shared, case: CasePath) -> None:
     """Read a case and print its values, sources, assumptions and the cost of a run."""
-    from underfoot.questions.check import case_check
+    from underfoot.compute.check import case_check
 
     answer = case_check(shared.case(case))
     finish(answer, None, json=shared.json, everything=shared.everything)
@@ -33,6 +49,7 @@ def run(
     maps: Annotated[
         bool, typer.Option("--maps", help="Draw PNG maps too; report.html draws its own.")
     ] = False,
+    rcof_from: RcofFrom = None,
 ) -> None:
     """Compute the friction of a case, then the effect of possible changes on the coarse grid.
 
@@ -45,12 +62,12 @@ def run(
     from underfoot.questions.risk import risk_assessment
     from underfoot.report import write_report
 
-    given = shared.case(case)
+    given = shared.case(case, _measured_rcof(rcof_from))
     folder = shared.out if shared.out is not None or shared.json else Path("out") / case.stem
     if folder is not None:
         check_writable_folder(folder, overwrite=shared.overwrite)
     with bar(given.name) as progress:
-        result = result_of(given, quick=shared.quick, progress=progress)
+        result = result_of(given, quick=shared.quick, processes=shared.processes, progress=progress)
     advice = None
     if result.usable and not (shared.quick or no_advice):
         with bar("effect of possible changes") as progress:
@@ -96,28 +113,16 @@ def slip(
             show_default=False,
         ),
     ] = None,
-    rcof_from: Annotated[
-        Path | None,
-        typer.Option(
-            "--rcof-from",
-            help="measurements.csv of `underfoot trials analyse`: its RCOF replace risk.rcof_*.",
-            show_default=False,
-        ),
-    ] = None,
+    rcof_from: RcofFrom = None,
 ) -> None:
     """Simulate slips for a population of walkers: who slips, speed, distance, pressures.
 
     Data, figure and animated report.html go to --out, by default out/CASE_slip. A stopped run
     continues.
     """
-    from underfoot.questions.slips import measured_rcof, own_histories, slip_population
+    from underfoot.questions.slips import own_histories, slip_population
 
-    settings = []
-    if rcof_from is not None:
-        mean, sd, words = measured_rcof(rcof_from)
-        say(words)
-        settings = [f"risk.rcof_mean={mean:.6g}", f"risk.rcof_sd={sd:.6g}"]
-    given = shared.case(case, settings)
+    given = shared.case(case, _measured_rcof(rcof_from))
     steps = [step for path in history or () for step in own_histories(path)]
     if shared.out is None and not shared.json:
         shared.out = Path("out") / f"{case.stem}_slip"

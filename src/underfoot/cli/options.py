@@ -45,7 +45,8 @@ Processes = Annotated[
     typer.Option(
         "--processes",
         min=1,
-        help="Cases computed at the same time; by default the cores, at most 4.",
+        help="Cases, or positions of a tread, computed at the same time; by default the cores, "
+        "at most 4.",
         show_default=False,
     ),
 ]
@@ -169,12 +170,12 @@ def loaded(path: Path, folders: list[Path] | None, settings: Sequence[str] | Non
     from underfoot.core import InputError
 
     if path.is_dir():
-        own = path / "case.toml"
+        inner = path / "case.toml"
         raise InputError(
             f"{path} is a folder",
             where="case",
             allowed="a case file (TOML)",
-            nearest=str(own) if own.is_file() else None,
+            nearest=str(inner) if inner.is_file() else None,
         )
     changes = dict(map(setting, settings or ()))
     return Case.load(path, catalogue=catalogue_for(path, folders), settings=changes)

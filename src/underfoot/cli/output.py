@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from textwrap import shorten
+from textwrap import shorten, wrap
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -12,6 +12,10 @@ import typer
 from .guard import say
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rich.console import Console
+
     from underfoot.core import Progress
     from underfoot.core.presentation import Presentable, Table
     from underfoot.questions.risk import RiskAssessment
@@ -20,6 +24,10 @@ if TYPE_CHECKING:
 
 NOT_USABLE = 4
 """Exit code where a computation did not end with a result."""
+MOST_RECORDS, MOST_ROWS = 40, 12
+"""Rows of a wide table on the terminal; ``--all`` prints all."""
+SHORT = 12
+"""Longest text of a second column that names a row together with the first."""
 MOST_LINES = 3
 """Lines of a list of remarks on the terminal; ``--all`` prints all."""
 REMARKS = ("", "Remark", "Source", "Basis", "origin")
@@ -115,11 +123,11 @@ def show(shown: Presentable, *, everything: bool = False) -> None:
             continue
         count = f" ({len(lines)})" if len(lines) > 1 else ""
         console.print(f"\n{title}{count}:", markup=False)
-        kept = lines if everything else lines[:MOST_LINES]
-        for line in kept:
+        told = lines if everything else lines[:MOST_LINES]
+        for line in told:
             console.print(f"  - {line if everything else shortened(line)}", markup=False)
-        if len(kept) < len(lines):
-            console.print(f"  … {len(lines) - len(kept)} more: --all", markup=False)
+        if len(told) < len(lines):
+            console.print(f"  … {len(lines) - len(told)} more: --all", markup=False)
 
 
 def shortened(line: str) -> str:
@@ -143,19 +151,81 @@ def print_table(table: Table, *, everything: bool = True) -> None:
             for row in cells
         ]
     widths = [max(map(len, column)) for column in zip(table.columns, *cells, strict=True)]
+    if sum(widths) + 2 * last > console.width:
+        if sum(width > LONGEST_VALUE for width in widths) > 1:
+            _print_records(console, table, cells, everything=everything)
+            return
+        longest = [
+            max(len(word) for cell in column for word in cell.split() or [""])
+            for column in zip(table.columns, *cells, strict=True)
+        ]
+        if sum(longest) + 2 * last > console.width:
+            _print_blocks(console, table, cells, widths, everything=everything)
+            return
     roomy = sum(widths[:last]) + NARROWEST <= console.width
     drawn = RichTable(box=None, pad_edge=False, show_header=any(table.columns))
     for number, name in enumerate(table.columns):
-        remark = number == last and number > 1
         drawn.add_column(
             escaped(name),
-            no_wrap=roomy and not remark,
+            no_wrap=(roomy or last == 1) and number != last,
             overflow="fold",
-            style="dim" if remark and name in REMARKS else None,
+            style="dim" if number == last > 1 and name in REMARKS else None,
         )
     for row in cells:
         drawn.add_row(*map(escaped, row))
     console.print(drawn)
+
+
+def _print_records(
+    console: Console, table: Table, cells: Sequence[Sequence[str]], *, everything: bool
+) -> None:
+    """Print each row as a heading with a line a column: sentences do not fit beside each other."""
+    label = max(map(len, table.columns[1:]))
+    rows = cells if everything else cells[:MOST_RECORDS]
+    for heading, *row in rows:
+        console.print(heading, markup=False)
+        for name, cell in zip(table.columns[1:], row, strict=True):
+            if cell and cell != "-":
+                indent = " " * (label + 4)
+                lines = wrap(cell, console.width - label - 4) or [""]
+                text = f"\n{indent}".join(lines)
+                console.print(f"  {name:{label}}  {text}", markup=False)
+    _say_rest(console, len(cells) - len(rows))
+
+
+def _print_blocks(
+    console: Console,
+    table: Table,
+    cells: Sequence[Sequence[str]],
+    widths: Sequence[int],
+    *,
+    everything: bool,
+) -> None:
+    """Print a table of many columns as blocks that fit, the columns that name a row before each."""
+    rows = cells if everything else cells[:MOST_ROWS]
+    worded = all(row[1] and not row[1][0].isdigit() and len(row[1]) <= SHORT for row in cells)
+    keys = range(2 if worded and len(widths) > 3 else 1)
+    blocks: list[list[int]] = [[]]
+    start = sum(widths[k] + 2 for k in keys) - 2
+    used = start
+    for number in range(len(keys), len(widths)):
+        if blocks[-1] and used + 2 + widths[number] > console.width:
+            blocks.append([])
+            used = start
+        blocks[-1].append(number)
+        used += 2 + widths[number]
+    for count, block in enumerate(blocks):
+        if count:
+            console.print()
+        for line in (table.columns, *rows):
+            shown = [f"{line[k]:{min(widths[k], console.width)}}" for k in (*keys, *block)]
+            console.print("  ".join(shown).rstrip(), markup=False)
+    _say_rest(console, len(cells) - len(rows))
+
+
+def _say_rest(console: Console, rest: int) -> None:
+    if rest > 0:
+        console.print(f"  … {rest} more rows: --all, or the CSV of --out", markup=False)
 
 
 def escaped(text: str) -> str:

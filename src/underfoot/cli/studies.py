@@ -77,9 +77,9 @@ def run_study(
 ) -> None:
     """Run a study and print each published number beside ours, with a verdict and its reason.
 
-    With --out: figures, tables, verdicts.csv, study.json. `all` runs every study into one page
-    (studies.html), summary.csv and summary.md; a study that fails does not stop the others. What
-    is finished is kept: the same command goes on from there.
+    With --out: the page report.html, figures, tables, verdicts.csv, study.json. `all` runs every
+    study into one page (studies.html), summary.csv and summary.md; a study that fails does not
+    stop the others. What is finished is kept: the same command goes on from there.
     """
     from underfoot.core.files import check_writable_folder
     from underfoot.core.progress import bar
@@ -123,6 +123,23 @@ def summarise(
     if out is not None:
         check_writable_folder(out, overwrite=overwrite)
     _deliver(read_results(folder), out, everything=True, json=json, overwrite=overwrite)
+
+
+def errata(
+    name: Annotated[str, typer.Argument(help="Name of a study, as g1; all by default.")] = "all",
+    json: AsJson = False,
+) -> None:
+    """List what is not taken as printed in the report: where, printed, used, and why."""
+    from underfoot.core.presentation import Table
+    from underfoot.studies import studies, study
+
+    chosen = studies() if name.strip().lower() == "all" else (name,)
+    columns = ("where", "printed", "used", "why")
+    rows = [entry for each in chosen for entry in study(each).errata]
+    if json:
+        _print_json([dict(zip(columns, row, strict=True)) for row in rows])
+        return
+    print_table(Table(f"Not taken as printed ({len(rows)})", columns, rows))
 
 
 def _settings(
@@ -183,6 +200,7 @@ def _deliver(
     from underfoot.report.studies_page import studies_page, write_study
     from underfoot.studies import write_summary
 
+    page = "studies.html" if everything else "report.html"
     if out is not None:
         with whole_folder(out, overwrite=overwrite) as staging:
             images = {}
@@ -193,8 +211,8 @@ def _deliver(
                     images[result.study.name, name] = (place / f"{name}.png").read_bytes()
             if everything:
                 write_summary(results, staging)
-                page = studies_page(results, images, quick=any(r.quick for r in results))
-                (staging / "studies.html").write_text(page, encoding="utf-8")
+            text = studies_page(results, images, quick=any(r.quick for r in results))
+            (staging / page).write_text(text, encoding="utf-8")
     if json:
         content: Any = [one.to_dict() for result in results for one in result.judgements]
         _print_json(content if everything else results[0].to_dict())
@@ -203,8 +221,7 @@ def _deliver(
     else:
         show(results[0], everything=show_all)
     if out is not None and not json:
-        page = f"; open {out / 'studies.html'}" if everything else ""
-        print(f"Files in {out}{page}")
+        print(f"Files in {out}; open {out / page}")
 
 
 def _print_json(content: Any) -> None:
@@ -227,3 +244,4 @@ def _show_headline(results: Sequence[StudyResult]) -> None:
 studies_app.command("list")(guarded(list_studies))
 studies_app.command("run")(guarded(run_study))
 studies_app.command("summary")(guarded(summarise))
+studies_app.command("errata")(guarded(errata))

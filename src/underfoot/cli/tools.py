@@ -61,7 +61,7 @@ def explain(
 
     The short form has formula, equation of the report, tested range and source.
     """
-    from underfoot.questions.explanation import explanation
+    from underfoot.case.explanation import explanation
 
     print(explanation(name, catalogue_for(None, catalogue), full=everything))
 
@@ -141,7 +141,7 @@ def migrate(
 def validate(json: AsJson = False) -> None:
     """Compute cases with a known exact solution and print the errors."""
     from underfoot.core.presentation import Table
-    from underfoot.questions.validation import checks
+    from underfoot.studies.validation import checks
 
     rows = checks()
     failed = [check.name for check in rows if not check.passed]

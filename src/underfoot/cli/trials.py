@@ -52,7 +52,7 @@ def describe(
     from underfoot.trials.axes import ramp_from
     from underfoot.trials.describe import described_file
 
-    found = described_file(
+    description = described_file(
         file,
         companion=companion,
         profile=profile,
@@ -65,9 +65,9 @@ def describe(
     if as_json:
         import json
 
-        print(json.dumps([one.as_dict() for one in found], indent=2, allow_nan=False))
+        print(json.dumps([one.as_dict() for one in description], indent=2, allow_nan=False))
     else:
-        print("\n\n".join(one.text() for one in found))
+        print("\n\n".join(one.text() for one in description))
 
 
 def simulate(

@@ -53,9 +53,14 @@ def contact_friction(
     contact: SoleContact,
     *,
     samples: int = SAMPLES,
+    rough: Mapping[str, float] | None = None,
 ) -> ContactFriction:
-    """Return the friction of a contact by the local law, drawn over the spread of its inputs."""
-    maps = law(contact.contact_pressure, case.motion.speed, contact.film_thickness)
+    """Return the friction of a contact by the local law, drawn over the spread of its inputs.
+
+    ``rough``: what a standard deviation of gap and flow of the rough contact changes the logarithm
+    of the film's odds by (``film_spreads``).
+    """
+    maps = law_on(law, contact)(contact.contact_pressure, case.motion.speed, contact.film_thickness)
     at = contact.finest
     law = law_on(law, at)
     values = at.contact_pressure, case.motion.speed, at.film_thickness
@@ -91,6 +96,10 @@ def contact_friction(
         **at.areas,
         fluid_inputs={} if context.viscosity is None else {"viscosity": context.viscosity},
         film_error=errors["film_error"],
+        rough_errors={
+            name: change * normal_draws(seed, f"{name} of the rough contact", samples)
+            for name, change in (rough or {}).items()
+        },
         tread_error=errors["tread_error"],
         film_shear=film_shear,
         zero=numbers.ZERO * normal_draws(seed, "zero of the cell", samples),

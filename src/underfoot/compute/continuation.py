@@ -29,7 +29,7 @@ from underfoot.sole_contact.solver import SoleContact, solve_on
 from .contact_friction import ContactFriction, contact_friction
 from .positions import place_numbers, treaded
 from .prepare import Prepared, prepared
-from .solve import solved_motion, solver_settings
+from .solve import edge_inlet, solved_motion, solver_settings
 
 SAFETY, SHARE = 2.0, 0.1
 """Error per unit of what the steps move, and of the change. Chosen on 21 changes of two treaded
@@ -111,6 +111,7 @@ class Continuation:
             parts.compliance,
             parts.asperities,
             parts.film,
+            parts.local_law,
             progress=progress,
         )
         if not self.contact.status.usable:
@@ -214,6 +215,7 @@ class Continuation:
             duration=settings.end_time,
             steps=2,
             settings=settings,
+            inlet=edge_inlet(case, parts.local_law),
         )
         return parts, first, second
 

@@ -161,11 +161,11 @@ def history_fields(
     if recorder.pictures:
         times, maps = zip(*recorder.pictures, strict=True)
         coordinates["picture_time"] = (("picture_time",), np.array(times), {"units": "s"})
-        for name, words in PICTURED.items():
+        for name, title in PICTURED.items():
             variables[f"{name}_history"] = (
                 ("picture_time", "x", "y"),
                 np.stack([each[name] for each in maps]),
-                {"units": "Pa", "long_name": words},
+                {"units": "Pa", "long_name": title},
             )
     read = recorder.array()
     if read is not None:

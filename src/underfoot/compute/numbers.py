@@ -35,6 +35,10 @@ _INPUTS = {
     "film": "boundary film",
     "dry": "dry-like part",
     "kappa": "fading of the dry-like part",
+    "hysteresis": "hysteresis of the rough contact",
+    "full_contact": "real contact area",
+    "gap": "gap between the rough surfaces",
+    "flow": "flow between the rough surfaces",
     "laboratory": "difference between laboratories",
     "pair": "difference between pairs",
     "model": "the law itself",
@@ -47,6 +51,8 @@ _INPUTS = {
     "film shear": "warmth of the film",
     "zero": "zero of the load cell",
 }
+ROUGH, SMALL = ("hysteresis", "full_contact", "gap", "flow"), 0.005
+"""What the rough contact adds to the spread: told however small; others from this share on."""
 FILM_ERROR = math.log(1.41)
 """Standard deviation of ln F / (W - F), F the load on the film: the model's error on the untreaded
 heels of the report's slip tester (docs/studies/calibration.md), assumed of every sole."""
@@ -159,8 +165,8 @@ def undetermined(case: Case, status: Status) -> dict[str, SourcedValue]:
         "minimum_film_thickness": "m",
     }
     names = ("cof", "cof_adhesion", "cof_hysteresis", "cof_viscous", *units, "slip_probability")
-    found = {name: SourcedValue(None, units.get(name, "1"), reason=str(status)) for name in names}
-    return {**found, "normal_force": case.sourced("motion.normal_force")}
+    scalars = {name: SourcedValue(None, units.get(name, "1"), reason=str(status)) for name in names}
+    return {**scalars, "normal_force": case.sourced("motion.normal_force")}
 
 
 def regime(share: float) -> dict[str, str]:
@@ -204,7 +210,11 @@ def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
     if sampled is None:
         return {}
     words = sorted(sampled.share.items(), key=lambda one: -one[1])
-    parts = [f"{_INPUTS.get(name, name)} {share:.0%}" for name, share in words if share >= 0.005]
+    parts = [
+        f"{_INPUTS.get(name, name)} {share:.0%}" if share >= SMALL else f"{_INPUTS[name]} below 1%"
+        for name, share in words
+        if share >= SMALL or name in ROUGH
+    ]
     if sampled.left_out:
         names = ", ".join(_INPUTS.get(name, name) for name in sampled.left_out)
         parts.append(f"taken as exact: {names}")

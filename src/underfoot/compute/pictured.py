@@ -31,8 +31,8 @@ def pictured_fields(
     roll = contact.shoe_angle - map_angle
     lowest = _rolled(sole, roll)[sole.inside].min()
 
-    def height(there: SoleMap) -> Array:
-        return np.where(there.inside, _rolled(there, roll) - lowest - contact.approach, np.nan)
+    def height(shape: SoleMap) -> Array:
+        return np.where(shape.inside, _rolled(shape, roll) - lowest - contact.approach, np.nan)
 
     pressed = height(sole) + compliance.apply(contact.cell_load)
     variables: dict[str, Variable] = {
@@ -48,10 +48,10 @@ def pictured_fields(
     axes = ("whole_x", "whole_y")
     clearance = np.where(whole.inside, whole.clearance, np.nan).astype(np.float32)
     lowered = np.maximum(height(whole), 0.0).astype(np.float32)
-    words = "height of the whole sole over the floor,"
+    title = "height of the whole sole over the floor,"
     variables |= {
-        "whole_clearance": (axes, clearance, {"units": "m", "long_name": f"{words} undeformed"}),
-        "whole_pressed_height": (axes, lowered, {"units": "m", "long_name": f"{words} lowered"}),
+        "whole_clearance": (axes, clearance, {"units": "m", "long_name": f"{title} undeformed"}),
+        "whole_pressed_height": (axes, lowered, {"units": "m", "long_name": f"{title} lowered"}),
         "whole_land": (axes, whole.land, {"units": "1", "long_name": "can touch the floor"}),
     }
     return variables, {

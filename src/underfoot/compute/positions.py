@@ -1,14 +1,14 @@
 """A tread, not one position of it: the answer averaged over where its lugs happen to lie."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
 
 from underfoot.case import Case
-from underfoot.core import ConvergenceError, Progress, SourcedValue, display, silent
+from underfoot.core import SourcedValue, display
 from underfoot.core.arrays import Array
 from underfoot.friction import FrictionCoefficients, FrictionLaw, SampledCof
 from underfoot.shoe import SoleMap, Tread
@@ -70,7 +70,7 @@ class TreadPositions:
         values = {name: values for name, values in self.values.items() if name.startswith("cof")}
         new = {name: replace(getattr(friction, name), value=self.answer(name)) for name in values}
         if sampled is not None:
-            law, own = float(np.var(sampled.cof)), float(np.var(values["cof"]))
+            law_variance, place_variance = float(np.var(sampled.cof)), float(np.var(values["cof"]))
             at = np.arange(sampled.cof.size) % len(self.places)
             draws = {
                 name.removeprefix("cof_"): getattr(sampled, name.removeprefix("cof_"))
@@ -78,8 +78,11 @@ class TreadPositions:
                 for name in values
             }
             draws["cof"] = draws["adhesion"] + draws["hysteresis"] + draws["viscous"]
-            share = {name: each * law / (law + own) for name, each in sampled.share.items()}
-            share[self.origin] = own / (law + own)
+            share = {
+                name: each * law_variance / (law_variance + place_variance)
+                for name, each in sampled.share.items()
+            }
+            share[self.origin] = place_variance / (law_variance + place_variance)
             sampled = replace(sampled, share=share, **draws)
             for name, value in new.items():
                 if value.uncertainty is not None:  # what the law leaves open stays open
@@ -91,23 +94,23 @@ class TreadPositions:
 
     def averaged(self, numbers: Mapping[str, SourcedValue]) -> dict[str, SourcedValue]:
         """Return the numbers with means over the positions, and the spread of COF over them."""
-        found = dict(numbers)
+        means = dict(numbers)
         if len(self.places) == 1:
-            return found
+            return means
         for name in self.values:
             if not name.startswith("cof"):
-                found[name] = replace(numbers[name], value=self.answer(name))
+                means[name] = replace(numbers[name], value=self.answer(name))
         over = f"over {len(self.places)} {self.several}"
-        found["fluid_load"] = replace(
-            found["fluid_load"], note=f"{self._range('fluid_load', 'N')} {over}"
+        means["fluid_load"] = replace(
+            means["fluid_load"], note=f"{self._range('fluid_load', 'N')} {over}"
         )
-        found[f"cof_{self.origin}"] = SourcedValue(
+        means[f"cof_{self.origin}"] = SourcedValue(
             float(np.std(self.values["cof"])),
             source=f"contact and film at another {self.held}",
             reason="itself a standard deviation",
             note=f"{self._range('cof')} {over}",
         )
-        return found
+        return means
 
     def labels(self) -> dict[str, str]:
         """Return what was averaged in words."""
@@ -198,13 +201,13 @@ def places(periods: Array, count: int) -> tuple[Place, ...]:
     """
     step = _golden_step(count)
     rounds = 2 if count >= 5 else 1
-    found = []
+    lattice = []
     for k in range(count):
         shares = np.array([k / count, k * step % count / count])[: len(periods)]
         x, y = shares @ periods
         turn = math.sqrt(2 / 3) * math.sin(2 * math.pi * rounds * k / count)
-        found.append(Place((float(x), float(y)), ANGLE_BAND * turn))
-    return tuple(found)
+        lattice.append(Place((float(x), float(y)), ANGLE_BAND * turn))
+    return tuple(lattice)
 
 
 def _golden_step(count: int) -> int:
@@ -216,55 +219,42 @@ def _golden_step(count: int) -> int:
 
 def tread_positions(
     case: Case,
-    law_on: Callable[[SoleMap], FrictionLaw | EdgedLaw],
-    sole: SoleMap,
-    contact: SoleContact,
-    solve: Callable[[Place, float, Progress], tuple[SoleMap, SoleContact]],
+    case_numbers: Mapping[str, float],
+    at_places: Callable[[Sequence[Place], float], Iterator[tuple[int, Mapping[str, float] | None]]],
     *,
-    viscosity: float | None,
     spacing: float,
     quick: bool,
-    progress: Progress = silent,
-) -> TreadPositions | None:
+) -> TreadPositions:
     """Return the numbers of a run at more positions of its tread, or shoe angles without a tread.
 
-    None where the case asks for one position. Positions are solved on the grid of the run, of
-    ``spacing`` (m); shoe angles on the quick one, whose ratios are taken.
+    Positions are solved on the grid of the run, of ``spacing`` (m); shoe angles on the quick one,
+    whose ratios are taken.
 
-    ``law_on`` returns the local friction on a sole, ``solve`` sole and contact at a place on a
-    grid.
+    ``case_numbers`` are those at the case's own place; ``at_places`` solves places on a grid and
+    gives the index of each with its numbers as they end, None where a contact did not converge.
     """
-    count = position_count(case, quick=quick)
-    if count == 1:
-        return None
-    own = place_numbers(case, law_on(sole), sole, contact, viscosity)
-    if treaded(case):
+    count, lugs = position_count(case, quick=quick), treaded(case)
+    if lugs:
         tread = _tread(case)
-        lying = places(file_periods(case) if tread is None else tread.periods, count)
-        kept = [(Place(), own)]
+        all_places = places(file_periods(case) if tread is None else tread.periods, count)
     else:
-        lying = shoe_angles()
-        kept = [(Place(), own)] if quick else []
+        all_places = shoe_angles()
         spacing = case.numerics.quick_grid_spacing
-    begun = len(kept)
-    for k, place in list(enumerate(lying))[begun:]:
-        try:
-            there = solve(place, spacing, _stage(progress, k, len(lying), begun))
-        except ConvergenceError:
-            continue
-        if there[1].status.usable:
-            kept.append((place, place_numbers(case, law_on(there[0]), *there, viscosity)))
-    if not kept or kept[0][0] != Place():  # nothing to compare the angles with
-        kept = [(Place(), own)]
-    lying, values = tuple(place for place, _ in kept), {}
-    for name, value in own.items():
-        there = np.array([numbers[name] for _, numbers in kept])
-        values[name] = there * (value / there[0]) if there[0] else there
+    known = {Place(): case_numbers} if lugs or quick else {}
+    others = all_places[len(known) :]
+    solved = dict(at_places(others, spacing))
+    numbers = known | {place: n for k, place in enumerate(others) if (n := solved[k])}
+    if Place() not in numbers:  # nothing to compare the angles with
+        numbers = {Place(): case_numbers}
+    values = {}
+    for name, value in case_numbers.items():
+        each = np.array([at[name] for at in numbers.values()])
+        values[name] = each * (value / each[0]) if each[0] else each
     values["cof"] = sum(values[f"cof_{part}"] for part in ("adhesion", "hysteresis", "viscous"))
-    left_out = count - len(kept)
-    if treaded(case):
-        return TreadPositions(lying, values, left_out)
-    return ShoeAngles(lying, values, left_out, coarse=kept[0][1])
+    left_out = count - len(numbers)
+    if lugs:
+        return TreadPositions(tuple(numbers), values, left_out)
+    return ShoeAngles(tuple(numbers), values, left_out, coarse=numbers[Place()])
 
 
 def position_count(case: Case, *, quick: bool) -> int:
@@ -308,16 +298,6 @@ def run_cost(case: Case, *, quick: bool) -> Cost:
 def _tread(case: Case) -> Tread | None:
     tread = None if case.shoe.tread is None else case.shoe.tread.build()
     return tread if tread and tread.depth > 0 else None
-
-
-def _stage(progress: Progress, number: int, count: int, begun: int) -> Progress:
-    """Return the progress of a march, the ``number``-th of those from ``begun`` to ``count``."""
-
-    def report(stage: str, fraction: float, residual: float | None = None) -> None:
-        share = (number - begun + fraction) / (count - begun)
-        progress(f"Tread position {number + 1} of {count}", share, residual)
-
-    return report
 
 
 def place_numbers(

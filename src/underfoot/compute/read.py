@@ -7,12 +7,14 @@ import numpy as np
 from underfoot.case import Case
 from underfoot.core import Breach, Progress, SourcedValue, display, silent
 from underfoot.friction import SampledCof
+from underfoot.friction.sampled_cof import GAP
 from underfoot.shoe.lug_drainage import LugDrainage, lug_drainage
 from underfoot.slip import SlipRisk
 from underfoot.sole_contact.edge_peak import peak_pressure
 from underfoot.sole_contact.slits import slit_words
 
 from . import numbers
+from .micro_contact import micro_contact
 from .numerical_error import NumericalErrors, numerical_errors, with_numerical_error
 from .positions import TreadPositions
 from .prepare import Prepared
@@ -72,6 +74,8 @@ def readings(
     sensor = solution.sensor
     values, risk = numbers.scalars(case, contact, friction, sensor, sampled, parts.slip_model)
     values |= solution.recorder.array_scalars()
+    micro = micro_contact(parts, contact)
+    values |= {} if micro is None else micro.scalars()
     if positions:
         values = positions.averaged(values)
     drainage = None
@@ -79,15 +83,18 @@ def readings(
         drainage = lug_drainage(parts.sole, contact.fluid_pressure, contact.film_thickness)
     share = (values["fluid_load"].value or 0.0) / contact.normal_force
     remarks = {
-        "drainage": drainage.words() if drainage else "",
+        "drainage": drainage.advice() if drainage else "",
         "overload": numbers.overload_words(overload),
         **(positions.labels() if positions else {}),
     }
     labels = numbers.regime(share) | numbers.spread_origin(sampled)
+    solved = sampled is None or GAP in sampled.share or share < FILM_MATTERS
+    if micro is not None and not solved:
+        labels["cof_spread_from"] += ", gap and flow of the rough contact: not estimated"
     labels |= _remarks(parts, solution, remarks)
     if isinstance(errors, NumericalErrors):
         values = errors.added(values)
-        errors = errors.words(values)
+        errors = errors.sentence(values)
     labels["grid_error"] = errors
     if overload:
         reason = "not resolved: pressures above the modulus of the rubber, which gives way"

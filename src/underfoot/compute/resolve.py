@@ -1,15 +1,17 @@
 """Materials and roughness of a case, resolved once: the context that options build from."""
 
+import math
 from dataclasses import replace
 
 from underfoot.case import Case
 from underfoot.case.context import Context
-from underfoot.core import Breach, Progress, SourcedValue, silent
+from underfoot.case.surfaces import STYLUS_WAVES
+from underfoot.core import Breach, Progress, Range, SourcedValue, breaches, silent
 
 
 def resolved(case: Case, progress: Progress = silent) -> Context:
     """Return what the options of a case are built from."""
-    modulus, breaches = youngs_modulus(case)
+    modulus, beyond = youngs_modulus(case)
     return Context(
         shoe=case.shoe,
         floor=case.floor,
@@ -17,14 +19,27 @@ def resolved(case: Case, progress: Progress = silent) -> Context:
         motion=case.motion,
         interface=case.interface,
         modulus=modulus,
-        modulus_breaches=tuple(breaches),
+        modulus_breaches=(*beyond, *_untested_rates(case)),
         viscosity=None if case.contaminant is None else case.contaminant.build(),
         rq=case.effective_rq,
         rq_deviation=case.interface.rq_deviation(case.shoe.roughness, case.floor.roughness),
         fluid=case.entries.get("contaminant", "the fluid"),
         catalogue=case.consulted,
         progress=progress,
+        rough_contact=case.rough_contact.table,
     )
+
+
+def _untested_rates(case: Case) -> list[Breach]:
+    """Return whether asperities work the rubber at rates (rad/s) beyond those of its test."""
+    material, waves = case.shoe.material, (STYLUS_WAVES[1], STYLUS_WAVES[0])
+    if material.relaxation is None or material.fastest_tested is None:
+        return []
+    tested = Range(
+        material.slowest_tested or 0.0, material.fastest_tested, "rad/s", "test of the compound"
+    )
+    rates = [2 * math.pi * abs(case.motion.speed) / wave for wave in waves]
+    return breaches("compound", {"frequency": tested}, {"frequency": rates})
 
 
 def turned(context: Context, turn: float) -> Context:

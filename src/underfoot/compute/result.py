@@ -60,8 +60,8 @@ class Result(Presentable):
 
     def __repr__(self) -> str:
         cof = value_text("cof", self.scalars["cof"])
-        own = ", ".join(self.provenance.objects)
-        marks = f", {own} given as object" if own else ""
+        slots = ", ".join(self.provenance.objects)
+        marks = f", {slots} given as object" if slots else ""
         return f"<Result {self.name!r:.80}: COF {cof:.60}, {self.status}{marks:.40}>"
 
     @property

@@ -7,17 +7,21 @@ from typing import Any
 
 from underfoot.case import Case
 from underfoot.core import Progress, silent
+from underfoot.core.pool import workers
 from underfoot.core.progress import part
 from underfoot.core.threads import threads_limited
 from underfoot.sole_contact.cost import refuse_too_large
 
 from .answer import answer
 from .cost import cost
-from .positions import first_share
+from .positions import first_share, run_cost
 from .prepare import case_and_objects, prepared
 from .read import readings
 from .result import Result
 from .solve import averaged, solved
+
+LONG = 5.0
+"""s, at least, of a run whose positions are worth the start of processes of their own."""
 
 
 @threads_limited(1)
@@ -25,6 +29,7 @@ def run(
     case: Case | Path | str,
     *,
     quick: bool = False,
+    processes: int | None = 1,
     progress: Progress = silent,
     **objects: Any,
 ) -> Result:
@@ -33,6 +38,10 @@ def run(
     Parameters:
         case: What to compute, or its file.
         quick: Use the coarse grid of the case: a first look.
+        processes: Positions of the tread solved at the same time, each on one thread: the same
+            digits. None takes the cores, at most 4, for what takes over ``LONG`` s; never more
+            than ``numerics.most_memory`` holds. With more than one, a script needs
+            ``if __name__ == "__main__":`` around its work.
         progress: Receives stage, fraction and residual; an exception it raises stops the work.
         objects: Slot: what to take in place of the case's option. An option, its name or a mapping
             changes the case; an object of physics is used as it is: ``friction`` a ``FrictionLaw``,
@@ -54,12 +63,17 @@ def run(
     moments = [time.perf_counter()]
     grid = "numerics.quick_grid_spacing" if quick else "numerics.grid_spacing"
     spacing, most = case.value(grid), case.numerics.most_memory
-    refuse_too_large(cost(case, spacing), most_memory=most, where=grid, spacing=spacing)
+    expected = cost(case, spacing)
+    refuse_too_large(expected, most_memory=most, where=grid, spacing=spacing)
     parts = prepared(case, spacing, given, progress=progress)
     moments.append(time.perf_counter())
     first = first_share(case, quick=quick)
     solution = solved(parts, part(progress, 0.0, first))
-    positions = averaged(parts, solution, quick=quick, progress=part(progress, first, 1.0))
+    if processes is None and run_cost(case, quick=quick).seconds[0] < LONG:
+        processes = 1
+    beside = min(workers(processes), max(int(most / expected.memory), 1))
+    rest = part(progress, first, 1.0)
+    positions = averaged(parts, solution, quick=quick, processes=beside, progress=rest)
     moments.append(time.perf_counter())
     reading = readings(parts, solution, positions, quick=quick, progress=progress)
     moments.append(time.perf_counter())

@@ -31,6 +31,10 @@ QUANTITIES: Mapping[str, tuple[str, str]] = {
     **{f"array_peak_row_{n}": (f"  row {n} of the array", "") for n in range(1, 10)},
     "array_duration": ("  pressure lasts in the array", ""),
     "contact_area": ("Contact area", "where the rough surfaces touch"),
+    "micro_contact": ("  real contact within it", ""),
+    "micro_hysteresis": ("  hysteresis COF of the rough contact", ""),
+    "micro_gap": ("  mean gap between the rough surfaces", ""),
+    "micro_flow": ("  flow factor of that gap", ""),
     "minimum_film_thickness": ("Thinnest film", "mean gap between the surfaces"),
     "slip_probability": ("Slip probability", "walkers as described in the case"),
 }
@@ -56,6 +60,7 @@ PARTS: Mapping[str, str] = {
     "pair": "the friction of this sole on this floor",
     "stribeck": "the friction of this sole on this floor",
     "speed_table": "the friction of this sole on this floor",
+    "compound": "how the rubber answers at the rates of sliding",
     "grid": "the tread, which has few cells of the grid across its details",
     "forefoot": "push-off: the forefoot of a shoe bends where this sole stays straight",
     "compliance": "how the rubber gives way under the load",

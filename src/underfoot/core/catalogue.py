@@ -110,8 +110,8 @@ class Catalogue(Presentable):
         return _loaded(chosen, tuple(map(_content, (*chosen, *_offered_folders()))))
 
     def __repr__(self) -> str:
-        own = f", with {', '.join(self.folders)}" if self.folders else ""
-        return f"<Catalogue of {len(self.entries)} entries{own:.120}>"
+        folders = f", with {', '.join(self.folders)}" if self.folders else ""
+        return f"<Catalogue of {len(self.entries)} entries{folders:.120}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Travel between processes by the folders where those still hold the same."""
@@ -258,10 +258,10 @@ def _folder_tables(folder: Path, *, built_in: bool = False) -> _Tables:
     return tables
 
 
-def _clash(kind: str, name: str, here: str, there: str) -> InputError:
+def _clash(kind: str, name: str, place: str, first_place: str) -> InputError:
     return InputError(
-        f'the {kind} "{name}" is defined twice, here and in: {there}',
-        where=here,
+        f'the {kind} "{name}" is defined twice, here and in: {first_place}',
+        where=place,
         remedy="Give it another name, or write replaces = true in a catalogue of your own",
     )
 

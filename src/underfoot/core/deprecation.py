@@ -16,8 +16,8 @@ def renamed(old: str, new: str, *, gone: str) -> Callable[..., Any]:
     """
 
     def answer(self: Any, *arguments: Any, **options: Any) -> Any:
-        words = f"{type(self).__name__}.{old} is {new} now; the old name goes in {gone}"
-        warn(words, FutureWarning, stacklevel=2)
+        message = f"{type(self).__name__}.{old} is {new} now; the old name goes in {gone}"
+        warn(message, FutureWarning, stacklevel=2)
         return getattr(self, new)(*arguments, **options)
 
     answer.__name__ = old

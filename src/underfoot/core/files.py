@@ -106,7 +106,7 @@ def check_writable_folder(path: Path, *, overwrite: bool = False) -> None:
             where="--out",
             remedy="Choose another folder, or add --overwrite to replace it as a whole",
         )
-    if path.is_dir() and any(path.iterdir()) and not any((path / own).exists() for own in _OWN):
+    if path.is_dir() and any(path.iterdir()) and not any((path / mark).exists() for mark in _OWN):
         names = sorted(entry.name for entry in path.iterdir())
         raise InputError(
             f"the folder {path} was not made by underfoot and holds {', '.join(names[:3])}"

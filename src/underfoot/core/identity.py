@@ -130,9 +130,9 @@ class _Walk:
             self.digest.update(f"array{array.dtype.str}{array.shape}".encode())
             self.digest.update(array.tobytes())
         elif isinstance(part, Mapping):
-            words = all(isinstance(key, str) for key in part)
+            by_name = all(isinstance(key, str) for key in part)
             self.digest.update(b"{")
-            for key in sorted(part, key=None if words else _order):
+            for key in sorted(part, key=None if by_name else _order):
                 self.feed(key)
                 self.feed(part[key])
             self.digest.update(b"}")

@@ -35,6 +35,11 @@ def available_processors() -> int:
     return os.cpu_count() or 1
 
 
+def workers(processes: int | None) -> int:
+    """Return how many processes work at the same time: None takes the processors, at most 4."""
+    return min(available_processors(), 4) if processes is None else processes
+
+
 def in_processes(
     function: Callable[[Item], Answer],
     items: Sequence[Item],

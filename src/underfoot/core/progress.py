@@ -27,11 +27,14 @@ def silent(stage: str, fraction: float, residual: float | None = None) -> None:
     """Report nothing."""
 
 
-def part(progress: Progress, low: float, high: float) -> Progress:
-    """Return a receiver whose 0 to 1 is ``low`` to ``high`` of ``progress``."""
+def part(progress: Progress, low: float, high: float, name: str = "") -> Progress:
+    """Return a receiver whose 0 to 1 is ``low`` to ``high`` of ``progress``.
+
+    ``name`` stands in place of the names of its stages.
+    """
 
     def report(stage: str, fraction: float, residual: float | None = None) -> None:
-        progress(stage, low + (high - low) * fraction, residual)
+        progress(name or stage, low + (high - low) * fraction, residual)
 
     return report
 

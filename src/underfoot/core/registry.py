@@ -21,10 +21,11 @@ PREFIX = "underfoot."
 WINGS = {
     ("commands", "app"): "underfoot-app",
     ("commands", "micro"): "underfoot-block",
+    ("commands", "material"): "underfoot-trial-analysis",
     ("commands", "study"): "underfoot-design-studies",
     **{
         ("commands", f"trials.{name}"): "underfoot-trial-analysis"
-        for name in ("analyse", "bundle", "definitions", "edit", "export", "persons")
+        for name in ("analyse", "bundle", "definitions", "edit", "export", "persons", "plan")
     },
     ("commands", "calibrate.posterior"): "underfoot-design-studies",
     **{("names", name): "underfoot-design-studies" for name in ("Study", "optimise", "sweep")},
@@ -152,10 +153,10 @@ def broken_offers() -> Iterator[str]:
 @cache
 def all_offers() -> tuple[Offer, ...]:
     """Return what the packages on Python's path offer; ``all_offers.cache_clear`` looks again."""
-    found = {
+    offers = {
         Offer(entry.group.removeprefix(PREFIX), entry.name, entry.value, each.name or "a package")
         for each in metadata.distributions()
         for entry in each.entry_points
         if entry.group.startswith(PREFIX)
     }
-    return tuple(sorted(found, key=str))
+    return tuple(sorted(offers, key=str))

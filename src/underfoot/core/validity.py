@@ -47,7 +47,7 @@ def breaches(
     closure: str, ranges: Mapping[str, Range], values: Mapping[str, ArrayLike]
 ) -> list[Breach]:
     """Return which ``values`` leave the tested ``ranges`` (relative slack 1e-9)."""
-    found = []
+    exceeded = []
     for quantity, allowed in ranges.items():
         if quantity not in values:
             continue
@@ -58,5 +58,5 @@ def breaches(
         ends = [abs(end) for end in (allowed.low, allowed.high) if np.isfinite(end)]
         slack = 1e-9 * max(ends, default=0.0)
         if low < allowed.low - slack or high > allowed.high + slack:
-            found.append(Breach(closure, quantity, low, high, allowed))
-    return found
+            exceeded.append(Breach(closure, quantity, low, high, allowed))
+    return exceeded

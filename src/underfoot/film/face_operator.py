@@ -130,6 +130,14 @@ class Faces:
         return np.asarray(out - np.bincount(self.ahead, flow, self.count), dtype=np.float64)
 
 
+class Inlet(NamedTuple):
+    """What edges of lugs, finer than the cells, let through the x faces, (faces,)."""
+
+    film: Array  # m, gap of the shear flow that a closed edge lets in
+    closed: Array  # how far the edge is closed: 0 where cells hold it or none is, 1
+    passing: Array  # share of the pressure flow that passes
+
+
 class FaceMatrix(NamedTuple):
     """Operator between cells that share a face: own cell (count,), the cell ahead, the one behind.
 
@@ -265,6 +273,7 @@ def face_operator(
     speed: float,
     storage: Array | float = 0.0,
     upstream: Upwinding | None = None,
+    inlet: Inlet | None = None,
 ) -> FaceOperator:
     """Return the mass balance of a film on faces.
 
@@ -278,6 +287,7 @@ def face_operator(
         speed: U, mean speed of the walls along +x, m/s.
         storage: Area of the cells over the time step, m^2/s; 0 for a steady film.
         upstream: How far the shear gap leans upstream (``leaning``); None: not at all.
+        inlet: What edges of lugs let in; None: as much as the gap holds.
     """
     west, east, lean = faces.west, faces.east, faces.lean
 
@@ -333,6 +343,10 @@ def face_operator(
         a, b = bounded[east], bounded[west]
         parted = lean[0] != lean[1]
         shear_gap = upwind_blend(a, b, shear_gap, upstream, from_a=speed < 0, steps=parted)
+    if inlet is not None:
+        shear_gap = FaceValue(*((1 - inlet.closed) * part for part in shear_gap))
+        shear_gap = shear_gap._replace(value=shear_gap.value + inlet.closed * inlet.film)
+        kx = FaceValue(*(inlet.passing * part for part in kx))
     carry = FaceValue(*(faces.spacing * speed * part for part in shear_gap))
     m, dm = centre.value, slope
     north, south = faces.north, faces.south

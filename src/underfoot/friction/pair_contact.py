@@ -297,8 +297,10 @@ class Pair:
     ``sole_slope`` and ``floor_slope`` are rms slopes of scans. ``hysteresis`` is the COF that the
     package's own theory gives for the compound's spectrum, ``hysteresis_origin`` names where it
     comes from; None takes the closed form. ``full_contact`` is p_R (Pa) where a contact table gives
-    it. ``polymer`` names what soles of one compound share, whatever their hardness and roughness.
-    ``shore_a_deviation`` is the standard deviation of the hardness.
+    it. ``contact_deviation`` is the standard deviation of ln of both where a contact table gives
+    them: finer waves make more of either. ``polymer`` names what soles of one compound share,
+    whatever their hardness and roughness. ``shore_a_deviation`` is the standard deviation of the
+    hardness. ``measured`` says of which of the two roughnesses the range is that of a measurement.
     """
 
     shore_a: float
@@ -313,6 +315,8 @@ class Pair:
     loss_tangent: tuple[float, float] = LOSS_TANGENTS
     sole_slope: float | None = None
     floor_slope: float | None = None
+    contact_deviation: float = 0.0
+    measured: tuple[bool, bool] = (False, False)
 
     @property
     def compound_and_floor(self) -> str:
@@ -345,6 +349,10 @@ class Pair:
         for name in ("hysteresis", "full_contact", "sole_slope", "floor_slope"):
             if getattr(self, name) is not None:
                 numbers[name] = getattr(self, name)
+        if self.contact_deviation:
+            apart = ndtri(named_shares(seed, "shortest wave", draws.count))
+            for name in {"hysteresis", "full_contact"} & numbers.keys():
+                numbers[name] = numbers[name] * np.exp(self.contact_deviation * apart)
         dry = draws.constants.dry * np.exp(draws.error(DRY_PART, draws.sd_dry_part, seed))
         terms = contact_terms(replace(draws.constants, dry=dry), numbers, family=self.family)
         return {
@@ -427,11 +435,12 @@ class PairContactLaw(UncertainInputs):
                 "friction.pair: no dry reading stands behind the law; dry adhesion is what water "
                 "leaves at rest, with the real contact area of the roughness (Persson 2001)"
             )
-        for part, (low, high) in (("shoe", self.pair.sole_rq), ("floor", self.pair.floor_rq)):
-            if high > low:
+        both = zip(("shoe", "floor"), self.pair._rq, self.pair.measured, strict=True)
+        for part, (low, high), measured in both:
+            if high > low and not measured:
                 words.append(
-                    f"{part}.roughness: not known better than Rq = "
-                    f"{1e6 * low:.2g} to {1e6 * high:.2g} um, over which the friction is drawn"
+                    f"{part}.roughness: not given; the friction is drawn over Rq = "
+                    f"{1e6 * low:.2g} to {1e6 * high:.2g} um"
                 )
         low, high = self.pair.loss_tangent
         if self.pair.hysteresis is None and high > low:

@@ -19,8 +19,10 @@ CLASSES = 64
 SAMPLES = 500
 MODEL = "model"
 FILM, SUCTION, TREAD = "film load", "suction", "tread"
+GAP, FLOW = "gap", "flow"
+"""Parts of the error of the load on the film that the rough contact makes."""
 SHEAR, ZERO = "film shear", "zero"
-APART = (MODEL, FILM, SUCTION, TREAD, SHEAR, ZERO)
+APART = (MODEL, FILM, GAP, FLOW, SUCTION, TREAD, SHEAR, ZERO)
 """What is drawn beside the inputs of the law."""
 VACUUM = 1e5
 HIGHEST = 3.0
@@ -73,6 +75,7 @@ def sampled_cof(
     film_area: Array | float = 1.0,
     fluid_inputs: Mapping[str, SourcedValue] | None = None,
     film_error: Array | None = None,
+    rough_errors: Mapping[str, Array] | None = None,
     tread_error: Array | None = None,
     film_shear: Array | None = None,
     zero: Array | None = None,
@@ -98,6 +101,8 @@ def sampled_cof(
         fluid_inputs: "viscosity" (Pa s) with its standard deviation; where it has none it counts as
             exact.
         film_error: Draws (samples,) of the error of ln F / (W - F); None takes the load as exact.
+        rough_errors: "gap", "flow": draws (samples,) of what each adds to the error of the load on
+            the film.
         tread_error: Draws (samples,) of the error of ln COF by the tread; None counts none.
         film_shear: Draws (samples,) of ln of the film's shear stress over that computed.
         zero: Draws (samples,) of what a reading of COF under a film is off by.
@@ -113,7 +118,8 @@ def sampled_cof(
         return None
     joint = dict(_joint(law, samples, seed))
     highest = getattr(law, "highest", HIGHEST)
-    beside = {FILM: film_error, SHEAR: film_shear, ZERO: zero} if np.any(fluid_pressure) else {}
+    beside = {FILM: film_error, SHEAR: film_shear, ZERO: zero, **(rough_errors or {})}
+    beside = beside if np.any(fluid_pressure) else {}
     for name, draws in {**beside, TREAD: tread_error}.items():
         if draws is not None and draws.any():
             inputs[name] = SourcedValue(0.0, "1", "", float(np.std(draws)))
@@ -150,7 +156,8 @@ def sampled_cof(
             )
             share = 1.0 + pull_share * (ratio - 1.0)
             solid, hysteresis = solid * share, hysteresis * share
-        share = 1.0 / (carried + (1.0 - carried) * np.exp(values.get(FILM, 0.0)))
+        odds = sum(values.get(name, 0.0) for name in (FILM, GAP, FLOW))
+        share = 1.0 / (carried + (1.0 - carried) * np.exp(odds))
         solid, hysteresis = solid * share, hysteresis * share
         hysteresis = min(hysteresis, solid)
         viscous = max(viscous * np.exp(values.get(SHEAR, 0.0)) + values.get(ZERO, 0.0), 0.0)

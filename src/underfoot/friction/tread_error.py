@@ -18,7 +18,7 @@ from functools import cache, lru_cache
 from importlib import resources
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtr
 
 from underfoot.core.arrays import Array
 
@@ -182,7 +182,7 @@ def _posterior(pairs: Sequence[TreadPair], prior: float) -> tuple[Array, Array]:
         if pair.low == pair.high:
             found = np.log(range_density(2**0.5 * np.abs(low), pair.extremes_of) / spread)
         else:
-            found = np.log(np.maximum(norm.cdf(high) - norm.cdf(low), 1e-12))
+            found = np.log(np.maximum(ndtr(high) - ndtr(low), 1e-12))
         log_density += found / sum(other.source == pair.source for other in pairs)
     return s, log_density
 
@@ -194,7 +194,8 @@ def range_density(width: Array, count: int) -> Array:
     """
     x = np.linspace(-8, 8, 161)
     above = x + np.asarray(width)[:, None]
-    inner = norm.pdf(x) * norm.pdf(above) * (norm.cdf(above) - norm.cdf(x)) ** (count - 2)
+    normal = np.exp(-0.5 * (x**2 + above**2)) / (2 * np.pi)
+    inner = normal * (ndtr(above) - ndtr(x)) ** (count - 2)
     return count * (count - 1) * np.maximum(np.trapezoid(inner, x, axis=1), 1e-300)
 
 

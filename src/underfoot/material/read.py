@@ -155,6 +155,12 @@ def _headings(
     return names, units, body
 
 
+def is_shear(path: Path | str) -> bool:
+    """Return whether the headings of a table name moduli of shear (G', G_stor, G(t))."""
+    columns = _read_table(path, None).columns
+    return any(name.partition("_")[0].strip("'\"(t)") in ("G", "shear") for name in columns)
+
+
 def read_dynamic(path: Path | str, *, units: Mapping[str, str] | None = None) -> list[DynamicSweep]:
     """Return the frequency sweeps of a text table, one for each temperature, coldest first.
 

@@ -122,7 +122,7 @@ class Comparison(Presentable):
         apart = {
             row[0].split(".")[0] for row in self.differences if row[1 + at[0]] != row[1 + at[1]]
         }
-        both = next((words for part, words in COMPARED.items() if part in apart), "cases")
+        both = next((subject for part, subject in COMPARED.items() if part in apart), "cases")
         return f"One measurement would tell: COF of both {both} on one tester, all else alike."
 
     def cautions(self) -> tuple[str, ...]:

@@ -1,5 +1,6 @@
 """Rubber on one rough surface, dry, at rest or sliding: real contact, hysteresis, gap, leakage."""
 
+import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -8,13 +9,19 @@ from typing import Any, ClassVar
 import numpy as np
 
 from underfoot import material, surface
-from underfoot.core import DataError, InputError, display, to_si
+from underfoot.core import Cache, DataError, InputError, Progress, display, silent, to_si
 from underfoot.core.checks import exactly_one
 from underfoot.core.presentation import Presentable, Table
-from underfoot.rough_contact import SteadySliding, steady_sliding
+from underfoot.rough_contact import (
+    ContactTable,
+    SteadySliding,
+    steady_sliding,
+    table_over_scales,
+)
 from underfoot.rough_contact.cutoff import CutoffDependence, cutoff_dependence
 from underfoot.rough_contact.flow_factor import FlowFactors, flow_factors
-from underfoot.surface import HeightMap, Profile, levelled
+from underfoot.surface import HeightMap, Profile, levelled, read_scan
+from underfoot.surface.scan import unlikely_height
 
 ROWS = (
     ("Mean pressure", "pressure_Pa", "Pa", ""),
@@ -28,6 +35,12 @@ ROWS = (
     ("Flow factor along", "flow_factor_along", "1", "of a smooth gap of that mean; 0: sealed"),
     ("Flow factor across", "flow_factor_across", "1", ""),
 )
+
+
+LONGEST_WAVE, SHORTEST_WAVE = 2e-3, 2.5e-6
+"""Waves (m) of a table: those of a case by default."""
+PRESSURES = (1e3, 2e6, 12)
+"""Lowest and highest nominal pressure of a table, Pa, and their number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,14 +65,18 @@ class RoughContact(Presentable):
         return self.contact.status.usable
 
     def headline(self) -> tuple[str, ...]:
-        found = self.contact
-        at = f"{display(found.nominal_pressure, 'Pa')}, {display(found.speed, 'm/s')}"
+        contact = self.contact
+        at = f"{display(contact.nominal_pressure, 'Pa')}, {display(contact.speed, 'm/s')}"
         if not self.usable:
-            return (f"No result at {at}: {found.status}. {found.status.remedy}",)
+            return (f"No result at {at}: {contact.status}. {contact.status.remedy}",)
         return (
-            f"Real contact {100.0 * found.real_contact_fraction_corrected:.3g} %, hysteresis COF "
-            f"{found.cof_hysteresis:.3g} at {at} ({self.rubber}).",
+            f"Real contact {100.0 * contact.real_contact_fraction_corrected:.3g} %, hysteresis COF "
+            f"{contact.cof_hysteresis:.3g} at {at} ({self.rubber}).",
         )
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return why the heights are none of a floor."""
+        return tuple(filter(None, [unlikely_height(self.floor.rms_height)]))
 
     def table(self) -> Table:
         content = self.to_dict()
@@ -90,29 +107,29 @@ class RoughContact(Presentable):
         }
 
     def to_dict(self) -> dict[str, Any]:
-        found, floor, flow = self.contact, self.floor, self.flow
+        contact, floor, flow = self.contact, self.floor, self.flow
         values = {
-            "real_contact_fraction": found.real_contact_fraction_corrected,
-            "cof_hysteresis": found.cof_hysteresis,
-            "mean_gap_m": found.mean_gap,
+            "real_contact_fraction": contact.real_contact_fraction_corrected,
+            "cof_hysteresis": contact.cof_hysteresis,
+            "mean_gap_m": contact.mean_gap,
             "flow_factor_along": flow.along,
             "flow_factor_across": flow.across,
         }
         content: dict[str, Any] = {
             "rubber": self.rubber,
-            "pressure_Pa": found.nominal_pressure,
-            "speed_m_per_s": found.speed,
+            "pressure_Pa": contact.nominal_pressure,
+            "speed_m_per_s": contact.speed,
             "rms_height_m": floor.rms_height,
             "rms_slope": surface.rms_slope(floor),
             "grid": list(floor.shape),
             "spacing_m": floor.spacing,
             "shortest_wave_m": floor.resolution,
             **{name: float(value) if self.usable else None for name, value in values.items()},
-            "status": str(found.status),
-            "iterations": found.iterations,
-            "complementarity_error": found.complementarity_error,
+            "status": str(contact.status),
+            "iterations": contact.iterations,
+            "complementarity_error": contact.complementarity_error,
             "notes": list(self._notes()),
-            "breaches": [str(breach) for breach in found.breaches],
+            "breaches": [str(breach) for breach in contact.breaches],
         }
         if self.scales is not None:
             content["shortest_waves"] = self._scale_entries(self.scales)
@@ -169,6 +186,47 @@ def rough_contact(
         dependence = cutoff_dependence(floor, modulus, speed, pressure, waves, poisson_ratio)
     notes = (*assumed, *contact.notes, *floor.processing)
     return RoughContact(described, floor, contact, flow, dependence, notes)
+
+
+def measured_table(
+    floor: Path,
+    rubber: tuple[Any, str, Sequence[str]],
+    *,
+    speed: float,
+    shoe: Path | None = None,
+    poisson_ratio: float = 0.5,
+    longest: float = LONGEST_WAVE,
+    progress: Progress = silent,
+) -> ContactTable:
+    """Return the contact table of a scanned floor and, where given, a scanned sole.
+
+    Waves from ``longest`` to that of a stylus, 2.5 um (``table_over_scales``), at one speed (m/s).
+
+    Raises:
+        DataError: A scan that is none of a floor or sole.
+        InputError: No sliding: a table at rest is no friction.
+    """
+    if not speed > 0:
+        raise InputError(
+            "a contact table at rest has no friction",
+            where="--speed",
+            allowed="above 0 m/s",
+            remedy='Give the speed of the case, as --speed "0.3 m/s"',
+        )
+    scans = [read_scan(path, strict=True) for path in (floor, shoe) if path is not None]
+    name = " on ".join(scan.name for scan in reversed(scans)) + f", {rubber[1]}"
+    return table_over_scales(
+        scans[0].density,
+        (longest, SHORTEST_WAVE),
+        rubber[0],
+        np.geomspace(*PRESSURES),
+        [speed],
+        shoe=scans[1].density if shoe is not None else None,
+        poisson_ratio=poisson_ratio,
+        cache=Cache("contact_table"),
+        description=name,
+        progress=progress,
+    )
 
 
 def solved(
@@ -285,8 +343,24 @@ def rubber_from(
     return _spectrum(spectrum)
 
 
+def _compound(path: Path) -> tuple[Any, str, list[str]] | None:
+    """Return the spectrum of a compound of ``underfoot material``; None where the file is none."""
+    from underfoot.case.shoe import Material
+
+    if path.suffix.lower() != ".toml" or not path.is_file():
+        return None
+    read = tomllib.loads(path.read_text(encoding="utf-8"))
+    if "relaxation" not in read:
+        return None
+    compound = Material.model_validate(read)
+    assert compound.relaxation is not None
+    return compound.relaxation.young(compound.poisson_ratio), f"compound of {path.name}", []
+
+
 def _spectrum(path: Path) -> tuple[Any, str, list[str]]:
-    """Return a Prony series, or the spectrum fitted to one dynamic sweep."""
+    """Return a compound, a Prony series, or the spectrum fitted to one dynamic sweep."""
+    if (compound := _compound(path)) is not None:
+        return compound
     try:
         return material.read_prony(path), f"Prony series of {path.name}", []
     except DataError as first:

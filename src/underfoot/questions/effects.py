@@ -97,11 +97,11 @@ class _Friction:
         further = beyond.shift + beyond.deviation * normal
         return replace(self, draws=self.draws * np.exp(share * further))
 
-    def moved(self, start: _Level, own: _Level) -> _Friction:
-        """Return a changed friction as from ``own``, the unchanged one, instead of ``start``."""
+    def moved(self, start: _Level, unchanged: _Level) -> _Friction:
+        """Return a changed friction as from ``unchanged`` instead of ``start``."""
         cof, load = self.cof.value or 0.0, self.fluid_load.value or 0.0
         left = self.film_left(start)
-        more, more_load = (left * (b - a) for a, b in zip(start, own, strict=True))
+        more, more_load = (left * (b - a) for a, b in zip(start, unchanged, strict=True))
         factor = max(1.0 + more / cof, 0.0) if cof else 1.0
         return _Friction(
             self.cof.scaled(factor),

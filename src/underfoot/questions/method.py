@@ -358,13 +358,13 @@ def _prepared(
         )
     changed = case.replace(changes)
     units = {"shoe_angle": "rad", "normal_force": "N", "speed": "m/s"}
-    kept = {
+    case_settings = {
         f"motion.{name}": f"{getattr(case.motion, name)!r} {unit}"
         for name, unit in units.items()
         if name in keep
     }
-    if kept:
-        changed = changed.replace(kept)
+    if case_settings:
+        changed = changed.replace(case_settings)
     for name, unit in units.items():
         leaf = entry.values[f"motion.{name}"]
         label = name.replace("_", " ")

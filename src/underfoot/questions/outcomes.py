@@ -23,7 +23,7 @@ from underfoot.core import (
 )
 from underfoot.core.arrays import Array
 from underfoot.core.cache import Cache
-from underfoot.core.pool import available_processors, in_processes
+from underfoot.core.pool import in_processes, workers
 from underfoot.core.progress import part
 
 if TYPE_CHECKING:
@@ -135,26 +135,27 @@ def outcomes(
     """
     store = Cache("outcomes-1")
     keys = [content_hash(case.hash, quick, list(maps)) for case in cases]
-    found: dict[str, Outcome] = {}
+    known: dict[str, Outcome] = {}
     waiting: dict[str, Case] = {}
     for key, case in zip(keys, cases, strict=True):
-        stored = store.load(key) if cached and key not in found else None
+        stored = store.load(key) if cached and key not in known else None
         if stored is not None:
             outcome = Outcome.from_text(str(stored.pop("outcome")))
-            found[key] = replace(outcome, maps=stored)
-        elif key not in found:
+            known[key] = replace(outcome, maps=stored)
+        elif key not in known:
             waiting[key] = case
-    ready = len(found) / max(len(set(keys)), 1)
+    ready = len(known) / max(len(set(keys)), 1)
     progress(stage, ready)
     compute = partial(_computed_alone, quick=quick, maps=maps)
-    workers = min(available_processors(), 4) if processes is None else processes
     names, items, rest = list(waiting), list(waiting.values()), part(progress, ready, 1.0)
-    for index, outcome in in_processes(compute, items, workers, progress=rest, stage=stage):
+    for index, outcome in in_processes(
+        compute, items, workers(processes), progress=rest, stage=stage
+    ):
         key = names[index]
-        found[key] = outcome
+        known[key] = outcome
         if cached and outcome.usable:
             store.store(key, {"outcome": np.array(outcome.as_text()), **outcome.maps})
-    return [found[key] for key in keys]
+    return [known[key] for key in keys]
 
 
 def _computed_alone(case: Case, *, quick: bool, maps: Sequence[str]) -> Outcome:

@@ -114,8 +114,10 @@ class RiskAssessment(Presentable):
     def cautions(self) -> tuple[str, ...]:
         outcome = self.outcome
         source = outcome.scalars["slip_probability"].source
-        own = next((model.name for model in self.models if model.source == source), "")
-        return cautions(outcome.status, outcome.scalars, outcome.breaches, outcome.assumptions, own)
+        model_name = next((model.name for model in self.models if model.source == source), "")
+        return cautions(
+            outcome.status, outcome.scalars, outcome.breaches, outcome.assumptions, model_name
+        )
 
     def change_sentences(self, most: int = MOST_CHANGES) -> list[str]:
         """Return the most effective changes with the COF and probability they lead to."""

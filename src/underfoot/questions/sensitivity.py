@@ -312,8 +312,10 @@ def open_inputs(case: Case, inputs: Sequence[OpenInput] = OPEN_INPUTS) -> list[O
             continue
         if each.path == "shoe.material.shore_a" and case.shoe.material.modulus is not None:
             continue
-        if own := case.sourced(each.path).uncertainty:
-            each = replace(each, deviation=own, reason="its stated uncertainty", ratio=False)
+        if uncertainty := case.sourced(each.path).uncertainty:
+            each = replace(
+                each, deviation=uncertainty, reason="its stated uncertainty", ratio=False
+            )
         chosen.append(each)
     return chosen
 

@@ -272,10 +272,11 @@ def measured_rcof(path: Path) -> tuple[float, float, str]:
     """Return mean and standard deviation of the RCOF of persons, and whose they are in words.
 
     Read from measurements.csv of ``underfoot trials analyse``. The steps of a person count as one
-    value, their mean; where no person is named, those of a file do.
+    value, their mean; where no person is named, those of a file do. Of one person alone the steps
+    count.
 
     Raises:
-        InputError: No such file, no RCOF in it, or one person only.
+        InputError: No such file, no RCOF in it, or one step only.
     """
     from underfoot.trials.measurement import MEAN_OF_STEPS
 
@@ -302,17 +303,22 @@ def measured_rcof(path: Path) -> tuple[float, float, str]:
     means = [float(np.mean(values)) for values in steps.values()]
     kind = "persons" if named else "files (no person is named: several may be one person)"
     if len(means) == 1:
-        raise InputError(
-            f"RCOF of one of the {kind}: there is no spread between people",
-            where=str(path),
-            remedy="Set risk.rcof_mean and risk.rcof_sd instead",
-        )
+        (own,) = steps.values()
+        if len(own) == 1:
+            raise InputError(
+                "RCOF of one step: there is no spread",
+                where=str(path),
+                remedy="Record more steps, or set risk.rcof_mean and risk.rcof_sd",
+            )
+        mean, sd = float(np.mean(own)), float(np.std(own, ddof=1))
+        words = f"RCOF mean {mean:.3f}, SD {sd:.3f} between {len(own)} steps of one walker"
+        return mean, sd, f"{words}: the slip probability is that walker's, nobody else's"
     mean, sd = float(np.mean(means)), float(np.std(means, ddof=1))
     count = sum(map(len, steps.values()))
-    words = f"RCOF mean {mean:.3f}, SD {sd:.3f} between {len(means)} {kind}, {count} steps" + (
+    text = f"RCOF mean {mean:.3f}, SD {sd:.3f} between {len(means)} {kind}, {count} steps" + (
         f", {cautions} of them with a caution" if cautions else ""
     )
-    return mean, sd, words
+    return mean, sd, text
 
 
 def shown_motion(study: SlipStudy) -> SlipMotion:

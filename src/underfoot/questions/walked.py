@@ -75,8 +75,8 @@ class Walker:
             InputError: The pair has lost more than the last state.
         """
         if self.pair is not None:
-            own = _volume_at(self.pair.lost, volumes, lost)
-            length = volume / own * self.pair.walked
+            first_volume = _volume_at(self.pair.lost, volumes, lost)
+            length = volume / first_volume * self.pair.walked
             distance = (length, length)
             steps = [length / step for step in reversed(STEP)]
         else:
@@ -101,12 +101,12 @@ def worn_pair(text: str | None) -> WornPair | None:
     """Return a measured pair from text, as "1.2 mm after 300 km"."""
     if text is None:
         return None
-    words = _PAIR.fullmatch(text)
-    if words is None:
+    match = _PAIR.fullmatch(text)
+    if match is None:
         raise InputError(
             f'"{text}"', where="--worn-pair", allowed='loss and distance: "1.2 mm after 300 km"'
         )
-    lost, walked = (to_si(words[name], "m", where="--worn-pair") for name in ("lost", "walked"))
+    lost, walked = (to_si(match[name], "m", where="--worn-pair") for name in ("lost", "walked"))
     if not (lost > 0 and walked > 0):
         raise InputError(f'"{text}"', where="--worn-pair", allowed="both above 0")
     return WornPair(lost, walked)

@@ -296,9 +296,9 @@ class WearSeries(Presentable):
             name: (
                 axes,
                 np.stack([getattr(sole, name) for sole in self.soles]),
-                {"units": unit, "long_name": words},
+                {"units": unit, "long_name": title},
             )
-            for name, (unit, words) in shapes.items()
+            for name, (unit, title) in shapes.items()
         }
         for name in self.maps[0] if self.maps else ():
             values = np.stack([each[name] for each in self.maps]).astype(np.float32)
@@ -426,10 +426,10 @@ def wear_series(
     per_state = 1 + 2 * len(inputs)
     points = []
     for number, worn in enumerate(cases):
-        own, *ends = results[number * per_state : (number + 1) * per_state]
+        middle, *ends = results[number * per_state : (number + 1) * per_state]
         pairs = zip(inputs, ends[::2], ends[1::2], strict=True)
         varied = tuple((each.path, low, high) for each, low, high in pairs)
-        points.append(WearPoint(_measures(worn), own, varied))
+        points.append(WearPoint(_measures(worn), middle, varied))
     between = measures_between(case, cases, mode, deepest)
     soles = tuple(map(bottom_surface, cases))
     angle = case.motion.shoe_angle
@@ -466,13 +466,13 @@ def maps_on_sole(sole: SoleSurface, outcome: Outcome, shoe_angle: float) -> dict
     side = along[1] - along[0]
     i = np.rint((place_on_floor(sole, shoe_angle) - along[0]) / side).astype(int)
     j = np.broadcast_to(np.rint((sole.y - across[0]) / side).astype(int), i.shape)
-    there = sole.inside & (i >= 0) & (i < along.size) & (j >= 0) & (j < across.size)
-    there &= outcome.usable
-    found = {}
+    covered = sole.inside & (i >= 0) & (i < along.size) & (j >= 0) & (j < across.size)
+    covered &= outcome.usable
+    fields = {}
     for name in MAPS:
-        found[name] = np.full(i.shape, np.nan)
-        found[name][there] = outcome.maps[name][i[there], j[there]]
-    return found
+        fields[name] = np.full(i.shape, np.nan)
+        fields[name][covered] = outcome.maps[name][i[covered], j[covered]]
+    return fields
 
 
 def wear_mode(mode: str | None, case: Case) -> str:

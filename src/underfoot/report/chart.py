@@ -49,9 +49,9 @@ def line_chart(
     turned = f'transform="translate(14 {(HEIGHT - BOTTOM + TOP) / 2}) rotate(-90)"'
     parts.append(f'<text {turned} text-anchor="middle">{escape(y_label)}</text>')
     for number, ((name, _), line, style) in enumerate(zip(lines, values, STYLES, strict=False)):
-        there = np.isfinite(line)
+        known = np.isfinite(line)
         points = " ".join(
-            f"{at_x(a):.1f},{at_y(b):.1f}" for a, b in zip(x[there], line[there], strict=True)
+            f"{at_x(a):.1f},{at_y(b):.1f}" for a, b in zip(x[known], line[known], strict=True)
         )
         parts.append(f'<polyline points="{points}" fill="none" stroke-width="2" {style}/>')
         begin = LEFT + 190 * number  # above the axes, where no line runs

@@ -49,18 +49,18 @@ def on_grid(dataset: Fields, quantity: Quantity, grid: CommonGrid) -> NDArray[np
     known = np.isfinite(values)
     along, across = _weights(dataset, grid)
     total = along @ np.where(known, values, 0.0) @ across.T
-    there = along @ known.astype(float) @ across.T
-    enough = sole_on_grid(dataset, grid) & (there >= 0.5 * _COVERED * grid.spacing**2)
-    return np.divide(total, there, out=np.full_like(total, np.nan), where=enough)
+    weight = along @ known.astype(float) @ across.T
+    enough = sole_on_grid(dataset, grid) & (weight >= 0.5 * _COVERED * grid.spacing**2)
+    return np.divide(total, weight, out=np.full_like(total, np.nan), where=enough)
 
 
 def sole_on_grid(dataset: Fields, grid: CommonGrid) -> NDArray[np.bool_]:
     """Return where at least half of a cell of a common grid lies on the sole, (nx, ny)."""
-    there = inside(dataset)
+    covered = inside(dataset)
     if not grid.resampled:
-        return there
+        return covered
     along, across = _weights(dataset, grid)
-    return along @ there.astype(float) @ across.T >= _COVERED * grid.spacing**2
+    return along @ covered.astype(float) @ across.T >= _COVERED * grid.spacing**2
 
 
 def difference(

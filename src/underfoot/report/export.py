@@ -90,20 +90,22 @@ def export_result(
             where="--to",
             allowed=", ".join(WRITERS),
         )
-    found = quantities([result.data]) if "x" in result.data.sizes else ()
-    if not found:
+    fields = quantities([result.data]) if "x" in result.data.sizes else ()
+    if not fields:
         raise DataError(
             "the result has no fields on the sole",
             where=result.name,
             remedy="Run the case again with --out; its folder must hold result.nc",
         )
-    chosen = next((each for each in found if each.name == field), found[0])
+    chosen = next((each for each in fields if each.name == field), fields[0])
     if field is not None and chosen.name != field:
-        raise unknown_name("field", field, [each.name for each in found], where="--field")
-    return write(_scene(result, found, chosen, pressed), path)
+        raise unknown_name("field", field, [each.name for each in fields], where="--field")
+    return write(_scene(result, fields, chosen, pressed), path)
 
 
-def _scene(result: Result, found: tuple[Quantity, ...], chosen: Quantity, pressed: bool) -> _Scene:
+def _scene(
+    result: Result, quantities: tuple[Quantity, ...], chosen: Quantity, pressed: bool
+) -> _Scene:
     dataset, sole = result.data, drawn_sole(result.data)
     if pressed and sole.pressed is None:
         raise DataError(
@@ -116,8 +118,8 @@ def _scene(result: Result, found: tuple[Quantity, ...], chosen: Quantity, presse
         result.name,
         sole,
         mesh,
-        {each.name: sole.placed(raw(dataset, each.name)) for each in found},
-        {each.name: str(dataset[each.name].attrs.get("units", "1")) for each in found},
+        {each.name: sole.placed(raw(dataset, each.name)) for each in quantities},
+        {each.name: str(dataset[each.name].attrs.get("units", "1")) for each in quantities},
         _colours(dataset, sole, mesh, chosen),
         f"{chosen.title}, {chosen.unit}",
     )
@@ -167,19 +169,19 @@ def _write_ply(scene: _Scene, path: Path) -> Exported:
     for name in scene.values:
         surface.vertex_attributes[name] = scene.of_points(name)
     data = surface.export(file_type="ply", include_attributes=True)
-    words = ["lengths in mm, z up, x forward", f"colours: {scene.title}"]
-    words += [f"{name} in {unit}" for name, unit in scene.units.items()]
+    header = ["lengths in mm, z up, x forward", f"colours: {scene.title}"]
+    header += [f"{name} in {unit}" for name, unit in scene.units.items()]
     head, _, body = data.partition(b"\n")  # "ply"; the comments follow the line of the format
     kind, _, rest = body.partition(b"\n")
-    comments = "".join(f"comment {line}\n" for line in words).encode("ascii", "replace")
+    comments = "".join(f"comment {line}\n" for line in header).encode("ascii", "replace")
     path.write_bytes(head + b"\n" + kind + b"\n" + comments + rest)
     return Exported(path, "mm", "z up, x forward", scene.title, scene.units)
 
 
 def _write_obj(scene: _Scene, path: Path) -> Exported:
     surface = _surface(scene, scene.mesh.points * 1e3)
-    words = f"lengths in mm, z up, x forward; colours of the corners: {scene.title}"
-    path.write_text(surface.export(file_type="obj", header=words), encoding="utf-8")
+    comment = f"lengths in mm, z up, x forward; colours of the corners: {scene.title}"
+    path.write_text(surface.export(file_type="obj", header=comment), encoding="utf-8")
     return Exported(path, "mm", "z up, x forward", scene.title, {})
 
 
@@ -193,13 +195,13 @@ def _write_vtu(scene: _Scene, path: Path) -> Exported:
 
 def _write_csv(scene: _Scene, path: Path) -> Exported:
     sole = scene.sole
-    there = np.isfinite(sole.height)
-    rows, columns = np.nonzero(there)
-    table = {"x (m)": sole.x[rows], "y (m)": sole.y[columns], "height (m)": sole.height[there]}
+    known = np.isfinite(sole.height)
+    rows, columns = np.nonzero(known)
+    table = {"x (m)": sole.x[rows], "y (m)": sole.y[columns], "height (m)": sole.height[known]}
     if sole.pressed is not None:
-        table["pressed height (m)"] = sole.pressed[there]
-    table["land (1)"] = sole.land[there].astype(float)
-    table |= {f"{name} ({scene.units[name]})": each[there] for name, each in scene.values.items()}
+        table["pressed height (m)"] = sole.pressed[known]
+    table["land (1)"] = sole.land[known].astype(float)
+    table |= {f"{name} ({scene.units[name]})": each[known] for name, each in scene.values.items()}
     names, values = ",".join(table), np.stack(list(table.values()), axis=1)
     np.savetxt(path, values, fmt="%.7g", delimiter=",", header=names, comments="")
     return Exported(path, "m", "x forward, y to the left", "", scene.units)

@@ -117,11 +117,11 @@ def map_figure(dataset: Fields, quantity: Quantity) -> Figure:
 
 def overview_figure(dataset: Fields) -> Figure:
     """Return the maps of all quantities, three in a row."""
-    found = quantities([dataset])
-    columns = min(3, len(found))
-    rows = -(-len(found) // columns)
+    fields = quantities([dataset])
+    columns = min(3, len(fields))
+    rows = -(-len(fields) // columns)
     figure = _sole_figure(rows, columns, dataset)
-    for number, quantity in enumerate(found, start=1):
+    for number, quantity in enumerate(fields, start=1):
         axes = figure.add_subplot(rows, columns, number)
         draw_map(axes, dataset, quantity)
         axes.set(xticks=[], yticks=[])
@@ -195,9 +195,9 @@ def _sole_figure(rows: int, columns: int, dataset: Fields) -> Figure:
 
 def _tallness(dataset: Fields) -> float:
     """Return the sole's length, with room for the scale bar, over its width."""
-    there = inside(dataset)
-    tall = np.ptp(dataset["x"].values[there.any(axis=1)]) + 0.015
-    return tall / max(np.ptp(dataset["y"].values[there.any(axis=0)]), 1e-6)
+    covered = inside(dataset)
+    tall = np.ptp(dataset["x"].values[covered.any(axis=1)]) + 0.015
+    return tall / max(np.ptp(dataset["y"].values[covered.any(axis=0)]), 1e-6)
 
 
 def _draw_sensors(axes: Axes, dataset: Fields) -> None:
@@ -222,10 +222,10 @@ def _draw_sensors(axes: Axes, dataset: Fields) -> None:
 
 
 def frame_sole(
-    axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], there: NDArray[np.bool_]
+    axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], covered: NDArray[np.bool_]
 ) -> None:
     """Frame the sole with room for a scale bar below and the walking direction above."""
-    ends_x, ends_y = x[there.any(axis=1)][[0, -1]], y[there.any(axis=0)][[0, -1]]
+    ends_x, ends_y = x[covered.any(axis=1)][[0, -1]], y[covered.any(axis=0)][[0, -1]]
     size = float(np.ptp(ends_x))
     axes.set_aspect("equal")
     axes.set_xlim(ends_y[0] - 0.06 * size, ends_y[1] + 0.06 * size)

@@ -60,8 +60,8 @@ def _result_sections(
         *table_sections(result),
     ]
     if advice is not None:
-        words = "This result, moved by what each change does on the coarse grid."
-        parts.append(Section(advice.table().title, words, table=advice.table()))
+        caption = "This result, moved by what each change does on the coarse grid."
+        parts.append(Section(advice.table().title, caption, table=advice.table()))
     titles = {quantity.name: quantity.title for quantity in quantities([result.data])}
     maps = [
         Picture(f"Map of {titles[name].lower()} on the sole", embedded(data))

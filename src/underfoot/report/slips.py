@@ -101,20 +101,20 @@ def _draw_path(axes: Axes, study: SlipStudy, motion: SlipMotion) -> None:
 def _draw_pressures(figure: SubFigure, study: SlipStudy, motion: SlipMotion) -> None:
     run, array = study.representative, study.array
     assert run is not None
-    found = array_pressures(motion, run.maps, array) / 1e3
+    pressures = array_pressures(motion, run.maps, array) / 1e3
     grid = figure.subplots(array.rows, array.columns, sharex=True, sharey=True, squeeze=False)
-    busy = np.flatnonzero(found.max(axis=(1, 2)) > 1.0)
+    busy = np.flatnonzero(pressures.max(axis=(1, 2)) > 1.0)
     over = float(motion.time[busy[-1]]) if busy.size else 0.1
     last = min(1e3 * float(motion.time[-1]), 1e3 * over + 40)
     for i in range(array.rows):
         for j in range(array.columns):
             axes = grid[array.rows - 1 - i][j]
-            axes.fill_between(1e3 * motion.time, found[:, i, j], color=FLUID, alpha=0.35, lw=0)
-            axes.plot(1e3 * motion.time, found[:, i, j], color=FLUID, lw=1.3)
-            axes.text(0.95, 0.85, f"{found[:, i, j].max():.0f} kPa", ha="right", fontsize=8,
+            axes.fill_between(1e3 * motion.time, pressures[:, i, j], color=FLUID, alpha=0.35, lw=0)
+            axes.plot(1e3 * motion.time, pressures[:, i, j], color=FLUID, lw=1.3)
+            axes.text(0.95, 0.85, f"{pressures[:, i, j].max():.0f} kPa", ha="right", fontsize=8,
                       transform=axes.transAxes)  # fmt: skip
             axes.set_xlim(0, last)
-            axes.set_ylim(0, max(1.15 * found.max(), 5.0))
+            axes.set_ylim(0, max(1.15 * pressures.max(), 5.0))
             axes.spines[["top", "right"]].set_visible(False)
             axes.tick_params(labelsize=8)
     figure.supxlabel("time after heel contact (ms)", fontsize=9)

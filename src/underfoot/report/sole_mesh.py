@@ -76,13 +76,13 @@ def sole_mesh(sole: DrawnSole, *, pressed: bool = False) -> SoleMesh:
         for place, number in enumerate((first, second)):
             mirrored = _CORNERS.index(tuple(int(v) for v in np.array(_CORNERS[number]) - step))
             other[beside, place] = corners[near[0][beside], near[1][beside], mirrored]
-        own = corners[rows, columns][:, [first, second]]
+        ends = corners[rows, columns][:, [first, second]]
         # of two cells the lower one has the wall
-        wall = np.abs(other - own).sum(axis=1) > 1e-7
-        wall &= other.sum(axis=1) > own.sum(axis=1)
+        wall = np.abs(other - ends).sum(axis=1) > 1e-7
+        wall &= other.sum(axis=1) > ends.sum(axis=1)
         upright = np.empty((int(wall.sum()), 4, 3))
         for place, (number, level) in enumerate(
-            ((first, own[:, 0]), (second, own[:, 1]), (second, other[:, 1]), (first, other[:, 0]))
+            ((first, ends[:, 0]), (second, ends[:, 1]), (second, other[:, 1]), (first, other[:, 0]))
         ):
             step_x, step_y = _CORNERS[number]
             upright[:, place, 0] = (x + (step_x - 0.5) * side)[wall]

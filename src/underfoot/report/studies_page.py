@@ -1,4 +1,4 @@
-"""What a study leaves on disk: its folder, and one offline page of all studies."""
+"""What a study leaves on disk: its folder, and one offline page of it or of all studies."""
 
 from __future__ import annotations
 
@@ -18,10 +18,15 @@ COLOURS = {
     "agrees": "good",
     "overlaps": "half",
     "trend only": "half",
+    "undecided": "none",
     "disagrees": "bad",
     "not converged": "none",
     "not comparable": "none",
 }
+
+
+BROAD = 2.6
+"""Width over height from which a figure stands alone."""
 
 
 def write_study(result: StudyResult, folder: Path) -> list[str]:
@@ -59,18 +64,24 @@ def studies_page(
             "result": result,
             "study": result.study,
             "tables": result.computed.tables,
-            "kinds": [(kind.heading, some) for kind, some in tables_by_kind(result.judgements)],
+            "kinds": [
+                (kind.heading, some, number == 0)
+                for number, (kind, some) in enumerate(tables_by_kind(result.judgements))
+            ],
             "remarks": result.remarks(),
             "images": [
-                (name, embedded(data), remarks.get((study, name), ""))
+                (name, embedded(data), remarks.get((study, name), ""), _broad(data))
                 for (study, name), data in images.items()
                 if study == result.study.name
             ],
         }
         for result in results
     ]
+    several = len(results) > 1
     page = environment().get_template("studies.html")
     return page.render(
+        title="Printed numbers beside ours" if several else results[0].study.title,
+        several=several,
         sections=sections,
         headline=headline(results),
         rules={str(verdict): verdict.rule for verdict in Verdict},
@@ -79,6 +90,12 @@ def studies_page(
         cell=_cell,
         quick=quick,
     )
+
+
+def _broad(png: bytes) -> bool:
+    """Return whether a picture needs the page's whole width: its header has width and height."""
+    width, height = (int.from_bytes(png[at : at + 4], "big") for at in (16, 20))
+    return width > BROAD * height
 
 
 def _write_csv(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:

@@ -76,18 +76,18 @@ def viewer_scene(results: Sequence[OnSole]) -> dict[str, Any]:
     over ``scale`` (relative error below 5e-4), high bytes first, deflated, base64.
     """
     datasets = [result.data for result in results]
-    found = quantities(datasets)
-    fields = {q.name: [drawn(dataset, q) for dataset in datasets] for q in found}
-    histories = {q.name: [_history(dataset, q) for dataset in datasets] for q in found}
+    shown = quantities(datasets)
+    fields = {q.name: [drawn(dataset, q) for dataset in datasets] for q in shown}
+    histories = {q.name: [_history(dataset, q) for dataset in datasets] for q in shown}
     panes = []
     for number, result in enumerate(results):
         sole = drawn_sole(result.data)
-        past = [(q.name, histories[q.name][number]) for q in found]
+        past = [(q.name, histories[q.name][number]) for q in shown]
         panes.append(
             pane(
                 result.name,
                 sole,
-                {q.name: sole.placed(fields[q.name][number]) for q in found},
+                {q.name: sole.placed(fields[q.name][number]) for q in shown},
                 outline=_outline(result.data),
                 histories={
                     name: history([f"{shown_time(t)}" for t in times], sole.placed(frames))
@@ -98,7 +98,7 @@ def viewer_scene(results: Sequence[OnSole]) -> dict[str, Any]:
             )
         )
     listed = []
-    for q in found:
+    for q in shown:
         drawn_ones = [*fields[q.name], *(past[1] for past in histories[q.name] if past)]
         loads = [carried_load(dataset, q) for dataset in datasets]
         listed.append(listed_quantity(q, drawn_ones, loads))

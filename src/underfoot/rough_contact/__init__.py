@@ -8,11 +8,13 @@ from .cutoff import cutoff_dependence as cutoff_dependence
 from .flow_factor import FlowFactors as FlowFactors
 from .flow_factor import flow_factors as flow_factors
 from .greenwood_williamson_1966 import greenwood_williamson as greenwood_williamson
+from .greenwood_williamson_1966 import greenwood_williamson_law as greenwood_williamson_law
 from .persson import persson as persson
 from .pressure_gap_law import ExponentialLaw as ExponentialLaw
 from .pressure_gap_law import PressureGapLaw as PressureGapLaw
 from .pressure_gap_law import TabulatedLaw as TabulatedLaw
 from .pressure_gap_law import persson_law as persson_law
+from .scales import table_over_scales as table_over_scales
 from .steady import SlidingSettings as SlidingSettings
 from .steady import SteadySliding as SteadySliding
 from .steady import steady_sliding as steady_sliding

@@ -37,9 +37,10 @@ Direction = Literal["along", "across", "mean"]
 _FORMAT = 1
 _ARRAYS = ("pressure", "speed", "realizations")
 _TEXTS = ("description", "key", "notes", "out_of_range")
-ROOM = "contact_table-2"
+ROOM = "contact_table-3"
 """Of the cache; raised when the numbers or the form of a part change."""
 _REFINEMENT = 8
+BELONG = ": contact fraction and hysteresis belong to this shortest wave"
 SEALED = 1e-6
 """Flow factor of a contact without an open path on its grid (assumed): waves below the shortest one
 leak, and a film solver needs a way for every cell."""
@@ -81,6 +82,7 @@ class ContactTable(Presentable):
         speed: ArrayLike,
         *,
         shoe_surfaces: Sequence[HeightMap] | None = None,
+        finer: ContactTable | None = None,
         poisson_ratio: float = 0.5,
         layer_thickness: float | None = None,
         processes: int = 1,
@@ -102,6 +104,8 @@ class ContactTable(Presentable):
             shoe_surfaces: The rubber's own roughness, one periodic map for each of ``surfaces``:
                 contact, gap and flow are those of ``composite_surface`` at each speed, hysteresis
                 that of the floor alone; its limits are noted.
+            finer: Table of the waves that the surfaces leave out, at the same speeds: what they do
+                at the pressure of each point of contact counts (``table_over_scales``).
             processes: Worker processes; with more than 1 the modulus must be picklable (no lambda).
             cache: Where finished parts are kept; None takes the user's cache.
             progress: Receives the fraction done; may raise ``Cancelled``: finished parts stay in
@@ -121,9 +125,8 @@ class ContactTable(Presentable):
             for u in v.tolist():
                 both = None if shoe is None else composite_surface(floor, shoe, modulus, u).heights
                 given = (floor.spacing, modulus, u, p, poisson_ratio, layer_thickness)
-                parts.append(
-                    _Part(alone if both is None else both, *given, None if both is None else alone)
-                )
+                heights = (alone, None) if both is None else (both, alone)
+                parts.append(_Part(heights[0], *given, heights[1], finer))
         keys = [part.key for part in parts]
         columns = [store.load(key) for key in keys]
         missing = [n for n, column in enumerate(columns) if column is None]
@@ -138,6 +141,8 @@ class ContactTable(Presentable):
             done += 1
             progress("contact table", done / len(parts))
         about = [_about(surfaces), *([RESTING] if shoe_surfaces is not None else [])]
+        if finer is not None:
+            about = [f"{about[0].replace(BELONG, '')}; in it {finer.notes[0]}", *about[1:]]
         finished = [column for column in columns if column is not None]
         return _table(about, p, v, finished, keys, description)
 
@@ -154,6 +159,42 @@ class ContactTable(Presentable):
         ]
         title = f"Contact table: {self.description or 'rough contact'}"
         return Table(title, ("pressure Pa", "speed m/s", *columns), rows)
+
+    def heading(self) -> str:
+        """Return what is in contact."""
+        return f"Contact table: {self.description or 'rough contact'}"
+
+    def headline(self) -> tuple[str, ...]:
+        """Return the contact at the middle pressure and speed."""
+        p, v = (float(nodes[nodes.size // 2]) for nodes in (self.pressure, self.speed))
+        gap = core.display(float(self.mean_gap(p, v)), "m")
+        return (
+            f"At {core.display(p, 'Pa')} and {core.display(v, 'm/s')}: real contact "
+            f"{100 * float(self.real_contact_fraction(p, v)):.3g} %, hysteresis COF "
+            f"{float(self.cof_hysteresis(p, v)):.2g}, mean gap {gap}, flow factor "
+            f"{float(self.flow_factor(p, v)):.2g}.",
+        )
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return the nodes without their spread, units for people."""
+        rows = [
+            (
+                core.display(p, "Pa"),
+                core.display(v, "m/s"),
+                f"{100 * float(self.real_contact_fraction(p, v)):.3g} %",
+                f"{float(self.cof_hysteresis(p, v)):.2g}",
+                core.display(float(self.mean_gap(p, v)), "m"),
+                f"{float(self.flow_factor(p, v)):.2g}",
+            )
+            for v in self.speed.tolist()
+            for p in self.pressure.tolist()
+        ]
+        heads = ("Pressure", "Speed", "Real contact", "Hysteresis COF", "Mean gap", "Flow factor")
+        return (Table("Nodes", heads, rows),)
+
+    def remarks(self) -> dict[str, Sequence[str]]:
+        """Return what a reader must know, and what left a tested range."""
+        return {"Notes": self.notes, "Outside the tested range": self.out_of_range}
 
     def __repr__(self) -> str:
         p, v = (
@@ -273,6 +314,20 @@ class ContactTable(Presentable):
             ranges=self.ranges,
         )
 
+    def scaled(self, gap: float, pressure: float, speed: float) -> ContactTable:
+        """Return the table of an elastic contact alike, gaps and pressures times factors above 0.
+
+        Heights times a make gaps times a, and pressures times a and the ratio of E / (1 - nu^2).
+        Elastic contacts are the same at every speed: the nodes are moved to ``speed`` (m/s).
+        """
+        factors = {name: gap if name == "mean_gap" else 1.0 for name in QUANTITIES}
+        values, deviation = (
+            {name: factors[name] * nodes for name, nodes in part.items()}
+            for part in (self.values, self.deviation)
+        )
+        nodes = {"pressure": pressure * self.pressure, "speed": np.array([abs(speed)])}
+        return replace(self, **nodes, values=values, deviation=deviation)
+
     def save(self, path: str | Path) -> None:
         """Write the table as one compressed NumPy archive (.npz)."""
         text = {name: getattr(self, name) for name in _TEXTS}
@@ -306,7 +361,7 @@ class ContactTable(Presentable):
             raise core.DataError(
                 f"{path} is not a contact table ({error})",
                 where=str(path),
-                allowed="a file written by ContactTable.save",
+                allowed="a file that underfoot contact --table wrote, or ContactTable.save",
             ) from error
 
     def _through(self, nodes: np.ndarray, at: Sequence[np.ndarray]) -> tuple[Array, Array]:
@@ -332,7 +387,8 @@ class ContactTable(Presentable):
                 raise core.RangeError(
                     str(outside_grid[0]),
                     where=self.name,
-                    remedy='Compute a wider table, or extend it knowingly with outside="extend"',
+                    remedy="Compute one there (underfoot contact --speed), or extend it with "
+                    'outside="extend"',
                 )
         x = np.log(np.clip(p, self.pressure[0], self.pressure[-1]))
         return p, x, np.log(np.clip(v, self.speed[0], self.speed[-1]))
@@ -352,13 +408,15 @@ class _Part(NamedTuple):
     poisson_ratio: float
     layer_thickness: float | None
     floor_heights: np.ndarray | None = None
+    finer: ContactTable | None = None
 
     @property
     def key(self) -> str:
         """Return the content key: heights, loads, modulus at every frequency."""
         q = 2.0 * np.pi * np.fft.rfftfreq(self.heights.shape[0], self.spacing)
         young = modulus_function(self.modulus, q * self.speed)(q * self.speed)
-        return core.content_hash(*self._replace(modulus=young))
+        finer = self.finer and self.finer.key
+        return core.content_hash(*self._replace(modulus=young, finer=finer))
 
 
 def _column(part: _Part) -> dict[str, np.ndarray]:
@@ -380,16 +438,7 @@ def _column(part: _Part) -> dict[str, np.ndarray]:
         if not (contact.status.usable and friction.status.usable):
             rows.append([np.nan] * len(QUANTITIES))
             continue
-        flow = flow_factors(np.where(contact.pressure > 0.0, 0.0, contact.gap), part.spacing)
-        rows.append(
-            [
-                contact.real_contact_fraction_corrected,
-                friction.cof_hysteresis,
-                contact.mean_gap,
-                flow.along,
-                flow.across,
-            ]
-        )
+        rows.append(_averages(contact, friction, part))
         out_of_range += [str(breach) for breach in contact.breaches]
         remarks += [contact.negligible_loss] if contact.negligible_loss else []
     column = dict(zip(QUANTITIES, np.array(rows).T, strict=True))
@@ -397,6 +446,39 @@ def _column(part: _Part) -> dict[str, np.ndarray]:
     column["remarks"] = np.array(list(dict.fromkeys(remarks)), dtype=np.str_)
     column["out_of_range"] = np.array(list(dict.fromkeys(out_of_range)), dtype=np.str_)
     return column
+
+
+def _averages(contact: SteadySliding, friction: SteadySliding, part: _Part) -> list[float]:
+    """Return the QUANTITIES of a contact; the hysteresis is that of ``friction``.
+
+    Finer waves meet the pressure of each point of contact: area and hysteresis are the means of
+    theirs over the contact, the gap is theirs on top of that of the grid, and fluid crosses points
+    of contact through what they leave open. Points out of contact stand off by their gap at the
+    mean pressure of the contact; their effect on the flow there fades with the square of the gap.
+    """
+    gap, finer = np.where(contact.pressure > 0.0, 0.0, contact.gap), part.finer
+    if finer is None:
+        flow = flow_factors(gap, part.spacing)
+        area, hysteresis = contact.real_contact_fraction_corrected, friction.cof_hysteresis
+        return [area, hysteresis, contact.mean_gap, flow.along, flow.across]
+    pressure, loaded, speed = contact.pressure, friction.pressure, part.speed
+    area = float(finer.real_contact_fraction(pressure, speed, "extend").mean())
+    # above the nodes the finer waves are in full contact: their loss no longer grows with pressure
+    bearing = np.minimum(loaded, finer.pressure[-1])
+    more = float(np.vdot(bearing, finer.cof_hysteresis(bearing, speed, "extend")) / loaded.sum())
+    closed = pressure > 0.0
+    felt = np.where(closed, pressure, pressure.sum() / max(int(closed.sum()), 1))
+    below = np.maximum(finer.mean_gap(felt, speed, "extend"), 0.0)
+    factor = finer.flow_factor(felt, speed, outside="extend")
+    whole, hysteresis = gap + below, friction.cof_hysteresis + more
+    mean = float(whole.mean())
+    if mean == 0.0:
+        return [area, hysteresis, 0.0, 0.0, 0.0]
+    share = np.divide(below, whole, out=np.ones_like(whole), where=whole > 0)
+    factor = np.clip(1.0 - (1.0 - factor) * share**2, 0.0, 1.0)
+    flow = flow_factors(whole * np.cbrt(factor), part.spacing)
+    scale = (flow.mean_gap / mean) ** 3
+    return [area, hysteresis, mean, scale * flow.along, scale * flow.across]
 
 
 def _check_sendable(modulus: Modulus) -> None:
@@ -489,10 +571,10 @@ def _about(surfaces: Sequence[Any]) -> str:
     first = surfaces[0]
     shortest = [s.resolution if s.resolution is not None else 2.0 * s.spacing for s in surfaces]
     nx, ny = first.heights.shape
+    spacing, wave = (core.display(length, "m") for length in (first.spacing, max(shortest)))
     return (
-        f"{len(surfaces)} surface(s) of {nx} x {ny} points, spacing "
-        f"{core.display(first.spacing, 'm')}, shortest wave {core.display(max(shortest), 'm')}: "
-        "contact fraction and hysteresis belong to this shortest wave"
+        f"{len(surfaces)} surface(s) of {nx} x {ny} points, spacing {spacing}, shortest wave {wave}"
+        f"{BELONG}"
     )
 
 

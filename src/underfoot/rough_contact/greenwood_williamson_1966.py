@@ -1,6 +1,7 @@
 """Greenwood and Williamson (1966): a rough surface as independent spherical summits."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -9,7 +10,8 @@ from scipy import special
 from underfoot.core import InputError, Range, RangeError, breaches
 from underfoot.surface import SpectralMoments, asperities
 
-from .theory import TheoryContact
+from .pressure_gap_law import TabulatedLaw
+from .theory import TheoryContact, checked_spectrum
 
 SOURCE = (
     "Greenwood and Williamson (1966) Proc. R. Soc. A 295:300-319; summits from the moments of "
@@ -58,6 +60,44 @@ def greenwood_williamson(
         spot_density=summits.density * _summit_integral(0.0, t),
         not_estimated="hysteresis: the theory is elastic",
         breaches=tuple(breaches("greenwood_williamson_1966", TESTED, values)),
+    )
+
+
+def greenwood_williamson_law(
+    wavenumber: ArrayLike,
+    spectrum: ArrayLike,
+    modulus: float,
+    poisson_ratio: float = 0.5,
+    flow_factor: Callable[[np.ndarray], np.ndarray] | None = None,
+) -> TabulatedLaw:
+    """Return the law p(u) of independent summits, from a contact of 1e-5 to where planes meet.
+
+    Arguments as ``persson_law``. The range ends at 5 % of real contact: beyond it summits merge,
+    and the gap falls to 0 too soon.
+    """
+    q, c = checked_spectrum(wavenumber, spectrum)
+    m0, m2, m4 = (
+        weight * np.pi * float(np.trapezoid(q ** (1 + 2 * order) * c, q))
+        for order, weight in enumerate((2.0, 1.0, 0.75))
+    )
+    moments = SpectralMoments(m0, m2, m4, (float(q[0]), float(q[-1])))
+    scale = modulus / (1.0 - poisson_ratio**2) * math.sqrt(m2)
+    contact = greenwood_williamson(
+        np.geomspace(0.3, 1e-5, 200) * scale, moments, modulus, poisson_ratio
+    )
+    assert contact.mean_gap is not None
+    open_ = contact.mean_gap > 0.0
+    gap, pressure = contact.mean_gap[open_], contact.pressure[open_]
+    area = contact.real_contact_fraction
+    highest = float(contact.pressure[area <= TESTED["real_contact_fraction"].high].max())
+    flow = np.ones_like(gap) if flow_factor is None else np.asarray(flow_factor(gap), dtype=float)
+    return TabulatedLaw(
+        name="greenwood_williamson_1966",
+        source=SOURCE,
+        gap=gap,
+        node_pressure=pressure,
+        node_flow_factor=flow,
+        ranges={"pressure": Range(0.0, highest, "Pa", "up to 5 % of real contact")},
     )
 
 

@@ -244,6 +244,11 @@ class TabulatedLaw(_PresentableLaw):
         nodes = gap * self.gap, pressure * self.node_pressure, self.node_flow_factor
         return TabulatedLaw(self.name, self.source, *nodes, ranges=ranges)
 
+    def changed(self, gap: float, flow: float) -> "TabulatedLaw":
+        """Return the law with its gaps and flow factors (at most 1) times factors above 0."""
+        passing = np.minimum(flow * self.node_flow_factor, 1.0)
+        return replace(self, gap=gap * self.gap, node_flow_factor=passing)
+
     def pressure(self, gap: ArrayLike) -> Array:
         """Return the asperity pressure (Pa) at mean gap ``gap`` (m), any sign and shape."""
         g, first = np.asarray(gap, dtype=float), self.node_pressure[0]

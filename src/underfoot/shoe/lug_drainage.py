@@ -63,7 +63,7 @@ class LugDrainage:
     groove_side: NDArray[np.intp]
     relief: Array
 
-    def words(self) -> str:
+    def advice(self) -> str:
         """Return which lug drains worst and to which side to open it; empty where all bear little.
 
         Parts more slender than high bend over: where the way is no longer than the lug is high, no
@@ -85,7 +85,7 @@ class LugDrainage:
 
     def fields(self) -> dict[str, tuple[str, Any, dict[str, str]]]:
         """Return the variables of a data set."""
-        words = {
+        titles = {
             "load": ("N", "load on the film under the lug"),
             "share": ("1", "share of the load on the film"),
             "x": ("m", "peak of the fluid pressure under the lug, from the rear end"),
@@ -99,7 +99,7 @@ class LugDrainage:
         }
         return {
             f"lug_{name}": ("lug", getattr(self, name), {"units": unit, "long_name": text})
-            for name, (unit, text) in words.items()
+            for name, (unit, text) in titles.items()
         }
 
 
@@ -223,13 +223,13 @@ def _best_grooves(
         fallen = _fallen(full & ~cut, cut, pressure, conductance)
         relieved = np.bincount(numbers.ravel(), (fallen * area).ravel(), load.size)
         reliefs[side] = relieved[lugs] / load[lugs]
-    found = []
+    grooves = []
     for length, relief, place in zip(lengths.T, reliefs.T, y[peaks[:, 1]], strict=False):
         best = relief >= NEARLY * relief.max()
         best &= length <= length[best].min() + 1
         side = next(side for side in _preferred(float(place)) if best[side])
-        found.append((float(length[side]), side, float(relief[side])))
-    return found
+        grooves.append((float(length[side]), side, float(relief[side])))
+    return grooves
 
 
 def _fallen(free: Mask, groove: Mask, pressure: Array, conductance: Array) -> Array:

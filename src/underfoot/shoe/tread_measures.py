@@ -280,7 +280,7 @@ def _slit_pieces(narrow: Mask, inside: Mask, spacing: float) -> tuple[Labels, in
 
     numbers, count = pieces(narrow, diagonal=True)
     extent = [math.hypot(*(s.stop - s.start for s in box)) for box in find_objects(numbers)]
-    own = np.array([False, *(cells * spacing >= SHORTEST_SIPE for cells in extent)])
+    long_enough = np.array([False, *(cells * spacing >= SHORTEST_SIPE for cells in extent)])
     walls, open_walls = np.zeros((2, count + 1))
     for axis in (0, 1):
         for step in (1, -1):
@@ -288,9 +288,9 @@ def _slit_pieces(narrow: Mask, inside: Mask, spacing: float) -> tuple[Labels, in
             sole = np.roll(np.pad(inside, 1), step, axis)[1:-1, 1:-1]
             walls += np.bincount(numbers[~beside], minlength=count + 1)
             open_walls += np.bincount(numbers[~sole], minlength=count + 1)
-    own &= open_walls < MOST_OPEN * walls
-    kept = np.cumsum(own) * own
-    return kept[numbers], int(kept.max())
+    long_enough &= open_walls < MOST_OPEN * walls
+    rank = np.cumsum(long_enough) * long_enough
+    return rank[numbers], int(rank.max())
 
 
 def _slit_widths(numbers: Labels, count: int, spacing: float) -> tuple[Array, Array]:

@@ -31,28 +31,28 @@ def tread_periods(surface: SoleSurface) -> Array:
     have one. A tread without (or with too few lugs to tell) gets the sum of its median widths of
     lugs and channels, along and across.
     """
-    found: list[Array] = []
+    periods: list[Array] = []
     likeness = _likeness(surface)
     for lag in _peaks(likeness):
-        if len(found) == 2:
+        if len(periods) == 2:
             break
         if not _differs_on_the_way(likeness, lag):
             continue
-        if found:
-            first = found[0]
+        if periods:
+            first = periods[0]
             cosine = abs(lag @ first) / (np.linalg.norm(lag) * np.linalg.norm(first))
             apart = all(_differs_on_the_way(likeness, lag + n * first) for n in range(-5, 6))
             if cosine > 1 - _STEP or not apart:
                 continue
-        found.append(lag)
-    if not found:
+        periods.append(lag)
+    if not periods:
         channel = surface.inside & ~surface.land
         pitch = sum(
             float(np.median(local_width(mask, surface.spacing)[mask]))
             for mask in (channel, surface.land)
         )
         return np.diag([min(pitch, LONGEST_PERIOD)] * 2)
-    return np.array(found) * surface.spacing
+    return np.array(periods) * surface.spacing
 
 
 def _likeness(surface: SoleSurface) -> Array:
@@ -66,12 +66,12 @@ def _likeness(surface: SoleSurface) -> Array:
     value = np.where(inside, surface.land - surface.land[inside].mean(), 0.0)
     known = inside.astype(np.float64)
 
-    def shared(one: Array, other: Array) -> Array:
-        return np.asarray(fftconvolve(one, other[::-1, ::-1]))
+    def shared(first: Array, other: Array) -> Array:
+        return np.asarray(fftconvolve(first, other[::-1, ::-1]))
 
-    own, partner = shared(value**2, known), shared(known, value**2)
+    mine, partner = shared(value**2, known), shared(known, value**2)
     enough = shared(known, known) > np.count_nonzero(inside) / 3
-    energy = np.sqrt(np.maximum(own * partner, 1e-30))
+    energy = np.sqrt(np.maximum(mine * partner, 1e-30))
     correlation = np.where(enough, shared(value, value) / energy, -1.0)
     reach = int(LONGEST_PERIOD / surface.spacing)
     i, j = (np.arange(n) - n // 2 for n in correlation.shape)
@@ -132,16 +132,16 @@ def _sources(inside: Mask, shift: Array, periods: Array) -> tuple[NDArray[np.int
     ways = shift + counts @ periods
     ways = ways[np.argsort(np.hypot(*ways.T), kind="stable")]
     nearest = np.stack(nearest_true(inside))
-    found, known = nearest.copy(), np.zeros_like(inside)
+    sources, known = nearest.copy(), np.zeros_like(inside)
     place = np.indices(inside.shape)
     for way in ways:
         there = place - np.rint(way).astype(int)[:, None, None]
         within = np.all([(t >= 0) & (t < n) for t, n in zip(there, inside.shape, strict=True)], 0)
         there = [np.clip(t, 0, n - 1) for t, n in zip(there, inside.shape, strict=True)]
         new = ~known & within & inside[tuple(there)]
-        found = np.where(new, there, found)
+        sources = np.where(new, there, sources)
         known |= new
-    return tuple(found)
+    return tuple(sources)
 
 
 def carried_base(surface: SoleSurface) -> Array:

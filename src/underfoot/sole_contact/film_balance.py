@@ -12,6 +12,7 @@ from underfoot.film.face_operator import (
     FaceMatrix,
     FaceOperator,
     Faces,
+    Inlet,
     RowCavity,
     face_operator,
 )
@@ -90,6 +91,7 @@ class FilmBalance:
         duration: float,
         leaps: bool,
         upstream: Upwinding,
+        inlet: Inlet | None = None,
     ) -> None:
         self._problem, self._faces, self._film = problem, faces, film
         self._content = content
@@ -98,7 +100,7 @@ class FilmBalance:
         self._wet = film[: faces.size]
         self._give = problem.compliance.self_compliance[: faces.size]
         self._before = None if leaps else gap
-        self._upstream = upstream
+        self._upstream, self._inlet = upstream, inlet
 
     def rows(
         self, gap: Array, fluid: Array, stiffness: Array, full: Mask, faint: float
@@ -119,6 +121,7 @@ class FilmBalance:
             speed=0.5 * problem.wall_speed,
             storage=self._storage,
             upstream=self._upstream,
+            inlet=self._inlet,
         )
         by_pressure = operator.by_pressure.columns(1 / self._share)
         by_fraction = operator.by_fraction

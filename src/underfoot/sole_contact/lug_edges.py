@@ -1,7 +1,8 @@
 """Edges of lugs: the film that a leading edge lets in, and the suction of the contact behind it.
 
 A film solver on cells of half a millimetre does not see what the edge of a lug does on tenths of a
-millimetre. Where a lug slides out of a groove full of fluid, its edge lets in a film
+millimetre. Where a lug slides out of a groove full of fluid, its edge lets in a film, which
+``lug_inlet`` gives to the solver:
 
     h0 = 1.06 (eta V / p)^0.6 r^0.4 (10 p / E)^0.15 exp(-k)
     k = min(0.27 mu (min(w, 2 h) / r)^0.5, 1)
@@ -12,12 +13,11 @@ with up to the suction p_a over the share
 
     a = lambda (1 - (h0 / u)^4) (1 - l / w) (1 - 4/3 (l w)^0.5 / b),  l = u^2 p_a / (1.5 eta V)
 
-Contact friction of the lug is multiplied by 1 - f + s, f the film's share of its load and
-s = a p_a / p. Traction tilts a lug by statics: the pressure's centre moves forward by c mu h, and
-the trailing part lifts off (lambda) beyond 0.12 of the length. Closed forms fitted to plane-strain
-finite elements coupled with Reynolds' equation and rough contact; over blocks they miss ln of the
-contact friction by 0.31 (root mean square), nearly all of it where the film sets in. A rib along
-the sliding has no such edge.
+Contact friction of the lug is multiplied by 1 + s, s = a p_a / p. Traction tilts a lug by statics:
+the pressure's centre moves forward by c mu h, and the trailing part lifts off (lambda) beyond 0.12
+of the length. Closed forms fitted to plane-strain finite elements coupled with Reynolds' equation
+and rough contact; over blocks they miss ln of the contact friction by 0.31 (root mean square),
+nearly all of it where the film sets in. A rib along the sliding has no such edge.
 
 A contact under a lug is in one of two states: sealed, as the mean over pairs without edges has it,
 or wiped, and nearly as it is at rest. Its adhesion is the mean of both with the probability
@@ -88,6 +88,11 @@ class LugEdges:
     edge: Array
     fed: Array
 
+    @property
+    def reach(self) -> Array:
+        """Root of the length over which friction turns an edge down, over its radius, (lugs,)."""
+        return np.sqrt(np.minimum(self.length, 2 * self.height) / self.edge)
+
     def on(self, cells: CellState) -> LugEdges:
         """Return the lugs on finer cells."""
         return replace(self, label=self.label.ravel()[cells.square], area=cells.area)
@@ -98,17 +103,28 @@ class LugEdges:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class LugInlet:
+    """What says how much film the edges of lugs let in.
+
+    ``cof`` is the contact friction of the lugs, ``modulus`` Young's modulus of the rubber, Pa.
+    """
+
+    edges: LugEdges
+    cof: float
+    modulus: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class LugFriction:
     """What the edges do to each lug, (lugs,).
 
     ``load`` on its contact (pressure times cells, Pa; 0 of a lug that hardly bears, which is
-    left as it is), the shares of it on film and of suction, the factor on its contact friction, and
-    the probability that it is ``wiped``.
+    left as it is), suction over it, the factor on its contact friction, and the probability that it
+    is ``wiped``.
     """
 
     edges: LugEdges
     load: Array
-    film: Array
     suction: Array
     factor: Array
     wiped: Array
@@ -131,13 +147,10 @@ class LugFriction:
     def words(self) -> str:
         """Return what the edges do in one sentence."""
         weight = self.load / max(self.load.sum(), 1e-30)
-        factor, film, pull, wiped = (
-            float(weight @ each) for each in (self.factor, self.film, self.suction, self.wiped)
-        )
+        pull, wiped = (float(weight @ each) for each in (self.suction, self.wiped))
         return (
-            f"contact friction of {np.count_nonzero(self.load)} lugs times {factor:.2f}: film at "
-            f"their edges carries {film:.0%} of their load, suction adds {pull:.0%}"
-            + (f"; {wiped:.0%} of it is wiped nearly dry" if wiped > 0.005 else "")
+            f"suction behind the edges of {np.count_nonzero(self.load)} lugs adds {pull:.0%} of "
+            "their load" + (f"; {wiped:.0%} of it is wiped nearly dry" if wiped > 0.005 else "")
         )
 
 
@@ -202,6 +215,7 @@ def lug_friction(
     cof_wiped: Array | None = None,
     full_contact: float = math.inf,
     dewetting: float = 0.0,
+    film_load: Array | float = 0.0,
 ) -> LugFriction:
     """Return what their edges do to lugs that slide.
 
@@ -216,21 +230,22 @@ def lug_friction(
         cof_wiped: Friction of each contact that was wiped, (lugs,); None has no such state.
         full_contact: Pressure E* h' / 2^0.5 of the pair, Pa.
         dewetting: S, Pa; at 0 no contact is wiped.
+        film_load: What the film bears of each lug, (lugs,), pressure times cells, Pa.
     """
     cells = _sums(edges.label, edges.length.size, edges.area)
     load = sum_by_lug(edges, contact_pressure)
     bears = load / cells > IDLE
-    p = np.maximum(load / cells, IDLE)
+    whole = load + film_load
+    p = np.maximum(whole / cells, IDLE)
+    touching = load / np.maximum(whole, 1e-30)
     slender = edges.height / edges.length
     drag = viscosity * abs(speed)
     # the lug turns about its root: half the moment of the traction moves the pressure forward
     shift = np.maximum(0.5 - 0.012 / slender**2, 0.0)
     shift += np.where(slender > 0.25, ON_RUBBER / np.sqrt(slender), 0.0)
-    gaps = np.linspace(0.0, _widest_gap(asperities), GAPS)
-    pressures = asperities.pressure(gaps)
-    reach = np.sqrt(np.minimum(edges.length, 2 * edges.height) / edges.edge)
+    gaps, pressures = gap_table(asperities)
     mu, pull = np.array(cof_contact), np.zeros_like(p)
-    film, wiped = np.zeros_like(p), np.zeros_like(p)
+    wiped = np.zeros_like(p)
     drawn = np.exp(-drag / (max(dewetting, 1e-300) * edges.length))
     # fixed point a lug, relaxed by what the last step turned the change by (Aitken's rule)
     share, before = np.full_like(p, RELAXATION[0]), np.zeros((2, p.size))
@@ -238,11 +253,9 @@ def lug_friction(
         forward = np.minimum(shift * mu * slender, 0.47)
         lifted = np.maximum(1 - LIFT * np.maximum(forward - LIFTING, 0.0), 0.12)
         most = p * (1 + pull) / lifted
-        inlet = INLET * (drag / most) ** 0.6 * edges.edge**0.4 * (10 * most / modulus) ** 0.15
-        inlet *= np.exp(-np.minimum(0.27 * mu * reach, 1.0))
+        inlet = let_in(drag, most, edges.edge, modulus, mu * edges.reach)
         dry = np.maximum(np.interp(most, pressures[::-1], gaps[::-1]), 1e-9)
         gap = (dry**4 + inlet**4) ** 0.25
-        film = np.clip(1 - np.interp(gap, gaps, pressures) / most, 0.0, 1.0) * (1 + pull)
         back = dry**2 * suction / (6 * LACKING * max(drag, 1e-12))
         lacking = lifted * np.maximum(1 - (inlet / dry) ** 4, 0.0)
         emptied = lacking * _kept_empty(edges, back)
@@ -252,7 +265,7 @@ def lug_friction(
             flow = np.interp(most / (2**0.5 * full_contact), PRESSING, FLOW)
             wiped = edges.fed * lacking * _kept_empty(edges, flow * back) * drawn
             contact = cof_contact + wiped * (cof_wiped - cof_contact)
-        now = contact * np.maximum(1 - film + pull, 0.0) + sheared
+        now = contact * touching * (1 + pull) + sheared
         change = np.stack([now - mu, emptied * suction / p - pull])
         if np.abs(change[:, bears]).max(initial=0.0) < STILL:
             break
@@ -261,9 +274,9 @@ def lug_friction(
         share = np.clip(share, *RELAXATION)
         before = change
         mu, pull = np.stack([mu, pull]) + share * change
-    film, pull = (np.where(bears, edges.fed * each, 0.0) for each in (film, pull))
+    pull = np.where(bears, edges.fed * pull, 0.0)
     load, wiped = np.where(bears, load, 0.0), np.where(bears, wiped, 0.0)
-    return LugFriction(edges, load, film, pull, np.maximum(1 - film + pull, 0.0), wiped)
+    return LugFriction(edges, load, pull, 1 + pull, wiped)
 
 
 def _kept_empty(edges: LugEdges, back: Array) -> Array:
@@ -282,12 +295,26 @@ def _sums(label: NDArray[np.intp], count: int, values: ArrayLike) -> Array:
     return np.asarray(sums[1:], dtype=float)
 
 
-def _widest_gap(asperities: PressureGapLaw) -> float:
-    """Return a gap (m) at which the pressure is next to nothing."""
-    gap = 1e-6
-    while float(asperities.pressure(gap)) > 1.0 and gap < 1e-2:
-        gap *= 1.5
-    return gap
+def let_in(drag: float, pressure: Array, radius: Array, modulus: float, turned: Array) -> Array:
+    """Return the film h0 (m) that edges of a ``radius`` (m) let in.
+
+    Parameters:
+        drag: Viscosity times speed, Pa m.
+        pressure: Mean pressure behind the edge, Pa.
+        modulus: Young's modulus of the lugs, Pa.
+        turned: Friction of the lug times ``LugEdges.reach``: how far the edge is turned down.
+    """
+    film = INLET * (drag / pressure) ** 0.6 * radius**0.4 * (10 * pressure / modulus) ** 0.15
+    return film * np.exp(-np.minimum(0.27 * turned, 1.0))
+
+
+def gap_table(asperities: PressureGapLaw) -> tuple[Array, Array]:
+    """Return gaps (m) from 0 to where the pressure is next to nothing, and the pressures (Pa)."""
+    widest = 1e-6
+    while float(asperities.pressure(widest)) > 1.0 and widest < 1e-2:
+        widest *= 1.5
+    gaps = np.linspace(0.0, widest, GAPS)
+    return gaps, asperities.pressure(gaps)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -305,14 +332,17 @@ class EdgedLaw:
     viscosity: float
     suction: float
     dewetting: float = 0.0
+    film_load: Array | float = 0.0
 
     @property
     def _full_contact(self) -> float | None:
         return getattr(self.law, "full_contact", None) if self.dewetting else None
 
     def on(self, state: SoleState | CellState) -> EdgedLaw:
-        """Return the law on the cells of a state."""
-        return replace(self, edges=self.edges.on(state)) if isinstance(state, CellState) else self
+        """Return the law on the cells of a state, with what its film bears of each lug."""
+        edges = self.edges.on(state) if isinstance(state, CellState) else self.edges
+        film = state.fluid_pressure * state.areas["film_area"]
+        return replace(self, edges=edges, film_load=_sums(edges.label, edges.length.size, film))
 
     def lugs(self, contact_pressure: Array, speed: float, film_thickness: Array) -> LugFriction:
         """Return what the edges do at contact pressure (Pa), speed (m/s) and film (m), (nx, ny)."""
@@ -344,7 +374,16 @@ class EdgedLaw:
             cof_wiped=None if wiped is None else of_contact(wiped),
             full_contact=self._full_contact or math.inf,
             dewetting=self.dewetting,
+            film_load=self.film_load,
         )
+
+    def inlet(self, normal_force: float, speed: float) -> LugInlet:
+        """Return what the edges let in under a load (N), at a speed (m/s)."""
+        area = float((self.edges.length * self.edges.width).sum())
+        pressure = np.full(1, normal_force / area)
+        parts = self.law(pressure, speed, np.full(1, FAR_FILM))
+        cof = float((parts.adhesion + parts.hysteresis)[0] / pressure[0])
+        return LugInlet(self.edges, cof, self.modulus)
 
     def mean_factor(self, pressure: float, speed: float) -> float:
         """Return the mean factor on contact friction if every lug bore ``pressure`` (Pa), 1."""

@@ -9,10 +9,12 @@ import numpy as np
 from scipy.ndimage import binary_dilation
 
 from underfoot.core.arrays import Array, Mask
-from underfoot.film.face_operator import leaning
+from underfoot.film.face_operator import Inlet, leaning
 from underfoot.film.operator import Upwinding
 
 from .film_balance import SMALLEST_GAP
+from .lug_edges import LugInlet
+from .lug_inlet import LeadingEdges
 from .newton import Cells, implicit_step
 from .preconditioner import PoleFit
 from .problem import Problem, State
@@ -73,7 +75,14 @@ class March:
     """The state in time. ``step`` is the length (s) that the next step tries."""
 
     def __init__(
-        self, problem: Problem, fit: PoleFit, start: State, *, pool_depth: float, first_step: float
+        self,
+        problem: Problem,
+        fit: PoleFit,
+        start: State,
+        *,
+        pool_depth: float,
+        first_step: float,
+        inlet: LugInlet | None = None,
     ) -> None:
         self.problem = problem
         self.state = start
@@ -85,6 +94,8 @@ class March:
         self._pool_depth = pool_depth
         self._shortest = first_step * SHORTEST
         self._cells: Cells | None = None
+        self._lugs = inlet
+        self._edges: dict[bool, LeadingEdges] = {}  # by the way that the floor moves
 
     def turn(self, clearance: Array) -> None:
         """Put another clearance under the state, without time passing."""
@@ -130,6 +141,7 @@ class March:
                 tolerance=demand.tolerance,
                 leaps=demand.leaps,
                 upstream=self._upstream(problem, cells),
+                inlet=self._inlet(problem, cells),
                 tick=tick,
             )
             self.counts.newton += attempt.newton
@@ -168,6 +180,16 @@ class March:
             backward=problem.wall_speed < 0,
         )
         return Upwinding(*(part[cells.x_faces] for part in lean))
+
+    def _inlet(self, problem: Problem, cells: Cells) -> Inlet | None:
+        """Return what edges of lugs let in, from the state at the start of the step."""
+        if self._lugs is None or problem.viscosity is None:
+            return None
+        rows, backward = problem.cells, problem.wall_speed < 0
+        if backward not in self._edges:
+            self._edges[backward] = LeadingEdges(self._lugs, rows, backward=backward)
+        inlet = self._edges[backward].inlet(problem, self.state, rows.west.size)
+        return Inlet(*(part[cells.x_faces] for part in inlet))
 
     def _content(self) -> Array:
         """Return the liquid per area, m: of the film, and of the pool where it is undisturbed."""

@@ -14,6 +14,7 @@ from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
 from underfoot.shoe.geometry import SoleMap
 
 from .compliance import Compliance
+from .lug_edges import LugInlet
 from .sole_state import SoleState, SolverSettings
 from .solver import SoleContact, longest_step, passing_time, with_history
 from .stepping import Reporting, SlidingSole
@@ -75,11 +76,12 @@ def solve_history(
     settings: SolverSettings | None = None,
     progress: Progress = silent,
     watch: Callable[[SoleState], None] | None = None,
+    inlet: LugInlet | None = None,
 ) -> SoleContact:
     """Return the contact and film at the end of a history, with what it went through.
 
     Parameters:
-        sole, compliance, law, viscosity, settings, progress, watch: As in ``SlidingSole``.
+        sole, compliance, law, viscosity, settings, progress, watch, inlet: As in ``SlidingSole``.
         history: Load, speed and shoe angle against time.
         map_angle: Shoe angle (rad) at which ``sole`` was made; the sole rolls from there.
 
@@ -96,6 +98,7 @@ def solve_history(
         shoe_angle=map_angle,
         typical_force=float(history.normal_force.max()),
         reporting=Reporting(progress, "Following the motion", float(history.time[-1]), watch),
+        inlet=inlet,
     )
     rows = np.column_stack([history.time, history.normal_force, history.speed, history.shoe_angle])
     _, force, speed, angle = (float(value) for value in rows[0])

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from underfoot.core import ConvergenceError
 from underfoot.core.arrays import Array, Mask
-from underfoot.film.face_operator import Faces
+from underfoot.film.face_operator import Faces, Inlet
 from underfoot.film.operator import Upwinding
 
 from .film_balance import FilmBalance, Linearisation
@@ -154,6 +154,7 @@ def implicit_step(
     tolerance: float,
     leaps: bool,
     upstream: Upwinding | None,
+    inlet: Inlet | None,
     tick: Callable[[float], None],
 ) -> Attempt:
     """Return the state after ``duration`` under ``load``, if Newton finds it.
@@ -173,7 +174,9 @@ def implicit_step(
     balance = None
     if upstream is not None:
         full = wet & ~start.cavitated[:size]
-        balance = FilmBalance(problem, faces, film, start.gap, content, duration, leaps, upstream)
+        balance = FilmBalance(
+            problem, faces, film, start.gap, content, duration, leaps, upstream, inlet
+        )
 
     def padded(values: NDArray[Any], beside: float = 0.0) -> NDArray[Any]:
         field = np.full(faces.count, beside, dtype=values.dtype)

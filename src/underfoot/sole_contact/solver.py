@@ -13,6 +13,7 @@ from underfoot.shoe.geometry import SoleMap
 
 from ._solver_checks import check_demand, check_times
 from .compliance import Compliance
+from .lug_edges import LugInlet
 from .march import Counts, History
 from .sole_state import SoleState, SolverSettings
 from .stepping import Bookmark, Reporting, SlidingSole
@@ -47,6 +48,7 @@ def solve_sliding(
     settings: SolverSettings | None = None,
     progress: Progress = silent,
     watch: Callable[[SoleState], None] | None = None,
+    inlet: LugInlet | None = None,
 ) -> SoleContact:
     """Return contact pressure, fluid pressure and film under a sole pressed and slid.
 
@@ -64,6 +66,7 @@ def solve_sliding(
         progress: Receives stage, fraction of the time and residual; an exception it raises stops
             the work.
         watch: Receives the state after every inner step.
+        inlet: As in ``SlidingSole``.
 
     Raises:
         InputError: A value that is not finite or not physical.
@@ -84,6 +87,7 @@ def solve_sliding(
         reporting=Reporting(
             progress, end_time=None if settings.steady and not dry else end, watch=watch
         ),
+        inlet=inlet,
     )
     rise = settings.rise_time
     passing = math.inf if dry else passing_time(sole, speed)
@@ -141,6 +145,7 @@ def solve_on(
     duration: float,
     steps: int = 1,
     settings: SolverSettings | None = None,
+    inlet: LugInlet | None = None,
 ) -> list[SoleContact]:
     """Return what a finished contact becomes under a changed sole, fluid, load or speed.
 
@@ -153,6 +158,7 @@ def solve_on(
         turn: Change of the shoe angle since the map was made, rad.
         duration: Of one step, s.
         steps: How many; the contact after each is returned.
+        inlet: As in ``SlidingSole``.
 
     Raises:
         InputError: Another grid.
@@ -166,6 +172,7 @@ def solve_on(
         settings=settings,
         typical_force=normal_force,
         before=start.instant.march[0],
+        inlet=inlet,
     )
     sliding.take_over(start.instant, duration)
     found = []

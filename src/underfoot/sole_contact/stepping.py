@@ -18,6 +18,7 @@ from underfoot.shoe.row_division import row_cells
 
 from ._solver_checks import check_demand, check_setup
 from .compliance import Compliance
+from .lug_edges import LugInlet
 from .march import Counts, Demand, History, March
 from .preconditioner import pole_fit
 from .problem import Problem, State, mirror_across
@@ -82,6 +83,7 @@ class SlidingSole:
         typical_force: N, a load of the order to come: sets the scale of the asperity law.
         reporting: Who hears of the steps.
         before: The problem of another case, whose compliance serves again on the same sole.
+        inlet: What edges of lugs let in; None: what cells have, which is too much under lugs.
 
     The sole starts ``settings.start_film`` above the floor, unloaded. Cells are fixed to the sole:
     rolling by ``a`` from its map's angle a0 leaves them cos(a) / cos(a0) too long, refused beyond
@@ -100,6 +102,7 @@ class SlidingSole:
         typical_force: float = 500.0,
         reporting: Reporting | None = None,
         before: Problem | None = None,
+        inlet: LugInlet | None = None,
     ) -> None:
         settings = settings or SolverSettings()
         check_setup(sole, compliance.self_compliance, viscosity, typical_force, settings)
@@ -140,6 +143,7 @@ class SlidingSole:
             State(blank, -lift, clearance + lift, blank, blank, blank > 0, np.ones_like(blank)),
             pool_depth=settings.pool_depth,
             first_step=settings.rise_time * FIRST_STEP,
+            inlet=inlet,
         )
         self._leaps = False
 

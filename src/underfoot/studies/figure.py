@@ -83,12 +83,12 @@ class Figure:
 
     def rows(self) -> list[tuple[str, str, float, float, float | None, float | None]]:
         """Return (panel, series, x, y, low, high) of every point that is drawn."""
-        found = []
+        rows = []
         for title, layer in (
             (panel.title, layer) for panel in self.panels for layer in panel.layers
         ):
             if layer.mark == "map":
-                found += [
+                rows += [
                     (title, f"map at y {y:g}", x, z, None, None)
                     for x, column in zip(layer.x, layer.z, strict=True)
                     for y, z in zip(layer.y, column, strict=True)
@@ -98,8 +98,8 @@ class Figure:
                 x, y = (values or [float("nan")] * count for values in (layer.x, layer.y))
                 low, high = (ends or [None] * count for ends in (layer.low, layer.high))
                 name = layer.label or layer.mark
-                found += [(title, name, *point) for point in zip(x, y, low, high, strict=True)]
-        return found
+                rows += [(title, name, *point) for point in zip(x, y, low, high, strict=True)]
+        return rows
 
 
 def line(x: ArrayLike, y: ArrayLike, label: str = "", **style: Any) -> Layer:

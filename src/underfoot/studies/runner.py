@@ -51,8 +51,8 @@ class Table:
     @classmethod
     def of(cls, name: str, title: str, records: Iterable[Mapping[str, Any]]) -> Table:
         """Return the table of one or more records, each cell by the name of its column."""
-        found = list(records)
-        return cls(name, title, tuple(found[0]), [tuple(one.values()) for one in found])
+        items = list(records)
+        return cls(name, title, tuple(items[0]), [tuple(one.values()) for one in items])
 
 
 def _cell(value: Any) -> Any:
@@ -110,21 +110,21 @@ class StudyResult(Presentable):
             )
             for kind, some in tables_by_kind(self.judgements)
         ]
-        own = [ShownTable(one.title, one.columns, one.rows) for one in self.computed.tables]
-        return (*verdicts, *own)
+        computed = [ShownTable(one.title, one.columns, one.rows) for one in self.computed.tables]
+        return (*verdicts, *computed)
 
     def heading(self) -> str:
         return f"{self.study.title} ({self.study.source})"
 
     def headline(self) -> tuple[str, ...]:
-        found = counts(self.judgements)
-        parts = [f"{number} {verdict}" for verdict, number in found.items() if number]
+        verdicts = counts(self.judgements)
+        parts = [f"{number} {verdict}" for verdict, number in verdicts.items() if number]
         if not parts:
             return (f"Failed: {self.error}",) if self.error else ()
-        return (f"Of {sum(found.values())} independent statements: {', '.join(parts)}.",)
+        return (f"Of {sum(verdicts.values())} independent statements: {', '.join(parts)}.",)
 
     def cautions(self) -> tuple[str, ...]:
-        text = "One coarse grid (--quick): what depends on a grid is not judged."
+        text = "One coarse grid (--quick): what that can be off by is part of each tolerance."
         return (text,) if self.quick else ()
 
     def remarks(self) -> dict[str, Sequence[str]]:

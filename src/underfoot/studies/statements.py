@@ -23,7 +23,7 @@ from underfoot.core.registry import WINGS, offered, offers
 Z95 = 1.959963984540054
 KEYS = (
     "id text place claim printed shown unit tolerance reason count deviation effect quantity kind "
-    "of not_comparable remark remarks alternatives resolution"
+    "of not_comparable remark remarks alternatives resolution quick_error"
 ).split()
 """Of a statement's table."""
 UNITS = {
@@ -92,6 +92,8 @@ class Statement:
             half-lines.
         tolerance, tolerance_reason: Half width (SI; 0 of a bound) and where it comes from.
         effect: +1 or -1 where the number is a change of which zero means no effect; 0 elsewhere.
+        quick_error: (share of the value, SI) that the one grid of a quick run may be off by, the
+            larger of both; () where it is not known.
         quantity: Name of ours in the study's result.
         kind, of: What it is worth; the statement that it restates or is an alternative of.
         not_comparable: Why nothing of ours can stand beside it; "" where something does.
@@ -112,6 +114,7 @@ class Statement:
     tolerance: float
     tolerance_reason: str
     effect: int
+    quick_error: tuple[float, float] | tuple[()]
     quantity: str
     kind: Kind
     of: str
@@ -122,6 +125,21 @@ class Statement:
     def name(self) -> str:
         """Study and id."""
         return f"{self.study}.{self.id}"
+
+    def quick_error_of(self, value: float) -> float:
+        """Return what the one grid of a quick run may be off by, SI."""
+        share, least = self.quick_error or (math.nan, math.nan)
+        return max(share * abs(value), least)
+
+    @property
+    def half_scale(self) -> float:
+        """Half of the scale on which ours is judged (SI): 50 points of a share, else the printed
+        value's size; without end for a sign."""
+        if self.claim in (Claim.RISES, Claim.FALLS, Claim.ORDER):
+            return math.inf
+        if self.unit == "%" and not self.effect:
+            return 0.5
+        return max(abs(end) for end in self.accepted if math.isfinite(end))
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,8 +163,11 @@ class Study:
 def studies() -> tuple[str, ...]:
     """Return the names of all studies: ours in their order, then those of other packages."""
     ours = [name for door, name in WINGS if door == "studies"]
-    there = offers("studies")
-    return (*(name for name in ours if name in there), *sorted(there.keys() - set(ours)))
+    offered_studies = offers("studies")
+    return (
+        *(name for name in ours if name in offered_studies),
+        *sorted(offered_studies.keys() - set(ours)),
+    )
 
 
 @cache
@@ -167,7 +188,9 @@ def read_study(name: str, content: Mapping[str, Any]) -> Study:
             to a statement that is not there, two independent statements on one quantity.
     """
     statements = []
+    quick = {"quick_error": content["quick_error"]} if "quick_error" in content else {}
     for table in content.get("statement", ()):
+        table = quick | table
         statements.append(_statement(name, table))
         for label, path in table.get("alternatives", {}).items():
             other = {
@@ -265,12 +288,21 @@ def _statement(study_name: str, table: Mapping[str, Any]) -> Statement:
         max(below, above),
         reason,
         round(math.copysign(1, sum(numbers))) if table.get("effect") else 0,
+        _quick_error(table.get("quick_error", ()), factor, where),
         table.get("quantity", ""),
         kind,
         table.get("of", ""),
         none,
         table.get("remark", ""),
     )
+
+
+def _quick_error(given: Any, factor: float, where: str) -> tuple[float, float] | tuple[()]:
+    """Return (share, SI) of ``["10 %", 5]`` (a share, and a number in the printed unit)."""
+    if not given:
+        return ()
+    share, least = given
+    return to_si(share, "1", where=f"{where}.quick_error"), float(least) * factor
 
 
 def _tolerance(
@@ -291,7 +323,14 @@ def _tolerance(
     count = int(table.get("count", 0))
     if claim in (Claim.RISES, Claim.FALLS, Claim.ORDER):
         limit = float(table.get("resolution", 0.0)) * factor
-        return limit, limit, reason or "by sign"
+        if limit <= 0.0:
+            raise InputError(
+                "no smallest difference",
+                where=f"{where}.resolution",
+                allowed="above 0, in the printed unit: what is smaller is a tie",
+            )
+        least = f"by sign; below {table['resolution']} {table.get('unit', '')}".rstrip()
+        return limit, limit, reason or f"{least} is a tie"
     if given == "digits":
         texts = printed if isinstance(printed, list) else [printed]
         ends = [0.5 * 10.0 ** -len(re.sub(r"^[^.]*\.?", "", str(text))) * factor for text in texts]

@@ -18,9 +18,9 @@ def headline(results: Iterable[StudyResult]) -> list[tuple[str, list[int]]]:
     """Return (study, independent statements by verdict) and the sum over all studies last."""
     rows = []
     for result in results:
-        found = counts(result.judgements)
-        if sum(found.values()):
-            rows.append((result.study.name, [found[verdict] for verdict in Verdict]))
+        number = counts(result.judgements)
+        if sum(number.values()):
+            rows.append((result.study.name, [number[verdict] for verdict in Verdict]))
     if rows:
         rows.append(("all", [sum(column) for column in zip(*(r for _, r in rows), strict=True)]))
     return rows
@@ -63,7 +63,10 @@ def summary_markdown(results: Sequence[StudyResult]) -> str:
         text += [f"## {result.study.name}: {result.study.title}", ""]
         text += [f"Source: {result.study.source}.", ""]
         if result.quick:
-            text += ["Run with --quick: what depends on a grid is not judged.", ""]
+            text += [
+                "Run with --quick: what one coarse grid can be off by is part of each tolerance.",
+                "",
+            ]
         if result.error:
             text += [f"Failed: {result.error}", ""]
             continue

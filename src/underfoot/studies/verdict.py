@@ -21,6 +21,8 @@ from underfoot.core import InputError, unknown_name
 from .statements import Claim, Kind, Statement
 
 MORE_LIKELY_THAN_NOT = 0.5
+LEAST_OVERLAP = 0.2
+"""Probability of agreement below which an interval that reaches the printed value tells nothing."""
 GRID_SHARE = 1.0 / 3.0
 """Part of the tolerance that the last refinement of the grid may move a value by."""
 QUANTILES = np.linspace(0.0, 1.0, 401)
@@ -32,9 +34,23 @@ class Verdict(StrEnum):
     AGREES = "agrees"
     OVERLAPS = "overlaps"
     TREND_ONLY = "trend only"
+    UNDECIDED = "undecided"
     DISAGREES = "disagrees"
     NOT_CONVERGED = "not converged"
     NOT_COMPARABLE = "not comparable"
+
+    @property
+    def step(self) -> int | None:
+        """Return its place from agreement (0) to disagreement (3); None: no judgement."""
+        steps = {
+            Verdict.AGREES: 0,
+            Verdict.OVERLAPS: 1,
+            Verdict.TREND_ONLY: 1,
+            Verdict.UNDECIDED: 2,
+            Verdict.NOT_CONVERGED: 2,
+            Verdict.DISAGREES: 3,
+        }
+        return steps.get(self)
 
     @property
     def rule(self) -> str:
@@ -43,28 +59,16 @@ class Verdict(StrEnum):
             Verdict.AGREES: "every value of ours lies within the tolerance of the printed one, and "
             "is more likely inside than outside where a probability is known",
             Verdict.OVERLAPS: "our 95 % interval (or our values over the conditions) reaches into "
-            "the tolerance of the printed one",
+            "the tolerance of the printed one, lies in it with a probability of 0.2 or more, and "
+            "is no wider than half the scale (100 points of a share; twice the printed value)",
             Verdict.TREND_ONLY: "a change of the printed sign in every condition, of another size",
+            Verdict.UNDECIDED: "our interval reaches into the tolerance, but is too wide or too "
+            "improbable there to say that they agree",
             Verdict.DISAGREES: "none of these",
             Verdict.NOT_CONVERGED: "no two grids whose values differ by less than a third of the "
-            "tolerance, and no steady approach to extrapolate",
+            "tolerance, no steady approach to extrapolate, and no known error of a quick grid",
             Verdict.NOT_COMPARABLE: "no number is printed, or the model has no such quantity",
         }[self]
-
-
-def _moved(value: float, deviation: float, z: np.ndarray, scale: str) -> np.ndarray:
-    """Return a value moved by ``z`` deviations on a scale that its interval can't leave.
-
-    A share nearer to 0 or 1 than its deviation is moved from there.
-    """
-    if scale == "log" and value > 0:
-        return value * np.exp(deviation / value * z)
-    if scale == "logit" and deviation < 0.5:
-        share = min(max(value, deviation), 1 - deviation)
-        odds = share / (1 - share) * np.exp(deviation / (share * (1 - share)) * z)
-        moved = odds / (1 + odds)
-        return np.where(z < 0, np.minimum(moved, value), np.maximum(moved, value))
-    return value + deviation * z
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,9 +111,8 @@ class Quantity:
     ) -> Quantity:
         """Return a quantity; a ``deviation`` stands for a normal distribution, ``draws`` for any.
 
-        On ``scale``: "log" for what can't be negative (COF, speeds), "logit" for shares, each by
-        the delta method.
-
+        On the "log" ``scale`` of a positive quantity and the "logit" one of a share it is that of
+        the value itself, to first order; the interval then stays above 0, or within 0 and 1.
         ``levels`` (also empty) mark a number that a grid enters. Values that are not finite make
         the quantity missing, not converged.
         """
@@ -126,8 +129,7 @@ class Quantity:
             from scipy.stats import norm
 
             places = np.clip(QUANTILES, 1e-4, 1.0 - 1e-4)
-            moved = _moved(numbers[0], deviation, norm.ppf(places), scale)
-            quantiles = tuple(float(q) for q in moved)
+            quantiles = tuple(map(float, _spread(numbers[0], deviation * norm.ppf(places), scale)))
         grids = tuple(
             (float(h), tuple(np.atleast_1d(np.asarray(v, float)).tolist())) for h, v in levels or ()
         )
@@ -147,9 +149,13 @@ class Quantity:
         return (min(ends), max(ends)) if ends else (math.nan, math.nan)
 
     def probability(self, low: float, high: float) -> float | None:
-        """Return the probability that it lies from ``low`` to ``high``; None where not known."""
+        """Return the probability that it lies from ``low`` to ``high``; None where not known.
+
+        Of values over several conditions without a distribution: their share that lies there.
+        """
         if not self.quantiles:
-            return None
+            inside = [low <= value <= high for value in self.values]
+            return sum(inside) / len(inside) if len(inside) > 1 else None
         below = np.interp([low, high], self.quantiles, QUANTILES, left=0.0, right=1.0)
         return float(below[1] - below[0])
 
@@ -161,6 +167,16 @@ class Quantity:
     def from_dict(cls, content: Mapping[str, Any]) -> Quantity:
         """Return the quantity that ``to_dict`` wrote."""
         return TypeAdapter(cls).validate_python(content)
+
+
+def _spread(value: float, step: np.ndarray, scale: str) -> np.ndarray:
+    """Return the value with a step of its own unit, taken on a scale that has no bound."""
+    if scale == "log" and value > 0.0:
+        return value * np.exp(step / value)
+    if scale == "logit" and 0.0 < value < 1.0:
+        odds = math.log(value / (1.0 - value)) + step / (value * (1.0 - value))
+        return 1.0 / (1.0 + np.exp(-odds))
+    return value + step
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,7 +261,11 @@ def judge(statement: Statement, quantities: Mapping[str, Quantity]) -> Judgement
         return _judged_order(statement, quantity)
     low, high = statement.accepted
     values, error, note = list(quantity.values), 0.0, ""
-    if quantity.on_grid:
+    if quantity.on_grid and len(quantity.levels) == 1 and statement.quick_error:
+        error = max(map(statement.quick_error_of, values))
+        size = f"{number_text(error, statement)} {statement.unit}".strip()
+        note = f"one coarse grid, whose error is taken as {size}"
+    elif quantity.on_grid:
         on_grids = [
             grid_value(
                 [(spacing, level[i]) for spacing, level in quantity.levels],
@@ -264,11 +284,16 @@ def judge(statement: Statement, quantities: Mapping[str, Quantity]) -> Judgement
     chance = quantity.probability(low, high)
     ours_low, ours_high = quantity.interval
     ours_low, ours_high = min(ours_low, *values) - error, max(ours_high, *values) + error
-    if min(values) - error >= low and max(values) + error <= high:
-        likely = chance is None or chance >= MORE_LIKELY_THAN_NOT
-        verdict = Verdict.AGREES if likely else Verdict.OVERLAPS
+    if (
+        min(values) - error >= low
+        and max(values) + error <= high
+        and (chance is None or chance >= MORE_LIKELY_THAN_NOT)
+    ):
+        verdict = Verdict.AGREES
     elif ours_low <= high and ours_high >= low:
-        verdict = Verdict.OVERLAPS
+        likely = chance is None or chance >= LEAST_OVERLAP
+        narrow = ours_high - ours_low - 2.0 * error <= statement.half_scale
+        verdict = Verdict.OVERLAPS if likely and narrow else Verdict.UNDECIDED
     elif statement.effect and min(statement.effect * v for v in values) > statement.tolerance:
         verdict = Verdict.TREND_ONLY
     else:
@@ -284,8 +309,10 @@ def _judged_order(statement: Statement, quantity: Quantity) -> Judgement:
     holds = all(step > statement.tolerance for step in steps)
     if holds and (chance is None or chance >= MORE_LIKELY_THAN_NOT):
         verdict = Verdict.AGREES
-    elif chance is not None and chance > 0.025:
+    elif chance is not None and chance >= LEAST_OVERLAP:
         verdict = Verdict.OVERLAPS
+    elif chance is not None and chance > 0.025:
+        verdict = Verdict.UNDECIDED
     else:
         verdict = Verdict.DISAGREES
     ordered = sorted(by_name, key=lambda name: -by_name[name])
@@ -300,11 +327,11 @@ def judged(statements: Iterable[Statement], quantities: Mapping[str, Quantity]) 
 
 def counts(judgements: Iterable[Judgement]) -> dict[Verdict, int]:
     """Return how many *independent* statements got each verdict; no other kind is counted."""
-    found = dict.fromkeys(Verdict, 0)
+    number = dict.fromkeys(Verdict, 0)
     for one in judgements:
         if one.statement.kind is Kind.INDEPENDENT:
-            found[one.verdict] += 1
-    return found
+            number[one.verdict] += 1
+    return number
 
 
 def tables_by_kind(judgements: Sequence[Judgement]) -> list[tuple[Kind, list[Judgement]]]:
@@ -335,8 +362,8 @@ def _judgement(
             difference = f"{farthest:+.2g} {unit}".strip()
     likely = ""
     if chance is not None:
-        words = "above 0.99" if chance > 0.995 else "below 0.01" if chance < 0.005 else ""
-        likely = f"probability of agreement {words or f'{chance:.2f}'}"
+        text = "above 0.99" if chance > 0.995 else "below 0.01" if chance < 0.005 else ""
+        likely = f"probability of agreement {text or f'{chance:.2f}'}"
     reason = "; ".join(filter(None, (note, likely, statement.remark)))
     return Judgement(statement, verdict, ours or "-", difference, chance, reason)
 
@@ -345,17 +372,22 @@ def values_text(
     values: Sequence[float], statement: Statement, interval: tuple[float, float] | None = None
 ) -> str:
     """Return values and their 95 % interval in the statement's printed unit."""
-    signed = statement.effect or statement.claim in (Claim.RISES, Claim.FALLS)
-    sign = "+" if signed else ""
 
     def number(value: float) -> str:
-        scaled = value / statement.factor
-        digits = ".0f" if statement.unit == "%" or abs(scaled) >= 100 else ".3g"
-        text = f"{scaled:{sign}{digits}}"
-        return "0" if text in ("-0", "+0") else text
+        return number_text(value, statement, signed=True)
 
     low, high = number(min(values)), number(max(values))
     text = low if low == high else f"{low} to {high}"
     if interval is not None:
         text += f" ({number(interval[0])} to {number(interval[1])})"
     return f"{text} {statement.unit}".strip()
+
+
+def number_text(value: float, statement: Statement, *, signed: bool = False) -> str:
+    """Return a number in the statement's printed unit, without it."""
+    change = statement.effect or statement.claim in (Claim.RISES, Claim.FALLS)
+    sign = "+" if signed and change else ""
+    scaled = value / statement.factor
+    digits = ".0f" if statement.unit == "%" or abs(scaled) >= 100 else ".3g"
+    text = f"{scaled:{sign}{digits}}"
+    return "0" if text in ("-0", "+0") else text

@@ -6,6 +6,7 @@ from .generate import checkerboard as checkerboard
 from .generate import self_affine as self_affine
 from .generate import sinusoidal as sinusoidal
 from .generate import surface_from_spectrum as surface_from_spectrum
+from .generate import surface_of_density as surface_of_density
 from .heights import HeightMap as HeightMap
 from .heights import Profile as Profile
 from .heights import Resolution as Resolution

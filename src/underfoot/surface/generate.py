@@ -1,5 +1,8 @@
 """Surfaces that are generated: waves, checkerboards, self-affine ones, ones of a given spectrum."""
 
+import math
+from collections.abc import Callable
+
 import numpy as np
 
 from underfoot.core import InputError, RangeError
@@ -7,6 +10,9 @@ from underfoot.core.units import metres
 
 from .heights import HeightMap, check_length
 from .spectrum import IsotropicSpectrum
+
+CELL_PARTS = 5
+"""Points along a side by which the density is averaged over a cell of wave numbers."""
 
 
 def sinusoidal(
@@ -263,3 +269,40 @@ def surface_from_spectrum(
         f"periodic, nothing extrapolated, seed {seed}"
     )
     return _generated(heights, spacing, shortest, *spectrum.notes, note)
+
+
+def surface_of_density(
+    density: Callable[[np.ndarray], np.ndarray],
+    waves: tuple[float, float],
+    shape: int | tuple[int, int],
+    spacing: float,
+    seed: int,
+) -> HeightMap:
+    """Return a periodic Gaussian surface with the waves of an isotropic spectrum in a range.
+
+    ``density`` gives C(q) (m^4) of wave numbers (rad/m), <h^2> = 2 pi int q C dq; ``waves`` are the
+    longest and the shortest, m. A wave of the grid has the mean of the density over its cell of
+    wave numbers, as far as that lies in the range: heights and slopes are those of the range within
+    about 1 %.
+    """
+    nx, ny = _points(shape)
+    low, high = (2.0 * np.pi / wave for wave in waves)
+    steps = [2.0 * np.pi / (n * spacing) for n in (nx, ny)]
+    qx, qy = 2.0 * np.pi * np.fft.fftfreq(nx, spacing), 2.0 * np.pi * np.fft.rfftfreq(ny, spacing)
+    parts = (np.arange(CELL_PARTS) + 0.5) / CELL_PARTS - 0.5
+    power = np.zeros((nx, qy.size))
+    for x in parts * steps[0]:
+        for y in parts * steps[1]:
+            q = np.hypot(qx[:, None] + x, qy[None, :] + y)
+            band = (q >= low) & (q <= high)
+            power[band] += density(q[band])
+    if not power.any():
+        raise RangeError(
+            f"no wave of {metres(waves[1])} to {metres(waves[0])} on a grid of {nx} x {ny} points "
+            f"{metres(spacing)} apart",
+            where="waves",
+        )
+    power *= math.prod(steps) / CELL_PARTS**2
+    heights = random_phases(np.sqrt(power) * (nx * ny), (nx, ny), seed)
+    note = f"generated from a spectrum, waves {metres(waves[1])} to {metres(waves[0])}, seed {seed}"
+    return _generated(heights, spacing, waves[1], note)

@@ -107,7 +107,7 @@ class Scan(Presentable):
 
     def cautions(self) -> tuple[str, ...]:
         """Return why the heights are none of a floor or sole, and which waves they lack."""
-        return tuple(filter(None, (_unlikely(self.values["rq"].value or 0.0), self.short)))
+        return tuple(filter(None, (unlikely_height(self.values["rq"].value or 0.0), self.short)))
 
     def table(self) -> Table:
         """Return the numbers with their standard errors."""
@@ -162,7 +162,7 @@ class Scan(Presentable):
         return {"spectrum": Table("", ("wavelength m", "wave number rad/m", "density m^4"), rows)}
 
 
-def _unlikely(rq: float) -> str:
+def unlikely_height(rq: float) -> str:
     """Return why an Rq (m) is none of a floor or sole; "" for a likely one."""
     if rq < NO_FLOOR:
         return (
@@ -237,10 +237,10 @@ def read_scan(
         notes.append(f"waves below {display(resolved.wavelength, 'm')} not seen: {resolved.reason}")
     if short:
         values = {
-            name: replace(value, source=f"{value.source}; {short}")
+            name: replace(value, source=f"{value.source}; {short}", assumed=True)
             for name, value in values.items()
         }
-    unlikely = _unlikely(values["rq"].value or 0.0)
+    unlikely = unlikely_height(values["rq"].value or 0.0)
     if strict and unlikely:
         raise DataError(
             unlikely.partition(":")[0],

@@ -38,9 +38,8 @@ class Belt:
         return float(np.linalg.norm(self.velocity(time)))
 
     def words(self, time: float) -> str:
-        """Return the surface in words: "treadmill belt at 1.25 m/s (u 0.01 m/s, foot markers)"."""
-        how = f"u {self.uncertainty:.2f} m/s, {self.source}"
-        return f"treadmill belt at {self.speed(time):.2f} m/s ({how})"
+        """Return the speed in words: "1.25 m/s (u 0.01 m/s, foot markers)"."""
+        return f"{self.speed(time):.2f} m/s (u {self.uncertainty:.2f} m/s, {self.source})"
 
     def direction(self, time: float) -> Direction:
         """Return the way of somebody who walks against the belt."""

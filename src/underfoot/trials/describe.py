@@ -132,7 +132,7 @@ class Description:
             under = []
             way = stance.direction
             if way.vector is not None and way.source is not DirectionSource.MARKERS:
-                under.append(f"walking direction from {way.words}")
+                under.append(f"walking direction: {way.words}")
             if own.value is None:
                 under.append(f"rejected: {own.reason}")
             else:

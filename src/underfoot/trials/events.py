@@ -215,7 +215,12 @@ def stances(walk: Trial | Walkway, *, threshold: float = CONTACT_FORCE) -> list[
     peaks = [s.peak for s in found]
     judged = []
     for stance in found:
-        others = [s for s in found if s.plate != stance.plate and not s.reason]
+        # One that the record cuts began at a time nobody knows.
+        others = [
+            s
+            for s in found
+            if s.plate != stance.plate and not s.reason and (s.start or "contact" in s.by_hand)
+        ]
         reason = stance.reason or _reason(walk, stance, others, peaks, feet[stance.plate])
         judged.append(replace(stance, reason=reason))
     return judged

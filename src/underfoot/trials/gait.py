@@ -177,7 +177,7 @@ def required_friction(
         **definition.conventions(),
         "baseline": baseline_words(plate),
         "walking direction": stance.direction.words,
-        "surface": walk.surface(stance.plate, stance.contact),
+        **walk.surface(stance.plate, stance.contact),
     }
     slip: Slip | None = None
 

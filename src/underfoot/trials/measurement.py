@@ -160,7 +160,7 @@ def mean_of(measurements: Sequence[Measurement], name: str | None = None) -> Mea
     """
     if not measurements:
         raise InputError("nothing to average", where="mean_of")
-    first, ignored = measurements[0], ("baseline", "walking direction", "uncertainty")
+    first, ignored = measurements[0], ("baseline", "walking direction", "belt", "uncertainty")
     said = [{k: v for k, v in m.conventions.items() if k not in ignored} for m in measurements]
     kept = said[0]
     if any(m.unit != first.unit for m in measurements) or any(one != kept for one in said):

@@ -11,6 +11,12 @@ from .walkway import GRAVITY, Walkway
 
 _PELVIS = re.compile(r"asis?$|psis?$|sacr(um)?$|v?sac$", re.IGNORECASE)
 _PENDULUM = 0.8  # slope of the force line of recorded steps in the plane of walking
+VERTICAL = (
+    "peak over mean", "second peak over first", "valley over peaks", "time of first peak",
+    "time of second peak", "dwell at the normal peak",
+)  # fmt: skip
+"""Features of the normal force's shape over the stance."""
+_LOADED = (0.06, 0.94)  # share of the stance in which the ratio of the forces is sure
 _SINGLE = (0.18, 0.82)  # share of the stance in which the other foot swings
 _SLOW = LowPass(cutoff=20.0)
 _BODY = LowPass(cutoff=6.0)
@@ -43,8 +49,8 @@ def _shapes(normal: np.ndarray, along: np.ndarray, beside: np.ndarray) -> dict[s
     """Impulses and instants of the filtered forces (n,) over one stance."""
     count, mean = len(normal), float(normal.mean())
     third, half = count // 3, count // 2
-    braking = -float(np.minimum(along[: 2 * third], 0.0).sum()) / (count * mean)
-    driving = float(np.maximum(along[third:], 0.0).sum()) / (count * mean)
+    pushes = np.maximum(-along[: 2 * third], 0.0).sum(), np.maximum(along[third:], 0.0).sum()
+    braking, driving = (max(float(push) / (count * mean), 1e-6) for push in pushes)
     first, second = float(normal[:half].max()), float(normal[half:].max())
     valley = float(normal[third : 2 * third].min())
     ratio = along / np.maximum(normal, 0.05 * mean)
@@ -54,8 +60,9 @@ def _shapes(normal: np.ndarray, along: np.ndarray, beside: np.ndarray) -> dict[s
     landed, left = np.flatnonzero(normal > 0.3 * mean)[[0, -1]]
     inner = slice(round(0.1 * count), round(0.9 * count))
     return {
-        "braking impulse": math.log(max(braking, 1e-6)),
-        "driving impulse": math.log(max(driving, 1e-6)),
+        "braking impulse": math.log(braking),
+        "driving impulse": math.log(driving),
+        "both impulses": 0.5 * math.log(braking * driving),
         "net impulse": driving - braking,
         "peak over mean": math.log(max(first, second) / mean),
         "second peak over first": math.log(second / first),
@@ -114,7 +121,7 @@ def _force_line(walk: Walkway, stance: Stance, across: np.ndarray) -> dict[str, 
     }
     pelvis = {m: side for m, side in pelvis.items() if m.times is None and not m.missing.all()}
     markers = list(pelvis)
-    begin, end = (stance.start + round(s * (stance.stop - stance.start)) for s in _SINGLE)
+    begin, end = (stance.start + round(s * (stance.stop - stance.start)) for s in _LOADED)
     if len(markers) < 2 or stance.walking is None or markers[0].rate < 40.0:
         return {}
     time = plate.time[begin:end]
@@ -131,7 +138,9 @@ def _force_line(walk: Walkway, stance: Stance, across: np.ndarray) -> dict[str, 
     rise = np.gradient(np.gradient(body @ walk.up, 1.0 / rate), 1.0 / rate)
     force = low_passed_part(plate.force, plate.rate, _SLOW, begin, end)
     normal = force @ walk.up
-    mass = normal / (GRAVITY + np.interp(time, frames, rise))
+    share = np.linspace(*_LOADED, len(time))
+    single = (share > _SINGLE[0]) & (share < _SINGLE[1])
+    mass = (normal / (GRAVITY + np.interp(time, frames, rise)))[single]
     found = {"steadiness of the mass": math.log(float(mass.std() / mass.mean()) + 1e-3)}
     if walk.weight is not None:
         found["mass by acceleration"] = math.log(float(mass.mean()) * GRAVITY / walk.weight.newtons)
@@ -142,15 +151,21 @@ def _force_line(walk: Walkway, stance: Stance, across: np.ndarray) -> dict[str, 
     arm = place - (plate.centre_of_pressure[begin:end] - carried)
     height = arm @ walk.up
     geometry, ratio = (arm @ stance.walking) / height, (force @ stance.walking) / normal
-    if not np.isfinite(geometry).all() or np.ptp(geometry) < 0.05:
+    if not np.isfinite(geometry).all() or np.ptp(geometry[single]) < 0.05:
         return found
-    slope, offset = np.polyfit(geometry, ratio, 1)
-    left = ratio - slope * geometry - offset
+    slope, offset = np.polyfit(geometry[single], ratio[single], 1)
+    line = slope * geometry + offset
+    left = (ratio - line)[single]
+    # What one channel takes of another goes with the shear, which the force line does not.
+    aside = (force @ across) / normal - _PENDULUM * (arm @ across) / height
+    leaks = np.polyfit(ratio[single], np.column_stack((aside[single], mass / mass.mean())), 1)[0]
     if balanced:
-        beside = (force @ across) / normal - _PENDULUM * (arm @ across) / height
-        found["sideways offset of the force line"] = float(beside.mean())
+        found["sideways offset of the force line"] = float(aside[single].mean())
+    top = int(np.argmin(ratio[share < 0.35]))
+    found["braking peak over the force line"] = float(ratio[top] / line[top])
+    found["shear in the sideways force"], found["shear in the mass"] = leaks.tolist()
     return found | {
-        "slope of the force line": float(slope),
+        "slope of the force line": math.log(max(float(slope), 0.01)),
         "offset of the force line": float(offset),
         "scatter of the force line": math.log(float(left.std()) + 1e-3),
     }

@@ -130,15 +130,20 @@ class Walkway:
         body = marker_velocity(self.trial, begin, end, None if climb else self.up)
         return None if body is None else body - self.surface_velocity(plate, begin)
 
-    def surface(self, plate: str, time: float) -> str:
-        """Return the surface under a plate's contact in words: level, a ramp, a belt's speed."""
+    def surface(self, plate: str, time: float) -> dict[str, str]:
+        """Return the surface under a plate's contact (level, a ramp, a belt), a belt's speed."""
         belt, ground = self.belts.get(plate), self.axes.ramp.words
-        return ground if belt is None else f"{belt.words(time)}, {ground}"
+        if belt is None:
+            return {"surface": ground}
+        return {"surface": f"treadmill belt, {ground}", "belt": belt.words(time)}
 
     @property
     def surfaces(self) -> str:
         """The surface of every plate in words."""
-        belts = [f"{plate}: {belt.words(belt.times.mean())}" for plate, belt in self.belts.items()]
+        belts = [
+            f"{plate}: treadmill belt at {belt.words(belt.times.mean())}"
+            for plate, belt in self.belts.items()
+        ]
         return "; ".join([*belts, self.axes.ramp.words])
 
     def direction(self, plate: Plate, start: int, stop: int) -> Direction:

@@ -30,10 +30,10 @@ class SoleView(ui.element):
         ui.run_javascript(f"showSole({self.html_id!r}, {address!r})")
 
 
-def title(words: str, level: int = 1) -> ui.element:
+def title(heading: str, level: int = 1) -> ui.element:
     """Return a heading."""
     with ui.element(f"h{level}") as made:
-        ui.label(words)
+        ui.label(heading)
     return made
 
 
@@ -89,8 +89,8 @@ def drop_zone(
         await on_files(list(event.args["detail"]["paths"]))
 
     zone.on("files", arrived, args=["detail"])
-    words = {key: session.text(f"files.{key}") for key in ("sending", "too_large", "failed")}
-    ui.run_javascript(f"takeFiles({zone.html_id!r}, {as_json(settings)}, {as_json(words)})")
+    messages = {key: session.text(f"files.{key}") for key in ("sending", "too_large", "failed")}
+    ui.run_javascript(f"takeFiles({zone.html_id!r}, {as_json(settings)}, {as_json(messages)})")
     return zone
 
 

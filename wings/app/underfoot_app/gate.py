@@ -62,11 +62,11 @@ class Gate:
             further = [("location", "/" + place.lstrip("/")), ("set-cookie", cookie)]
             await _refused(scope, send, 303, "", further)
         elif not self._has_token(self._given(headers)):
-            words = (
+            message = (
                 "Open the address that the terminal shows where the app was started: it ends with "
                 "a key that is yours alone."
             )
-            await _refused(scope, send, 403, words)
+            await _refused(scope, send, 403, message)
         elif (excess := self._excess(scope, headers)) is not None:
             await _refused(scope, send, *excess)
         else:
@@ -140,12 +140,16 @@ def _with_policy(send: Send) -> Send:
 
 
 async def _refused(
-    scope: Scope, send: Send, status: int, words: str, further: list[tuple[str, str]] | None = None
+    scope: Scope,
+    send: Send,
+    status: int,
+    message: str,
+    further: list[tuple[str, str]] | None = None,
 ) -> None:
     if scope["type"] == "websocket":
-        await send({"type": "websocket.close", "code": 1008, "reason": words[:120]})
+        await send({"type": "websocket.close", "code": 1008, "reason": message[:120]})
         return
-    page = f"<!doctype html><title>Underfoot</title><p>{escape(words)}</p>" if words else ""
+    page = f"<!doctype html><title>Underfoot</title><p>{escape(message)}</p>" if message else ""
     headers = [("content-type", "text/html; charset=utf-8"), *(further or [])]
     coded = [(key.encode(), value.encode("latin-1")) for key, value in headers]
     await send({"type": "http.response.start", "status": status, "headers": coded})

@@ -92,8 +92,8 @@ def sliders(
             return {}
         return await moving(changed)
 
-    link, kept = session.answers(asked), "true" if keep else "false"
-    ui.run_javascript(f"askLive({root.html_id!r}, {link!r}, {view.html_id!r}, {kept})")
+    link, keeps = session.answers(asked), "true" if keep else "false"
+    ui.run_javascript(f"askLive({root.html_id!r}, {link!r}, {view.html_id!r}, {keeps})")
     return root
 
 
@@ -130,7 +130,7 @@ def number_field(
     if origin is not None:
         leaf = origin.leaf
         kind = "assumed" if leaf.assumed else origin.kind
-        words = session.text(f"origin.{kind}")
-        field.props(f'hint="{escape(words)}"')
+        hint = session.text(f"origin.{kind}")
+        field.props(f'hint="{escape(hint)}"')
         if leaf.source:
             field.tooltip(leaf.source)

@@ -192,8 +192,8 @@ class Jobs:
 
     def latest(self, about: str, function: str) -> Task | None:
         """Return the newest task of a function about something, None where there is none."""
-        found = [t for t in self.tasks.values() if (t.about, t.function) == (about, function)]
-        return found[-1] if found else None
+        tasks = [t for t in self.tasks.values() if (t.about, t.function) == (about, function)]
+        return tasks[-1] if tasks else None
 
     async def run(self) -> None:
         """Compute what is queued, for ever."""
@@ -243,8 +243,8 @@ class Jobs:
         self._changed(task)
 
     def _changed(self, task: Task) -> None:
-        kept = {name: getattr(task, name) for name in KEPT if getattr(task, name)}
-        append_line(self._file, kept)
+        line = {name: getattr(task, name) for name in KEPT if getattr(task, name)}
+        append_line(self._file, line)
         for number in list(self.tasks)[:-SHOWN]:
             if not self.tasks[number].open:
                 del self.tasks[number]
@@ -252,8 +252,8 @@ class Jobs:
     def _read(self) -> None:
         for line in lines(self._file):
             if "number" in line:
-                kept = {name: value for name, value in line.items() if name in KEPT}
-                self.tasks[line["number"]] = Task(**{"title": "", **kept})
+                fields = {name: value for name, value in line.items() if name in KEPT}
+                self.tasks[line["number"]] = Task(**{"title": "", **fields})
         for task in self.tasks.values():
             if task.open:
                 self._end(task, INTERRUPTED)

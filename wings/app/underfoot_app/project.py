@@ -229,8 +229,8 @@ class Project:
 
     def results(self) -> list[Summary]:
         """Return the finished results, the newest first."""
-        found = [self.summary(folder.name) for folder in (self.folder / "results").iterdir()]
-        return sorted(filter(None, found), key=lambda each: each.created, reverse=True)
+        summaries = [self.summary(folder.name) for folder in (self.folder / "results").iterdir()]
+        return sorted(filter(None, summaries), key=lambda each: each.created, reverse=True)
 
     def summary(self, name: str) -> Summary | None:
         """Return a result in short; None where there is none that can be read."""
@@ -317,14 +317,14 @@ def append_line(path: Path, content: Mapping[str, Any]) -> None:
 
 def lines(path: Path) -> list[dict[str, Any]]:
     """Return the lines of JSON of a file; one cut short by a power cut is left out."""
-    found = []
+    lines_by_path = []
     if path.is_file():
         for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
             try:
-                found.append(json.loads(line))
+                lines_by_path.append(json.loads(line))
             except ValueError:
                 continue
-    return [line for line in found if isinstance(line, dict)]
+    return [line for line in lines_by_path if isinstance(line, dict)]
 
 
 def _now() -> str:

@@ -139,13 +139,13 @@ def problem_parts(error: BaseException) -> list[tuple[str, str]]:
     if not isinstance(error, UnderfootError):
         return [("what", error_text(error))]
     titles = {"allowed": "Allowed: {}", "nearest": 'Did you mean "{}"?'}
-    found: list[tuple[str, str]] = []
+    problems: list[tuple[str, str]] = []
     for each in getattr(error, "errors", (error,)):
         parts = {"where": each.where, "what": each.what, **each.parts}
-        found += [
+        problems += [
             (kind, titles.get(kind, "{}").format(word)) for kind, word in parts.items() if word
         ]
-    return found
+    return problems
 
 
 def as_json(content: Any) -> str:

@@ -65,16 +65,18 @@ def tile_svg(tiles: Sequence[Tile], sheet: Sheet) -> str:
     return "".join([*parts, "</svg>"])
 
 
-def record_plot(one: FileResult, signals: RecordSignals) -> dict[str, Any]:
+def record_plot(record: FileResult, signals: RecordSignals) -> dict[str, Any]:
     """Return the loads of all plates over the whole record, with the contacts as bands."""
     begin = min(each.start for each in signals.force.values())
     end = max(each.end for each in signals.force.values())
     loads = [_line(name, each.envelope(begin, end, WIDTH)) for name, each in signals.force.items()]
-    bands = [_band(each) for each in one.steps]
+    bands = [_band(each) for each in record.steps]
     return {"begin": begin, "end": end, "panels": [_panel("force", loads)], "bands": bands}
 
 
-def step_plot(one: FileResult, entry: Mapping[str, Any], signals: RecordSignals) -> dict[str, Any]:
+def step_plot(
+    record: FileResult, entry: Mapping[str, Any], signals: RecordSignals
+) -> dict[str, Any]:
     """Return load, ratio and heel speed around a step, with its events."""
     contact, toe_off, plate = entry["contact"], entry["toe_off"], signals.force[entry["plate"]]
     begin, end = max(contact - BEFORE, plate.start), min(toe_off + AFTER, plate.end)
@@ -93,7 +95,7 @@ def step_plot(one: FileResult, entry: Mapping[str, Any], signals: RecordSignals)
     if "exclude" in entry["by_hand"]:  # its marks show where it was; they are not moved
         events = [{"id": each["id"], "time": each["time"]} for each in events]
     label = f"step {entry['number']} on {entry['plate']}"
-    curves = (each for kind in RATIOS for each in one.curves.get(kind, ()))
+    curves = (each for kind in RATIOS for each in record.curves.get(kind, ()))
     for curve in (each for each in curves if each["step"] == label):
         loaded = [
             ratio if load is not None and load > LOADED else None
@@ -109,8 +111,8 @@ def step_plot(one: FileResult, entry: Mapping[str, Any], signals: RecordSignals)
     speeds = [_line(s, each.envelope(begin, end, WIDTH)) for s, each in signals.heel_speed.items()]
     if speeds:
         panels.append(_panel("speed", speeds))
-    if "slip_start" in entry and speeds and one.curves.get("heel"):
-        events += _slip_events(one.curves["heel"][0], contact, len(panels) - 1)
+    if "slip_start" in entry and speeds and record.curves.get("heel"):
+        events += _slip_events(record.curves["heel"][0], contact, len(panels) - 1)
     return {
         "begin": begin, "end": end, "panels": panels, "events": events,
         "bands": [_band(entry)], "spacing": 1.0 / plate.rate,
@@ -119,20 +121,20 @@ def step_plot(one: FileResult, entry: Mapping[str, Any], signals: RecordSignals)
 
 def _slip_events(heel: Mapping[str, Any], contact: float, panel: int) -> list[dict[str, Any]]:
     """Return start, peak and end of a slip, which a heel's curve gives in seconds after contact."""
-    found = []
+    events = []
     for name, key in (("slip start", "start"), ("slip end", "end"), ("slip peak", "peak_time")):
         if heel[key] is not None:
             event = {"id": name, "time": contact + heel[key], "panel": panel}
-            found.append(event | ({"value": heel["peak"]} if key == "peak_time" else {}))
-    return found
+            events.append(event | ({"value": heel["peak"]} if key == "peak_time" else {}))
+    return events
 
 
-def run_plot(one: FileResult) -> dict[str, Any] | None:
+def run_plot(record: FileResult) -> dict[str, Any] | None:
     """Return the curves of a run without steps, with its window; None where there are none."""
-    kind = next((kind for kind in RUNS if one.curves.get(kind)), None)
+    kind = next((kind for kind in RUNS if record.curves.get(kind)), None)
     if kind is None:
         return None
-    curve = one.curves[kind][0]
+    curve = record.curves[kind][0]
     time = curve["time"]
     panels = [
         _panel(name, [_curve(key, time, curve[key]) for key in series])

@@ -15,8 +15,8 @@ STANDARD = {"protocol": "level_walking", "names": "", "merge_spelling": False}
 
 def studies(project: Project) -> list[str]:
     """Return the names of the folders of trials."""
-    found = project.inside("trials").iterdir()
-    return sorted(each.name for each in found if each.is_dir() and each.name[0] != ".")
+    folders = project.inside("trials").iterdir()
+    return sorted(each.name for each in folders if each.is_dir() and each.name[0] != ".")
 
 
 def free_name(project: Project, wanted: str) -> str:

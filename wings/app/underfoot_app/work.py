@@ -55,6 +55,15 @@ def case_of(path: str, changes: Mapping[str, Any] | None = None) -> Case:
     return case.replace(changes) if changes else case
 
 
+def compound(path: str, *, progress: Progress) -> str:
+    """Write the compound of a rubber's test beside it; return the name of its file."""
+    from underfoot_trial_analysis.compound import compound_from_files
+
+    test = Path(path)
+    write_text(compound_from_files([test]).toml())(test.with_suffix(".toml"))
+    return test.with_suffix(".toml").name
+
+
 def sole(path: str, changes: Mapping[str, Any], *, progress: Progress) -> dict[str, Any]:
     """Return the sole of a case as a part of a page (``html``), and its measures."""
     case = case_of(path, changes)
@@ -93,7 +102,7 @@ def inspected_sole(path: str, settings: Mapping[str, Any], *, progress: Progress
         {"x": ("x", surface.x[::step]), "y": ("y", surface.y[::step])},
     )  # fmt: skip
     html = _html(Drawn(inspection.file.name, fields))
-    return {**said(inspection), "html": html, "sha256": checksum(path)}
+    return {**presented(inspection), "html": html, "sha256": checksum(path)}
 
 
 def effects(path: str, folder: str, *, progress: Progress) -> None:
@@ -135,7 +144,7 @@ def answer(folder: str, *, progress: Progress) -> dict[str, Any]:
         "slip": None if slip is None else slip.value,
         "limit": str(friction_limit(result.scalars)) if result.usable else "",
     }
-    return {**said(result), **numbers, "html": _html(result)}
+    return {**presented(result), **numbers, "html": _html(result)}
 
 
 def previewed(path: str, changes: Mapping[str, Any], *, progress: Progress) -> dict[str, Any]:
@@ -161,7 +170,7 @@ def previewed(path: str, changes: Mapping[str, Any], *, progress: Progress) -> d
     }
 
 
-def said(shown: Presentable) -> dict[str, Any]:
+def presented(shown: Presentable) -> dict[str, Any]:
     """Return what an object says of itself as plain data."""
     tables = [
         {"title": table.title, "columns": list(table.columns), "rows": table.cells()}

@@ -23,7 +23,7 @@ from underfoot_design_studies.report import design_sole, shown, write_study_repo
 from underfoot_design_studies.status import study_status
 from underfoot_design_studies.study_file import flat_paths
 
-from .work import Drawn, said
+from .work import Drawn, presented
 
 COLUMNS = ("cof", "slip_probability", "fluid_load", "peak_fluid_pressure", "contact_area")
 """Numbers of a result that the table of a comparison can be sorted by."""
@@ -43,11 +43,11 @@ def state(file: str, folder: str, *, progress: Progress) -> dict[str, Any]:
     store, plan = study.store, study.plan
     ended = len(store.records()) if store.exists else 0
     if not ended or not store.jobs() or store.plan().text != plan.text:
-        return {**said(study_check(plan, TRIED)), "ended": ended, "begun": False, "open": True}
+        return {**presented(study_check(plan, TRIED)), "ended": ended, "begun": False, "open": True}
     status = study_status(study)
     most = plan.designs * plan.cases_per_design
     left = ended < most or status.endings["open"] > 0 or plan.method.front_grid is not None
-    return {**said(status), "ended": ended, "begun": True, "open": left}
+    return {**presented(status), "ended": ended, "begun": True, "open": left}
 
 
 def computed(file: str, folder: str, *, progress: Progress) -> None:
@@ -80,16 +80,16 @@ def design(file: str, folder: str, number: int, *, progress: Progress) -> dict[s
 
 def comparison(folders: Sequence[str], *, progress: Progress) -> dict[str, Any]:
     """Return stored results side by side: words, a row each, every pair, and the page's part."""
-    found = compare(*(Result.load(folder) for folder in folders))
+    compared = compare(*(Result.load(folder) for folder in folders))
     rows = []
-    for letter, result in zip(found.letters, found.results, strict=True):
+    for letter, result in zip(compared.letters, compared.results, strict=True):
         known = {name: result.scalars[name] for name in COLUMNS if name in result.scalars}
         numbers = {name: each.value for name, each in known.items()}
         texts = {f"{name}_text": value_text(name, each) for name, each in known.items()}
         rows.append({"letter": letter, "name": result.name, **numbers, **texts})
-    chances = [[_chance(one, other) for other in found.results] for one in found.results]
-    html = scene_section(viewer_scene(found.results))
-    return {**said(found), "rows": rows, "chances": chances, "html": html}
+    chances = [[_chance(one, other) for other in compared.results] for one in compared.results]
+    html = scene_section(viewer_scene(compared.results))
+    return {**presented(compared), "rows": rows, "chances": chances, "html": html}
 
 
 def exported(folder: str, file: str, *, progress: Progress) -> str:
@@ -97,6 +97,6 @@ def exported(folder: str, file: str, *, progress: Progress) -> str:
     return export_result(Result.load(folder), Path(file)).sentence()
 
 
-def _chance(one: Result, other: Result) -> str:
-    chance = None if one is other else chance_higher(one, other)
+def _chance(result: Result, other: Result) -> str:
+    chance = None if result is other else chance_higher(result, other)
     return "" if chance is None else percent(chance)

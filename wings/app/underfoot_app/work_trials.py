@@ -213,7 +213,7 @@ def _run_number(recording: str, file: str) -> int:
 
 
 def _changed(
-    study: Study, name: str, one: FileResult, change: Change
+    study: Study, name: str, record: FileResult, change: Change
 ) -> tuple[str, str, list[Edit]]:
     """Return the text of ``edits.csv`` before and after a change, and the recording's edits then.
 
@@ -223,8 +223,8 @@ def _changed(
     own = [(line, e) for line, f, e in edit_rows(study.folder, [name], others=True) if f == name]
     row: tuple[str, ...] = ()
     if change.what == "take back":
-        run = _run_number(name, one.file)
-        logged = own if one.steps else [row for row in own if row[1].step == run]
+        run = _run_number(name, record.file)
+        logged = own if record.steps else [row for row in own if row[1].step == run]
         gone, new = {logged[change.step][0]}, []
     else:
         row = (name, str(change.step), change.what, change.value, change.why)
@@ -232,19 +232,19 @@ def _changed(
         gone = {
             line
             for line, edit in own
-            if _number(edit, one) == change.step
+            if _number(edit, record) == change.step
             and (edit.what == change.what or "exclude" in (edit.what, change.what))
         }
     edits = [edit for line, edit in own if line not in gone] + new
     return text, with_edit_row(text, row, gone), edits
 
 
-def _number(edit: Edit, one: FileResult) -> int:
+def _number(edit: Edit, record: FileResult) -> int:
     """Return the number of the step that an edit names by its number or a time within it."""
-    if isinstance(edit.step, int) or not one.steps:
+    if isinstance(edit.step, int) or not record.steps:
         return int(edit.step)
     at = edit.step
-    return int(min(one.steps, key=lambda step: abs(step["contact"] - at))["number"])
+    return int(min(record.steps, key=lambda step: abs(step["contact"] - at))["number"])
 
 
 def _cards(analysis: FolderAnalysis) -> list[dict[str, Any]]:
@@ -269,23 +269,23 @@ def _cards(analysis: FolderAnalysis) -> list[dict[str, Any]]:
     ]
 
 
-def _summary(one: FileResult) -> dict[str, Any]:
+def _summary(record: FileResult) -> dict[str, Any]:
     return {
-        "file": one.file,
-        "verdict": one.verdict,
-        "numbers": _numbers(one),
+        "file": record.file,
+        "verdict": record.verdict,
+        "numbers": _numbers(record),
         "conditions": {
             name: f"{value:g}" if isinstance(value, float) else str(value)
-            for name, value in one.conditions.items()
+            for name, value in record.conditions.items()
         },
-        "reasons": list(one.reasons),
+        "reasons": list(record.reasons),
     }
 
 
-def _numbers(one: FileResult) -> list[str]:
+def _numbers(record: FileResult) -> list[str]:
     """Return the main numbers of a file in words, with units."""
     texts = []
-    for name, value in one.main.items():
+    for name, value in record.main.items():
         text = f"{scaled(name, value):.3g} {shown_unit(name)}".strip()
         if name in ("slip", "crossed_array"):
             text = "yes" if value else "no"
@@ -293,19 +293,21 @@ def _numbers(one: FileResult) -> list[str]:
     return texts
 
 
-def _plots(study: Study, recording: Recording, one: FileResult, step: int | None) -> dict[str, Any]:
+def _plots(
+    study: Study, recording: Recording, record: FileResult, step: int | None
+) -> dict[str, Any]:
     """Return the plot of the whole record and of what was chosen, None where there is none."""
-    if not one.steps:
-        return {"whole": None, "chosen": None, "plot": run_plot(one)}
+    if not record.steps:
+        return {"whole": None, "chosen": None, "plot": run_plot(record)}
     profile, _ = profile_of(study.folder, None)
     trials, *_ = recording_trials(recording.paths, profile)
-    trial = trials[_run_number(recording.name, one.file) - 1]
+    trial = trials[_run_number(recording.name, record.file) - 1]
     signals = record_signals(trial, study.protocol, profile)
     order = {"accepted": 1, "caution": 1}
-    first = min(one.steps, key=lambda s: 0 if "slip_start" in s else order.get(s["verdict"], 2))
-    entry = next((each for each in one.steps if each["number"] == step), first)
+    first = min(record.steps, key=lambda s: 0 if "slip_start" in s else order.get(s["verdict"], 2))
+    entry = next((each for each in record.steps if each["number"] == step), first)
     return {
-        "whole": record_plot(one, signals),
+        "whole": record_plot(record, signals),
         "chosen": entry["number"],
-        "plot": step_plot(one, entry, signals),
+        "plot": step_plot(record, entry, signals),
     }

@@ -17,6 +17,7 @@ import pandas
 import underfoot_block
 from underfoot import material as materials
 from underfoot.core import Cache, InputError, Status, content_hash, unknown_name
+from underfoot.core.catalogue import Catalogue
 from underfoot.studies.figure import (
     OURS,
     PRINTED,
@@ -27,6 +28,7 @@ from underfoot.studies.figure import (
     grouped_bars,
     level,
     line,
+    points,
 )
 from underfoot.studies.runner import Computed, Options, Table, kept
 from underfoot.studies.verdict import Quantity
@@ -198,9 +200,34 @@ def compute(options: Options) -> Computed:
         quantities |= series_quantities(name, levels)
     return Computed(
         quantities,
-        [Table.of("cases", "Averages over whole floor wavelengths, SI units", map(asdict, rows))],
+        [cases_table(rows)],
         figures(rows, histories, settings.floor_wavelength),
         notes=_notes(rows, settings, before),
+    )
+
+
+def cases_table(rows: Sequence[Row]) -> Table:
+    """Return every case in the units of the report; what was said of a run is in the notes."""
+    return Table.of(
+        "cases",
+        "Averages over whole floor wavelengths",
+        [
+            {
+                "series": SERIES[row.series],
+                "material": row.material,
+                "shoe Rz, µm": 1e6 * row.shoe_rz,
+                "floor Rz, µm": 1e6 * row.floor_rz,
+                "speed, m/s": row.speed,
+                "hysteresis COF": row.cof_hysteresis,
+                "mean |shear| over load": row.cof_absolute,
+                "area over load, mm²/N": 1e6 * row.area_per_force,
+                "without edges, mm²/N": 1e6 * row.area_per_force_corrected,
+                "real contact, %": 100.0 * row.real_contact_fraction,
+                "pressure, kPa": 1e-3 * row.mean_pressure,
+                "status": row.status,
+            }
+            for row in rows
+        ],
     )
 
 
@@ -392,6 +419,11 @@ def _notes(rows: Sequence[Row], settings: Settings, before: int) -> list[str]:
             f"{np.nanmax(pressures):.0f} kPa"
             f"{kept_height if settings.control == 'displacement' else ''}."
         )
+    said: dict[str, int] = {}
+    for row in rows:
+        if row.note:
+            said[row.note] = said.get(row.note, 0) + 1
+    notes += [f"{count} of {len(rows)} cases: {note}." for note, count in said.items()]
     if before:
         notes.append(f"{before} of {len(rows)} cases were kept from an earlier run.")
     lost = sum(math.isnan(row.cof_hysteresis) for row in rows)
@@ -413,6 +445,7 @@ def figures(
         "fig10_area_speed_own": _figure(frame, "area", "10", "speed", own=True),
         "fig11_area_roughness_own": _figure(frame, "area", "11", "floor_rz", own=True),
     }
+    drawn = {name: figure for name, figure in drawn.items() if figure.panels}
     if histories:
         drawn["fig03_history"] = history_figure(histories, wavelength)
     return drawn
@@ -425,15 +458,18 @@ def _figure(frame: Any, quantity: str, number: str, along: str, *, own: bool = F
     slow = frame.speed.min()
     if along == "floor_rz":
         frame = frame[frame.speed == slow]
-    panels = []
+    panels, left_out = [], []
     for series, material in product(frame.series.unique(), MATERIALS):
         some = frame[(frame.series == series) & (frame.material == material)]
         if own:
             some = some[some.shoe_rz == OWN_SHOE_RZ[material]]
         largest = some[column].abs().max()
-        nothing = quantity == "hysteresis" and largest < LEAST_COF
+        if quantity == "hysteresis" and largest < LEAST_COF:
+            left_out.append(f"{material} {largest:.0e}")
+            continue
         # friction of the materials is compared, areas differ tenfold
         highest = scale * (frame if quantity == "hysteresis" else some)[column].max()
+        printed = _printed_change(quantity, along, material, own=own)
         if along == "floor_rz":
             bars = {
                 f"shoe Rz {1e6 * shoe:g} µm": scale * row[column].to_numpy()
@@ -442,6 +478,7 @@ def _figure(frame: Any, quantity: str, number: str, along: str, *, own: bool = F
             layers = grouped_bars(bars, colours=("#2e75b6",) if own else ("#9db8cc", OURS))
             names = [f"{1e6 * floor:g}" for floor in FLOOR_RZ]
             axis: dict[str, Any] = {"x_label": "floor Rz (µm)", "x_ticks": names}
+            last = len(FLOOR_RZ) - 0.45
         else:
             layers = [
                 line(
@@ -455,22 +492,49 @@ def _figure(frame: Any, quantity: str, number: str, along: str, *, own: bool = F
                 for (shoe, floor), curve in some.sort_values(along).groupby(["shoe_rz", "floor_rz"])
             ]
             axis = {"x_label": "sliding speed (m/s)", "x_limits": (0.0, None)}
+            last = 1.04 * frame.speed.max()
+        first = scale * some[some[along] == some[along].min()][column].mean()
+        if printed is not None:
+            low, high = (first * (1.0 + change) for change in printed)
+            style = {"low": [low], "high": [high], "colour": PRINTED, "marker": "D"}
+            layers.append(points([last], [0.5 * (low + high)], PRINTED_LABEL, **style))
+            highest = max(highest, high)
         panels.append(
             Panel(
-                () if nothing else layers,
+                layers,
                 y_label=label,
                 title=f"{SERIES[series]}: {material}",
                 y_limits=(0.0, 1.05 * highest if highest > 0.0 else 1.05),
-                legend="" if nothing else "best",
-                note=f"no hysteresis friction:\n|COF| at most {largest:.0e}" if nothing else "",
                 **axis,
             )
         )
-    if along == "floor_rz":
-        title = f"Fig. {number}: {label} at {slow:g} m/s" + (", own shoes" if own else "")
-        return Figure(panels, title, columns=2)
-    title = f"Fig. {number}: {label} against speed (Rz in µm)"
+    title = f"Fig. {number}: {label}"
+    title += f" at {slow:g} m/s" if along == "floor_rz" else " against speed (Rz in µm)"
+    title += ", own shoes" if own else ""
+    if left_out:
+        title += "\nreport's parameters not drawn, |COF| at most: " + ", ".join(left_out)
     return Figure(panels, title, columns=2, legend_below=True, size=(4.4, 3.2))
+
+
+PRINTED_LABEL = "printed change, from our mean at the first place"
+
+
+def _printed_change(
+    quantity: str, along: str, material: str, *, own: bool
+) -> tuple[float, float] | None:
+    """Return the printed change (lowest, highest) that a panel's last place stands for."""
+    published = Catalogue.load().entry("published", "micro_fe_g1")
+    name = {"hysteresis": "hysteresis_cof_change", "area": "contact_area_per_force_change"}[
+        quantity
+    ]
+    if own and along == "speed":
+        key = "experiment.adhesion_change_with_speed"
+    elif along == "speed" and quantity == "hysteresis":
+        key = f"{name}.speed_up_most_pairs"
+    else:
+        key = f"{name}.{'speed' if along == 'speed' else 'floor_roughness'}_up_{material}"
+    low, high = published.numbers(key, "1")
+    return float(low), float(high)
 
 
 def history_figure(

@@ -84,8 +84,8 @@ class StudyCheck(Presentable):
 
     def remarks(self) -> Mapping[str, Sequence[str]]:
         """Return why cases can't be built, the most frequent reason first."""
-        found = sorted(self.infeasible.items(), key=lambda one: -one[1])
-        return {"Can't be built": [f"{count} x {reason}" for reason, count in found]}
+        reasons = sorted(self.infeasible.items(), key=lambda one: -one[1])
+        return {"Can't be built": [f"{count} x {reason}" for reason, count in reasons]}
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data."""

@@ -176,12 +176,12 @@ def posterior(
         raise InputError(f"{out} exists", where="--out", remedy="Add --overwrite to replace it")
     study = Study.load(readings, folder)
     with bar(study.plan.name) as progress:
-        found = joint(study, on=on, workers=workers, progress=progress)
-    if found.usable:
+        answer = joint(study, on=on, workers=workers, progress=progress)
+    if answer.usable:
         out.parent.mkdir(parents=True, exist_ok=True)
-        found.write(out)
-    finish(found, None, json=json)
-    if found.usable and not json:
+        answer.write(out)
+    finish(answer, None, json=json)
+    if answer.usable and not json:
         print(f'\nwrote {out}\nUse it: posterior = "{out.name}" under [uncertain] of a study')
 
 

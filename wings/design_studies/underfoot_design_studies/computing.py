@@ -36,7 +36,7 @@ SURFACE = 0.5e-3
 def computed(base: Case, job: Job) -> Record:
     """Return the record of a job: the base case with its changes, run. Never raises."""
     wall, cpu = time.perf_counter(), time.process_time()
-    found: dict[str, Any] = {}
+    outcome: dict[str, Any] = {}
     try:
         case = base.replace(job.changes)
         if job_key(case, job.quick) != job.key:
@@ -46,16 +46,16 @@ def computed(base: Case, job: Job) -> Record:
                 remedy="Run the study in a new folder",
             )
         result = run(case, quick=job.quick)
-        found = _found(case, result, job.fields)
+        outcome = _outcome(case, result, job.fields)
     except InputError as error:
-        found = {"ending": Ending.INFEASIBLE, "reason": str(error)}
+        outcome = {"ending": Ending.INFEASIBLE, "reason": str(error)}
     except ConvergenceError as error:
-        found = {"ending": Ending.NOT_CONVERGED, "reason": str(error)}
+        outcome = {"ending": Ending.NOT_CONVERGED, "reason": str(error)}
     except Exception as error:
-        found = {"ending": Ending.FAILED, "reason": f"{type(error).__name__}: {error}"}
+        outcome = {"ending": Ending.FAILED, "reason": f"{type(error).__name__}: {error}"}
     return Record(
         job.key,
-        **found,
+        **outcome,
         seconds=time.perf_counter() - wall,
         cpu_seconds=time.process_time() - cpu,
         program=program(),
@@ -76,7 +76,7 @@ def worker_name() -> str:
     return f"{platform.node() or 'host'}-{os.getpid()}"
 
 
-def _found(case: Case, result: Result, keep_fields: bool) -> dict[str, Any]:
+def _outcome(case: Case, result: Result, keep_fields: bool) -> dict[str, Any]:
     if not result.usable:
         ending = Ending.NOT_CONVERGED if result.status is Status.NOT_CONVERGED else Ending.FAILED
         return {"ending": ending, "reason": f"{result.status}. {result.status.remedy}"}

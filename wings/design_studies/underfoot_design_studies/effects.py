@@ -126,13 +126,13 @@ def effects(result: StudyResult, goal: AnyGoal) -> Effects:
     else:
         (surrogate,) = surrogates(result, [goal])
         points = _salib(plan, "sample")(ON_SURROGATE[method.analysis])
-        values, basis = surrogate.mean(points), surrogate.words
+        values, basis = surrogate.mean(points), surrogate.reliability
     given = (points, values) if method.analysis == "morris" else (values,)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # indices of an output that does not vary
-        found = _salib(plan, "analyze")(*given)
+        indices = _salib(plan, "analyze")(*given)
     columns = [
-        np.nan_to_num(np.array(found.get(part, np.zeros(len(plan.dimensions))), float))
+        np.nan_to_num(np.array(indices.get(part, np.zeros(len(plan.dimensions))), float))
         for name in KEYS[method.analysis]
         for part in (name, f"{name}_conf")
     ]

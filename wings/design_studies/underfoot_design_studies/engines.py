@@ -106,10 +106,10 @@ def _client(distributed: Any, address: str, workers: int) -> Any:
 
 def _next(jobs: Iterator[Job | None], count: int) -> list[Job]:
     """Return up to so many jobs, fewer where there are none for now."""
-    found: list[Job] = []
-    while len(found) < count and (job := next(jobs, None)) is not None:
-        found.append(job)
-    return found
+    chosen: list[Job] = []
+    while len(chosen) < count and (job := next(jobs, None)) is not None:
+        chosen.append(job)
+    return chosen
 
 
 def _was_killed(distributed: Any, future: Any) -> bool:

@@ -172,20 +172,20 @@ def read_distribution(path: str, given: Any, known: Catalogue) -> Distribution:
         spread = to_si(second, unit, where=place) - (centre if kind == "from" else 0.0)
         if spread <= 0:
             raise RangeError(f"{second}", where=place, allowed="above 0, from < to")
-    found = Distribution(path, "uniform" if kind == "from" else kind, centre, spread)
+    distribution = Distribution(path, "uniform" if kind == "from" else kind, centre, spread)
     field = field_at(path)
     quantity = None if field is None else quantity_of(field)
     if quantity is None:
-        return found
+        return distribution
     for share in (OUTSIDE, 1 - OUTSIDE):
-        value = found.value(share)
+        value = distribution.value(share)
         if not quantity.low <= value <= quantity.high:
             raise RangeError(
                 f"reaches {display(value, unit)} at {share:.1%} of it",
                 allowed=quantity.allowed(),
                 remedy="Narrow it, or take lognormal for what is positive",
             )
-    return replace(found, low=quantity.low, high=quantity.high)
+    return replace(distribution, low=quantity.low, high=quantity.high)
 
 
 def value_at(path: str, given: Any, known: Catalogue, where: str = "") -> Any:

@@ -91,7 +91,7 @@ class Posterior(Presentable):
 
     def cautions(self) -> tuple[str, ...]:
         """Return where the surrogate is the weak part, and posteriors at the end of a prior."""
-        weak = [f"{one.name}: {one.words}" for one in self.models if one.q2 < 0.9]
+        weak = [f"{one.name}: {one.reliability}" for one in self.models if one.q2 < 0.9]
         edge = [
             f"The posterior of {path} lies at the end of its prior: widen that."
             for path, now, then in zip(self.paths, self.draws.T, self.prior.T, strict=True)
@@ -125,7 +125,7 @@ class Posterior(Presentable):
 
     def remarks(self) -> Mapping[str, Sequence[str]]:
         """Return the error of the surrogates."""
-        return {"Surrogates": [f"{one.name}: {one.words}" for one in self.models]}
+        return {"Surrogates": [f"{one.name}: {one.reliability}" for one in self.models]}
 
     def write(self, path: Path) -> None:
         """Write the draws as CSV, one column a path (SI): ``uncertain.posterior`` of a study."""
@@ -172,12 +172,12 @@ def posterior(
         inside = ((places > 0) & (places < 1)).all(axis=1)
         points = np.clip(places, 0.0, 1.0)
         delta = DISCREPANCY * _half_normal(points[:, -1])
-        found = np.where(inside, 0.0, -np.inf)
+        log_density = np.where(inside, 0.0, -np.inf)
         for model, value, sd in zip(models, measured, deviation, strict=True):
             mean, error = model.predicted(points[:, :size])
             variance = sd**2 + error**2 + (delta * mean) ** 2
-            found -= 0.5 * ((value - mean) ** 2 / variance + np.log(variance))
-        return found
+            log_density -= 0.5 * ((value - mean) ** 2 / variance + np.log(variance))
+        return log_density
 
     emcee = optional_module("emcee", "study", "A posterior")
     generator = np.random.default_rng(plan.method.seed)

@@ -120,8 +120,8 @@ def _promising(so_far: StudyResult, count: int) -> list[tuple[float, ...]]:
     )
     generator = np.random.default_rng([plan.method.seed, len(so_far.designs)])
     spread = qmc.Sobol(len(plan.dimensions), rng=generator).random(SPREAD)
-    found = _surrogate_front(plan, goals, bounds, len(so_far.designs))[:CANDIDATES]
-    candidates = np.vstack([found, spread])
+    optimum = _surrogate_front(plan, goals, bounds, len(so_far.designs))[:CANDIDATES]
+    candidates = np.vstack([optimum, spread])
     for one in so_far.designs:
         candidates = _apart(plan, candidates, one.point)
     chosen: list[tuple[float, ...]] = []
@@ -188,9 +188,9 @@ def _surrogate_front(
                 ]
                 out["G"] = -np.column_stack(margins)
 
-    found = minimised(
+    optimum = minimised(
         OnSurrogates(), nsga2.NSGA2(pop_size=POPULATION), ("n_gen", GENERATIONS), seed=seed
     )
-    population = found.pop.get("X")
-    front = population if found.X is None else np.vstack([np.atleast_2d(found.X), population])
+    population = optimum.pop.get("X")
+    front = population if optimum.X is None else np.vstack([np.atleast_2d(optimum.X), population])
     return list(dict.fromkeys(tuple(map(float, row)) for row in front))

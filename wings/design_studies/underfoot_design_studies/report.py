@@ -86,13 +86,13 @@ def design_sole(study: Study, result: StudyResult, number: int) -> Fields:
 
 def _soles(study: Study, result: StudyResult, progress: Progress) -> Mapping[int, Fields]:
     """Return the soles of the best designs that can be built."""
-    found = {}
+    soles = {}
     chosen = dict.fromkeys(one.number for one in (result.front or result.designs)[:MOST_SOLES])
     for count, number in enumerate(chosen, start=1):
         progress("Soles", count / len(chosen))
         with suppress(UnderfootError):
-            found[number] = design_sole(study, result, number)
-    return found
+            soles[number] = design_sole(study, result, number)
+    return soles
 
 
 def write_study_report(
@@ -152,7 +152,7 @@ def _study_sections(
             parts.append(Section(f"{one.output}: indices", table=one.table(), folded=True))
         if result.models:
             picture = Picture("Slices through the surrogates", embedded(pictures["slices"]), True)
-            words = [f"{one.name}: {one.words}" for one in result.models]
+            words = [f"{one.name}: {one.reliability}" for one in result.models]
             intro = (
                 "Through the marked design; the band is one standard deviation of the surrogate."
             )
@@ -263,19 +263,21 @@ def slices_figure(models: Sequence[Surrogate], centre: np.ndarray) -> Figure:
     return figure
 
 
-def effects_figure(one: Effects) -> Figure:
+def effects_figure(effects: Effects) -> Figure:
     """Return both indices of every input as bars with their 95 % intervals."""
-    order = np.argsort(one.total)
+    order = np.argsort(effects.total)
     figure = new_figure(7.0, 0.5 * len(order) + 1.2)
     axes = figure.add_subplot()
     at = np.arange(len(order))
     for shift, values, half, name, colour in (
-        (0.2, one.total, one.total_half, one.heads[1], "#0b6fa4"),
-        (-0.2, one.main, one.main_half, one.heads[0], "#9cc8e0"),
+        (0.2, effects.total, effects.total_half, effects.heads[1], "#0b6fa4"),
+        (-0.2, effects.main, effects.main_half, effects.heads[0], "#9cc8e0"),
     ):
         axes.barh(at + shift, values[order], 0.36, xerr=half[order], label=name, color=colour)
-    axes.set_yticks(at, [one.paths[k] for k in order], fontsize=8)
-    axes.set_xlabel("share of the variance" if one.analysis == "sobol" else f"effect ({one.unit})")
+    axes.set_yticks(at, [effects.paths[k] for k in order], fontsize=8)
+    axes.set_xlabel(
+        "share of the variance" if effects.analysis == "sobol" else f"effect ({effects.unit})"
+    )
     axes.set_xlim(left=0)
     axes.legend(frameon=False)
     axes.spines[["top", "right"]].set_visible(False)

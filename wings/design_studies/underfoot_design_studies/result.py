@@ -95,11 +95,13 @@ class StudyResult(Presentable):
     @cached_property
     def all_designs(self) -> list[Design]:
         """Every design on every grid, in the order in which they were set."""
-        found: dict[tuple[int, bool], dict[tuple[int, int], Job]] = {}
+        by_design: dict[tuple[int, bool], dict[tuple[int, int], Job]] = {}
         for job in self.jobs:
-            found.setdefault((job.design, job.quick), {})[job.condition, job.draw] = job
+            by_design.setdefault((job.design, job.quick), {})[job.condition, job.draw] = job
         designs = []
-        for (number, quick), jobs in sorted(found.items(), key=lambda one: (one[0][0], one[0][1])):
+        for (number, quick), jobs in sorted(
+            by_design.items(), key=lambda one: (one[0][0], one[0][1])
+        ):
             point = next(iter(jobs.values())).point
             records = {at: self.record(job) for at, job in jobs.items()}
             designs.append(Design(number, point, self.plan.design_changes(point), quick, records))
@@ -133,11 +135,11 @@ class StudyResult(Presentable):
 
     def margins(self, designs: Sequence[Design]) -> Array:
         """Return (designs, requirements): by how much each is met, SI; negative where not."""
-        found = self.values(designs, [each.goal for each in self.plan.require])
+        values = self.values(designs, [each.goal for each in self.plan.require])
         columns = [
-            each.margin(column) for each, column in zip(self.plan.require, found.T, strict=True)
+            each.margin(column) for each, column in zip(self.plan.require, values.T, strict=True)
         ]
-        return np.array(columns, dtype=float).reshape(found.shape[::-1]).T
+        return np.array(columns, dtype=float).reshape(values.shape[::-1]).T
 
     def allowed(self, designs: Sequence[Design]) -> Mask:
         """Return which designs have numbers and meet every requirement."""
@@ -258,10 +260,10 @@ class StudyResult(Presentable):
             for path in paths
         ]
         rows = []
-        for one, found in zip(designs, self.values(designs, goals), strict=True):
+        for one, values in zip(designs, self.values(designs, goals), strict=True):
             inputs = [value_text(path, one.changes.get(path)) for path in paths]
             units = [goal.unit for goal in goals]
-            texts = map(quantity_text, found, units) if one.usable else [one.ending] * len(goals)
+            texts = map(quantity_text, values, units) if one.usable else [one.ending] * len(goals)
             rows.append([str(one.number), *inputs, *texts])
         return Table(title, ("Design", *short, *map(str, goals)), rows)
 
@@ -316,20 +318,20 @@ class StudyResult(Presentable):
         frame, plan = self.cases(), self.plan
         units = {name: r.units.get(name, "1") for r in self.records.values() for name in r.numbers}
         own = frame[frame["grid"] == plan.method.grid].set_index(list(PLACE[:3]))
-        found = own[[*units, "ending"]].astype(dict.fromkeys(units, float)).to_xarray()
+        table = own[[*units, "ending"]].astype(dict.fromkeys(units, float)).to_xarray()
         for name, unit in units.items():
-            found[name].attrs["units"] = unit
+            table[name].attrs["units"] = unit
         paths = dict.fromkeys(path for one in self.designs for path in one.changes)
         inputs = {
             path: ("design", [one.changes[path] for one in self.designs], {"units": unit_at(path)})
             for path in paths
         }
-        labels = [plan.states[k].label for k in found["condition"].values]
-        found = found.assign_coords({"condition": labels, **inputs})
-        return found.assign(ending=found["ending"].astype(str)).assign_attrs(title=plan.name)
+        labels = [plan.states[k].label for k in table["condition"].values]
+        table = table.assign_coords({"condition": labels, **inputs})
+        return table.assign(ending=table["ending"].astype(str)).assign_attrs(title=plan.name)
 
-    def _goals_text(self, one: Design) -> str:
-        values = self.goal_values([one])[0]
+    def _goals_text(self, design: Design) -> str:
+        values = self.goal_values([design])[0]
         pairs = zip(self.plan.goals, values, strict=True)
         return ", ".join(f"{goal} {quantity_text(value, goal.unit)}" for goal, value in pairs)
 

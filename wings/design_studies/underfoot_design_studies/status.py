@@ -98,5 +98,5 @@ class StudyStatus(StudyResult):
 
 def study_status(study: Study) -> StudyStatus:
     """Return how far a study in its folder is."""
-    found = study.result()
-    return StudyStatus(found.plan, found.jobs, found.records, found.sessions, time.time())
+    result = study.result()
+    return StudyStatus(result.plan, result.jobs, result.records, result.sessions, time.time())

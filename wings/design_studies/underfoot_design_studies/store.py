@@ -123,13 +123,13 @@ class Store:
 
     def jobs(self) -> list[Job]:
         """Return the jobs that were set, in their order, each once."""
-        found: dict[tuple[str, int], Job] = {}
+        jobs: dict[tuple[str, int], Job] = {}
         path = self.folder / "jobs.jsonl"
         for line in _whole_lines(path, 0)[0]:
             job = _parsed(Job, line, path)
             if job is not None:
-                found.setdefault((job.key, job.design), job)
-        return list(found.values())
+                jobs.setdefault((job.key, job.design), job)
+        return list(jobs.values())
 
     def records(self) -> dict[str, Record]:
         """Return the finished cases by key; only what is new is read again."""
@@ -280,15 +280,15 @@ class Store:
 
     def sessions(self) -> list[dict[str, Any]]:
         """Return when each process began and ended (None: still at work) and its workers."""
-        found = []
+        sessions = []
         for path in sorted((self.folder / "alive").glob("*")):
             with suppress(OSError, ValueError):
                 plain = json.loads(path.read_text(encoding="utf-8"))
                 seen = path.stat().st_mtime
                 if plain["ended"] is None and not self._alive(path.name, path):
                     plain["ended"] = seen
-                found.append({"name": path.name, **plain})
-        return found
+                sessions.append({"name": path.name, **plain})
+        return sessions
 
     def _alive(self, owner: str, claim: Path) -> bool:
         machine, _, number = owner.rpartition("-")[0].rpartition("-")

@@ -183,8 +183,8 @@ def _on_finer_grid(
             changes[f"numerics.{name}"] = math.floor(finest * 1e5 + 1e-6) / 1e5
     if not changes:
         return case, ()
-    said = ", ".join(f"{name} = {value * 1e3:g} mm" for name, value in changes.items())
-    words = f"The narrowest lug or channel ({narrowest * 1e3:g} mm) needs a finer grid: {said}"
+    settings = ", ".join(f"{name} = {value * 1e3:g} mm" for name, value in changes.items())
+    words = f"The narrowest lug or channel ({narrowest * 1e3:g} mm) needs a finer grid: {settings}"
     try:
         return case.replace(changes), (f"{words}.",)
     except InputError as error:
@@ -219,25 +219,25 @@ def flat_paths(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str
             yield f"{prefix}{key}", value
 
 
-def _reading(one: Any, name: str, known: Catalogue) -> tuple[Condition, Reading]:
-    if not isinstance(one, Mapping) or not isinstance(one.get("when", {}), Mapping):
-        raise InputError(f"{one!r} is no table")
+def _reading(table: Any, name: str, known: Catalogue) -> tuple[Condition, Reading]:
+    if not isinstance(table, Mapping) or not isinstance(table.get("when", {}), Mapping):
+        raise InputError(f"{table!r} is no table")
     changes = {
         path: value_at(path, value, known, f".when.{path}")
-        for path, value in one.get("when", {}).items()
+        for path, value in table.get("when", {}).items()
     }
-    outputs = [key for key in one if key not in ("when", "sd", "name")]
-    if len(outputs) != 1 or outputs[0] not in UNITS or "sd" not in one:
+    outputs = [key for key in table if key not in ("when", "sd", "name")]
+    if len(outputs) != 1 or outputs[0] not in UNITS or "sd" not in table:
         raise InputError(
             f"{', '.join(outputs) or 'nothing'} was measured",
             allowed=f"one of {', '.join(UNITS)}, with its sd",
             remedy="Write cof = 0.24, sd = 0.02",
         )
     unit = UNITS[outputs[0]]
-    value, sd = (to_si(one[key], unit, where=f".{key}") for key in (outputs[0], "sd"))
+    value, sd = (to_si(table[key], unit, where=f".{key}") for key in (outputs[0], "sd"))
     if sd <= 0:
-        raise InputError(f"{one['sd']}", where=".sd", allowed="above 0")
-    return Condition(str(one.get("name", name)), changes), Reading(outputs[0], unit, value, sd)
+        raise InputError(f"{table['sd']}", where=".sd", allowed="above 0")
+    return Condition(str(table.get("name", name)), changes), Reading(outputs[0], unit, value, sd)
 
 
 class _Reader:
@@ -303,12 +303,12 @@ class _Reader:
 
     def varied(self, known: Catalogue) -> tuple[tuple[Input, ...], tuple[Follow, ...]]:
         """Return what the designer chooses, and what follows it."""
-        found = [
+        axes = [
             self.attempt(f"vary.{path}", read_input, path, given, known)
             for path, given in self.table("vary").items()
         ]
-        follow = tuple(one for one in found if isinstance(one, Follow))
-        vary = tuple(one for one in found if isinstance(one, Range | Choice))
+        follow = tuple(one for one in axes if isinstance(one, Follow))
+        vary = tuple(one for one in axes if isinstance(one, Range | Choice))
         for one in follow:
             self.check_known(f"vary.{one.path}", "path", one.of, [each.path for each in vary])
         return vary, follow
@@ -321,20 +321,20 @@ class _Reader:
         file, joint = table.pop("posterior", None), None
         if file is not None:
             joint = self.attempt("uncertain.posterior", read_joint_draws, folder / str(file))
-        found = [
+        distributions = [
             self.attempt(f"uncertain.{path}", read_distribution, path, given, known)
             for path, given in table.items()
         ]
-        return tuple(filter(None, found)), joint
+        return tuple(filter(None, distributions)), joint
 
     def conditions(self, known: Catalogue) -> tuple[Condition, ...]:
         """Return every combination of the conditions; one without changes where none are given."""
         choices = []
         for name, given in self.table("conditions").items():
             path, texts = ALIASES.get(name, name), _listed(given)
-            found = self.attempt(f"conditions.{name}", read_choice, path, texts, known)
-            if found is not None:
-                choices.append([(path, *pair) for pair in zip(found.options, texts, strict=True)])
+            choice = self.attempt(f"conditions.{name}", read_choice, path, texts, known)
+            if choice is not None:
+                choices.append([(path, *pair) for pair in zip(choice.options, texts, strict=True)])
         return tuple(
             Condition(", ".join(str(text) for *_, text in row), {path: v for path, v, _ in row})
             for row in product(*choices)
@@ -342,11 +342,11 @@ class _Reader:
 
     def readings(self, known: Catalogue) -> tuple[tuple[Condition, ...], tuple[Reading, ...]]:
         """Return the condition of each reading, and what was measured in it."""
-        found = [
+        readings = [
             self.attempt(f"reading[{number}]", _reading, one, f"reading {number}", known)
             for number, one in enumerate(_listed(self.plain["reading"]), start=1)
         ]
-        good = list(filter(None, found))
+        good = list(filter(None, readings))
         return tuple(state for state, _ in good), tuple(reading for _, reading in good)
 
     def outputs(
@@ -358,11 +358,11 @@ class _Reader:
             self.check_known(f"outputs.{key}", "key", key, names)
 
         def read(name: str, function: Callable[..., Any], *more: Any) -> tuple[Any, ...]:
-            found = [
+            goals = [
                 self.attempt(f"outputs.{name}[{k}]", function, text, UNITS, states, *more)
                 for k, text in enumerate(_listed(table.get(name, [])))
             ]
-            return tuple(filter(None, found))
+            return tuple(filter(None, goals))
 
         require = read("require", read_requirement)  # first: wear_life may rest on one
         maximise, minimise = (read(name, read_goal, require) for name in names[:2])
@@ -384,25 +384,25 @@ class _Reader:
         """Return the method with its defaults."""
         table = self.table("method")
         try:
-            found = Method.model_validate(table)
+            method = Method.model_validate(table)
         except ValidationError as error:
             place = self.places
             self.errors += translated(error, Method, table, lambda key: place(f"method.{key}"))
             return Method()
         steps = all(isinstance(one, Choice) or one.steps for one in vary)
-        if found.design is None:
-            plain = found.kind == "sweep" and steps and not found.budget
-            found = found.model_copy(update={"design": "grid" if plain else "sobol"})
+        if method.design is None:
+            plain = method.kind == "sweep" and steps and not method.budget
+            method = method.model_copy(update={"design": "grid" if plain else "sobol"})
         self.refuse_if(
-            found.design == "grid" and not steps,
+            method.design == "grid" and not steps,
             "method.design",
             "a grid needs steps",
             remedy='Write steps = 5 beside from and to, or design = "sobol"',
         )
         self.refuse_if(
-            found.design != "grid" and found.budget is None,
+            method.design != "grid" and method.budget is None,
             "method.budget",
             "is missing",
             allowed="full runs at most, as budget = 200",
         )
-        return found
+        return method

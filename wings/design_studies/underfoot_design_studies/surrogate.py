@@ -66,7 +66,7 @@ class Surrogate:
         return float(np.sqrt(np.mean((self.values - self.left_out) ** 2)))
 
     @property
-    def words(self) -> str:
+    def reliability(self) -> str:
         """Its error as it stands wherever the surrogate is used."""
         error = quantity_text(self.error, self.unit)
         mark = "" if self.q2 >= TRUSTED else ", too rough to rank designs by"
@@ -211,6 +211,6 @@ def featured(dimensions: Sequence[Dimension], points: Array) -> Array:
     return np.column_stack(columns)
 
 
-def _text(one: Dimension, share: float) -> str:
-    value = one.value(min(max(share, 0.0), 1.0) if isinstance(one, Choice) else share)
-    return display(value, unit_at(one.path)) if isinstance(value, float) else str(value)
+def _text(dimension: Dimension, share: float) -> str:
+    value = dimension.value(min(max(share, 0.0), 1.0) if isinstance(dimension, Choice) else share)
+    return display(value, unit_at(dimension.path)) if isinstance(value, float) else str(value)

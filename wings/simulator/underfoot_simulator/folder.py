@@ -356,7 +356,7 @@ def _relaxation(count: int, rng: np.random.Generator) -> Iterator[_File]:
         peak *= 1.0 + 0.02 * rng.standard_normal()
         columns = relaxation(rng, peak=peak, share=share, rate=rate)
         final = peak * (1 - share + share * math.exp(-rate * 228.0))
-        noted = {"material": material, "thickness (mm)": "5.5"}
+        noted = {"material": material, "thickness (mm)": "5.5", "area (mm^2)": "161"}
         known = {"peak_force": f"{peak:.6g}", "final_force": f"{final:.6g}"}
         yield f"{material}_{number:02d}.csv", _csv(columns), noted, known
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,14 @@ import numpy as np
 from underfoot.calibrate import CofPoints, Pin
 from underfoot.core import SourcedValue, display
 from underfoot.core.catalogue import Catalogue
-from underfoot.friction import BoundaryFriction, Propagated, propagated, stribeck_cof, viscous_decay
+from underfoot.friction import (
+    BoundaryFriction,
+    Pair,
+    Propagated,
+    propagated,
+    stribeck_cof,
+    viscous_decay,
+)
 from underfoot.reference import soft_ehl_film
 from underfoot.studies.figure import (
     COLOURS,
@@ -29,6 +37,13 @@ from underfoot.studies.figure import (
 from underfoot.studies.runner import Computed, Options, Table
 from underfoot.studies.verdict import Quantity
 
+from .default_law import (
+    FAMILIES,
+    chance_of_order,
+    cof_draws,
+    draws_without_report,
+    with_reading_error,
+)
 from .mechanisms import (
     CALIBRATION_FLUID,
     BlindTest,
@@ -51,18 +66,45 @@ LABELS: dict[str, str] = {
 INPUTS = ("boundary", "viscosity")
 """Of a prediction: COF_BL where it is measured, or the viscosity alone."""
 SAMPLES, QUICK_SAMPLES = 200, 100
+PIN_HARDNESS = 42.0
+"""Shore A of the pin: Gent's relation of the printed 2.0 MPa."""
+EXAMPLE = (0.839, 0.184, 0.164)
+"""COF_BL, tau (m/s) and asymptote in the caption of Fig. 14."""
+
+
+@dataclass(frozen=True, slots=True)
+class DefaultPrediction:
+    """COF of one fluid by the law of the pair without the report's readings.
+
+    ``cof`` and the ends of the 95 % interval are over the speeds, ``mean`` (draws,) is over them;
+    ``median`` is at the medians of the law's inputs.
+    """
+
+    points: CofPoints
+    cof: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    mean: np.ndarray
+    kappa: np.ndarray
+
+    @property
+    def median(self) -> float:
+        """Mean over the speeds at the medians."""
+        return float(self.cof.mean())
 
 
 def compute(options: Options) -> Computed:
     """Return what the chosen mechanism predicts, all mechanisms' errors, and Fig. 14 to 20."""
     comparison = compare_mechanisms(Catalogue.load())
     options.progress("intervals", 0.6)
+    default = default_predictions(comparison, options.seed)
     test = comparison.chosen.fluids[0]
     samples = QUICK_SAMPLES if options.quick else SAMPLES
     spread = intervals(comparison, test, samples, options.seed)
     master, fit = master_curve(list(comparison.points.values()), comparison.pin)
     lambdas = lambda_ratios(comparison)
     quantities = {
+        **_default_quantities(default),
         **_means(comparison),
         **_decay(comparison.fluids),
         **{
@@ -81,15 +123,117 @@ def compute(options: Options) -> Computed:
     }
     return Computed(
         quantities,
-        (_mechanism_table(comparison), _fluid_table(comparison), _curve_table(comparison, spread)),
+        (
+            _default_table(default),
+            _mechanism_table(comparison),
+            _fluid_table(comparison),
+            _curve_table(comparison, spread),
+        ),
         {
+            "fig14_example": _example_figure(comparison, default),
+            "fig15_profile": _profile_figure(comparison.pin),
+            "fig17_default_law": _default_figure(default),
             "fig16_master_curve": _master_figure(comparison.points, master, fit),
             "blind_predictions": _blind_figure(comparison.points, spread),
             "blind_errors": _error_figure(comparison),
             "fig18_20_levels": _levels_figure(comparison.fluids),
             "fig19_film": _film_figure(lambdas),
         },
-        _conclusions(comparison, fit),
+        (*_default_conclusions(default), *_conclusions(comparison, fit)),
+    )
+
+
+def default_predictions(
+    comparison: MechanismComparison, seed: int = 0
+) -> dict[str, DefaultPrediction]:
+    """Return the six fluids and Table 3 by the law of the pair without the report's readings."""
+    draws, pin = draws_without_report(seed), comparison.pin
+    every = dict(comparison.points) | {
+        _rough_name(one): one
+        for one in (p.points for p in comparison.chosen.roughness[0].predictions)
+    }
+    found = {}
+    for name, one in every.items():
+        pair = Pair(
+            PIN_HARDNESS, (one.rq, one.rq), (pin.floor_rq, pin.floor_rq), FAMILIES[one.fluid]
+        )
+        drawn, _, median = cof_draws(pair, one.viscosity, one.speed, pin.pressure, draws, seed=seed)
+        drawn = with_reading_error(drawn, draws, name, seed)
+        low, high = np.quantile(drawn, [0.025, 0.975], axis=0)
+        kappa = pair.drawn(draws, seed)["kappa"]
+        found[name] = DefaultPrediction(one, median, low, high, drawn.mean(axis=1), kappa)
+    return found
+
+
+def _rough_name(one: CofPoints) -> str:
+    share = one.fluid.removeprefix("glycerol_").removesuffix("pct")
+    return f"{share}_{1e6 * one.rq:.1f}"
+
+
+def _default_quantities(default: Mapping[str, DefaultPrediction]) -> dict[str, Quantity]:
+    """Return mean COF over the speeds, the order of the fluids and the decay speed of water."""
+    found = {
+        f"{'mean' if name in LABELS else 'rough'}.default.{name}": Quantity.of(
+            one.median, draws=one.mean
+        )
+        for name, one in default.items()
+    }
+    printed = sorted(LABELS, key=lambda name: -default[name].points.cof.mean())
+    order = [default[name] for name in printed]
+    found["order.default"] = Quantity.of(
+        [one.median for one in order],
+        names=[LABELS[name] for name in printed],
+        chance=chance_of_order([one.mean for one in order]),
+    )
+    thin, thick = (
+        [default[name] for name in LABELS if (1e3 * default[name].points.viscosity > 10) is side]
+        for side in (False, True)
+    )
+    least = np.min([one.mean for one in thin], axis=0), min(one.median for one in thin)
+    most = np.max([one.mean for one in thick], axis=0), max(one.median for one in thick)
+    found["thin_and_thick.default"] = Quantity.of(
+        [least[1], most[1]],
+        names=("thin fluids", "thick fluids"),
+        chance=chance_of_order([least[0], most[0]]),
+    )
+    water = default["water_g2"]
+    taus = water.kappa / water.points.viscosity
+    found["tau.default"] = Quantity.of(float(np.median(taus)), "m/s", draws=taus)
+    return found
+
+
+def _default_table(default: Mapping[str, DefaultPrediction]) -> Table:
+    rows = []
+    for name, one in default.items():
+        low, high = np.quantile(one.mean, [0.025, 0.975])
+        label = LABELS.get(
+            name, f"{LABELS[one.points.fluid]}, sole Rq {1e6 * one.points.rq:.1f} µm"
+        )
+        rows.append(
+            {
+                "fluid": label,
+                "viscosity, mPa s": 1e3 * one.points.viscosity,
+                "COF printed": one.points.cof.mean(),
+                "COF of the default law": one.median,
+                "95 % from": low,
+                "to": high,
+            }
+        )
+    title = "Mean COF over the speeds by the law of the pair, fitted without the report's readings"
+    return Table.of("default_law", title, rows)
+
+
+def _default_conclusions(default: Mapping[str, DefaultPrediction]) -> tuple[str, ...]:
+    ratios = np.log([one.points.cof.mean() / one.median for one in default.values()])
+    widths = [
+        np.subtract(*np.log(np.quantile(one.mean, [0.975, 0.025]))) for one in default.values()
+    ]
+    return (
+        "The law of the pair, which no reading of the report's laboratory has entered: mean COF of "
+        f"ten pairs within a factor of {math.exp(np.abs(ratios).max()):.2f} of the printed ones, "
+        f"{math.exp(math.sqrt(np.mean(ratios**2))):.2f} on average. Its 95 % interval spans a "
+        f"factor of {math.exp(np.median(widths)):.0f}: the level of one laboratory's pair is not "
+        "known better than that before a reading of it.",
     )
 
 
@@ -356,6 +500,91 @@ def _blind_figure(points_of: Mapping[str, CofPoints], spread: Propagated) -> Fig
         share_x=True,
         share_y=True,
     )
+
+
+def _default_figure(default: Mapping[str, DefaultPrediction]) -> Figure:
+    panels = []
+    for name, label in LABELS.items():
+        one = default[name]
+        layers = (
+            Layer("band", one.points.speed, low=one.low, high=one.high, colour=OURS, label="95 %"),
+            line(one.points.speed, one.cof, "law of the pair"),
+            points(one.points.speed, one.points.cof, "report", colour=PRINTED, marker="o"),
+        )
+        mean = ", published mean" if one.points.curve == "mean" else ""
+        panels.append(
+            Panel(
+                layers,
+                "sliding speed (m/s)",
+                "COF",
+                f"{label}{mean}",
+                y_scale="log",
+                y_limits=(0.03, 2.0),
+                legend="best" if name == "water_g2" else "",
+            )
+        )
+    return Figure(
+        panels,
+        "Fig. 17: the default law of a case, fitted without any reading of the report",
+        columns=3,
+        size=(3.4, 2.8),
+        share_x=True,
+        share_y=True,
+    )
+
+
+def _example_figure(
+    comparison: MechanismComparison, default: Mapping[str, DefaultPrediction]
+) -> Figure:
+    """Return Fig. 14: the example's printed fit, the same condition in Table 3, and ours."""
+    one = default["glycerol_25pct"]
+    speed = np.linspace(0.05, 1.0, 60)
+    fluid = comparison.fluids["glycerol_25pct"]
+    boundary, spread = fluid.cof_boundary.value or 0.0, fluid.cof_boundary.uncertainty or 0.0
+    layers = (
+        Layer("band", one.points.speed, low=one.low, high=one.high, label="law of the pair, 95 %"),
+        line(one.points.speed, one.cof, "law of the pair"),
+        line(
+            speed,
+            stribeck_cof(speed, *EXAMPLE),
+            "printed fit of the example (Fig. 14)",
+            colour=PRINTED,
+        ),
+        points(
+            one.points.speed,
+            one.points.cof,
+            "printed fit of the condition (Table 3)",
+            colour=PRINTED,
+            marker="o",
+        ),
+        points(
+            [0.0],
+            [boundary],
+            f"COF_BL {boundary:g} ± {spread:g} (printed)",
+            low=[boundary - spread],
+            high=[boundary + spread],
+            colour=PRINTED,
+            marker="s",
+        ),
+    )
+    panel = Panel(layers, "sliding speed (m/s)", "COF", y_limits=(0.0, 1.05))
+    title = "Fig. 14: 25 % glycerol, sole Rq 8.2 µm; the report prints no single readings"
+    return Figure([panel], title, size=(6.8, 4.4))
+
+
+def _profile_figure(pin: Pin) -> Figure:
+    """Return Fig. 15: the parabola h = B r^2 whose R' = 1 / (2 B) the report prints."""
+    r = np.linspace(-5e-3, 5e-3, 101)
+    layers = []
+    for radius, label, colour, style in (
+        (pin.radius, f"R' = {1e3 * pin.radius:.1f} mm (used)", OURS, "-"),
+        (2 * pin.radius, "twice and half of it", GREY, ":"),
+        (0.5 * pin.radius, "", GREY, ":"),
+    ):
+        layers.append(line(1e3 * r, 1e6 * r**2 / (2 * radius), label, colour=colour, style=style))
+    panel = Panel(layers, "distance from the pin's middle (mm)", "height (µm)")
+    title = "Fig. 15: profile of the pin by Eq. 19 and 20; the scan itself is in the figure only"
+    return Figure([panel], title, size=(6.2, 3.8))
 
 
 def _error_figure(comparison: MechanismComparison) -> Figure:

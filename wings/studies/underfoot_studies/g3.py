@@ -1,21 +1,32 @@
-"""Report G.3: adhesion left under fluids in boundary lubrication (Eq. 26, Table 5)."""
+"""Report G.3: boundary lubrication at 0.01 m/s, by the default law of a case and by Eq. 26."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from underfoot.core.arrays import Array
 from underfoot.core.catalogue import Catalogue
 from underfoot.fluid import BLOCKING
-from underfoot.friction import self_affine_scale
+from underfoot.friction import Pair, PairDraws, self_affine_scale
 from underfoot.friction.asperity_ehl import STYLUS_RESOLUTION
 from underfoot.material import youngs_modulus_gent
-from underfoot.studies.figure import Figure, Panel, grouped_bars
+from underfoot.studies.figure import GREY, OURS, PRINTED, Figure, Layer, Panel, grouped_bars, points
 from underfoot.studies.runner import Computed, Options, Table
 from underfoot.studies.verdict import Quantity
+
+from .default_law import (
+    FAMILIES,
+    RQ_PER_RA,
+    chance_of_order,
+    cof_draws,
+    draws_without_report,
+    viscosity_of,
+    with_reading_error,
+)
 
 STATEMENTS = Path(__file__).with_name("g3.toml")
 
@@ -25,52 +36,72 @@ SOLES = {
     "hard rubber": "rubber_70a",
 }
 FLOORS = {"vinyl": "vinyl_g3", "marble": "marble_g3"}
-RQ_PER_RA = float(np.sqrt(np.pi / 2))
-CONTACT_PRESSURE = 266.1e3
+FLUIDS = {
+    "water": "water_g2",
+    "detergent 1.5 %": "detergent_g2",
+    "glycerol 25 %": "glycerol_25pct",
+    "glycerol 50 %": "glycerol_50pct",
+    "glycerol 75 %": "glycerol_75pct",
+    "canola oil": "canola_oil",
+}
+"""Of Table 5, by the catalogue's names."""
+OIL = "gear_oil_75w140"
+"""Blocks most of the adhesion: what is left counts as hysteresis (Eq. 23)."""
+TIE = 0.82 / np.sqrt(3.0)
+"""N: the report's standard deviation of a reading over its repeats, taken as three."""
+CONTACT_PRESSURE, LOAD, SPEED = 266.1e3, 20.9, 0.01
+"""Pa, N, m/s (G.3.1)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Split:
+    """Friction of one pair by the default law as the report splits it, N.
+
+    ``adhesion`` (dry less oiled), ``hysteresis`` (under the oil) and ``lubricated`` by fluid (less
+    the oiled one, none where that is higher) are (draws,);
+    ``medians`` are the same three at the medians of the law's inputs.
+    """
+
+    adhesion: Array
+    hysteresis: Array
+    lubricated: Mapping[str, Array]
+    medians: tuple[float, float, Mapping[str, float]]
 
 
 def compute(options: Options) -> Computed:
-    """Return Eq. 26 at its best beside the printed ranges, and real contact area of the pairs."""
+    """Return the splits of the default law, Eq. 26 at its best, and real contact areas."""
     catalogue = Catalogue.load()
-    published = catalogue.entry("published", "boundary_g3")
-    left: dict[str, np.ndarray] = {}
-    quantities: dict[str, Quantity] = {}
-    dry: dict[str, float] = {}
-    for sole in SOLES:
-        name = sole.replace(" ", "_")
-        low, high = published.numbers(f"lubricated_adhesion_{name}", "N")
-        dry[sole] = nearest_dry_adhesion(low, high)
-        left[sole] = np.array([float(b.lubricated_adhesion(dry[sole])) for b in BLOCKING.values()])
-        quantities[f"eq26.{name}.lowest"] = Quantity.of(left[sole].min(), "N")
-        quantities[f"eq26.{name}.highest"] = Quantity.of(left[sole].max(), "N")
-    options.progress("contact area", 0.5)
+    draws = draws_without_report(options.seed)
+    splits = {(s, f): split(catalogue, draws, s, f, options.seed) for s in SOLES for f in FLOORS}
+    options.progress("Eq. 26 and contact area", 0.6)
+    dry, left = eq26_at_its_best(catalogue)
     area = contact_areas(catalogue)
     by_sole = [float(np.mean([area[sole, floor] for floor in FLOORS])) for sole in SOLES]
-    quantities["contact_area"] = Quantity.of(by_sole, names=tuple(SOLES))
-    alpha = {fluid: float(blocking.alpha) for fluid, blocking in BLOCKING.items()}
-    beta = {fluid: float(blocking.beta) for fluid, blocking in BLOCKING.items()}
-    rest = [value for name, value in alpha.items() if name not in ("water", "canola oil")]
-    # the middle of an order that names both ends only: nearest to being out of it
-    ends = (alpha["water"] - max(rest), min(rest) - alpha["canola oil"])
-    middle = max(rest) if ends[0] < ends[1] else min(rest)
-    quantities["alpha"] = Quantity.of(
-        [alpha["water"], middle, alpha["canola oil"]], names=("water", "other fluids", "canola oil")
-    )
-    ends = (
-        min(value for name, value in beta.items() if name.startswith("glycerol")),
-        max(value for name, value in beta.items() if not name.startswith("glycerol")),
-    )
-    quantities["beta"] = Quantity.of(ends, names=("glycerols", "other fluids"))
+    # of one strength: that which gives all pairs together the default law's adhesion
+    strength = np.mean([one.medians[0] for one in splits.values()]) / np.mean(by_sole)
     return Computed(
-        quantities,
+        {
+            **default_quantities(splits),
+            **{
+                f"eq26.{sole.replace(' ', '_')}.{name}": Quantity.of(end(left[sole]), "N")
+                for sole in SOLES
+                for name, end in (("lowest", np.min), ("highest", np.max))
+            },
+            "contact_area": Quantity.of(
+                float(strength) * np.array(by_sole), "N", names=tuple(SOLES)
+            ),
+            **table_5_orders(),
+        },
         (
+            _split_table(splits),
+            _lubricated_table(splits),
             Table.of(
                 "eq26",
                 "Adhesion left under each fluid by Eq. 26, N at 20.9 N, at the dry adhesion that "
                 "fits best",
                 [
                     {"fluid": fluid, **{f"{k} ({dry[k]:.1f} N dry)": left[k][i] for k in SOLES}}
-                    for i, fluid in enumerate(BLOCKING)
+                    for i, fluid in enumerate(FLUIDS)
                 ],
             ),
             Table.of(
@@ -81,27 +112,177 @@ def compute(options: Options) -> Computed:
             ),
         ),
         {
-            "fig22_contact_area": _bars(
-                {floor: [area[sole, floor] for sole in SOLES] for floor in FLOORS},
-                [*SOLES],
-                "real over apparent contact",
-                "Fig. 22: in its place the share of real contact",
+            "fig22_dry_adhesion": _pair_figure(
+                {pair: (one.medians[0], one.adhesion) for pair, one in splits.items()},
+                "dry adhesion (N)",
+                "Fig. 22: dry adhesion by sole and floor; printed: hard rubber highest, "
+                "polyurethane lowest",
             ),
-            "fig24_adhesion": _bars(
-                left,
-                [fluid.replace("_", " ") for fluid in BLOCKING],
-                "adhesion (N)",
-                "Fig. 24: adhesion left under each fluid by Eq. 26",
+            "fig23_hysteresis": _pair_figure(
+                {pair: (one.medians[1], one.hysteresis) for pair, one in splits.items()},
+                "friction under gear oil (N)",
+                "Fig. 23: what counts as hysteresis; printed: most polyurethane on marble,\n"
+                "least hard rubber on vinyl",
+            ),
+            "fig24_fluid_sole": _fluid_figure(catalogue, splits, left),
+            "fig25_shoe_floor": _pair_figure(
+                {
+                    pair: (
+                        float(np.mean(list(one.medians[2].values()))),
+                        np.mean(list(one.lubricated.values()), axis=0),
+                    )
+                    for pair, one in splits.items()
+                },
+                "adhesion, mean of six fluids (N)",
+                "Fig. 25: lubricated adhesion by sole and floor; printed: vinyl above marble but "
+                "for soft rubber",
             ),
         },
-        (
-            f"Eq. 26 with Table 5 leaves at least {alpha['water']:.2f} N under water and "
-            f"{alpha['canola oil']:.2f} N under canola oil on every pair, whatever the dry "
-            "adhesion: alpha and beta are means over soles that behave differently (R2 0.49).",
-            "Its use is a fluid's rank and a rough size; for one pair, measured friction goes "
-            "first.",
-        ),
+        _conclusions(splits),
     )
+
+
+def split(catalogue: Catalogue, draws: PairDraws, sole: str, floor: str, seed: int) -> Split:
+    """Return the friction of a pair without fluid, under the oil and under each fluid."""
+    shore, (sole_ra, floor_ra) = _pair_numbers(catalogue, sole, floor)
+    rq = [(RQ_PER_RA * ra,) * 2 for ra in (sole_ra, floor_ra)]
+
+    def friction(fluid: str) -> tuple[Array, float]:
+        family = "dry" if fluid == "dry" else FAMILIES[fluid]
+        viscosity = None if fluid == "dry" else viscosity_of(fluid)
+        pair = Pair(shore, (rq[0][0], rq[0][1]), (rq[1][0], rq[1][1]), family, polymer=sole)
+        drawn, _, median = cof_draws(pair, viscosity, SPEED, CONTACT_PRESSURE, draws, seed)
+        name = f"{sole} on {floor}, {fluid}"
+        return LOAD * with_reading_error(drawn[:, 0], draws, name, seed), LOAD * float(median[0])
+
+    dry, oiled = friction("dry"), friction(OIL)
+    wet = {name: friction(fluid) for name, fluid in FLUIDS.items()}
+    return Split(
+        np.maximum(dry[0] - oiled[0], 0.0),
+        oiled[0],
+        {name: np.maximum(one[0] - oiled[0], 0.0) for name, one in wet.items()},
+        (dry[1] - oiled[1], oiled[1], {k: max(one[1] - oiled[1], 0.0) for k, one in wet.items()}),
+    )
+
+
+def _pair_numbers(catalogue: Catalogue, sole: str, floor: str) -> tuple[float, tuple[float, float]]:
+    """Return Shore A of the sole, and Ra (m) of sole and floor."""
+    own = catalogue.entry("material", SOLES[sole])
+    other = catalogue.entry("floor", FLOORS[floor])
+    ra = [entry.sourced("roughness.ra", "m").value or 0.0 for entry in (own, other)]
+    return float(own.leaf("shore_a").given), (ra[0], ra[1])
+
+
+def default_quantities(splits: Mapping[tuple[str, str], Split]) -> dict[str, Quantity]:
+    """Return orders and ranges of the default law by name."""
+
+    def over_floors(sole: str, take: str) -> tuple[float, Array]:
+        own = [splits[sole, floor] for floor in FLOORS]
+        medians = [one.medians[0] if take == "adhesion" else one.medians[1] for one in own]
+        return float(np.mean(medians)), np.mean([getattr(one, take) for one in own], axis=0)
+
+    found: dict[str, Quantity] = {}
+    for take, printed in (
+        ("adhesion", ("hard rubber", "soft rubber", "polyurethane")),
+        ("hysteresis", ("polyurethane", "soft rubber", "hard rubber")),
+    ):
+        values = {sole: over_floors(sole, take) for sole in SOLES}
+        ends = [values[sole] for sole in printed]
+        found[f"default.{take}"] = Quantity.of(
+            [one[0] for one in ends],
+            "N",
+            names=printed,
+            chance=chance_of_order([one[1] for one in ends], TIE),
+        )
+    for sole, (first, second) in {
+        "hard rubber": ("marble", "vinyl"),
+        "soft rubber": ("vinyl", "marble"),
+        "polyurethane": ("vinyl", "marble"),
+    }.items():
+        pair = [splits[sole, floor] for floor in (first, second)]
+        found[f"default.floor.{sole.replace(' ', '_')}"] = Quantity.of(
+            [one.medians[0] for one in pair],
+            "N",
+            names=(first, second),
+            chance=chance_of_order([one.adhesion for one in pair], TIE),
+        )
+    extremes = [("polyurethane", "marble"), ("hard rubber", "vinyl")]
+    rest = [pair for pair in splits if pair not in extremes]
+    medians = {pair: one.medians[1] for pair, one in splits.items()}
+    highest = max(rest, key=lambda pair: medians[pair])
+    lowest = min(rest, key=lambda pair: medians[pair])
+    columns = [
+        splits[extremes[0]].hysteresis,
+        np.max([splits[pair].hysteresis for pair in rest], axis=0),
+        np.min([splits[pair].hysteresis for pair in rest], axis=0),
+        splits[extremes[1]].hysteresis,
+    ]
+    above = [first - second > TIE for first, second in (columns[:2], columns[2:])]
+    chance = float(np.mean(above[0] & above[1]))
+    pairs = (extremes[0], highest, lowest, extremes[1])
+    found["default.hysteresis_pairs"] = Quantity.of(
+        [medians[pair] for pair in pairs],
+        "N",
+        names=("polyurethane on marble", "highest other", "lowest other", "hard rubber on vinyl"),
+        chance=chance,
+    )
+    spreads = {}
+    for sole in SOLES:
+        by_fluid = np.array(
+            [
+                np.mean([splits[sole, floor].lubricated[fluid] for floor in FLOORS], axis=0)
+                for fluid in FLUIDS
+            ]
+        )
+        medians_of = np.array(
+            [np.mean([splits[sole, f].medians[2][fluid] for f in FLOORS]) for fluid in FLUIDS]
+        )
+        name = sole.replace(" ", "_")
+        for end, take in (("lowest", np.min), ("highest", np.max)):
+            drawn = take(by_fluid, axis=0)
+            found[f"default.{name}.{end}"] = Quantity.of(float(take(medians_of)), "N", draws=drawn)
+        spreads[sole] = (float(np.ptp(medians_of)), np.ptp(by_fluid, axis=0))
+    order = ("hard rubber", "soft rubber", "polyurethane")
+    found["default.fluid_spread"] = Quantity.of(
+        [spreads[sole][0] for sole in order],
+        "N",
+        names=order,
+        chance=chance_of_order([spreads[sole][1] for sole in order], TIE),
+    )
+    return found
+
+
+def eq26_at_its_best(catalogue: Catalogue) -> tuple[dict[str, float], dict[str, Array]]:
+    """Return the dry adhesion (N) of each sole nearest to its printed range, and Eq. 26 there."""
+    published = catalogue.entry("published", "boundary_g3")
+    dry, left = {}, {}
+    for sole in SOLES:
+        low, high = published.numbers(f"lubricated_adhesion_{sole.replace(' ', '_')}", "N")
+        dry[sole] = nearest_dry_adhesion(low, high)
+        left[sole] = np.array([float(b.lubricated_adhesion(dry[sole])) for b in BLOCKING.values()])
+    return dry, left
+
+
+def table_5_orders() -> dict[str, Quantity]:
+    """Return the orders of alpha and beta in Table 5."""
+    alpha = {fluid: float(blocking.alpha) for fluid, blocking in BLOCKING.items()}
+    beta = {fluid: float(blocking.beta) for fluid, blocking in BLOCKING.items()}
+    rest = [value for name, value in alpha.items() if name not in ("water", "canola oil")]
+    # the middle of an order that names both ends only: nearest to being out of it
+    ends = (alpha["water"] - max(rest), min(rest) - alpha["canola oil"])
+    middle = max(rest) if ends[0] < ends[1] else min(rest)
+    glycerols = (
+        min(value for name, value in beta.items() if name.startswith("glycerol")),
+        max(value for name, value in beta.items() if not name.startswith("glycerol")),
+    )
+    return {
+        "alpha": Quantity.of(
+            [alpha["water"], middle, alpha["canola oil"]],
+            "N",
+            names=("water", "other fluids", "canola oil"),
+        ),
+        "beta": Quantity.of(glycerols, names=("glycerols", "other fluids")),
+    }
 
 
 def nearest_dry_adhesion(lowest: float, highest: float) -> float:
@@ -115,19 +296,136 @@ def nearest_dry_adhesion(lowest: float, highest: float) -> float:
 def contact_areas(catalogue: Catalogue) -> dict[tuple[str, str], float]:
     """Return the share of real contact of each sole on each floor."""
     found = {}
-    for sole, entry_name in SOLES.items():
-        entry = catalogue.entry("material", entry_name)
-        modulus = float(youngs_modulus_gent(float(entry.leaf("shore_a").given))) / 0.75
-        for floor, floor_name in FLOORS.items():
-            other = catalogue.entry("floor", floor_name)
-            ra = [e.sourced("roughness.ra", "m").value or 0.0 for e in (entry, other)]
-            scale = self_affine_scale(
-                STYLUS_RESOLUTION, rq=RQ_PER_RA * float(np.hypot(ra[0], ra[1])), longest_wave=0.8e-3
-            )
+    for sole in SOLES:
+        for floor in FLOORS:
+            shore, ra = _pair_numbers(catalogue, sole, floor)
+            modulus = float(youngs_modulus_gent(shore)) / 0.75
+            rq = RQ_PER_RA * float(np.hypot(*ra))
+            scale = self_affine_scale(STYLUS_RESOLUTION, rq=rq, longest_wave=0.8e-3)
             found[sole, floor] = float(scale.contact_fraction(CONTACT_PRESSURE / modulus))
     return found
 
 
-def _bars(groups: Mapping[str, ArrayLike], names: list[str], label: str, title: str) -> Figure:
-    panel = Panel(grouped_bars(groups), y_label=label, x_ticks=names)
-    return Figure([panel], title, size=(8.2, 4.2))
+def _interval(drawn: Array) -> tuple[float, float]:
+    low, high = np.quantile(drawn, [0.025, 0.975])
+    return float(low), float(high)
+
+
+def _split_table(splits: Mapping[tuple[str, str], Split]) -> Table:
+    rows = []
+    for (sole, floor), one in splits.items():
+        row: dict[str, object] = {"sole": sole, "floor": floor}
+        for name, drawn, value in (
+            ("dry adhesion, N", one.adhesion, one.medians[0]),
+            ("under gear oil, N", one.hysteresis, one.medians[1]),
+        ):
+            low, high = _interval(drawn)
+            row |= {name: value, f"{name}: 95 %": f"{low:.2g} to {high:.2g}"}
+        rows.append(row)
+    title = "Friction of 20.9 N by the law of the pair, fitted without the report's readings"
+    return Table.of("default_split", title, rows)
+
+
+def _lubricated_table(splits: Mapping[tuple[str, str], Split]) -> Table:
+    rows = [
+        {
+            "fluid": fluid,
+            **{
+                f"{sole} on {floor}": one.medians[2][fluid] for (sole, floor), one in splits.items()
+            },
+        }
+        for fluid in FLUIDS
+    ]
+    title = "Adhesion left under a fluid by the same law (friction less that under gear oil), N"
+    return Table.of("default_lubricated", title, rows)
+
+
+def _conclusions(splits: Mapping[tuple[str, str], Split]) -> tuple[str, ...]:
+    alpha = {fluid: float(blocking.alpha) for fluid, blocking in BLOCKING.items()}
+    by_sole = {sole: np.mean([splits[sole, f].medians[0] for f in FLOORS]) for sole in SOLES}
+    listed = ", ".join(f"{sole} {value:.1f} N" for sole, value in by_sole.items())
+    return (
+        f"Dry adhesion by the default law, without any reading of the report: {listed}. The harder "
+        "sole is the smoother one, and its real contact area is larger.",
+        "Under gear oil, which the report counts as hysteresis, the softest sole has most "
+        "friction: a boundary film is left that grows with softness. The floors come out the other "
+        "way round: vinyl, the rougher one, above marble, since hysteresis grows with the floor's "
+        "roughness.",
+        f"Eq. 26 with Table 5 leaves at least {alpha['water']:.2f} N under water and "
+        f"{alpha['canola oil']:.2f} N under canola oil on every pair, whatever the dry "
+        "adhesion: alpha and beta are means over soles that behave differently (R2 0.49).",
+        "That polyurethane's adhesion hardly depends on the fluid is not in the law: it knows "
+        "hardness and roughness of a compound, not its polymer.",
+    )
+
+
+def _pair_figure(
+    values: Mapping[tuple[str, str], tuple[float, Array]], label: str, title: str
+) -> Figure:
+    """Return bars of each sole on each floor, with 95 % of the joint draws."""
+    ends = {pair: _interval(drawn) for pair, (_, drawn) in values.items()}
+
+    def by_floor(take: Mapping[tuple[str, str], float]) -> dict[str, list[float]]:
+        return {f"on {floor}": [take[sole, floor] for sole in SOLES] for floor in FLOORS}
+
+    layers = grouped_bars(
+        by_floor({pair: value for pair, (value, _) in values.items()}),
+        colours=(OURS, "#7fb3d5"),
+        low=by_floor({pair: low for pair, (low, _) in ends.items()}),
+        high=by_floor({pair: high for pair, (_, high) in ends.items()}),
+    )
+    panel = Panel(layers, y_label=label, x_ticks=[*SOLES])
+    return Figure([panel], f"{title}\n(default law, 95 %; no values printed)", size=(7.4, 4.2))
+
+
+def _fluid_figure(
+    catalogue: Catalogue, splits: Mapping[tuple[str, str], Split], left: Mapping[str, Array]
+) -> Figure:
+    """Return adhesion by fluid, a panel a sole: default law, Eq. 26 and the printed range."""
+    published = catalogue.entry("published", "boundary_g3")
+    panels: list[Panel] = []
+    places = np.arange(len(FLUIDS))
+    for sole in SOLES:
+        low, high = published.numbers(f"lubricated_adhesion_{sole.replace(' ', '_')}", "N")
+        own = [splits[sole, floor] for floor in FLOORS]
+        medians = [np.mean([one.medians[2][fluid] for one in own]) for fluid in FLUIDS]
+        ends = [
+            _interval(np.mean([one.lubricated[fluid] for one in own], axis=0)) for fluid in FLUIDS
+        ]
+        panels.append(
+            Panel(
+                (
+                    Layer(
+                        "span",
+                        low=low,
+                        high=high,
+                        colour=PRINTED,
+                        style="horizontal",
+                        label="printed range",
+                    ),
+                    points(
+                        places,
+                        medians,
+                        "default law, 95 %",
+                        low=[one[0] for one in ends],
+                        high=[one[1] for one in ends],
+                        marker="o",
+                    ),
+                    points(places, left[sole], "Eq. 26", colour=GREY, marker="s"),
+                ),
+                y_label="adhesion (N)",
+                title=f"{sole}: printed {low:g} to {high:g} N",
+                x_ticks=[
+                    name.replace("glycerol ", "gly. ").replace(" 1.5 %", "") for name in FLUIDS
+                ],
+                y_limits=(0.0, 20.0),
+            )
+        )
+    return Figure(
+        panels,
+        "Fig. 24: adhesion left under a fluid (friction less that under gear oil)",
+        columns=3,
+        legend_below=True,
+        size=(4.6, 3.6),
+        share_y=True,
+    )

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import combinations, cycle, pairwise
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,10 +14,12 @@ from numpy.typing import NDArray
 
 from underfoot.calibrate.pair_readings import PairReading, calibrated_pair
 from underfoot.case import Case
-from underfoot.compute.slips import slips
+from underfoot.compute.slips import slip_setting, slips
+from underfoot.core import ConvergenceError, content_hash
 from underfoot.core.catalogue import Catalogue
 from underfoot.friction import FrictionLaw, PairContactLaw
-from underfoot.slip.dynamics import ReducedSole, SlipStudy
+from underfoot.slip.dynamics import SlipStudy
+from underfoot.slip.dynamics.full_model import Setting, SoleFoot
 from underfoot.studies.figure import GREY, OURS, PRINTED, SECOND, Figure, Panel, line, points
 from underfoot.studies.runner import Computed, Options, Table, kept, named, part
 from underfoot.studies.verdict import Quantity
@@ -37,6 +38,12 @@ EXAMPLE_GRID = "1 mm"
 DRAWS = 2000
 PREDICTORS = ("row", "lateral", "speed")
 UNITS = {"peak_speed": "m/s", "peak_pressure": "Pa", "duration": "s"}
+CURVES = (219e-3, 20e-3, 1.89e-3)
+"""Pa s, of the curves in Fig. 35."""
+HELD_VISCOSITIES = (1.89e-3, 5e-3, 10e-3, 20e-3, 50e-3, 100e-3, 219e-3)
+HELD_SPEEDS = (0.05, 0.2, 0.5, 1.0, 2.0)
+HELD_FOR = 1.0
+"""s: how long the heel of Fig. 35 stands under its load."""
 COLOUR = {"untreaded": OURS, "treaded": "#2e7d4f"}
 
 
@@ -92,12 +99,13 @@ def compute(options: Options) -> Computed:
     bare = fine["untreaded"]
     friction, words = by_friction(fine["treaded"], law_as_g6_leaves_it(fine["treaded"]))
     passages = bare.sensor_passages()
+    films = held_films(options)
     population = bare.population
     rcof, speed = population.rcof, population.heel_speed
     return Computed(
-        quantities(levels, draws),
+        quantities(levels, draws) | _wedge_squeeze_quantities(films),
         (*tables(fine, levels, draws), friction),
-        figures(fine, passages),
+        figures(fine, passages, films),
         (*conclusions(fine, passages), words),
         assumptions=(
             f"{population.effective_mass:.3g} of the body moves with the heel (not printed, not "
@@ -353,7 +361,9 @@ def conclusions(found: Mapping[str, SlipStudy], passages: Mapping[str, Array]) -
     )
 
 
-def figures(found: Mapping[str, SlipStudy], passages: Mapping[str, Array]) -> dict[str, Figure]:
+def figures(
+    found: Mapping[str, SlipStudy], passages: Mapping[str, Array], films: Sequence[HeldFilm]
+) -> dict[str, Figure]:
     """Return Fig. 32 to 35."""
     bare = found["untreaded"]
     drawn = {"fig33_speed_pressure": _speed_pressure_figure(found)}
@@ -361,8 +371,7 @@ def figures(found: Mapping[str, SlipStudy], passages: Mapping[str, Array]) -> di
         drawn["fig32_slip"] = _slip_figure(bare)
     if passages["peak"].size:
         drawn["fig34_effects"] = _effects_figure(passages)
-    if bare.sole is not None and bare.sole.viscosity:
-        drawn["fig35_wedge_squeeze"] = _wedge_squeeze_figure(bare.sole, passages)
+    drawn["fig35_wedge_squeeze"] = _wedge_squeeze_figure(films, passages)
     return drawn
 
 
@@ -448,30 +457,84 @@ def _effects_figure(passages: Mapping[str, Array]) -> Figure:
     )
 
 
-def _wedge_squeeze_figure(sole: ReducedSole, passages: Mapping[str, Array]) -> Figure:
+@dataclass(frozen=True, slots=True)
+class HeldFilm:
+    """Load on the film (%) of 500 N under a heel held at a speed from contact on; time in s."""
+
+    viscosity: float
+    speed: float
+    time: Array
+    share: Array
+
+    def at(self, instant: float) -> float:
+        """Share after a time (s)."""
+        return float(np.interp(instant, self.time, self.share))
+
+
+HELD_STEPS = np.concatenate([[1e-3], np.diff(np.geomspace(1e-3, HELD_FOR, 40))])
+"""s: finer where the film changes fast."""
+
+
+def held_film(setting: Setting, viscosity: float, speed: float) -> HeldFilm:
+    """Return the film of the full model under 500 N and a speed that are held.
+
+    Raises:
+        ConvergenceError: The sole could not be solved.
+    """
+    foot = SoleFoot(replace(setting, viscosity=viscosity, key=""), setting.shoe_angle)
+    shares = []
+    for step in HELD_STEPS:
+        held = {"normal_force": 500.0, "speed": speed, "shoe_angle": setting.shoe_angle}
+        instant = foot.advance(float(step), **held)
+        if not instant.usable:
+            raise ConvergenceError(
+                f"{1e3 * viscosity:g} mPa s at {speed:g} m/s",
+                where="Fig. 35",
+                remedy="A finer grid",
+            )
+        shares.append(instant.fluid_load / 5.0)
+    return HeldFilm(viscosity, speed, np.cumsum(HELD_STEPS), np.array(shares))
+
+
+def held_item(item: tuple[bool, float, float]) -> dict[str, Any]:
+    """Return the film of one condition of Fig. 35 by name; (quick, viscosity, speed)."""
+    quick, viscosity, speed = item
+    film = held_film(slip_setting(slip_case("untreaded", quick=quick)), viscosity, speed)
+    return {"time": film.time, "share": film.share}
+
+
+def held_films(options: Options) -> list[HeldFilm]:
+    """Return every condition of Fig. 35, each kept in the cache."""
+    plan = [(v, 0.5) for v in HELD_VISCOSITIES]
+    plan += [(v, s) for v in CURVES for s in HELD_SPEEDS if s != 0.5]
+    items = [(options.quick, viscosity, speed) for viscosity, speed in plan]
+    setting_key = slip_setting(slip_case("untreaded", quick=options.quick)).key
+    keys = [content_hash(setting_key, *item, HELD_STEPS) for item in items]
+    found = []
+    for number, (item, arrays) in enumerate(
+        kept("g5_held-1", held_item, items, keys, processes=options.processes)
+    ):
+        options.progress("films under a held heel", (number + 1) / len(items))
+        found.append(HeldFilm(item[1], item[2], arrays["time"], arrays["share"]))
+    return found
+
+
+def _wedge_squeeze_figure(films: Sequence[HeldFilm], passages: Mapping[str, Array]) -> Figure:
     """Return film load against dwell time, viscosity, lateral distance and speed (500 N)."""
-    longer, speeds = np.linspace(0.0, 3.0, 6001), np.linspace(0.0, 3.0, 31)
-
-    def share(viscosity: float, time: Array, speed: float) -> Array:
-        return held_load(replace(sole, viscosity=viscosity), time, speed) / 5.0  # % of 500 N
-
-    def at(viscosity: float, speed: float, instant: float) -> float:
-        time = np.linspace(0.0, 0.3, 601)
-        return float(share(viscosity, time, speed)[np.searchsorted(time, instant)])
-
+    by = {(one.viscosity, one.speed): one for one in films}
     dwell, fast = [], []
-    for viscosity, style in ((219e-3, "-"), (20e-3, "--"), (1.89e-3, ":")):
-        label, held = f"{1e3 * viscosity:g} mPa s", share(viscosity, longer, 0.5)
-        dwell.append(line(1e3 * longer[1:], held[1:], label, style=style))
-        at_speed = [at(viscosity, float(v), 0.2) for v in speeds]
-        fast.append(line(speeds, at_speed, label, style=style))
-    viscosities = np.geomspace(1e-3, 0.5, 25)
+    for viscosity, style in zip(CURVES, ("-", "--", ":"), strict=True):
+        label, one = f"{1e3 * viscosity:g} mPa s", by[viscosity, 0.5]
+        dwell.append(line(1e3 * one.time, one.share, label, style=style))
+        at_speed = [by[viscosity, speed].at(0.2) for speed in HELD_SPEEDS]
+        fast.append(line(HELD_SPEEDS, at_speed, label, style=style, marker="o"))
     thick = [
         line(
-            1e3 * viscosities,
-            [at(float(v), 0.5, t) for v in viscosities],
+            [1e3 * v for v in HELD_VISCOSITIES],
+            [by[v, 0.5].at(t) for v in HELD_VISCOSITIES],
             f"0.5 m/s, after {1e3 * t:.0f} ms",
             style=style,
+            marker="o",
         )
         for t, style in ((0.05, "--"), (0.2, "-"))
     ]
@@ -482,31 +545,30 @@ def _wedge_squeeze_figure(sole: ReducedSole, passages: Mapping[str, Array]) -> F
             middle.append(500 * (low + high))
             peaks.append(passages["peak"][inside].mean() / 1e3)
     load: dict[str, Any] = {"y_label": "load on the film (%)", "y_limits": (0.0, 100.0)}
-    dwelling: dict[str, Any] = {"x_scale": "log", "x_limits": (1.0, 3000.0)}
+    dwelling: dict[str, Any] = {"x_scale": "log", "x_limits": (1.0, 1e3 * HELD_FOR)}
     distance = "distance from the heel's middle (mm)"
     pressure: dict[str, Any] = {"y_label": "sensor's peak (kPa)", "y_limits": (0.0, None)}
+    panels = [
+        Panel(dwell, "dwell time at 0.5 m/s (ms)", **dwelling, **load),
+        Panel(thick, "viscosity (mPa s)", x_scale="log", **load),
+        Panel([line(middle, peaks, marker="o")], distance, **pressure),
+        Panel(fast, "sliding speed, held for 200 ms (m/s)", **load),
+    ]
     return Figure(
-        (
-            Panel(dwell, "dwell time at 0.5 m/s (ms)", **dwelling, **load),
-            Panel(thick, "viscosity (mPa s)", x_scale="log", **load),
-            Panel([line(middle, peaks, marker="o")], distance, **pressure),
-            Panel(fast, "sliding speed, held for 200 ms (m/s)", **load),
-        ),
-        "Fig. 35: wedge and squeeze, untreaded heel under 500 N, computed",
+        panels if middle else [panels[0], panels[1], panels[3]],
+        "Fig. 35: wedge and squeeze, untreaded heel under 500 N, full model",
         columns=2,
         size=(5.2, 3.2),
     )
 
 
-def held_load(sole: ReducedSole, time: Array, speed: float, force: float = 500.0) -> Array:
-    """Return the film's load (n,) N under a force and speed that are held from contact on."""
-    held: Any = SimpleNamespace(  # the fields of a slip that the film depends on
-        time=time,
-        normal=np.full(time.size, force),
-        drive=np.zeros(time.size),
-        shoe_angle=np.full(time.size, sole.shoe_angle),
-        speed=np.full(time.size, speed),
-        walker=SimpleNamespace(moving_mass=8.0),
-    )
-    load, _ = sole.carried_at(held)
-    return np.asarray(load)
+def _wedge_squeeze_quantities(films: Sequence[HeldFilm]) -> dict[str, Quantity]:
+    """Return the trends that the concept of Fig. 35 draws: more film with each of three."""
+    by = {(one.viscosity, one.speed): one for one in films}
+    thin, middle, thick = (by[v, 0.5] for v in sorted(CURVES))
+    slow, quick = (by[CURVES[1], s].at(0.2) for s in (HELD_SPEEDS[0], HELD_SPEEDS[-1]))
+    return {
+        "film.viscosity": Quantity.of((thick.at(0.2) - thin.at(0.2)) / 100.0),
+        "film.dwell": Quantity.of((middle.at(HELD_FOR) - middle.at(0.05)) / 100.0),
+        "film.speed": Quantity.of((quick - slow) / 100.0),
+    }

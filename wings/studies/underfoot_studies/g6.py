@@ -14,12 +14,14 @@ from numpy.typing import NDArray
 from underfoot.calibrate import pin_on_disk
 from underfoot.case import Case
 from underfoot.case.friction import measured_fluids
+from underfoot.compute.run import run
 from underfoot.compute.slips import slip_population, slip_sensors, slip_setting
 from underfoot.core import DataError, Progress, silent
 from underfoot.core.catalogue import Catalogue
 from underfoot.friction import SpeedTableLaw, self_affine_scale, stribeck_cof
 from underfoot.friction import shear_strength_from_cof as strength_from_cof
 from underfoot.friction.asperity_ehl import STYLUS_RESOLUTION
+from underfoot.friction.propagation import normal_draws
 from underfoot.questions.outcomes import Outcome, outcomes
 from underfoot.slip import ADULTS_LEVEL_WALKING as ADULTS
 from underfoot.slip import MODELS, ReportG6, slip_model
@@ -29,6 +31,8 @@ from underfoot.studies.runner import Computed, Options, Table, part
 from underfoot.studies.verdict import Quantity
 from underfoot_trial_analysis.statistics.logistic import logistic_regression, risk_curve
 
+from .default_law import chance_of_order, file_without_report
+
 STATEMENTS = Path(__file__).with_name("g6.toml")
 
 Array = NDArray[np.float64]
@@ -36,11 +40,14 @@ SOLES: dict[str, float] = {"hard": 70.0, "medium": 60.0, "soft": 50.0}
 """Shore A, assumed: the report prints no hardness."""
 HARDNESS_BAND = 5.0
 """Shore A to either side of each, assumed."""
+JUDGED = "pair_without_report"
+"""The default law of a case, fitted to everybody's readings but the report's."""
 LAWS: dict[str, str] = {
+    JUDGED: "default law, without the report's readings",
     "stribeck": "Eq. 17 of the pin as it is",
     "asperity_ehl": "films at asperities",
     "bowden_tabor": "real contact area",
-    "pair": "law of the pair",
+    "pair": "default law as shipped (knows these readings)",
 }
 SETUP, FLUID = "whole_shoe_g6", "glycerol_50pct"
 WINDOW = (0.2, 0.3, 0.4)
@@ -49,6 +56,8 @@ PRINTED_ACOF = {"hard": 0.159, "medium": 0.159, "soft": 0.182}
 """G.6.3; that of the medium outsole is not printed, but "indistinguishable" from the hard one."""
 PRINTED_RISK = {"hard": 0.54, "medium": 0.42, "soft": 0.077}
 PRINTED_SLOPE, PRINTED_HALF = -49.2, -0.06
+TIE = 0.008
+"""COF: what one reading of the tester scatters by (the corpus' standard deviation of these)."""
 TRIALS = 52
 """29 persons, two slips each, less 6 that did not hit the plate cleanly (G.6.1)."""
 SUBJECTS, QUICK_SUBJECTS = 200, 60
@@ -65,7 +74,8 @@ class SoleFriction:
     """One sole under the tester of G.6 by one law; ``cof`` is the window's mean.
 
     ``deviation`` is the law's own standard deviation (nan: none known); ``low`` and ``high`` are
-    the COF at the hardness band's ends, ``coarse`` is on the quick grid (nan: not run).
+    the COF at the hardness band's ends, ``coarse`` is on the quick grid (nan: not run); ``draws``
+    (n,) of the law and the hardness, joint over the soles, are those of the law of the pair.
     """
 
     sole: str
@@ -78,6 +88,7 @@ class SoleFriction:
     high: float
     sensor_pressure: tuple[float, ...]
     film_share: float
+    draws: Array | None = None
 
     @property
     def spread(self) -> float:
@@ -158,12 +169,15 @@ def sole_case(shore: float, law: str) -> Case:
         "contaminant": {"from": FLUID},
         "motion": {"from": SETUP},
         "sensor": {"from": "human_slip_g5"},
-        "models": {"friction": law},
+        "models": {"friction": "pair" if law == JUDGED else law},
     }
     if law == "bowden_tabor":
         strength, left = pin_strength()
         mapping["interface"] = {"shear_strength": f"{strength!r} Pa", "hysteresis_cof": left}
-    return Case.from_mapping(mapping)
+    case = Case.from_mapping(mapping)
+    if law == JUDGED:
+        case = case.replace("friction.draws_file", str(file_without_report()))
+    return case
 
 
 def pin_strength() -> tuple[float, float]:
@@ -195,7 +209,7 @@ def pin_strength() -> tuple[float, float]:
 def sole_frictions(
     *, quick: bool, processes: int | None = 1, progress: Progress = silent
 ) -> list[SoleFriction]:
-    """Return the three soles by the four laws: 72 cases (36 with ``quick``)."""
+    """Return the three soles by the five laws: 90 cases (45 with ``quick``)."""
     times = WINDOW[1:2] if quick else WINDOW
     plan = [(sole, law, shore) for law in LAWS for sole, shore in SOLES.items()]
 
@@ -214,9 +228,21 @@ def sole_frictions(
         stage = {"progress": part(progress, 0.8, 1.0), "stage": "Coarse grid"}
         coarse = outcomes(cases, quick=True, processes=processes, **stage)
     width = len(times) + 2
-    return [
+    frictions = [
         _friction(*one, found[i * width : (i + 1) * width], coarse[i]) for i, one in enumerate(plan)
     ]
+    return [_with_draws(one) if one.law in (JUDGED, "pair") else one for one in frictions]
+
+
+def _with_draws(one: SoleFriction) -> SoleFriction:
+    """Return the friction with the joint draws of its law, on the quick grid about its value."""
+    case = sole_case(one.shore, one.law).replace("motion.duration", f"{WINDOW[1]!r} s")
+    result = run(case, quick=True)
+    draws = result.data["cof_draws"].values
+    hardness = normal_draws(0, f"hardness of the {one.sole} outsole", draws.size)
+    spread = 0.5 * math.log(one.high / one.low)
+    drawn = draws * (one.cof / result.value("cof")) * np.exp(abs(spread) * hardness)
+    return replace(one, draws=drawn)
 
 
 def _friction(
@@ -259,14 +285,19 @@ def risk_by_rcof(count: int = 29) -> tuple[float, float, float]:
 
     Lowest and highest are the expected extremes of normal values (0.20 ± 0.03).
     """
+    rcof = risk_places(count)
+    found = np.mean([ReportG6()(acof, rcof) for acof in PRINTED_ACOF.values()], axis=0)
+    return float(found[0]), float(found[1]), float(found[2])
+
+
+def risk_places(count: int = 29) -> Array:
+    """Return the lowest, median and highest RCOF to be expected of ``count`` persons, (3,)."""
     from scipy.stats import norm
 
     z = np.linspace(-8, 8, 4001)
     highest = np.gradient(norm.cdf(z) ** count, z)
     reach = float(np.trapezoid(z * highest, z)) * ADULTS.sd
-    rcof = np.array([ADULTS.mean - reach, ADULTS.mean, ADULTS.mean + reach])
-    found = np.mean([ReportG6()(acof, rcof) for acof in PRINTED_ACOF.values()], axis=0)
-    return float(found[0]), float(found[1]), float(found[2])
+    return np.array([ADULTS.mean - reach, ADULTS.mean, ADULTS.mean + reach])
 
 
 def precision_of_published(*, draws: int = 200, seed: int = 0) -> tuple[Array, Array]:
@@ -363,10 +394,12 @@ def quantities(
         soles = of_law(frictions, law)
         for sole, one in soles.items():
             levels = on_grids(one.coarse, one.cof)
-            acof = Quantity.of(one.cof, deviation=one.spread, scale="log", levels=levels)
-            found[f"acof.{law}.{sole}"] = acof
-            draws = np.random.default_rng(seed).normal(one.cof, one.spread, 400)
-            risks = [population_risk(max(float(v), 0.0))["report_g6"] for v in draws]
+            draws = one.draws
+            if draws is None:
+                normal = np.random.default_rng(seed).normal(size=400)
+                draws = one.cof * np.exp(one.spread / one.cof * normal)
+            found[f"acof.{law}.{sole}"] = Quantity.of(one.cof, draws=draws, levels=levels)
+            risks = [population_risk(min(float(v), 1.0))["report_g6"] for v in draws]
             found[f"risk.{law}.{sole}"] = Quantity.of(
                 population_risk(one.cof)["report_g6"], draws=risks
             )
@@ -375,8 +408,14 @@ def quantities(
         spread = 0.5 * math.hypot(hard.high - hard.low, soft.high - soft.low)
         change = soft.cof - hard.cof
         levels = on_grids(soft.coarse - hard.coarse, change)
-        found[f"softer.{law}"] = Quantity.of(change, deviation=spread or None, levels=levels)
-        found[f"order.{law}"] = Quantity.of([soft.cof, hard.cof], names=("soft", "hard"))
+        given: dict[str, Any] = {"deviation": spread or None}
+        chance = None
+        if soft.draws is not None and hard.draws is not None:
+            given = {"draws": soft.draws - hard.draws}
+            chance = chance_of_order([soft.draws, hard.draws], TIE)
+        found[f"softer.{law}"] = Quantity.of(change, **given, levels=levels)
+        order = Quantity.of([soft.cof, hard.cof], names=("soft", "hard"), chance=chance)
+        found[f"order.{law}"] = order
     pressures = np.max([one.sensor_pressure for one in frictions], axis=0)
     levels = on_grids(pressures[0], pressures[-1])
     found["sensor_pressure"] = Quantity.of(pressures[-1], "Pa", levels=levels)
@@ -389,8 +428,11 @@ def quantities(
         shares = {**one.share, "all": float(np.mean(list(one.share.values())))}
         for sole, share in shares.items():
             trials = count * (len(one.share) if sole == "all" else 1)
-            spread = math.sqrt(max(share * (1 - share), 1.0 / trials) / trials)
-            found[f"steps.{name}.{sole}"] = Quantity.of(share, deviation=spread, scale="logit")
+            slipped = round(share * trials)
+            drawn = np.random.default_rng(seed).beta(
+                slipped + 0.5, trials - slipped + 0.5, 4000
+            )  # Jeffreys' posterior of a share
+            found[f"steps.{name}.{sole}"] = Quantity.of(share, draws=drawn)
         spread = (one.fit.slope_high - one.fit.slope_low) / (2 * 1.96)
         if math.isnan(one.fit.slope):
             none = Quantity.none(f"{_who(one)} slips: there is no logistic")
@@ -458,14 +500,17 @@ def _step_table(steps: Mapping[str, Slips]) -> Table:
 def _conclusions(
     frictions: Sequence[SoleFriction], steps: Mapping[str, Slips], drawn: tuple[Array, Array]
 ) -> tuple[str, ...]:
-    area = of_law(frictions, "bowden_tabor")
+    area, own = of_law(frictions, "bowden_tabor"), of_law(frictions, JUDGED)
     constant, falling = (steps[name] for name in STEPS)
     low, high = np.percentile(drawn[0], [2.5, 97.5])
     return (
-        "The level of the whole shoes' friction follows from a pin: "
+        "The default law, which knows no reading of the report, gives "
+        f"{own['hard'].cof:.3f}, {own['medium'].cof:.3f} and {own['soft'].cof:.3f} (hard, medium, "
+        "soft; printed 0.159 and 0.182). The level follows from a pin too: "
         f"{of_law(frictions, 'stribeck')['medium'].cof:.3f} by Eq. 17 without any whole-shoe data. "
-        "The differences between outsoles do not follow with certainty: real contact area gives "
-        f"the right order ({area['soft'].cof - area['hard'].cof:+.3f} from hard to soft), films at "
+        "The differences between outsoles do not follow with certainty: the default law gives the "
+        f"right order by {own['soft'].cof - own['hard'].cof:+.3f}, real contact area "
+        f"by {area['soft'].cof - area['hard'].cof:+.3f} (from hard to soft), films at "
         "asperities the opposite one, and the hardness itself is not printed.",
         "Slips computed from gait and mass alone, with the printed friction at every speed: "
         f"{_logistic_words(constant)}. If friction falls with the slipping speed as on the pin "
@@ -512,11 +557,45 @@ def outsole_figure(frictions: Sequence[SoleFriction], steps: Mapping[str, Slips]
 
 
 def logistic_figure(steps: Mapping[str, Slips], drawn: tuple[Array, Array]) -> Figure:
-    """Return simulated slips over ACOF - RCOF with fitted and printed logistic curves."""
-    panels = []
+    """Return simulated slips over ACOF, RCOF and their difference, with what is printed of each."""
+    columns = len(steps)
+    rows: list[list[Panel]] = [[], [], []]
+    reach = risk_places()
     for name, one in steps.items():
         difference = one.acof - one.rcof
         noise = np.random.default_rng(0).uniform(-0.02, 0.02, difference.size)
+        shares = [float(one.slipped[one.acof == level].mean()) for level in np.unique(one.acof)]
+        rows[0].append(
+            Panel(
+                (
+                    points(
+                        [*PRINTED_RATES], [*PRINTED_RATES.values()], "report", **_PRINTED_POINTS
+                    ),
+                    points(np.unique(one.acof), shares, "steps", marker="o"),
+                ),
+                "ACOF",
+                "share that slips",
+                f"A: {STEPS[name]}",
+                x_limits=(0.15, 0.19),
+                y_limits=(0.0, 1.0),
+            )
+        )
+        bins = np.quantile(one.rcof, np.linspace(0, 1, 9))
+        place = np.clip(np.searchsorted(bins, one.rcof, side="right") - 1, 0, 7)
+        middle = [float(one.rcof[place == k].mean()) for k in range(8)]
+        by_rcof = [float(one.slipped[place == k].mean()) for k in range(8)]
+        rows[1].append(
+            Panel(
+                (
+                    points(reach, PRINTED_BY_RCOF, "report's model", **_PRINTED_POINTS),
+                    points(middle, by_rcof, "steps, by eighths", marker="o"),
+                ),
+                "RCOF",
+                "share that slips",
+                "B",
+                y_limits=(0.0, 1.0),
+            )
+        )
         x = np.linspace(min(difference.min(), -0.13), max(difference.max(), 0.06), 201)
         curves = _curve(x[:, None], drawn[0][None, :], drawn[1][None, :])
         low, high = np.percentile(curves, [2.5, 97.5], axis=1)
@@ -528,9 +607,16 @@ def logistic_figure(steps: Mapping[str, Slips], drawn: tuple[Array, Array]) -> F
             line(x, _curve(x, PRINTED_SLOPE, PRINTED_HALF), "report: slope -49.2", colour=PRINTED),
             line(x, fitted, f"steps: {_logistic_words(one)}"),
         )
-        panels.append(Panel(layers, "ACOF - RCOF", "chance of a slip", STEPS[name]))
-    title = "Fig. 37 C: computed slips and logistic curves"
-    return Figure(panels, title, columns=2, size=(5.2, 3.8), share_y=True)
+        rows[2].append(Panel(layers, "ACOF - RCOF", "chance of a slip", "C"))
+    title = "Fig. 37: computed slips over available and required friction and their difference"
+    panels = [panel for row in rows for panel in row]
+    return Figure(panels, title, columns=columns, size=(5.0, 3.0))
+
+
+PRINTED_RATES = {0.159: 0.41, 0.182: 0.06}
+PRINTED_BY_RCOF = (0.03, 0.26, 0.83)
+"""Risk at the lowest, median and highest RCOF (G.6.2)."""
+_PRINTED_POINTS: dict[str, Any] = {"colour": PRINTED, "marker": "D"}
 
 
 def _who(steps: Slips) -> str:

@@ -10,6 +10,8 @@ import typer
 from underfoot.cli.guard import say
 from underfoot.cli.options import CatalogueFolders, Overwrite, PlateFrame, RampAngle, optional
 
+_REASONS = 3  # printed for a file; all stand in the report
+
 
 def analyse(
     folder: Annotated[
@@ -99,8 +101,9 @@ def analyse(
         )
         write_trials_report(analysis, out, details=details, processes=processes, progress=progress)
     for one in analysis.files:
-        reasons = f": {'; '.join(one.reasons)}" if one.reasons else ""
-        print(f"{one.verdict:<9} {one.file}{reasons}")
+        more = len(one.reasons) - _REASONS
+        reasons = [*one.reasons[:_REASONS], *([f"{more} more in the report"] if more > 0 else [])]
+        print(f"{one.verdict:<9} {one.file}" + (f": {'; '.join(reasons)}" if reasons else ""))
     for doubt in analysis.doubts:
         say(f"doubt: {doubt}")
     for note in (*analysis.notes, *analysis.study.notes):

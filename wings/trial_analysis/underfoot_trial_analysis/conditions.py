@@ -2,6 +2,7 @@
 
 import csv
 import io
+import math
 import os
 import re
 import unicodedata
@@ -24,7 +25,11 @@ PERSON = ("subject", "person", "participant", "proband", "volunteer", "vp", "id"
 FILE = ("file", "filename", "file name", "datei", "dateiname")
 MASS = ("mass", "body mass", "weight", "body weight", "masse", "körpermasse", "gewicht",
         "körpergewicht")  # fmt: skip
-_BODIES = 10.0, 300.0  # kg
+_BODIES = {
+    **dict.fromkeys(MASS, (10.0, 300.0, "kg", "(kg), (lb)")),
+    **dict.fromkeys(("height", "body height", "körpergröße"), (0.5, 2.5, "m", "(m), (cm)")),
+}
+_EMPTY = ("", "?", "-", "--", "n/a", "#n/a", "nan", "null", "unknown", "unbekannt", "tbd", "k.a.")
 # Names of conditions that number trials: never factors of a test.
 NUMBERS = ("n", "no", "nr", "trial", "number", "rep", "repeat", "repetition", "run", "take")
 _NOT_TRIALS = re.compile(
@@ -246,7 +251,11 @@ def _tables(folder: Path, given: Path | None) -> list[tuple[Path, Path]]:
             below.clear()  # a report has a table of its own called so
             continue
         below[:] = sorted(name for name in below if not name.startswith("."))
-        tables += [(Path(place) / name, Path(place)) for name in NAMES if name in files][:1]
+        found = [Path(place) / name for name in NAMES if name in files]
+        if len(found) > 1:
+            text = f"two tables of conditions: {' and '.join(NAMES)}"
+            raise InputError(text, where=place, remedy="Keep one, or name it with --conditions")
+        tables += [(path, Path(place)) for path in found]
     return tables
 
 
@@ -313,7 +322,8 @@ def conditions_of(folder: Path, table: Path | None = None) -> dict[str, dict[str
     """Return the noted conditions by file name: numbers in SI where a unit is written, else text.
 
     The first line holds the headings, with units in brackets: ``file, shoe, viscosity (cP)``. A
-    column counts as numbers when all its filled cells are numbers. ``conditions.csv`` or ``.xlsx``
+    column counts as numbers when all its filled cells are numbers; "?", "-", "n/a", "unknown" and
+    their like are empty cells. ``conditions.csv`` or ``.xlsx``
     in the folder is read when ``table`` is None. An `InputError` says that the table has no column
     "file", names a file twice, or can't be read.
     """
@@ -321,7 +331,10 @@ def conditions_of(folder: Path, table: Path | None = None) -> dict[str, dict[str
     if path is None:
         return {}
     found, lines = table_columns(path)
-    cells = {name.casefold(): (unit, own) for name, unit, own in found}
+    cells = {
+        name.casefold(): (unit, ["" if cell.casefold() in _EMPTY else cell for cell in own])
+        for name, unit, own in found
+    }
     files = next((name for name in FILE if name in cells), "")
     if not files:
         raise InputError(
@@ -420,14 +433,14 @@ def _column(cells: list[str], unit: str, lines: Sequence[int], where: str, name:
         return list(cells)
     factor, offset = _to_si(unit, f"{where}, column {name}")
     values = [float(cell) * factor + offset if cell else None for cell in plain]
-    low, high = _BODIES
-    for i, value in enumerate(values if name in MASS else ()):
+    low, high, si, headings = _BODIES.get(name, (-math.inf, math.inf, "", ""))
+    for i, value in enumerate(values):
         if value is not None and not low <= value <= high:
             raise InputError(
                 f'line {lines[i]}: {name} is "{cells[i]}"',
                 where=where,
-                allowed=f"{low:g} to {high:g} kg",
-                remedy="Write the unit in the heading: mass (kg), mass (lb)",
+                allowed=f"{low:g} to {high:g} {si}",
+                remedy=f"Write the unit in the heading: {headings.replace('(', f'{name} (')}",
             )
     return values
 

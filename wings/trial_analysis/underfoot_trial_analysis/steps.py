@@ -1,6 +1,7 @@
 """Analysis of one file by the kind of its protocol: steps, slides, disks, relaxation."""
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, fields, replace
 from typing import Any
 
@@ -22,11 +23,12 @@ from underfoot.trials.slips import OutcomeLimits, Slip, SlipDefinition, slip_of
 from underfoot.trials.trial import Trial
 from underfoot.trials.walkway import Walkway, walkway_of
 
+from .compound import compression
 from .edit_table import EDIT_COLUMNS, edit_log
 from .file_result import Draft, rates, refer_to
 from .person_measures import person_measures
 from .pin_on_disk import friction_point
-from .relaxation_test import relaxation_reading
+from .relaxation_test import RelaxationReading, relaxation_reading
 from .tester_checks import log_kind, scan_flags, slide_flags
 
 
@@ -131,11 +133,44 @@ def _relaxation(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile
     found = relaxation_reading(trial, thickness)
     for name in ("force_2_percent", "peak_force", "final_force"):
         draft.add("test", getattr(found, name), main=name)
+    for measurement in _moduli(found, thickness, draft.conditions.get("area"), trial.name):
+        draft.add("test", measurement, main=measurement.name)
     draft.facts["hold_time"] = found.hold_time
     draft.facts["compression"] = found.peak_displacement / (2.0 * thickness)
     time, force = found.hold
     log = np.unique(np.geomspace(1, len(time) - 1, 300).astype(int))
     draft.curve("hold", time=time[log], force=force[log], final=found.final_force.value or 0.0)
+
+
+def _moduli(
+    found: RelaxationReading, thickness: float, area: object, name: str
+) -> Iterator[Measurement]:
+    """Yield stiffness and modulus at short and long time (Eq. 13 to 16), and Young's moduli."""
+    if not isinstance(area, float):
+        reason = 'the area of the block is not known: add a column "area (mm^2)" to conditions.csv'
+        for each in ("short-time modulus", "long-time modulus"):
+            yield Measurement.not_estimated(each, reason, unit="Pa")
+        return
+    test = compression(found, thickness, area, name)
+    meant = {"modulus": "of the pair, apparent (Eq. 13 to 16)"}
+    forces = found.force_2_percent, found.peak_force, found.final_force
+    low, peak, final = ((one.value or 0.0, one.uncertainty or 0.0) for one in forces)
+    for time, (high, noise) in (("short", peak), ("long", final)):
+        spread = math.hypot(noise, low[1]) / (high - low[0])
+        stiffness = getattr(test.moduli, f"{time}_time_stiffness")
+        modulus = getattr(test.moduli, f"{time}_time_modulus")
+        yield Measurement(f"{time}-time stiffness", stiffness, "N/m", spread * stiffness,
+                          conventions=meant)  # fmt: skip
+        yield Measurement(f"{time}-time modulus", modulus, "Pa", spread * modulus,
+                          conventions=meant)  # fmt: skip
+        young = modulus / test.factor
+        yield Measurement(
+            f"{time}-time Young's modulus",
+            young,
+            "Pa",
+            young * math.hypot(spread, test.deviation),
+            conventions={"shape": f"apparent over {test.factor:.3g}, bonded square block"},
+        )
 
 
 _KINDS: Mapping[str, Callable[[Trial, Draft, Protocol, Profile], None]] = {

@@ -77,9 +77,10 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
             {"label": label, "group": first, "speed": speed, "cof": cof, "raw": list(fit.raw),
              "mean": mean, "verdict": fit.verdict, "r_squared": fit.r_squared}
         )  # fmt: skip
+        levels = dict(zip(keys, group, strict=True)) or {"group": ""}
         for parameter in own:
             keep = parameter.value is not None and not parameter.remark.startswith("not identified")
-            parameters[parameter.name].append((first, parameter.value) if keep else None)
+            parameters[parameter.name].append((levels, parameter.value) if keep else None)
     intervals = (
         (name, "95 % low", "95 % high", "remark")
         for name in ("COF_BL", "tau_hydro (m/s)", "COF_asymptote")
@@ -96,11 +97,16 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
     )
     made = [Table("stribeck", title, columns, tuple(rows), explained)]
     findings: list[Finding] = []
+    compared = protocol.words("compare") or keys[:1]
     for name, values in parameters.items():
         kept = [pair for pair in values if pair is not None]
-        if len({group for group, _ in kept}) > 1:
-            factor = protocol.text("compare", keys[0] if keys else "group")
-            tests = comparison_findings(name, [v for _, v in kept], {factor: [g for g, _ in kept]})
+        factors = {
+            key: [levels[key] for levels, _ in kept]
+            for key in compared
+            if len({levels.get(key) for levels, _ in kept}) > 1
+        }
+        if factors:
+            tests = comparison_findings(name, [value for _, value in kept], factors)
             lost = len(values) - len(kept)
             if lost and tests:
                 text = f"{lost} of {len(values)} series left out: not identified, or no good fit"
@@ -138,6 +144,11 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
     dry, blocked = protocol.text("dry", "dry"), protocol.text("blocked", "sae_75w140")
     keys = protocol.words("pair")
     rows, notes, fluids, dry_adhesions, wet = [], [], [], [], []
+    parts: dict[str, list[tuple[float, dict[str, str]]]] = {
+        "dry_adhesion": [],
+        "hysteresis": [],
+        "lubricated_adhesion": [],
+    }
     for pair, members in tables.grouped(files, keys).items():
         by_fluid: dict[str, list[float]] = {}
         for f in members:
@@ -149,6 +160,15 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
             continue
         others = {k: v for k, v in by_fluid.items() if k not in (dry, blocked)}
         split = friction_split(by_fluid[dry], by_fluid[blocked], others)
+        own = dict(zip(keys, pair, strict=True))
+        oiled = split.hysteresis.value or 0.0
+        parts["dry_adhesion"] += [(force - oiled, own) for force in by_fluid[dry]]
+        parts["hysteresis"] += [(force, own) for force in by_fluid[blocked]]
+        parts["lubricated_adhesion"] += [
+            (force - oiled, {**own, "lubricant": fluid})
+            for fluid, forces in others.items()
+            for force in forces
+        ]
         for name, m in (
             ("dry", split.dry),
             ("hysteresis", split.hysteresis),
@@ -183,7 +203,24 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
         curves["alpha_beta"] = {"fluid": fluids, "dry": dry_adhesions, "wet": wet, "lines": drawn}
     except (UnderfootError, ValueError) as error:
         notes.append(f"Eq. 26 was not fitted: {getattr(error, 'what', error)}")
+    for name, readings in parts.items():
+        findings += _crossed_findings(name, readings)
     return Study(tuple(made), tuple(findings), curves, tuple(notes))
+
+
+def _crossed_findings(
+    response: str, readings: Sequence[tuple[float, Mapping[str, str]]]
+) -> list[Finding]:
+    """Return the analysis of variance of a force on all conditions with every interaction.
+
+    Tukey's comparisons of the levels follow. Adhesions of a pair share its mean under the oil.
+    """
+    if not readings:
+        return []
+    values = [value for value, _ in readings]
+    factors = {key: [own[key] for _, own in readings] for key in readings[0][1]}
+    factors = {key: levels for key, levels in factors.items() if len(set(levels)) > 1}
+    return comparison_findings(response, values, factors)
 
 
 def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
@@ -308,10 +345,17 @@ def _person_table(files: Sequence[FileResult], factors: tuple[str, ...], person:
     return Table("persons", "Persons", columns, rows, (note,), {"RCOF": 4})
 
 
+MODULI = tuple(
+    f"{time}-time {what}"
+    for what in ("stiffness", "modulus", "Young's modulus")
+    for time in ("short", "long")
+)
+
+
 def _relaxation(files: list[FileResult], protocol: Protocol) -> Study:
     keys = _keys(files, (protocol.text("compare", "material"),))
-    forces = ("force_2_percent", "peak_force", "final_force")
-    table = condition_table(files, keys, forces, person=_sample(files))
+    numbers = ("force_2_percent", "peak_force", "final_force", *MODULI)
+    table = condition_table(files, keys, numbers, person=_sample(files))
     return Study((table,) if table else ())
 
 

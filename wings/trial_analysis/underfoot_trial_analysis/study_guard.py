@@ -19,11 +19,15 @@ _BODY = {
     **dict.fromkeys(MASS, 0.05), "height": 0.02, "body height": 0.02, "sex": 0.0, "gender": 0.0
 }  # fmt: skip
 """Conditions that a person keeps, and how far they may differ (relative)."""
+_JUDGED, _UNLIKE = 8, 0.3  # trials needed; ln of RCOF over the person's others; assumed
 _LEAST, _SCATTERS = 0.02, 6.0
 _LARGEST = {FORCE: 0.10, HEIGHT: 0.04, "": 0.05}
 """A body is another's from six times the scatter within the study's persons, but at least 2 %, and
 from these shares on whatever the scatter (relative; "" distances of markers); assumed."""
 _STEP = ("contact", "peak_force")  # what tells one step from all others
+_TIMES, _ALIKE, _CORRELATED, _NOISE = 0.004, 0.004, 0.6, 120
+"""Two steps are one: stance time (s), forces over their peak (rms; steps of one person differ by
+0.02 and more), correlation of the second differences of so many samples (by chance 0.09)."""
 _MOST = 0.5  # share of the files from which a condition counts as meant for all
 
 
@@ -48,7 +52,8 @@ def guarded_files(
 ) -> tuple[list[FileResult], list[Doubt]]:
     """Return all results with copies refused, and the doubts about copies.
 
-    Of equal bytes or numbers under two names the first counts, where all that is noted agrees.
+    Of equal bytes, numbers or steps (a copy cut, filtered, or exported with another start or gain)
+    under two names the first counts, where all that is noted agrees.
     Where it does not, nobody knows whose they are, and none counts.
     """
     copies: dict[object, list[int]] = defaultdict(list)
@@ -61,6 +66,7 @@ def guarded_files(
         numbers = tuple(float(f"{v:.6g}") for v in values if isinstance(v, float) and v % 1.0)
         if len(numbers) >= 3:
             copies[numbers].append(i)
+    copies |= {frozenset(pair): sorted(pair) for pair in _with_same_steps(recordings)}
     doubts: list[Doubt] = []
     refused: dict[int, str] = {}
     told: set[tuple[int, ...]] = set()
@@ -68,7 +74,8 @@ def guarded_files(
         if len(members) < 2 or tuple(members) in told:
             continue
         told.add(tuple(members))
-        what = "the same bytes" if isinstance(key, str) else "the same numbers"
+        what = "the same numbers" if isinstance(key, tuple) else "the same steps"
+        what = "the same bytes" if isinstance(key, str) else what
         names = tuple(recordings[i][0].file for i in members)
         noted = [_noted(recordings[i][0]) for i in members]
         same = all(one == noted[0] for one in noted)
@@ -90,16 +97,50 @@ def guarded_files(
     return sorted(files, key=lambda one: one.file), doubts
 
 
+def _with_same_steps(recordings: Sequence[Sequence[FileResult]]) -> set[tuple[int, int]]:
+    """Pairs of recordings that share steps: their forces and noise, whatever the gain."""
+    shapes, noises, times, owners = [], [], [], []
+    for i, results in enumerate(recordings):
+        steps = [c for one in results for c in one.curves.get("steps", ()) if "along" in c]
+        forces = [c for one in results for c in one.curves.get("normalised", ())]
+        for step, curves in zip(steps, forces, strict=False):
+            shape = np.concatenate([curves[name][::5] for name in ("vertical", "braking")])
+            along = np.diff(np.nan_to_num(step["along"]), 2)
+            noise = along[len(along) // 4 :][:_NOISE]
+            if len(noise) == _NOISE and noise.any():
+                shapes.append(shape / max(float(shape.max()), 1.0))
+                noises.append(noise / np.linalg.norm(noise))
+                times.append(step["time"][-1])
+                owners.append(i)
+    order = np.argsort(times)
+    time, owner = (np.array(values)[order] for values in (times, owners))
+    shape, noise = (np.array(values)[order] for values in (shapes, noises)) if owners else ([], [])
+    shared: Counter[tuple[int, int]] = Counter()
+    for i, last in enumerate(np.searchsorted(time, time + _TIMES)):
+        near = slice(i + 1, last)
+        apart = np.sqrt(np.mean((shape[near] - shape[i]) ** 2, axis=1))
+        same = (apart < _ALIKE) & (noise[near] @ noise[i] > _CORRELATED)
+        for other in owner[near][same]:
+            shared[(int(min(owner[i], other)), int(max(owner[i], other)))] += 1
+    steps_of = Counter(owners)
+    return {
+        pair
+        for pair, n in shared.items()
+        if pair[0] != pair[1] and 2 * n >= min(steps_of[i] for i in pair)
+    }
+
+
 def study_doubts(files: Sequence[FileResult], protocol: Protocol) -> list[Doubt]:
     """Return the doubts about the usable files of a study, each with the files it is about."""
     usable = [one for one in files if one.usable]
     person = person_condition(usable, protocol.text("subject"))
     tables = protocol.kind == "readings"
-    found = [*_incomplete(usable), *_near_names(usable, person)]
+    found = [*_incomplete(usable), *_numbers_lacking(usable), *_near_names(usable, person)]
     if not tables:
         found += _single_levels(usable, person)
     if person:
         found += [*_bodies_noted(usable, person), *_bodies_measured(usable, person)]
+        found += [*_crowded_levels(usable, person), *_unlike_trials(usable, person)]
     if protocol.kind == "slip_tester":
         found += _repeats(usable, protocol)
     if protocol.kind in ("slip_tester", "readings"):
@@ -148,6 +189,60 @@ def _incomplete(files: Sequence[FileResult]) -> Iterator[Doubt]:
         else:
             words = f'"{key}" is noted for {len(having)} of {len(files)} files only: no factor'
             yield Doubt(words, _names(having))
+
+
+def _numbers_lacking(files: Sequence[FileResult]) -> Iterator[Doubt]:
+    for key in dict.fromkeys(k for one in files for k in one.conditions if k not in NUMBERS):
+        lacking = [one for one in files if key not in one.conditions]
+        having = len(files) - len(lacking)
+        number = any(isinstance(one.conditions.get(key), float) for one in files)
+        if number and lacking and having >= _MOST * len(files):
+            words = f'"{key}" is noted for {having} of {len(files)} files, not for these'
+            yield Doubt(words, _names(lacking))
+
+
+def _crowded_levels(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
+    """A person who has twice the trials of a level and lacks another that the others have."""
+    for key, having in _factors([one for one in files if person in one.conditions]).items():
+        counts = {
+            who: Counter(str(one.conditions[key]) for one in own)
+            for (who,), own in grouped(having, (person,)).items()
+        }
+        usual = {
+            level: float(np.median([one[level] for one in counts.values()]))
+            for level in {level for one in counts.values() for level in one}
+        }
+        if key == person or 2 * sum(len(one) > 1 for one in counts.values()) <= len(counts):
+            continue  # a condition between persons
+        for who, one in counts.items():
+            lacks = [level for level, n in usual.items() if n and not one[level]]
+            crowd = [level for level, n in one.items() if usual[level] and n >= 2 * usual[level]]
+            if lacks and crowd:
+                words = (
+                    f'{who} has {one[crowd[0]]} trials with {key} "{crowd[0]}" and none with '
+                    f'"{sorted(lacks)[0]}": the others {usual[crowd[0]]:g} with each?'
+                )
+                named = [o for o in having if str(o.conditions[person]) == who]
+                yield Doubt(words, _names([o for o in named if o.conditions[key] == crowd[0]]))
+
+
+def _unlike_trials(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
+    """A trial whose RCOF lies far from the person's others, levels of conditions allowed for."""
+    having = [one for one in files if one.main.get("rcof", 0.0) > 0.0 and person in one.conditions]
+    left = np.log([one.main["rcof"] for one in having])
+    for key in (person, *(k for k in _factors(having) if k != person), person):
+        for level in {str(one.conditions.get(key)) for one in having}:
+            own = [i for i, one in enumerate(having) if str(one.conditions.get(key)) == level]
+            left[own] -= np.median(left[own])
+    if len(having) < _JUDGED:
+        return
+    limit = max(_SCATTERS * 1.4826 * float(np.median(np.abs(left))), _UNLIKE)
+    for one, away in zip(having, left, strict=True):
+        if abs(away) > limit:
+            words = f"RCOF {one.main['rcof']:.3f}, {100 * np.expm1(away):+.0f} % against the other"
+            yield Doubt(
+                f"{words} trials of {one.conditions[person]}: gain, or another?", (one.file,)
+            )
 
 
 def _near_names(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:

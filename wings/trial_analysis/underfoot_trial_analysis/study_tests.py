@@ -287,8 +287,6 @@ def _t_tests(
 def _logistic(
     files: Sequence[FileResult], subject: str
 ) -> tuple[list[Finding], list[dict[str, Any]]]:
-    from scipy.stats import t as student
-
     findings, drawn = [], []
     for name in ("acof", "rcof", "acof_minus_rcof"):
         having = [f for f in files if name in f.main]
@@ -318,15 +316,16 @@ def _logistic(
             try:
                 best = gee = statistics.clustered_logistic(y, {name: x}, persons)
                 c = gee[name]
-                reach = float(student.ppf(0.975, gee.clusters - 2)) * c.corrected_error
-                rows.append(
-                    ("estimating equations, errors by person", gee["intercept"].estimate,
-                     c.estimate, c.estimate - reach, c.estimate + reach, c.p)
-                )  # fmt: skip
+                intercept = gee["intercept"].estimate
+                by_person = "estimating equations, errors by person"
+                rows.append((by_person, intercept, c.estimate, c.low, c.high, c.p))
             except UnderfootError as error:
                 cautions.append(f"estimating equations: {error.what}")
         columns = ("method", "intercept", "slope", "95 % low", "95 % high", "p")
-        note = "Intervals of the first lines are profile likelihoods, p from likelihood ratios."
+        note = (
+            "Intervals of the first lines are profile likelihoods, p from likelihood ratios; those "
+            "by person are Kauermann and Carroll's errors with t, p from flipped signs of persons."
+        )
         cautions = list(dict.fromkeys(cautions))
         findings.append(finding(f"logistic_{name}", title, columns, rows, note, cautions))
         told = prediction_finding(name, y, x, persons)

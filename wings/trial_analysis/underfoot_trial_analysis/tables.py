@@ -103,8 +103,10 @@ _UNITS = {
     "angle": "deg", "tau_hydro": "m/s", "peak_slipping_speed": "m/s", "slip_margin": "m/s",
     "speed": "m/s", "slip_distance": "mm", "peak_pressure": "kPa", "scan_peak_pressure": "kPa",
     "friction_force": "N", "force_2_percent": "N", "peak_force": "N", "final_force": "N",
+    **{f"{time}-time stiffness": "N/mm" for time in ("short", "long")},
+    **{f"{time}-time {of}modulus": "MPa" for time in ("short", "long") for of in ("", "Young's ")},
 }  # fmt: skip
-_FACTORS = {"mm": 1e3, "kPa": 1e-3}
+_FACTORS = {"mm": 1e3, "kPa": 1e-3, "N/mm": 1e-3, "MPa": 1e-6}
 
 
 def quantity_name(name: str) -> str:

@@ -22,6 +22,7 @@ LOW = Limit("COF", 0.02, "1", "few shoes on lubricated floors lie below (lowest 
 HIGH = Limit("COF", 1.2, "1", "rubber on a clean dry floor; assumed")
 DEAD = Limit("dead channel", 5.0, "1", "friction over its standard error, unloaded; assumed")
 CLIPPED = Limit("saturation", 0.02, "1", "share of loaded samples at the extreme value; assumed")
+WRAPPED = Limit("range", 0.3, "1", "share of the friction from one side to the other; assumed")
 FULL = Limit("saturation", 0.98, "1", "share of the range in the calibration record; assumed")
 STEP = Limit("resolution", 0.004, "1", "half a step of the converter in COF; assumed")
 STRAIGHT = Limit("interpolated", 0.5, "1", "share of samples on straight lines; assumed")
@@ -144,6 +145,9 @@ class _Slide:
         levels = [side.mean(axis=0) for side in sides if len(side) >= 20]
         levels = [0.5 * (levels[1] - levels[0])] if len(levels) == 2 else levels
         levels.append(np.median(pairs, axis=0) - pairs.mean(axis=0))  # spikes, loads
+        if len(sides[1]) >= 60:  # a zero that creeps back after the load
+            early, _, late = np.array_split(sides[1], 3)
+            levels.append(early.mean(axis=0) - late.mean(axis=0))
         slope, at = np.polyfit(time, pairs, 1)
         x = time - time.mean()
         error = np.std(pairs - at - np.outer(time, slope), axis=0)
@@ -179,6 +183,9 @@ class _Slide:
             still &= steps == 0.0
             part = np.unique(self.force[self.inside, i])
             idle = np.unique(self.force[self.rest, i])
+            if len(idle) == 1 and self.rest.sum() > 20 and len(part) > 30:
+                words = f"the unloaded force along {name} is one number: a dead band or zeroed?"
+                yield Flag("scatter", words, True, 0.0)
             quantum = float(np.min(np.diff(idle))) if 1 < len(idle) < 30 else 0.0
             coarse = quantum > 0.0 and len(part) < 30
             share = self.cof if i == upward else abs(float(self.axis[i]))
@@ -206,6 +213,10 @@ class _Slide:
             straight = max(float(np.mean(bend)), STRAIGHT.value + 1e-9 if line > 0.02 else 0.0)
             words = f"the samples along {name} lie on straight lines: interpolated"
             yield from STRAIGHT.above(straight, words)
+        pairs = np.column_stack((self.along[:-1], self.along[1:]))[self.loaded[1:]]
+        crossing = np.abs(pairs[pairs.prod(axis=1) < 0.0]).min(axis=1).max(initial=0.0)
+        words = "the friction leaps from one side to the other: does its range wrap?"
+        yield from WRAPPED.above(crossing / max(float(np.abs(pairs).max()), 1.0), words)
         held = longest_run(still) + 1
         idle = longest_run((np.diff(self.force[self.rest], axis=0) == 0.0).all(axis=1))
         if held >= 4 + 2 * idle and held / self.rate >= (HELD.value if fine else 0.05):

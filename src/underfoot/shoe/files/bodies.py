@@ -61,7 +61,7 @@ class _Bodies:
     area: Array
 
     def part(self, keep: Mask) -> "_Bodies":
-        names = tuple(name for name, kept in zip(self.names, keep, strict=True) if kept)
+        names = tuple(name for name, taken in zip(self.names, keep, strict=True) if taken)
         return _Bodies(self.axes, names, self.low[keep], self.high[keep], self.area[keep])
 
     @property
@@ -174,27 +174,27 @@ def _matching(names: tuple[str, ...], wanted: str) -> Mask:
 
 def _named(bodies: _Bodies, settings: FileSettings, where: str) -> tuple[Mask, list[str]]:
     """Return the bodies that the user or their names tell to be outsole; all if none are told."""
-    there = bodies.area > 0
+    sized = bodies.area > 0
     if settings.solid is not None:
-        keep = _matching(bodies.names, settings.solid) & there
+        keep = _matching(bodies.names, settings.solid) & sized
         if not keep.any():
-            named = {name for name, is_there in zip(bodies.names, there, strict=True) if is_there}
+            named = {name for name, is_there in zip(bodies.names, sized, strict=True) if is_there}
             raise unknown_name("body", settings.solid, named, where=where)
-        return keep, [_taken(bodies, keep, there, "as chosen")]
+        return keep, [_taken(bodies, keep, sized, "as chosen")]
     plainly = np.array([bool(_PLAINLY.search(name)) for name in bodies.names])
     other = np.array([bool(OTHER_NAMES.search(name)) for name in bodies.names]) & ~plainly
-    own = np.array([bool(OUTSOLE_NAMES.search(name)) for name in bodies.names]) & ~other
-    if (own & there).any():
-        if (there & ~own).any():
-            return own & there, [_taken(bodies, own & there, there, "by name")]
-        return there, []
-    if (other & there).any() and (there & ~other).any():
-        return there & ~other, [_taken(bodies, there & ~other, there, "by the others' names")]
-    return there, []
+    by_name = np.array([bool(OUTSOLE_NAMES.search(name)) for name in bodies.names]) & ~other
+    if (by_name & sized).any():
+        if (sized & ~by_name).any():
+            return by_name & sized, [_taken(bodies, by_name & sized, sized, "by name")]
+        return sized, []
+    if (other & sized).any() and (sized & ~other).any():
+        return sized & ~other, [_taken(bodies, sized & ~other, sized, "by the others' names")]
+    return sized, []
 
 
-def _taken(bodies: _Bodies, keep: Mask, there: Mask, how: str) -> str:
-    left = _listed([n for n, k, t in zip(bodies.names, keep, there, strict=True) if t and not k])
+def _taken(bodies: _Bodies, keep: Mask, sized: Mask, how: str) -> str:
+    left = _listed([n for n, k, t in zip(bodies.names, keep, sized, strict=True) if t and not k])
     taken = _listed([n for n, k in zip(bodies.names, keep, strict=True) if k])
     return f"Outsole {how}: {taken}" + (f"; left out: {left}." if left else ".")
 
@@ -298,7 +298,7 @@ def _without_stack(
     up = bodies.axes[axis]
     upward = bool(up[int(np.argmax(np.abs(up)))] > 0)
     below = shares[0] == most if sure else upward
-    kept = groups[0] if below else groups[1]
+    group = groups[0] if below else groups[1]
     down = None if settings.down != "auto" else -up if below else up
     how = (
         f"determined as the end of the stack that carries the tread (channels over {most:.0%} of "
@@ -306,9 +306,9 @@ def _without_stack(
         if sure
         else "the lower one of the file; no tread tells"
     )
-    taken = _taken(bodies, kept, keep, "of a stack of bodies")
+    taken = _taken(bodies, group, keep, "of a stack of bodies")
     begin = "" if sure else "Assumed: "
-    return kept, down, [f"{begin}{taken[:-1]}. It is {how}."]
+    return group, down, [f"{begin}{taken[:-1]}. It is {how}."]
 
 
 def _parting(low: Array, high: Array) -> float:
@@ -323,13 +323,13 @@ def _parting(low: Array, high: Array) -> float:
 
 def _away(bodies: _Bodies, keep: Mask, others: Mask) -> Array | None:
     """Return the direction from the other bodies to the outsole where they lie on one side."""
-    own = bodies.low[keep].min(axis=0), bodies.high[keep].max(axis=0)
-    big = others & (bodies.size[:, 0] > _BIG[0] * (own[1] - own[0])[0])
+    box = bodies.low[keep].min(axis=0), bodies.high[keep].max(axis=0)
+    big = others & (bodies.size[:, 0] > _BIG[0] * (box[1] - box[0])[0])
     if not big.any():
         return None
     rest = bodies.low[big].min(axis=0), bodies.high[big].max(axis=0)
-    offset = (own[0] + own[1] - rest[0] - rest[1]) / 2
-    parted = [_parting(np.stack([own[0], rest[0]])[:, n], np.stack([own[1], rest[1]])[:, n])
+    offset = (box[0] + box[1] - rest[0] - rest[1]) / 2
+    parted = [_parting(np.stack([box[0], rest[0]])[:, n], np.stack([box[1], rest[1]])[:, n])
               for n in (1, 2)]  # fmt: skip
     axis = 1 + int(np.argmax(parted))
     if parted[axis - 1] < 0.5:

@@ -104,10 +104,10 @@ def _meshed_apart(path: Path, kind: str, unit: str) -> Mesh:
             what = f"could not be turned into triangles within {LONGEST_MESHING} s"
         else:
             if answer.exists():
-                found = pickle.loads(answer.read_bytes())
-                if isinstance(found, Exception):
-                    raise found
-                return found
+                mesh = pickle.loads(answer.read_bytes())
+                if isinstance(mesh, Exception):
+                    raise mesh
+                return mesh
             what = "ends the reader of CAD files: it is damaged"
     raise DataError(
         f"the {kind} file {what}",
@@ -118,13 +118,13 @@ def _meshed_apart(path: Path, kind: str, unit: str) -> Mesh:
 
 def mesh_into(path: str, kind: str, unit: str, answer: str) -> None:
     """Write the triangles of a CAD file, or the error it raises, pickled to the file ``answer``."""
-    found: Mesh | Exception
+    outcome: Mesh | Exception
     try:
-        found = _meshed(Path(path), kind, unit)
+        outcome = _meshed(Path(path), kind, unit)
     except (InputError, DataError) as error:
-        found = error.with_traceback(None)
-        found.__cause__ = found.__context__ = None
-    Path(answer).write_bytes(pickle.dumps(found))
+        outcome = error.with_traceback(None)
+        outcome.__cause__ = outcome.__context__ = None
+    Path(answer).write_bytes(pickle.dumps(outcome))
 
 
 def stated_unit(path: Path, kind: str) -> float | None:
@@ -172,8 +172,8 @@ def _iges_field(text: bytes, number: int) -> bytes:
 
 
 def _si_length(line: bytes) -> float | None:
-    found = re.search(rb"SI_UNIT\(([^,]*),\.METRE\.\)", line)
-    return _PREFIXES.get(found[1]) if found else None
+    stated = re.search(rb"SI_UNIT\(([^,]*),\.METRE\.\)", line)
+    return _PREFIXES.get(stated[1]) if stated else None
 
 
 def _meshed(path: Path, kind: str, unit: str) -> Mesh:

@@ -143,11 +143,11 @@ def without_ledges(
         if not beside.any():
             continue
         heights = height[around]
-        own = float(np.median(heights[piece]))
+        level = float(np.median(heights[piece]))
         other = float(np.percentile(heights[beside], 25))  # some of it is the ledge itself
-        if own - other > _LEDGE:
-            into = cut_open if own - other <= 1.2 * channel_depth else gone
-            into[around] |= piece | (beside & (heights > (own + other) / 2))
+        if level - other > _LEDGE:
+            into = cut_open if level - other <= 1.2 * channel_depth else gone
+            into[around] |= piece | (beside & (heights > (level + other) / 2))
     with np.errstate(invalid="ignore"):
         high_up = inside & ~land & (height - tread.base > 1.2 * channel_depth + _LEDGE)
     high_up &= local_width(high_up, spacing) < _WIDEST_LEDGE

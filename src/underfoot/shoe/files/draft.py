@@ -54,9 +54,9 @@ def wall_draft(triangles: NDArray[np.float32], seen: View, height: Array) -> flo
     cell = place[0].astype(np.intp), place[1].astype(np.intp)
     depth = np.where(core, high - low, 0.0)[cell]
     share = (middle[:, 2] - seen.level - low[cell]) / np.maximum(depth, _SHALLOWEST)
-    own = (depth >= _SHALLOWEST) & (share > 0.25) & (share < 0.75)
-    if np.count_nonzero(own) < _FEWEST:
+    on_walls = (depth >= _SHALLOWEST) & (share > 0.25) & (share < 0.75)
+    if np.count_nonzero(on_walls) < _FEWEST:
         return None
-    order = np.argsort(angle[own])
-    total = np.cumsum(area[own][order])
-    return float(angle[own][order][np.searchsorted(total, total[-1] / 2)])
+    order = np.argsort(angle[on_walls])
+    total = np.cumsum(area[on_walls][order])
+    return float(angle[on_walls][order][np.searchsorted(total, total[-1] / 2)])

@@ -92,11 +92,13 @@ def outsole_from_mesh(
     mesh = replace(mesh, triangles=np.ascontiguousarray(mesh.triangles, dtype=np.float32))
     sound = soundness(mesh, where)
     check_surface(sound, where)
-    found = found_outsole(mesh, chosen, where)
-    remarks = [*mesh.remarks, *found.remarks]
-    if len(found.meshes) == 1:
-        return _outsole(found.meshes[0], sound, found.down, remarks, chosen, name, where)
-    shoes = [_outsole(one, sound, found.down, remarks, chosen, name, where) for one in found.meshes]
+    outsole = found_outsole(mesh, chosen, where)
+    remarks = [*mesh.remarks, *outsole.remarks]
+    if len(outsole.meshes) == 1:
+        return _outsole(outsole.meshes[0], sound, outsole.down, remarks, chosen, name, where)
+    shoes = [
+        _outsole(one, sound, outsole.down, remarks, chosen, name, where) for one in outsole.meshes
+    ]
     matching = [shoe for shoe in shoes if shoe.foot == chosen.side]
     if len(matching) != 1:
         feet = " and ".join(shoe.foot or "not determined" for shoe in shoes)

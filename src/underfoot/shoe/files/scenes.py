@@ -83,7 +83,7 @@ def read_scene(path: Path, kind: str) -> Mesh:
 
 def _parts(scene: Any) -> list[tuple[str, np.ndarray, np.ndarray]]:
     """Return name, vertices (n, 3) and faces (n, 3) of each mesh where it stands in the scene."""
-    found = []
+    parts = []
     for node in scene.graph.nodes_geometry:
         matrix, name = scene.graph[node]
         mesh = scene.geometry[name]
@@ -91,8 +91,8 @@ def _parts(scene: Any) -> list[tuple[str, np.ndarray, np.ndarray]]:
         if faces.shape[0] == 0:
             continue
         vertices = np.asarray(mesh.vertices, dtype=np.float64)
-        found.append((str(node), vertices @ matrix[:3, :3].T + matrix[:3, 3], faces))
-    return found
+        parts.append((str(node), vertices @ matrix[:3, :3].T + matrix[:3, 3], faces))
+    return parts
 
 
 def _points_alone(path: Path, kind: str) -> str:

@@ -23,6 +23,7 @@ from .motion import COLUMNS, STEP, Instant, SlipMotion, slip_motion
 from .sensors import MAP_X, MAP_Y, sensor_map
 from .walker import Walker
 
+TYPICAL_SPEED = 0.5  # m/s, of a slip: the friction that turns edges of lugs is that at it
 LOWEST_SPEED = 1e-3
 """m/s; slower than that friction is taken as at this speed."""
 
@@ -90,6 +91,7 @@ class SoleFoot:
             settings=setting.settings,
             shoe_angle=shoe_angle,
             typical_force=load,
+            inlet=setting.edged and setting.edged.inlet(load, TYPICAL_SPEED),
         )
 
     def advance(

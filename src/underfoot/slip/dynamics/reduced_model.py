@@ -56,6 +56,32 @@ UNITS = (
 TABLE_SPEEDS = np.concatenate([[0.0], np.geomspace(LOWEST_SPEED, 10.0, 96)])
 
 
+MARGIN = 0.25
+"""Share of the fitted range by which a motion may leave it: persons are drawn from tails that the
+fit's runs stop short of."""
+
+
+@dataclass(frozen=True, slots=True)
+class FittedRange:
+    """Fluid, and (lowest, highest) of load (N), speed (m/s) and shoe angle (rad) of fitted runs."""
+
+    viscosity: float | None
+    load: tuple[float, float]
+    speed: tuple[float, float]
+    shoe_angle: tuple[float, float]
+
+    @classmethod
+    def of(cls, viscosity: float | None, runs: Sequence[SlipMotion]) -> FittedRange:
+        """Return the range of full runs; loads and speeds begin at 0."""
+        angles = np.concatenate([run.shoe_angle for run in runs])
+        return cls(
+            viscosity,
+            (0.0, max(float(run.normal.max()) for run in runs)),
+            (0.0, max(float(run.speed.max()) for run in runs)),
+            (float(angles.min()), float(angles.max())),
+        )
+
+
 @dataclass(frozen=True, slots=True)
 class ReducedSole:
     """One sole on one floor with one fluid, in fourteen constants.
@@ -66,6 +92,11 @@ class ReducedSole:
 
     A carries exp(area_angle a), leakage and wedge exp(angle a + bend a^2), a the shoe angle against
     ``shoe_angle``. ``speeds``, ``cofs`` tabulate the contact's friction over pressure.
+
+    Its constants are those of one fluid and of the loads, speeds and angles of the runs behind
+    them (``fitted``): slips that ride on a full film do not show how the contact takes over. What
+    lies beyond is refused (``carried_at``), or named in the motion's notes where a walker leaves
+    the range on the way.
     """
 
     constants: Array
@@ -74,10 +105,18 @@ class ReducedSole:
     shoe_angle: float
     speeds: Array
     cofs: Array
+    fitted: FittedRange | None = None
 
     def __post_init__(self) -> None:
         if self.constants.shape != (kernel.COUNT,) or not np.isfinite(self.constants).all():
             raise InputError("fourteen finite constants are wanted", where="reduced.constants")
+        if self.fitted is not None and self.viscosity != self.fitted.viscosity:
+            raise InputError(
+                f"{self.viscosity} Pa s",
+                where="reduced.viscosity",
+                allowed=f"{self.fitted.viscosity:g} Pa s, of the slips it was fitted to",
+                remedy="Fit one to full slips in this fluid, or take the full model (SoleFoot)",
+            )
 
     def motion(self, walker: Walker, *, step: float = STEP) -> SlipMotion:
         """Return the slip of a walker (see ``motion.slip_motion`` for the rules)."""
@@ -120,11 +159,25 @@ class ReducedSole:
             *(column[keep] for column in columns),
             status=Status.CONVERGED,
             model="reduced",
-            notes=still_sliding_notes(float(speed[end]), history.duration),
+            notes=(
+                *still_sliding_notes(float(speed[end]), history.duration),
+                *self._beyond(normals[keep], speed[keep], angles[keep]),
+            ),
         )
 
     def carried_at(self, motion: SlipMotion) -> tuple[Array, Array]:
-        """Return film load and friction (n,) if the foot moved as in ``motion``."""
+        """Return film load and friction (n,) if the foot moved as in ``motion``.
+
+        Raises:
+            InputError: Loads, speeds or angles beyond those of the runs it was fitted to.
+        """
+        beyond = self._beyond(motion.normal, motion.speed, motion.shoe_angle)
+        if beyond:
+            raise InputError(
+                "; ".join(beyond),
+                where="reduced model",
+                remedy="Take the full model (slip_study with full=True, SoleFoot)",
+            )
         out = self._carried(
             motion.time,
             motion.normal,
@@ -137,6 +190,27 @@ class ReducedSole:
             0.0,
         )
         return out[3], out[2]
+
+    def _beyond(self, normal: Array, speed: Array, angle: Array) -> tuple[str, ...]:
+        """Return what of a motion lies outside the runs behind the constants, in words."""
+        if self.fitted is None:
+            return ()
+        given = {"load": normal, "speed": speed, "shoe_angle": angle}
+        found = []
+        for name, (values, unit, scale) in {
+            "load": (given["load"], "N", 1.0),
+            "speed": (given["speed"], "m/s", 1.0),
+            "shoe_angle": (given["shoe_angle"], "deg", math.degrees(1.0)),
+        }.items():
+            low, high = getattr(self.fitted, name)
+            margin = MARGIN * (high - low)
+            if values.min() < low - margin or values.max() > high + margin:
+                found.append(
+                    f"{name.replace('_', ' ')} {scale * values.min():.3g} to "
+                    f"{scale * values.max():.3g} {unit} beyond the fit's {scale * low:.3g} to "
+                    f"{scale * high:.3g} {unit}"
+                )
+        return tuple(found)
 
     def _carried(
         self,
@@ -345,7 +419,11 @@ def fitted_reduced(
     assert best is not None
     progress("Fitting the reduced model", 0.6, None)
     best = improved(np.clip(best.x, lows + 1e-9, highs - 1e-9), POLISH)
-    sole = replace(blank, constants=constants(best.x))
+    sole = replace(
+        blank,
+        constants=constants(best.x),
+        fitted=FittedRange.of(setting.viscosity, [*runs, *held_out]),
+    )
     stuck = tuple(
         NAMES[i]
         for i, z, a, b in zip(free, best.x, lows, highs, strict=True)

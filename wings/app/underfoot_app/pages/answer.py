@@ -91,8 +91,8 @@ class _Answer:
 
     def _current(self) -> bool:
         """Return whether there is a result of what the file says now."""
-        found = self.session.project.summary(self.name)
-        return found is not None and found.case_hash == self.case.hash
+        summary = self.session.project.summary(self.name)
+        return summary is not None and summary.case_hash == self.case.hash
 
     def _follow(self, task: Task) -> None:
         self.run_button.disable()
@@ -127,12 +127,12 @@ class _Answer:
         with side:
             if not self._current():
                 ui.label(self.text("answer.changed")).classes("caution")
-            self.words = ui.element("div").props('aria-live="polite"')
+            self.summary = ui.element("div").props('aria-live="polite"')
             beside = self.session.query.get("beside", "")
             if beside in self.session.project.variants():
-                words = self.text("answer.beside", name=beside)
+                label = self.text("answer.beside", name=beside)
                 pair = address("/compare", variants=f"{beside}|{self.name}")
-                ui.link(words, pair).classes("strong")
+                ui.link(label, pair).classes("strong")
             self._live()
             self.help = ui.element("div")
         with self.place:
@@ -143,7 +143,7 @@ class _Answer:
     async def _answer(self) -> None:
         answer = await self.session.ask("underfoot_app.work:answer", str(self.folder))
         self.view.show(answer["html"])
-        with self.words:
+        with self.summary:
             self._headline(answer)
         with self.tables:
             self._tables(answer)
@@ -203,11 +203,11 @@ class _Answer:
         self.preview_cof = answer["cof"]
         cof, error = f"{answer['cof']:.3f}", f"{answer['error']:.3f}"
         load, slip = answer["fluid_load"], answer["slip"]
-        words = {
+        message = {
             "preview": self.text("answer.preview", cof=cof, error=error, fluid_load=load),
             "preview_note": "" if slip is None else self._risk(slip),
         }
-        return {"texts": words, "html": answer["html"]}
+        return {"texts": message, "html": answer["html"]}
 
     def _rested(self, changes: dict[str, Any]) -> None:
         """Start the full run of what the preview shows; give an earlier one up."""
@@ -235,8 +235,8 @@ class _Answer:
             self.behind.clear()
             with self.behind:
                 cof, before = f"{done.answer:.3f}", f"{self.preview_cof:.3f}"
-                words = self.text("answer.replaced", cof=cof, preview=before, off=f"{off:+.1f}")
-                ui.label(words).classes("strong")
+                message = self.text("answer.replaced", cof=cof, preview=before, off=f"{off:+.1f}")
+                ui.label(message).classes("strong")
                 keep = ui.button(self.text("answer.keep"), on_click=lambda: self._keep(folder))
                 keep.props("no-caps outline")
 
@@ -281,16 +281,16 @@ class _Answer:
             rest = [self._change(each, stored) for each in computed if each not in better]
             for each in stored["changes"]:
                 if each["cof"] is None:
-                    words = {"action": _capital(each["action"]), "reason": each["reason"]}
-                    rest.append(self.text("answer.not_computed", **words))
+                    message = {"action": _capital(each["action"]), "reason": each["reason"]}
+                    rest.append(self.text("answer.not_computed", **message))
             if rest:
                 with ui.expansion(self.text("answer.tried")).classes("soft"):
-                    for words in rest:
-                        ui.label(words).classes("soft")
+                    for message in rest:
+                        ui.label(message).classes("soft")
 
     def _change(self, each: dict[str, Any], now: dict[str, Any]) -> str:
         slip = now["slip_probability"]["value"]
-        words = self.text(
+        message = self.text(
             "answer.change",
             action=_capital(each["action"]),
             now=f"{now['cof']['value']:.3f}",
@@ -298,7 +298,7 @@ class _Answer:
             before=percent(slip),
             after=percent(each["slip_probability"]),
         )
-        return words.replace(" %", "\u00a0%")  # a narrow column must not part number and unit
+        return message.replace(" %", "\u00a0%")  # a narrow column must not part number and unit
 
     def _make(self, each: dict[str, Any]) -> None:
         wanted = f"{self.name}, {each['name'].replace('_', ' ')}"
@@ -306,5 +306,5 @@ class _Answer:
         self.session.go(ROUTE, variant=new, run="1", beside=self.name)
 
 
-def _capital(words: str) -> str:
-    return words[:1].upper() + words[1:]
+def _capital(sentence: str) -> str:
+    return sentence[:1].upper() + sentence[1:]

@@ -45,7 +45,7 @@ class _Compare:
             ):
                 button = ui.button(self.text(f"compare.{key}"), icon=icon, on_click=action)
                 button.props("flat no-caps dense")
-        self.words = ui.element("div").props('role="status"')
+        self.summary = ui.element("div").props('role="status"')
         self.sole = SoleView(session)
         self.rest = ui.element("div")
         self.rows: list[dict[str, Any]] = []
@@ -59,20 +59,20 @@ class _Compare:
         """Show what is chosen."""
         if len(self.choice.value) < 2:
             return
-        found = await self.session.ask(f"{WORK}:comparison", self.folders())
-        self.rows = found["rows"]
-        self.words.clear()
+        comparison = await self.session.ask(f"{WORK}:comparison", self.folders())
+        self.rows = comparison["rows"]
+        self.summary.clear()
         self.rest.clear()
-        self.sole.show(found["html"])
-        with self.words:
-            ui.label(" ".join(found["headline"])).classes("lead")
-            sentences(found["cautions"], "soft")
+        self.sole.show(comparison["html"])
+        with self.summary:
+            ui.label(" ".join(comparison["headline"])).classes("lead")
+            sentences(comparison["cautions"], "soft")
         with self.rest:
             self._sortable()
             letters = [row["letter"] for row in self.rows]
-            rows = [[a, *row] for a, row in zip(letters, found["chances"], strict=True)]
+            rows = [[a, *row] for a, row in zip(letters, comparison["chances"], strict=True)]
             table({"title": self.text("compare.chances"), "columns": ["", *letters], "rows": rows})
-            for each in found["tables"][-1:]:
+            for each in comparison["tables"][-1:]:
                 table(each)
 
     def _sortable(self) -> None:

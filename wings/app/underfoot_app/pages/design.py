@@ -155,11 +155,11 @@ class _Design:
 
     def _patterned(self, pattern: str) -> dict[str, Any]:
         case = self.session.project.case(self.name)
-        kept = {"shoe.tread.pattern": pattern}
+        changes = {"shoe.tread.pattern": pattern}
         for key, value in usual_tread(pattern).items():
             if case.value(f"shoe.tread.{key}") is None:
-                kept[f"shoe.tread.{key}"] = value
-        return kept
+                changes[f"shoe.tread.{key}"] = value
+        return changes
 
     def _keep(self, changes: dict[str, Any]) -> None:
         self.session.project.change(self.name, changes)
@@ -167,8 +167,8 @@ class _Design:
     async def _drawn(self, changes: dict[str, Any]) -> dict[str, Any]:
         path = str(self.session.project.path(self.name))
         answer = await self.session.ask("underfoot_app.work:sole", path, changes)
-        words = self.text("design.measures", **answer["measures"])
-        return {"html": answer["html"], "texts": {"measures": words}}
+        measures = self.text("design.measures", **answer["measures"])
+        return {"html": answer["html"], "texts": {"measures": measures}}
 
     def _condition(self, part: str, case: Case) -> None:
         entries = self._entries(KINDS[part], case.catalogue)
@@ -191,6 +191,6 @@ class _Design:
         """Return title by name of the entries that can stand in a case."""
         names: Sequence[str] = catalogue.names(kind)
         if kind == "setup":
-            found = (catalogue.entry(kind, name) for name in names)
-            names = [each.name for each in found if any("motion." in p for p in each.values)]
+            entries = (catalogue.entry(kind, name) for name in names)
+            names = [each.name for each in entries if any("motion." in p for p in each.values)]
         return {name: catalogue.entry(kind, name).title for name in names}

@@ -9,9 +9,10 @@ from nicegui import ui
 from ..components import drop_zone
 from ..session import Session
 
+COMPOUND = "shoe.material.file"
 FILES = {
-    "sole": {"shoe.roughness.file": ""},
-    "floor": {"floor.roughness.file": ""},
+    "sole": {"shoe.roughness.file": "", COMPOUND: ""},
+    "floor": {"floor.roughness.file": "", "rough_contact.file": ".npz"},
 }
 """Values of a case that name a measured file, by the part of the design, and what is accepted."""
 
@@ -32,7 +33,11 @@ def _place(
     used: Callable[[], None],
 ) -> None:
     async def arrived(paths: list[str]) -> None:
-        session.project.change(name, {path: f"../{paths[0]}"})
+        file = paths[0]
+        if path == COMPOUND and not file.endswith(".toml"):  # a test of the rubber
+            full = str(session.project.inside(file))
+            file = f"measured/{await session.ask('underfoot_app.work:compound', full)}"
+        session.project.change(name, {path: f"../{file}"})
         used()
 
     def leave() -> None:

@@ -70,12 +70,12 @@ class _Inspection:
                     self._choice(key, options)
                 solid = ui.input(self.text("sole_file.solid")).props("dense outlined")
                 solid.on("change", lambda: self._set("solid", (solid.value or "").strip() or None))
-            self.found = ui.element("div").props('aria-live="polite"')
+            self.reading = ui.element("div").props('aria-live="polite"')
         self._read()
 
     def _choice(self, key: str, options: tuple[str, ...]) -> None:
-        words = {each: self.text.get(f"sole_file.{each}", each) for each in options}
-        choice = ui.select(words, value=options[0], label=self.text(f"sole_file.{key}"))
+        labels = {each: self.text.get(f"sole_file.{each}", each) for each in options}
+        choice = ui.select(labels, value=options[0], label=self.text(f"sole_file.{key}"))
         choice.props("dense outlined options-dense")
         choice.on_value_change(lambda event: self._set(key, event.value))
 
@@ -84,8 +84,8 @@ class _Inspection:
         self._read()
 
     def _read(self) -> None:
-        self.found.clear()
-        with self.found:
+        self.reading.clear()
+        with self.reading:
             ui.label(self.text("sole_file.reading")).classes("soft")
             ui.timer(0, self._show, once=True)
 
@@ -97,13 +97,13 @@ class _Inspection:
         try:
             answer = await self.session.ask("underfoot_app.work:inspected_sole", file, settings)
         except Exception:
-            self.found.clear()
+            self.reading.clear()
             raise
-        self.found.clear()
+        self.reading.clear()
         self.view.show(answer["html"])
-        words = {"measures": " ".join(answer["headline"])}
-        ui.run_javascript(f"showTexts({as_json(words)})")
-        with self.found:
+        values = {"measures": " ".join(answer["headline"])}
+        ui.run_javascript(f"showTexts({as_json(values)})")
+        with self.reading:
             sentences(answer["headline"])
             use = ui.button(
                 self.text("sole_file.use"), on_click=lambda: self._use(answer["sha256"])

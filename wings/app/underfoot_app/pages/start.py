@@ -52,15 +52,15 @@ def _recent(session: Session) -> None:
     title(text("start.recent"), 2)
     with ui.element("div").classes("recent"):
         for name in names:
-            found = project.summary(name)
+            summary = project.summary(name)
             with ui.element("div").classes("recent-row"):
                 ui.link(name, address("/design", variant=name))
-                if found is None or found.cof is None:
+                if summary is None or summary.cof is None:
                     ui.label(text("start.not_computed")).classes("soft")
                     continue
-                words = text("start.cof", cof=f"{found.cof:.3f}")
-                if found.low is not None and found.high is not None:
-                    words += f" ({found.low:.3f} – {found.high:.3f})"
+                words = text("start.cof", cof=f"{summary.cof:.3f}")
+                if summary.low is not None and summary.high is not None:
+                    words += f" ({summary.low:.3f} – {summary.high:.3f})"
                 ui.link(words, address("/answer", variant=name))
 
 

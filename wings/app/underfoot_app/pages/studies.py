@@ -400,8 +400,8 @@ class _Rows:
 
     async def changed(self) -> None:
         """Write the section as its rows say; rows that say nothing yet are left out."""
-        said = dict(read() for read in self.rows)
-        await self.page.keep(self.section, {k: v for k, v in said.items() if k and v})
+        fields = dict(read() for read in self.rows)
+        await self.page.keep(self.section, {k: v for k, v in fields.items() if k and v})
 
 
 ALIASES = {"vary": (), "uncertain": (), "conditions": ("wear",)}

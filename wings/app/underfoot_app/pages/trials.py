@@ -140,8 +140,8 @@ class _Trials:
         folder = inside("trials", arriving)
         if not folder.is_dir():
             return ""
-        found = list(folder.iterdir())
-        one = found[0] if len(found) == 1 and found[0].is_dir() else folder
+        files = list(folder.iterdir())
+        one = files[0] if len(files) == 1 and files[0].is_dir() else folder
         wanted = self.session.text("trials.unnamed") if one is folder else one.name
         name = free_name(self.session.project, wanted)
         one.rename(inside("trials", name))

@@ -180,7 +180,7 @@ class TrialView:
 
         async def keep() -> None:
             if why.validate():
-                await self._kept({**(self.pending or {}), "why": (why.value or "").strip()})
+                await self._keep_edit({**(self.pending or {}), "why": (why.value or "").strip()})
 
         why.on("keydown.enter", keep)
         why.on("keydown.escape", self._discard)
@@ -196,7 +196,7 @@ class TrialView:
             with ui.element("div").classes("edit"):
                 ui.label(f"{entry['step']}: {_edit_words(entry)}. {entry['why']}")
                 take = ui.button(text("trials.take_back"))
-                take.on_click(partial(self._kept, {"step": number, "what": "take back"}))
+                take.on_click(partial(self._keep_edit, {"step": number, "what": "take back"}))
                 take.props("flat no-caps dense")
 
     async def _moved(self, event: GenericEventArguments) -> None:
@@ -209,7 +209,7 @@ class TrialView:
             self.pending = change
             self._fill(self.view)
 
-    async def _kept(self, change: dict[str, Any]) -> None:
+    async def _keep_edit(self, change: dict[str, Any]) -> None:
         if await self._answered(change, keep=True):
             self.study.done.append((self.view["before"], self.view["after"]))
             self.pending, self.study.undone = None, []

@@ -40,9 +40,15 @@ async function showPart(id, address) {
 }
 
 // Send files one after the other into a folder of the project; "files" says where they are.
-function takeFiles(id, { folder, most, multiple, accept }, words) {
+const unopened = new Map(); // places for files in tabs that were not opened yet
+new MutationObserver(() => unopened.forEach((given, id) => {
+  if (document.getElementById(id)) { unopened.delete(id); takeFiles(id, ...given); }
+})).observe(document.documentElement, { childList: true, subtree: true });
+
+function takeFiles(id, settings, words) {
+  const { folder, most, multiple, accept } = settings;
   const zone = document.getElementById(id), state = zone?.querySelector(".drop-state");
-  if (!zone) return; // filled anew meanwhile
+  if (!zone) { unopened.set(id, [settings, words]); return; }
   const input = Object.assign(document.createElement("input"), { type: "file", multiple, accept, hidden: true });
   zone.append(input);
   const say = (text, ...values) => { state.textContent = values.reduce((t, v, k) => t.replace(`%${k + 1}`, v), text); };

@@ -24,15 +24,15 @@ class Text:
 
     def __init__(self, language: str = "en") -> None:
         self.language = language
-        self._words = catalogue(language)
+        self._messages = catalogue(language)
 
     def __call__(self, key: str, **values: Any) -> str:
         """Return the words of a key with its placeholders filled."""
-        return self._words[key].format(**values)
+        return self._messages[key].format(**values)
 
     def get(self, key: str, otherwise: str) -> str:
         """Return the words of a key, or ``otherwise`` where there is none."""
-        return self._words.get(key, otherwise)
+        return self._messages.get(key, otherwise)
 
 
 @cache
@@ -49,8 +49,8 @@ def chosen_language(cookie: str | None, accepted: str) -> str:
 
 
 def _flat(table: Mapping[str, Any], start: str = "") -> dict[str, str]:
-    found: dict[str, str] = {}
+    flat: dict[str, str] = {}
     for key, value in table.items():
         path = f"{start}{key}"
-        found |= _flat(value, f"{path}.") if isinstance(value, Mapping) else {path: value}
-    return found
+        flat |= _flat(value, f"{path}.") if isinstance(value, Mapping) else {path: value}
+    return flat

@@ -8,7 +8,8 @@ TERMS = {
     "adhesion": "friction from breaking the bonds where the surfaces really touch; a contaminant "
     "blocks part of it (Eq. 26).",
     "hysteresis": "friction from the losses in rubber that floor asperities deform while sliding.",
-    "boundary lubrication": "the film carries no load: friction comes from touching asperities.",
+    "boundary lubrication": "touching asperities carry the load and make the friction; the film "
+    "carries less than a tenth of it.",
     "mixed lubrication": "load shared between touching asperities and fluid pressure.",
     "full film": "the fluid carries all of the load; friction is only its shear.",
     "regime": "who carries the load. By lambda: a smooth film over undeformed roughness, boundary "

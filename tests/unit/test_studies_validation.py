@@ -7,8 +7,8 @@ import pytest
 
 from underfoot.core import ConvergenceError
 from underfoot.film import Upwinding, face_operator
-from underfoot.questions import validation
 from underfoot.sole_contact import march, newton
+from underfoot.studies import validation
 
 CORNERS = (30e-3, 30.3e-3, 30.6e-3, 30.97e-3)
 

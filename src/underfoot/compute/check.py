@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from underfoot.case import assumptions
 from underfoot.case.describe import tested_range_breaches
-from underfoot.compute.positions import run_cost
-from underfoot.compute.resolve import resolved
-from underfoot.compute.sole import outsole_notes
-from underfoot.compute.summary import ranked_assumptions
 from underfoot.core import InputError
 from underfoot.core.presentation import Presentable, Table
 from underfoot.sole_contact.cost import Cost, megabytes
+
+from .positions import run_cost
+from .resolve import resolved
+from .sole import outsole_notes
+from .summary import ranked_assumptions
 
 if TYPE_CHECKING:
     from underfoot.case import Case
@@ -25,7 +26,7 @@ USUAL_AREA = 2e-3
 """m^2: a heel touches on some 20 cm2, for the pressure at which ranges are checked."""
 DEAR = {
     "finite_element": "The finite-element sole takes up to a minute and 2 GB more, once.",
-    "contact_table": "The contact table takes minutes more, once.",
+    "contact_table": "The contact table takes about 10 s more, once.",
     "history": "A history takes several times as long.",
 }
 """Extra cost of the options that are dear, by their name."""
@@ -52,9 +53,11 @@ class CaseCheck(Presentable):
     def headline(self) -> tuple[str, ...]:
         case = self.case
         options = (case.compliance.name, case.rough_contact.name, case.motion.name)
+        made = not case.value("rough_contact.file")
+        dear = [name for name in options if name in DEAR and (made or name != "contact_table")]
         return (
             f"Cost: {self.full}, on one core; with --quick {self.quick}.",
-            *(DEAR[name] for name in options if name in DEAR),
+            *(DEAR[name] for name in dear),
         )
 
     def cautions(self) -> tuple[str, ...]:
@@ -96,7 +99,10 @@ def case_check(case: Case) -> CaseCheck:
     """Return what is known of a case before it is computed."""
     breaches, refusal = [*tested_range_breaches(case)], ""
     try:
-        law = case.friction.build(resolved(case))
+        context = resolved(case)
+        if not case.value("rough_contact.file"):  # a check computes no contact
+            context = replace(context, rough_contact=lambda _: None)
+        law = case.friction.build(context)
         local = {
             "contact_pressure": np.array([case.motion.normal_force / USUAL_AREA]),
             "speed": case.motion.speed,

@@ -3,31 +3,29 @@
 import inspect
 import re
 import sys
+import textwrap
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from importlib import import_module
 from typing import Any
 
-from underfoot.case import paths, unit_at
-from underfoot.case.parts import field_at
-from underfoot.case.quantity import default_of
-from underfoot.case.section import quantity_of
-from underfoot.core import display, unknown_name
+from underfoot.core import InputError, display, unknown_name
 from underfoot.core.catalogue import Catalogue
 
+from .equations import EQUATIONS
+from .parts import field_at, paths, unit_at
+from .quantity import default_of
+from .section import quantity_of
 from .terms import TERMS
 
 WIDTH = 80
 """Characters of a line in a list of formulas."""
 FIRST_SCREEN = 20
 """Lines of a docstring in the short form."""
-LAST_EQUATION = 27
-"""Of the report; other numbers belong to other papers."""
 ROOMS = (
     "reference material surface fluid rough_contact film friction shoe sole_contact slip trials"
 ).split()
 _EQUATION = re.compile(r"eq(?:uation)?\.?\s*\(?(\d+)\)?", re.IGNORECASE)
-_IN_TEXT = re.compile(r"Eqs?\.\s*\(?(\d+)\)?(?:\s*(to|-|,|and)\s*\(?(\d+)\)?)?")
 _SOURCE = re.compile(r"Source: .*?(?=\n\n|$)", re.DOTALL)
 _SECTION = re.compile(r"\n\n(?=[A-Z][a-z]+(?::\n|\n-{3,}))")
 
@@ -51,7 +49,7 @@ def explanation(name: str, catalogue: Catalogue, *, full: bool = False) -> str:
     parameters, notes and errors.
 
     Raises:
-        InputError: An unknown name, with the nearest one.
+        InputError: An unknown name, with the nearest one; an equation that the report has not.
     """
     parts = []
     if name.casefold() in TERMS:
@@ -61,6 +59,13 @@ def explanation(name: str, catalogue: Catalogue, *, full: bool = False) -> str:
     if key := _key(name):
         parts.append(key)
     closures = dict(_closures())
+    if (equation := _EQUATION.fullmatch(name.strip())) is not None:
+        number = int(equation.group(1))
+        if number not in EQUATIONS:
+            raise InputError(
+                name, where="explain", allowed=f"Eq. 1 to Eq. {len(EQUATIONS)} of the report"
+            )
+        return _equation(number, closures)
     chosen = [name] if name in closures else _named(name, closures)
     main = [each for each in chosen if name.replace("_", "").casefold() in each.casefold()]
     if len(chosen) > 1 and len(main) == 1:
@@ -108,11 +113,7 @@ def _closures() -> Iterator[tuple[str, Any]]:
 
 
 def _named(name: str, closures: Mapping[str, Any]) -> list[str]:
-    """Return the formulas of a word, an author or an equation of the report."""
-    equation = _EQUATION.fullmatch(name.strip())
-    if equation is not None:
-        number = int(equation.group(1))
-        return [closure for closure, item in closures.items() if number in equations(item)]
+    """Return the formulas of a word or an author."""
     word = name.casefold()
     return [
         closure
@@ -123,16 +124,29 @@ def _named(name: str, closures: Mapping[str, Any]) -> list[str]:
 
 
 def equations(item: Any) -> list[int]:
-    """Return the equations of the report that the docstring of a formula names."""
-    document = inspect.getdoc(item) or ""
-    module = inspect.getdoc(inspect.getmodule(item)) or ""
-    texts = (document.partition("\n\n")[0], document, module)
-    text = next((part for part in texts if _IN_TEXT.search(part)), "")
-    numbers: set[int] = set()
-    for match in _IN_TEXT.finditer(text):
-        first, last = int(match.group(1)), int(match.group(3) or match.group(1))
-        numbers |= {first, last} if match.group(2) == "," else set(range(first, last + 1))
-    return sorted(number for number in numbers if number <= LAST_EQUATION)
+    """Return the equations of the report that a public formula computes."""
+    name = f".{getattr(item, '__name__', '')}"
+    return [
+        number
+        for number, equation in EQUATIONS.items()
+        if any(path.endswith(name) for path in equation.code)
+    ]
+
+
+def _equation(number: int, closures: Mapping[str, Any]) -> str:
+    """Return an equation of the report with its place and the formulas that compute it."""
+    equation = EQUATIONS[number]
+    lines = [f"Eq. {number} of the report ({equation.place}): {equation.title}"]
+    if equation.code:
+        lines.append(f"  {equation.formula}")
+    if equation.note:
+        lines.append(f"  ({equation.note})")
+    for path in equation.code:
+        name = path.rpartition(".")[2]
+        see = f": underfoot explain {name}" if name in closures else ""
+        lines.append(f"Computed by {path}{see}")
+    folded = [textwrap.fill(line, WIDTH, subsequent_indent="    ") for line in lines]
+    return "\n".join(folded)
 
 
 def _equation_text(numbers: list[int]) -> str:

@@ -1,0 +1,127 @@
+"""docs/studies/report.md: rows, sentences and equations, each with what shows it."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from underfoot.case.equations import EQUATIONS
+from underfoot.core.catalogue import Catalogue
+from underfoot.studies import studies, study
+from underfoot.trials.protocols import protocol
+from underfoot_studies import report_ledger
+
+ROOT = Path(__file__).parents[2]
+FOLDER = ROOT / "docs" / "studies"
+ROWS = report_ledger.rows()
+STATEMENTS = {one.name for name in studies() for one in study(name).statements}
+FIGURES = {
+    number: (file, remark) for name in studies() for number, _, file, remark in study(name).figures
+}
+ERRATA = {where for name in studies() for where, *_ in study(name).errata}
+
+
+def command_exists(words):
+    from typer.main import get_command
+
+    from underfoot.cli.app import app
+
+    group = get_command(app)
+    for word in words.split():
+        group = group.get_command(None, word)
+        if group is None:
+            return False
+    return True
+
+
+def exists(kind, name):
+    if kind == "eq":
+        return int(name) in EQUATIONS
+    if kind == "statement":
+        return name in STATEMENTS
+    if kind == "figure":
+        return bool(FIGURES[int(name)][0])
+    if kind == "test":
+        return (ROOT / name).is_file()
+    if kind == "command":
+        return command_exists(name)
+    if kind == "entry":
+        return any(entry == name for _, entry in Catalogue.load().entries)
+    if kind == "protocol":
+        return protocol(name) is not None
+    return kind == "erratum" and name in ERRATA
+
+
+def test_all_rows_of_the_report_are_there_once():
+    assert [row.number for row in ROWS] == [
+        *map(str, range(1, 82)), "81b", *map(str, range(82, 97))
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.number)
+def test_a_row_has_what_shows_it_and_a_cause_where_it_falls_short(row):
+    assert row.evidence
+    for kind, name in row.evidence:
+        assert exists(kind, name), f"{kind} {name}"
+    assert (row.rating == "works") == (not row.cause)
+    for command in re.findall(r"underfoot ((?:[a-z]+ ?)+)", row.how):
+        first = command.split()[0]
+        assert command_exists(first), row.how
+
+
+def test_ninety_rows_work_and_every_other_has_its_cause():
+    assert sum(row.rating == "works" for row in ROWS) >= 90
+
+
+def test_each_sentence_of_the_conclusions_is_judged():
+    told = report_ledger.sentences()
+    assert len(told) == 14
+    for one in told:
+        assert one.stands in report_ledger.STANDS
+        assert one.finds
+        assert one.why
+        for name in re.findall(r"\bg\d\.\w+", one.sources):
+            assert name in STATEMENTS, name
+        if one.stands != "with":
+            assert one.decides != "-", one.text
+
+
+def test_the_numbers_say_what_the_sentences_say():
+    """Signs that the text claims, read from the law as it is."""
+    n = report_ledger.default_numbers()
+    assert n["oil_soft"] > n["oil_hard"]
+    assert n["oil_smooth"] == pytest.approx(n["oil_rough"], rel=0.02)
+    assert n["oil_floor_rough"] > 1.2 * n["oil_floor_smooth"]
+    assert n["dry_soft_smooth"] > 2 * n["dry_hard_rough"]
+    assert n["water_rough"] > 2 * n["water_smooth"]
+    assert n["water_light"] == pytest.approx(n["water_heavy"], rel=1e-6)
+    assert n["adhesion_hard"] > n["adhesion_soft"] > n["adhesion_pu"]
+    assert n["glycerol_soft"] > n["glycerol_hard"]
+    assert n["lambda_canola"] == pytest.approx(3.07, abs=0.01)
+
+
+def test_the_page_is_what_the_command_writes():
+    text = (FOLDER / "summary.md").read_text(encoding="utf-8")
+    verdicts = report_ledger.summary_verdicts(text)
+    assert (FOLDER / "report.md").read_text(encoding="utf-8") == report_ledger.markdown(verdicts)
+
+
+BOUNDED = re.compile(r"COF|share|slip|distance|load|pressure|adhesion|risk", re.IGNORECASE)
+SIGNED = re.compile(r"correlation|slope|change|ACOF - RCOF|half slip", re.IGNORECASE)
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+
+
+def test_no_interval_of_a_positive_quantity_goes_below_zero():
+    """COF, shares, distances, loads: an interval "a (b to c)" has no b below 0.
+
+    Changes carry their sign and are exempt: their value is written with + or -.
+    """
+    assert len(PAGES) > 50
+    found = []
+    for page in PAGES:
+        for line in page.read_text(encoding="utf-8").splitlines():
+            if not BOUNDED.search(line) or SIGNED.search(line):
+                continue
+            ends = re.findall(r"(?<![\d.])([+-]?[\d.]+) \((-[\d.]+) to", line)
+            found += [f"{page.name}: {line[:120]}" for value, _ in ends if value[0] not in "+-"]
+    assert not found, found
