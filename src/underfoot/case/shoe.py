@@ -268,7 +268,7 @@ class Certificate(Section):
     kind: str = "lower"
     sd: CertifiedFriction | None = optional("standard deviation of a value of COF")
 
-    def reading(self, where: str = "shoe.certificate") -> "Certified":
+    def reading(self, where: str = "shoe.certificate") -> Certified:
         """Return the reading."""
         from underfoot.friction.shoe_class import certified
 
@@ -295,7 +295,7 @@ class Shoe(_Classed):
     sole: SoleLayers = SoleLayers()
     certificate: tuple[Certificate, ...] = ()
 
-    def known_class(self) -> "ShoeClass | None":
+    def known_class(self) -> ShoeClass | None:
         """Return what the slip class and the certificates say of the sole; None: nothing."""
         from underfoot.friction.shoe_class import ShoeClass, shoe_class
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.stats import binom
@@ -83,13 +84,13 @@ def share(one: Slips, slope: Array, half: Array, u: Array) -> Array:
     return np.broadcast_to(np.array(found), (slope.size, u.size))
 
 
-def predicted(sources: Sequence[Slips]) -> list[dict[str, object]]:
+def predicted(sources: Sequence[Slips]) -> list[dict[str, Any]]:
     """Return each share as predicted from the other publications, with the report's own curve."""
     slope, half, prior = _grid()
     z = np.linspace(-2.5, 2.5, 15)
     errors, weight = SD_SOURCE * z, np.exp(-0.5 * z**2) / np.exp(-0.5 * z**2).sum()
     shares = [share(one, slope, half, errors) for one in sources]
-    rows: list[dict[str, object]] = []
+    rows: list[dict[str, Any]] = []
     for one, own in zip(sources, shares, strict=True):
         log_weight = np.log(prior)
         for name in dict.fromkeys(other.source for other in sources):
