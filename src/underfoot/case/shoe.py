@@ -275,12 +275,9 @@ class Certificate(Section):
         return certified(self.test, self.cof, self.kind, self.sd, where)
 
 
-_Classed = create_model(
-    "_Classed",
-    __base__=Section,
-    # a word of Python: the field can't be written below
-    **{"class": (str | None, optional("slip class: EN ISO 20345 SR, ASTM F3445 SR, ..."))},
-)
+# a word of Python: the field can't be written below
+_FIELDS: Any = {"class": (str | None, optional("slip class: EN ISO 20345 SR, ASTM F3445 SR, ..."))}
+_Classed = create_model("_Classed", __base__=Section, **_FIELDS)
 
 
 class Shoe(_Classed):

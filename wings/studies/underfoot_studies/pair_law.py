@@ -545,7 +545,7 @@ def scored(draws: Array, conditions: Sequence[Condition]) -> Score:
     for level in (0.5, 0.95):
         low, high = np.quantile(draws, [(1 - level) / 2, (1 + level) / 2], axis=0)
         flags.append((low <= highs) & (high >= lows))
-    return Score(log_density, nearest - median, *flags, high - low)
+    return Score(log_density, nearest - median, flags[0], flags[1], high - low)
 
 
 @dataclass(frozen=True, slots=True)
