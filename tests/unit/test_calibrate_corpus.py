@@ -35,15 +35,32 @@ def test_every_packaged_source_has_its_reference_and_computable_conditions():
     assert len(sources) >= 20
     assert len({source.reference for source in sources}) == len(sources)
     conditions = [condition for source in sources for condition in source.conditions]
-    assert len(conditions) >= 50
+    assert len(conditions) >= 90
+    assert len({condition.laboratory for condition in conditions}) >= 18
     for condition in conditions:
         for member in condition.members or (condition,):
             assert {"shore_a", "sole_rq", "floor_rq", "speed"} <= set(member.numbers), condition.id
             for name, span in member.numbers.items():
-                assert 0 < span.low <= span.high, (condition.id, name)
+                least = 0.0 if name == "shoe_angle" else 1e-9
+                assert least <= span.low <= span.high, (condition.id, name)
         low, high = condition.reading.low, condition.reading.high
         assert 0 <= low <= high
         assert condition.reading.kind in KINDS
+
+
+def test_readings_stand_in_a_sentence():
+    """The report's own tables are named at their head, two abstracts print a table alone."""
+    without = {"moore_2012", "strobel_2012", "report_g6", "liu_2013", "mcgorry_2010"}
+    for source in corpus():
+        for condition in source.conditions:
+            assert condition.words.get("quote") or source.name in without, condition.id
+
+
+def test_laboratories_are_named_or_are_their_source(tmp_path):
+    path = written(tmp_path, GOOD)
+    assert read_source(path).conditions[0].laboratory == "someone_2020"
+    path.write_text(GOOD.replace('read = "abstract"', 'read = "abstract"\nlaboratory = "A"'))
+    assert read_source(path).conditions[0].laboratory == "A"
 
 
 def test_a_value_and_an_open_range_are_read_in_si(tmp_path):

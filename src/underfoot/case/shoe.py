@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, create_model
 
 from underfoot.core import InputError, RangeError, display, nearest_match
 from underfoot.core.registry import offered
@@ -34,6 +34,7 @@ from .tables import meant_file, plain, with_checksum
 from .wear import Wear
 
 if TYPE_CHECKING:
+    from underfoot.friction.shoe_class import Certified, ShoeClass
     from underfoot.material import RelaxationSpectrum
 
 Modulus = Annotated[float, Quantity("Pa", 1e4, 1e12)]
@@ -42,6 +43,7 @@ TermModulus = Annotated[float, Quantity("Pa", 0.0, 1e12, open_low=True)]
 RelaxationTime = Annotated[float, Quantity("s", 0.0, 1e12, open_low=True)]
 Hardness = Annotated[float, Quantity("1", 0.0, 100.0, open_low=True)]
 Poisson = Annotated[float, Quantity("1", 0.0, 0.5)]
+CertifiedFriction = Annotated[float, Quantity("1", 0.0, 5.0, open_low=True)]
 LossTangent = Annotated[float, Quantity("1", 0.0, 3.0, open_low=True)]
 Density = Annotated[float, Quantity("kg/m^3", 10.0, 3e4)]
 Direction = Literal["auto", "flip", "+x", "-x", "+y", "-y", "+z", "-z"]
@@ -258,8 +260,28 @@ class OutsoleFile(Section):
             )
 
 
-class Shoe(Section):
-    """Shoe: compound, surface, shape (or outsole file), tread, wear, layers."""
+class Certificate(Section):
+    """What a test house read of the sole: a bound or a value of COF in one of its tests."""
+
+    test: str
+    cof: CertifiedFriction
+    kind: str = "lower"
+    sd: CertifiedFriction | None = optional("standard deviation of a value of COF")
+
+    def reading(self, where: str = "shoe.certificate") -> Certified:
+        """Return the reading."""
+        from underfoot.friction.shoe_class import certified
+
+        return certified(self.test, self.cof, self.kind, self.sd, where)
+
+
+# a word of Python: the field can't be written below
+_FIELDS: Any = {"class": (str | None, optional("slip class: EN ISO 20345 SR, ASTM F3445 SR, ..."))}
+_Classed = create_model("_Classed", __base__=Section, **_FIELDS)
+
+
+class Shoe(_Classed):
+    """Shoe: slip class, compound, surface, shape (or outsole file), tread, wear, layers."""
 
     material: Material
     roughness: SurfaceRoughness
@@ -268,6 +290,34 @@ class Shoe(Section):
     tread: TreadPattern | None
     wear: Wear = Field(default={}, validate_default=True)
     sole: SoleLayers = SoleLayers()
+    certificate: tuple[Certificate, ...] = ()
+
+    def known_class(self) -> ShoeClass | None:
+        """Return what the slip class and the certificates say of the sole; None: nothing."""
+        from underfoot.friction.shoe_class import ShoeClass, shoe_class
+
+        name = getattr(self, "class")
+        lines = tuple(line.reading() for line in self.certificate)
+        if name is None:
+            return ShoeClass("as certified", "shoe.certificate", lines) if lines else None
+        known = shoe_class(name)
+        return replace(known, readings=(*known.readings, *lines)) if lines else known
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        from underfoot.friction.shoe_class import exclusive
+
+        try:
+            known = self.known_class()
+        except InputError as error:
+            yield error
+            return
+        both = None if known is None or known.fails else exclusive(known.readings)
+        if both:
+            yield InputError(
+                f"{both[0]} and {both[1]} exclude each other",
+                where=f"{where}.certificate",
+                remedy="Leave out the bound that is not of this sole",
+            )
 
     @classmethod
     def completed(cls, table: dict[str, Any], folder: Path, where: str) -> dict[str, Any]:

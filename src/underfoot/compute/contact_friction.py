@@ -20,6 +20,7 @@ from underfoot.friction import (
 )
 from underfoot.friction.propagation import named_shares, normal_draws
 from underfoot.friction.sampled_cof import SAMPLES
+from underfoot.friction.shoe_class import of_class
 from underfoot.friction.tread_error import SharedError, tread_error
 from underfoot.shoe import SoleMap
 from underfoot.shoe.tread_place import tread_place
@@ -28,6 +29,7 @@ from underfoot.sole_contact.sole_state import CellState, SoleState
 from underfoot.sole_contact.solver import SoleContact
 
 from . import numbers
+from .sole import sole_map
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,6 +146,17 @@ def sole_errors(case: Case, context: Context) -> dict[str, SharedError]:
     """
     film = SharedError(f"film load, {numbers.heel_name(case)}", numbers.FILM_ERROR)
     return {"film_error": film, "tread_error": tread_error(context.viscosity_value)}
+
+
+def of_known_class(law: FrictionLaw, case: Case, sole: SoleMap) -> FrictionLaw:
+    """Return the law of the pair with what the slip class and certificates of the shoe say."""
+    known = case.shoe.known_class()
+    if known is None or not isinstance(law, PairContactLaw):
+        return law
+    if case.shoe.wear.depth > 0:  # the new sole was tested
+        case = case.replace("shoe.wear.depth", 0.0)
+        sole = sole_map(case, sole.spacing)
+    return of_class(law, known, place_of_tread(case, sole), case.numerics.seed).law
 
 
 def with_known_tread(law: FrictionLaw, case: Case, context: Context, sole: SoleMap) -> FrictionLaw:

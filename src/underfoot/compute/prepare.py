@@ -21,7 +21,7 @@ from underfoot.slip.model import SlipModel
 from underfoot.sole_contact.compliance import Compliance
 from underfoot.sole_contact.lug_edges import EdgedLaw, lug_edges
 
-from .contact_friction import with_known_tread
+from .contact_friction import of_known_class, with_known_tread
 from .resolve import resolved, turned
 from .sole import sole_map
 
@@ -95,6 +95,8 @@ def prepared(
     film = objects["film"] if "film" in objects else case.film.build(context)
     law = chosen("friction", lambda: case.friction.build(context))
     sole = geometry[0] if geometry else sole_map(case, spacing, progress)
+    if "friction" not in objects:
+        law = of_known_class(law, case, sole)
     law = with_known_tread(law, case, context, sole)
     if film is not None and not isinstance(film, NewtonianFilm):
         law = FilmShearLaw(law, with_members("film", film, "film.model"))

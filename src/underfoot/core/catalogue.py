@@ -240,8 +240,8 @@ def _folder_tables(folder: Path, *, built_in: bool = False) -> _Tables:
         raise InputError(what, allowed="a folder with TOML files")
     tables: _Tables = {}
     for file in sorted(folder.rglob("*.toml")):
-        # The corpus of measurements is read by its own room.
-        if built_in and file.parent.name == "measurements":
+        # The corpus of measurements and the classes of shoes are read by their own rooms.
+        if built_in and file.parent.name in ("measurements", "friction"):
             continue
         origin = BUILT_IN if built_in else str(file)
         for kind, entries in read_toml(file).items():

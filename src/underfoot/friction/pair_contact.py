@@ -196,7 +196,8 @@ class PairDraws:
 
     ``sd_laboratory``, ``sd_dry_part``, ``sd_pair``, ``sd_reading`` are the standard deviations of
     the errors of a laboratory, of its dry-like part, of a pair and of a reading. ``errors`` holds
-    those that readings of one laboratory determined, by name; the others are drawn.
+    those that readings of one laboratory determined, by name; the others are drawn. ``basis`` says
+    what the draws are those of, ``notes`` what a user should know of them.
     """
 
     constants: PairConstants
@@ -206,6 +207,8 @@ class PairDraws:
     sd_reading: Array
     errors: Mapping[str, Array] = field(default_factory=dict)
     source: str = SOURCE
+    basis: str = ""
+    notes: tuple[str, ...] = ()
 
     @property
     def count(self) -> int:
@@ -216,7 +219,7 @@ class PairDraws:
         """Return the draws of some rows."""
         at = np.asarray(index)
         columns = {name: values[at] for name, values in self.columns().items()}
-        return _from_columns(columns, self.source)
+        return replace(_from_columns(columns, self.source), basis=self.basis, notes=self.notes)
 
     def error(self, name: str, deviation: Array, seed: int) -> Array:
         """Return the error of ln COF with a name: as determined, or drawn.
@@ -323,6 +326,11 @@ class Pair:
         return f"pair: {compound} on Rq {floor}, {self.family}"
 
     @property
+    def sole_roughness(self) -> str:
+        """Name of the share, 0 to 1, of the range of the sole's roughness, where one is known."""
+        return f"sole_rq {self.sole_rq[0]:.3g} {self.sole_rq[1]:.3g}"
+
+    @property
     def _rq(self) -> tuple[tuple[float, float], tuple[float, float]]:
         return self.sole_rq, self.floor_rq
 
@@ -334,7 +342,9 @@ class Pair:
         }
         spans = {"sole_rq": self.sole_rq, "floor_rq": self.floor_rq}
         for name, (low, high) in (spans | {"loss_tangent": self.loss_tangent}).items():
-            share = named_shares(seed, f"{name} {low:.3g} {high:.3g}", draws.count)
+            subject = f"{name} {low:.3g} {high:.3g}"
+            share = draws.errors.get(subject)
+            share = named_shares(seed, subject, draws.count) if share is None else share
             numbers[name] = low * (high / low) ** share
         for name in ("hysteresis", "full_contact", "sole_slope", "floor_slope"):
             if getattr(self, name) is not None:
@@ -370,7 +380,7 @@ class PairContactLaw(UncertainInputs):
     draws: PairDraws = field(default_factory=packaged_pair_draws)
     medians: Mapping[str, float] = field(default_factory=dict)
     name: str = field(default="pair", init=False)
-    spread_basis: str = field(default="of a pair that was not measured", init=False)
+    spread_basis: str = field(default="of a pair that was not measured, any shoe", init=False)
 
     def __post_init__(self) -> None:
         if self.viscosity is not None:
@@ -387,11 +397,14 @@ class PairContactLaw(UncertainInputs):
         if not self.medians:
             drawn = self.pair.drawn(self.draws, 0)
             medians = {name: float(np.median(values)) for name, values in drawn.items()}
-            if not self.draws.errors:  # the median of many draws of a symmetric error is 1
-                medians |= {"laboratory": 1.0, "pair": 1.0}
+            # the median of many draws of a symmetric error is 1
+            for name, error in (("laboratory", LABORATORY), ("pair", self.pair.compound_and_floor)):
+                if error not in self.draws.errors:
+                    medians[name] = 1.0
             object.__setattr__(self, "medians", medians)
-        if self.draws.errors:
-            object.__setattr__(self, "spread_basis", "calibrated to readings")
+        basis = self.draws.basis or ("calibrated to readings" if self.draws.errors else "")
+        if basis:
+            object.__setattr__(self, "spread_basis", basis)
 
     @property
     def full_contact(self) -> float:
@@ -411,8 +424,8 @@ class PairContactLaw(UncertainInputs):
     @property
     def assumptions(self) -> tuple[str, ...]:
         """What no measurement stands behind."""
-        words = []
-        if not self.draws.errors:
+        words = [*self.draws.notes]
+        if LABORATORY not in self.draws.errors:
             words.append(
                 "friction.pair: contact friction of this pair was not measured; a reading of your "
                 "own narrows it (underfoot calibrate pair)."

@@ -1,10 +1,12 @@
-"""Everybody's measurements: each source predicted from all others; effects from whole cases."""
+"""Everybody's measurements: each laboratory predicted from all others; effects from whole cases."""
 
 from __future__ import annotations
 
+import inspect
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +16,8 @@ from underfoot.case import Case
 from underfoot.compute.run import run
 from underfoot.core import UnderfootError, content_hash
 from underfoot.core.arrays import Array
+from underfoot.friction import packaged_pair_draws, pair_contact
+from underfoot.friction.tread_error import tread_pairs
 from underfoot.studies.figure import PRINTED, Figure, Panel, line, points
 from underfoot.studies.runner import Computed, Options, Table, kept, part
 from underfoot.studies.verdict import Quantity
@@ -26,42 +30,69 @@ from .corpus_cases import (
     whole_shoe_stands,
 )
 from .pair_law import (
+    FEATURE_RIVALS,
     LAWS,
     CorpusScore,
+    LaboratoryScore,
     PairPosterior,
-    SourceScore,
     corpus_score,
     fitted,
+    laboratory_left_out,
     law_named,
+    middle,
+    r2,
     scored,
-    source_left_out,
 )
+from .slips import POINTS, predicted, published
 from .sources import Condition, Reading, corpus
 
 STATEMENTS = Path(__file__).with_name("corpus.toml")
 
-STEPS, QUICK_STEPS = 600, 150
-"""Of the sampler's walkers."""
-LAW = "pair"
-QUICK_LAWS = ("one constant", LAW)
+STEPS, QUICK_STEPS = 400, 150
+"""A fifth of the sampler's points."""
+LAW, PRIORS, REPORT = "pair", "pair, priors alone", "report"
+"""REPORT is the laboratory of the report's own studies; everybody else is scored beside all."""
+QUICK_LAWS = ("one constant", *FEATURE_RIVALS, PRIORS, LAW)
 QUICK_SOURCES = ("khaday_2021", "li_2006", "mohamed_2011", "report_g6", "strobel_2012")
 """Whose effects and whole shoes the quick form computes."""
 NEVER_ABSENT = {"hardness", "roughness", "groove direction", "depth", "edge radius"}
+HUMAN_SLIPS = {
+    "name": "human slips, treaded (G.5)",
+    "shoe": "slip_resistant_shoe_treaded",
+    "floor": "vinyl_g4",
+    "contaminant": "glycerol_90pct",
+    "motion": {"from": "slip_tester_g4"},
+}
+CASES = "corpus_cases-2"
+FEWEST_VALUES = 3
+"""Of a source for an R2 about its own mean: of two, an order is all there is."""
+CODE = ("pair_law.py", "sources.py")
+"""What the fits depend on beside the readings and the law."""
+
+
+@cache
+def draws_hash() -> str:
+    """Return the content of the packaged draws of the law."""
+    return content_hash(packaged_pair_draws().columns())
 
 
 @dataclass(frozen=True, slots=True)
 class Split:
-    """A law and the source that is left out of its fit."""
+    """A law and the laboratory that is left out of its fit."""
 
     law: str
-    source: str
+    laboratory: str
     steps: int
 
 
 def draws_of(split: Split) -> Mapping[str, Any]:
-    """Return the draws of ln COF of the source that is left out, and their mean without errors."""
-    left = source_left_out(law_named(split.law), readings(), split.source, steps=split.steps)
-    return {"draws": left.draws, "expected": left.expected}
+    """Return draws of ln COF of the laboratory left out, their mean, and the rest of each source
+    given one of its readings."""
+    law = split.law if split.law in FEATURE_RIVALS else law_named(split.law.split(", priors")[0])
+    left = laboratory_left_out(
+        law, readings(), split.laboratory, steps=split.steps, data=split.law != PRIORS
+    )
+    return {"draws": left.draws, "expected": left.expected, "after": left.after}
 
 
 def readings() -> list[Condition]:
@@ -72,55 +103,83 @@ def readings() -> list[Condition]:
 def compute(options: Options) -> Computed:
     """Return the score of each law, the prediction of each reading and the constants."""
     conditions = readings()
-    sources = list(dict.fromkeys(c.source for c in conditions))
+    laboratories = list(dict.fromkeys(c.laboratory for c in conditions))
     steps = QUICK_STEPS if options.quick else STEPS
-    names = QUICK_LAWS if options.quick else tuple(law.name for law in LAWS)
-    splits = [Split(name, source, steps) for name in names for source in sources]
-    content = content_hash([repr(c) for c in conditions])
-    keys = [content_hash(asdict(split), content, options.seed) for split in splits]
-    results: dict[tuple[str, str], SourceScore] = {}
+    every = (*(law.name for law in LAWS[:-1]), *FEATURE_RIVALS, PRIORS, LAW)
+    names = QUICK_LAWS if options.quick else every
+    splits = [Split(name, laboratory, steps) for name in names for laboratory in laboratories]
+    code = [(STATEMENTS.parent / name).read_text(encoding="utf-8") for name in CODE]
+    code += [inspect.getsource(pair_contact), [repr(pair) for pair in tread_pairs()]]
+    content = content_hash([repr(c) for c in conditions], *code)
+    keys = [content_hash(asdict(split), content) for split in splits]
+    results: dict[tuple[str, str], LaboratoryScore] = {}
     fits = part(options.progress, 0.0, 0.5)
     work = kept("corpus-3", draws_of, splits, keys, processes=options.processes)
     for number, (split, arrays) in enumerate(work, start=1):
-        fits("leaving one source out", number / len(splits))
-        own = tuple(c for c in conditions if c.source == split.source)
-        results[split.law, split.source] = SourceScore(
-            split.source, own, score=scored(arrays["draws"], own), **arrays
+        fits("leaving one laboratory out", number / len(splits))
+        own = tuple(c for c in conditions if c.laboratory == split.laboratory)
+        results[split.law, split.laboratory] = LaboratoryScore(
+            split.laboratory, own, score=scored(arrays["draws"], own), **arrays
         )
-    scores = [corpus_score(name, [results[name, source] for source in sources]) for name in names]
+
+    def score(name: str, left: Sequence[str]) -> CorpusScore:
+        return corpus_score(name, [results[name, one] for one in left])
+
+    others = [one for one in laboratories if one != REPORT]
+    scores = {name: (score(name, others), score(name, laboratories)) for name in names}
     posterior = fitted(law_named(LAW), conditions, steps=steps, seed=options.seed)
-    own = [results[LAW, source] for source in sources]
-    best = scores[-1]
+    own = [results[LAW, one] for one in laboratories]
+    (best, whole_best) = scores[LAW]
+    rivals = [pair[0] for name, pair in scores.items() if name not in (LAW, PRIORS)]
+    sources, highest_prior = _sources(own, [results[PRIORS, one] for one in laboratories])
+    after, known = _after(own)
     sides, shoes = _compared(options)
     effects, shares = _effects(sides)
     whole, inside = _whole(shoes)
+    slips, shares_of_slips = _slips(options)
     words = Counter(row[effects.columns.index("verdict")] for row in effects.rows)
+    strongest = max(rivals, key=lambda one: one.r2)
     return Computed(
         {
             **shares,
             **inside,
+            **known,
+            **shares_of_slips,
             **{
-                f"pair.{name}": Quantity.of(getattr(best, name))
-                for name in ("r2", "inside_50", "inside_95", "rank_correlation")
+                f"others.{name}": Quantity.of(getattr(best, name))
+                for name in ("r2", "inside_50", "inside_95")
             },
-            "pair.gain": Quantity.of(best.log_density - scores[0].log_density),
+            "pair.width": Quantity.of(_width_where_known(own)),
+            "others.above_rivals": Quantity.of(best.r2 - strongest.r2),
+            "others.gain": Quantity.of(best.log_density - max(one.log_density for one in rivals)),
+            "priors.r2": Quantity.of(highest_prior),
+            "pair.r2": Quantity.of(whole_best.r2),
+            "pair.rank_correlation": Quantity.of(whole_best.rank_correlation),
+            "evidence.readings": Quantity.of(len(conditions)),
+            "evidence.laboratories": Quantity.of(len(laboratories)),
+            "evidence.dry": Quantity.of(
+                sum(not c.members and c.fluid == "dry" for c in conditions)
+            ),
         },
         (
             _scores(scores),
-            _sources(own),
+            sources,
+            after,
             _constants(posterior),
             effects,
             whole,
+            slips,
             _basis(sides, shoes),
         ),
         {"predicted": _figure(own)},
         (
-            f"Contact friction of a source that was not used: R2 of ln COF {best.r2:.2f}, "
-            f"{best.inside_95:.0%} of the readings inside the 95 % interval, "
-            f"{best.inside_50:.0%} inside the 50 % one, over {len(sources)} sources and "
-            f"{len(conditions)} readings.",
-            "The error between laboratories is the largest part of the interval: a pair that "
-            "nobody measured is known to a factor of two to three either way.",
+            f"Contact friction in a laboratory that was not used, everybody but the report: R2 of "
+            f"ln COF {best.r2:.2f} ({strongest.law}: {strongest.r2:.2f}; priors alone: "
+            f"{scores[PRIORS][0].r2:.2f}); all laboratories: {whole_best.r2:.2f}.",
+            f"{best.inside_95:.0%} of everybody else's readings lie inside the 95 % interval, "
+            f"{best.inside_50:.0%} inside the 50 % one; its mean width is a factor of "
+            f"{np.exp(best.width):.0f}. {len(conditions)} readings of {len(laboratories)} "
+            "laboratories, each counts once.",
             f"Published effects as whole cases: {words['right']} right, {words['undecided']} "
             f"undecided, {words['absent']} absent, {words['wrong']} wrong and "
             f"{words['not computed']} not computed (counted by fluid).",
@@ -158,7 +217,11 @@ def _compared(
     values: dict[str, Mapping[str, Any]] = {}
     runs = part(options.progress, 0.5, 1.0)
     work = kept(
-        "corpus_cases-1", whole_cof, list(cases.values()), list(cases), processes=options.processes
+        CASES,
+        whole_cof,
+        list(cases.values()),
+        [_key(case) for case in cases.values()],
+        processes=options.processes,
     )
     for number, (case, arrays) in enumerate(work, start=1):
         runs("whole cases", number / len(cases))
@@ -247,6 +310,25 @@ def _whole(shoes: list[tuple[Condition, Stand, Side]]) -> tuple[Table, dict[str,
     }
 
 
+def _slips(options: Options) -> tuple[Table, dict[str, Quantity]]:
+    """Return shares of slips of four sources against the slip model."""
+    case = Case.from_mapping(HUMAN_SLIPS)
+    ((_, arrays),) = kept(CASES, whole_cof, [case], [_key(case)], processes=options.processes)
+    rows = predicted(published(arrays["draws"][::4]))
+    title = "Shares of steps that slipped: report's curve, and what the other sources say"
+    worst: dict[str, float] = {}
+    for row in rows:
+        off = abs(float(row["report's curve off by, points"]))
+        worst[str(row["source"])] = max(off, worst.get(str(row["source"]), 0.0))
+    return Table.of("slips", title, rows), {
+        "slips.within": Quantity.of(sum(off <= POINTS for off in worst.values())),
+    }
+
+
+def _key(case: Case) -> str:
+    return content_hash(case.hash, inspect.getsource(pair_contact), draws_hash())
+
+
 def _basis(
     sides: list[tuple[Contrast, Side, Side]], shoes: list[tuple[Condition, Stand, Side]]
 ) -> Table:
@@ -277,45 +359,107 @@ def _inside(reading: Reading, low: float, high: float, side: Side) -> str:
     return "yes" if reading.low <= high and reading.high >= low else "no"
 
 
-def _scores(scores: list[CorpusScore]) -> Table:
+def _scores(scores: Mapping[str, tuple[CorpusScore, CorpusScore]]) -> Table:
     return Table.of(
         "scores",
-        "Each source predicted from all others, means over sources (log density: sum)",
+        "Each laboratory predicted from all others, each counts once (log density: sum)",
         [
             {
-                "law": s.law,
-                "log density": s.log_density,
-                "R2 of ln COF": s.r2,
-                "rms error of ln COF": s.rms_error,
-                "bias of ln COF": s.bias,
-                "inside 50 %": s.inside_50,
-                "inside 95 %": s.inside_95,
-                "rank correlation within a source": s.rank_correlation,
+                "law": name,
+                "R2 of ln COF, everybody else": others.r2,
+                "rms error of ln COF, everybody else": others.rms_error,
+                "bias of ln COF, everybody else": others.bias,
+                "inside 50 %, everybody else": others.inside_50,
+                "inside 95 %, everybody else": others.inside_95,
+                "95 % interval, factor, everybody else": float(np.exp(others.width)),
+                "log density, everybody else": others.log_density,
+                "R2 of ln COF, all": every.r2,
+                "rms error of ln COF, all": every.rms_error,
+                "rank correlation within a laboratory": every.rank_correlation,
             }
-            for s in scores
+            for name, (others, every) in scores.items()
         ],
     )
 
 
-def _sources(left_out: list[SourceScore]) -> Table:
-    return Table.of(
-        "sources",
-        "The law of the pair, source by source: measured over predicted, readings inside",
-        [
-            {
-                "source": one.source,
-                "readings": float(len(one.conditions)),
-                "measured / predicted": np.exp(one.score.error.mean()),
-                "inside 50 %": one.score.inside_50.mean(),
-                "inside 95 %": one.score.inside_95.mean(),
-            }
-            for one in left_out
-        ],
+def _width_where_known(left_out: list[LaboratoryScore]) -> float:
+    """Return the 95 % interval, a factor, of wet readings with roughness of both sides printed."""
+    widths = [
+        width
+        for one in left_out
+        for c, width in zip(one.conditions, one.score.width, strict=True)
+        if not c.members and c.fluid != "dry"
+        if not (c.numbers["sole_rq"].is_open or c.numbers["floor_rq"].is_open)
+    ]
+    return float(np.exp(np.mean(widths)))
+
+
+def _sources(left_out: list[LaboratoryScore], priors: list[LaboratoryScore]) -> tuple[Table, float]:
+    """Return the table of sources and the highest R2 that the priors alone have on one."""
+    rows: list[dict[str, Any]] = []
+    for one, prior in zip(left_out, priors, strict=True):
+        for source in dict.fromkeys(c.source for c in one.conditions):
+            at = [i for i, c in enumerate(one.conditions) if c.source == source]
+            measured = middle([one.conditions[i] for i in at])
+            few = np.isfinite(measured).sum() < FEWEST_VALUES
+            own, alone = (
+                np.nan if few else r2(measured, np.median(x.draws, axis=0)[at], np.ones(len(at)))
+                for x in (one, prior)
+            )
+            rows.append(
+                {
+                    "source": source,
+                    "laboratory": one.laboratory,
+                    "readings": float(len(at)),
+                    "measured / predicted": np.exp(one.score.error[at].mean()),
+                    "inside 50 %": one.score.inside_50[at].mean(),
+                    "inside 95 %": one.score.inside_95[at].mean(),
+                    "R2 about its own mean": own,
+                    "R2 of the priors alone": alone,
+                }
+            )
+    title = "The law of the pair, source by source: measured over predicted, readings inside"
+    return Table.of("sources", title, rows), float(
+        np.nanmax([row["R2 of the priors alone"] for row in rows])
     )
+
+
+def _after(left_out: list[LaboratoryScore]) -> tuple[Table, dict[str, Quantity]]:
+    """Return what one reading of a source says of the rest of it; each source counts once."""
+    found: dict[str, list[tuple[float, ...]]] = {}
+    for one in left_out:
+        before = np.median(one.draws, axis=0)
+        measured = middle(one.conditions)
+        for i, j, median, low, high in one.after:
+            row = (measured[int(j)], before[int(j)], measured[int(i)], median, low, high)
+            found.setdefault(one.conditions[int(j)].source, []).append(row)
+    rows, every, weight = [], [], []
+    for source, values in found.items():
+        y, before, known, median, low, high = np.array(values).T
+        every += values
+        weight += [1 / len(values)] * len(values)
+        rows.append(
+            {
+                "source": source,
+                "pairs of readings": float(len(values)),
+                "rms of ln COF, before": np.sqrt(np.mean((y - before) ** 2)),
+                "after": np.sqrt(np.mean((y - median) ** 2)),
+                "the same as the reading": np.sqrt(np.mean((y - known) ** 2)),
+                "inside 95 %": np.mean((low <= y) & (y <= high)),
+                "95 % interval, factor": np.exp(np.mean(high - low)),
+            }
+        )
+    y, _, _, median, low, high = np.array(every).T
+    weights = np.array(weight)
+    inside = float(np.average((low <= y) & (y <= high), weights=weights))
+    return Table.of("after", "The rest of a source, once one of its readings is known", rows), {
+        "after.r2": Quantity.of(r2(y, median, weights)),
+        "after.inside_95": Quantity.of(inside),
+    }
 
 
 def _constants(posterior: PairPosterior) -> Table:
-    names = ("source", "pair", "reading", "dry part of a source")
+    names = ("laboratory", "pair", "reading", "dry part of a laboratory")
     every = [
         *zip(posterior.law.parameters, posterior.theta.T, strict=True),
         *zip((f"sd of ln COF, {name}" for name in names), posterior.spreads.T, strict=True),
@@ -330,7 +474,7 @@ def _constants(posterior: PairPosterior) -> Table:
     return Table.of("constants", title, rows)
 
 
-def _figure(left_out: list[SourceScore]) -> Figure:
+def _figure(left_out: list[LaboratoryScore]) -> Figure:
     values = [
         (c.reading.low, *np.exp(np.quantile(draws, (0.025, 0.5, 0.975))))
         for one in left_out
@@ -345,10 +489,10 @@ def _figure(left_out: list[SourceScore]) -> Figure:
     panel = Panel(
         layers,
         x_label="measured COF",
-        y_label="predicted from the other sources",
+        y_label="predicted from the other laboratories",
         x_scale="log",
         y_scale="log",
-        x_limits=(0.05, 1.0),
+        x_limits=(0.04, 1.1),
         y_limits=(0.02, 2.0),
     )
-    return Figure([panel], "Readings predicted from all other sources", size=(5.6, 4.6))
+    return Figure([panel], "Readings predicted from all other laboratories", size=(5.6, 4.6))

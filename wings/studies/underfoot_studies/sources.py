@@ -1,8 +1,9 @@
 """The corpus: published measurements of friction, one file a source, with what was not printed.
 
-A file names its reference and where it was read. It holds *conditions* (sole,
-floor, fluid, motion; a value, or a range where the source leaves it open) with what was measured
-on each, and *effects* (a sign, a ratio, a slope, an order between conditions). A source from
+A file names its reference, where it was read and the laboratory (its own name where none is given:
+sources of one laboratory are scored together). It holds *conditions* (sole, floor, fluid, motion; a
+value, or a range where the source leaves it open) with what was measured on each and the sentence
+it stands in, and *effects* (a sign, a ratio, a slope, an order between conditions). A source from
 memory is marked ``verified = false`` and is never scored.
 """
 
@@ -11,7 +12,7 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -39,7 +40,7 @@ NUMBERS = {
     "loss_tangent": "1",
 }
 """Numbers of a condition and their SI unit."""
-WORDS = ("device", "compound", "floor", "fluid", "tread", "members", "wear")
+WORDS = ("device", "compound", "floor", "fluid", "tread", "members", "wear", "quote")
 HEAD = ("reference", "read")
 KINDS = {
     "value": {"cof"},
@@ -100,11 +101,17 @@ class Condition:
     words: Mapping[str, Any]
     reading: Reading
     members: tuple[Condition, ...] = ()
+    laboratory: str = ""
 
     @property
     def fluid(self) -> str:
         """Family of the fluid."""
         return self.words["fluid"]
+
+    @property
+    def curve(self) -> tuple[str, str]:
+        """Name of the printed curve that the reading is a point of: a curve counts once."""
+        return self.source, self.id
 
     @property
     def pair(self) -> str:
@@ -134,6 +141,7 @@ class Source:
     name: str
     reference: str
     read: str
+    laboratory: str
     verified: bool
     conditions: tuple[Condition, ...]
     effects: tuple[Effect, ...]
@@ -169,15 +177,17 @@ def read_source(path: Path) -> Source:
                 where=f"{path.name}: {key}",
                 remedy=f'Write {key} = "..." at the head of the file',
             )
-    _known(table, (*HEAD, "verified", "conditions", "condition", "effect"), path.name)
+    _known(table, (*HEAD, "laboratory", "verified", "conditions", "condition", "effect"), path.name)
     shared = table.get("conditions", {})
+    laboratory = str(table.get("laboratory", path.stem))
     return Source(
         name=path.stem,
         reference=table["reference"],
         read=table["read"],
+        laboratory=laboratory,
         verified=bool(table.get("verified", True)),
         conditions=tuple(
-            condition
+            replace(condition, laboratory=laboratory)
             for entry in table.get("condition", [])
             for condition in _conditions(path.stem, {**shared, **entry})
         ),
