@@ -30,6 +30,7 @@ WINGS = {
     ("commands", "calibrate.posterior"): "underfoot-design-studies",
     **{("names", name): "underfoot-design-studies" for name in ("Study", "optimise", "sweep")},
     ("reports", "underfoot_design_studies"): "underfoot-design-studies",
+    ("reports", "underfoot_trial_analysis"): "underfoot-trial-analysis",
     ("studies", "g1"): "underfoot-block",
     **{
         ("studies", name): "underfoot-studies"
