@@ -20,7 +20,7 @@ class ReportEquation:
     note: str = ""
 
 
-_TABLE = files("underfoot.data") / "report_equations.toml"
+_TABLE = files("underfoot.case") / "equations.toml"
 EQUATIONS = {
     int(number): ReportEquation(**{**entry, "code": tuple(entry["code"])})
     for number, entry in tomllib.loads(_TABLE.read_text("utf-8")).items()
