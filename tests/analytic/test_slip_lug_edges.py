@@ -25,7 +25,7 @@ def test_a_slipping_lug_has_the_friction_of_a_steady_run():
     )
     state = instant.state
     assert setting.edged is not None
-    shear = setting.edged(state.contact_pressure, 0.3, state.film_thickness)
+    shear = setting.edged.on(state)(state.contact_pressure, 0.3, state.film_thickness)
     pressures = state.contact_pressure, state.fluid_pressure
     steady = cof(shear, *pressures, spacing=state.spacing, wet=state.wet, **state.areas)
     assert instant.friction(0.3) == pytest.approx(steady.friction_force, rel=1e-9)

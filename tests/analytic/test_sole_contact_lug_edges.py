@@ -138,6 +138,15 @@ def test_film_under_a_block_is_that_of_its_mirror_image_slid_back():
     )
 
 
+def test_ribs_along_the_sliding_have_no_edge_that_lets_a_film_in():
+    case = tread("longitudinal", **SIZES).replace("numerics.tread_positions", 1)
+    with_edges, without = (
+        run(one, quick=True).value("fluid_load")
+        for one in (case, case.replace("film.lug_edges", False))
+    )
+    assert with_edges == pytest.approx(without, rel=1e-9)
+
+
 def test_sharp_edges_grip_more_than_round_ones_under_thick_fluid():
     """Ishizako et al. 2022: 0.11 mm above 0.83 mm."""
     for drag in (0.01, 0.03, 0.1):

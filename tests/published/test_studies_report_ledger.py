@@ -94,7 +94,7 @@ def test_the_numbers_say_what_the_sentences_say():
     assert n["oil_floor_rough"] > 1.2 * n["oil_floor_smooth"]
     assert n["dry_soft_smooth"] > 2 * n["dry_hard_rough"]
     assert n["water_rough"] > 2 * n["water_smooth"]
-    assert n["water_light"] == pytest.approx(n["water_heavy"], rel=1e-6)
+    assert n["water_light"] == pytest.approx(n["water_heavy"], rel=0.02)
     assert n["adhesion_hard"] > n["adhesion_soft"] > n["adhesion_pu"]
     assert n["glycerol_soft"] > n["glycerol_hard"]
     assert n["lambda_canola"] == pytest.approx(3.07, abs=0.01)

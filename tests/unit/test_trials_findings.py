@@ -257,7 +257,7 @@ def test_rcof_of_persons_not_of_steps_and_means(tmp_path):
     assert sd == pytest.approx(np.std(means, ddof=1))
     assert "between 2 persons" in words
     path.write_text("file,person,item,quantity,value,caution\na,S1,step 1,rcof,0.2,\n")
-    with pytest.raises(InputError, match="no spread between people"):
+    with pytest.raises(InputError, match="there is no spread"):
         measured_rcof(path)
 
 

@@ -90,7 +90,7 @@ def _mean_behind(rows: RowCells, land: Indices, *, backward: bool) -> sp.csr_mat
     number = rows.parent % rows.shape[1]
     edges, at = np.arange(land.size), land
     left = np.full(land.size, REACH / rows.spacing)
-    entries: list[tuple[NDArray[Any], ...]] = []
+    entries: list[tuple[NDArray[Any], ...]] = [(edges[:0], at[:0], left[:0])]
     while edges.size:
         weight = np.minimum(left, np.maximum(rows.area[at], 1e-6))
         entries.append((edges, at, weight))
