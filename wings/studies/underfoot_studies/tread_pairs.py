@@ -18,6 +18,7 @@ from underfoot.compute.contact_friction import place_of_tread
 from underfoot.compute.resolve import resolved
 from underfoot.compute.run import run
 from underfoot.compute.sole import sole_map
+from underfoot.core import DataError
 from underfoot.core.arrays import Array
 from underfoot.friction.tread_error import TreadPair, fluid_class, tread_error
 
@@ -68,13 +69,12 @@ def computed_pairs(of_case: Callable[[Case], Array] = cof_and_draws) -> Iterator
                 names, reading = (source.name, condition.id), condition.reading
                 with np.errstate(divide="ignore"):
                     ends = tuple(np.log((reading.low, reading.high)))
-                yield _pair(
-                    *names,
-                    stand.cases[0],
-                    ends,
-                    _drawn(_unfitted(stand, source.name), of_case),
-                    np.zeros(6),
-                )
+                try:
+                    drawn = _drawn(_unfitted(stand, source.name), of_case)
+                except DataError as error:  # a march without an answer
+                    print(f"left out: {source.name} {condition.id}: {error}", file=sys.stderr)
+                    continue
+                yield _pair(*names, stand.cases[0], ends, drawn, np.zeros(6))
 
 
 def _unfitted(stand: Stand, source: str) -> Stand:
