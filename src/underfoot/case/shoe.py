@@ -294,24 +294,29 @@ class Shoe(_Classed):
 
     def known_class(self) -> ShoeClass | None:
         """Return what the slip class and the certificates say of the sole; None: nothing."""
+        name = getattr(self, "class")
+        if name is None and not self.certificate:
+            return None
+        # SciPy is not for pages that only show a case
         from underfoot.friction.shoe_class import ShoeClass, shoe_class
 
-        name = getattr(self, "class")
         lines = tuple(line.reading() for line in self.certificate)
         if name is None:
-            return ShoeClass("as certified", "shoe.certificate", lines) if lines else None
+            return ShoeClass("as certified", "shoe.certificate", lines)
         known = shoe_class(name)
         return replace(known, readings=(*known.readings, *lines)) if lines else known
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        from underfoot.friction.shoe_class import exclusive
-
         try:
             known = self.known_class()
         except InputError as error:
             yield error
             return
-        both = None if known is None or known.fails else exclusive(known.readings)
+        if known is None or known.fails:
+            return
+        from underfoot.friction.shoe_class import exclusive
+
+        both = exclusive(known.readings)
         if both:
             yield InputError(
                 f"{both[0]} and {both[1]} exclude each other",
