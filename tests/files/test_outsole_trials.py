@@ -43,7 +43,8 @@ def slow_where_long(name):
 @pytest.mark.parametrize("name", [slow_where_long(n) for n in TRIALS if n not in REFUSED])
 def test_files_are_read_right_without_an_option(tmp_path, name):
     trial = TRIALS[name]
-    settings = HALF if name in TREADS else WHOLE
+    # a scan with holes is filled from its neighbours, which 1 mm does not tell from steps
+    settings = HALF if name in TREADS or "holes" in name else WHOLE
     found = outsole_from_file(trial.write(tmp_path), settings)
     measures, truth = tread_measures(found.surface), trial.truth
     assert measures.land_ratio == pytest.approx(truth.land, abs=0.02)

@@ -248,7 +248,7 @@ def test_one_position_is_the_case_s_own(bars):
     one = run(coarse.replace("numerics.tread_positions", 1))
     more = run(coarse)
     cof, load = more.fields["position_cof"], more.fields["position_fluid_load"]
-    assert cof.size == 4
+    assert cof.size == 8
     assert float(cof[0]) == pytest.approx(one.value("cof"), rel=1e-12)
     assert float(load[0]) == pytest.approx(one.value("fluid_load"), rel=1e-12)
     assert more.value("cof") == pytest.approx(float(cof.mean()), rel=1e-12)
@@ -259,7 +259,7 @@ def test_one_position_is_the_case_s_own(bars):
     assert np.var(more.fields["cof_draws"]) > np.var(one.fields["cof_draws"])
     assert "mean over positions of the tread" in more.headline()[0]
     assert "tread_position" not in one.labels
-    assert "4 positions" in more.labels["tread_position"]
+    assert "8 positions" in more.labels["tread_position"]
     assert f"(COF {float(cof[0]):.3g}, " in more.labels["tread_position"]
     assert "position of the tread" in more.labels["cof_spread_from"]
     assert "spread over tread positions" in more.summary()
