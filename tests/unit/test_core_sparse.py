@@ -157,7 +157,7 @@ def test_a_factorization_that_is_wrong_on_two_threads_is_caught(monkeypatch):
     """Minimum degree with the two-level factorization: the residual of a first solve tells."""
     library = mkl.mkl_library()
     if library is None:
-        pytest.skip("MKL is not installed")
+        pytest.skip("MKL, an extra, has no wheel for this machine or is left out")
     made = mkl._System.__init__
 
     def wrong(self, matrix, kind):
