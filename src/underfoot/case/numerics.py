@@ -32,8 +32,9 @@ class Numerics(Section):
     grid_check: Flag = default(
         False,
         False,
-        "one grid; true solves the quick one too, with 16 cells along the sliding beside rims and "
-        "corners and twice the steps in time, and puts the differences into the errors",
+        "one grid; true solves the quick one too, without lugs with 16 cells along the sliding "
+        "beside rims and corners, and twice the steps in time, and puts the differences into the "
+        "errors",
     )
     tread_positions: Annotated[int, Field(ge=1, le=64, strict=True)] = default(
         8, 8, "of a tread's pattern, averaged over; half of them on the quick grid; 1: as it lies"

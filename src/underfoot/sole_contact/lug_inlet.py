@@ -2,17 +2,16 @@
 
 Where fluid meets a lug, the pressure rises from that of the groove to that of the lug within
 tenths of a millimetre, over a moulded round that no cell here resolves: cells alone let in whatever
-gap their centre has. What passes is
+gap their centre has. What the walls carry through such a face is
 
-    V / 2 h_e,  h_e = (u^4 + h0^4)^(1/4)
+    V / 2 (c h_e + (1 - c) h),  h_e = (u^4 + h0^4)^(1/4),  c = 1 / (1 + (h / d)^2)
 
-h0 the film of the edge (``lug_edges.let_in``), u the dry gap of the pair under the peak at the
-edge, ``PEAK`` times the pressure next to it. Behind a gap that is wider than h_e the film is
-ruptured. The edge closes because the lug gives way: where the gap h is wider than the lug is
-deformed, d = p min(w, 2 H) / E, it is an open wedge that the cells hold, and h_e grows by
-1 + (h / d)^2. Fluid leaves through a closed edge by pressure, as under a lug that is squeezed,
-as far as that flow is more than what the wall carries in: the share x^2 / (1 + x^2), x the ratio of
-both.
+h0 the film of the edge (``lug_edges.let_in``) and u the dry gap of the pair at the pressure next to
+it. An edge closes because the lug gives way by d = p min(w, 2 H) / E: behind a gap wider than h_e
+the film is ruptured, in a narrower one its pressure rises until it floats. A gap h that is wider
+than d is an open wedge, which the cells hold. Fluid leaves through a closed edge by pressure, as
+under a lug that is squeezed, as far as that flow is more than what the wall carries in: the share
+x^2 / (1 + x^2), x the ratio of both. A slanted edge counts with the whole speed.
 """
 
 from __future__ import annotations
@@ -59,7 +58,8 @@ class LeadingEdges:
         self._softness = np.minimum(edges.length, 2 * edges.height)[lug] / inlet.modulus
         self._mean = _mean_behind(rows, land, backward=backward)
         self._label, self._lug = np.where(rows.land, label, 0), lug + 1
-        self._width, self._area = rows.width, np.bincount(self._label, rows.area)
+        self._width = rows.width
+        self._area = np.maximum(np.bincount(self._label, rows.area), 1e-9)
 
     def inlet(self, problem: Problem, state: State, count: int) -> Inlet:
         """Return what the edges let in, as ``State`` was, at all of ``count`` faces."""
