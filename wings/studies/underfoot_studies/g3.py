@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -385,6 +385,7 @@ def _fluid_figure(
     published = catalogue.entry("published", "boundary_g3")
     panels: list[Panel] = []
     places = np.arange(len(FLUIDS))
+    highest = 0.0
     for sole in SOLES:
         low, high = published.numbers(f"lubricated_adhesion_{sole.replace(' ', '_')}", "N")
         own = [splits[sole, floor] for floor in FLOORS]
@@ -418,9 +419,10 @@ def _fluid_figure(
                 x_ticks=[
                     name.replace("glycerol ", "gly. ").replace(" 1.5 %", "") for name in FLUIDS
                 ],
-                y_limits=(0.0, 20.0),
             )
         )
+        highest = max(highest, *(one[1] for one in ends))
+    panels = [replace(one, y_limits=(0.0, 1.05 * highest)) for one in panels]
     return Figure(
         panels,
         "Fig. 24: adhesion left under a fluid (friction less that under gear oil)",
