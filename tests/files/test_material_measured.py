@@ -8,11 +8,11 @@ import pytest
 from underfoot.material import (
     dynamic_master_curve,
     fit_relaxation,
-    fit_single_exponential,
     read_dynamic,
     read_relaxation,
     relaxation_master_curve,
 )
+from underfoot_block.one_term_fit import fit_single_exponential
 
 DATA = Path(__file__).parents[1] / "data" / "viscoelastic" / "pyvisco"
 

@@ -15,11 +15,11 @@ from underfoot.material import (
     fit_arrhenius,
     fit_dynamic,
     fit_relaxation,
-    fit_single_exponential,
     fit_wlf,
     relaxation_master_curve,
     single_exponential_spectrum,
 )
+from underfoot_block.one_term_fit import fit_single_exponential
 
 TAU = np.geomspace(1e-6, 1e6, 37)
 BROAD = RelaxationSpectrum(1e6, 1e6 * (0.5 + 3 * np.exp(-((np.log10(TAU) + 1) ** 2) / 4)), TAU)

@@ -14,8 +14,6 @@ from .elastomer import shear_from_young as shear_from_young
 from .elastomer import shear_modulus as shear_modulus
 from .elastomer import young_from_shear as young_from_shear
 from .elastomer import youngs_modulus_from_shear as youngs_modulus_from_shear
-from .few_terms import SingleExponentialFit as SingleExponentialFit
-from .few_terms import fit_single_exponential as fit_single_exponential
 from .few_terms import power_law_spectrum as power_law_spectrum
 from .few_terms import report_elastomer as report_elastomer
 from .few_terms import single_exponential_spectrum as single_exponential_spectrum

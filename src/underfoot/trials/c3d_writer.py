@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from underfoot.core import InputError
-from underfoot.trials.trial import MADE_UP
+
+from .trial import MADE_UP
 
 _INTEL = 84
 
