@@ -100,7 +100,7 @@ def test_an_impossible_step_is_rejected_with_the_reason():
 def test_what_cannot_be_judged_is_said():
     trial = read_trial(DATA / "bmc" / "Gait.c3d")
     bare = required_frictions(replace(trial, markers={}))[0].measurement
-    words = [flag.words for flag in bare.flags if not flag.matters]
+    words = [flag.message for flag in bare.flags if not flag.matters]
     assert any("body mass" in text and "can't be judged" in text for text in words)
     assert any("pelvis markers" in text for text in words)
 

@@ -146,7 +146,7 @@ def test_a_protocol_names_the_ramp_in_the_methods(folder):
 
 
 def test_the_words_name_the_direction():
-    assert Ramp(math.radians(-5), "surface").words.startswith("ramp of 5 deg, walking down")
+    assert Ramp(math.radians(-5), "surface").description.startswith("ramp of 5 deg, walking down")
 
 
 def test_commands_take_the_ramp(folder):

@@ -144,7 +144,7 @@ def test_coverage_is_judged(tmp_path):
     narrow = pressure_map(_scans(truth, 0.005 * np.arange(-3, 4), tmp_path))
     assert narrow.load.value < 0.8 * truth.load
     assert narrow.outer_share > 0.02
-    assert any("outermost scans" in flag.words for flag in narrow.load.flags)
+    assert any("outermost scans" in flag.message for flag in narrow.load.flags)
     thin = ScanTruth(widths=(0.016, 0.004))
     hidden = pressure_map(_scans(thin, 0.01 * np.arange(-3, 4) + 0.004, tmp_path))
     assert hidden.half_spacing_change is not None

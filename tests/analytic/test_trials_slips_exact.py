@@ -145,7 +145,7 @@ def test_missing_markers(gap):
     found = slip(marker, CONTACT, up=UP)
     if gap == (120, 135):  # 60 ms are bridged
         assert found.peak_speed.estimated
-        assert any("bridged" in flag.words for flag in found.peak_speed.flags)
+        assert any("bridged" in flag.message for flag in found.peak_speed.flags)
     else:
         assert found.slipped is None
         assert "missing" in found.peak_speed.reason or "outside" in found.peak_speed.reason
@@ -162,7 +162,7 @@ def test_leaving_the_plate_ends_the_search():
     found = slip(marker, CONTACT, up=UP, leaves=start + 0.15)
     assert found.peak_speed.conventions["search ends"] == "the foot leaves the plate"
     assert found.peak_speed.value < 1.2
-    assert any("still grows" in flag.words for flag in found.peak_speed.flags)
+    assert any("still grows" in flag.message for flag in found.peak_speed.flags)
 
 
 def test_contact_from_the_heel_alone():
@@ -251,13 +251,13 @@ def test_empty_records_seldom_alarm():
     for seed in range(200):
         found = pressure_pulse("P1", _pressure(peak=0.0, seed=seed), 1.0)
         alarms += found.duration.estimated
-        assert "within the noise" in found.peak.flags[-1].words or found.duration.estimated
+        assert "within the noise" in found.peak.flags[-1].message or found.duration.estimated
     assert alarms == 0
 
 
 def test_short_baselines_are_flagged_or_refused():
     few = pressure_pulse("P1", _pressure(contact=0.2), 0.2)
-    assert "151 samples" in few.peak.flags[0].words
+    assert "151 samples" in few.peak.flags[0].message
     none = pressure_pulse("P1", _pressure(contact=0.06), 0.06)
     assert "no baseline" in none.peak.reason
     wrong = Channel(np.zeros(2000), "V", 1000.0)

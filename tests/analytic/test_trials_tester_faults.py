@@ -116,7 +116,7 @@ def test_without_a_record_the_study_says_so_once(tmp_path):
     for number in range(3):
         write_log(sound_log(12 + number), tmp_path, record=False, name=f"log{number}.csv")
     analysis = analyse_folder(tmp_path, protocol(log.protocol), processes=1)
-    told = [doubt for doubt in analysis.doubts if "calibration record" in doubt.words]
+    told = [doubt for doubt in analysis.doubts if "calibration record" in doubt.message]
     assert len(told) == 1
     assert "no record" in analysis.files[0].measurements[0]["conventions"]["calibration"]
 

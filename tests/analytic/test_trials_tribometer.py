@@ -44,7 +44,7 @@ def test_run_in_is_cut():
 
 def test_a_run_that_never_settles_is_flagged():
     cof = np.linspace(0.8, 0.2, 1000) + np.random.default_rng(1).normal(0, 0.01, 1000)
-    assert any("not steady" in flag.words for flag in friction_point(_run(cof)).cof.flags)
+    assert any("not steady" in flag.message for flag in friction_point(_run(cof)).cof.flags)
 
 
 def test_lifted_pin_is_left_out():
@@ -52,7 +52,7 @@ def test_lifted_pin_is_left_out():
     trial.channels["Fz"].values[200:220] = 0.0
     point = friction_point(trial)
     assert point.cof.value == pytest.approx(0.5)
-    assert any("20 samples" in flag.words for flag in point.cof.flags)
+    assert any("20 samples" in flag.message for flag in point.cof.flags)
 
 
 def test_correlated_noise_widens_the_error():

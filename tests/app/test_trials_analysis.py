@@ -216,7 +216,7 @@ def test_every_protocol_reads(name):
     assert one.source
     for rule in one.rules:
         assert rule.quantity in QUANTITIES
-        assert rule.words()
+        assert rule.statement()
         inside = rule.low if rule.low is not None else rule.high
         assert inside is not None
         assert rule.broken_by(inside) == ""

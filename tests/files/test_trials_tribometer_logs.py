@@ -24,5 +24,5 @@ def test_pcs_logs(name, mean):
     trial = read_trials(_DATA / "pcs" / name)[0]
     assert friction_point(trial, window=_ALL).cof.value == pytest.approx(mean, abs=0.001)
     steady = friction_point(trial)
-    assert any("not steady" in flag.words for flag in steady.cof.flags)
+    assert any("not steady" in flag.message for flag in steady.cof.flags)
     assert steady.cof.conventions["cof"] == "column of the file"

@@ -97,7 +97,7 @@ def test_the_baseline_moves_rcof_as_described():
     plates = read_trial(DATA / "bmc" / "Gait.c3d").plates
     assert plates[0].baseline[1] == pytest.approx(10.5, abs=0.5)  # "10 N in Fy on plate 1"
     assert plates[1].baseline[2] == pytest.approx(-16.0, abs=0.5)
-    assert any("shear baseline of 10.9 N" in flag.words for flag in plates[0].flags)
+    assert any("shear baseline of 10.9 N" in flag.message for flag in plates[0].flags)
 
 
 def test_definitions_move_rcof_as_known():
@@ -182,4 +182,4 @@ def test_mean_of_steps():
         mean_of([*found, other[0].measurement])
     none = mean_of([Measurement.not_estimated("rcof", "cut"), Measurement("rcof", 0.2)])
     assert none.uncertainty is None
-    assert "1 of 2" in none.flags[0].words
+    assert "1 of 2" in none.flags[0].message

@@ -53,7 +53,7 @@ def test_readings_stand_in_a_sentence():
     without = {"moore_2012", "strobel_2012", "report_g6", "liu_2013", "mcgorry_2010"}
     for source in corpus():
         for condition in source.conditions:
-            assert condition.words.get("quote") or source.name in without, condition.id
+            assert condition.labels.get("quote") or source.name in without, condition.id
 
 
 def test_laboratories_are_named_or_are_their_source(tmp_path):

@@ -16,10 +16,6 @@ SOURCE = REPOSITORY / "src"
 LARGEST = 66_000  # lines of the core: what one person can know; the rest stands in wings beside it
 START = 0.15  # s of CPU that `import underfoot` may take
 SAY_NOTHING = {"found", "kept", "one", "own", "said", "there", "words"}
-SPEAKING = [
-    *(SOURCE / "underfoot" / room for room in "core compute questions report cli".split()),
-    *(REPOSITORY / "wings" / wing for wing in ("app", "design_studies")),
-]
 FIRST = 0.8  # s of CPU until a case is read and all that `run` needs is imported
 
 
@@ -213,7 +209,7 @@ def names_of(path):
 def test_names_of_functions_parameters_and_fields_say_what_they_are():
     empty = [
         f"{path.relative_to(REPOSITORY)}:{line} {name}"
-        for folder in SPEAKING
+        for folder in (SOURCE, REPOSITORY / "wings")
         for path in sorted(folder.rglob("*.py"))
         for name, line in names_of(path)
         if name.strip("_") in SAY_NOTHING

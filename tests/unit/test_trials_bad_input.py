@@ -121,18 +121,18 @@ def test_an_empty_and_a_never_empty_plate():
     noise = np.random.default_rng(0).normal(0.0, 0.5, (3000, 3))
     empty = finished_plate("plate 1", noise + np.array([3.0, 0.0, -8.0]), rate=1000.0, up=UP)
     assert empty.baseline == pytest.approx([3.0, 0.0, -8.0], abs=0.1)
-    assert any("shear baseline of 3.0 N" in flag.words for flag in empty.flags)
+    assert any("shear baseline of 3.0 N" in flag.message for flag in empty.flags)
     assert _reasons(Trial("empty", plates=(empty,))) == []
     stood = finished_plate("plate 1", noise + np.array([0.0, 0.0, 700.0]), rate=1000.0, up=UP)
     assert stood.baseline is None
-    assert any("never unloaded" in flag.words for flag in stood.flags)
+    assert any("never unloaded" in flag.message for flag in stood.flags)
     assert _reasons(Trial("stood", plates=(stood,))) == ["begins before the record"]
 
 
 def test_upside_down_forces_are_turned_and_said(walk):
     plate = walk.plates[1]
     turned = _refinished(plate, -plate.force, moment=-plate.moment)
-    assert any("signs reversed" in flag.words for flag in turned.flags)
+    assert any("signs reversed" in flag.message for flag in turned.flags)
     np.testing.assert_allclose(turned.force, plate.force, atol=1e-9)
     np.testing.assert_allclose(
         np.nan_to_num(turned.centre_of_pressure), np.nan_to_num(plate.centre_of_pressure), atol=1e-9
@@ -142,9 +142,9 @@ def test_upside_down_forces_are_turned_and_said(walk):
 def test_wrong_units_are_noticed(walk):
     plate = walk.plates[1]
     kilo = _refinished(plate, plate.force / 1e3)
-    assert any("is the unit right" in flag.words for flag in kilo.flags)
+    assert any("is the unit right" in flag.message for flag in kilo.flags)
     milli = _refinished(plate, plate.force * 1e3)
-    assert any("is the unit right" in flag.words for flag in milli.flags)
+    assert any("is the unit right" in flag.message for flag in milli.flags)
 
 
 def test_lost_samples_reject_the_step(walk):

@@ -120,7 +120,7 @@ def test_a_false_alarm_of_the_speed_rule_is_named():
     assert one.slipped
     assert one.outcome is Outcome.MICROSLIP
     (flag,) = [f for f in one.peak_speed.caution_flags if f.name == "speed against distance"]
-    assert "false alarm" in flag.words
+    assert "false alarm" in flag.message
     assert flag.limit == 0.2
 
 
@@ -190,7 +190,7 @@ def test_a_plate_with_crossed_corners_lies_as_the_others_of_its_file():
         trial.plates, [(-2.314, 3.763, 357.763), (1.336, -6.376, 231.456)], strict=True
     ):
         assert plate.force.mean(axis=0) == pytest.approx(mean, abs=0.5)
-    assert [any("crossed" in f.words for f in p.flags) for p in trial.plates] == [False, True]
+    assert [any("crossed" in f.message for f in p.flags) for p in trial.plates] == [False, True]
 
 
 def test_more_markers_than_announced_are_read(tmp_path):

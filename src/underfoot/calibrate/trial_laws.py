@@ -39,14 +39,14 @@ def stribeck_law_from_fit(
             remedy="Use SpeedTableLaw with the readings, or BoundaryLaw with their mean",
         )
 
-    def sourced(one: FitParameter) -> SourcedValue:
+    def sourced(parameter: FitParameter) -> SourcedValue:
         return SourcedValue(
-            one.value,
-            one.unit,
+            parameter.value,
+            parameter.unit,
             source=source,
-            uncertainty=one.standard_error,
-            reason="" if one.standard_error is not None else "on the bound of the fit",
-            note=one.remark,
+            uncertainty=parameter.standard_error,
+            reason="" if parameter.standard_error is not None else "on the bound of the fit",
+            note=parameter.remark,
         )
 
     notes = [f"{p.name}: {p.remark}." for p in (fit.boundary, fit.tau, fit.asymptote) if p.remark]

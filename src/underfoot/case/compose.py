@@ -72,24 +72,24 @@ def composed(
     sub-section), then what is given. Catalogue values that the chosen options don't take are left
     out; given ones too where ``lenient`` says so of their path, else they are an error later.
     """
-    found = Composition(catalogue, places, folder, lenient)
-    tables = {key: expanded(item, key, found.entries) for key, item in given.items()}
+    composition = Composition(catalogue, places, folder, lenient)
+    tables = {key: expanded(item, key, composition.entries) for key, item in given.items()}
     laid: dict[str, Origin] = {}
     for section in sorted(CATALOGUE_SECTIONS, key=lambda path: path.count(".")):
         name = _from(tables, section)
         if name is not None and not (section == "contaminant" and name == DRY):
-            _lay(found, laid, section, name)
-    _lay_roughness_of_compound(found, laid)
+            _lay(composition, laid, section, name)
+    _lay_roughness_of_compound(composition, laid)
     try:
-        own = leaves(_without_from(tables), source="")
+        given_leaves = leaves(_without_from(tables), source="")
     except InputError as error:
-        raise CaseError([*found.errors, placed(error, places)]) from error
-    record = _friction_record(found, tables)
-    for path, leaf in own.items():
+        raise CaseError([*composition.errors, placed(error, places)]) from error
+    record = _friction_record(composition, tables)
+    for path, leaf in given_leaves.items():
         origin = leaf.given if isinstance(leaf.given, Origin) else origin_of(leaf.given)
         if origin is None:
             origin = Origin(GIVEN, leaf)
-        if path.startswith("friction.") and _of_another_fluid(origin, found.entries):
+        if path.startswith("friction.") and _of_another_fluid(origin, composition.entries):
             continue
         for other in _ALTERNATIVES.get(path, ()):
             if other in laid and laid[other].kind == CATALOGUE:
@@ -99,11 +99,11 @@ def composed(
     tree = _nested({**record, **laid}, tables)
     if tables.get("contaminant") is not None and _from(tables, "contaminant") == DRY:
         tree["contaminant"] = None
-    found.tree = _settled(found, CaseParts, tree, "")
-    _settle_hardness(found)
-    _settle_contact(found)
-    _settle_reads(found)
-    return found
+    composition.tree = _settled(composition, CaseParts, tree, "")
+    _settle_hardness(composition)
+    _settle_contact(composition)
+    _settle_reads(composition)
+    return composition
 
 
 def expanded(item: Any, path: str, entries: dict[str, str] | None = None) -> Any:
@@ -147,14 +147,14 @@ def _lay(composition: Composition, laid: dict[str, Origin], section: str, name: 
     composition.entries[section] = name
 
 
-def _lay_roughness_of_compound(found: Composition, laid: dict[str, Origin]) -> None:
+def _lay_roughness_of_compound(composition: Composition, laid: dict[str, Origin]) -> None:
     """Put the roughness of a compound, if known, in place of that read on a shoe of another."""
-    compound = found.entries.get("shoe.material")
-    if compound is None or "shoe.roughness" in found.entries:
+    compound = composition.entries.get("shoe.material")
+    if compound is None or "shoe.roughness" in composition.entries:
         return
     for path in [path for path in laid if path.startswith("shoe.roughness.")]:
         del laid[path]
-    for path, leaf in found.catalogue.entry("material", compound).under("roughness").items():
+    for path, leaf in composition.catalogue.entry("material", compound).under("roughness").items():
         laid[f"shoe.roughness.{path}"] = Origin(CATALOGUE, leaf, f"material {compound}")
 
 
@@ -262,20 +262,20 @@ def _settle_hardness(composition: Composition) -> None:
     )
 
 
-def _settle_contact(found: Composition) -> None:
+def _settle_contact(composition: Composition) -> None:
     """Let two measured surfaces meet with a measured spectrum, where no contact is chosen.
 
     A modulus alone is that at rest: at the rates of sliding the rubber is stiffer and lets more
     fluid through.
     """
-    given = found.tree.get("rough_contact") or {}
+    given = composition.tree.get("rough_contact") or {}
     origin = origin_of(given.get("model"))
     if given and not (given.keys() == {"model"} and origin and origin.kind == DEFAULT):
         return
-    found.tree.pop("rough_contact", None)
+    composition.tree.pop("rough_contact", None)
 
     def value(*path: str) -> Any:
-        item: Any = found.tree
+        item: Any = composition.tree
         for part in path:
             item = item.get(part) if isinstance(item, dict) else None
         return item
@@ -291,29 +291,31 @@ def _settle_contact(found: Composition) -> None:
     if all(map(measured, [*inputs, value("shoe", "material", "relaxation")])):
         why = "both surfaces and the compound are measured"
         leaf = Leaf(MEASURED_CONTACT, source=why)
-        found.tree["rough_contact"] = {"model": Origin(DEFAULT, leaf, value=MEASURED_CONTACT)}
+        composition.tree["rough_contact"] = {"model": Origin(DEFAULT, leaf, value=MEASURED_CONTACT)}
 
 
-def _settle_reads(found: Composition) -> None:
+def _settle_reads(composition: Composition) -> None:
     """Take out, or refuse, what only options that were not chosen would read."""
     chosen = set()
     for name, slot in _top_slots().items():
         try:
-            chosen |= set(slot.pick(found.tree.get(name) or {}).reads)
+            chosen |= set(slot.pick(composition.tree.get(name) or {}).reads)
         except (ValidationError, PydanticCustomError):
             return
     for path, readers in optional_reads().items():
         section, _, key = path.rpartition(".")
-        table = found.tree.get(section)
+        table = composition.tree.get(section)
         if path in chosen or not isinstance(table, dict) or key not in table:
             continue
         if not from_catalogue(table[key]):
-            if not found.lenient(path):
+            if not composition.lenient(path):
                 remedy = f"Remove it, or choose {' or '.join(readers)}"
                 what = "is not read by any chosen option"
-                found.errors.append(InputError(what, where=found.places(path), remedy=remedy))
+                composition.errors.append(
+                    InputError(what, where=composition.places(path), remedy=remedy)
+                )
                 continue
-            found.dropped[path] = "not read by any chosen option"
+            composition.dropped[path] = "not read by any chosen option"
         del table[key]
 
 

@@ -109,7 +109,7 @@ def _remarks(parts: Prepared, solution: Solution, more: dict[str, str]) -> dict[
     giving = "compliance" not in parts.objects and case.compliance.cut
     peak = peak_pressure(sole, contact.total_pressure, cell_load=contact.cell_load)
     remarks = {
-        "lug_edges": "" if lugs is None else lugs.words() + chamfer_remark(case),
+        "lug_edges": "" if lugs is None else lugs.summary() + chamfer_remark(case),
         "drainage": "",
         "sipes": ""
         if slits is None or not slits.length.any()

@@ -9,16 +9,17 @@ from warnings import warn
 
 
 def renamed(old: str, new: str, *, gone: str) -> Callable[..., Any]:
-    """Return a method for a class to keep as ``old``: it warns and answers as its method ``new``.
+    """Return a method for a class to keep as ``old``: it warns and answers as its member ``new``.
 
     ``gone``: version without the old name. The warning is a FutureWarning, which people see who
-    only run a script, and points at the line that calls.
+    only run a script, and points at the line that calls. For a field, make it a ``property``.
     """
 
     def answer(self: Any, *arguments: Any, **options: Any) -> Any:
         message = f"{type(self).__name__}.{old} is {new} now; the old name goes in {gone}"
         warn(message, FutureWarning, stacklevel=2)
-        return getattr(self, new)(*arguments, **options)
+        member = getattr(self, new)
+        return member(*arguments, **options) if callable(member) else member
 
     answer.__name__ = old
     answer.__doc__ = f"Old name of ``{new}``, until {gone}."

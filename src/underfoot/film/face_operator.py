@@ -139,49 +139,41 @@ class Inlet(NamedTuple):
 
 
 class FaceMatrix(NamedTuple):
-    """Operator between cells that share a face: own cell (count,), the cell ahead, the one behind.
+    """Operator between cells that share a face: its diagonal (count,) and what faces add.
 
     ``to_ahead`` stands in the row of the cell behind a face, ``to_behind`` in that of the one ahead
     of it, (faces,).
     """
 
     faces: Faces
-    own: Array
+    diagonal: Array
     to_ahead: Array
     to_behind: Array
 
     @classmethod
     def of_flow(cls, faces: Faces, by_ahead: Array, by_behind: Array, centre: Array) -> FaceMatrix:
         """Return ``centre`` plus the divergence of flows with these derivatives by both cells."""
-        own = centre + np.bincount(faces.behind, by_behind, faces.count)
-        own -= np.bincount(faces.ahead, by_ahead, faces.count)
-        return cls(faces, own, by_ahead, -by_behind)
+        diagonal = centre + np.bincount(faces.behind, by_behind, faces.count)
+        diagonal -= np.bincount(faces.ahead, by_ahead, faces.count)
+        return cls(faces, diagonal, by_ahead, -by_behind)
 
     def columns(self, factor: Array) -> FaceMatrix:
         """Return the matrix with its columns times a factor (count,)."""
-        faces = self.faces
-        return FaceMatrix(
-            faces,
-            self.own * factor,
-            self.to_ahead * factor[faces.ahead],
-            self.to_behind * factor[faces.behind],
-        )
+        return self._scaled(factor, factor[self.faces.ahead], factor[self.faces.behind])
 
     def rows(self, factor: Array) -> FaceMatrix:
         """Return the matrix with its rows times a factor (count,)."""
-        faces = self.faces
-        return FaceMatrix(
-            faces,
-            self.own * factor,
-            self.to_ahead * factor[faces.behind],
-            self.to_behind * factor[faces.ahead],
-        )
+        return self._scaled(factor, factor[self.faces.behind], factor[self.faces.ahead])
+
+    def _scaled(self, centre: Array, ahead: Array, behind: Array) -> FaceMatrix:
+        diagonal = self.diagonal * centre
+        return FaceMatrix(self.faces, diagonal, self.to_ahead * ahead, self.to_behind * behind)
 
     def plus(self, other: FaceMatrix) -> FaceMatrix:
         """Return the sum of two matrices."""
         return FaceMatrix(
             self.faces,
-            self.own + other.own,
+            self.diagonal + other.diagonal,
             self.to_ahead + other.to_ahead,
             self.to_behind + other.to_behind,
         )
@@ -189,7 +181,7 @@ class FaceMatrix(NamedTuple):
     @property
     def coefficients(self) -> Array:
         """The entries in the order of ``Faces.layout``."""
-        return np.concatenate([self.own[: self.faces.size], self.to_ahead, self.to_behind])
+        return np.concatenate([self.diagonal[: self.faces.size], self.to_ahead, self.to_behind])
 
     def matrix(self) -> sp.csr_matrix:
         """Return the sparse matrix between the unknowns."""
@@ -400,6 +392,6 @@ class RowCavity(Cavity):
         linked = (face >= 0) & (faces.east[face] == cells[1:]) if cells.size else face >= 0
         self._factorise(
             linked * by_fraction.to_behind[face],
-            by_fraction.own[cells],
+            by_fraction.diagonal[cells],
             linked * by_fraction.to_ahead[face],
         )

@@ -175,13 +175,13 @@ class Cavity:
             linked * by_fraction[1, cells[:-1]],
         )
 
-    def _factorise(self, below: Array, own: Array, above: Array) -> None:
+    def _factorise(self, below: Array, diagonal: Array, above: Array) -> None:
         # factorised once, for it is solved in each product; three rows of their own at the end, for
         # LAPACK's wrapper takes no fewer
-        size = own.size
+        size = diagonal.size
         rows = np.zeros((3, size + 3))
         rows[0, : below.size], rows[2, : above.size] = below, above
-        rows[1, :size], rows[1, size:] = own, 1.0
+        rows[1, :size], rows[1, size:] = diagonal, 1.0
         *self._factors, failed = dgttrf(rows[0, :-1], rows[1], rows[2, :-1])
         if failed:
             raise np.linalg.LinAlgError("a cavity that neither holds nor passes on liquid")

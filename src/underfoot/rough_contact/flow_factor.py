@@ -125,14 +125,14 @@ def _fluctuations(
 
     size = shape[0] * shape[1]
     index = np.arange(size).reshape(shape)
-    here = np.concatenate([index.ravel(), index.ravel()])
-    there = np.concatenate([np.roll(index, -1, axis).ravel() for axis in (0, 1)])
+    cell = np.concatenate([index.ravel(), index.ravel()])
+    neighbour = np.concatenate([np.roll(index, -1, axis).ravel() for axis in (0, 1)])
     value = np.concatenate([weights[0].ravel(), weights[1].ravel()])
     flowing = value > 0.0
-    graph = sparse.coo_matrix((value[flowing], (here[flowing], there[flowing])), (size, size))
+    graph = sparse.coo_matrix((value[flowing], (cell[flowing], neighbour[flowing])), (size, size))
     graph = (graph + graph.T).tocsr()
     _, label = connected_components(graph, directed=False)
-    keep = _cut_components(label, here[flowing], there[flowing], shape)
+    keep = _cut_components(label, cell[flowing], neighbour[flowing], shape)
     weights = (weights[0] * keep.reshape(shape), weights[1] * keep.reshape(shape))
     # one cell of every component carries zero pressure, the rest is solved for
     _, first = np.unique(label, return_index=True)
@@ -164,13 +164,13 @@ def _fluctuations(
 
 
 def _cut_components(
-    label: np.ndarray, here: np.ndarray, there: np.ndarray, shape: tuple[int, int]
+    label: np.ndarray, cell: np.ndarray, neighbour: np.ndarray, shape: tuple[int, int]
 ) -> np.ndarray:
     """Return which cells belong to a component that has a face on the edge of the cell."""
-    rows = (here // shape[1] != there // shape[1]) & (there // shape[1] == 0)
-    columns = (here % shape[1] != there % shape[1]) & (there % shape[1] == 0)
+    rows = (cell // shape[1] != neighbour // shape[1]) & (neighbour // shape[1] == 0)
+    columns = (cell % shape[1] != neighbour % shape[1]) & (neighbour % shape[1] == 0)
     cut = np.zeros(label.max() + 1, dtype=bool)
-    cut[label[here[rows | columns]]] = True
+    cut[label[cell[rows | columns]]] = True
     return cut[label]
 
 

@@ -72,10 +72,10 @@ def cut_cells(
     land = inside & (level <= 0)
     channel = inside & ~land
     cut = replace(cut, along=_crossing(level, inside, 0), across=_crossing(level, inside, 1))
-    own, other = _pairs(land, channel)
-    if own.size == 0:
+    lug, groove = _pairs(land, channel)
+    if lug.size == 0:
         return cut
-    cells = np.unique(np.concatenate([own, other]))
+    cells = np.unique(np.concatenate([lug, groove]))
     step = (np.arange(SAMPLES) + 0.5) / SAMPLES - 0.5
     offsets = [part.reshape(1, -1) for part in np.meshgrid(step, step, indexing="ij")]
     i, j = np.unravel_index(cells, level.shape)
@@ -85,28 +85,28 @@ def cut_cells(
         spread, np.abs(np.diff(depth.reshape(-1, SAMPLES, SAMPLES), axis=2)).max(axis=(1, 2))
     )
     covered = np.clip(0.5 + depth / np.maximum(spread[:, None], 1e-12), 0.0, 1.0)
-    at_own, at_other = np.searchsorted(cells, own), np.searchsorted(cells, other)
-    centre = np.maximum(-level.ravel()[own], 1e-12)
+    at_lug, at_groove = np.searchsorted(cells, lug), np.searchsorted(cells, groove)
+    centre = np.maximum(-level.ravel()[lug], 1e-12)
     results = []
     for fluid in (False, True):
         # the fluid's pressure falls to that of the channel at the outline, contact's does not
         within, beyond = (
             covered[at] * (np.clip(depth[at] / centre[:, None], 0.0, 1.0) if fluid else 1.0)
-            for at in (at_own, at_other)
+            for at in (at_lug, at_groove)
         )
-        results.append(_areas(own, other, within.mean(axis=1), beyond.mean(axis=1), land))
+        results.append(_areas(lug, groove, within.mean(axis=1), beyond.mean(axis=1), land))
     return replace(cut, area=results[0], film_area=results[1])
 
 
-def _areas(own: Cells, other: Cells, within: Array, beyond: Array, land: Mask) -> Array:
+def _areas(lug: Cells, groove: Cells, within: Array, beyond: Array, land: Mask) -> Array:
     """Return the area of each cell from what land covers of its own cell and of its neighbours."""
 
     def total(at: Cells, values: Array) -> Array:
         return np.bincount(at, values, land.size).astype(np.float64)
 
-    pairs = np.maximum(total(own, np.ones(own.size)) + total(other, np.ones(own.size)), 1.0)
-    taken, left = beyond / pairs[other], (1 - within) / pairs[own]
-    area = 1.0 + total(own, taken) - total(own, left) - total(other, taken) + total(other, left)
+    pairs = np.maximum(total(lug, np.ones(lug.size)) + total(groove, np.ones(lug.size)), 1.0)
+    taken, left = beyond / pairs[groove], (1 - within) / pairs[lug]
+    area = 1.0 + total(lug, taken) - total(lug, left) - total(groove, taken) + total(groove, left)
     return with_least_area(area.reshape(land.shape), land)
 
 
@@ -130,7 +130,7 @@ def with_least_area(area: Array, land: Mask) -> Array:
 def _pairs(land: Mask, channel: Mask) -> tuple[Cells, Cells]:
     """Return land cells and the channel cells beside them; across a corner where no side is."""
     number = np.arange(land.size).reshape(land.shape)
-    found: list[tuple[Cells, Cells]] = []
+    pairs: list[tuple[Cells, Cells]] = []
     beside = np.zeros(land.size, dtype=bool)
     for ways in (_SIDES, _CORNERS):
         new = []
@@ -138,14 +138,14 @@ def _pairs(land: Mask, channel: Mask) -> tuple[Cells, Cells]:
             ahead = tuple(slice(max(step, 0), min(step, 0) or None) for step in way)
             here = tuple(slice(max(-step, 0), min(-step, 0) or None) for step in way)
             touching = land[here] & channel[ahead]
-            own, other = number[here][touching], number[ahead][touching]
-            alone = ~(beside[own] & beside[other])
-            new.append((own[alone], other[alone]))
-        found += new
-        for own, other in new:
-            beside[own] = beside[other] = True
-    own, other = (np.concatenate(each) for each in zip(*found, strict=True))
-    return own, other
+            lug, groove = number[here][touching], number[ahead][touching]
+            alone = ~(beside[lug] & beside[groove])
+            new.append((lug[alone], groove[alone]))
+        pairs += new
+        for lug, groove in new:
+            beside[lug] = beside[groove] = True
+    lug, groove = (np.concatenate(each) for each in zip(*pairs, strict=True))
+    return lug, groove
 
 
 def _crossing(level: Array, inside: Mask, axis: int) -> Array:

@@ -162,9 +162,9 @@ def _faces_along(
     outside = [~fine.inside[k, at] for k in near]
     with np.errstate(invalid="ignore"):
 
-        def slope_on(one: int, own: int) -> Array:  # per finest cell, beside cell ``own``
-            smooth = (status[one] == status[own]) & ~outside[one] & ~outside[own]
-            return np.where(smooth, (values[own] - values[one]) / (own - one), 0.0)
+        def slope_on(neighbour: int, cell: int) -> Array:  # per finest cell, beside ``cell``
+            smooth = (status[neighbour] == status[cell]) & ~outside[neighbour] & ~outside[cell]
+            return np.where(smooth, (values[cell] - values[neighbour]) / (cell - neighbour), 0.0)
 
         left, right = slope_on(1, 2), slope_on(4, 3)
         # a corner lies between the two cells where both sides go on straight; next to them it

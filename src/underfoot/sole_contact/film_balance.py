@@ -129,15 +129,15 @@ class FilmBalance:
         before = full
         pressure, fraction, net, cavity = self._balance(operator, fluid, before)
         by_gap = operator.by_gap(pressure, fraction)
-        diagonal = by_pressure.own[:size] * (1 + stiffness * give)
-        diagonal += np.abs(by_gap.own[:size]) * give
-        lacks = by_fraction.own[:size] * (1 - fraction[:size])
+        diagonal = by_pressure.diagonal[:size] * (1 + stiffness * give)
+        diagonal += np.abs(by_gap.diagonal[:size]) * give
+        lacks = by_fraction.diagonal[:size] * (1 - fraction[:size])
         # at rest nothing flows and nothing is pressed: such a cell counts as full
         full = wet & (fluid - (net + lacks) / diagonal >= -faint)
         if (full != before).any():
             pressure, fraction, net, cavity = self._balance(operator, fluid, full)
             by_gap = operator.by_gap(pressure, fraction)
-        overfull = by_fraction.own[:size] * np.maximum(fraction[:size] - 1, 0.0)
+        overfull = by_fraction.diagonal[:size] * np.maximum(fraction[:size] - 1, 0.0)
         through = operator.carried(fraction)
         carried = np.bincount(faces.west, through, faces.count)
         carried -= np.bincount(faces.east, through, faces.count)

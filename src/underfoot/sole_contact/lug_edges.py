@@ -144,7 +144,7 @@ class LugFriction:
         ratio = self.edges.map(self.suction / np.maximum(self.factor, 1e-9), 0.0)
         return float((solid * ratio).sum() / max(solid.sum(), 1e-30))
 
-    def words(self) -> str:
+    def summary(self) -> str:
         """Return what the edges do in one sentence."""
         weight = self.load / max(self.load.sum(), 1e-30)
         pull, wiped = (float(weight @ each) for each in (self.suction, self.wiped))

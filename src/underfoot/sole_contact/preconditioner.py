@@ -92,16 +92,16 @@ class Preconditioner:
         inner = (faces.ahead < size) & (faces.behind < size)
         link = np.concatenate([1 / faces.distance, faces.overlap])
         length = np.concatenate([np.ones(faces.west.size), faces.overlap])
-        own = np.zeros(faces.count)
+        diagonal = np.zeros(faces.count)
         rim = np.zeros(faces.count)
         for cells in (faces.ahead, faces.behind):
-            own += np.bincount(cells, inner * link, faces.count)
+            diagonal += np.bincount(cells, inner * link, faces.count)
             rim += np.bincount(cells, inner * length, faces.count)
         around = np.zeros(faces.count)
         around[:size] = 2 + 2 * width - rim[:size]
-        own += np.maximum(around, 0.0) * decayed
-        own[:size] += screened * width
-        self._screened = FaceMatrix(faces, own, -link, -link)
+        diagonal += np.maximum(around, 0.0) * decayed
+        diagonal[:size] += screened * width
+        self._screened = FaceMatrix(faces, diagonal, -link, -link)
         # rows of v (by v, by q) and of q (by q, by v), as ``factorise`` fills them
         rows, columns = faces.layout
         rows = np.minimum(rows, size - 1)
@@ -141,15 +141,15 @@ class Preconditioner:
             cavity, wet = film.cavity.cells, full.copy()
             wet[cavity] = True
             # fraction in units of pressure: so that both kinds of column have the size of A
-            own, unit = film.by_fraction.own[cavity], np.zeros(size)
-            unit[cavity] = film.by_pressure.own[cavity] / np.where(own > 0, own, 1.0)
+            diagonal, unit = film.by_fraction.diagonal[cavity], np.zeros(size)
+            unit[cavity] = film.by_pressure.diagonal[cavity] / np.where(diagonal > 0, diagonal, 1.0)
             mixed = film.by_pressure.columns(padded(full.astype(float)))
             mixed = mixed.plus(film.by_gap.columns(padded(self.local * yields * full)))
             mixed = mixed.plus(film.by_fraction.columns(padded(unit)))
-            scale = np.where(wet, np.abs(mixed.own[:size]), 1.0)
+            scale = np.where(wet, np.abs(mixed.diagonal[:size]), 1.0)
             held = padded(wet / scale)
             balance = mixed.rows(held)
-            balance.own[:size] += ~wet
+            balance.diagonal[:size] += ~wet
             through = film.by_gap.columns(padded(self.scale * yields)).rows(held)
             rows = full * film.diagonal / scale
         screened = self._screened.coefficients

@@ -224,7 +224,7 @@ def named(progress: Progress, name: str) -> Progress:
     return report
 
 
-def kept(
+def cached_arrays(
     room: str,
     function: Callable[[Any], Mapping[str, Any]],
     items: Sequence[Any],

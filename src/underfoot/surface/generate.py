@@ -61,7 +61,7 @@ def checkerboard(
     if form not in ("cosine", "triangular"):
         raise InputError(f'"{form}"', where="form", allowed='"cosine" or "triangular"')
 
-    def one(n: int) -> np.ndarray:
+    def wave(n: int) -> np.ndarray:
         phase = spacing * np.arange(n) / wavelength
         if form == "cosine":
             return np.cos(2.0 * np.pi * phase)
@@ -71,7 +71,7 @@ def checkerboard(
         f"generated {form} checkerboard, peak to valley {metres(peak_to_valley)}, "
         f"wavelength {metres(wavelength)}"
     )
-    heights = 0.5 * peak_to_valley * np.outer(one(nx), one(ny))
+    heights = 0.5 * peak_to_valley * np.outer(wave(nx), wave(ny))
     return _generated(heights, spacing, wavelength if form == "cosine" else None, note)
 
 

@@ -11,6 +11,7 @@ from functools import lru_cache
 import numpy as np
 
 from underfoot.core import InputError, to_si, unknown_name
+from underfoot.core.deprecation import renamed
 
 from .plates import plate_axes
 from .trial import Marker, Plate, Trial
@@ -59,7 +60,7 @@ class Ramp:
         return _turned(up, walking, -self.angle if self.plate_frame == "surface" else 0.0)
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """The surface in words, as "ramp of 5 deg, walking up; plates that measure ..."."""
         if not self.angle:
             return "level"
@@ -68,6 +69,8 @@ class Ramp:
             f"ramp of {abs(math.degrees(self.angle)):.4g} deg, walking {way}; "
             f"{PLATE_FRAMES[self.plate_frame]}"
         )
+
+    words = property(renamed("words", "description", gone="0.4"))
 
 
 LEVEL = Ramp()
@@ -113,7 +116,7 @@ class Direction:
 
     vector: np.ndarray | None = None
     source: DirectionSource = DirectionSource.NONE
-    words: str = ""
+    explanation: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,14 +229,14 @@ def walking_direction(
     step, swing = pressure_path(plate, start, stop, up), shear_swing(plate, start, stop, up)
     length, size = float(np.linalg.norm(step)), float(np.linalg.norm(swing))
     if path is not None:
-        return Direction(words=f"the markers move at {speed:.2f} m/s only")
+        return Direction(explanation=f"the markers move at {speed:.2f} m/s only")
     if length > 0.05:
         words = f"centre of pressure, {1e3 * length:.0f} mm heel to toe"
         return Direction(step / length, DirectionSource.PRESSURE, words)
     if size > 10.0:
         words = "shear force, braking before driving"
         return Direction(swing / size, DirectionSource.SHEAR, words)
-    return Direction(words="nothing tells it")
+    return Direction(explanation="nothing tells it")
 
 
 def pressure_path(plate: Plate, start: int, stop: int, up: np.ndarray) -> np.ndarray:

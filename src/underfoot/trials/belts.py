@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from underfoot.core.deprecation import renamed
+
 from .axes import Direction, DirectionSource, marker_velocity, pressure_path, shear_swing
 from .plates import plate_contacts
 from .trial import Marker, Plate, Trial
@@ -37,9 +39,11 @@ class Belt:
         """Return the speed of the surface at a time (m/s)."""
         return float(np.linalg.norm(self.velocity(time)))
 
-    def words(self, time: float) -> str:
+    def speed_text(self, time: float) -> str:
         """Return the speed in words: "1.25 m/s (u 0.01 m/s, foot markers)"."""
         return f"{self.speed(time):.2f} m/s (u {self.uncertainty:.2f} m/s, {self.source})"
+
+    words = renamed("words", "speed_text", gone="0.4")
 
     def direction(self, time: float) -> Direction:
         """Return the way of somebody who walks against the belt."""

@@ -45,7 +45,7 @@ class Description:
                 "vertical_from": axes.up_from,
                 "walking": axis_name(axes.walking),
                 "walking_from": axes.walking_from,
-                "surface": axes.ramp.words,
+                "surface": axes.ramp.description,
             },
             "plates": [_plate_data(plate) for plate in trial.plates],
             "markers": list(trial.markers),
@@ -68,7 +68,7 @@ class Description:
             *(f"  {key}: {value}" for key, value in list(trial.settings.items())[:_SHOWN]),
             *("", "Axes", f"  vertical {axis_name(axes.up)} ({axes.up_from})"),
             f"  walking  {axis_name(axes.walking)} ({axes.walking_from})",
-            f"  surface  {axes.ramp.words}",
+            f"  surface  {axes.ramp.description}",
             *(*self._plates(), *self._markers(), *self._channels()),
             *(["", "Events in the file", *events] if events else []),
             *self._stances(),
@@ -132,7 +132,7 @@ class Description:
             under = []
             way = stance.direction
             if way.vector is not None and way.source is not DirectionSource.MARKERS:
-                under.append(f"walking direction: {way.words}")
+                under.append(f"walking direction: {way.explanation}")
             if own.value is None:
                 under.append(f"rejected: {own.reason}")
             else:
@@ -253,7 +253,7 @@ def _stance_data(step: RequiredFriction) -> dict[str, Any]:
     return {
         **_parts(stance, "plate contact toe_off peak side heel number accepted reason"),
         "walking": axis_name(stance.walking),
-        "walking_from": stance.direction.words,
+        "walking_from": stance.direction.explanation,
         "verdict": step.verdict,
         "peak_time": None if math.isnan(step.peak_time) else step.peak_time,
         "rcof": step.measurement.as_dict(),

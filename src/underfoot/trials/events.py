@@ -69,7 +69,7 @@ class EditError(InputError):
     """An edit that names no step, changes nothing or contradicts another: it ends the run."""
 
 
-def edited_contacts(found: Sequence[Stance], trial: Trial, up: np.ndarray) -> list[Stance]:
+def edited_contacts(detected: Sequence[Stance], trial: Trial, up: np.ndarray) -> list[Stance]:
     """Return the contacts with the trial's edits applied; ``side`` is applied where it is judged.
 
     An excluded contact, and one that is no step because another plate was named, have a reason.
@@ -77,7 +77,7 @@ def edited_contacts(found: Sequence[Stance], trial: Trial, up: np.ndarray) -> li
     EditError: an edit names no contact, lies outside the record, changes nothing or contradicts
     another.
     """
-    contacts = list(found)
+    contacts = list(detected)
     seen: dict[tuple[int, str], Edit] = {}
     for edit in trial.edits:
         at = _named(contacts, edit)
@@ -264,7 +264,7 @@ def _reason(
     if outside > _OUTSIDE:
         return f"the heel stands {1e3 * outside:.0f} mm outside the plate: a partial hit"
     if stance.walking is None:
-        return f"no walking direction: {stance.direction.words}"
+        return f"no walking direction: {stance.direction.explanation}"
     # Walking up a slope, gravity along the surface hides the braking: it is sought horizontally.
     along = part @ walk.axes.ramp.gravity(walk.up, stance.walking)[1]
     braking = -float(np.minimum(along[: len(along) // 2], 0.0).sum()) / plate.rate
@@ -325,12 +325,12 @@ class _Edges:
     """The edges of a plate in its own axes: one that stands askew is no larger for it."""
 
     def __init__(self, corners: np.ndarray) -> None:
-        self.own, self.middle = plate_axes(corners)[:, :2], corners.mean(axis=0)
-        self.half = np.abs((corners - self.middle) @ self.own).max(axis=0)
+        self.axes, self.middle = plate_axes(corners)[:, :2], corners.mean(axis=0)
+        self.half = np.abs((corners - self.middle) @ self.axes).max(axis=0)
 
     def beyond(self, places: np.ndarray) -> np.ndarray:
         """How far places (..., 3) lie beyond the edges along the plate's two axes (m)."""
-        return np.abs((places - self.middle) @ self.own) - self.half
+        return np.abs((places - self.middle) @ self.axes) - self.half
 
 
 class _Feet:

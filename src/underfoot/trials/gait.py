@@ -176,7 +176,7 @@ def required_friction(
     said = {
         **definition.conventions(),
         "baseline": baseline_words(plate),
-        "walking direction": stance.direction.words,
+        "walking direction": stance.direction.explanation,
         **walk.surface(stance.plate, stance.contact),
     }
     slip: Slip | None = None
@@ -248,17 +248,17 @@ def required_frictions(
 
 
 def stance_frictions(
-    walk: Trial | Walkway, found: list[Stance], definition: RcofDefinition | None = None
+    walk: Trial | Walkway, chosen: list[Stance], definition: RcofDefinition | None = None
 ) -> list[RequiredFriction]:
     """Return the required friction of the stances given, each compared with the others."""
     walk = walkway_of(walk)
-    steps = [required_friction(walk, stance, definition) for stance in found]
+    steps = [required_friction(walk, stance, definition) for stance in chosen]
     values = [(s.stance, s.measurement.value) for s in steps if s.measurement.value is not None]
     for i, step in enumerate(steps):
-        own = step.measurement
-        if own.value is not None:
-            more = other_foot_flags(step.stance, own.value, values)
-            steps[i] = replace(step, measurement=replace(own, flags=own.flags + more))
+        friction = step.measurement
+        if friction.value is not None:
+            more = other_foot_flags(step.stance, friction.value, values)
+            steps[i] = replace(step, measurement=replace(friction, flags=friction.flags + more))
     return steps
 
 

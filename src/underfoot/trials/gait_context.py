@@ -39,11 +39,11 @@ class GaitContext:
     belt_speed: float | None = None
 
 
-def gait_context(walk: Trial | Walkway, stance: Stance, found: Sequence[Stance]) -> GaitContext:
-    """Return the walk around one of the stances ``found`` in a trial, as seen from its surface."""
+def gait_context(walk: Trial | Walkway, stance: Stance, stances: Sequence[Stance]) -> GaitContext:
+    """Return the walk around one of the ``stances`` of a trial, as seen from its surface."""
     walk = walkway_of(walk)
     body = walk.body_velocity(stance.plate, stance.contact, stance.toe_off)
-    length, time = _step(walk, stance, found)
+    length, time = _step(walk, stance, stances)
     angle, belt = foot_angle(walk, stance), walk.belts.get(stance.plate)
     return GaitContext(
         walking_speed=None if body is None else _number(float(np.linalg.norm(body))),
@@ -72,12 +72,12 @@ def _marker(walk: Walkway, name: str | None, stance: Stance) -> Marker | None:
 
 
 def _step(
-    walk: Walkway, stance: Stance, found: Sequence[Stance]
+    walk: Walkway, stance: Stance, stances: Sequence[Stance]
 ) -> tuple[float | None, float | None]:
     """Return length and time since the contact of the other foot (0.25 to 1.5 s before)."""
     before = [
         other
-        for other in found
+        for other in stances
         if 0.25 < stance.contact - other.contact < 1.5
         and {other.side, stance.side} == {"left", "right"}
     ]
@@ -182,29 +182,29 @@ class SlipCourse:
 
 
 def slip_course(
-    walk: Trial | Walkway, stance: Stance, one: Slip, limits: OutcomeLimits | None = None
+    walk: Trial | Walkway, stance: Stance, slip: Slip, limits: OutcomeLimits | None = None
 ) -> SlipCourse:
     """Return what happened around a slip (or a step without one)."""
     walk, limits = walkway_of(walk), limits or OutcomeLimits()
-    body, why = _body(walk, one)
-    toe = None if one.slides else _toe_way(walk, stance)
-    trailing = _trailing_way(walk, stance, one)
+    body, why = _body(walk, slip)
+    toe = None if slip.slides else _toe_way(walk, stance)
+    trailing = _trailing_way(walk, stance, slip)
     misstep = _misstep(walk, stance)
     flags = []
-    for name, way, words in (
+    for name, way, text in (
         ("toe slip", toe, "the toe slides by {:.0f} mm: a toe slip"),
         ("trailing foot", trailing, "the trailing foot slides by {:.0f} mm"),
     ):
         if way is not None and way > limits.microslip:
-            flags.append(Flag(name, words.format(1e3 * way), True, way, limits.microslip, "m"))
+            flags.append(Flag(name, text.format(1e3 * way), True, way, limits.microslip, "m"))
     if misstep:
         flags.append(Flag("misstep", f"misstep: {misstep}"))
     return SlipCourse(body, why, toe, trailing, misstep, tuple(flags))
 
 
-def _body(walk: Walkway, one: Slip) -> tuple[str, str]:
+def _body(walk: Walkway, slip: Slip) -> tuple[str, str]:
     """Recovery or fall by the height of the pelvis's markers."""
-    if not one.slides:
+    if not slip.slides:
         return "", "no slide to recover from"
     markers = [
         marker
@@ -220,8 +220,8 @@ def _body(walk: Walkway, one: Slip) -> tuple[str, str]:
         return "", "no marker of the pelvis is seen"
     height = np.full(len(time), np.nan)
     height[seen] = np.nanmean(heights[:, seen], axis=0)
-    before = height[(time > one.contact - 0.6) & (time < one.contact)]
-    after = height[(time >= one.contact) & (time < one.contact + _AFTER)]
+    before = height[(time > slip.contact - 0.6) & (time < slip.contact)]
+    after = height[(time >= slip.contact) & (time < slip.contact + _AFTER)]
     if not (np.isfinite(before).any() and np.isfinite(after).any()):
         return "", "the pelvis is not seen before and after contact"
     usual, lowest = float(np.nanmedian(before)), float(np.nanmin(after))
@@ -243,19 +243,19 @@ def _toe(walk: Walkway, side: str, stance: Stance) -> Marker | None:
     return _marker(walk, None if side == "unknown" else walk.toes.get(side), stance)
 
 
-def _trailing_way(walk: Walkway, stance: Stance, one: Slip) -> float | None:
+def _trailing_way(walk: Walkway, stance: Stance, slip: Slip) -> float | None:
     other = {"left": "right", "right": "left"}.get(stance.side, "unknown")
     marker = _toe(walk, other, stance)
-    if marker is None or not np.isfinite(one.end):
+    if marker is None or not np.isfinite(slip.end):
         return None
     # The trailing foot stands on its toe until it lifts.
     height = marker.positions @ walk.up
-    inside = (marker.time >= stance.contact) & (marker.time <= one.end)
+    inside = (marker.time >= stance.contact) & (marker.time <= slip.end)
     known = inside & np.isfinite(height)
     if known.sum() < 3:
         return None
     up = known & (height > np.nanmin(height[known]) + 0.03)
-    end = float(marker.time[up][0]) if up.any() else one.end
+    end = float(marker.time[up][0]) if up.any() else slip.end
     return _way(marker, stance.contact, end, walk.up)
 
 

@@ -8,6 +8,7 @@ from typing import Any, Self
 import numpy as np
 
 from underfoot.core import InputError, display
+from underfoot.core.deprecation import renamed
 from underfoot.core.presentation import Presentable, Table
 
 MEAN_OF_STEPS = "mean of the steps"
@@ -26,7 +27,7 @@ class Flag:
     """
 
     name: str
-    words: str
+    message: str
     matters: bool = True
     measured: float | None = None
     limit: float | None = None
@@ -35,17 +36,19 @@ class Flag:
     likelihood: float | None = None
 
     def __str__(self) -> str:
-        return self.words
+        return self.message
+
+    words = property(renamed("words", "message", gone="0.4"))
 
 
-def caution(words: str) -> Flag:
+def caution(message: str) -> Flag:
     """Return a flag that makes a number a caution."""
-    return Flag("caution", words)
+    return Flag("caution", message)
 
 
-def remark(words: str) -> Flag:
+def remark(message: str) -> Flag:
     """Return a flag that is told and changes no verdict."""
-    return Flag("remark", words, matters=False)
+    return Flag("remark", message, matters=False)
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -111,7 +114,7 @@ class Measurement(Presentable):
 
     def cautions(self) -> tuple[str, ...]:
         """Return the flags that matter, in words."""
-        return tuple(flag.words for flag in self.caution_flags)
+        return tuple(flag.message for flag in self.caution_flags)
 
     @property
     def caution_flags(self) -> tuple[Flag, ...]:
@@ -141,7 +144,7 @@ class Measurement(Presentable):
         ]
         if self.spread is not None:
             rows.append(("standard deviation", self.spread))
-        rows += [("caution" if flag.matters else "remark", flag.words) for flag in self.flags]
+        rows += [("caution" if flag.matters else "remark", flag.message) for flag in self.flags]
         return Table(self.name, ("", ""), [*rows, *self.conventions.items()])
 
     def as_dict(self) -> dict[str, Any]:

@@ -42,13 +42,13 @@ class Limit:
     unit: str
     source: str = _ASSUMED
 
-    def flag(self, measured: float, words: str) -> Flag:
+    def flag(self, measured: float, message: str) -> Flag:
         """Return the flag of a value beyond the limit."""
-        return Flag(self.name, words, True, float(measured), self.value, self.unit, self.source)
+        return Flag(self.name, message, True, float(measured), self.value, self.unit, self.source)
 
-    def above(self, measured: float, words: str) -> tuple[Flag, ...]:
+    def above(self, measured: float, message: str) -> tuple[Flag, ...]:
         """Return the flag of a value if it lies above the limit."""
-        return (self.flag(measured, words),) if measured > self.value else ()
+        return (self.flag(measured, message),) if measured > self.value else ()
 
 
 RCOF = Limit(
@@ -169,7 +169,7 @@ def rcof_flags(value: float, ramp: Ramp = LEVEL) -> tuple[Flag, ...]:
     On a ramp the limits of level walking widen by the tangent of the angle, which is what a body
     at rest there adds or takes off.
     """
-    slope, ground = math.tan(abs(ramp.angle)), ramp.words.split(",")[0]
+    slope, ground = math.tan(abs(ramp.angle)), ramp.description.split(",")[0]
     where = f"straight walking on a {ground}" if slope else "level, straight walking"
     if value > RCOF.value + slope:
         return (RCOF.flag(value, f"RCOF {value:.2f} is more than {where} needs"),)

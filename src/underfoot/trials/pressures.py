@@ -269,7 +269,7 @@ class SensorArrayReading:
 
 def sensor_array_reading(
     trial: Trial,
-    found: Slip,
+    slip: Slip,
     sensors: Mapping[str, tuple[float, float, float]],
     *,
     up: np.ndarray,
@@ -278,7 +278,7 @@ def sensor_array_reading(
 ) -> SensorArrayReading:
     """Return pressures, passages and the heel's track of one slip over a sensor array.
 
-    Without a heel path in the slip ``found`` there are pressures only. ``sensors`` are places in
+    Without a heel path in the ``slip`` there are pressures only. ``sensors`` are places in
     lab axes (m) by the name of the pressure channel; ``up`` and ``walking`` unit vectors (3,). A
     sensor without a channel, or no sensors, are a DataError.
 
@@ -287,18 +287,18 @@ def sensor_array_reading(
     if not sensors:
         raise DataError("no sensor is named", where=trial.name, remedy="Add [sensors] to a profile")
     pulses = {
-        name: pressure_pulse(name, trial.channel(name), found.contact, definition=definition)
+        name: pressure_pulse(name, trial.channel(name), slip.contact, definition=definition)
         for name in sensors
     }
     seen = {n: p.peak.value for n, p in pulses.items() if p.peak.value is not None}
     best = max(seen, key=lambda name: seen[name]) if seen else next(iter(pulses))
     passed: dict[str, Passage] = {}
     track, crossed = np.empty((0, 2)), False
-    if found.motion is not None and found.end > found.contact:
-        said = found.peak_speed.conventions
-        said = {k: v for k, v in said.items() if k not in ("threshold", "uncertainty")}
-        span: Any = {"up": up, "walking": walking, "contact": found.contact, "until": found.end}
-        for one in passages(found.motion, sensors, conventions=said, **span):
-            passed[one.sensor] = one
-        track, crossed = heel_track(found.motion, sensors, **span)
+    if slip.motion is not None and slip.end > slip.contact:
+        choices = slip.peak_speed.conventions
+        choices = {k: v for k, v in choices.items() if k not in ("threshold", "uncertainty")}
+        span: Any = {"up": up, "walking": walking, "contact": slip.contact, "until": slip.end}
+        read = passages(slip.motion, sensors, conventions=choices, **span)
+        passed = {passage.sensor: passage for passage in read}
+        track, crossed = heel_track(slip.motion, sensors, **span)
     return SensorArrayReading(pulses, passed, track, crossed, pulses[best].peak, best)

@@ -39,7 +39,7 @@ class Rule:
     assumed: bool
     note: str = ""
 
-    def words(self) -> str:
+    def statement(self) -> str:
         """Return the rule in words."""
         unit = QUANTITIES[self.quantity]
         low, high = (None if v is None else display(v, unit) for v in (self.low, self.high))
@@ -56,7 +56,7 @@ class Rule:
         if not (below or above):
             return ""
         unit = QUANTITIES[self.quantity]
-        return f"{self.quantity.replace('_', ' ')} {display(value, unit)}; rule: {self.words()}"
+        return f"{self.quantity.replace('_', ' ')} {display(value, unit)}; rule: {self.statement()}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +83,7 @@ class Protocol:
         """Return a setting that is a word."""
         return str(self.method[key].given) if key in self.method else default
 
-    def words(self, key: str) -> tuple[str, ...]:
+    def texts(self, key: str) -> tuple[str, ...]:
         """Return a setting that is a word or a list of words."""
         if key not in self.method:
             return ()

@@ -172,7 +172,7 @@ def calibrated(cof: Measurement, record: TesterCalibration | None) -> Measuremen
     if record is None:
         words = "no record: the tester's gain is not in the uncertainty"
         return replace(cof, conventions={**cof.conventions, "calibration": words})
-    said = {**cof.conventions, "calibration": record.words()}
+    said = {**cof.conventions, "calibration": record.description()}
     error = None
     if cof.value is not None and cof.uncertainty is not None:
         parts = (record.channel(name).uncertainty for name in ("normal", "friction"))

@@ -57,7 +57,7 @@ class DailyCheck:
     channel: str
     error: float
     allowed: float
-    words: str
+    description: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,7 @@ class TesterCalibration:
         """Return the calibration of a channel; the factor is 1 where the record has none."""
         return self.channels.get(name, ChannelCalibration(1.0, 0.0, np.inf))
 
-    def words(self) -> str:
+    def description(self) -> str:
         """Return certificate, date and factors in words."""
         factors = (
             f"{name} x {c.factor:.4f} (u {100 * c.uncertainty:.2g} %)"
@@ -100,7 +100,7 @@ class TesterCalibration:
         failed = [check for check in that_day if abs(check.error) > check.allowed]
         if failed:
             worst = max(failed, key=lambda check: abs(check.error))
-            words = f"the check of {day} failed: {'; '.join(check.words for check in failed)}"
+            words = f"the check of {day} failed: {'; '.join(check.description for check in failed)}"
             return (Flag(FAILED, words, True, worst.error, worst.allowed, "1"),)
         missing = {check.channel for check in self.checks} - {c.channel for c in that_day}
         if missing:

@@ -245,8 +245,8 @@ def joined(first: Trial, second: Trial) -> Trial:
     Both must count time from the same instant. Names that both use get the ending `` (2)``.
     """
 
-    def both(one: Mapping[str, _T], other: Mapping[str, _T]) -> dict[str, _T]:
-        return {**one, **{f"{n} (2)" if n in one else n: value for n, value in other.items()}}
+    def both(base: Mapping[str, _T], added: Mapping[str, _T]) -> dict[str, _T]:
+        return {**base, **{f"{n} (2)" if n in base else n: value for n, value in added.items()}}
 
     return replace(
         first.with_notes(*second.notes).with_edits(*second.edits),

@@ -132,19 +132,19 @@ class Walkway:
 
     def surface(self, plate: str, time: float) -> dict[str, str]:
         """Return the surface under a plate's contact (level, a ramp, a belt), a belt's speed."""
-        belt, ground = self.belts.get(plate), self.axes.ramp.words
+        belt, ground = self.belts.get(plate), self.axes.ramp.description
         if belt is None:
             return {"surface": ground}
-        return {"surface": f"treadmill belt, {ground}", "belt": belt.words(time)}
+        return {"surface": f"treadmill belt, {ground}", "belt": belt.speed_text(time)}
 
     @property
     def surfaces(self) -> str:
         """The surface of every plate in words."""
         belts = [
-            f"{plate}: treadmill belt at {belt.words(belt.times.mean())}"
+            f"{plate}: treadmill belt at {belt.speed_text(belt.times.mean())}"
             for plate, belt in self.belts.items()
         ]
-        return "; ".join([*belts, self.axes.ramp.words])
+        return "; ".join([*belts, self.axes.ramp.description])
 
     def direction(self, plate: Plate, start: int, stop: int) -> Direction:
         """Return the walking direction during a contact and how it was found."""

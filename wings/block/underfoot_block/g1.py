@@ -30,7 +30,7 @@ from underfoot.studies.figure import (
     line,
     points,
 )
-from underfoot.studies.runner import Computed, Options, Table, kept
+from underfoot.studies.runner import Computed, Options, Table, cached_arrays
 from underfoot.studies.verdict import Quantity
 from underfoot_block import condensed, explicit
 
@@ -280,7 +280,7 @@ def outcomes(
     if settings.solver == "explicit":
         items = [(case, settings) for case in cases]
         keys = [_key(case, settings) for case in cases]
-        for _, arrays in kept(ROOM, explicit_outcome, items, keys, processes=processes):
+        for _, arrays in cached_arrays(ROOM, explicit_outcome, items, keys, processes=processes):
             yield Row(**json.loads(str(arrays.pop("row")))), arrays
         return
     block: condensed.CondensedBlock | None = None
@@ -442,8 +442,8 @@ def figures(
         "fig06_hysteresis_speed": _figure(frame, "hysteresis", "6", "speed"),
         "fig07_area_speed": _figure(frame, "area", "7", "speed"),
         "fig08_area_roughness": _figure(frame, "area", "8", "floor_rz"),
-        "fig10_area_speed_own": _figure(frame, "area", "10", "speed", own=True),
-        "fig11_area_roughness_own": _figure(frame, "area", "11", "floor_rz", own=True),
+        "fig10_area_speed_own": _figure(frame, "area", "10", "speed", own_roughness=True),
+        "fig11_area_roughness_own": _figure(frame, "area", "11", "floor_rz", own_roughness=True),
     }
     drawn = {name: figure for name, figure in drawn.items() if figure.panels}
     if histories:
@@ -451,9 +451,11 @@ def figures(
     return drawn
 
 
-def _figure(frame: Any, quantity: str, number: str, along: str, *, own: bool = False) -> Figure:
+def _figure(
+    frame: Any, quantity: str, number: str, along: str, *, own_roughness: bool = False
+) -> Figure:
     """Return a panel a series and material: a quantity over speed, or at the lowest speed over the
-    floor's roughness; ``own`` keeps each material's own roughness."""
+    floor's roughness; ``own_roughness`` keeps each material's own roughness."""
     column, label, scale = QUANTITIES[quantity]
     slow = frame.speed.min()
     if along == "floor_rz":
@@ -461,7 +463,7 @@ def _figure(frame: Any, quantity: str, number: str, along: str, *, own: bool = F
     panels, left_out = [], []
     for series, material in product(frame.series.unique(), MATERIALS):
         some = frame[(frame.series == series) & (frame.material == material)]
-        if own:
+        if own_roughness:
             some = some[some.shoe_rz == OWN_SHOE_RZ[material]]
         largest = some[column].abs().max()
         if quantity == "hysteresis" and largest < LEAST_COF:
@@ -469,13 +471,15 @@ def _figure(frame: Any, quantity: str, number: str, along: str, *, own: bool = F
             continue
         # friction of the materials is compared, areas differ tenfold
         highest = scale * (frame if quantity == "hysteresis" else some)[column].max()
-        printed = _printed_change(quantity, along, material, own=own)
+        printed = _printed_change(quantity, along, material, own_roughness=own_roughness)
         if along == "floor_rz":
             bars = {
                 f"shoe Rz {1e6 * shoe:g} µm": scale * row[column].to_numpy()
                 for shoe, row in some.sort_values(along).groupby("shoe_rz")
             }
-            layers = grouped_bars(bars, colours=("#2e75b6",) if own else ("#9db8cc", OURS))
+            layers = grouped_bars(
+                bars, colours=("#2e75b6",) if own_roughness else ("#9db8cc", OURS)
+            )
             names = [f"{1e6 * floor:g}" for floor in FLOOR_RZ]
             axis: dict[str, Any] = {"x_label": "floor Rz (µm)", "x_ticks": names}
             last = len(FLOOR_RZ) - 0.45
@@ -484,10 +488,10 @@ def _figure(frame: Any, quantity: str, number: str, along: str, *, own: bool = F
                 line(
                     curve.speed,
                     scale * curve[column],
-                    f"floor {1e6 * floor:g}" + ("" if own else f", shoe {1e6 * shoe:g}"),
+                    f"floor {1e6 * floor:g}" + ("" if own_roughness else f", shoe {1e6 * shoe:g}"),
                     colour=(SECOND, "#2e75b6", OURS)[FLOOR_RZ.index(floor)],
-                    marker="o" if own else "os"[SHOE_RZ.index(shoe)],
-                    style="-" if own else ("-", "--")[SHOE_RZ.index(shoe)],
+                    marker="o" if own_roughness else "os"[SHOE_RZ.index(shoe)],
+                    style="-" if own_roughness else ("-", "--")[SHOE_RZ.index(shoe)],
                 )
                 for (shoe, floor), curve in some.sort_values(along).groupby(["shoe_rz", "floor_rz"])
             ]
@@ -510,7 +514,7 @@ def _figure(frame: Any, quantity: str, number: str, along: str, *, own: bool = F
         )
     title = f"Fig. {number}: {label}"
     title += f" at {slow:g} m/s" if along == "floor_rz" else " against speed (Rz in µm)"
-    title += ", own shoes" if own else ""
+    title += ", own shoes" if own_roughness else ""
     if left_out:
         title += "\nreport's parameters not drawn, |COF| at most: " + ", ".join(left_out)
     return Figure(panels, title, columns=2, legend_below=True, size=(4.4, 3.2))
@@ -520,14 +524,14 @@ PRINTED_LABEL = "printed change, from our mean at the first place"
 
 
 def _printed_change(
-    quantity: str, along: str, material: str, *, own: bool
+    quantity: str, along: str, material: str, *, own_roughness: bool
 ) -> tuple[float, float] | None:
     """Return the printed change (lowest, highest) that a panel's last place stands for."""
     published = Catalogue.load().entry("published", "micro_fe_g1")
     name = {"hysteresis": "hysteresis_cof_change", "area": "contact_area_per_force_change"}[
         quantity
     ]
-    if own and along == "speed":
+    if own_roughness and along == "speed":
         key = "experiment.adhesion_change_with_speed"
     elif along == "speed" and quantity == "hysteresis":
         key = f"{name}.speed_up_most_pairs"

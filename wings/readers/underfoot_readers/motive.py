@@ -30,9 +30,9 @@ def read_motive(draft: Draft) -> Trial:
     width = len(axes)
     heads = [(row + [""] * width)[:width] for row in heads]
 
-    def row_with(*words: str) -> list[str]:
-        found = (row for row in heads if any(c.casefold() in words for c in row))
-        return next(found, [""] * width)
+    def row_with(*headings: str) -> list[str]:
+        rows = (row for row in heads if any(c.casefold() in headings for c in row))
+        return next(rows, [""] * width)
 
     kinds, what = row_with(*_KINDS), row_with("position")
     names = row_with("name") if any("Name" in row[:2] for row in heads) else [""] * width

@@ -252,7 +252,7 @@ def _tables(
     roughness: Sequence[float],
     loads: Array,
     peaks: Array,
-    found: Sequence[Calibrated],
+    calibrated: Sequence[Calibrated],
 ) -> tuple[Table, ...]:
     why = "{0.fixed}; least chi-square {0.misfit:.2g} of {0.data} data; grid {1:g} to {2:g}"
     parameters = [
@@ -264,7 +264,7 @@ def _tables(
             "inside fitted 95 %": one.holds_default,
             "why": why.format(one.profile, one.profile.grid[0], one.profile.grid[-1]),
         }
-        for one in found
+        for one in calibrated
     ]
     columns = tuple(parameters[0])
     none = [
@@ -300,18 +300,18 @@ def _tables(
             ("parameter", "value", "chi-square"),
             [
                 (one.profile.name, x, y)
-                for one in found
+                for one in calibrated
                 for x, y in zip(one.profile.grid, one.profile.profile, strict=True)
             ],
         ),
     )
 
 
-def profile_figure(found: Sequence[Calibrated]) -> Figure:
+def profile_figure(calibrated: Sequence[Calibrated]) -> Figure:
     """Return chi-square over its least against each parameter; below the line lies 95 %."""
     panels = []
-    for one in found:
-        p = one.profile
+    for parameter in calibrated:
+        p = parameter.profile
         layers = [
             line(p.grid, np.minimum(p.profile, 1e3), marker="o"),
             level(p.misfit + identifiability.RISE, "95 %", colour="0.5", style="--"),
@@ -319,7 +319,7 @@ def profile_figure(found: Sequence[Calibrated]) -> Figure:
         for k, end in enumerate(v for v in (p.low, p.high) if v is not None):
             label = "" if k else "end of 95 %"
             layers.append(Layer("limit", end, colour=PRINTED, label=label))
-        layers.append(Layer("limit", one.default, colour=OURS, style=":", label="default"))
+        layers.append(Layer("limit", parameter.default, colour=OURS, style=":", label="default"))
         unit = "" if p.unit == "1" else f" ({p.unit})"
         title = f"{p.fixed}: {p.text()}"
         scale: dict[str, Any] = {"y_scale": "symlog", "y_limits": (0.0, None)}

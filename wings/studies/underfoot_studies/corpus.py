@@ -19,7 +19,7 @@ from underfoot.core.arrays import Array
 from underfoot.friction import packaged_pair_draws, pair_contact
 from underfoot.friction.tread_error import tread_pairs
 from underfoot.studies.figure import PRINTED, Figure, Panel, line, points
-from underfoot.studies.runner import Computed, Options, Table, kept, part
+from underfoot.studies.runner import Computed, Options, Table, cached_arrays, part
 from underfoot.studies.verdict import Quantity
 
 from .corpus_cases import (
@@ -114,7 +114,7 @@ def compute(options: Options) -> Computed:
     keys = [content_hash(asdict(split), content) for split in splits]
     results: dict[tuple[str, str], LaboratoryScore] = {}
     fits = part(options.progress, 0.0, 0.5)
-    work = kept("corpus-3", draws_of, splits, keys, processes=options.processes)
+    work = cached_arrays("corpus-3", draws_of, splits, keys, processes=options.processes)
     for number, (split, arrays) in enumerate(work, start=1):
         fits("leaving one laboratory out", number / len(splits))
         own = tuple(c for c in conditions if c.laboratory == split.laboratory)
@@ -216,7 +216,7 @@ def _compared(
     cases = {case.hash: case for stand in stands for case in stand.cases}
     values: dict[str, Mapping[str, Any]] = {}
     runs = part(options.progress, 0.5, 1.0)
-    work = kept(
+    work = cached_arrays(
         CASES,
         whole_cof,
         list(cases.values()),
@@ -313,7 +313,9 @@ def _whole(shoes: list[tuple[Condition, Stand, Side]]) -> tuple[Table, dict[str,
 def _slips(options: Options) -> tuple[Table, dict[str, Quantity]]:
     """Return shares of slips of four sources against the slip model."""
     case = Case.from_mapping(HUMAN_SLIPS)
-    ((_, arrays),) = kept(CASES, whole_cof, [case], [_key(case)], processes=options.processes)
+    ((_, arrays),) = cached_arrays(
+        CASES, whole_cof, [case], [_key(case)], processes=options.processes
+    )
     rows = predicted(published(arrays["draws"][::4]))
     title = "Shares of steps that slipped: report's curve, and what the other sources say"
     worst: dict[str, float] = {}

@@ -156,14 +156,14 @@ def contrasts(source: Source) -> list[Contrast]:
 def whole_shoe_stands(source: Source) -> list[tuple[Condition, Stand]]:
     """Return each condition of whole shoes with the cases that stand for it."""
     return [
-        (c, stand(described(c))) for c in source.conditions if c.words.get("device") in WHOLE_SHOE
+        (c, stand(described(c))) for c in source.conditions if c.labels.get("device") in WHOLE_SHOE
     ]
 
 
 def described(condition: Condition) -> dict[str, Any]:
     """Return a condition as one table, as effects write theirs."""
     members = [described(member) for member in condition.members]
-    table = {**condition.words, **condition.numbers}
+    table = {**condition.labels, **condition.numbers}
     return {**table, "members": members} if members else table
 
 

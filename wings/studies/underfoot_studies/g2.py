@@ -165,9 +165,9 @@ def default_predictions(
     return found
 
 
-def _rough_name(one: CofPoints) -> str:
-    share = one.fluid.removeprefix("glycerol_").removesuffix("pct")
-    return f"{share}_{1e6 * one.rq:.1f}"
+def _rough_name(cof_points: CofPoints) -> str:
+    share = cof_points.fluid.removeprefix("glycerol_").removesuffix("pct")
+    return f"{share}_{1e6 * cof_points.rq:.1f}"
 
 
 def _default_quantities(default: Mapping[str, DefaultPrediction]) -> dict[str, Quantity]:

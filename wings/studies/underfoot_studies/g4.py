@@ -340,9 +340,9 @@ def quantities(
     return found | {f"p.{n}": Quantity.of(p[t]) if t in p else none for t, n in terms.items()}
 
 
-def channel_at(one: Reading, y: float) -> float:
+def channel_at(sensor_reading: Reading, y: float) -> float:
     """Return where the arc channel's middle line lies at y (m), from the back of the heel."""
-    tread = one.condition.case.shoe.tread
+    tread = sensor_reading.condition.case.shoe.tread
     assert tread is not None
     arc = tread.arc_channel
     assert arc is not None
@@ -434,7 +434,7 @@ def lower_table(lower: Mapping[str, Outcome]) -> Table:
     )
 
 
-def inputs_table(condition: Condition, found: Sensitivity) -> Table:
+def inputs_table(condition: Condition, varied: Sensitivity) -> Table:
     """Return what each open input does to load and peak of one condition."""
     rows = [
         {
@@ -447,13 +447,13 @@ def inputs_table(condition: Condition, found: Sensitivity) -> Table:
             "kPa at high": effect.high.number(PEAK) / 1e3,
             "why open": effect.reason,
         }
-        for effect in found.ranked(PEAK)
+        for effect in varied.ranked(PEAK)
     ]
     return Table.of(
         f"open_inputs_{condition.kind}",
         f"What one standard deviation of each open input does ({condition.name}; quick grid, where "
-        f"the sensor reads {found.nominal.number(LOAD):.0f} N and "
-        f"{found.nominal.number(PEAK) / 1e3:.0f} kPa)",
+        f"the sensor reads {varied.nominal.number(LOAD):.0f} N and "
+        f"{varied.nominal.number(PEAK) / 1e3:.0f} kPa)",
         rows,
     )
 
@@ -570,12 +570,14 @@ def depth_figure(depths: Sequence[tuple[float, Outcome]]) -> Figure:
     return Figure([panel], "Half-treaded work shoe in glycerol, 500 N, 0.7 m/s", size=(6.6, 4.2))
 
 
-def inputs_figure(condition: Condition, found: Sensitivity, count: int = 8) -> Figure:
+def inputs_figure(condition: Condition, varied: Sensitivity, count: int = 8) -> Figure:
     """Return what one standard deviation of the open inputs does to load and peak."""
     panels = []
     for name, label, scale in ((LOAD, "load by the sensor (N)", 1.0), (PEAK, "peak (kPa)", 1e-3)):
-        effects = found.ranked(name)[:count][::-1]
-        layers = [Layer("limit", found.nominal.number(name) * scale, colour="0.4", label="nominal")]
+        effects = varied.ranked(name)[:count][::-1]
+        layers = [
+            Layer("limit", varied.nominal.number(name) * scale, colour="0.4", label="nominal")
+        ]
         for end, colour in (("low", SECOND), ("high", OURS)):
             values = [getattr(effect, end).number(name) * scale for effect in effects]
             places = range(len(effects))

@@ -21,7 +21,7 @@ from underfoot.friction import FrictionLaw, PairContactLaw
 from underfoot.slip.dynamics import SlipStudy
 from underfoot.slip.dynamics.full_model import Setting, SoleFoot
 from underfoot.studies.figure import GREY, OURS, PRINTED, SECOND, Figure, Panel, line, points
-from underfoot.studies.runner import Computed, Options, Table, kept, named, part
+from underfoot.studies.runner import Computed, Options, Table, cached_arrays, named, part
 from underfoot.studies.verdict import Quantity
 from underfoot_trial_analysis.statistics.linear import all_subsets
 
@@ -81,7 +81,7 @@ def compute(options: Options) -> Computed:
     cases = {(s, grid): slip_case(s, grid=grid, quick=options.quick) for s, grid in plan}
     if options.processes != 1:
         keys = [case.hash for case in cases.values()]
-        filled = kept("g5_filled-1", fill_cache, list(cases.values()), keys, processes=2)
+        filled = cached_arrays("g5_filled-1", fill_cache, list(cases.values()), keys, processes=2)
         for number, _ in enumerate(filled):
             options.progress("full slips", 0.8 * (number + 1) / len(cases))
     found: dict[tuple[str, str], SlipStudy] = {}
@@ -283,7 +283,7 @@ def quantities(
 
 
 def tables(
-    found: Mapping[str, SlipStudy],
+    studies: Mapping[str, SlipStudy],
     levels: Mapping[str, Sequence[tuple[float, Mapping[str, float]]]],
     draws: Mapping[str, Mapping[str, Array]],
 ) -> tuple[Table, ...]:
@@ -296,7 +296,7 @@ def tables(
         "correlation": ("", 1.0),
     }
     rows = []
-    for shoe in found:
+    for shoe in studies:
         for name, (unit, scale) in scales.items():
             low, high = (math.nan, math.nan)
             if name in draws[shoe]:
@@ -327,7 +327,7 @@ def tables(
             "rows",
             "Mean peak of each row of sensors, kPa",
             ("shoe", "first", "second", "third"),
-            [(shoe, *(peak / 1e3 for peak in study.rows())) for shoe, study in found.items()],
+            [(shoe, *(peak / 1e3 for peak in study.rows())) for shoe, study in studies.items()],
         ),
         Table.of(
             "table7",
@@ -346,27 +346,27 @@ def tables(
     )
 
 
-def conclusions(found: Mapping[str, SlipStudy], passages: Mapping[str, Array]) -> tuple[str, ...]:
+def conclusions(studies: Mapping[str, SlipStudy], passages: Mapping[str, Array]) -> tuple[str, ...]:
     """Return what the comparison says."""
-    bare, tread = found["untreaded"], found["treaded"]
+    bare, tread = studies["untreaded"], studies["treaded"]
     speeds = [bare.peak_speed_at(effective_mass=share) for share in (0.06, 0.114, 0.17)]
-    words = " / ".join("-" if v is None else f"{v:.2f}" for v in speeds)
+    text = " / ".join("-" if v is None else f"{v:.2f}" for v in speeds)
     pressures = [numbers_of(one)["peak_pressure"] / 1e3 for one in (bare, tread)]
     return (
         f"Treaded: {100 * tread.slipped()[0]:.0f} % slip here, nobody in the report.",
         f"Untreaded: {100 * bare.slipped()[0]:.0f} % slip. Tread takes the fluid pressure at the "
         f"sensors from {pressures[0]:.0f} to {pressures[1]:.1f} kPa with nothing else changed.",
-        f"Mean peak speed untreaded if 0.06 / 0.114 / 0.17 of the body moved: {words} m/s.",
+        f"Mean peak speed untreaded if 0.06 / 0.114 / 0.17 of the body moved: {text} m/s.",
         f"{passages['peak'].size} passages of a heel over a sensor stand behind Table 7.",
     )
 
 
 def figures(
-    found: Mapping[str, SlipStudy], passages: Mapping[str, Array], films: Sequence[HeldFilm]
+    studies: Mapping[str, SlipStudy], passages: Mapping[str, Array], films: Sequence[HeldFilm]
 ) -> dict[str, Figure]:
     """Return Fig. 32 to 35."""
-    bare = found["untreaded"]
-    drawn = {"fig33_speed_pressure": _speed_pressure_figure(found)}
+    bare = studies["untreaded"]
+    drawn = {"fig33_speed_pressure": _speed_pressure_figure(studies)}
     if bare.representative is not None:
         drawn["fig32_slip"] = _slip_figure(bare)
     if passages["peak"].size:
@@ -406,10 +406,10 @@ def _slip_figure(study: SlipStudy) -> Figure:
     )
 
 
-def _speed_pressure_figure(found: Mapping[str, SlipStudy]) -> Figure:
+def _speed_pressure_figure(studies: Mapping[str, SlipStudy]) -> Figure:
     published = Catalogue.load().entry("published", "human_slips_g5")
     layers = []
-    for shoe, study in found.items():
+    for shoe, study in studies.items():
         seen = _columns(crossing(study))
         r = study.correlation()
         label = f"{shoe}, computed" + ("" if r is None else f" (r = {r:.2f})")
@@ -512,7 +512,7 @@ def held_films(options: Options) -> list[HeldFilm]:
     keys = [content_hash(setting_key, *item, HELD_STEPS) for item in items]
     found = []
     for number, (item, arrays) in enumerate(
-        kept("g5_held-1", held_item, items, keys, processes=options.processes)
+        cached_arrays("g5_held-1", held_item, items, keys, processes=options.processes)
     ):
         options.progress("films under a held heel", (number + 1) / len(items))
         found.append(HeldFilm(item[1], item[2], arrays["time"], arrays["share"]))

@@ -234,21 +234,21 @@ def sole_frictions(
     return [_with_draws(one) if one.law in (JUDGED, "pair") else one for one in frictions]
 
 
-def _with_draws(one: SoleFriction) -> SoleFriction:
+def _with_draws(friction: SoleFriction) -> SoleFriction:
     """Return the friction with the joint draws of its law, on the quick grid about its value."""
-    case = sole_case(one.shore, one.law).replace("motion.duration", f"{WINDOW[1]!r} s")
+    case = sole_case(friction.shore, friction.law).replace("motion.duration", f"{WINDOW[1]!r} s")
     result = run(case, quick=True)
     draws = result.data["cof_draws"].values
-    hardness = normal_draws(0, f"hardness of the {one.sole} outsole", draws.size)
-    spread = 0.5 * math.log(one.high / one.low)
-    drawn = draws * (one.cof / result.value("cof")) * np.exp(abs(spread) * hardness)
-    return replace(one, draws=drawn)
+    hardness = normal_draws(0, f"hardness of the {friction.sole} outsole", draws.size)
+    spread = 0.5 * math.log(friction.high / friction.low)
+    drawn = draws * (friction.cof / result.value("cof")) * np.exp(abs(spread) * hardness)
+    return replace(friction, draws=drawn)
 
 
 def _friction(
-    sole: str, law: str, shore: float, found: list[Outcome], coarse: Outcome | None
+    sole: str, law: str, shore: float, computed: list[Outcome], coarse: Outcome | None
 ) -> SoleFriction:
-    window, ends = found[:-2], [one.number("cof") for one in found[-2:]]
+    window, ends = computed[:-2], [one.number("cof") for one in computed[-2:]]
     values = np.array([one.number("cof") for one in window])
     weights = np.array([1.0, 4.0, 1.0]) / 6 if values.size == 3 else np.ones(1)
     middle = window[len(window) // 2]

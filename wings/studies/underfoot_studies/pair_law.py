@@ -239,8 +239,8 @@ def _same(names: Sequence[object], group: NDArray[np.intp]) -> Array:
 
 def _tread(condition: Condition) -> str:
     """Return the name of the tread whose error a reading has; empty where there is none."""
-    if "tread" in condition.words or condition.words.get("device") == "whole shoe":
-        return f"{condition.source} {condition.words.get('tread')}"
+    if "tread" in condition.labels or condition.labels.get("device") == "whole shoe":
+        return f"{condition.source} {condition.labels.get('tread')}"
     return ""
 
 
@@ -489,13 +489,15 @@ def features(conditions: Sequence[Condition]) -> Array:
     At the geometric middle of what is open, (rows, 5); means over members.
     """
 
-    def one(c: Condition) -> list[float]:
+    def feature_row(c: Condition) -> list[float]:
         middle = {name: np.sqrt(s.low * s.high) for name, s in c.numbers.items()}
         drag = (AIR if c.fluid == "dry" else middle["viscosity"]) * middle["speed"]
         rough = [_L(middle[name]) for name in ("sole_rq", "floor_rq")]
         return [_L(drag), *rough, middle["shore_a"], float(c.fluid == "oil")]
 
-    return np.array([np.mean([one(m) for m in c.members or (c,)], axis=0) for c in conditions])
+    return np.array(
+        [np.mean([feature_row(m) for m in c.members or (c,)], axis=0) for c in conditions]
+    )
 
 
 def middle(conditions: Sequence[Condition]) -> Array:
@@ -583,29 +585,29 @@ def laboratory_left_out(
         seed: Of the sampler and of the draws.
         data: Whether the others are fitted; else the priors alone speak.
     """
-    kept = [c for c in conditions if c.laboratory != laboratory] if data else []
-    own = tuple(c for c in conditions if c.laboratory == laboratory)
+    training = [c for c in conditions if c.laboratory != laboratory] if data else []
+    left_out = tuple(c for c in conditions if c.laboratory == laboratory)
     after = np.empty((0, 5))
     if isinstance(law, str):
-        draws, expected = _regression(law, kept, own, seed)
+        draws, expected = _regression(law, training, left_out, seed)
     else:
-        posterior = fitted(law, kept, steps=steps, seed=seed, left=laboratory)
-        latent, noise = posterior.predicted(own, seed)
+        posterior = fitted(law, training, steps=steps, seed=seed, left=laboratory)
+        latent, noise = posterior.predicted(left_out, seed)
         generator = np.random.default_rng(seed)
         draws = latent + noise * generator.normal(size=latent.shape)
-        expected, after = posterior.expected(own), one_reading(own, latent, noise)
-    return LaboratoryScore(laboratory, own, draws, expected, after, scored(draws, own))
+        expected, after = posterior.expected(left_out), one_reading(left_out, latent, noise)
+    return LaboratoryScore(laboratory, left_out, draws, expected, after, scored(draws, left_out))
 
 
 def _regression(
-    name: str, kept: Sequence[Condition], own: Sequence[Condition], seed: int
+    name: str, training: Sequence[Condition], left_out: Sequence[Condition], seed: int
 ) -> tuple[Array, Array]:
     """Return draws (draws, rows) and means of ln COF by a regression on features.
 
     The error is that of leaving out each of the other laboratories in turn, means over them.
     """
-    kept = [c for c, y in zip(kept, middle(kept), strict=True) if np.isfinite(y)]
-    x, y, weight = features(kept), middle(kept), weights(kept)
+    training = [c for c, y in zip(training, middle(training), strict=True) if np.isfinite(y)]
+    x, y, weight = features(training), middle(training), weights(training)
     centre, scale = x.mean(axis=0), x.std(axis=0)
 
     def predicted(train: NDArray[np.bool_], at: Array) -> Array:
@@ -615,13 +617,13 @@ def _regression(
         )
         return level + rest
 
-    names = np.array([c.laboratory for c in kept])
+    names = np.array([c.laboratory for c in training])
     rest = np.empty_like(y)
     for one in dict.fromkeys(names):
         rest[names == one] = y[names == one] - predicted(names != one, x[names == one])
     sd = np.sqrt(np.average(rest**2, weights=weight))
-    mean = predicted(np.ones(y.size, dtype=bool), features(own))
-    noise = np.random.default_rng(seed).normal(size=(2000, len(own)))
+    mean = predicted(np.ones(y.size, dtype=bool), features(left_out))
+    noise = np.random.default_rng(seed).normal(size=(2000, len(left_out)))
     return mean + sd * noise, mean
 
 

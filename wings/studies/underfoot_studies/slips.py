@@ -38,7 +38,7 @@ class Slips:
     """
 
     source: str
-    words: str
+    printed: str
     acof: Array
     low: float
     high: float
@@ -73,15 +73,15 @@ def _grid() -> tuple[Array, Array, Array]:
     return -np.exp(SLOPE[0] + SLOPE[1] * first), HALF[0] + HALF[1] * second, weight / weight.sum()
 
 
-def share(one: Slips, slope: Array, half: Array, u: Array) -> Array:
+def share(slips: Slips, slope: Array, half: Array, u: Array) -> Array:
     """Return the share of slips (points, errors) at slopes and points of even odds (points,)."""
-    acof = one.acof * np.exp(np.zeros(1) if one.own_scale else u)[:, None]
+    acof = slips.acof * np.exp(np.zeros(1) if slips.own_scale else u)[:, None]
     mean, sd = ADULTS_LEVEL_WALKING.mean, ADULTS_LEVEL_WALKING.sd
-    found = [
+    shares = [
         ReportG6(s, x).population(acof, mean, sd).mean(axis=1)
         for s, x in zip(slope, half, strict=True)
     ]
-    return np.broadcast_to(np.array(found), (slope.size, u.size))
+    return np.broadcast_to(np.array(shares), (slope.size, u.size))
 
 
 def predicted(sources: Sequence[Slips]) -> list[dict[str, Any]]:
@@ -91,10 +91,10 @@ def predicted(sources: Sequence[Slips]) -> list[dict[str, Any]]:
     errors, weight = SD_SOURCE * z, np.exp(-0.5 * z**2) / np.exp(-0.5 * z**2).sum()
     shares = [share(one, slope, half, errors) for one in sources]
     rows: list[dict[str, Any]] = []
-    for one, own in zip(sources, shares, strict=True):
+    for slips, computed in zip(sources, shares, strict=True):
         log_weight = np.log(prior)
         for name in dict.fromkeys(other.source for other in sources):
-            if name == one.source:
+            if name == slips.source:
                 continue
             likelihood = np.ones((slope.size, errors.size))
             for other, p in zip(sources, shares, strict=True):
@@ -104,36 +104,36 @@ def predicted(sources: Sequence[Slips]) -> list[dict[str, Any]]:
         posterior = np.exp(log_weight - log_weight.max())
         posterior /= posterior.sum()
         joint = posterior[:, None] * weight
-        mean = float((joint * own).sum())
-        order = np.argsort(own, axis=None)
+        mean = float((joint * computed).sum())
+        order = np.argsort(computed, axis=None)
         ends = np.searchsorted(np.cumsum(joint.ravel()[order]), (0.025, 0.975))
-        low, high = own.ravel()[order][ends.clip(max=own.size - 1)]
+        low, high = computed.ravel()[order][ends.clip(max=computed.size - 1)]
         report = ReportG6()
         alone = np.mean(
-            report.population(one.acof, ADULTS_LEVEL_WALKING.mean, ADULTS_LEVEL_WALKING.sd)
+            report.population(slips.acof, ADULTS_LEVEL_WALKING.mean, ADULTS_LEVEL_WALKING.sd)
         )
         rows.append(
             {
-                "source": one.source,
-                "published": one.words,
-                "share of slips, %": 100 * one.low,
-                "or up to, %": 100 * one.high,
+                "source": slips.source,
+                "published": slips.printed,
+                "share of slips, %": 100 * slips.low,
+                "or up to, %": 100 * slips.high,
                 "predicted from the others, %": 100 * mean,
                 "low 95 %, %": 100 * low,
                 "high 95 %, %": 100 * high,
                 "report's curve, %": 100 * float(alone),
-                "off by, points": 100 * _off(mean, one),
-                "report's curve off by, points": 100 * _off(float(alone), one),
+                "off by, points": 100 * _off(mean, slips),
+                "report's curve off by, points": 100 * _off(float(alone), slips),
             }
         )
     return rows
 
 
-def _off(p: float, one: Slips) -> float:
-    return p - float(np.clip(p, one.low, one.high))
+def _off(p: float, slips: Slips) -> float:
+    return p - float(np.clip(p, slips.low, slips.high))
 
 
-def _likelihood(one: Slips, p: Array) -> Array:
+def _likelihood(slips: Slips, p: Array) -> Array:
     """Return the probability of the printed count, or of a count within the printed bounds."""
-    low, high = round(one.low * one.steps), round(one.high * one.steps)
-    return binom.cdf(high, one.steps, p) - binom.cdf(low - 1, one.steps, p)
+    low, high = round(slips.low * slips.steps), round(slips.high * slips.steps)
+    return binom.cdf(high, slips.steps, p) - binom.cdf(low - 1, slips.steps, p)

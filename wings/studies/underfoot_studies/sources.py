@@ -98,7 +98,7 @@ class Condition:
     source: str
     id: str
     numbers: Mapping[str, Span]
-    words: Mapping[str, Any]
+    labels: Mapping[str, Any]
     reading: Reading
     members: tuple[Condition, ...] = ()
     laboratory: str = ""
@@ -106,7 +106,7 @@ class Condition:
     @property
     def fluid(self) -> str:
         """Family of the fluid."""
-        return self.words["fluid"]
+        return self.labels["fluid"]
 
     @property
     def curve(self) -> tuple[str, str]:
@@ -119,7 +119,7 @@ class Condition:
 
         Soles of one polymer share it whatever their hardness.
         """
-        compound, floor, fluid = map(self.words.get, ("compound", "floor", "fluid"))
+        compound, floor, fluid = map(self.labels.get, ("compound", "floor", "fluid"))
         parts = (self.source, compound or self.numbers["shore_a"].low, floor, fluid)
         return "|".join(map(str, parts))
 

@@ -358,8 +358,8 @@ def _run(march: _March, settings: TransientSettings, progress: Progress) -> Tran
     )
 
 
-def _agree(one: float, other: float, tolerance: float) -> bool:
-    return abs(one - other) <= tolerance * max(abs(one), abs(other), 1e-9)
+def _agree(first: float, second: float, tolerance: float) -> bool:
+    return abs(first - second) <= tolerance * max(abs(first), abs(second), 1e-9)
 
 
 def _check_material(modulus: Any, speed: float) -> None:

@@ -115,12 +115,12 @@ def _place(case: Case) -> Array:
     return place_of_tread(case, sole_map(case, case.numerics.quick_grid_spacing))
 
 
-def _published(one: Contrast, cof: float) -> tuple[float, float]:
+def _published(contrast: Contrast, cof: float) -> tuple[float, float]:
     """Return the bounds of the published ln ratio; a slope is over the computed COF."""
-    ends = np.array([one.low, one.high])
-    if np.isnan(one.low):
-        return (0.0, np.inf) if one.rises else (-np.inf, 0.0)
-    ratios = ends if np.isnan(one.step) else 1 + ends * one.step / cof
+    ends = np.array([contrast.low, contrast.high])
+    if np.isnan(contrast.low):
+        return (0.0, np.inf) if contrast.rises else (-np.inf, 0.0)
+    ratios = ends if np.isnan(contrast.step) else 1 + ends * contrast.step / cof
     low, high = np.log(ratios)
     return float(low), float(high)
 

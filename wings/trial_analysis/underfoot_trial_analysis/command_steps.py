@@ -74,12 +74,12 @@ def edit(
     )
     for old, one in zip(before, after, strict=True):
         if old.stance.by_hand != one.stance.by_hand:
-            print(f"{old.stance.label}: {_words(old)} -> {_words(one)}")
+            print(f"{old.stance.label}: {_step_text(old)} -> {_step_text(one)}")
     write_edit_text(file.parent, with_edit_row(text, (file.name, step, what, value, reason)))
     say(f"written to {file.parent / 'edits.csv'}")
 
 
-def _words(step: RequiredFriction) -> str:
+def _step_text(step: RequiredFriction) -> str:
     stance, value = step.stance, step.measurement.value
     number = f"RCOF {value:.4f}" if value is not None else step.measurement.reason
     return f"{stance.side}, {stance.contact:.4f} to {stance.toe_off:.4f} s, {number}"

@@ -259,15 +259,15 @@ def _tables(folder: Path, given: Path | None) -> list[tuple[Path, Path]]:
     return tables
 
 
-def _add(own: dict[str, Any], found: Mapping[str, Any], label: str) -> None:
-    for key, value in found.items():
-        if own.get(key, value) != value:
+def _add(noted: dict[str, Any], added: Mapping[str, Any], label: str) -> None:
+    for key, value in added.items():
+        if noted.get(key, value) != value:
             raise InputError(
-                f'{key} is "{own[key]}" by one source and "{value}" by another',
+                f'{key} is "{noted[key]}" by one source and "{value}" by another',
                 where=label,
                 remedy="Correct the table of conditions, the names or the folders",
             )
-        own[key] = value
+        noted[key] = value
 
 
 def one_spelling(noted: Sequence[dict[str, Any]], merge: bool) -> None:

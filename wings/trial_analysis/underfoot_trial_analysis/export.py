@@ -12,7 +12,7 @@ from underfoot.trials.trial import Plate, Trial
 from underfoot.trials.walkway import body_mass
 
 
-def c3d_with_events(trial: Trial, found: Sequence[Stance]) -> bytes:
+def c3d_with_events(trial: Trial, stances: Sequence[Stance]) -> bytes:
     """Return a C3D file of markers, force plates (type 2, baseline subtracted) and events.
 
     Events are "Foot Strike" and "Foot Off" of the accepted contacts, with the side as context.
@@ -47,7 +47,7 @@ def c3d_with_events(trial: Trial, found: Sequence[Stance]) -> bytes:
             described.append((corners, np.zeros(3), names))
     events = [
         (label, stance.side.capitalize() if stance.side != "unknown" else "General", time - start)
-        for stance in found
+        for stance in stances
         if stance.accepted
         for label, time in (("Foot Strike", stance.contact), ("Foot Off", stance.toe_off))
     ]

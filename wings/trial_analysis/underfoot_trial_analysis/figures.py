@@ -55,17 +55,17 @@ def contact_sheets(sheet: Sheet) -> Iterator[SheetPage]:
     pages = [sheet.tiles[i : i + _PER_PAGE] for i in range(0, len(sheet.tiles), _PER_PAGE)]
     left, right, low, high = (f"{value:.3g}" for value in (*sheet.x_range, *sheet.y_range))
     dashed = f"; dashed slip above {sheet.line:g} m/s" if sheet.line is not None else ""
-    words = (
+    legend = (
         f"each tile: {left} to {right} s across, {low} to {high} up{dashed}; "
         "blue accepted, orange caution, red rejected or refused, with the reason"
     )
     for number, page in enumerate(pages, start=1):
         head = sheet.title if len(pages) == 1 else f"{sheet.title} ({number} of {len(pages)})"
         tiles = [tile for _, tile in page]
-        yield SheetPage(f"sheet_{sheet.kind}_{number}", _page(tiles, sheet, head, words))
+        yield SheetPage(f"sheet_{sheet.kind}_{number}", _page(tiles, sheet, head, legend))
 
 
-def _page(tiles: Sequence[Tile], sheet: Sheet, head: str, words: str) -> str:
+def _page(tiles: Sequence[Tile], sheet: Sheet, head: str, legend: str) -> str:
     across = min(_ACROSS, len(tiles))
     down = -(-len(tiles) // across)
     size = np.array(_CELL) * _SIZE
@@ -75,7 +75,7 @@ def _page(tiles: Sequence[Tile], sheet: Sheet, head: str, words: str) -> str:
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}" '
         'font-family="sans-serif" font-size="7" fill="#333">',
         _text(4, 10, head, 'font-size="11" font-weight="bold"'),
-        _text(4, 21, words, 'fill="#666"'),
+        _text(4, 21, legend, 'fill="#666"'),
     ]
     frames = []
     for i, tile in enumerate(tiles):
@@ -116,8 +116,8 @@ def _page(tiles: Sequence[Tile], sheet: Sheet, head: str, words: str) -> str:
     return "".join(parts)
 
 
-def _text(x: float, y: float, words: str, look: str = "") -> str:
-    return f'<text x="{x:.0f}" y="{y:.0f}" {look}>{escape(words)}</text>'
+def _text(x: float, y: float, text: str, look: str = "") -> str:
+    return f'<text x="{x:.0f}" y="{y:.0f}" {look}>{escape(text)}</text>'
 
 
 def _path(points: np.ndarray) -> str:
@@ -165,13 +165,13 @@ def _chosen(files: Sequence[FileResult], details: int) -> list[FileResult]:
     return list({one.file: one for one in order}.values())[:details]
 
 
-def _details(one: FileResult) -> Iterator[TrialFigure]:
-    stem = re.sub(r"[^\w.-]+", "_", one.file.replace("#", "step_"))
+def _details(result: FileResult) -> Iterator[TrialFigure]:
+    stem = re.sub(r"[^\w.-]+", "_", result.file.replace("#", "step_"))
     for key, (maker, caption) in _TRIAL.items():
-        if key in one.curves:
-            figure = maker(one.curves[key], one)
-            figure.suptitle(one.file, fontsize=9, color="0.35", x=0.01, ha="left")
-            yield TrialFigure(f"{stem}_{key}", f"{one.file}: {caption}", figure, "trials")
+        if key in result.curves:
+            figure = maker(result.curves[key], result)
+            figure.suptitle(result.file, fontsize=9, color="0.35", x=0.01, ha="left")
+            yield TrialFigure(f"{stem}_{key}", f"{result.file}: {caption}", figure, "trials")
 
 
 def _empty(width: float, height: float) -> Figure:
@@ -292,8 +292,8 @@ def _track(curves: Sequence[Curve], _: FileResult) -> Figure:
     return figure
 
 
-def _slide(curves: Sequence[Curve], one: FileResult) -> Figure:
-    slide, cof = curves[0], one.main.get("cof")
+def _slide(curves: Sequence[Curve], result: FileResult) -> Figure:
+    slide, cof = curves[0], result.main.get("cof")
     figure = _empty(6.4, 4.2)
     top, low = figure.subplots(2, 1, sharex=True)
     time = _array(slide["time"])
@@ -388,14 +388,14 @@ def sheets(files: Sequence[FileResult]) -> Iterator[Sheet]:
 _NO_CURVE = (np.empty(0), np.empty(0))
 
 
-def _tile(key: str, one: FileResult, curve: Curve) -> tuple[Tile, float]:
+def _tile(key: str, result: FileResult, curve: Curve) -> tuple[Tile, float]:
     """Return the tile of a curve and the height that it needs (0 for the least one)."""
     time = _array(curve["time"])
     if key == "rejected":
-        label = f"{one.file}, {curve['step']}"
+        label = f"{result.file}, {curve['step']}"
         return Tile(label, key, time, _loaded(curve, 50), reason=curve["reason"]), 0.0
     if key == "steps":
-        label, verdict = f"{one.file}, {curve['step']}", curve.get("verdict", one.verdict)
+        label, verdict = f"{result.file}, {curve['step']}", curve.get("verdict", result.verdict)
         mark = ((curve["peak_time"], curve["peak"]),)
         return Tile(label, verdict, time, _loaded(curve, 50), mark, f"{curve['peak']:.3f}"), 0.0
     marks: tuple[tuple[float, float], ...] = ()
@@ -407,7 +407,7 @@ def _tile(key: str, one: FileResult, curve: Curve) -> tuple[Tile, float]:
         until = time < (curve["end"] or 0.8) + 0.03
         time, values = time[until], values[until]
     elif key == "slide":
-        values, cof = _loaded(curve, 50), one.main.get("cof")
+        values, cof = _loaded(curve, 50), result.main.get("cof")
         remark, height = ("no COF", 0.0) if cof is None else (f"{cof:.3f}", 2.0 * cof)
     elif key == "run":
         values, cof = _array(curve["ratio"]), curve["cof"]
@@ -416,7 +416,7 @@ def _tile(key: str, one: FileResult, curve: Curve) -> tuple[Tile, float]:
     else:
         force = _array(curve["force"])
         values, remark, height = force / force[0], f"{curve['final'] / force[0]:.2f}", 0.0
-    return Tile(one.file, one.verdict, time, values, marks, remark), height
+    return Tile(result.file, result.verdict, time, values, marks, remark), height
 
 
 _NAMES = {
@@ -508,10 +508,10 @@ def _fits(fits: Sequence[Curve]) -> Figure:
     return figure
 
 
-def _fitted(one: Curve, speed: np.ndarray) -> np.ndarray:
-    if one["verdict"] == "mean":
-        return np.full(len(speed), one["mean"])
-    boundary, tau, asymptote = one["raw"]
+def _fitted(curve: Curve, speed: np.ndarray) -> np.ndarray:
+    if curve["verdict"] == "mean":
+        return np.full(len(speed), curve["mean"])
+    boundary, tau, asymptote = curve["raw"]
     return asymptote + (boundary - asymptote) * np.exp(-speed / tau)
 
 
@@ -538,11 +538,11 @@ def _line(line: Curve) -> Figure:
     return figure
 
 
-def _alpha_beta(found: Curve) -> Figure:
+def _alpha_beta(curve: Curve) -> Figure:
     figure, axes = _single(5.4, 3.4)
-    fluids, dry, wet = (np.array(found[key]) for key in ("fluid", "dry", "wet"))
+    fluids, dry, wet = (np.array(curve[key]) for key in ("fluid", "dry", "wet"))
     ends = np.array([dry.min(), dry.max()])
-    for number, (fluid, alpha, beta) in enumerate(found["lines"]):
+    for number, (fluid, alpha, beta) in enumerate(curve["lines"]):
         colour = f"C{number % 10}"
         axes.plot(dry[fluids == fluid], wet[fluids == fluid], "o", ms=4, color=colour, label=fluid)
         axes.plot(ends, alpha + beta * ends, color=colour)

@@ -103,7 +103,7 @@ class Draft:
                 (self.refusals if rule.severity == "refuse" else self.cautions).append(broken)
         for entry in self.measurements:
             self.cautions += [
-                f"{entry['item']}: {flag['words']}" for flag in entry["flags"] if flag["matters"]
+                f"{entry['item']}: {flag['message']}" for flag in entry["flags"] if flag["matters"]
             ]
         verdict = REFUSED if self.refusals else CAUTION if self.cautions else ACCEPTED
         reasons = dict.fromkeys([*self.refusals, *self.cautions])
@@ -123,7 +123,7 @@ def rates(trial: Trial, draft: Draft) -> None:
 def refer_to(record: TesterCalibration | None, draft: Draft) -> None:
     """Note what the calibration record says of the day a file was made; a failed check refuses."""
     for flag in () if record is None else record.flags(draft.conditions.get("date")):
-        (draft.refusals if flag.name == FAILED else draft.cautions).append(flag.words)
+        (draft.refusals if flag.name == FAILED else draft.cautions).append(flag.message)
 
 
 def _rounded(values: np.ndarray) -> np.ndarray:

@@ -52,7 +52,9 @@ def methods_paragraphs(
 
 def _rules(files: Sequence[FileResult], protocol: Protocol) -> str:
     """Return the rules, and which of them could not be judged for lack of the quantity."""
-    text = f"Rules checked on every trial: {'; '.join(rule.words() for rule in protocol.rules)}."
+    text = (
+        f"Rules checked on every trial: {'; '.join(rule.statement() for rule in protocol.rules)}."
+    )
     usable = [one for one in files if one.usable]
     for rule in protocol.rules:
         lacking = sum(rule.quantity not in one.facts for one in usable)
@@ -68,7 +70,7 @@ def _surface(files: Sequence[FileResult], protocol: Protocol) -> str:
     """Return the surface walked on: level, a ramp with its resolution of forces, a treadmill."""
     ramp = protocol_ramp(protocol)
     named = protocol.text("surface")
-    text = f"Surface: {named}, {ramp.words}." if named else f"Surface: {ramp.words}."
+    text = f"Surface: {named}, {ramp.description}." if named else f"Surface: {ramp.description}."
     if ramp.angle:
         text += " Normal force and shear are those normal and tangential to the walking surface" + (
             ", resolved from the plates' horizontal and vertical forces by the angle of the ramp."

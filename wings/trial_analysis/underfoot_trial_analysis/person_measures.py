@@ -16,7 +16,7 @@ _RIGID = 0.015  # standard deviation over mean of a distance on one segment
 _SHORTEST = 0.05  # m
 
 
-def person_measures(trial: Trial, found: Sequence[Stance], axes: Axes) -> dict[str, float]:
+def person_measures(trial: Trial, stances: Sequence[Stance], axes: Axes) -> dict[str, float]:
     """Return what the body decides, by name in SI; what is not recorded is left out.
 
     The mean normal force of complete contacts (0.76 to 0.86 of the weight in walking), the mean
@@ -25,7 +25,7 @@ def person_measures(trial: Trial, found: Sequence[Stance], axes: Axes) -> dict[s
     measures: dict[str, float] = {}
     forces = [
         float(np.mean(plate_named(trial, s.plate).force[s.start : s.stop] @ axes.up))
-        for s in found
+        for s in stances
         if s.accepted
     ]
     if forces:

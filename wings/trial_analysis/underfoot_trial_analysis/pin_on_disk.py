@@ -224,9 +224,9 @@ def _channel(trial: Trial, names: tuple[str, ...]) -> Channel | None:
         return None
 
 
-def _speed(trial: Trial, kept: np.ndarray) -> float | None:
+def _speed(trial: Trial, used: np.ndarray) -> float | None:
     channel = _channel(trial, SPEED)
     if channel is None or channel.unit != "m/s":
         return None
-    values = channel.values[kept[kept < len(channel.values)]]
+    values = channel.values[used[used < len(channel.values)]]
     return float(np.nanmean(np.abs(values))) if len(values) else None

@@ -66,7 +66,7 @@ class _Check:
     """Mean of the readings on a check surface with one slider, and why it fails, or ""."""
 
     slider: str
-    words: str
+    description: str
     failed: bool
 
 
@@ -136,8 +136,8 @@ def reading_results(
         draft = Draft(file, {**noted, **own}, checksum)
         refer_to(record, draft)
         used = [c for c in checked if _slider(own) in ("", c.slider)]
-        draft.refusals += [c.words for c in used if c.failed]
-        said = "; ".join(c.words for c in used) or "none in the table"
+        draft.refusals += [c.description for c in used if c.failed]
+        said = "; ".join(c.description for c in used) or "none in the table"
         _one_sample(draft, values[members], [runs[i] for i in members], quantity, protocol, said)
         results.append(draft.finished(protocol))
     return results
@@ -149,11 +149,11 @@ def _slider(noted: Mapping[str, Any]) -> str:
     return known or _SLIDERS.get(re.sub(r"[\s_-]|slider", "", text.casefold()), text)
 
 
-def _check(name: str, slider: str, words: str, values: np.ndarray) -> _Check:
-    surface = next((s for s in _SURFACES if s in words.casefold()), None)
+def _check(name: str, slider: str, label: str, values: np.ndarray) -> _Check:
+    surface = next((s for s in _SURFACES if s in label.casefold()), None)
     if surface is None:
         raise DataError(
-            f'a check on an unknown surface: "{words.strip()}"',
+            f'a check on an unknown surface: "{label.strip()}"',
             where=name,
             allowed="float glass, lapping film, Pavigres tile",
         )
@@ -204,7 +204,7 @@ def _one_sample(
         )
     missing = [
         asked
-        for asked in protocol.words("noted")
+        for asked in protocol.texts("noted")
         if not any(heading in draft.conditions for heading in NOTED.get(asked, (asked,)))
     ]
     if missing:

@@ -143,7 +143,7 @@ def _relaxation(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile
 
 
 def _moduli(
-    found: RelaxationReading, thickness: float, area: object, name: str
+    reading: RelaxationReading, thickness: float, area: object, name: str
 ) -> Iterator[Measurement]:
     """Yield stiffness and modulus at short and long time (Eq. 13 to 16), and Young's moduli."""
     if not isinstance(area, float):
@@ -151,9 +151,9 @@ def _moduli(
         for each in ("short-time modulus", "long-time modulus"):
             yield Measurement.not_estimated(each, reason, unit="Pa")
         return
-    test = compression(found, thickness, area, name)
+    test = compression(reading, thickness, area, name)
     meant = {"modulus": "of the pair, apparent (Eq. 13 to 16)"}
-    forces = found.force_2_percent, found.peak_force, found.final_force
+    forces = reading.force_2_percent, reading.peak_force, reading.final_force
     low, peak, final = ((one.value or 0.0, one.uncertainty or 0.0) for one in forces)
     for time, (high, noise) in (("short", peak), ("long", final)):
         spread = math.hypot(noise, low[1]) / (high - low[0])
@@ -278,15 +278,15 @@ class _Walk:
     def __init__(self, way: Walkway, draft: Draft, protocol: Protocol, profile: Profile) -> None:
         self.way, self.trial, self.draft, self.axes = way, way.trial, draft, way.axes
         self.protocol, self.profile = protocol, profile
-        self.found = stances(way)
-        if not self.found:
+        self.stances = stances(way)
+        if not self.stances:
             raise DataError(no_contact_reason(way), where=self.trial.name)
         rates(self.trial, draft)
-        draft.curves["person"] = person_measures(self.trial, self.found, self.axes)
+        draft.curves["person"] = person_measures(self.trial, self.stances, self.axes)
 
 
 def _gait(walk: _Walk) -> None:
-    if not _required(walk, walk.found):
+    if not _required(walk, walk.stances):
         reasons = dict.fromkeys(step["reason"] for step in walk.draft.steps if step["reason"])
         walk.draft.refusals.append("no clean step: " + "; ".join(reasons or ["no peak found"]))
 
@@ -294,10 +294,10 @@ def _gait(walk: _Walk) -> None:
 def _human_slip(walk: _Walk) -> None:
     draft, protocol = walk.draft, walk.protocol
     name = str(draft.conditions.get("slip plate") or protocol.text("slip_plate"))
-    on_plate = [s for s in walk.found if not name or s.plate == name]
+    on_plate = [s for s in walk.stances if not name or s.plate == name]
     if not on_plate:
         raise DataError(f"no contact with the slippery plate ({name})", where=walk.trial.name)
-    _required(walk, [s for s in walk.found if s not in on_plate])
+    _required(walk, [s for s in walk.stances if s not in on_plate])
     definition = slip_definition(protocol)
     standard = OutcomeLimits()
     limits = OutcomeLimits(
@@ -317,51 +317,51 @@ def _human_slip(walk: _Walk) -> None:
     side = str(draft.conditions.get("side", "")).casefold()
     if side in ("left", "right") and "side" not in stance.by_hand:
         stance = replace(stance, side=side, heel="")
-    one = slip_of(walk.way, stance, definition=definition, limits=limits)
-    _slip_numbers(walk, stance, one, limits)
+    slip = slip_of(walk.way, stance, definition=definition, limits=limits)
+    _slip_numbers(walk, stance, slip, limits)
     _ratio_curve(walk, stance, "slipping")
-    if one.motion is not None:
-        motion = one.motion
-        near = (motion.time > one.contact - 0.15) & (motion.time < one.contact + 0.9)
+    if slip.motion is not None:
+        motion = slip.motion
+        near = (motion.time > slip.contact - 0.15) & (motion.time < slip.contact + 0.9)
         times = {
-            "time": motion.time[near], "start": one.start.value or np.nan, "end": one.end,
-            "peak_time": one.peak_time,
+            "time": motion.time[near], "start": slip.start.value or np.nan, "end": slip.end,
+            "peak_time": slip.peak_time,
         }  # fmt: skip
-        after = {key: time - one.contact for key, time in times.items()}
-        speeds = {"speed": motion.speed[near], "peak": one.peak_speed.value or np.nan}
+        after = {key: time - slip.contact for key, time in times.items()}
+        speeds = {"speed": motion.speed[near], "peak": slip.peak_speed.value or np.nan}
         draft.curve("heel", **after, **speeds, threshold=definition.threshold)
     if walk.profile.sensors and stance.walking is not None:
-        _sensors(walk, one, stance.walking)
+        _sensors(walk, slip, stance.walking)
     acof = draft.conditions.get("acof")
     if isinstance(acof, float) and "rcof" in draft.main:
         draft.main["acof"] = acof
         draft.main["acof_minus_rcof"] = acof - draft.main["rcof"]
 
 
-def _slip_numbers(walk: _Walk, stance: Stance, one: Slip, limits: OutcomeLimits) -> None:
+def _slip_numbers(walk: _Walk, stance: Stance, slip: Slip, limits: OutcomeLimits) -> None:
     draft = walk.draft
-    course = slip_course(walk.way, stance, one, limits)
+    course = slip_course(walk.way, stance, slip, limits)
     item = f"slip on {stance.plate}"
-    draft.add(item, one.start)
-    draft.add(item, one.peak_speed, main="peak_slipping_speed")
-    draft.add(item, one.distance, main="slip_distance")
-    draft.add(item, one.margin, main="slip_margin")
-    draft.cautions += [f"{item}: {flag.words}" for flag in course.flags if flag.matters]
-    if one.slipped is None:
-        draft.refusals.append(one.peak_speed.reason)
+    draft.add(item, slip.start)
+    draft.add(item, slip.peak_speed, main="peak_slipping_speed")
+    draft.add(item, slip.distance, main="slip_distance")
+    draft.add(item, slip.margin, main="slip_margin")
+    draft.cautions += [f"{item}: {flag.message}" for flag in course.flags if flag.matters]
+    if slip.slipped is None:
+        draft.refusals.append(slip.peak_speed.reason)
     else:
-        draft.main["slip"] = float(one.slipped)
+        draft.main["slip"] = float(slip.slipped)
     draft.steps.append(
         {
             **_step_entry(walk, stance),
             "item": item,
-            "verdict": "not estimated" if one.slipped is None else "accepted",
-            "peak_slipping_speed": one.peak_speed.value,
-            "slip_start": one.start.value,
-            "slip_distance": one.distance.value,
-            "slipped": one.slipped,
-            "outcome": None if one.outcome is None else str(one.outcome),
-            "slip_direction": one.way,
+            "verdict": "not estimated" if slip.slipped is None else "accepted",
+            "peak_slipping_speed": slip.peak_speed.value,
+            "slip_start": slip.start.value,
+            "slip_distance": slip.distance.value,
+            "slipped": slip.slipped,
+            "outcome": None if slip.outcome is None else str(slip.outcome),
+            "slip_direction": slip.way,
             "recovery_or_fall": course.body,
             "recovery_or_fall_reason": course.body_reason,
             **{key: getattr(course, key) for key in ("toe_slip", "trailing_slip", "misstep")},
@@ -369,10 +369,10 @@ def _slip_numbers(walk: _Walk, stance: Stance, one: Slip, limits: OutcomeLimits)
     )
 
 
-def _sensors(walk: _Walk, one: Slip, walking: np.ndarray) -> None:
+def _sensors(walk: _Walk, slip: Slip, walking: np.ndarray) -> None:
     trial, draft, sensors, up = walk.trial, walk.draft, walk.profile.sensors, walk.axes.up
     try:
-        reading = sensor_array_reading(trial, one, sensors, up=up, walking=walking)
+        reading = sensor_array_reading(trial, slip, sensors, up=up, walking=walking)
     except UnderfootError as error:
         draft.cautions.append(f"pressures: {error.what}")
         return
@@ -386,11 +386,11 @@ def _sensors(walk: _Walk, one: Slip, walking: np.ndarray) -> None:
         draft.add(f"sensor {name}", pulse.peak)
         draft.add(f"sensor {name}", pulse.duration)
         channel = trial.channel(name)
-        near = (channel.time > one.contact - 0.1) & (channel.time < one.contact + 0.6)
+        near = (channel.time > slip.contact - 0.1) & (channel.time < slip.contact + 0.6)
         step = max(1, int(near.sum()) // 150)
         kilopascal = 1e-3 * (channel.values[near] - pulse.baseline)
         along, beside = (float(p - m) for p, m in zip(places[name], middle, strict=True))
-        times = [round(float(t), 4) for t in (channel.time[near] - one.contact)[::step]]
+        times = [round(float(t), 4) for t in (channel.time[near] - slip.contact)[::step]]
         shown = [None if np.isnan(v) else round(float(v), 3) for v in kilopascal[::step]]
         pulse_of = {"sensor": name, "along": along, "across": beside, "time": times, "kPa": shown}
         pulses.append(pulse_of)
@@ -404,7 +404,7 @@ def _sensors(walk: _Walk, one: Slip, walking: np.ndarray) -> None:
                 draft.curve("sensor_rows", sensor=name, **facts)
     if pulses:
         quiet = trial.channel(next(iter(reading.pulses)))
-        draft.facts["baseline_samples"] = float(np.sum(quiet.time < one.contact - 0.05))
+        draft.facts["baseline_samples"] = float(np.sum(quiet.time < slip.contact - 0.05))
         track = reading.track if len(reading.track) else np.full((1, 2), np.nan)
         draft.curve("track", along=track[:, 0], across=track[:, 1], pulses=pulses)
 
@@ -467,7 +467,7 @@ def _step_entry(
         "rcof_uncertainty": None if own is None else own.uncertainty,
         "verdict": "rejected" if step is None else step.verdict,
         "reason": reason or stance.reason or (own.reason if own and own.value is None else ""),
-        "cautions": [] if own is None else [flag.words for flag in own.caution_flags],
+        "cautions": [] if own is None else [flag.message for flag in own.caution_flags],
         "by_hand": list(stance.by_hand),
-        **asdict(gait_context(walk.way, stance, walk.found)),
+        **asdict(gait_context(walk.way, stance, walk.stances)),
     }

@@ -55,7 +55,7 @@ def _keys(files: Sequence[FileResult], wanted: Sequence[str]) -> tuple[str, ...]
 
 
 def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
-    keys = _keys(files, protocol.words("group"))
+    keys = _keys(files, protocol.texts("group"))
     rows, notes, fits = [], [], []
     parameters: dict[str, list[Any]] = {"cof_bl": [], "tau_hydro": [], "cof_asymptote": []}
     for group, members in tables.grouped(files, keys).items():
@@ -97,7 +97,7 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
     )
     made = [Table("stribeck", title, columns, tuple(rows), explained)]
     findings: list[Finding] = []
-    compared = protocol.words("compare") or keys[:1]
+    compared = protocol.texts("compare") or keys[:1]
     for name, values in parameters.items():
         kept = [pair for pair in values if pair is not None]
         factors = {
@@ -142,7 +142,7 @@ def _speed_and_cof(files: Sequence[FileResult]) -> tuple[list[float], list[float
 
 def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
     dry, blocked = protocol.text("dry", "dry"), protocol.text("blocked", "sae_75w140")
-    keys = protocol.words("pair")
+    keys = protocol.texts("pair")
     rows, notes, fluids, dry_adhesions, wet = [], [], [], [], []
     parts: dict[str, list[tuple[float, dict[str, str]]]] = {
         "dry_adhesion": [],
@@ -224,7 +224,7 @@ def _crossed_findings(
 
 
 def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
-    keys = _keys(files, protocol.words("group"))
+    keys = _keys(files, protocol.texts("group"))
     notes, maps, rows = [], [], []
     wanted = next((r for r in protocol.rules if r.quantity == "repeats"), None)
     for group, members in tables.grouped(files, keys).items():
@@ -291,7 +291,7 @@ def _condition_tables(
 
 
 def _human_slip(files: list[FileResult], protocol: Protocol) -> Study:
-    keys = _keys(files, protocol.words("compare"))
+    keys = _keys(files, protocol.texts("compare"))
     numbers = ("slip", "rcof", "acof", "peak_slipping_speed", "slip_distance", "peak_pressure")
     person = person_condition(files, protocol.text("subject"))
     made = _condition_tables(files, keys, numbers, person)
@@ -306,7 +306,7 @@ def _human_slip(files: list[FileResult], protocol: Protocol) -> Study:
 def _gait(files: list[FileResult], protocol: Protocol) -> Study:
     with_rcof = [f for f in files if "rcof" in f.main]
     person = person_condition(files, protocol.text("subject"))
-    keys = protocol.words("compare") or tuple(
+    keys = protocol.texts("compare") or tuple(
         dict.fromkeys(
             key
             for f in with_rcof
@@ -362,7 +362,7 @@ def _relaxation(files: list[FileResult], protocol: Protocol) -> Study:
 def _readings(files: list[FileResult], protocol: Protocol) -> Study:
     """Return means by sample with their classes, and the precision over operators or machines."""
     quantity = next(q for q in ("ptv", "angle", "cof") if any(q in f.main for f in files))
-    keys = _keys(files, protocol.words("group")) or tuple(
+    keys = _keys(files, protocol.texts("group")) or tuple(
         dict.fromkeys(k for f in files for k, v in f.conditions.items() if isinstance(v, str))
     )
     rows, schemes = [], {}
@@ -498,8 +498,8 @@ def _sample(files: Sequence[FileResult]) -> str:
     return next((n for n in ("sample", "specimen") if any(n in f.conditions for f in files)), "")
 
 
-def _scan(one: FileResult) -> dict[str, Any]:
-    stored = one.curves["scan"]
+def _scan(result: FileResult) -> dict[str, Any]:
+    stored = result.curves["scan"]
     return {**stored, **{key: np.array(stored[key]) for key in ("along", "pressure")}}
 
 

@@ -38,13 +38,13 @@ class Doubt:
     Files of an ``out`` doubt take no part in means and tests.
     """
 
-    words: str
+    message: str
     files: tuple[str, ...]
     out: bool = False
 
     def __str__(self) -> str:
         shown = ", ".join(self.files[:4]) + (" ..." if len(self.files) > 4 else "")
-        return f"{self.words} ({shown}){'; left out' if self.out else ''}"
+        return f"{self.message} ({shown}){'; left out' if self.out else ''}"
 
 
 def guarded_files(
@@ -153,14 +153,14 @@ def doubt_table(doubts: Sequence[Doubt]) -> Table | None:
     if not doubts:
         return None
     rows = tuple(
-        (d.words, "yes" if d.out else "", len(d.files), ", ".join(d.files)) for d in doubts
+        (d.message, "yes" if d.out else "", len(d.files), ", ".join(d.files)) for d in doubts
     )
     columns = ("doubt", "left out of means and tests", "number", "files")
     return Table("doubts", "Read this first: doubts about the study's files", columns, rows)
 
 
-def _noted(one: FileResult) -> dict[str, Any]:
-    return {k: v for k, v in one.conditions.items() if k not in NUMBERS}
+def _noted(result: FileResult) -> dict[str, Any]:
+    return {k: v for k, v in result.conditions.items() if k not in NUMBERS}
 
 
 def _names(files: Sequence[FileResult]) -> tuple[str, ...]:
@@ -350,7 +350,7 @@ def _nearest(body: Mapping[str, float], who: str, usual: Mapping[str, Mapping[st
 
 def _repeats(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
     """A COF far from the other repeats of the same shoe, floor and fluid."""
-    keys = tuple(k for k in protocol.words("group") if any(k in f.conditions for f in files))
+    keys = tuple(k for k in protocol.texts("group") if any(k in f.conditions for f in files))
     for level, own in grouped(files, keys).items() if keys else ():
         values = np.array([one.main["cof"] for one in own if "cof" in one.main])
         if len(values) < 4:

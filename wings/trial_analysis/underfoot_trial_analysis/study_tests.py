@@ -181,7 +181,7 @@ def slip_findings(
     """Return the tests a human-slip protocol asks for, and curves for figures."""
     findings: list[Finding] = []
     curves: dict[str, Any] = {}
-    wanted = protocol.words("tests")
+    wanted = protocol.texts("tests")
     judged = [f for f in files if "slip" in f.main]
     person = person_condition(files, protocol.text("subject"))
     for key in keys:

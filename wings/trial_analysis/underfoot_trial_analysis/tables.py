@@ -62,14 +62,14 @@ class Finding:
     values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     @classmethod
-    def of_anova(cls, found: statistics.AnovaTable, cautions: tuple[str, ...] = ()) -> Self:
+    def of_anova(cls, anova: statistics.AnovaTable, cautions: tuple[str, ...] = ()) -> Self:
         """Return an analysis of variance as a finding."""
-        rows = tuple((r.term, r.sum_of_squares, r.df, r.f, r.p) for r in found.rows)
-        plain = "".join(c if c.isalnum() else "_" for c in found.model.response_name.casefold())
-        name = f"anova_{plain}_type_{found.ss_type}"
+        rows = tuple((r.term, r.sum_of_squares, r.df, r.f, r.p) for r in anova.rows)
+        plain = "".join(c if c.isalnum() else "_" for c in anova.model.response_name.casefold())
+        name = f"anova_{plain}_type_{anova.ss_type}"
         columns = ("term", "sum of squares", "df", "F", "p")
-        table = Table(name, found.title, columns, rows)
-        return cls(name, found.title, table, (*cautions, *found.warnings))
+        table = Table(name, anova.title, columns, rows)
+        return cls(name, anova.title, table, (*cautions, *anova.warnings))
 
 
 def finding(
@@ -170,7 +170,7 @@ def measurement_table(files: Sequence[FileResult]) -> Table:
             str(one.conditions.get(person, "")),
             *(m[key] for key in _NUMBER_COLUMNS.values()),
             "yes" if any(flag["matters"] for flag in m["flags"]) else "",
-            "; ".join(flag["words"] for flag in m["flags"]),
+            "; ".join(flag["message"] for flag in m["flags"]),
             "; ".join(f"{key}: {value}" for key, value in m["conventions"].items()),
         )
         for one in files
@@ -319,11 +319,11 @@ def mean_and_interval(values: Sequence[float] | np.ndarray, name: str) -> tuple[
     return mean, float(np.std(values, ddof=1)), *ends
 
 
-def counted_steps(one: FileResult) -> int:
+def counted_steps(result: FileResult) -> int:
     """Return the number of steps of a file that gave a required friction."""
     return sum(
         m["name"] == "rcof" and m["value"] is not None and str(m["item"]).startswith("step ")
-        for m in one.measurements
+        for m in result.measurements
     )
 
 

@@ -99,7 +99,7 @@ def observed(
     limits = limits or OutcomeLimits()
     recorded = judged(motion)
     peak = recorded.peak_speed.value
-    flags = tuple(flag.words for flag in recorded.peak_speed.flags)
+    flags = tuple(flag.message for flag in recorded.peak_speed.flags)
     if peak is None:
         flags = (*flags, f"no peak: {recorded.peak_speed.reason}")
     end = recorded.end if math.isfinite(recorded.end) else float(motion.time[-1])

@@ -154,13 +154,13 @@ def _check_size(length: int, start: int, frames: int, width: int, where: str) ->
         raise truncated(words, where)
 
 
-def _frame_range(words: np.ndarray, shell: C3DFile, whole: int) -> tuple[int, int]:
+def _frame_range(header: np.ndarray, shell: C3DFile, whole: int) -> tuple[int, int]:
     """Header words hold 16 bits; longer recordings put the range in parameters.
 
     Where the header's range can't be, that of POINT:FRAMES counts, if just so many (``whole``, but
     for the last block's padding) are there.
     """
-    first, last = int(words[3]), int(words[4])
+    first, last = int(header[3]), int(header[4])
     stated = int(shell.number("POINT", "FRAMES")) % 65536
     if 0 < stated <= whole and (last < first or whole < last - first + 1):
         return max(first, 1), max(first, 1) + stated - 1

@@ -59,12 +59,12 @@ class Draft:
         """Take rate, start and times from a column of times (s)."""
         self.rate, self.start, self.times = rate_of(times, self.name)
 
-    def count(self, written: str, found: int, key: str = "") -> None:
+    def count(self, written: str, counted: int, key: str = "") -> None:
         """Refuse a file whose header announces another number of samples than it holds."""
-        if written.isdigit() and int(written) != found:
-            words = f"{key} is {written}, the file holds {found}"
-            words = words if key else f"{written} samples announced, {found} found"
-            raise truncated(f"truncated or damaged: {words}", self.name)
+        if written.isdigit() and int(written) != counted:
+            text = f"{key} is {written}, the file holds {counted}"
+            text = text if key else f"{written} samples announced, {counted} found"
+            raise truncated(f"truncated or damaged: {text}", self.name)
 
     def channel(
         self,
