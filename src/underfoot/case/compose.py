@@ -311,9 +311,8 @@ def _settle_reads(composition: Composition) -> None:
             if not composition.lenient(path):
                 remedy = f"Remove it, or choose {' or '.join(readers)}"
                 what = "is not read by any chosen option"
-                composition.errors.append(
-                    InputError(what, where=composition.places(path), remedy=remedy)
-                )
+                error = InputError(what, where=composition.places(path), remedy=remedy)
+                composition.errors.append(error)
                 continue
             composition.dropped[path] = "not read by any chosen option"
         del table[key]

@@ -186,7 +186,7 @@ def marker_velocity(
     The median over the markers of their mean velocities, so that a swinging limb or a few lost
     markers don't count. None with fewer than three markers seen.
     """
-    found = []
+    velocities = []
     for marker in trial.markers.values():
         frames, time = _sightings(marker)
         first, stop = time.searchsorted(begin), time.searchsorted(end, "right")
@@ -195,11 +195,11 @@ def marker_velocity(
         lasting = time[stop - 1] - time[first]
         if lasting >= 0.05:
             way = marker.positions[frames[stop - 1]] - marker.positions[frames[first]]
-            found.append(way / lasting)
-    if len(found) < 3:
+            velocities.append(way / lasting)
+    if len(velocities) < 3:
         return None
-    ordered = np.sort(found, axis=0)  # np.median takes several times as long for so few
-    middle = (ordered[(len(found) - 1) // 2] + ordered[len(found) // 2]) / 2.0
+    ordered = np.sort(velocities, axis=0)  # np.median takes several times as long for so few
+    middle = (ordered[(len(velocities) - 1) // 2] + ordered[len(velocities) // 2]) / 2.0
     return middle if up is None else middle - (middle @ up) * up
 
 
@@ -224,18 +224,18 @@ def walking_direction(
     path = marker_velocity(trial, float(time[0]), float(time[1]), up)
     speed = 0.0 if path is None else float(np.linalg.norm(path))
     if path is not None and speed > WALKING_SPEED:
-        words = f"markers in this step ({speed:.2f} m/s)"
-        return Direction(path / speed, DirectionSource.MARKERS, words)
+        text = f"markers in this step ({speed:.2f} m/s)"
+        return Direction(path / speed, DirectionSource.MARKERS, text)
     step, swing = pressure_path(plate, start, stop, up), shear_swing(plate, start, stop, up)
     length, size = float(np.linalg.norm(step)), float(np.linalg.norm(swing))
     if path is not None:
         return Direction(explanation=f"the markers move at {speed:.2f} m/s only")
     if length > 0.05:
-        words = f"centre of pressure, {1e3 * length:.0f} mm heel to toe"
-        return Direction(step / length, DirectionSource.PRESSURE, words)
+        text = f"centre of pressure, {1e3 * length:.0f} mm heel to toe"
+        return Direction(step / length, DirectionSource.PRESSURE, text)
     if size > 10.0:
-        words = "shear force, braking before driving"
-        return Direction(swing / size, DirectionSource.SHEAR, words)
+        text = "shear force, braking before driving"
+        return Direction(swing / size, DirectionSource.SHEAR, text)
     return Direction(explanation="nothing tells it")
 
 
@@ -281,17 +281,17 @@ def toe_candidates(trial: Trial) -> dict[str, list[str]]:
 
 
 def _by_side(trial: Trial, pattern: re.Pattern[str]) -> dict[str, list[str]]:
-    found: dict[str, list[str]] = {"left": [], "right": [], "unknown": []}
+    names_by_side: dict[str, list[str]] = {"left": [], "right": [], "unknown": []}
     for name, marker in trial.markers.items():
         plain = name.rsplit(":", 1)[-1].strip()
         if not pattern.search(plain) or _NOT_HEEL.search(plain) or marker.missing.all():
             continue
         sided = _NOT_SIDE.sub("", plain)
         side = "left" if _LEFT.search(sided) else "right" if _RIGHT.search(sided) else "unknown"
-        found[side].append(name)
-    for names in found.values():
+        names_by_side[side].append(name)
+    for names in names_by_side.values():
         names.sort(key=lambda name: int(trial.markers[name].missing.sum()))
-    return found
+    return names_by_side
 
 
 def _up(trial: Trial) -> tuple[np.ndarray, str]:

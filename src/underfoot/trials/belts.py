@@ -98,7 +98,7 @@ def _carried(
             return None, 0.0
         return (step - _ROLL * swing) / (0.8 * duration), _ROLL_SD / (0.8 * duration)
     begin, end = (plate.start + start / plate.rate + share * duration for share in _STANDS)
-    found = []
+    lines = []
     for marker in feet:
         inside = (marker.time >= begin) & (marker.time <= end) & ~marker.missing
         if inside.sum() < max(4, 0.5 * (end - begin) * marker.rate):
@@ -109,6 +109,6 @@ def _carried(
         stray = place - np.polynomial.polynomial.polyval(time, line).T
         spread = float(np.sqrt((stray**2).sum(axis=1).mean()))
         if spread < _STRAIGHT:
-            found.append((line[1], spread / (end - begin)))
+            lines.append((line[1], spread / (end - begin)))
     # The other foot swings forward: the one that stands goes least along the way of the walk.
-    return min(found, key=lambda pair: float(pair[0] @ swing), default=(None, 0.0))
+    return min(lines, key=lambda pair: float(pair[0] @ swing), default=(None, 0.0))

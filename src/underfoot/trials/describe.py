@@ -123,7 +123,7 @@ class Description:
         if not self.steps:
             return [*lines, "  none"]
         for step in self.steps:
-            stance, own = step.stance, step.measurement
+            stance, rcof = step.stance, step.measurement
             lines.append(
                 f"  {stance.number:2d}  {stance.contact:7.3f} s  {stance.plate}, "
                 f"{1e3 * stance.duration:.0f} ms, peak {stance.peak:.0f} N, {stance.side} foot, "
@@ -133,13 +133,13 @@ class Description:
             way = stance.direction
             if way.vector is not None and way.source is not DirectionSource.MARKERS:
                 under.append(f"walking direction: {way.explanation}")
-            if own.value is None:
-                under.append(f"rejected: {own.reason}")
+            if rcof.value is None:
+                under.append(f"rejected: {rcof.reason}")
             else:
-                number = f"{own.value:.3f} ± {own.uncertainty or 0:.3f}"
+                number = f"{rcof.value:.3f} ± {rcof.uncertainty or 0:.3f}"
                 after = 1e3 * (step.peak_time - stance.contact)
                 under.append(f"{step.verdict}: RCOF {number}, {after:.0f} ms after contact")
-            lines += [" " * 13 + text for text in (*under, *(f"! {flag}" for flag in own.flags))]
+            lines += [" " * 13 + text for text in (*under, *(f"! {flag}" for flag in rcof.flags))]
         good = [step.measurement for step in self.steps if step.measurement.estimated]
         doubtful = sum(bool(one.caution_flags) for one in good)
         if len(good) > 1:

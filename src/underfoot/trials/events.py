@@ -122,8 +122,8 @@ def _changed(stance: Stance, edit: Edit, trial: Trial, up: np.ndarray) -> Stance
         return replace(stance, reason=f"excluded by hand: {edit.why}", by_hand=by_hand)
     if edit.what == "side":
         if stance.side == edit.value:
-            words = f"step {stance.number} is the {edit.value} foot already"
-            raise EditError(f"{words}: the edit changes nothing", where=edit.where)
+            text = f"step {stance.number} is the {edit.value} foot already"
+            raise EditError(f"{text}: the edit changes nothing", where=edit.where)
         return replace(stance, side=str(edit.value), heel="", by_hand=by_hand)
     plate = plate_named(trial, stance.plate)
     time = float(edit.value or 0.0)
@@ -136,8 +136,8 @@ def _changed(stance: Stance, edit: Edit, trial: Trial, up: np.ndarray) -> Stance
         )
     sample = round((time - plate.start) * plate.rate)
     if sample == (stance.start if edit.what == "contact" else stance.stop):
-        words = f"{edit.what} of step {stance.number} is at {time:g} s already"
-        raise EditError(f"{words}: the edit changes nothing", where=edit.where)
+        text = f"{edit.what} of step {stance.number} is at {time:g} s already"
+        raise EditError(f"{text}: the edit changes nothing", where=edit.where)
     if edit.what == "contact":
         stance = replace(stance, start=sample, contact=time)
     else:
@@ -190,14 +190,14 @@ def stances(walk: Trial | Walkway, *, threshold: float = CONTACT_FORCE) -> list[
     walk = walkway_of(walk)
     trial, up = walk.trial, walk.up
     plates = {plate.name: plate for plate in trial.plates if plate.usable}
-    found: list[Stance] = []
+    detected: list[Stance] = []
     for plate in plates.values():
         vertical = plate.force @ up
         for start, stop in plate_contacts(plate, up, threshold):
             time = plate.start + np.array([start, stop]) / plate.rate
             peak = float(np.nanmax(vertical[start:stop]))
-            found.append(Stance(plate.name, start, stop, float(time[0]), float(time[1]), peak))
-    found.sort(key=lambda stance: stance.contact)
+            detected.append(Stance(plate.name, start, stop, float(time[0]), float(time[1]), peak))
+    detected.sort(key=lambda stance: stance.contact)
     feet = {plate.name: _Feet(walk, plate) for plate in plates.values()}
 
     def located(stance: Stance) -> Stance:
@@ -208,17 +208,17 @@ def stances(walk: Trial | Walkway, *, threshold: float = CONTACT_FORCE) -> list[
         side, heel = feet[stance.plate].foot(stance)
         return replace(stance, side=side, heel=heel)
 
-    found = [located(replace(stance, number=i)) for i, stance in enumerate(found, start=1)]
+    detected = [located(replace(stance, number=i)) for i, stance in enumerate(detected, start=1)]
     if trial.edits:
-        found = edited_contacts(found, trial, up)
-        found = [located(s) if s.by_hand and not s.reason else s for s in found]
-    peaks = [s.peak for s in found]
+        detected = edited_contacts(detected, trial, up)
+        detected = [located(s) if s.by_hand and not s.reason else s for s in detected]
+    peaks = [s.peak for s in detected]
     judged = []
-    for stance in found:
+    for stance in detected:
         # One that the record cuts began at a time nobody knows.
         others = [
             s
-            for s in found
+            for s in detected
             if s.plate != stance.plate and not s.reason and (s.start or "contact" in s.by_hand)
         ]
         reason = stance.reason or _reason(walk, stance, others, peaks, feet[stance.plate])
@@ -362,7 +362,7 @@ class _Feet:
         span = stance.contact, stance.toe_off
         if span in self.seen or self.edges is None:
             return self.seen.get(span, {})
-        found = self.seen[span] = {}
+        frames = self.seen[span] = {}
         for side, marker in self.markers.items():
             time, at = marker.time, marker.positions
             height = at @ self.up
@@ -375,8 +375,8 @@ class _Feet:
             speed = np.linalg.norm(velocity, axis=1)
             inside &= np.nan_to_num(speed, nan=9.0) < 0.8
             if inside.sum() >= 0.1 * marker.rate:
-                found[side] = int(inside.sum())
-        return found
+                frames[side] = int(inside.sum())
+        return frames
 
     def foot(self, stance: Stance) -> tuple[str, str]:
         """Side and heel marker of the foot on the plate."""
@@ -416,7 +416,7 @@ class _Feet:
         early = self.early(stance, max(5, round(0.05 * self.plate.rate)))
         if self.edges is None or not len(early) or self.on_plate(stance):
             return 0.0
-        found = 0.0
+        most = 0.0
         for marker in self.markers.values():
             at = marker.positions
             inside = (marker.time >= stance.contact) & (marker.time <= stance.contact + 0.04)
@@ -428,8 +428,8 @@ class _Feet:
             speed = float(np.linalg.norm(np.ptp(at[inside] - carried, axis=0))) / 0.04
             low = float(stand @ self.up - np.nanmin(at @ self.up)) < 0.06
             if speed < 0.8 and low and self.flat(stand, early) < _FOOT_LENGTH:
-                found = max(found, float(np.linalg.norm(np.maximum(self.edges.beyond(stand), 0.0))))
-        return found
+                most = max(most, float(np.linalg.norm(np.maximum(self.edges.beyond(stand), 0.0))))
+        return most
 
     def landing(self, stance: Stance) -> str:
         """Side of the lower of the heels low over the plate at contact: a slipping heel is fast."""

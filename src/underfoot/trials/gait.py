@@ -173,7 +173,7 @@ def required_friction(
     definition = definition or DEFINITIONS["default"]
     walk = walkway_of(walk)
     axes, weight, plate = walk.axes, walk.weight, walk.plate(stance.plate)
-    said = {
+    choices = {
         **definition.conventions(),
         "baseline": baseline_words(plate),
         "walking direction": stance.direction.explanation,
@@ -182,7 +182,7 @@ def required_friction(
     slip: Slip | None = None
 
     def without(reason: str) -> RequiredFriction:
-        missing, empty = Measurement.not_estimated("rcof", reason, conventions=said), np.empty(0)
+        missing, empty = Measurement.not_estimated("rcof", reason, conventions=choices), np.empty(0)
         return RequiredFriction(missing, stance, empty, empty, empty, slip=slip)
 
     if not stance.accepted or stance.walking is None:
@@ -221,8 +221,8 @@ def required_friction(
     flags = plate.flags + stance.flags + _tilt_flags(plate, stance, axes)
     after = 1e3 * (at - passed[0]) / plate.rate
     if after < 2.0:
-        words = f"the peak lies {after:.0f} ms after the gate: the gate may have made it"
-        flags += (remark(words),)
+        text = f"the peak lies {after:.0f} ms after the gate: the gate may have made it"
+        flags += (remark(text),)
     uncertainty, parts = None, "not estimated"
     if checked:
         flags += step_flags(walk, stance, definition.filter, features)
@@ -230,10 +230,10 @@ def required_friction(
         if slip is not None and slip.outcome is Outcome.MICROSLIP:
             flags += tuple(f for f in slip.peak_speed.flags if f.name == "speed against distance")
         uncertainty, parts = _uncertainty(plate, stance, definition, surface, gate, at, curves)
-    unasked, said = "" if checked else "not asked for", {**said, "uncertainty": parts}
+    unasked, choices = "" if checked else "not asked for", {**choices, "uncertainty": parts}
     once = tuple(dict.fromkeys(flags))
     measurement = Measurement(
-        "rcof", value, "1", uncertainty, unasked, flags=once, conventions=said
+        "rcof", value, "1", uncertainty, unasked, flags=once, conventions=choices
     )
     instants = float(time[at]), float(time[passed[0]])
     return RequiredFriction(measurement, stance, time, ratio, normal, *instants, slip)
@@ -274,11 +274,11 @@ def _tilt_flags(plate: Plate, stance: Stance, axes: Axes) -> tuple[Flag, ...]:
     stated = axes.ramp.angle if axes.ramp.plate_frame == "horizontal" else 0.0
     if abs(slope - stated) <= _TILT:
         return ()
-    words = (
+    text = (
         f"the plate's corners slope by {math.degrees(slope):.1f} deg along the walk and its forces "
         f"are taken as on a slope of {math.degrees(stated):.1f} deg: is the ramp given rightly?"
     )
-    return (Flag("plate slope", words, True, abs(slope - stated), _TILT, "rad"),)
+    return (Flag("plate slope", text, True, abs(slope - stated), _TILT, "rad"),)
 
 
 def _curves(

@@ -81,19 +81,19 @@ def unlikely_flags(
     """Return a caution for each feature that is unlikely, and a remark on what can't be judged."""
     flags = []
     known = references() if known is None else known
-    for one in known:
-        if one.feature not in features:
+    for law in known:
+        if law.feature not in features:
             continue
-        value = features[one.feature]
-        likelihood = one.likelihood(value)
+        value = features[law.feature]
+        likelihood = law.likelihood(value)
         if likelihood < UNLIKELY:
-            words = (
-                f"{one.feature} {one.shown(value):.3g}, where sound steps have "
-                f"{one.shown(one.mean):.3g}: as far out lies {_share(likelihood)}"
+            text = (
+                f"{law.feature} {law.shown(value):.3g}, where sound steps have "
+                f"{law.shown(law.mean):.3g}: as far out lies {_share(likelihood)}"
             )
-            limit = one.shown(one.limit(value))
+            limit = law.shown(law.limit(value))
             flags.append(
-                Flag(one.feature, words, True, one.shown(value), limit, "", one.source, likelihood)
+                Flag(law.feature, text, True, law.shown(value), limit, "", law.source, likelihood)
             )
     for need, (what, missed) in _NEEDS.items():
         if not any(one.needs == need and one.feature in features for one in known):

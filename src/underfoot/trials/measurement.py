@@ -100,8 +100,8 @@ class Measurement(Presentable):
         conventions: Mapping[str, str] | None = None,
     ) -> Self:
         """Return a measurement without a value, saying why."""
-        said = dict(conventions or {})
-        return cls(name, None, unit, reason=reason, n=n, flags=flags, conventions=said)
+        choices = dict(conventions or {})
+        return cls(name, None, unit, reason=reason, n=n, flags=flags, conventions=choices)
 
     @property
     def estimated(self) -> bool:
@@ -164,9 +164,9 @@ def mean_of(measurements: Sequence[Measurement], name: str | None = None) -> Mea
     if not measurements:
         raise InputError("nothing to average", where="mean_of")
     first, ignored = measurements[0], ("baseline", "walking direction", "belt", "uncertainty")
-    said = [{k: v for k, v in m.conventions.items() if k not in ignored} for m in measurements]
-    kept = said[0]
-    if any(m.unit != first.unit for m in measurements) or any(one != kept for one in said):
+    choices = [{k: v for k, v in m.conventions.items() if k not in ignored} for m in measurements]
+    shared = choices[0]
+    if any(m.unit != first.unit for m in measurements) or any(one != shared for one in choices):
         raise InputError("measurements of different conventions can't be averaged")
     values = np.array([m.value for m in measurements if m.value is not None])
     name = name or first.name
@@ -174,7 +174,7 @@ def mean_of(measurements: Sequence[Measurement], name: str | None = None) -> Mea
     flags = (remark(f"{lost} of {len(measurements)} without a value are left out"),) if lost else ()
     if not len(values):
         return Measurement.not_estimated(
-            name, first.reason, unit=first.unit, flags=flags, conventions=kept
+            name, first.reason, unit=first.unit, flags=flags, conventions=shared
         )
     spread = float(values.std(ddof=1)) if len(values) > 1 else None
     return Measurement(
@@ -185,6 +185,6 @@ def mean_of(measurements: Sequence[Measurement], name: str | None = None) -> Mea
         "a single value has no scatter" if spread is None else "",
         len(values),
         flags,
-        {**kept, "uncertainty": "standard error of the mean"},
+        {**shared, "uncertainty": "standard error of the mean"},
         spread,
     )

@@ -175,19 +175,19 @@ def finished_plate(
         if across > SHEAR_WARNING:
             seen.append(remark(f"shear baseline of {across:.1f} N was subtracted"))
     else:
-        words = "baseline not subtracted: the plate is never unloaded for long enough"
-        seen.append(Flag("baseline", words))
+        text = "baseline not subtracted: the plate is never unloaded for long enough"
+        seen.append(Flag("baseline", text))
     channels = np.ascontiguousarray((force if raw is None else raw).T)
     cut = any(saturated(channel, rate) for channel in channels)
     if cut:
         seen.append(Flag("saturated", "saturated: a channel stays at its extreme value"))
     peak = float(np.nanmax(np.abs(force @ up), initial=0.0))
     if peak > _IMPLAUSIBLE:
-        words = f"peak vertical force {peak:.0f} N is implausible: is the unit right?"
-        seen.append(Flag("size", words, True, peak, _IMPLAUSIBLE, "N"))
+        text = f"peak vertical force {peak:.0f} N is implausible: is the unit right?"
+        seen.append(Flag("size", text, True, peak, _IMPLAUSIBLE, "N"))
     elif 0.05 < peak < _LOADED:
-        words = f"never loaded beyond {peak:.1f} N: unused, or is the unit right?"
-        seen.append(Flag("size", words, True, peak, _LOADED, "N"))
+        text = f"never loaded beyond {peak:.1f} N: unused, or is the unit right?"
+        seen.append(Flag("size", text, True, peak, _LOADED, "N"))
     elif peak <= 0.05:
         seen.append(remark("never loaded"))
     if centre_of_pressure is None and moment is not None and corners is not None:

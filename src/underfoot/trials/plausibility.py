@@ -197,28 +197,28 @@ def _force_flags(
     part = plate.force[stance.start : stance.stop]
     normal = part @ up
     rate, duration = plate.rate, stance.duration
-    words = f"stance of {duration:.2f} s: is the sampling rate right?"
-    yield from LONG_STANCE.above(duration, words)
+    text = f"stance of {duration:.2f} s: is the sampling rate right?"
+    yield from LONG_STANCE.above(duration, text)
     if duration < SHORT_STANCE.value:
         yield SHORT_STANCE.flag(duration, f"stance of {duration:.2f} s: running, or a wrong rate")
     thirds = len(normal) // 3
     humps = max(normal[:thirds].max(), normal[2 * thirds :].max())
     middle = float(normal[thirds : 2 * thirds].max())
     if middle > HUMP.value * humps:
-        words = "the force is largest in mid-stance: running or hopping, not walking"
-        yield HUMP.flag(middle / float(humps), words)
+        text = "the force is largest in mid-stance: running or hopping, not walking"
+        yield HUMP.flag(middle / float(humps), text)
     if weight is not None:
         ratio, mean = stance.peak / weight.newtons, float(normal.mean()) / weight.newtons
         yield from HIGH_PEAK.above(ratio, f"peak of {ratio:.2f} body weights ({weight.source})")
         if not MEAN_LOW.value <= mean <= MEAN_HIGH.value:
             limit = MEAN_LOW if mean < MEAN_LOW.value else MEAN_HIGH
-            words = f"mean force of {mean:.2f} body weights ({weight.source}): gain or unit?"
-            yield limit.flag(mean, words)
+            text = f"mean force of {mean:.2f} body weights ({weight.source}): gain or unit?"
+            yield limit.flag(mean, text)
     own = weight.newtons if weight else 0.9 * stance.peak
     step = float(normal[0] - (plate.force @ up)[max(stance.start - 1, 0)]) / own
     if stance.start and step > REST_JUMP.value + 100.0 / rate:
-        words = f"the force jumps from rest to {100 * step:.0f} % of body weight in one sample"
-        yield REST_JUMP.flag(step, words)
+        text = f"the force jumps from rest to {100 * step:.0f} % of body weight in one sample"
+        yield REST_JUMP.flag(step, text)
     smooth = low_passed_part(
         plate.force, rate, LowPass(cutoff=min(36.0, 0.4 * rate)), stance.start, stance.stop
     )
@@ -240,25 +240,25 @@ def _sample_flags(plate: Plate, stance: Stance, up: np.ndarray) -> Iterator[Flag
         yield limit.flag(size, f"a spike of {size:.0f} N lasts three samples at most")
     inner = slice(margin, len(part) - margin)
     step = _step(part[inner], rate) / max(float(normal[inner].mean()), 1.0)
-    words = f"the forces step by {100 * step:.0f} % of their mean in one sample: samples missing?"
-    yield from STEP.above(step, words)
+    text = f"the forces step by {100 * step:.0f} % of their mean in one sample: samples missing?"
+    yield from STEP.above(step, text)
     still = (np.diff(part[inner], axis=0) == 0.0).all(axis=1) & (normal[inner][1:] > 50.0)
     held = longest_run(still) + 1
     if held >= 4 and held / rate >= HELD.value:
-        words = f"all forces stand still for {held} samples: held values"
-        yield HELD.flag(held / rate, words)
+        text = f"all forces stand still for {held} samples: held values"
+        yield HELD.flag(held / rate, text)
     yield from _straight_flags(part[inner], rate)
     firm = normal[inner]
     edge = max(1, len(firm) // 20)
     lost = firm[edge:-edge] < 20.0
-    words = f"the force drops out for {int(lost.sum())} samples"
-    yield from DROP_OUT.above(lost.sum() / rate, words)
+    text = f"the force drops out for {int(lost.sum())} samples"
+    yield from DROP_OUT.above(lost.sum() / rate, text)
     if rate >= 150.0:
         begin, end = stance.start - 2 * margin, stance.start + (stance.stop - stance.start) // 4
         share = _high_share(plate.force[max(0, begin) : end], rate)
         if share < FILTERED.value:
-            words = "nothing in the forces is faster than 25 Hz: they were filtered before"
-            yield FILTERED.flag(share, words)
+            text = "nothing in the forces is faster than 25 Hz: they were filtered before"
+            yield FILTERED.flag(share, text)
 
 
 def _straight_flags(force: np.ndarray, rate: float) -> Iterator[Flag]:
@@ -370,19 +370,19 @@ def _turns(plate: Plate, stance: Stance, up: np.ndarray) -> int:
 def _level_flags(plate: Plate, stance: Stance, up: np.ndarray, low_pass: LowPass) -> Iterator[Flag]:
     normal = 0.8 * stance.peak
     drift = baseline_error(plate, stance, up, normal, 0.2)
-    words = f"the unloaded level before or after the step moves RCOF by {drift:.3f}: drift"
-    yield from DRIFT.above(drift, words)
+    text = f"the unloaded level before or after the step moves RCOF by {drift:.3f}: drift"
+    yield from DRIFT.above(drift, text)
     noise = unloaded_noise(plate, up, low_pass)
-    words = f"the unloaded plate swings by {noise:.1f} N (standard deviation): vibration"
-    yield from VIBRATION.above(2.0 * noise / normal, words)
+    text = f"the unloaded plate swings by {noise:.1f} N (standard deviation): vibration"
+    yield from VIBRATION.above(2.0 * noise / normal, text)
     if stance.by_hand:  # who sets an instant may leave load outside
         return
     before, after = _shear_outside(plate, stance, up)
     late = "the shear was shifted or filtered by itself"
-    words = f"shear of {100 * before:.1f} % of the mean force before the foot is down: {late}"
-    yield from SHEAR_BEFORE.above(before, words)
-    words = f"shear of {100 * after:.1f} % of the mean force after the foot has left: {late}"
-    yield from SHEAR_AFTER.above(after, words)
+    text = f"shear of {100 * before:.1f} % of the mean force before the foot is down: {late}"
+    yield from SHEAR_BEFORE.above(before, text)
+    text = f"shear of {100 * after:.1f} % of the mean force after the foot has left: {late}"
+    yield from SHEAR_AFTER.above(after, text)
 
 
 def _shear_outside(plate: Plate, stance: Stance, up: np.ndarray) -> tuple[float, float]:
@@ -441,14 +441,14 @@ def _path_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
     }
     if stance.plate in heights:
         away = max(abs(height - heights[stance.plate]) for height in heights.values())
-        words = f"plates differ by {1e3 * away:.0f} mm in height: stairs or a step"
-        yield from PLATE_HEIGHT.above(away, words)
+        text = f"plates differ by {1e3 * away:.0f} mm in height: stairs or a step"
+        yield from PLATE_HEIGHT.above(away, text)
     turns = _turns(walk.plate(stance.plate), stance, axes.up) if stance.walking is not None else 0
-    words = f"the shear rises and falls {turns} times while the foot is loaded: the plate rings"
-    yield from TURNS.above(turns, words)
+    text = f"the shear rises and falls {turns} times while the foot is loaded: the plate rings"
+    yield from TURNS.above(turns, text)
     angle = _braking_to_driving(walk, stance)
-    words = f"driving is turned by {math.degrees(angle):.0f} deg against braking: a turn"
-    yield from SHEAR_TURN.above(angle, words)
+    text = f"driving is turned by {math.degrees(angle):.0f} deg against braking: a turn"
+    yield from SHEAR_TURN.above(angle, text)
     middle = 0.5 * (stance.contact + stance.toe_off)
     whole = walk.body_velocity(stance.plate, stance.contact, stance.toe_off, climb=True)
     if whole is None:
@@ -467,8 +467,8 @@ def _path_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
     if min(np.linalg.norm(first), np.linalg.norm(second)) < 0.3:
         return
     angle = _angle(first, second)
-    words = f"the walk turns by {math.degrees(angle):.0f} deg during the step"
-    yield from TURN.above(angle, words)
+    text = f"the walk turns by {math.degrees(angle):.0f} deg during the step"
+    yield from TURN.above(angle, text)
 
 
 def _braking_to_driving(walk: Walkway, stance: Stance) -> float:
@@ -505,8 +505,8 @@ def _marker_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
         return
     if not stance.heel:
         if walk.plate(stance.plate).corners is not None and not by_hand:
-            words = "no heel marker comes down on the plate: are forces and markers in time?"
-            yield Flag("foot", words)
+            text = "no heel marker comes down on the plate: are forces and markers in time?"
+            yield Flag("foot", text)
         return
     heel = walk.trial.marker(stance.heel)
     if heel.times is not None:
@@ -515,10 +515,10 @@ def _marker_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
         jumps = heel_motion(heel, walk.up).jumps
         landings = [t for t in contact_from_heel(heel, walk.up) if abs(t - stance.contact) < 0.4]
         gap = min((abs(t - stance.contact) for t in landings), default=0.0)
-        words = f"heel and force come down {1e3 * gap:.0f} ms apart: forces late or early"
-        yield from LATE.above(gap, words)
+        text = f"heel and force come down {1e3 * gap:.0f} ms apart: forces late or early"
+        yield from LATE.above(gap, text)
     near = (heel.time > stance.contact - 0.1) & (heel.time < stance.toe_off)
     leaps = int(jumps[near].sum())
     if leaps:
-        words = f"the heel marker leaps off its path in {leaps} frames"
-        yield Flag("marker jumps", words, True, leaps, 0.0, "1")
+        text = f"the heel marker leaps off its path in {leaps} frames"
+        yield Flag("marker jumps", text, True, leaps, 0.0, "1")

@@ -205,7 +205,7 @@ def pressure_map(
         flags.append(f"scans lie {1e3 * mean_gap:.1f} mm apart, not {1e3 * spacing:.1f} mm")
     if gaps.max() > 1.5 * np.median(gaps):
         flags.append(f"a gap of {1e3 * gaps.max():.0f} mm between scans: one may be missing")
-    said = {
+    choices = {
         "load": "sum of p dx v dt (Eq. 27), baseline subtracted",
         "dx": f"{1e3 * spacing:g} mm, given" if spacing else "from the measured lateral places",
         "covered width": f"{1e3 * (lateral[-1] - lateral[0]):.0f} mm between the outermost scans",
@@ -214,7 +214,7 @@ def pressure_map(
         "uncertainty": "sensor noise; scans left out and positions are judged by the flags",
     }
     if change is not None:
-        said["every second scan left out"] = f"changes the load by up to {100 * change:.1f} %"
+        choices["every second scan left out"] = f"changes the load by up to {100 * change:.1f} %"
     grid = np.arange(
         min(scan.along.min() for scan in ordered), max(s.along.max() for s in ordered), step
     )
@@ -229,20 +229,20 @@ def pressure_map(
     if inlet_diameter:
         lost = _inlet_loss(pressure, which, grid, float(ordered[which].along[top]), inlet_diameter)
         if lost is not None:
-            said["inlet"] = (
+            choices["inlet"] = (
                 f"{1e3 * inlet_diameter:g} mm wide: lowers the peak by about {lost / 1e3:.1f} kPa"
             )
     largest = Measurement(
         "peak fluid pressure", peak, "Pa", deviation, n=len(ordered),
-        flags=tuple(map(remark, peak_flags)), conventions=said,
+        flags=tuple(map(remark, peak_flags)), conventions=choices,
     )  # fmt: skip
     whole = Measurement(
         "fluid load", load, "N", sensor_error, n=len(ordered), flags=tuple(map(remark, flags)),
-        conventions=said,
+        conventions=choices,
     )  # fmt: skip
     forward = float(ordered[which].along[top])
-    at_along = Measurement("peak along", forward, "m", step, conventions=said)
-    even = {**said, "uncertainty": "half a spacing, taken as evenly likely"}
+    at_along = Measurement("peak along", forward, "m", step, conventions=choices)
+    even = {**choices, "uncertainty": "half a spacing, taken as evenly likely"}
     place, sd = float(lateral[which]), mean_gap / np.sqrt(12.0)
     at_lateral = Measurement("peak lateral", place, "m", sd, conventions=even)
     places = whole, largest, at_along, at_lateral

@@ -182,29 +182,29 @@ def passages(
         raise InputError("the slip ends before it begins", where="passages")
     across = np.cross(up, walking)
     rows = sensor_rows(sensors, walking)
-    said = dict(conventions or {})
-    signed = {**said, "sign": "positive: heel to the walker's left"}
+    choices = dict(conventions or {})
+    signed = {**choices, "sign": "positive: heel to the walker's left"}
     names = ("instantaneous slipping speed", "m/s"), ("medio-lateral distance", "m")
     inside = np.flatnonzero((motion.time >= contact) & (motion.time <= until))
-    found = []
+    passed = []
     for name, place in sensors.items():
         away = motion.position - np.asarray(place)
         reason, at = _crossing(away[inside] @ walking)
         if reason:
             speed, lateral = (
-                Measurement.not_estimated(what, reason, unit=unit, conventions=said)
+                Measurement.not_estimated(what, reason, unit=unit, conventions=choices)
                 for what, unit in names
             )
-            found.append(Passage(name, rows[name], math.nan, speed, lateral))
+            passed.append(Passage(name, rows[name], math.nan, speed, lateral))
             continue
         index, share = inside[int(at)], at - int(at)
         when, fast, side = (
             _between(values, index, share) for values in (motion.time, motion.speed, away @ across)
         )
-        speed = Measurement(names[0][0], fast, "m/s", motion.speed_noise, conventions=said)
+        speed = Measurement(names[0][0], fast, "m/s", motion.speed_noise, conventions=choices)
         lateral = Measurement(names[1][0], side, "m", motion.noise, conventions=signed)
-        found.append(Passage(name, rows[name], when, speed, lateral))
-    return found
+        passed.append(Passage(name, rows[name], when, speed, lateral))
+    return passed
 
 
 def heel_track(

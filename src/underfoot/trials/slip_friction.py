@@ -40,7 +40,7 @@ def mean_friction(
     0.2 in the grant report (G.6.1); 0.05 is enough by Iraqi et al. (PMC6922306).
     """
     normal, shear = np.asarray(normal, dtype=float), np.asarray(shear, dtype=float)
-    said = {
+    choices = {
         "window": f"{1e3 * window:g} ms from the first sample at or above {target:g} N",
         "average": "mean of the ratios of the samples",
     }
@@ -48,7 +48,7 @@ def mean_friction(
         raise InputError("normal and shear must match; target and window be positive", where=name)
 
     def without(reason: str) -> Measurement:
-        return Measurement.not_estimated(name, reason, conventions=said)
+        return Measurement.not_estimated(name, reason, conventions=choices)
 
     reached = np.flatnonzero(normal >= target)
     if not len(reached):
@@ -69,7 +69,7 @@ def mean_friction(
     error = _standard_error(ratio)
     reason = "" if error is not None else "too few samples for a scatter"
     value = float(ratio.mean())
-    return Measurement(name, value, "1", error, reason, count, flags, said)
+    return Measurement(name, value, "1", error, reason, count, flags, choices)
 
 
 def available_friction(
@@ -92,18 +92,17 @@ def available_friction(
     if up is None:
         up = axes_of(Trial("", plates=(plate,))).up
     force = plate.force
-    words = "no filter"
+    text = "no filter" if low_pass is None else str(low_pass)
     if low_pass is not None:
-        words = str(low_pass)
         try:
             force = low_passed(force, plate.rate, low_pass)
         except DataError as error:
             return Measurement.not_estimated("acof", error.what)
     normal = force @ up
     shear = np.linalg.norm(force - np.outer(normal, up), axis=1)
-    found = mean_friction(normal, shear, plate.rate, target=target, window=window)
-    said = {"shear": SHEARS["resultant"], "filter": words, "baseline": baseline_words(plate)}
-    return replace(found, conventions={**found.conventions, **said})
+    cof = mean_friction(normal, shear, plate.rate, target=target, window=window)
+    choices = {"shear": SHEARS["resultant"], "filter": text, "baseline": baseline_words(plate)}
+    return replace(cof, conventions={**cof.conventions, **choices})
 
 
 def available_frictions(
@@ -170,14 +169,14 @@ def slide_plate(trial: Trial, up: np.ndarray, record: TesterCalibration | None =
 def calibrated(cof: Measurement, record: TesterCalibration | None) -> Measurement:
     """Return a COF with the calibration it refers to, and its uncertainty added."""
     if record is None:
-        words = "no record: the tester's gain is not in the uncertainty"
-        return replace(cof, conventions={**cof.conventions, "calibration": words})
-    said = {**cof.conventions, "calibration": record.description()}
+        text = "no record: the tester's gain is not in the uncertainty"
+        return replace(cof, conventions={**cof.conventions, "calibration": text})
+    choices = {**cof.conventions, "calibration": record.description()}
     error = None
     if cof.value is not None and cof.uncertainty is not None:
         parts = (record.channel(name).uncertainty for name in ("normal", "friction"))
         error = math.hypot(cof.uncertainty, *(cof.value * part for part in parts))
-    return replace(cof, uncertainty=error, conventions=said)
+    return replace(cof, uncertainty=error, conventions=choices)
 
 
 def slide_friction(

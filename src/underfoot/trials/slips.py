@@ -313,11 +313,11 @@ def slip(
     vertical speed at the end.
     """
     definition = definition or SlipDefinition()
-    said = definition.conventions()
+    choices = definition.conventions()
 
     def without(reason: str, motion: HeelMotion | None = None) -> Slip:
         start, speed, distance, margin = (
-            Measurement.not_estimated(name, reason, unit=unit, flags=flags, conventions=said)
+            Measurement.not_estimated(name, reason, unit=unit, flags=flags, conventions=choices)
             for name, unit in _MEASURED.items()
         )
         return Slip(contact, start, math.nan, speed, distance, margin, None, motion)
@@ -329,16 +329,14 @@ def slip(
     if first >= len(motion.time) - 2 or contact < motion.time[0]:
         return without("the contact lies outside the marker's record", motion)
     last, ended = _window_end(motion, first, up, leaves, definition.heel_lift)
-    window = motion.speed[first : last + 1]
-    lost = ~np.isfinite(window)
+    lost = ~np.isfinite(motion.speed[first : last + 1])
     if lost.any():
         when = 1e3 * (motion.time[first + int(np.argmax(lost))] - contact)
         if lost[: max(3, round(0.1 * marker.rate))].any():
             return without(f"the heel marker is missing {when:.0f} ms after contact", motion)
         last = first + int(np.argmax(lost)) - 1
-        window = motion.speed[first : last + 1]
         ended = f"the marker is lost {when:.0f} ms after contact"
-    if len(window) < 5:
+    if last - first < 4:
         return without("fewer than five frames of the heel after contact", motion)
     reach = round(0.5 * marker.rate / definition.filter.cutoff)
     minima = _minima(motion.speed, first, last, reach, definition.prominence)
@@ -348,16 +346,15 @@ def slip(
         early = f"{1e3 * (contact - motion.time[minima[0]]):.0f} ms before contact"
         flags += (caution(f"the speed's minimum lies {early}: the filter's blur"),)
     begin = int(minima[0])
-    stop = int(minima[1]) if len(minima) > 1 else last
-    by = "second local minimum" if len(minima) > 1 else ended
+    stop, by = (int(minima[1]), "second local minimum") if len(minima) > 1 else (last, ended)
     top = begin + int(np.argmax(motion.speed[begin : stop + 1]))
     peak = float(motion.speed[top])
-    said["search ends"] = by
+    choices["search ends"] = by
     approach = slice(max(0, first - 2 * reach), stop + 1)
     leapt = int(motion.jumps[approach].sum())
     if leapt:
-        words = f"{leapt} frames of the heel marker leap off its path: taken as missing"
-        flags += (Flag("marker jumps", words, True, leapt, 0.0, "1"),)
+        text = f"{leapt} frames of the heel marker leap off its path: taken as missing"
+        flags += (Flag("marker jumps", text, True, leapt, 0.0, "1"),)
     count = int((motion.filled & ~motion.jumps)[first : stop + 1].sum())
     if count:
         flags += (caution(f"{count} frames of the heel marker were bridged"),)
@@ -374,21 +371,20 @@ def slip(
     outcome = (limits or OutcomeLimits()).outcome(distance)
     slipped = peak > definition.threshold
     if slipped != (outcome in (Outcome.SLIDE, Outcome.LONG_SLIDE)):
-        words = (
-            f"slip by speed ({peak:.2f} m/s, {peak - definition.threshold:.2f} m/s above the rule) "
-            if slipped
-            else f"no slip by speed ({peak:.2f} m/s) "
-        )
-        words += f"but {outcome} by distance ({1e3 * distance:.0f} mm)"
+        above = f", {peak - definition.threshold:.2f} m/s above the rule" if slipped else ""
+        text = f"{'slip' if slipped else 'no slip'} by speed ({peak:.2f} m/s{above}) "
+        text += f"but {outcome} by distance ({1e3 * distance:.0f} mm)"
         if slipped:
-            words += f": a false alarm of the rule looks like this ({FALSE_ALARMS})"
-        flags += (Flag("speed against distance", words, True, peak, definition.threshold, "m/s"),)
+            text += f": a false alarm of the rule looks like this ({FALSE_ALARMS})"
+        flags += (Flag("speed against distance", text, True, peak, definition.threshold, "m/s"),)
     start, start_uncertainty, shift = _slip_start(motion, begin, definition.filter.cutoff)
-    said["slip start"] += f", less {1e3 * shift:.1f} ms that the filter shifts it"
-    said["uncertainty"] = "marker noise through the filter; for the start, the filter's shift too"
+    choices["slip start"] += f", less {1e3 * shift:.1f} ms that the filter shifts it"
+    choices["uncertainty"] = (
+        "marker noise through the filter; for the start, the filter's shift too"
+    )
 
     def value(name: str, number: float, sd: float) -> Measurement:
-        return Measurement(name, number, _MEASURED[name], sd, flags=flags, conventions=said)
+        return Measurement(name, number, _MEASURED[name], sd, flags=flags, conventions=choices)
 
     return Slip(
         contact,

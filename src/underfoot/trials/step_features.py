@@ -86,7 +86,7 @@ def _samples(
     normal: np.ndarray, along: np.ndarray, beside: np.ndarray, rate: float, mean: float
 ) -> dict[str, float]:
     """Bumps and onsets of the unfiltered forces (n,) over one stance."""
-    found = {}
+    features = {}
     count = len(normal)
     if rate > 150.0:
         forces = {"normal": normal, "shear": along, "sideways force": beside}
@@ -94,15 +94,15 @@ def _samples(
             rough = np.abs(values - low_passed(values, rate, LowPass(cutoff=25.0))) / mean
             for part_name, begin, end in (("landing", 0.02, 0.15), ("flat foot", 0.15, 0.85)):
                 top = float(rough[round(begin * count) : round(end * count)].max())
-                found[f"bump of the {name}, {part_name}"] = math.log(top + 1e-3)
+                features[f"bump of the {name}, {part_name}"] = math.log(top + 1e-3)
     size = np.abs(along)
     for name, flip in (("contact", 1), ("toe off", -1)):
         onset = [
             int(np.argmax(half > 0.25 * half.max()))
             for half in (values[::flip][: count // 2] for values in (size, normal))
         ]
-        found[f"shear after normal at {name}"] = (onset[0] - onset[1]) * flip / rate
-    return found
+        features[f"shear after normal at {name}"] = (onset[0] - onset[1]) * flip / rate
+    return features
 
 
 def _force_line(walk: Walkway, stance: Stance, across: np.ndarray) -> dict[str, float]:
@@ -141,18 +141,18 @@ def _force_line(walk: Walkway, stance: Stance, across: np.ndarray) -> dict[str, 
     share = np.linspace(*_LOADED, len(time))
     single = (share > _SINGLE[0]) & (share < _SINGLE[1])
     mass = (normal / (GRAVITY + np.interp(time, frames, rise)))[single]
-    found = {"steadiness of the mass": math.log(float(mass.std() / mass.mean()) + 1e-3)}
+    features = {"steadiness of the mass": math.log(float(mass.std() / mass.mean()) + 1e-3)}
     if walk.weight is not None:
-        found["mass by acceleration"] = math.log(float(mass.mean()) * GRAVITY / walk.weight.newtons)
+        features["mass by acceleration"] = math.log(mass.mean() * GRAVITY / walk.weight.newtons)
     if plate.centre_of_pressure is None:
-        return found
+        return features
     carried = np.outer(time - stance.contact, walk.surface_velocity(plate.name, stance.contact))
     place = np.column_stack([np.interp(time, frames, body[:, i]) for i in range(3)])
     arm = place - (plate.centre_of_pressure[begin:end] - carried)
     height = arm @ walk.up
     geometry, ratio = (arm @ stance.walking) / height, (force @ stance.walking) / normal
     if not np.isfinite(geometry).all() or np.ptp(geometry[single]) < 0.05:
-        return found
+        return features
     slope, offset = np.polyfit(geometry[single], ratio[single], 1)
     line = slope * geometry + offset
     left = (ratio - line)[single]
@@ -160,11 +160,11 @@ def _force_line(walk: Walkway, stance: Stance, across: np.ndarray) -> dict[str, 
     aside = (force @ across) / normal - _PENDULUM * (arm @ across) / height
     leaks = np.polyfit(ratio[single], np.column_stack((aside[single], mass / mass.mean())), 1)[0]
     if balanced:
-        found["sideways offset of the force line"] = float(aside[single].mean())
+        features["sideways offset of the force line"] = float(aside[single].mean())
     top = int(np.argmin(ratio[share < 0.35]))
-    found["braking peak over the force line"] = float(ratio[top] / line[top])
-    found["shear in the sideways force"], found["shear in the mass"] = leaks.tolist()
-    return found | {
+    features["braking peak over the force line"] = float(ratio[top] / line[top])
+    features["shear in the sideways force"], features["shear in the mass"] = leaks.tolist()
+    return features | {
         "slope of the force line": math.log(max(float(slope), 0.01)),
         "offset of the force line": float(offset),
         "scatter of the force line": math.log(float(left.std()) + 1e-3),

@@ -90,8 +90,8 @@ class TesterCalibration:
         A check of the day outside the tolerance is named ``FAILED``: the reading is not to be used.
         """
         if noted in (None, ""):
-            words = "no date is noted: calibration and daily check can't be referred to"
-            return (Flag("calibration", words),)
+            text = "no date is noted: calibration and daily check can't be referred to"
+            return (Flag("calibration", text),)
         day = day_of(noted, where='condition "date"')
         if not self.date <= day <= (self.valid_until or day):
             end = f" to {self.valid_until}" if self.valid_until else ""
@@ -100,8 +100,8 @@ class TesterCalibration:
         failed = [check for check in that_day if abs(check.error) > check.allowed]
         if failed:
             worst = max(failed, key=lambda check: abs(check.error))
-            words = f"the check of {day} failed: {'; '.join(check.description for check in failed)}"
-            return (Flag(FAILED, words, True, worst.error, worst.allowed, "1"),)
+            text = f"the check of {day} failed: {'; '.join(check.description for check in failed)}"
+            return (Flag(FAILED, text, True, worst.error, worst.allowed, "1"),)
         missing = {check.channel for check in self.checks} - {c.channel for c in that_day}
         if missing:
             return (Flag("calibration", f"no check of {', '.join(sorted(missing))} on {day}"),)
@@ -175,7 +175,7 @@ def _channel(part: Any, unit: str, where: str) -> ChannelCalibration:
     if "uncertainty" not in part:
         allowed = 'relative, standard: uncertainty = "0.2 %"'
         raise InputError("the references have no uncertainty", where=where, allowed=allowed)
-    own = to_si(part["uncertainty"], "1", where=f"{where}.uncertainty")
+    stated = to_si(part["uncertainty"], "1", where=f"{where}.uncertainty")
     # Reference = factor (reading - zero): the zero is taken off in every log.
     x, y = reading - reading.mean(), reference - reference.mean()
     factor = float(x @ y / (x @ x))
@@ -189,7 +189,7 @@ def _channel(part: Any, unit: str, where: str) -> ChannelCalibration:
         for key in ("range", "noise")
     )
     return ChannelCalibration(
-        factor, float(np.hypot(own, scatter)), float(reference.max()), full, noise
+        factor, float(np.hypot(stated, scatter)), float(reference.max()), full, noise
     )
 
 

@@ -125,7 +125,7 @@ def compute(options: Options) -> Computed:
     by_roughness = profile("roughness beyond the cut-off", "1", roughness, misfit.T, data=2)
     by_mass, by_contact = mass_profile(bare), contact_profile(tread)
     moving, (*_, shares) = bare.population.effective_mass, BANDS["effective_mass"]
-    found = (
+    calibrated = (
         Calibrated(by_angle, "G.4.2, work shoe", angle, angle - Z95, angle + Z95),
         Calibrated(by_roughness, "G.4.2, work shoe", rough, *_range_of_roughness(rough)),
         Calibrated(by_mass, "G.5.2, over the sensors", moving, min(shares), max(shares)),
@@ -146,13 +146,13 @@ def compute(options: Options) -> Computed:
             if mass is None
             else Quantity.of(bare.peak_speed_at(effective_mass=mass) or math.nan, "m/s"),
         },
-        _tables(facets, roughness, loads, peaks, found),
-        {"profiles": profile_figure(found)},
+        _tables(facets, roughness, loads, peaks, calibrated),
+        {"profiles": profile_figure(calibrated)},
         (
             *(
                 f"{one.profile.name}: fitted {one.profile.text()}; the default {one.default:.3g} "
                 f"lies outside this 95 % interval, {reaches[one.holds_default]}; it is kept."
-                for one in found
+                for one in calibrated
                 if one.holds_default in reaches
             ),
             f"Model error of film loads and peaks on untreaded heels: a factor of "

@@ -137,7 +137,7 @@ def compute(options: Options) -> Computed:
     effects, shares = _effects(sides)
     whole, inside = _whole(shoes)
     slips, shares_of_slips = _slips(options)
-    words = Counter(row[effects.columns.index("verdict")] for row in effects.rows)
+    verdicts = Counter(row[effects.columns.index("verdict")] for row in effects.rows)
     strongest = max(rivals, key=lambda one: one.r2)
     return Computed(
         {
@@ -180,9 +180,9 @@ def compute(options: Options) -> Computed:
             f"{best.inside_50:.0%} inside the 50 % one; its mean width is a factor of "
             f"{np.exp(best.width):.0f}. {len(conditions)} readings of {len(laboratories)} "
             "laboratories, each counts once.",
-            f"Published effects as whole cases: {words['right']} right, {words['undecided']} "
-            f"undecided, {words['absent']} absent, {words['wrong']} wrong and "
-            f"{words['not computed']} not computed (counted by fluid).",
+            f"Published effects as whole cases: {verdicts['right']} right, {verdicts['undecided']} "
+            f"undecided, {verdicts['absent']} absent, {verdicts['wrong']} wrong and "
+            f"{verdicts['not computed']} not computed (counted by fluid).",
         ),
     )
 
@@ -243,20 +243,20 @@ def _compared(
 
 def _effects(sides: list[tuple[Contrast, Side, Side]]) -> tuple[Table, dict[str, Quantity]]:
     rows: list[dict[str, Any]] = []
-    for one, over, under in sides:
+    for contrast, over, under in sides:
         reason = over.reason or under.reason
         drawn, ratio = over.draws / under.draws, over.cof / under.cof
         higher = np.mean(drawn > 1) + np.mean(drawn == 1) / 2
-        chance = higher if one.rises else 1 - higher
+        chance = higher if contrast.rises else 1 - higher
         low, high = np.quantile(drawn, (0.025, 0.975))
-        slope = (over.cof - under.cof) / one.step
+        slope = (over.cof - under.cof) / contrast.step
         rows.append(
             {
-                "source": one.source,
-                "effect": one.effect,
-                "fluid": one.fluid,
-                "about": one.topic,
-                "published": one.published,
+                "source": contrast.source,
+                "effect": contrast.effect,
+                "fluid": contrast.fluid,
+                "about": contrast.topic,
+                "published": contrast.published,
                 "computed ratio": ratio,
                 "low 95 %": low,
                 "high 95 %": high,
@@ -272,10 +272,10 @@ def _effects(sides: list[tuple[Contrast, Side, Side]]) -> tuple[Table, dict[str,
     )
     known = [row for row in rows if row["verdict"] != "not computed"]
     right: dict[tuple[str, str], list[bool]] = {}
-    for row, (one, over, under) in zip(rows, sides, strict=True):
+    for row, (contrast, over, under) in zip(rows, sides, strict=True):
         if row in known:
-            sign = row["verdict"] != "absent" and (over.cof > under.cof) == one.rises
-            right.setdefault((one.source, one.effect), []).append(sign)
+            sign = row["verdict"] != "absent" and (over.cof > under.cof) == contrast.rises
+            right.setdefault((contrast.source, contrast.effect), []).append(sign)
     absent = [row for row in known if row["verdict"] == "absent" and NEVER_ABSENT & {row["about"]}]
     return table, {
         "effects.right_sign": Quantity.of(float(np.mean([np.mean(v) for v in right.values()]))),
@@ -399,23 +399,23 @@ def _width_where_known(left_out: list[LaboratoryScore]) -> float:
 def _sources(left_out: list[LaboratoryScore], priors: list[LaboratoryScore]) -> tuple[Table, float]:
     """Return the table of sources and the highest R2 that the priors alone have on one."""
     rows: list[dict[str, Any]] = []
-    for one, prior in zip(left_out, priors, strict=True):
-        for source in dict.fromkeys(c.source for c in one.conditions):
-            at = [i for i, c in enumerate(one.conditions) if c.source == source]
-            measured = middle([one.conditions[i] for i in at])
+    for score, prior in zip(left_out, priors, strict=True):
+        for source in dict.fromkeys(c.source for c in score.conditions):
+            at = [i for i, c in enumerate(score.conditions) if c.source == source]
+            measured = middle([score.conditions[i] for i in at])
             few = np.isfinite(measured).sum() < FEWEST_VALUES
             own, alone = (
                 np.nan if few else r2(measured, np.median(x.draws, axis=0)[at], np.ones(len(at)))
-                for x in (one, prior)
+                for x in (score, prior)
             )
             rows.append(
                 {
                     "source": source,
-                    "laboratory": one.laboratory,
+                    "laboratory": score.laboratory,
                     "readings": float(len(at)),
-                    "measured / predicted": np.exp(one.score.error[at].mean()),
-                    "inside 50 %": one.score.inside_50[at].mean(),
-                    "inside 95 %": one.score.inside_95[at].mean(),
+                    "measured / predicted": np.exp(score.score.error[at].mean()),
+                    "inside 50 %": score.score.inside_50[at].mean(),
+                    "inside 95 %": score.score.inside_95[at].mean(),
                     "R2 about its own mean": own,
                     "R2 of the priors alone": alone,
                 }

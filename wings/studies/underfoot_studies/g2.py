@@ -152,17 +152,24 @@ def default_predictions(
         _rough_name(one): one
         for one in (p.points for p in comparison.chosen.roughness[0].predictions)
     }
-    found = {}
-    for name, one in every.items():
+    predictions = {}
+    for name, cof_points in every.items():
         pair = Pair(
-            PIN_HARDNESS, (one.rq, one.rq), (pin.floor_rq, pin.floor_rq), FAMILIES[one.fluid]
+            PIN_HARDNESS,
+            (cof_points.rq, cof_points.rq),
+            (pin.floor_rq, pin.floor_rq),
+            FAMILIES[cof_points.fluid],
         )
-        drawn, _, median = cof_draws(pair, one.viscosity, one.speed, pin.pressure, draws, seed=seed)
+        drawn, _, median = cof_draws(
+            pair, cof_points.viscosity, cof_points.speed, pin.pressure, draws, seed=seed
+        )
         drawn = with_reading_error(drawn, draws, name, seed)
         low, high = np.quantile(drawn, [0.025, 0.975], axis=0)
         kappa = pair.drawn(draws, seed)["kappa"]
-        found[name] = DefaultPrediction(one, median, low, high, drawn.mean(axis=1), kappa)
-    return found
+        predictions[name] = DefaultPrediction(
+            cof_points, median, low, high, drawn.mean(axis=1), kappa
+        )
+    return predictions
 
 
 def _rough_name(cof_points: CofPoints) -> str:
@@ -172,7 +179,7 @@ def _rough_name(cof_points: CofPoints) -> str:
 
 def _default_quantities(default: Mapping[str, DefaultPrediction]) -> dict[str, Quantity]:
     """Return mean COF over the speeds, the order of the fluids and the decay speed of water."""
-    found = {
+    quantities = {
         f"{'mean' if name in LABELS else 'rough'}.default.{name}": Quantity.of(
             one.median, draws=one.mean
         )
@@ -180,7 +187,7 @@ def _default_quantities(default: Mapping[str, DefaultPrediction]) -> dict[str, Q
     }
     printed = sorted(LABELS, key=lambda name: -default[name].points.cof.mean())
     order = [default[name] for name in printed]
-    found["order.default"] = Quantity.of(
+    quantities["order.default"] = Quantity.of(
         [one.median for one in order],
         names=[LABELS[name] for name in printed],
         chance=chance_of_order([one.mean for one in order]),
@@ -191,30 +198,30 @@ def _default_quantities(default: Mapping[str, DefaultPrediction]) -> dict[str, Q
     )
     least = np.min([one.mean for one in thin], axis=0), min(one.median for one in thin)
     most = np.max([one.mean for one in thick], axis=0), max(one.median for one in thick)
-    found["thin_and_thick.default"] = Quantity.of(
+    quantities["thin_and_thick.default"] = Quantity.of(
         [least[1], most[1]],
         names=("thin fluids", "thick fluids"),
         chance=chance_of_order([least[0], most[0]]),
     )
     water = default["water_g2"]
     taus = water.kappa / water.points.viscosity
-    found["tau.default"] = Quantity.of(float(np.median(taus)), "m/s", draws=taus)
-    return found
+    quantities["tau.default"] = Quantity.of(float(np.median(taus)), "m/s", draws=taus)
+    return quantities
 
 
 def _default_table(default: Mapping[str, DefaultPrediction]) -> Table:
     rows = []
-    for name, one in default.items():
-        low, high = np.quantile(one.mean, [0.025, 0.975])
+    for name, prediction in default.items():
+        low, high = np.quantile(prediction.mean, [0.025, 0.975])
         label = LABELS.get(
-            name, f"{LABELS[one.points.fluid]}, sole Rq {1e6 * one.points.rq:.1f} µm"
+            name, f"{LABELS[prediction.points.fluid]}, sole Rq {1e6 * prediction.points.rq:.1f} µm"
         )
         rows.append(
             {
                 "fluid": label,
-                "viscosity, mPa s": 1e3 * one.points.viscosity,
-                "COF printed": one.points.cof.mean(),
-                "COF of the default law": one.median,
+                "viscosity, mPa s": 1e3 * prediction.points.viscosity,
+                "COF printed": prediction.points.cof.mean(),
+                "COF of the default law": prediction.median,
                 "95 % from": low,
                 "to": high,
             }
@@ -537,13 +544,19 @@ def _example_figure(
     comparison: MechanismComparison, default: Mapping[str, DefaultPrediction]
 ) -> Figure:
     """Return Fig. 14: the example's printed fit, the same condition in Table 3, and ours."""
-    one = default["glycerol_25pct"]
+    prediction = default["glycerol_25pct"]
     speed = np.linspace(0.05, 1.0, 60)
     fluid = comparison.fluids["glycerol_25pct"]
     boundary, spread = fluid.cof_boundary.value or 0.0, fluid.cof_boundary.uncertainty or 0.0
     layers = (
-        Layer("band", one.points.speed, low=one.low, high=one.high, label="law of the pair, 95 %"),
-        line(one.points.speed, one.cof, "law of the pair"),
+        Layer(
+            "band",
+            prediction.points.speed,
+            low=prediction.low,
+            high=prediction.high,
+            label="law of the pair, 95 %",
+        ),
+        line(prediction.points.speed, prediction.cof, "law of the pair"),
         line(
             speed,
             stribeck_cof(speed, *EXAMPLE),
@@ -551,8 +564,8 @@ def _example_figure(
             colour=PRINTED,
         ),
         points(
-            one.points.speed,
-            one.points.cof,
+            prediction.points.speed,
+            prediction.points.cof,
             "printed fit of the condition (Table 3)",
             colour=PRINTED,
             marker="o",

@@ -181,14 +181,14 @@ def default_quantities(splits: Mapping[tuple[str, str], Split]) -> dict[str, Qua
         medians = [one.medians[0] if take == "adhesion" else one.medians[1] for one in own]
         return float(np.mean(medians)), np.mean([getattr(one, take) for one in own], axis=0)
 
-    found: dict[str, Quantity] = {}
+    quantities: dict[str, Quantity] = {}
     for take, printed in (
         ("adhesion", ("hard rubber", "soft rubber", "polyurethane")),
         ("hysteresis", ("polyurethane", "soft rubber", "hard rubber")),
     ):
         values = {sole: over_floors(sole, take) for sole in SOLES}
         ends = [values[sole] for sole in printed]
-        found[f"default.{take}"] = Quantity.of(
+        quantities[f"default.{take}"] = Quantity.of(
             [one[0] for one in ends],
             "N",
             names=printed,
@@ -200,7 +200,7 @@ def default_quantities(splits: Mapping[tuple[str, str], Split]) -> dict[str, Qua
         "polyurethane": ("vinyl", "marble"),
     }.items():
         pair = [splits[sole, floor] for floor in (first, second)]
-        found[f"default.floor.{sole.replace(' ', '_')}"] = Quantity.of(
+        quantities[f"default.floor.{sole.replace(' ', '_')}"] = Quantity.of(
             [one.medians[0] for one in pair],
             "N",
             names=(first, second),
@@ -220,7 +220,7 @@ def default_quantities(splits: Mapping[tuple[str, str], Split]) -> dict[str, Qua
     above = [first - second > TIE for first, second in (columns[:2], columns[2:])]
     chance = float(np.mean(above[0] & above[1]))
     pairs = (extremes[0], highest, lowest, extremes[1])
-    found["default.hysteresis_pairs"] = Quantity.of(
+    quantities["default.hysteresis_pairs"] = Quantity.of(
         [medians[pair] for pair in pairs],
         "N",
         names=("polyurethane on marble", "highest other", "lowest other", "hard rubber on vinyl"),
@@ -240,16 +240,18 @@ def default_quantities(splits: Mapping[tuple[str, str], Split]) -> dict[str, Qua
         name = sole.replace(" ", "_")
         for end, take in (("lowest", np.min), ("highest", np.max)):
             drawn = take(by_fluid, axis=0)
-            found[f"default.{name}.{end}"] = Quantity.of(float(take(medians_of)), "N", draws=drawn)
+            quantities[f"default.{name}.{end}"] = Quantity.of(
+                float(take(medians_of)), "N", draws=drawn
+            )
         spreads[sole] = (float(np.ptp(medians_of)), np.ptp(by_fluid, axis=0))
     order = ("hard rubber", "soft rubber", "polyurethane")
-    found["default.fluid_spread"] = Quantity.of(
+    quantities["default.fluid_spread"] = Quantity.of(
         [spreads[sole][0] for sole in order],
         "N",
         names=order,
         chance=chance_of_order([spreads[sole][1] for sole in order], TIE),
     )
-    return found
+    return quantities
 
 
 def eq26_at_its_best(catalogue: Catalogue) -> tuple[dict[str, float], dict[str, Array]]:

@@ -168,9 +168,9 @@ def compute(options: Options) -> Computed:
         progress=part(options.progress, 0.0, 0.5),
     )
     readings = []
-    for number, one in enumerate(plan):
-        options.progress(one.name, 0.5 + 0.35 * number / len(plan))
-        readings.append(reading(one, varied.get(one.name), quick=options.quick))
+    for number, condition in enumerate(plan):
+        options.progress(condition.name, 0.5 + 0.35 * number / len(plan))
+        readings.append(reading(condition, varied.get(condition.name), quick=options.quick))
     options.progress("Tread depth and lower force", 0.9)
     base = Condition("work", "half_tread", "glycerol", options.quick).case
     tried = QUICK_DEPTHS if options.quick else DEPTHS
@@ -181,10 +181,10 @@ def compute(options: Options) -> Computed:
     drawn = {"fig29_maps": map_figure(untreaded), "fig30_loads": load_figure(readings)}
     drawn["tread_depth"] = depth_figure(depths)
     tables = [conditions_table(readings), lower_table(lower), depth_table(depths)]
-    for one in untreaded:
-        found = varied[one.condition.name]
-        tables.append(inputs_table(one.condition, found))
-        drawn[f"open_inputs_{one.condition.kind}"] = inputs_figure(one.condition, found)
+    for condition in untreaded:
+        found = varied[condition.condition.name]
+        tables.append(inputs_table(condition.condition, found))
+        drawn[f"open_inputs_{condition.condition.kind}"] = inputs_figure(condition.condition, found)
     return Computed(
         quantities(by, depths),
         tables,
@@ -244,14 +244,18 @@ def sensitivities(
     On the quick grid, without a tread at the shoe's own angle: that of the facet is an input. An
     end at which the contact can't be solved takes its input out of the band.
     """
-    found: dict[str, Sensitivity] = {}
+    by_condition: dict[str, Sensitivity] = {}
     lost: list[str] = []
-    for number, one in enumerate(chosen):
-        progress(f"Open inputs: {one.name}", number / len(chosen))
-        inputs = inputs_of(one, quick=quick)
-        case = one.case.replace("numerics.tread_positions", 1) if one.untreaded else one.case
+    for number, condition in enumerate(chosen):
+        progress(f"Open inputs: {condition.name}", number / len(chosen))
+        inputs = inputs_of(condition, quick=quick)
+        case = (
+            condition.case.replace("numerics.tread_positions", 1)
+            if condition.untreaded
+            else condition.case
+        )
         try:
-            found[one.name] = sensitivity(case, inputs=inputs, processes=processes)
+            by_condition[condition.name] = sensitivity(case, inputs=inputs, processes=processes)
             continue
         except ConvergenceError:
             whole = sensitivity(case, inputs=[])
@@ -260,9 +264,9 @@ def sensitivities(
                 more = sensitivity(case, inputs=[each], processes=processes)
                 whole = replace(whole, effects=(*whole.effects, *more.effects))
             except ConvergenceError:
-                lost.append(f"{one.name}: {each.path}")
-        found[one.name] = whole
-    return found, lost
+                lost.append(f"{condition.name}: {each.path}")
+        by_condition[condition.name] = whole
+    return by_condition, lost
 
 
 def at_lower_force(readings: Sequence[Reading], *, processes: int | None = 1) -> dict[str, Outcome]:
@@ -304,10 +308,10 @@ def quantities(
     by: Mapping[str, Reading], depths: Sequence[tuple[float, Outcome]]
 ) -> dict[str, Quantity]:
     """Return every quantity of the study by name."""
-    found: dict[str, Quantity] = {}
+    by_name: dict[str, Quantity] = {}
     for path, one in by.items():
-        found[f"{path}.load"] = one.quantity(LOAD, "N")
-        found[f"{path}.peak"] = one.quantity(PEAK, "Pa")
+        by_name[f"{path}.load"] = one.quantity(LOAD, "N")
+        by_name[f"{path}.peak"] = one.quantity(PEAK, "Pa")
     for kind in KINDS:
         for name, first, second in (
             ("tread_step", "untreaded.glycerol", "half_tread.glycerol"),
@@ -320,24 +324,24 @@ def quantities(
                 (spacing, last.number(LOAD) - before.number(LOAD))
                 for (spacing, last), (_, before) in zip(b.levels, a.levels, strict=True)
             ]
-            found[f"{kind}.{name}"] = Quantity.of(levels[-1][1], "N", levels=levels)
+            by_name[f"{kind}.{name}"] = Quantity.of(levels[-1][1], "N", levels=levels)
     work, athletic = (by[f"{kind}.untreaded.glycerol"] for kind in KINDS)
-    found["work.place"] = Quantity.of(work.place[0], "m")
-    found["athletic.ahead_of_channel"] = Quantity.of(
+    by_name["work.place"] = Quantity.of(work.place[0], "m")
+    by_name["athletic.ahead_of_channel"] = Quantity.of(
         athletic.place[0] - channel_at(athletic, athletic.place[1]), "m"
     )
     deep = [outcome.number(LOAD) for depth, outcome in depths if 1.5e-3 <= depth <= 3e-3]
-    found["depth.change"] = Quantity.of(max(deep) - min(deep), "N")
+    by_name["depth.change"] = Quantity.of(max(deep) - min(deep), "N")
     limit = threshold(depths)
     none = Quantity.none("no depth that was computed brings it below 5 N", "m")
-    found["depth.threshold"] = none if limit is None else Quantity.of(limit[1], "m")
+    by_name["depth.threshold"] = none if limit is None else Quantity.of(limit[1], "m")
     loads = [one.number(LOAD) for one in by.values()]
     terms = {"tread": "tread", "fluid": "fluid", "fluid:tread": "interaction"}
     p = dict.fromkeys(terms, math.nan)
     if all(math.isfinite(load) for load in loads):
         p = variance_p([one.condition for one in by.values()], loads)
     none = Quantity.none("the loads do not scatter")
-    return found | {f"p.{n}": Quantity.of(p[t]) if t in p else none for t, n in terms.items()}
+    return by_name | {f"p.{n}": Quantity.of(p[t]) if t in p else none for t, n in terms.items()}
 
 
 def channel_at(sensor_reading: Reading, y: float) -> float:
@@ -391,29 +395,29 @@ def conclusions(
 def conditions_table(readings: Sequence[Reading]) -> Table:
     """Return loads, peaks, places and COF of the twelve, with bands, on the finest grid."""
     rows = []
-    for one in readings:
-        bands = {name: one.band(name) for name in LEAST}
+    for row in readings:
+        bands = {name: row.band(name) for name in LEAST}
         # no place for a peak that is none
-        x, y = one.place if one.number(PEAK) > 1e3 else (math.nan, math.nan)
-        grids = [(f"{1e3 * spacing:.2g} mm", outcome) for spacing, outcome in one.levels]
+        x, y = row.place if row.number(PEAK) > 1e3 else (math.nan, math.nan)
+        grids = [(f"{1e3 * spacing:.2g} mm", outcome) for spacing, outcome in row.levels]
         rows.append(
             {
-                "condition": one.condition.name,
-                "sensor N": one.number(LOAD),
+                "condition": row.condition.name,
+                "sensor N": row.number(LOAD),
                 "low": bands[LOAD][0],
                 "high": bands[LOAD][1],
-                "under the sole N": one.number(TRUE_LOAD),
+                "under the sole N": row.number(TRUE_LOAD),
                 "true low": bands[TRUE_LOAD][0],
                 "true high": bands[TRUE_LOAD][1],
-                "peak kPa": one.number(PEAK) / 1e3,
+                "peak kPa": row.number(PEAK) / 1e3,
                 "peak low": bands[PEAK][0] / 1e3,
                 "peak high": bands[PEAK][1] / 1e3,
                 "peak from back mm": 1e3 * x,
                 "peak left of middle mm": 1e3 * y,
-                "COF": one.number("cof"),
+                "COF": row.number("cof"),
                 **{f"N at {grid}": outcome.number(LOAD) for grid, outcome in grids},
                 **{f"kPa at {grid}": outcome.number(PEAK) / 1e3 for grid, outcome in grids},
-                "status": str(one.outcome.status),
+                "status": str(row.outcome.status),
             }
         )
     return Table.of(
@@ -485,13 +489,13 @@ def printed(name: str, kind: str, unit: str) -> float:
 def map_figure(readings: Sequence[Reading]) -> Figure:
     """Return Fig. 29: fluid pressure as seven tracks read it, heel's back at the bottom."""
     panels = []
-    for one in readings:
-        kind = one.condition.kind
+    for shown in readings:
+        kind = shown.condition.kind
         load, peak = printed("fluid_load", kind, "N"), printed("peak_pressure", kind, "Pa")
-        x, y = one.place
+        x, y = shown.place
         layers = (
-            Layer("map", 1e3 * one.y, 1e3 * one.x, one.pressure.T / 1e3),
-            Layer("outline", 1e3 * one.outline[:, 1], 1e3 * one.outline[:, 0], colour="white"),
+            Layer("map", 1e3 * shown.y, 1e3 * shown.x, shown.pressure.T / 1e3),
+            Layer("outline", 1e3 * shown.outline[:, 1], 1e3 * shown.outline[:, 0], colour="white"),
             points(1e3 * y, 1e3 * x, colour="white", marker="o"),
         )
         panels.append(
@@ -499,11 +503,12 @@ def map_figure(readings: Sequence[Reading]) -> Figure:
                 layers,
                 "across, left positive (mm)",
                 "from the back of the heel (mm)",
-                f"{kind} shoe: {one.number(LOAD):.0f} N, peak {one.number(PEAK) / 1e3:.0f} kPa\n"
+                f"{kind} shoe: {shown.number(LOAD):.0f} N, "
+                f"peak {shown.number(PEAK) / 1e3:.0f} kPa\n"
                 f"(report {load:.0f} N, {peak / 1e3:.0f} kPa)",
                 # left of the shoe on the left: the axis across is turned
-                x_limits=(1e3 * float(one.y.max()) + 5, 1e3 * float(one.y.min()) - 5),
-                y_limits=(-8.0, min(1e3 * float(one.x.max()), 60.0)),
+                x_limits=(1e3 * float(shown.y.max()) + 5, 1e3 * float(shown.y.min()) - 5),
+                y_limits=(-8.0, min(1e3 * float(shown.x.max()), 60.0)),
                 legend="",
             )
         )

@@ -175,29 +175,29 @@ def population_draws(
     generator = np.random.default_rng(seed)
     by_friction = study.at_friction_draws(draws=draws, seed=seed)
     assert by_friction is not None  # the law of the pair has a spread
-    found = {"slipped": by_friction.means("slipped", count)}
+    by_name = {"slipped": by_friction.means("slipped", count)}
     persons = crossing(study)
     if len(persons) < 2:
-        return found
+        return by_name
     drawn = generator.integers(len(persons), size=(draws, count))
     columns = {name: values[drawn] for name, values in _columns(persons).items()}
     for name, values in columns.items():
         known = np.isfinite(values)
         with np.errstate(invalid="ignore"):
-            found[name] = np.where(known, values, 0.0).sum(axis=1) / known.sum(axis=1)
-    found["peak_speed"] = by_friction.means("peak_speed", count, crossed=True)
-    found["correlation"] = correlations(columns["peak_speed"], columns["peak_pressure"])
+            by_name[name] = np.where(known, values, 0.0).sum(axis=1) / known.sum(axis=1)
+    by_name["peak_speed"] = by_friction.means("peak_speed", count, crossed=True)
+    by_name["correlation"] = correlations(columns["peak_speed"], columns["peak_pressure"])
     rows = np.array([one.seen.row_peaks for one in persons if one.seen.row_peaks])
     if len(rows) == len(persons):
         means = rows[drawn].mean(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
-            found["last_row_change"] = means[:, -1] / means[:, 0] - 1.0
+            by_name["last_row_change"] = means[:, -1] / means[:, 0] - 1.0
     each = [_passages(study, [one]) for one in persons]
     table = [
         regressions({key: np.concatenate([each[i][key] for i in row]) for key in each[0]})
         for row in drawn[: draws // 5]
     ]
-    return found | {name: np.array([one[name] for one in table]) for name in table[0]}
+    return by_name | {name: np.array([one[name] for one in table]) for name in table[0]}
 
 
 def correlations(x: Array, y: Array) -> Array:
@@ -257,29 +257,29 @@ def quantities(
 ) -> dict[str, Quantity]:
     """Return every quantity of the study by name, with both grids and what small studies find."""
     units = {**UNITS, "slope_lateral": "Pa/m", "slope_speed": "Pa*s/m"}
-    found = {}
+    by_name = {}
     for shoe, grids in levels.items():
         for name, value in grids[-1][1].items():
             if name.startswith("r2_") and name != "r2_row_lateral_speed":
                 continue
             steps = [(spacing, each[name]) for spacing, each in grids]
-            found[f"{shoe}.{name}"] = Quantity.of(
+            by_name[f"{shoe}.{name}"] = Quantity.of(
                 value, units.get(name, "1"), draws=draws[shoe].get(name), levels=steps
             )
-        found[f"{shoe}.r2_all"] = found.pop(f"{shoe}.r2_row_lateral_speed")
+        by_name[f"{shoe}.r2_all"] = by_name.pop(f"{shoe}.r2_row_lateral_speed")
         names, chance = ("lateral", "row", "speed"), None
         if all(f"r2_{name}" in draws[shoe] for name in names):
             first, second, third = (draws[shoe][f"r2_{name}"] for name in names)
             chance = float(np.mean((first > second) & (second > third)))
         single = [grids[-1][1][f"r2_{name}"] for name in names]
-        found[f"{shoe}.r2_single"] = Quantity.of(single, names=names, chance=chance)
+        by_name[f"{shoe}.r2_single"] = Quantity.of(single, names=names, chance=chance)
     bare, tread = (levels[shoe] for shoe in COUNTS)
     ratios = [
         (spacing, b["peak_pressure"] / a["peak_pressure"])
         for (spacing, a), (_, b) in zip(bare, tread, strict=True)
     ]
-    found["pressure_ratio"] = Quantity.of(ratios[-1][1], levels=ratios)
-    return found
+    by_name["pressure_ratio"] = Quantity.of(ratios[-1][1], levels=ratios)
+    return by_name
 
 
 def tables(

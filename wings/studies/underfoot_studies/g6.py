@@ -385,23 +385,23 @@ def quantities(
     numerics = sole_case(60.0, "stribeck").numerics
     spacings = (numerics.quick_grid_spacing, numerics.grid_spacing)
     spacings = spacings[:1] if quick else spacings
-    found: dict[str, Quantity] = {}
+    by_name: dict[str, Quantity] = {}
 
     def on_grids(coarse: float, fine: float) -> list[tuple[float, float]]:
         return list(zip(spacings, (fine,) if quick else (coarse, fine), strict=True))
 
     for law in LAWS:
         soles = of_law(frictions, law)
-        for sole, one in soles.items():
-            levels = on_grids(one.coarse, one.cof)
-            draws = one.draws
+        for sole, friction in soles.items():
+            levels = on_grids(friction.coarse, friction.cof)
+            draws = friction.draws
             if draws is None:
                 normal = np.random.default_rng(seed).normal(size=400)
-                draws = one.cof * np.exp(one.spread / one.cof * normal)
-            found[f"acof.{law}.{sole}"] = Quantity.of(one.cof, draws=draws, levels=levels)
+                draws = friction.cof * np.exp(friction.spread / friction.cof * normal)
+            by_name[f"acof.{law}.{sole}"] = Quantity.of(friction.cof, draws=draws, levels=levels)
             risks = [population_risk(min(float(v), 1.0))["report_g6"] for v in draws]
-            found[f"risk.{law}.{sole}"] = Quantity.of(
-                population_risk(one.cof)["report_g6"], draws=risks
+            by_name[f"risk.{law}.{sole}"] = Quantity.of(
+                population_risk(friction.cof)["report_g6"], draws=risks
             )
         hard, soft = soles["hard"], soles["soft"]
         # the pin's own error is common to both soles: the hardness alone moves their difference
@@ -413,34 +413,36 @@ def quantities(
         if soft.draws is not None and hard.draws is not None:
             given = {"draws": soft.draws - hard.draws}
             chance = chance_of_order([soft.draws, hard.draws], TIE)
-        found[f"softer.{law}"] = Quantity.of(change, **given, levels=levels)
+        by_name[f"softer.{law}"] = Quantity.of(change, **given, levels=levels)
         order = Quantity.of([soft.cof, hard.cof], names=("soft", "hard"), chance=chance)
-        found[f"order.{law}"] = order
+        by_name[f"order.{law}"] = order
     pressures = np.max([one.sensor_pressure for one in frictions], axis=0)
     levels = on_grids(pressures[0], pressures[-1])
-    found["sensor_pressure"] = Quantity.of(pressures[-1], "Pa", levels=levels)
+    by_name["sensor_pressure"] = Quantity.of(pressures[-1], "Pa", levels=levels)
     for sole, acof in PRINTED_ACOF.items():
-        found[f"risk.printed.{sole}"] = Quantity.of(population_risk(acof)["report_g6"])
+        by_name[f"risk.printed.{sole}"] = Quantity.of(population_risk(acof)["report_g6"])
     for name, risk in zip(("lowest", "median", "highest"), risk_by_rcof(), strict=True):
-        found[f"risk.rcof.{name}"] = Quantity.of(risk)
-    for name, one in steps.items():
-        count = one.slipped.size // len(one.share)
-        shares = {**one.share, "all": float(np.mean(list(one.share.values())))}
+        by_name[f"risk.rcof.{name}"] = Quantity.of(risk)
+    for name, friction in steps.items():
+        count = friction.slipped.size // len(friction.share)
+        shares = {**friction.share, "all": float(np.mean(list(friction.share.values())))}
         for sole, share in shares.items():
-            trials = count * (len(one.share) if sole == "all" else 1)
+            trials = count * (len(friction.share) if sole == "all" else 1)
             slipped = round(share * trials)
             drawn = np.random.default_rng(seed).beta(
                 slipped + 0.5, trials - slipped + 0.5, 4000
             )  # Jeffreys' posterior of a share
-            found[f"steps.{name}.{sole}"] = Quantity.of(share, draws=drawn)
-        spread = (one.fit.slope_high - one.fit.slope_low) / (2 * 1.96)
-        if math.isnan(one.fit.slope):
-            none = Quantity.none(f"{_who(one)} slips: there is no logistic")
-            found |= {f"slope.{name}": none, f"half.{name}": none}
+            by_name[f"steps.{name}.{sole}"] = Quantity.of(share, draws=drawn)
+        spread = (friction.fit.slope_high - friction.fit.slope_low) / (2 * 1.96)
+        if math.isnan(friction.fit.slope):
+            none = Quantity.none(f"{_who(friction)} slips: there is no logistic")
+            by_name |= {f"slope.{name}": none, f"half.{name}": none}
         else:
-            found[f"slope.{name}"] = Quantity.of(one.fit.slope, deviation=spread)
-            found[f"half.{name}"] = Quantity.of(one.fit.half, deviation=one.fit.half_error)
-    return found
+            by_name[f"slope.{name}"] = Quantity.of(friction.fit.slope, deviation=spread)
+            by_name[f"half.{name}"] = Quantity.of(
+                friction.fit.half, deviation=friction.fit.half_error
+            )
+    return by_name
 
 
 def _friction_table(frictions: Sequence[SoleFriction]) -> Table:
@@ -561,17 +563,20 @@ def logistic_figure(steps: Mapping[str, Slips], drawn: tuple[Array, Array]) -> F
     columns = len(steps)
     rows: list[list[Panel]] = [[], [], []]
     reach = risk_places()
-    for name, one in steps.items():
-        difference = one.acof - one.rcof
+    for name, steps_of_law in steps.items():
+        difference = steps_of_law.acof - steps_of_law.rcof
         noise = np.random.default_rng(0).uniform(-0.02, 0.02, difference.size)
-        shares = [float(one.slipped[one.acof == level].mean()) for level in np.unique(one.acof)]
+        shares = [
+            float(steps_of_law.slipped[steps_of_law.acof == level].mean())
+            for level in np.unique(steps_of_law.acof)
+        ]
         rows[0].append(
             Panel(
                 (
                     points(
                         [*PRINTED_RATES], [*PRINTED_RATES.values()], "report", **_PRINTED_POINTS
                     ),
-                    points(np.unique(one.acof), shares, "steps", marker="o"),
+                    points(np.unique(steps_of_law.acof), shares, "steps", marker="o"),
                 ),
                 "ACOF",
                 "share that slips",
@@ -580,10 +585,10 @@ def logistic_figure(steps: Mapping[str, Slips], drawn: tuple[Array, Array]) -> F
                 y_limits=(0.0, 1.0),
             )
         )
-        bins = np.quantile(one.rcof, np.linspace(0, 1, 9))
-        place = np.clip(np.searchsorted(bins, one.rcof, side="right") - 1, 0, 7)
-        middle = [float(one.rcof[place == k].mean()) for k in range(8)]
-        by_rcof = [float(one.slipped[place == k].mean()) for k in range(8)]
+        bins = np.quantile(steps_of_law.rcof, np.linspace(0, 1, 9))
+        place = np.clip(np.searchsorted(bins, steps_of_law.rcof, side="right") - 1, 0, 7)
+        middle = [float(steps_of_law.rcof[place == k].mean()) for k in range(8)]
+        by_rcof = [float(steps_of_law.slipped[place == k].mean()) for k in range(8)]
         rows[1].append(
             Panel(
                 (
@@ -600,12 +605,12 @@ def logistic_figure(steps: Mapping[str, Slips], drawn: tuple[Array, Array]) -> F
         curves = _curve(x[:, None], drawn[0][None, :], drawn[1][None, :])
         low, high = np.percentile(curves, [2.5, 97.5], axis=1)
         text = "52 trials of that curve, 95 %"
-        fitted = _curve(x, one.fit.slope, one.fit.half)
+        fitted = _curve(x, steps_of_law.fit.slope, steps_of_law.fit.half)
         layers = (
-            points(difference, one.slipped + noise, colour="0.6", marker="."),
+            points(difference, steps_of_law.slipped + noise, colour="0.6", marker="."),
             Layer("band", x, low=low, high=high, colour=PRINTED, label=text),
             line(x, _curve(x, PRINTED_SLOPE, PRINTED_HALF), "report: slope -49.2", colour=PRINTED),
-            line(x, fitted, f"steps: {_logistic_words(one)}"),
+            line(x, fitted, f"steps: {_logistic_words(steps_of_law)}"),
         )
         rows[2].append(Panel(layers, "ACOF - RCOF", "chance of a slip", "C"))
     title = "Fig. 37: computed slips over available and required friction and their difference"

@@ -120,7 +120,7 @@ def mechanisms() -> dict[str, Mechanism]:
     scale = Parameter(1e-3, 1e-6, 1.0, "Pa*m", logarithmic=True)
     asperities = "film at asperities"
     whole = "film of the pin"
-    found = (
+    terms = (
         Mechanism("asperity_ehl", f"{asperities}, bearing area", asperity("bearing"), fine, film),
         Mechanism(
             "asperity_ehl_sharing", f"{asperities}, load shared", asperity("sharing"), fine, film
@@ -145,7 +145,7 @@ def mechanisms() -> dict[str, Mechanism]:
         Mechanism("viscoelastic_area", "area lost to stiffening rubber", area, power, "no fluid"),
         Mechanism("one_constant", "no mechanism: one constant", constant, scale, "viscosity"),
     )
-    return {one.name: one for one in found}
+    return {one.name: one for one in terms}
 
 
 def mechanism(name: str) -> Mechanism:

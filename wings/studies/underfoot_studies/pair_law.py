@@ -320,20 +320,20 @@ def log_likelihood(mean: Array, covariance: Array, low: Array, high: Array) -> A
         low, high: Bounds (rows,); equal for a value.
     """
     values, bounds = np.flatnonzero(high <= low), np.flatnonzero(high > low)
-    found = np.zeros(mean.shape[0])
+    total = np.zeros(mean.shape[0])
     if values.size:
         lower = np.linalg.cholesky(covariance[:, values[:, None], values])
         rest = (low - mean)[:, values, None]
         scaled = np.linalg.solve(lower, rest)[:, :, 0]
-        found -= 0.5 * (scaled**2).sum(axis=1) + 0.5 * values.size * _L(2 * np.pi)
-        found -= np.log(np.diagonal(lower, axis1=1, axis2=2)).sum(axis=1)
+        total -= 0.5 * (scaled**2).sum(axis=1) + 0.5 * values.size * _L(2 * np.pi)
+        total -= np.log(np.diagonal(lower, axis1=1, axis2=2)).sum(axis=1)
         if bounds.size:
             cross = np.linalg.solve(lower, covariance[:, values[:, None], bounds])
             mean = mean.copy()
             mean[:, bounds] += (cross * scaled[:, :, None]).sum(axis=1)
             inner = covariance[:, bounds[:, None], bounds] - cross.transpose(0, 2, 1) @ cross
         else:
-            return found
+            return total
     else:
         inner = covariance[:, bounds[:, None], bounds]
     centre = mean[:, bounds].copy()
@@ -343,7 +343,7 @@ def log_likelihood(mean: Array, covariance: Array, low: Array, high: Array) -> A
         # from the nearer tail: Phi(b) - Phi(a) loses its digits above the mean
         a, b, sign = np.where(a > 0, -b, a), np.where(a > 0, -a, b), np.where(a > 0, -1.0, 1.0)
         mass = np.maximum(norm.cdf(b) - norm.cdf(a), 1e-300)
-        found += np.log(mass)
+        total += np.log(mass)
         at_a, at_b = norm.pdf(a), norm.pdf(b)
         step = (at_a - at_b) / mass
         with np.errstate(invalid="ignore"):  # an end at infinity times a density of 0 is 0
@@ -352,7 +352,7 @@ def log_likelihood(mean: Array, covariance: Array, low: Array, high: Array) -> A
         column = inner[:, i] / sd[:, None]
         centre = centre + (sign * step)[:, None] * column
         inner = inner - gone[:, None, None] * column[:, :, None] * column[:, None, :]
-    return found
+    return total
 
 
 def fitted(
@@ -633,7 +633,7 @@ def one_reading(conditions: Sequence[Condition], latent: Array, noise: Array) ->
     Columns: row that is known, row predicted, median and 95 % interval of ln COF. Points of one
     curve are not predicted from one another.
     """
-    found = []
+    predicted = []
     measured, generator = middle(conditions), np.random.default_rng(0)
     values = [i for i, c in enumerate(conditions) if not c.reading.is_censored]
     for i in values:
@@ -650,8 +650,8 @@ def one_reading(conditions: Sequence[Condition], latent: Array, noise: Array) ->
         rows = generator.choice(weight.size, 4000, p=weight / weight.sum())
         for j in rest:
             draws = latent[rows, j] + noise[rows, j] * generator.normal(size=rows.size)
-            found.append((i, j, *np.quantile(draws, (0.5, 0.025, 0.975))))
-    return np.array(found).reshape(-1, 5)
+            predicted.append((i, j, *np.quantile(draws, (0.5, 0.025, 0.975))))
+    return np.array(predicted).reshape(-1, 5)
 
 
 @dataclass(frozen=True, slots=True)

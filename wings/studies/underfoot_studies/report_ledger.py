@@ -71,22 +71,22 @@ class Sentence:
 
 def rows() -> tuple[Row, ...]:
     """Return the rows of the report."""
-    found = []
-    for one in read_toml(ROWS)["row"]:
+    claims = []
+    for row in read_toml(ROWS)["row"]:
         evidence = tuple(
-            (kind, name) for kind, _, name in (e.partition(" ") for e in one["evidence"])
+            (kind, name) for kind, _, name in (e.partition(" ") for e in row["evidence"])
         )
-        found.append(
+        claims.append(
             Row(
-                one["n"],
-                one["what"],
-                one["how"],
+                row["n"],
+                row["what"],
+                row["how"],
                 evidence,
-                one.get("rating", "works"),
-                one.get("cause", ""),
+                row.get("rating", "works"),
+                row.get("cause", ""),
             )
         )
-    return tuple(found)
+    return tuple(claims)
 
 
 def sentences() -> tuple[Sentence, ...]:

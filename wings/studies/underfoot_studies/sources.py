@@ -227,12 +227,12 @@ def _condition(
         if f"{part}_ra" in numbers and f"{part}_rq" not in numbers:
             ra = numbers[f"{part}_ra"]
             numbers[f"{part}_rq"] = Span(RQ_PER_RA * ra.low, RQ_PER_RA * ra.high, ra.note)
-    words = {key: entry[key] for key in WORDS if key in entry}
-    if isinstance(words.get("fluid"), dict):
-        words["fluid"] = words["fluid"]["one_of"][0]
+    labels = {key: entry[key] for key in WORDS if key in entry}
+    if isinstance(labels.get("fluid"), dict):
+        labels["fluid"] = labels["fluid"]["one_of"][0]
     if not members:
-        needed = [key for key in NEEDED if key not in numbers and key not in words]
-        if words.get("fluid") == "dry" and "viscosity" in needed:
+        needed = [key for key in NEEDED if key not in numbers and key not in labels]
+        if labels.get("fluid") == "dry" and "viscosity" in needed:
             needed.remove("viscosity")
         if needed:
             raise DataError(
@@ -241,9 +241,9 @@ def _condition(
                 remedy="Write the value, or the range that the source leaves open: "
                 'floor_rq = { range = ["0.3 um", "4 um"], note = "not printed" }',
             )
-        if words["fluid"] not in FLUIDS:
-            raise _unknown(f'fluid "{words["fluid"]}"', words["fluid"], FLUIDS, f"{where}.fluid")
-    return Condition(source, name, numbers, words, reading, members)
+        if labels["fluid"] not in FLUIDS:
+            raise _unknown(f'fluid "{labels["fluid"]}"', labels["fluid"], FLUIDS, f"{where}.fluid")
+    return Condition(source, name, numbers, labels, reading, members)
 
 
 def _readings(measured: dict[str, Any], where: str) -> Iterator[tuple[str | None, Reading]]:

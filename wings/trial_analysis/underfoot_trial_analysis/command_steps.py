@@ -72,9 +72,9 @@ def edit(
         required_frictions(replace(walk, trial=trial.with_edits(*edits)))
         for edits in (earlier, [*earlier, new])
     )
-    for old, one in zip(before, after, strict=True):
-        if old.stance.by_hand != one.stance.by_hand:
-            print(f"{old.stance.label}: {_step_text(old)} -> {_step_text(one)}")
+    for old, changed in zip(before, after, strict=True):
+        if old.stance.by_hand != changed.stance.by_hand:
+            print(f"{old.stance.label}: {_step_text(old)} -> {_step_text(changed)}")
     write_edit_text(file.parent, with_edit_row(text, (file.name, step, what, value, reason)))
     say(f"written to {file.parent / 'edits.csv'}")
 

@@ -241,24 +241,24 @@ class Compound(Presentable):
 
     def data_tables(self) -> dict[str, Table]:
         """Return terms, readings and shift factors in SI."""
-        found = {}
+        tables = {}
         if self.spectrum is not None:
             terms = self.spectrum.relaxation_times, self.spectrum.term_moduli
-            found["prony"] = Table("", ("time s", "modulus Pa"), np.column_stack(terms).tolist())
+            tables["prony"] = Table("", ("time s", "modulus Pa"), np.column_stack(terms).tolist())
         if self.sweep is not None:
             parts = (self.sweep.angular_frequency, self.sweep.storage_modulus)
             rows = np.column_stack([*parts, self.sweep.loss_modulus]).tolist()
             heads = ("angular frequency rad/s", "storage modulus Pa", "loss modulus Pa")
-            found["sweep"] = Table("", heads, rows)
+            tables["sweep"] = Table("", heads, rows)
         if self.relaxation is not None:
             rows = np.column_stack([self.relaxation.time, self.relaxation.modulus]).tolist()
-            found["relaxation"] = Table("", ("time s", "modulus Pa"), rows)
+            tables["relaxation"] = Table("", ("time s", "modulus Pa"), rows)
         if self.shifts is not None:
             parts = self.shifts.temperatures, self.shifts.log10_shift_factors
             rows = np.column_stack([*parts, self.shifts.log10_errors]).tolist()
             heads = ("temperature K", "log10 shift factor", "standard error")
-            found["shift_factors"] = Table("", heads, rows)
-        return found
+            tables["shift_factors"] = Table("", heads, rows)
+        return tables
 
     def remarks(self) -> dict[str, Sequence[str]]:
         """Return what was done to the readings."""

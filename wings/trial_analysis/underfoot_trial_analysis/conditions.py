@@ -81,19 +81,19 @@ def study_folder(
     """
     groups, notes = _groups(folder)
     labels = [_label(group[0], folder) for group in groups]
-    own = [_session(group[0], folder) for group in groups]
-    for noted, label, found in zip(own, labels, _from_names(labels, names), strict=True):
-        _add(noted, found, label)
+    noted_by_file = [_session(group[0], folder) for group in groups]
+    for noted, label, added in zip(noted_by_file, labels, _from_names(labels, names), strict=True):
+        _add(noted, added, label)
     members = {_label(p, folder): i for i, group in enumerate(groups) for p in group}
     for table, below in _tables(folder, conditions):
         described = conditions_of(below, table)
         absent = []
-        for file, found in described.items():
+        for file, added in described.items():
             label = named_file(file, list(members), _label(below, folder))
             if label is None:
                 absent.append(file)
                 continue
-            _add(own[members[label]], found, label)
+            _add(noted_by_file[members[label]], added, label)
         if absent and len(absent) == len(described):
             raise InputError(
                 f'none of its {len(absent)} files is in the folder, the first is "{absent[0]}"',
@@ -102,10 +102,10 @@ def study_folder(
                 nearest=nearest_match(absent[0], members),
             )
         notes += [f"{file}: in {table.name}, but there is no such file" for file in absent]
-    one_spelling(own, merge_spelling)
+    one_spelling(noted_by_file, merge_spelling)
     recordings = tuple(
         Recording(label, tuple(group), noted)
-        for label, group, noted in zip(labels, groups, own, strict=True)
+        for label, group, noted in zip(labels, groups, noted_by_file, strict=True)
     )
     return StudyFolder(tuple(sorted(recordings, key=lambda r: r.name)), tuple(notes))
 
@@ -236,8 +236,8 @@ def _from_folders(labels: Sequence[str]) -> list[dict[str, Any]]:
             continue
         person = all(_PERSON_FOLDER.match(value) for value in values)
         name = "subject" if person else f"folder {level + 1}" if level else "folder"
-        for own, value in zip(noted, values, strict=True):
-            own.setdefault(name, value)
+        for conditions, value in zip(noted, values, strict=True):
+            conditions.setdefault(name, value)
     return noted
 
 
@@ -278,10 +278,10 @@ def one_spelling(noted: Sequence[dict[str, Any]], merge: bool) -> None:
     """
     for key in dict.fromkeys(k for own in noted for k in own):
         spellings: dict[str, Counter[str]] = {}
-        for own in noted:
-            if isinstance(own.get(key), str):
-                plain = plain_spelling(own[key], person=key in PERSON)
-                spellings.setdefault(plain, Counter())[own[key]] += 1
+        for conditions in noted:
+            if isinstance(conditions.get(key), str):
+                plain = plain_spelling(conditions[key], person=key in PERSON)
+                spellings.setdefault(plain, Counter())[conditions[key]] += 1
         for counts in spellings.values():
             if len(counts) < 2:
                 continue
@@ -293,9 +293,9 @@ def one_spelling(noted: Sequence[dict[str, Any]], merge: bool) -> None:
                     remedy="Write it one way, or take the spellings as one with --merge-spelling",
                 )
             usual = counts.most_common(1)[0][0]
-            for own in noted:
-                if own.get(key) in counts:
-                    own[key] = usual
+            for conditions in noted:
+                if conditions.get(key) in counts:
+                    conditions[key] = usual
 
 
 def plain_spelling(text: str, *, person: bool = False) -> str:

@@ -50,7 +50,7 @@ def edit_rows(
         raise EditError(
             f'there is no column "{lacking[0]}"', where=path.name, allowed=", ".join(COLUMNS)
         )
-    found: list[tuple[int, str, Edit]] = []
+    edits: list[tuple[int, str, Edit]] = []
     rows = zip(*(cells[name][1] for name in COLUMNS), strict=True)
     for line, (name, step, what, value, why) in zip(lines, rows, strict=True):
         where = f"{path.name}, line {line}"
@@ -61,8 +61,8 @@ def edit_rows(
             nearest = nearest_match(name, labels)
             raise EditError(f'there is no file "{name}"', where=where, nearest=nearest)
         edit = edit_from(step, what, value, why, where, cells["value"][0])
-        found.append((line, file, edit))
-    return found
+        edits.append((line, file, edit))
+    return edits
 
 
 def edit_from(step: str, what: str, value: str, why: str, where: str, unit: str = "") -> Edit:

@@ -128,25 +128,25 @@ def agreement_findings(
             second.append(b)
             samples.append(sample)
     try:
-        found = statistics.bland_altman(first, second, samples)
+        limits = statistics.bland_altman(first, second, samples)
     except DataError:
         return findings
     columns = ("", name, "95 % low", "95 % high")
     rows = [
-        ("bias", found.bias, *found.bias_interval),
-        ("lower limit of agreement", found.lower, *found.lower_interval),
-        ("upper limit of agreement", found.upper, *found.upper_interval),
+        ("bias", limits.bias, *limits.bias_interval),
+        ("lower limit of agreement", limits.lower, *limits.lower_interval),
+        ("upper limit of agreement", limits.upper, *limits.upper_interval),
     ]
     note = (
-        f"{raters[0]} - {raters[1]}, {found.pairs} pairs of {found.subjects} samples; readings are "
-        "paired in their order. Limits: bias -+ 1.96 SD of a single difference; the true value may "
-        f"vary between readings. Differences against means: slope {found.slope:.2g} "
-        f"(p {found.slope_p:.2g})."
+        f"{raters[0]} - {raters[1]}, {limits.pairs} pairs of {limits.subjects} samples; readings "
+        "are paired in their order. Limits: bias -+ 1.96 SD of a single difference; the true value "
+        f"may vary between readings. Differences against means: slope {limits.slope:.2g} "
+        f"(p {limits.slope_p:.2g})."
     )
     title = f"Bland-Altman: {name}, {raters[0]} against {raters[1]}"
     caution = (
         ("the difference changes with the size: one bias does not describe it",)
-        if found.slope_p < 0.05
+        if limits.slope_p < 0.05
         else ()
     )
     return [*findings, finding(f"bland_altman_{by}", title, columns, rows, note, caution)]

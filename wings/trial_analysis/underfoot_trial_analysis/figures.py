@@ -460,17 +460,19 @@ def _maps(maps: Sequence[Curve]) -> Figure:
     figure, row = _row(3.3 * len(maps) + 0.6, 4.6, len(maps))
     top = max(1e-3 * float(np.max(one["pressure"])) for one in maps)
     image: Any = None
-    for axes, one in zip(row, maps, strict=True):
-        right, along = -1e3 * np.array(one["lateral"]), 1e3 * np.array(one["along"])
+    for axes, scan_map in zip(row, maps, strict=True):
+        right, along = -1e3 * np.array(scan_map["lateral"]), 1e3 * np.array(scan_map["along"])
         # Each scan stands for the strip around it: no smoothing between scans.
-        pressure, scale = 1e-3 * np.array(one["pressure"]).T, {"vmin": 0, "vmax": top}
+        pressure, scale = 1e-3 * np.array(scan_map["pressure"]).T, {"vmin": 0, "vmax": top}
         look: dict[str, Any] = {"cmap": "viridis", "shading": "nearest", "rasterized": True}
         image = axes.pcolormesh(right, along, pressure, **scale, **look)
         for x in right:
             axes.axvline(x, color="white", linewidth=0.4, alpha=0.6)
-        axes.plot(-1e3 * one["peak_lateral"], 1e3 * one["peak_along"], "+", color="red", ms=9)
-        words = f"{one['load']:.3g} N, peak {1e-3 * one['peak']:.3g} kPa"
-        axes.set_title(f"{one['label']}\n{words}", fontsize=9)
+        axes.plot(
+            -1e3 * scan_map["peak_lateral"], 1e3 * scan_map["peak_along"], "+", color="red", ms=9
+        )
+        words = f"{scan_map['load']:.3g} N, peak {1e-3 * scan_map['peak']:.3g} kPa"
+        axes.set_title(f"{scan_map['label']}\n{words}", fontsize=9)
         axes.set(aspect="equal", xlabel="right of heel's middle (mm)")
         axes.locator_params(axis="x", nbins=3)
     row[0].set_ylabel("forward of the heel's back (mm)")

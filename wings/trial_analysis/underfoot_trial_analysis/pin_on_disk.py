@@ -115,35 +115,35 @@ def friction_point(
 
     DataError: neither forces nor a COF column, no load, or nothing left in the window.
     """
-    ratio, normal, shear, channel, said, flags = _ratio(trial)
+    ratio, normal, shear, channel, choices, flags = _ratio(trial)
     time = channel.time
     finite = np.isfinite(ratio)
     if window is None:
         if not finite.any():
             raise DataError("the run holds no COF", where=trial.name)
-        found = steady_window(ratio[finite])
-        kept = np.flatnonzero(finite)[found.start : found.stop]
-        said["window"] = found.rule
-        if not found.steady:
-            flags.append(f"not steady: drifts by {found.drift:.1f} times its scatter")
+        steady = steady_window(ratio[finite])
+        used = np.flatnonzero(finite)[steady.start : steady.stop]
+        choices["window"] = steady.rule
+        if not steady.steady:
+            flags.append(f"not steady: drifts by {steady.drift:.1f} times its scatter")
     else:
-        kept = np.flatnonzero(finite & (time >= window[0]) & (time < window[1]))
-        said["window"] = f"{window[0]:g} to {window[1]:g} s, given"
-    if len(kept) < 2:
+        used = np.flatnonzero(finite & (time >= window[0]) & (time < window[1]))
+        choices["window"] = f"{window[0]:g} to {window[1]:g} s, given"
+    if len(used) < 2:
         raise DataError("no samples in the window", where=trial.name)
-    values = ratio[kept]
+    values = ratio[used]
     error = correlated_error(values)
     if values.mean() > 2.0:
         flags.append("a COF above 2: are the force columns or units right?")
-    said["average"] = "mean of the ratios of the samples"
-    said["uncertainty"] = "standard error of the mean from batch means"
+    choices["average"] = "mean of the ratios of the samples"
+    choices["uncertainty"] = "standard error of the mean from batch means"
     reason = "" if error is not None else "too few samples for a scatter"
     mean, seen = float(values.mean()), tuple(map(caution, flags))
-    measurement = Measurement("cof", mean, "1", error, reason, len(values), seen, said)
-    speed = _speed(trial, kept) if speed is None else speed
+    measurement = Measurement("cof", mean, "1", error, reason, len(values), seen, choices)
+    speed = _speed(trial, used) if speed is None else speed
     forces = normal, shear
-    load, push = (None if f is None else float(np.abs(f[kept]).mean()) for f in forces)
-    ends = float(time[kept[0]]), float(time[kept[-1]])
+    load, push = (None if f is None else float(np.abs(f[used]).mean()) for f in forces)
+    ends = float(time[used[0]]), float(time[used[-1]])
     return FrictionPoint(trial.name, measurement, speed, load, push, time, ratio, ends)
 
 

@@ -131,14 +131,16 @@ def reading_results(
     results = []
     for key, members in rows.items():
         label = ", ".join(part for part in key if part)
-        own = {k: v for k, v in zip(texts, key, strict=True) if v}
+        conditions = {k: v for k, v in zip(texts, key, strict=True) if v}
         file = f"{name}: {label}" if label and len(rows) > 1 else name
-        draft = Draft(file, {**noted, **own}, checksum)
+        draft = Draft(file, {**noted, **conditions}, checksum)
         refer_to(record, draft)
-        used = [c for c in checked if _slider(own) in ("", c.slider)]
+        used = [c for c in checked if _slider(conditions) in ("", c.slider)]
         draft.refusals += [c.description for c in used if c.failed]
-        said = "; ".join(c.description for c in used) or "none in the table"
-        _one_sample(draft, values[members], [runs[i] for i in members], quantity, protocol, said)
+        check_surfaces = "; ".join(c.description for c in used) or "none in the table"
+        _one_sample(
+            draft, values[members], [runs[i] for i in members], quantity, protocol, check_surfaces
+        )
         results.append(draft.finished(protocol))
     return results
 

@@ -66,14 +66,14 @@ def relaxation_reading(
     load = trial.channel(*((force,) if force else FORCE))
     travel = trial.channel(*((displacement,) if displacement else DISPLACEMENT))
     if load.unit not in ("N", "") or travel.unit not in ("m", ""):
-        words = f'force is in "{load.unit}", displacement in "{travel.unit}"'
-        raise DataError(words, where=where, allowed="N and m")
+        text = f'force is in "{load.unit}", displacement in "{travel.unit}"'
+        raise DataError(text, where=where, allowed="N and m")
     f, d, t = load.values.astype(float), travel.values.astype(float), load.time
     if len(f) != len(d) or len(f) < 20:
         raise DataError("force and displacement must have the same 20 samples or more", where=where)
-    kept = np.isfinite(f) & np.isfinite(d)
-    notes = [] if kept.all() else [f"{int((~kept).sum())} samples without a number left out"]
-    f, d, t = f[kept], d[kept], t[kept]
+    finite = np.isfinite(f) & np.isfinite(d)
+    notes = [] if finite.all() else [f"{int((~finite).sum())} samples without a number left out"]
+    f, d, t = f[finite], d[finite], t[finite]
     if len(f) < 20:
         raise DataError("fewer than 20 samples with numbers", where=where)
     first = max(3, len(f) // 200)
@@ -114,8 +114,8 @@ def relaxation_reading(
     ramp_d, ramp_f = np.maximum.accumulate(d[begin : peak + 1]), f[begin : peak + 1]
     at = 0.02 * thickness
     if ramp_d[-1] <= at:
-        words = f"compressed by {1e3 * ramp_d[-1]:.3g} mm only, 2 % of the thickness is"
-        raise DataError(f"{words} {1e3 * at:.3g} mm", where=where)
+        text = f"compressed by {1e3 * ramp_d[-1]:.3g} mm only, 2 % of the thickness is"
+        raise DataError(f"{text} {1e3 * at:.3g} mm", where=where)
     keep = np.concatenate(([True], np.diff(ramp_d) > 0))
     low_force = float(np.interp(at, ramp_d[keep], ramp_f[keep]))
     tail = f[end - max(3, (end - peak) // 10) : end]
@@ -127,12 +127,12 @@ def relaxation_reading(
     if fall > 0 and abs(still) > max(0.02 * fall, 3 * noise / np.sqrt(len(tail))):
         share = f"{100 * abs(still) / fall:.0f} % of the relaxation"
         flags = (caution(f"still falling by {share} in the last tenth of the hold"),)
-    said = {"sign": "compression positive", "zero": "force before contact subtracted"}
-    meant = {**said, "final force": "mean over the last tenth of the hold"}
+    choices = {"sign": "compression positive", "zero": "force before contact subtracted"}
+    meant = {**choices, "final force": "mean over the last tenth of the hold"}
     settled = noise / float(np.sqrt(len(tail)))
     return RelaxationReading(
-        Measurement("force at 2 %", low_force, "N", noise, conventions=said),
-        Measurement("peak force", float(f[peak]), "N", noise, conventions=said),
+        Measurement("force at 2 %", low_force, "N", noise, conventions=choices),
+        Measurement("peak force", float(f[peak]), "N", noise, conventions=choices),
         Measurement("final force", final, "N", settled, "", len(tail), flags, meant),
         *(t[begin:end] - t[begin], d[begin:end], f[begin:end]),
         *(hold - begin, level, float(t[hold] - t[begin]), float(t[end - 1] - t[hold])),

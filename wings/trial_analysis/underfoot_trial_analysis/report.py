@@ -232,7 +232,7 @@ def _compact(table: Table) -> Table:
     if len(starts) < 2:
         return table
     inside = {i + k for i in starts for k in (1, 2, 3)}
-    kept = [i for i in range(len(table.columns)) if i not in inside]
+    shown_columns = [i for i in range(len(table.columns)) if i not in inside]
 
     def cell(row: Sequence[Any], i: int) -> Any:
         if i not in starts:
@@ -243,8 +243,8 @@ def _compact(table: Table) -> Table:
             return "".join(texts[:1])
         return f"{texts[0]} ({texts[1]}), {texts[2]} to {texts[3]}"
 
-    names = (table.columns[i] + (": mean (SD), 95 %" if i in starts else "") for i in kept)
-    rows = tuple(tuple(cell(row, i) for i in kept) for row in table.rows)
+    names = (table.columns[i] + (": mean (SD), 95 %" if i in starts else "") for i in shown_columns)
+    rows = tuple(tuple(cell(row, i) for i in shown_columns) for row in table.rows)
     return replace(table, columns=tuple(names), rows=rows)
 
 

@@ -68,19 +68,19 @@ def _check_kind(trial: Trial, protocol: Protocol, profile: Profile) -> None:
 
 def _slip_tester(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
     axes, record = axes_of(trial, vertical=profile.vertical), profile.calibration
-    found = slide_friction(trial, protocol, axes, record)
+    slide = slide_friction(trial, protocol, axes, record)
     rates(trial, draft)
-    cof = found.cof
+    cof = slide.cof
     if cof.value is not None:
         plate = slide_plate(trial, axes.up, record)
-        cof = replace(cof, flags=(*cof.flags, *slide_flags(found, plate, axes.up, record)))
+        cof = replace(cof, flags=(*cof.flags, *slide_flags(slide, plate, axes.up, record)))
     else:
         draft.refusals.append(f"no COF: {cof.reason}")
     draft.add("slide", cof, main="cof")
     refer_to(record, draft)
-    draft.facts.update(found.facts)
-    series = {key: getattr(found, key) for key in ("time", "normal", "shear", "ratio")}
-    draft.curve("slide", **series, begin=found.window[0], end=found.window[1])
+    draft.facts.update(slide.facts)
+    series = {key: getattr(slide, key) for key in ("time", "normal", "shear", "ratio")}
+    draft.curve("slide", **series, begin=slide.window[0], end=slide.window[1])
     if not profile.sensors or not trial.markers:
         return
     name, position = next(iter(profile.sensors.items()))
@@ -416,13 +416,13 @@ def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
     steps = stance_frictions(walk.way, chosen, definition)
     values = []
     for step in steps:
-        stance, own = step.stance, step.measurement
-        draft.add(stance.label, own)
+        stance, rcof = step.stance, step.measurement
+        draft.add(stance.label, rcof)
         draft.steps.append(_step_entry(walk, stance, step))
-        if own.value is None:
+        if rcof.value is None:
             _ratio_curve(walk, stance, "rejected")
             continue
-        values.append(own)
+        values.append(rcof)
         assert stance.walking is not None  # an RCOF has one
         force = walk.way.plate(stance.plate).force[stance.start : stance.stop]
         series: dict[str, Any] = {
@@ -430,7 +430,7 @@ def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
             "along": force @ axes.ramp.surface(axes.up, stance.walking)[1],
             "across": force @ np.cross(axes.up, stance.walking),
             "gate": step.gate_time - stance.contact,
-            "peak_time": step.peak_time - stance.contact, "peak": own.value,
+            "peak_time": step.peak_time - stance.contact, "peak": rcof.value,
         }  # fmt: skip
         draft.curve("steps", step=stance.label, **series, verdict=step.verdict)
         curves = stance_curves(walk.way, stance, step.ratio, definition.filter)
@@ -457,17 +457,17 @@ def _ratio_curve(walk: _Walk, stance: Stance, kind: str) -> None:
 def _step_entry(
     walk: _Walk, stance: Stance, step: RequiredFriction | None = None, *, reason: str = ""
 ) -> dict[str, Any]:
-    own = None if step is None else step.measurement
+    rcof = None if step is None else step.measurement
     return {
         **{key: getattr(stance, key) for key in ("number", "plate", "side", "contact", "toe_off")},
         "item": stance.label,
         "stance_time": stance.duration,
         "peak_force": stance.peak,
-        "rcof": None if own is None else own.value,
-        "rcof_uncertainty": None if own is None else own.uncertainty,
+        "rcof": None if rcof is None else rcof.value,
+        "rcof_uncertainty": None if rcof is None else rcof.uncertainty,
         "verdict": "rejected" if step is None else step.verdict,
-        "reason": reason or stance.reason or (own.reason if own and own.value is None else ""),
-        "cautions": [] if own is None else [flag.message for flag in own.caution_flags],
+        "reason": reason or stance.reason or (rcof.reason if rcof and rcof.value is None else ""),
+        "cautions": [] if rcof is None else [flag.message for flag in rcof.caution_flags],
         "by_hand": list(stance.by_hand),
         **asdict(gait_context(walk.way, stance, walk.stances)),
     }

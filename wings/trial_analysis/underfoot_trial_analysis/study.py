@@ -67,8 +67,8 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
         except UnderfootError as error:
             notes.append(f"{label}: not fitted ({error.what})")
             continue
-        own = (fit.boundary, fit.tau, fit.asymptote)
-        cells = (cell for p in own for cell in (p.value, p.low, p.high, p.remark))
+        fitted = (fit.boundary, fit.tau, fit.asymptote)
+        cells = (cell for p in fitted for cell in (p.value, p.low, p.high, p.remark))
         beside = (p.value for p in (simplex.boundary, simplex.tau, simplex.asymptote))
         rows.append((*group, fit.n, fit.r_squared, fit.verdict, *cells, *beside))
         first = group[0] if group else ""
@@ -78,7 +78,7 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
              "mean": mean, "verdict": fit.verdict, "r_squared": fit.r_squared}
         )  # fmt: skip
         levels = dict(zip(keys, group, strict=True)) or {"group": ""}
-        for parameter in own:
+        for parameter in fitted:
             keep = parameter.value is not None and not parameter.remark.startswith("not identified")
             parameters[parameter.name].append((levels, parameter.value) if keep else None)
     intervals = (
@@ -239,25 +239,25 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
             protocol.number(name, "m", 0.0) or None for name in ("scan_spacing", "inlet_diameter")
         )
         try:
-            found = pressure_map(scans, spacing=spacing, inlet_diameter=inlet)
+            joined = pressure_map(scans, spacing=spacing, inlet_diameter=inlet)
         except UnderfootError as error:
             notes.append(f"{label}: no map ({error.what})")
             continue
-        load, change = found.load, found.half_spacing_change
-        place = (1e3 * (p.value or 0.0) for p in (found.peak_along, found.peak_lateral))
+        load, change = joined.load, joined.half_spacing_change
+        place = (1e3 * (p.value or 0.0) for p in (joined.peak_along, joined.peak_lateral))
         rows.append(
             (label, len(scans), load.value, load.uncertainty,
-             tables.scaled("peak_pressure", found.peak.value), *place, 100 * found.outer_share,
+             tables.scaled("peak_pressure", joined.peak.value), *place, 100 * joined.outer_share,
              None if change is None else 100 * change, "; ".join(map(str, load.flags)),
              load.conventions.get("inlet", ""))
         )  # fmt: skip
-        thin = max(1, len(found.along) // 200)
+        thin = max(1, len(joined.along) // 200)
         numbers = ("load", "peak", "peak_along", "peak_lateral")
         maps.append(
-            {"label": label, "lateral": found.lateral.tolist(),
-             "along": found.along[::thin].tolist(),
-             "pressure": np.nan_to_num(found.pressure[:, ::thin]).tolist(),
-             **{name: getattr(found, name).value for name in numbers}}
+            {"label": label, "lateral": joined.lateral.tolist(),
+             "along": joined.along[::thin].tolist(),
+             "pressure": np.nan_to_num(joined.pressure[:, ::thin]).tolist(),
+             **{name: getattr(joined, name).value for name in numbers}}
         )  # fmt: skip
     made = [condition_table(files, keys, ("cof",), person=_sample(files))]
     if rows:
@@ -464,18 +464,18 @@ def _precision(
     rows, tests = [], []
     for level, readings in groups.items():
         try:
-            found = precision(readings)
+            spread = precision(readings)
         except UnderfootError:
             continue
         rows.append(
-            (*level, found.laboratories, found.n, found.mean, found.repeatability,
-             found.reproducibility, found.repeatability_limit, found.reproducibility_limit)
+            (*level, spread.laboratories, spread.n, spread.mean, spread.repeatability,
+             spread.reproducibility, spread.repeatability_limit, spread.reproducibility_limit)
         )  # fmt: skip
         tests += [
             f"{', '.join(level) or 'all'}: {test.name}, {by} {test.laboratory}, {test.verdict} "
             f"({test.statistic:.3f}; 5 % {test.critical_5_percent:.3f}, 1 % "
             f"{test.critical_1_percent:.3f})"
-            for test in found.outliers
+            for test in spread.outliers
             if test.verdict != "correct"
         ]
     if not rows:

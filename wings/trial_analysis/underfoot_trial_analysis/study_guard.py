@@ -135,17 +135,17 @@ def study_doubts(files: Sequence[FileResult], protocol: Protocol) -> list[Doubt]
     usable = [one for one in files if one.usable]
     person = person_condition(usable, protocol.text("subject"))
     tables = protocol.kind == "readings"
-    found = [*_incomplete(usable), *_numbers_lacking(usable), *_near_names(usable, person)]
+    doubts = [*_incomplete(usable), *_numbers_lacking(usable), *_near_names(usable, person)]
     if not tables:
-        found += _single_levels(usable, person)
+        doubts += _single_levels(usable, person)
     if person:
-        found += [*_bodies_noted(usable, person), *_bodies_measured(usable, person)]
-        found += [*_crowded_levels(usable, person), *_unlike_trials(usable, person)]
+        doubts += [*_bodies_noted(usable, person), *_bodies_measured(usable, person)]
+        doubts += [*_crowded_levels(usable, person), *_unlike_trials(usable, person)]
     if protocol.kind == "slip_tester":
-        found += _repeats(usable, protocol)
+        doubts += _repeats(usable, protocol)
     if protocol.kind in ("slip_tester", "readings"):
-        found += _not_on_record(usable, protocol)
-    return found
+        doubts += _not_on_record(usable, protocol)
+    return doubts
 
 
 def doubt_table(doubts: Sequence[Doubt]) -> Table | None:

@@ -231,20 +231,20 @@ def _fisher(files: Sequence[FileResult], key: str, person: str) -> Finding:
     title = f"Slips by {key}: Fisher's exact test"
     name = f"fisher_{key}"
     try:
-        found = statistics.fisher_exact(list(counts.values()))
+        exact = statistics.fisher_exact(list(counts.values()))
     except UnderfootError as error:
         return not_done(name, title, error)
     rows = [(level, slips, none, slips / (slips + none)) for level, (slips, none) in counts.items()]
-    note = f"Two-sided exact p = {found.p:.4g}, by enumeration of all tables with these margins."
-    if found.p_error is not None:
+    note = f"Two-sided exact p = {exact.p:.4g}, by enumeration of all tables with these margins."
+    if exact.p_error is not None:
         note = (
-            f"Two-sided p = {found.p:.4g} ± {found.p_error:.1g} (standard error) from 100 000 "
+            f"Two-sided p = {exact.p:.4g} ± {exact.p_error:.1g} (standard error) from 100 000 "
             "random tables with these margins: counting all would take too long."
         )
-    if found.odds_ratio is not None:
+    if exact.odds_ratio is not None:
         note += (
-            f" Odds ratio {found.odds_ratio:.3g} (conditional estimate; 95 % {found.low:.3g} to "
-            f"{found.high:.3g})."
+            f" Odds ratio {exact.odds_ratio:.3g} (conditional estimate; 95 % {exact.low:.3g} to "
+            f"{exact.high:.3g})."
         )
     warning = statistics.independence_warning(persons_of(having, person))
     return finding(name, title, (key, "slips", "no slips", "share"), rows, note, warning)

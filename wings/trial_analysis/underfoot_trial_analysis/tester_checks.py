@@ -75,36 +75,36 @@ def slide_flags(
     ``plate`` has its baseline subtracted; ``up`` (3,) is the unit vector out of the floor.
     """
     # Saturation is judged here: a load that stands still dwells on one step of a coarse converter.
-    found = [flag for flag in plate.flags if flag.matters and flag.name != "saturated"]
+    flags = [flag for flag in plate.flags if flag.matters and flag.name != "saturated"]
     if not np.isfinite(slide.normal).all():
-        return tuple(found)
+        return tuple(flags)
     check = _Slide(slide, plate, up)
     count = int(check.inside.sum())
     if count < 10:
         words = f"{count} samples in the window: are clock and rate right?"
-        return (*found, Flag("rate", words, True, count, 10, "1"))
-    found += [
+        return (*flags, Flag("rate", words, True, count, 10, "1"))
+    flags += [
         *check.zero(), *check.size(), *check.channels(), *check.window(), *check.course(),
         *check.crosstalk(),
     ]  # fmt: skip
-    return tuple(found + (list(check.against(record)) if record is not None else []))
+    return tuple(flags + (list(check.against(record)) if record is not None else []))
 
 
 def scan_flags(scan: PressureScan, record: TesterCalibration | None = None) -> tuple[Flag, ...]:
     """Return what is doubtful about the size and sign of a pressure scan."""
-    found: list[Flag] = []
+    flags: list[Flag] = []
     peak, least, noise = float(scan.pressure.max()), float(scan.pressure.min()), scan.baseline_sd
     if -least > max(2.0 * peak, 8.0 * noise):
-        found.append(Flag("pressure", f"the pressure falls by {-least:.3g} Pa: wrong sign?"))
+        flags.append(Flag("pressure", f"the pressure falls by {-least:.3g} Pa: wrong sign?"))
     elif 8.0 * noise < peak < LOW_PRESSURE.value:
         words = f"a clear peak of {peak:.3g} Pa only: is the unit right?"
-        found.append(LOW_PRESSURE.flag(peak, words))
+        flags.append(LOW_PRESSURE.flag(peak, words))
     known = record.channel("pressure").noise if record else None
     if record and known and noise:
         ratio = noise / (known * record.channel("pressure").factor)
         words = f"noise of the pressure {noise:.3g} Pa, on record {known:.3g} Pa: unit or gain?"
-        found += NOISE.above(max(ratio, 1.0 / ratio), words)
-    return tuple(found)
+        flags += NOISE.above(max(ratio, 1.0 / ratio), words)
+    return tuple(flags)
 
 
 class _Slide:
@@ -184,19 +184,19 @@ class _Slide:
             part = np.unique(self.force[self.inside, i])
             idle = np.unique(self.force[self.rest, i])
             if len(idle) == 1 and self.rest.sum() > 20 and len(part) > 30:
-                words = f"the unloaded force along {name} is one number: a dead band or zeroed?"
-                yield Flag("scatter", words, True, 0.0)
+                text = f"the unloaded force along {name} is one number: a dead band or zeroed?"
+                yield Flag("scatter", text, True, 0.0)
             quantum = float(np.min(np.diff(idle))) if 1 < len(idle) < 30 else 0.0
             coarse = quantum > 0.0 and len(part) < 30
             share = self.cof if i == upward else abs(float(self.axis[i]))
             carries = i == upward or share > 0.5
             if len(part) <= 2 and (not coarse or (carries and len(idle) >= 4)):
-                words = f"the force along {name} does not scatter in the window: held or clipped"
-                yield Flag("scatter", words, True, 0.0)
+                text = f"the force along {name} does not scatter in the window: held or clipped"
+                yield Flag("scatter", text, True, 0.0)
             elif coarse and len(part) <= 3:
                 size = 0.5 * quantum * share / self.level
-                words = f"steps of {quantum:.3g} N along {name} hide {size:.3f} of COF"
-                yield from STEP.above(size, words)
+                text = f"steps of {quantum:.3g} N along {name} hide {size:.3f} of COF"
+                yield from STEP.above(size, text)
             fine = fine and not coarse
             seen = self.force[self.inside, i] if coarse else values
             ends = max(float(np.mean(seen == end)) for end in (values.max(), values.min()))
@@ -204,19 +204,19 @@ class _Slide:
             ends = stuck if coarse and i == upward and stuck > _STUCK else ends
             scatters = len(part) > 2 or ends > _STUCK
             if scatters and ends * len(seen) >= 5 and (not coarse or (carries and ends > 0.5)):
-                words = f"{100 * ends:.0f} % of the samples along {name} lie at their extreme"
-                yield from CLIPPED.above(ends, words)
+                text = f"{100 * ends:.0f} % of the samples along {name} lie at their extreme"
+                yield from CLIPPED.above(ends, text)
             if coarse:
                 continue
             bend = np.abs(np.diff(values, 2)) < 0.02 * float(np.std(steps))
             line = longest_run(bend & (steps[1:] != 0.0)) / self.rate
             straight = max(float(np.mean(bend)), STRAIGHT.value + 1e-9 if line > 0.02 else 0.0)
-            words = f"the samples along {name} lie on straight lines: interpolated"
-            yield from STRAIGHT.above(straight, words)
+            text = f"the samples along {name} lie on straight lines: interpolated"
+            yield from STRAIGHT.above(straight, text)
         pairs = np.column_stack((self.along[:-1], self.along[1:]))[self.loaded[1:]]
         crossing = np.abs(pairs[pairs.prod(axis=1) < 0.0]).min(axis=1).max(initial=0.0)
-        words = "the friction leaps from one side to the other: does its range wrap?"
-        yield from WRAPPED.above(crossing / max(float(np.abs(pairs).max()), 1.0), words)
+        text = "the friction leaps from one side to the other: does its range wrap?"
+        yield from WRAPPED.above(crossing / max(float(np.abs(pairs).max()), 1.0), text)
         held = longest_run(still) + 1
         idle = longest_run((np.diff(self.force[self.rest], axis=0) == 0.0).all(axis=1))
         if held >= 4 + 2 * idle and held / self.rate >= (HELD.value if fine else 0.05):
@@ -230,19 +230,19 @@ class _Slide:
             return
         away = abs(float(ratio.mean()) - float(np.median(ratio)))
         if away > 0.004:
-            words = f"outliers move the mean COF by {away:.3f} against the median"
-            yield from OUTLIERS.above(away / self.cof, words)
+            text = f"outliers move the mean COF by {away:.3f} against the median"
+            yield from OUTLIERS.above(away / self.cof, text)
         change = abs(float(np.polyfit(np.linspace(-0.5, 0.5, len(ratio)), ratio, 1)[0]))
         if change > 0.01:
-            words = f"COF changes by {change:.3f} along the window: the mean depends on it"
-            yield from TREND.above(change / self.cof, words)
+            text = f"COF changes by {change:.3f} along the window: the mean depends on it"
+            yield from TREND.above(change / self.cof, text)
         along = self.along[self.inside]
         x = np.linspace(-1.0, 1.0, len(along))
         scatter = float(np.std(along - np.polyval(np.polyfit(x, along, 2), x)))
         noise = self._noise(self.along)
         if 0.0 < 1.7 * noise < 0.01 * float(along.mean()) and scatter < 1.2 * noise:
-            words = "sliding adds nothing to the noise of the friction channel: clipped or made up?"
-            yield QUIET.flag(scatter / noise, words)
+            text = "sliding adds nothing to the noise of the friction channel: clipped or made up?"
+            yield QUIET.flag(scatter / noise, text)
         swing = float(np.std(self.normal[self.inside])) / self.level
         yield from SWING.above(swing, f"the normal force swings by {100 * swing:.0f} %")
 
@@ -253,8 +253,8 @@ class _Slide:
         loads = [run for run in loads if run[1] - run[0] > 0.1 * (loads[0][1] - loads[0][0])]
         count, speed = len(loads), self.slide.speed
         lasting = float(self.loaded.sum()) / self.rate
-        words = f"{lasting:.3g} s under load: is the clock right?"
-        yield from SLOWEST.above(lasting, words)
+        text = f"{lasting:.3g} s under load: is the clock right?"
+        yield from SLOWEST.above(lasting, text)
         if speed is not None:
             size = np.abs(np.nan_to_num(speed.values))
             loaded = np.interp(speed.time, self.time, self.loaded.astype(float)) > 0.5
@@ -270,8 +270,8 @@ class _Slide:
             length = float(size[loaded].sum()) / speed.rate
             yield from LONGEST.above(length, f"a slide of {length:.3g} m: clock or unit of speed?")
         if count > 1:
-            words = f"{count} slides in the file: the number is that of the first; cut the others"
-            yield Flag("slides", words, True, count, 1.0, "1")
+            text = f"{count} slides in the file: the number is that of the first; cut the others"
+            yield Flag("slides", text, True, count, 1.0, "1")
 
     def crosstalk(self) -> Iterator[Flag]:
         """Flag friction in proportion to the normal force before the shoe slides.

@@ -370,14 +370,14 @@ def _plate(draft: Draft, raw: C3DFile, index: int, units: list[str], scale: floa
     name = f"plate {index + 1}"
     kinds = raw.whole_numbers("FORCE_PLATFORM", "TYPE").ravel(order="F")
     kind = int(kinds[index]) if index < kinds.size else 0
-    words = plates.KINDS.get(kind, f"type {kind}")
+    text = plates.KINDS.get(kind, f"type {kind}")
     try:
         if kind not in plates.CHANNELS:
             raise DataError(f"plate type {kind} is not supported", allowed="types 1 to 4")
         numbers = _of_plate(raw.whole_numbers("FORCE_PLATFORM", "CHANNEL"), index, "CHANNEL", 1)
         columns = numbers[: plates.CHANNELS[kind]] - 1
         if len(columns) < plates.CHANNELS[kind]:
-            raise DataError(f"{words} needs {plates.CHANNELS[kind]} channels")
+            raise DataError(f"{text} needs {plates.CHANNELS[kind]} channels")
         most = raw.analog.shape[1]
         if columns.max() >= most:
             raise DataError(f"it names channel {int(columns.max()) + 1} of {most}")
@@ -415,13 +415,13 @@ def _plate(draft: Draft, raw: C3DFile, index: int, units: list[str], scale: floa
             moment=moment @ axes.T,
             corners=corners,
             raw=signals,
-            kind=words,
+            kind=text,
             notes=tuple(notes),
             flags=(flag,) if crossed else (),
         )
     except DataError as error:
         reason = error.what + (f" ({error.allowed})" if error.allowed else "")
-        draft.plates.append(plates.refused_plate(name, reason, rate=raw.analog_rate, kind=words))
+        draft.plates.append(plates.refused_plate(name, reason, rate=raw.analog_rate, kind=text))
 
 
 def _z_points_down(places: np.ndarray) -> bool:
@@ -494,16 +494,16 @@ def _events(raw: C3DFile) -> tuple[Event, ...]:
 
 
 def _settings(raw: C3DFile) -> dict[str, str]:
-    found = {}
+    settings = {}
     for group in ("PROCESSING", "SUBJECTS"):
         for name in ("BODYMASS", "MASS"):
             mass = raw.number(group, name)
             if 5.0 < mass < 300.0:
-                found["body mass (kg)"] = f"{mass:.6g}"
+                settings["body mass (kg)"] = f"{mass:.6g}"
     company = raw.texts("MANUFACTURER", "COMPANY")
     if company and company[0]:
-        found["made by"] = company[0]
+        settings["made by"] = company[0]
     software = raw.texts("MANUFACTURER", "SOFTWARE")
     if software and software[0]:
-        found["software"] = software[0]
-    return found
+        settings["software"] = software[0]
+    return settings

@@ -147,7 +147,7 @@ def _triples(sheet: Sheet, pattern: re.Pattern[str]) -> Iterator[tuple[str, tupl
 
 def _plate_columns(draft: Draft, sheet: Sheet) -> dict[str, PlateColumns]:
     """Columns of the plates; triples whose unit is no force become refused plates."""
-    found: dict[str, PlateColumns] = {}
+    plates: dict[str, PlateColumns] = {}
     for _, triple in _triples(sheet, _FORCE):
         names = ", ".join(triple)
         units = {sheet.units.get(name, "") for name in triple}
@@ -158,13 +158,13 @@ def _plate_columns(draft: Draft, sheet: Sheet) -> dict[str, PlateColumns]:
         unit = units.pop()
         if not unit:
             draft.notes.append(f"{names}: taken as N")
-        label = f"plate {len(found) + 1}"
-        found[label] = PlateColumns(triple, unit=unit or "N")
+        label = f"plate {len(plates) + 1}"
+        plates[label] = PlateColumns(triple, unit=unit or "N")
         draft.notes.append(
             f"{label} recognised from {names}, "
             "taken as the force on the foot: a profile can say otherwise"
         )
-    return found
+    return plates
 
 
 def _plate(draft: Draft, name: str, columns: PlateColumns, sheet: Sheet) -> None:
@@ -200,9 +200,9 @@ def _up(force: np.ndarray, corners: np.ndarray | None, profile: Profile) -> np.n
 
 
 def _marker_columns(draft: Draft, sheet: Sheet) -> dict[str, tuple[tuple[str, str, str], str]]:
-    found = dict(draft.profile.markers)
+    markers = dict(draft.profile.markers)
     for base, triple in _triples(sheet, _POINT):
-        if not base or _NOT_POINTS.match(base) or base in found or _FORCE.match(triple[0]):
+        if not base or _NOT_POINTS.match(base) or base in markers or _FORCE.match(triple[0]):
             continue
         unit = sheet.units.get(triple[0], "")
         if not unit:
@@ -210,5 +210,5 @@ def _marker_columns(draft: Draft, sheet: Sheet) -> dict[str, tuple[tuple[str, st
             words = f"marker {base} without a unit"
             unit = "m" if draft.length_unit("", size, words, "its size") == 1.0 else "mm"
         if (si_unit(unit) or ("",))[0] == "m":
-            found[base] = (triple, unit)
-    return found
+            markers[base] = (triple, unit)
+    return markers

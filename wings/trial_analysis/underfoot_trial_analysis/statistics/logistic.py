@@ -230,11 +230,11 @@ def logistic_regression(
     firth = method == "firth"
     if method not in ("maximum_likelihood", "firth"):
         raise unknown_name("method", method, tuple(METHODS)[:2], where="logistic regression")
-    found = separation(matrix, y)
+    separated = separation(matrix, y)
     warnings = []
-    if found.separated:
-        bad = ", ".join(n for n, inf in zip(names, found.infinite, strict=True) if inf)
-        message = f"{found.kind} separation: no finite maximum-likelihood estimate of {bad}"
+    if separated.separated:
+        bad = ", ".join(n for n, inf in zip(names, separated.infinite, strict=True) if inf)
+        message = f"{separated.kind} separation: no finite maximum-likelihood estimate of {bad}"
         if not firth:
             raise DataError(message, where="logistic regression", remedy="Use method firth")
         warnings.append(message)
@@ -270,7 +270,7 @@ def logistic_regression(
         low, high = (None if end is None else float(end / unit) for end in ends)
         coefficients.append(Coefficient(name, float(beta[j]), float(errors[j]), low, high, p))
     likelihoods = log_likelihood(eta, y), objective(matrix, eta, y, True) if firth else None
-    counted = len(y), int(y.sum()), found, tuple(warnings)
+    counted = len(y), int(y.sum()), separated, tuple(warnings)
     return LogisticFit(method, tuple(coefficients), covariance, *likelihoods, *counted)
 
 

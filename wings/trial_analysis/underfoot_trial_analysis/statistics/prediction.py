@@ -158,9 +158,9 @@ def person_bootstrap(
             return np.nan
 
     rng = np.random.default_rng(seed)
-    found = np.array([of(rng.integers(len(rows), size=len(rows))) for _ in range(draws)])
-    found = found[np.isfinite(found)]
-    if len(found) < draws / 2:
+    samples = np.array([of(rng.integers(len(rows), size=len(rows))) for _ in range(draws)])
+    samples = samples[np.isfinite(samples)]
+    if len(samples) < draws / 2:
         raise DataError("undefined in most draws of persons", where="bootstrap")
     everyone = np.arange(len(rows))
     whole = of(everyone)
@@ -168,10 +168,10 @@ def person_bootstrap(
     away = np.nanmean(left_out) - left_out
     spread = float(np.nansum(away**2))
     skew = float(np.nansum(away**3)) / (6.0 * spread**1.5) if spread > 0 else 0.0
-    share = np.clip((found < whole).mean() + 0.5 * (found == whole).mean(), 1e-4, 1 - 1e-4)
+    share = np.clip((samples < whole).mean() + 0.5 * (samples == whole).mean(), 1e-4, 1 - 1e-4)
     shift = norm.ppf(share)
     z = shift + norm.ppf([0.5 - confidence / 2, 0.5 + confidence / 2])
-    low, high = np.quantile(found, norm.cdf(shift + z / (1.0 - skew * z)))
+    low, high = np.quantile(samples, norm.cdf(shift + z / (1.0 - skew * z)))
     return float(low), float(high)
 
 

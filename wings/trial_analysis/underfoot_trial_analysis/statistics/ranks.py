@@ -59,21 +59,21 @@ def rank_test(
         if min(map(len, groups)) < 3:
             raise DataError("fewer than three persons in a level", where="rank test")
         two = len(names) == 2
-        found: Any = stats.mannwhitneyu(groups[0], groups[1]) if two else stats.kruskal(*groups)
+        test: Any = stats.mannwhitneyu(groups[0], groups[1]) if two else stats.kruskal(*groups)
         name = "Mann-Whitney U" if two else "Kruskal-Wallis H"
-        return RankTest(name, float(found.statistic), float(found.pvalue), len(table))
+        return RankTest(name, float(test.statistic), float(test.pvalue), len(table))
     whole = np.array([[own[n] for n in names] for own in table.values() if len(own) == len(names)])
     if len(whole) < 5:
         words = f"{len(whole)} persons have every level"
         raise DataError(words, where="rank test", allowed="five or more")
     if len(names) == 2:
-        found, name = stats.wilcoxon(whole[:, 0], whole[:, 1]), "Wilcoxon signed ranks W"
+        test, name = stats.wilcoxon(whole[:, 0], whole[:, 1]), "Wilcoxon signed ranks W"
     else:
-        found, name = stats.friedmanchisquare(*whole.T), "Friedman chi squared"
+        test, name = stats.friedmanchisquare(*whole.T), "Friedman chi squared"
         if len(whole) ** (len(names) - 1) <= EXACT_TABLES:
             p = _exact_p(stats.rankdata(whole, axis=1))
-            return RankTest(name, float(found.statistic), p, len(whole))
-    return RankTest(name, float(found.statistic), float(found.pvalue), len(whole))
+            return RankTest(name, float(test.statistic), p, len(whole))
+    return RankTest(name, float(test.statistic), float(test.pvalue), len(whole))
 
 
 def _exact_p(ranks: np.ndarray) -> float:
