@@ -16,6 +16,8 @@ from underfoot.core import (
 )
 from underfoot.core.files import whole_folder
 from underfoot.core.status import worst
+from underfoot.trials import Belt, Ramp
+from underfoot.trials.measurement import caution
 
 
 def test_an_error_says_where_what_allowed_nearest_and_remedy():
@@ -132,3 +134,14 @@ def test_an_old_name_answers_and_warns_at_the_line_that_calls():
     with pytest.warns(FutureWarning, match=r"SourcedValue.as_dict is to_dict now.* in 0.3") as told:
         assert value.as_dict() == value.to_dict()
     assert told[0].filename == __file__
+
+
+def test_old_names_of_a_field_a_property_and_a_method_answer():
+    belt = Belt(np.zeros(1), np.array([[1.25, 0.0, 0.0]]), "foot markers", 0.01)
+    for old, new in (
+        (lambda: caution("noise").words, "noise"),
+        (lambda: Ramp().words, "level"),
+        (lambda: belt.words(0.0), belt.speed_text(0.0)),
+    ):
+        with pytest.warns(FutureWarning, match=r"\.words is .* now; the old name goes in 0.4"):
+            assert old() == new

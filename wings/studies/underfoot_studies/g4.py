@@ -181,10 +181,10 @@ def compute(options: Options) -> Computed:
     drawn = {"fig29_maps": map_figure(untreaded), "fig30_loads": load_figure(readings)}
     drawn["tread_depth"] = depth_figure(depths)
     tables = [conditions_table(readings), lower_table(lower), depth_table(depths)]
-    for condition in untreaded:
-        found = varied[condition.condition.name]
-        tables.append(inputs_table(condition.condition, found))
-        drawn[f"open_inputs_{condition.condition.kind}"] = inputs_figure(condition.condition, found)
+    for bare in untreaded:
+        found = varied[bare.condition.name]
+        tables.append(inputs_table(bare.condition, found))
+        drawn[f"open_inputs_{bare.condition.kind}"] = inputs_figure(bare.condition, found)
     return Computed(
         quantities(by, depths),
         tables,

@@ -423,25 +423,23 @@ def quantities(
         by_name[f"risk.printed.{sole}"] = Quantity.of(population_risk(acof)["report_g6"])
     for name, risk in zip(("lowest", "median", "highest"), risk_by_rcof(), strict=True):
         by_name[f"risk.rcof.{name}"] = Quantity.of(risk)
-    for name, friction in steps.items():
-        count = friction.slipped.size // len(friction.share)
-        shares = {**friction.share, "all": float(np.mean(list(friction.share.values())))}
+    for name, walked in steps.items():
+        count = walked.slipped.size // len(walked.share)
+        shares = {**walked.share, "all": float(np.mean(list(walked.share.values())))}
         for sole, share in shares.items():
-            trials = count * (len(friction.share) if sole == "all" else 1)
+            trials = count * (len(walked.share) if sole == "all" else 1)
             slipped = round(share * trials)
             drawn = np.random.default_rng(seed).beta(
                 slipped + 0.5, trials - slipped + 0.5, 4000
             )  # Jeffreys' posterior of a share
             by_name[f"steps.{name}.{sole}"] = Quantity.of(share, draws=drawn)
-        spread = (friction.fit.slope_high - friction.fit.slope_low) / (2 * 1.96)
-        if math.isnan(friction.fit.slope):
-            none = Quantity.none(f"{_who(friction)} slips: there is no logistic")
+        spread = (walked.fit.slope_high - walked.fit.slope_low) / (2 * 1.96)
+        if math.isnan(walked.fit.slope):
+            none = Quantity.none(f"{_who(walked)} slips: there is no logistic")
             by_name |= {f"slope.{name}": none, f"half.{name}": none}
         else:
-            by_name[f"slope.{name}"] = Quantity.of(friction.fit.slope, deviation=spread)
-            by_name[f"half.{name}"] = Quantity.of(
-                friction.fit.half, deviation=friction.fit.half_error
-            )
+            by_name[f"slope.{name}"] = Quantity.of(walked.fit.slope, deviation=spread)
+            by_name[f"half.{name}"] = Quantity.of(walked.fit.half, deviation=walked.fit.half_error)
     return by_name
 
 
