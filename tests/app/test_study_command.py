@@ -56,10 +56,10 @@ def until(condition, seconds=90):
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
-    """Return the folder of a study that ran without a break, in one process."""
+    """Return the folder of a study that ran without a break, in this process."""
     folder = tmp_path_factory.mktemp("study")
     (folder / "heel.toml").write_text(STUDY.replace("STEPS", "3"))
-    done = process("study", "run", "heel.toml", "--workers", "1", folder=folder)
+    done = called("study", "run", "heel.toml", "--workers", "1", folder=folder)
     assert done.returncode == 0, done.stderr
     return folder, done
 
