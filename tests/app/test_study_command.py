@@ -11,7 +11,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from commands import COMMAND, called, process
+from commands import COMMAND, called
 from underfoot.case import load
 from underfoot_design_studies import Study
 
@@ -117,7 +117,7 @@ def test_killed_at_any_time_it_goes_on_and_gives_the_same(finished, tmp_path):
     opened = len(study._open())
     assert time.process_time() - began < 5.0
     assert opened == 6 - len(before)
-    process("study", "run", "heel.toml", "--workers", "1", folder=tmp_path)
+    called("study", "run", "heel.toml", "--workers", "1", folder=tmp_path)
     assert numbers(store) == numbers(folder / "out" / "heel")
 
 
