@@ -4,10 +4,14 @@ import os
 import subprocess
 import sys
 from contextlib import chdir
+from functools import cache
 from subprocess import CompletedProcess
 
+import typer.main
 from typer.testing import CliRunner
 
+# Typer reads the signature of every command anew for each call
+typer.main.get_params_from_function = cache(typer.main.get_params_from_function)
 COMMAND = [sys.executable, "-c", "from underfoot.cli import main; main()"]
 
 

@@ -18,7 +18,7 @@ CASES = sorted(OUTSOLES.glob("*_glycerol.toml"))
 def test_make_writes_a_sole_and_says_how_it_reads_back(tmp_path):
     out = tmp_path / "sole.stl"
     sizes = ("--lug", "14 mm", "--channel", "4 mm", "--depth", "3 mm")
-    done = process("outsole", "make", "--pattern", "grid", *sizes, "--out", out, "--json")
+    done = called("outsole", "make", "--pattern", "grid", *sizes, "--out", out, "--json")
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
     assert found["file_volume_m3"] == pytest.approx(found["volume_m3"], rel=0.01)

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import norm
 
-from commands import called, process
+from commands import called
 from underfoot.case import Case
 from underfoot.compute.run import run
 from underfoot.core import Cancelled, InputError
@@ -223,7 +223,7 @@ def test_percent_has_no_false_digits() -> None:
 def test_command(tmp_path) -> None:
     path = tmp_path / "case.toml"
     path.write_text(TEXT, encoding="utf-8")
-    done = process("risk", path, "--out", tmp_path / "out")
+    done = called("risk", path, "--out", tmp_path / "out")
     assert done.returncode == 0, done.stderr
     assert "Slip probability" in done.stdout
     stored = json.loads((tmp_path / "out" / "risk.json").read_text(encoding="utf-8"))

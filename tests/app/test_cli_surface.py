@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from commands import called, process
+from commands import called
 from underfoot.case import Case
 from underfoot.compute.resolve import resolved
 from underfoot.core import DataError, InputError
@@ -61,7 +61,7 @@ def law(case):
 
 
 def test_a_scan_is_read_and_its_lines_make_a_case(folder):
-    done = process("surface", "boden.csv", "--out", "scan", folder=folder)
+    done = called("surface", "boden.csv", "--out", "scan", folder=folder)
     assert done.returncode == 0, done.stderr
     assert 'file = "boden.csv"' in done.stdout
     assert "waves below 20 um not seen" in done.stdout

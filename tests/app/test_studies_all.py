@@ -176,7 +176,7 @@ def test_a_finished_folder_is_judged_again_as_a_process(tmp_path):
 
 def test_a_single_study_writes_its_page_with_figures_first(tmp_path):
     out = tmp_path / "g3"
-    found = process("studies", "run", "g3", "--out", out)
+    found = called("studies", "run", "g3", "--out", out)
     assert found.returncode == 0, found.stderr
     assert "report.html" in found.stdout
     page = (out / "report.html").read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from commands import COMMAND, called, process
+from commands import COMMAND, called
 from underfoot.case import load
 from underfoot_design_studies import Study
 
@@ -56,10 +56,10 @@ def until(condition, seconds=90):
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
-    """Return the folder of a study that ran without a break, in one process."""
+    """Return the folder of a study that ran without a break, in this process."""
     folder = tmp_path_factory.mktemp("study")
     (folder / "heel.toml").write_text(STUDY.replace("STEPS", "3"))
-    done = process("study", "run", "heel.toml", "--workers", "1", folder=folder)
+    done = called("study", "run", "heel.toml", "--workers", "1", folder=folder)
     assert done.returncode == 0, done.stderr
     return folder, done
 
@@ -117,7 +117,7 @@ def test_killed_at_any_time_it_goes_on_and_gives_the_same(finished, tmp_path):
     opened = len(study._open())
     assert time.process_time() - began < 5.0
     assert opened == 6 - len(before)
-    process("study", "run", "heel.toml", "--workers", "1", folder=tmp_path)
+    called("study", "run", "heel.toml", "--workers", "1", folder=tmp_path)
     assert numbers(store) == numbers(folder / "out" / "heel")
 
 

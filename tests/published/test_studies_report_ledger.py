@@ -1,6 +1,7 @@
 """docs/studies/report.md: rows, sentences and equations, each with what shows it."""
 
 import re
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -21,12 +22,17 @@ FIGURES = {
 ERRATA = {where for name in studies() for where, *_ in study(name).errata}
 
 
-def command_exists(words):
+@cache
+def all_commands():
     from typer.main import get_command
 
     from underfoot.cli.app import app
 
-    group = get_command(app)
+    return get_command(app)
+
+
+def command_exists(words):
+    group = all_commands()
     for word in words.split():
         group = group.get_command(None, word)
         if group is None:

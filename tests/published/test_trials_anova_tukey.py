@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from underfoot_trial_analysis.statistics import (
     all_subsets,
@@ -194,3 +195,16 @@ def test_all_subsets_of_stack_loss():
         },
         abs=5e-7,
     )
+
+
+@pytest.mark.parametrize(("levels", "repeats"), [(2, 2), (3, 4), (6, 9), (12, 60)])
+def test_studentized_range_is_that_of_scipy(levels, repeats):
+    names = np.repeat([f"l{n}" for n in range(levels)], repeats)
+    values = np.random.default_rng(levels).normal(size=names.size) + (names == "l0")
+    found = tukey_hsd(linear_model(values, {"level": names}), "level", confidence=0.9)
+    exact = levels, levels * (repeats - 1)
+    for one in found[:: len(found) // 3 + 1]:
+        q = np.sqrt(2) * abs(one.t)
+        assert one.p == pytest.approx(stats.studentized_range.sf(q, *exact), abs=1e-10)
+    width = np.sqrt(2) * (one.high - one.difference) / one.standard_error
+    assert width == pytest.approx(stats.studentized_range.ppf(0.9, *exact), rel=1e-8)

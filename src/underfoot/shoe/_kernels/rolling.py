@@ -32,7 +32,7 @@ def rolled_base(height: Array, spacing: float, radius: float, slopes: tuple[floa
     for axis in (0, 1):
         eroded = _along(eroded, axis, axes[axis], places[axis], radius)
     base = -eroded
-    for axis in (0, 1):
+    for axis in (1, 0):  # the last of above first: its lines lie together
         base = _along(base, axis, places[axis], axes[axis], radius)
     return np.where(np.isfinite(height), -base, np.nan)
 
