@@ -17,7 +17,10 @@ VARIABLE = "UNDERFOOT_FFT"
 
 
 class Transform(Protocol):
-    """Real FFT of one shape and precision, into new arrays: the half spectrum is over axis 1."""
+    """Real FFT over the last two axes of one shape and precision, into new arrays.
+
+    The half spectrum is over the last axis.
+    """
 
     def forward(self, field: AnyArray) -> AnyArray:
         """Return the half spectrum of a real field."""
@@ -31,15 +34,15 @@ class Transform(Protocol):
 class ArrayTransform:
     """The transforms of one module for arrays, with its own ``options``."""
 
-    def __init__(self, shape: tuple[int, int], module: Any, **options: Any) -> None:
+    def __init__(self, shape: tuple[int, ...], module: Any, **options: Any) -> None:
         self.shape = shape
         self._fft, self._options = module, options
 
     def forward(self, field: AnyArray) -> AnyArray:
-        return self._fft.rfftn(field, axes=(0, 1), **self._options)
+        return self._fft.rfftn(field, axes=(-2, -1), **self._options)
 
     def backward(self, spectrum: AnyArray) -> AnyArray:
-        return self._fft.irfftn(spectrum, s=self.shape, axes=(0, 1), **self._options)
+        return self._fft.irfftn(spectrum, s=self.shape[-2:], axes=(-2, -1), **self._options)
 
 
 def fourier_library(name: str = "auto") -> str:
@@ -58,7 +61,7 @@ def fourier_library(name: str = "auto") -> str:
 
 
 def transform(
-    shape: tuple[int, int], dtype: Any, *, xp: Any = np, threads: int = 1, library: str = "auto"
+    shape: tuple[int, ...], dtype: Any, *, xp: Any = np, threads: int = 1, library: str = "auto"
 ) -> Transform:
     """Return the transform of one shape and precision by ``fourier_library(library)``.
 

@@ -8,6 +8,7 @@ matrices alone, analyses each matrix anew and has no Schur complement; mkl_fft p
 from __future__ import annotations
 
 import ctypes
+import math
 from ctypes.util import find_library
 from functools import cache
 from importlib import metadata
@@ -27,7 +28,8 @@ MATRIX_TYPES = {"general": 11, "symmetric": -2, "positive definite": 2}
 # names and values of mkl_dfti.h
 _SINGLE, _DOUBLE, _REAL = 35, 36, 33
 _BACKWARD_SCALE, _CONJUGATE_EVEN_STORAGE, _PLACEMENT = 5, 10, 11
-_INPUT_STRIDES, _OUTPUT_STRIDES, _THREAD_LIMIT = 12, 13, 27
+_INPUT_STRIDES, _OUTPUT_STRIDES, _INPUT_DISTANCE, _OUTPUT_DISTANCE = 12, 13, 14, 15
+_NUMBER_OF_TRANSFORMS, _THREAD_LIMIT = 7, 27
 _COMPLEX_COMPLEX, _NOT_INPLACE = 39, 44
 
 _NONE = np.zeros(1)
@@ -110,10 +112,11 @@ class _System:
         self.options = np.zeros(64, dtype=np.int32)
         self.options[0] = 1  # no defaults
         self.options[34] = 1  # indices from zero
-        # Nested dissection and the classic factorization are right on any number of threads.
-        # Minimum degree (options[1] = 0) with the two-level factorization (options[23] = 10) is
-        # not: on two threads its solutions are wrong.
+        # Nested dissection is right on any number of threads with either factorization. Minimum
+        # degree (options[1] = 0) with the two-level one (options[23] = 10, for general matrices
+        # alone: solves take half the time) is not: on two threads its solutions are wrong.
         self.options[1] = 2
+        self.options[23] = 10 if kind == "general" else 0
         self.options[9] = 10 if kind == "general" else 8  # perturb pivots below 10^-this
         self._handle = np.zeros(64, dtype=np.int64)
         self._rows = matrix.indptr.astype(np.int32)
@@ -147,16 +150,16 @@ class _System:
 
 
 class MklTransform:
-    """Real FFT of C-ordered NumPy arrays of one shape and precision."""
+    """Real FFT over the last two axes of C-ordered NumPy arrays of one shape and precision."""
 
-    def __init__(self, shape: tuple[int, int], dtype: Any, threads: int = 1) -> None:
+    def __init__(self, shape: tuple[int, ...], dtype: Any, threads: int = 1) -> None:
         self.shape = shape
         self.dtype = np.dtype(dtype)
         single = self.dtype == np.float32
-        self._half = (shape[0], shape[1] // 2 + 1)
+        self._half = (*shape[:-1], shape[-1] // 2 + 1)
         self._complex = np.dtype(np.complex64 if single else np.complex128)
         self._library: Any = mkl_library()
-        real, complex_ = (0, shape[1], 1), (0, self._half[1], 1)
+        real, complex_ = (0, shape[-1], 1), (0, self._half[-1], 1)
         self._handles = [
             self._plan(_SINGLE if single else _DOUBLE, into, out, threads)
             for into, out in ((real, complex_), (complex_, real))
@@ -184,7 +187,8 @@ class MklTransform:
         self, precision: int, into: tuple[int, ...], out: tuple[int, ...], threads: int
     ) -> ctypes.c_void_p:
         handle, three = ctypes.c_void_p(), ctypes.c_long * 3
-        size = (ctypes.c_long * 2)(*self.shape)
+        size = (ctypes.c_long * 2)(*self.shape[-2:])
+        rows = self.shape[-2]
         kind = (ctypes.c_int(precision), ctypes.c_int(_REAL), ctypes.c_long(2))
         self._call("DftiCreateDescriptor", ctypes.byref(handle), *kind, size)
         settings = {
@@ -192,8 +196,11 @@ class MklTransform:
             _PLACEMENT: ctypes.c_int(_NOT_INPLACE),
             _INPUT_STRIDES: three(*into),
             _OUTPUT_STRIDES: three(*out),
+            _INPUT_DISTANCE: ctypes.c_long(rows * into[1]),
+            _OUTPUT_DISTANCE: ctypes.c_long(rows * out[1]),
+            _NUMBER_OF_TRANSFORMS: ctypes.c_long(math.prod(self.shape[:-2])),
             _THREAD_LIMIT: ctypes.c_long(threads),
-            _BACKWARD_SCALE: ctypes.c_double(1.0 / (self.shape[0] * self.shape[1])),
+            _BACKWARD_SCALE: ctypes.c_double(1.0 / (rows * self.shape[-1])),
         }
         for name, value in settings.items():
             self._call("DftiSetValue", handle, ctypes.c_int(name), value)

@@ -35,7 +35,6 @@ from ._kernels.elastic import (
 
 Symbol = Callable[[Array], Array]
 Box = tuple[slice, slice]
-_Parts = list[tuple[Convolution, Array | float]]
 BOX_THICKNESSES = 16.0  # side of the box on which a layer's influence coefficients are found
 THINNEST = 0.1  # share of the outsole left above the deepest profile
 REACHED = 1e-3
@@ -75,15 +74,13 @@ class ConvolutionCompliance:
         """``modulus`` (E / (1 - nu^2), Pa) is that of the half-space which short waves meet."""
         self._symbol = symbol
         self._modulus = modulus
-        centre = (shape[0] - 1, shape[1] - 1)
-        self._parts: _Parts = []
-        self._self = np.zeros(shape)
-        for influence, given in parts:
-            weight = 1.0 if given is None else given
-            self._parts.append((Convolution(influence, shape), weight))
-            self._self += influence[centre] * weight**2
+        plain = np.ones(shape)
+        self._weights = np.stack([plain if weight is None else weight for _, weight in parts])
+        self._convolution = Convolution(np.stack([influence for influence, _ in parts]), shape)
+        middle = self._convolution.influence[:, shape[0] - 1, shape[1] - 1]
+        own = np.tensordot(middle, self._weights**2, axes=1)
         # A cell of weight zero (a channel) carries no pressure; keep its diagonal positive.
-        self._self = np.maximum(self._self, self._self.max() * 1e-3)
+        self._self = np.maximum(own, own.max() * 1e-3)
 
     @property
     def self_compliance(self) -> Array:
@@ -97,12 +94,13 @@ class ConvolutionCompliance:
     @property
     def short_waves(self) -> tuple[Array, float]:
         """Weight (nx, ny) and modulus (Pa) of the half-space that short waves meet."""
-        sharpest = max(self._parts, key=lambda part: part[0].influence.max())[1]
-        return np.broadcast_to(sharpest, self._self.shape), self._modulus
+        sharpest = self._convolution.influence.max(axis=(1, 2)).argmax()
+        return self._weights[sharpest], self._modulus
 
     def apply(self, pressure: Array) -> Array:
         """Return the deflection (nx, ny) in m of a pressure field (nx, ny) in Pa."""
-        return _summed(self._parts, pressure)
+        weights = self._weights
+        return np.einsum("kij,kij->ij", weights, self._convolution(weights * pressure))
 
     def within(self, box: Box, dtype: Any = float) -> ConvolutionCompliance:
         """Return the compliance between the cells of a box, whose cost is that of the box.
@@ -112,13 +110,8 @@ class ConvolutionCompliance:
         part = object.__new__(ConvolutionCompliance)
         part._symbol, part._self = self._symbol, self._self[box]
         part._modulus = self._modulus
-        part._parts = [
-            (
-                each.within(part._self.shape, dtype),
-                weight[box].astype(dtype) if isinstance(weight, np.ndarray) else weight,
-            )
-            for each, weight in self._parts
-        ]
+        part._weights = self._weights[:, *box].astype(dtype)
+        part._convolution = self._convolution.within(part._self.shape, dtype)
         return part
 
 
@@ -153,13 +146,6 @@ def compliance_within(compliance: Compliance, box: Box, dtype: Any = float) -> C
     if isinstance(compliance, ConvolutionCompliance):
         return compliance.within(box, dtype)
     return BoxedCompliance(compliance, box)
-
-
-def _summed(parts: _Parts, pressure: Array) -> Array:
-    deflection = np.zeros_like(pressure)
-    for convolution, weight in parts:
-        deflection += weight * convolution(weight * pressure)
-    return deflection
 
 
 def half_space_compliance(

@@ -91,6 +91,8 @@ class March:
         self.counts = Counts()
         self.residuals: list[float] = []
         self._fit = fit
+        # of cells that neither pool nor floor reaches
+        self._whole = problem.compliance.within(np.arange(start.gap.size), np.float32)
         self._pool_depth = pool_depth
         self._shortest = first_step * SHORTEST
         self._cells: Cells | None = None
@@ -147,7 +149,7 @@ class March:
             self.counts.newton += attempt.newton
             self.counts.krylov += attempt.krylov
             self.residuals = attempt.residuals
-            state = attempt.state and cells.on_whole(attempt.state, problem)
+            state = attempt.state and cells.on_whole(attempt.state, problem, self._whole)
             if state is not None and not _escaped(problem, cells, state.gap):
                 self.problem, self.state, self.film = problem, state, film
                 self.counts.time_steps += 1

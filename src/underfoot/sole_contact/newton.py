@@ -34,10 +34,9 @@ from .film_balance import FilmBalance, Linearisation
 from .gmres import krylov_solution
 from .preconditioner import PoleFit, Preconditioner
 from .problem import Problem, State
+from .row_compliance import RowCompliance
 
 STALL = 12  # Newton steps without halving the residual after which a shorter time step is tried
-STALE = 10  # GMRES iterations above which the next Newton step gets a new factorization
-NEAR = 0.3  # share to which the last Newton step must have brought the residual for that
 FORCING = 0.3  # share of the residual to which GMRES solves, once the residual is small
 CYCLE = 0.05  # relative difference of balances two Newton steps apart that counts as none
 THIN = 2e-4  # m; steps are limited where the film is thinner
@@ -122,8 +121,11 @@ class Cells:
         names = ("pressure", "gap", "fluid", "contact", "cavitated", "fraction")
         return replace(whole, **{name: getattr(whole, name)[self.numbers] for name in names})
 
-    def on_whole(self, state: State, problem: Problem) -> State:
-        """Return a state on these cells as one of the whole sole, unloaded beside them."""
+    def on_whole(self, state: State, problem: Problem, deflection: RowCompliance) -> State:
+        """Return a state on these cells as one of the whole sole, unloaded beside them.
+
+        ``deflection`` of the whole sole, of any precision, gives the gap of the other cells.
+        """
 
         def placed(values: NDArray[Any], beside: float = 0.0) -> NDArray[Any]:
             field = np.full(self.mask.shape, beside, dtype=values.dtype)
@@ -131,10 +133,13 @@ class Cells:
             return field
 
         pressure = placed(state.pressure)
+        risen = deflection.apply(pressure.astype(np.float32))
+        gap = problem.symmetric(problem.clearance - state.approach + risen)
+        gap[self.numbers] = state.gap
         return State(
             pressure,
             state.approach,
-            problem.symmetric(problem.gap(pressure, state.approach)),
+            gap,
             placed(state.fluid),
             placed(state.contact),
             placed(state.cavitated),
@@ -190,7 +195,6 @@ def implicit_step(
     missing = problem.gap(pressure, approach) - gap
     attempt = Attempt(None, 0, 0)
     change = np.inf
-    solve, count = None, 0
     balances: list[float] = []
     whole = float(width.sum())
     faint = 1e-9 * load / (whole * area)
@@ -230,13 +234,10 @@ def implicit_step(
             break
 
         linear = Linearisation(faces, stiffness, full, rows)
-        # a factorization serves the next step too while the sets and the stiffness settle
-        near = len(attempt.residuals) > 1 and error < NEAR * attempt.residuals[-2]
-        if solve is None or count > STALE or not near:
-            try:
-                solve = cells.preconditioner.factorise(linear, problem.settings.backend)
-            except ConvergenceError:
-                break
+        try:
+            solve = cells.preconditioner.factorise(linear, problem.settings.backend)
+        except ConvergenceError:
+            break
 
         def product(vector: Array, linear=linear) -> Array:
             deflection = cells.direction.apply(padded(vector[:-1].astype(np.float32)))

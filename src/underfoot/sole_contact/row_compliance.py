@@ -103,6 +103,7 @@ def row_compliance(compliance: Compliance, cells: RowCells, land: Mask) -> RowCo
     spread = sp.csr_matrix(
         (weights.ravel(), (np.tile(numbers, len(weights)), squares.ravel())), (cells.size, count)
     )
+    spread.eliminate_zeros()  # a square cell has its own deflection
     short = getattr(compliance, "short_waves", None)
     near = sp.csr_matrix((cells.size, cells.size))
     if short is not None and (cells.width < 1).any():

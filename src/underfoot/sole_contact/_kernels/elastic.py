@@ -264,7 +264,10 @@ def balanced_weights(
 
 
 class Convolution:
-    """Linear (not periodic) convolution of (nx, ny) fields with influence coefficients."""
+    """Linear (not periodic) convolution of fields (..., nx, ny) with influence coefficients.
+
+    Of coefficients (..., 2 nx - 1, 2 ny - 1): each field with its own.
+    """
 
     def __init__(self, influence: Array, shape: tuple[int, int], dtype: Any = float) -> None:
         nx, ny = shape
@@ -272,33 +275,33 @@ class Convolution:
         self.influence = influence
         # the real axis in fours: 240 takes half the time of 225
         self.padded = (fast_length(2 * nx - 1), 4 * fast_length(math.ceil((2 * ny - 1) / 4)))
-        wrapped = np.zeros(self.padded, dtype)
+        wrapped = np.zeros((*influence.shape[:-2], *self.padded), dtype)
         rows = np.arange(-nx + 1, nx) % self.padded[0]
         columns = np.arange(-ny + 1, ny) % self.padded[1]
-        wrapped[np.ix_(rows, columns)] = influence
+        wrapped[..., rows[:, None], columns] = influence
         self.spectrum = fft.rfft2(wrapped)
         self._planned = None
         if fourier_library() == "mkl":
-            self._planned = prepared_transform(self.padded, dtype)
-            self._room = np.zeros(self.padded, dtype)
+            self._planned = prepared_transform(wrapped.shape, dtype)
+            self._room = np.zeros_like(wrapped)
 
     def __call__(self, field: Array) -> Array:
         nx, ny = self.shape
         if self._planned is not None:
-            self._room[:nx, :ny] = field
+            self._room[..., :nx, :ny] = field
             spectrum = self._planned.forward(self._room)
             spectrum *= self.spectrum
-            return self._planned.backward(spectrum)[:nx, :ny]
+            return self._planned.backward(spectrum)[..., :nx, :ny]
         # lines that are all zeros, or cut off in the end, are not transformed
-        lines: Any = fft.rfft(field, n=self.padded[1], axis=1)
-        spectrum: Any = fft.fft(lines, n=self.padded[0], axis=0)
+        lines: Any = fft.rfft(field, n=self.padded[1])
+        spectrum: Any = fft.fft(lines, n=self.padded[0], axis=-2)
         spectrum *= self.spectrum
-        lines = fft.ifft(spectrum, axis=0, overwrite_x=True)[:nx]
-        deflection: Any = fft.irfft(lines, n=self.padded[1], axis=1)
-        return deflection[:, :ny]
+        lines = fft.ifft(spectrum, axis=-2, overwrite_x=True)[..., :nx, :]
+        deflection: Any = fft.irfft(lines, n=self.padded[1])
+        return deflection[..., :ny]
 
     def within(self, shape: tuple[int, int], dtype: Any = float) -> "Convolution":
         """Return the same convolution of the fields on a smaller grid, in a precision."""
         (nx, ny), (mx, my) = self.shape, shape
-        part = self.influence[nx - mx : nx + mx - 1, ny - my : ny + my - 1]
+        part = self.influence[..., nx - mx : nx + mx - 1, ny - my : ny + my - 1]
         return Convolution(part, shape, dtype)
