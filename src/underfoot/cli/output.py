@@ -235,8 +235,8 @@ def _print_blocks(
         if count:
             console.print()
         for line in (table.columns, *rows):
-            cells = {k: line[k].replace("\n  ", "") for k in (*keys, *block)}
-            shown = [f"{cell:{min(widths[k], console.width)}}" for k, cell in cells.items()]
+            texts = {k: line[k].replace("\n  ", "") for k in (*keys, *block)}
+            shown = [f"{text:{min(widths[k], console.width)}}" for k, text in texts.items()]
             console.print("  ".join(shown).rstrip(), markup=False)
     _say_rest(console, len(cells) - len(rows))
 

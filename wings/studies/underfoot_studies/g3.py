@@ -273,7 +273,7 @@ def _middle(one: Split, take: str) -> float:
     """Return what a part of the friction is at the medians of the law's inputs, N."""
     if take == "loss":
         return float(np.median(one.loss))
-    return one.medians[0 if take == "adhesion" else 1]
+    return one.medians[0] if take == "adhesion" else one.medians[1]
 
 
 def _ends_of_the_pairs(splits: Mapping[tuple[str, str], Split], take: str) -> Quantity:
