@@ -12,8 +12,9 @@ from typer.testing import CliRunner
 from underfoot.case import Case
 from underfoot.case.terms import TERMS
 from underfoot.cli.app import app
-from underfoot.cli.output import shortened
+from underfoot.cli.output import print_table, shortened
 from underfoot.compute.summary import ranked_assumptions
+from underfoot.core.presentation import Table
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 EXAMPLE = EXAMPLES / "work_shoe_untreaded_glycerol.toml"
@@ -218,6 +219,16 @@ def test_a_check_with_long_paths_stays_a_table_of_80_columns(underfoot, monkeypa
     assert ["equilibrium_shear_modulus"] in rows
     whole = "".join(underfoot("check", case, "--all").stdout.split())
     assert f"{folder.as_posix()}/floor.csv" in whole
+
+
+def test_a_wide_table_counts_the_rows_that_it_leaves_out(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    columns = tuple(f"a_rather_long_column_{k}" for k in range(8))
+    rows = [tuple(f"{k}.{row}" for k in range(8)) for row in range(20)]
+    print_table(Table("wide", columns, rows), everything=False)
+    said = capsys.readouterr().out
+    assert "8 more rows" in said
+    assert max(map(len, said.splitlines())) <= 80
 
 
 def test_debug_shows_the_traceback(underfoot, monkeypatch):
