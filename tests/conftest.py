@@ -7,6 +7,8 @@ import signal
 import pytest
 from hypothesis import settings
 
+from positive_bounds import bounds_below_zero
+
 CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "chrome")
 LONG = 5  # s of CPU, above which a test should be marked slow
 CPU = pytest.StashKey[list[float]]()
@@ -18,6 +20,15 @@ settings.load_profile("ci")
 # started in the background of a shell, the programs of the tests would ignore Ctrl-C
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def no_page_has_a_positive_quantity_below_zero(tmp_path_factory):
+    """Reads every page that the tests of this process left: no COF, share or distance below 0."""
+    yield
+    pages = sorted(tmp_path_factory.getbasetemp().rglob("*.html"))
+    found = [f"{page.parent}: {line}" for page in pages for line in bounds_below_zero(page)]
+    assert not found, found
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -69,7 +69,7 @@ def dry_contact(
     """
     if not normal_force > 0:
         raise InputError(f"{normal_force} is not positive", where="normal_force")
-    compliance = land.mean_rise
+    compliance = land.work / land.area[:, None]
     clearance = land.overlap @ (land.height - land.height.min()) / land.area
     pressure, approach, steps = _touching(compliance, clearance, land.area, normal_force)
     gap = clearance - approach + compliance @ pressure

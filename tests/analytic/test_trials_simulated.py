@@ -262,6 +262,12 @@ def test_boundary_folder(tmp_path):
     for fluid, (alpha, beta) in fluids.items():
         assert rows[fluid][1] == pytest.approx(alpha, abs=0.3)
         assert rows[fluid][3] == pytest.approx(beta, abs=0.03)
+    ranges = {row[0]: row for row in analysis.study.tables[2].rows}
+    for (shoe, _), (adhesion, _) in pairs.items():  # a sole stands on one floor here
+        left = {fluid: a + b * adhesion for fluid, (a, b) in fluids.items()}
+        assert ranges[shoe][4] == max(left, key=left.get)
+        expected = max(left.values()) - min(left.values())
+        assert ranges[shoe][5] == pytest.approx(expected, abs=0.2)
     titles = [finding.title for finding in analysis.study.findings]
     assert any("type II " in title for title in titles)
     assert any("type III " in title for title in titles)

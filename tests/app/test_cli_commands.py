@@ -12,8 +12,9 @@ from typer.testing import CliRunner
 from underfoot.case import Case
 from underfoot.case.terms import TERMS
 from underfoot.cli.app import app
-from underfoot.cli.output import shortened
+from underfoot.cli.output import print_table, shortened
 from underfoot.compute.summary import ranked_assumptions
+from underfoot.core.presentation import Table
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 EXAMPLE = EXAMPLES / "work_shoe_untreaded_glycerol.toml"
@@ -188,6 +189,46 @@ def test_decisive_assumptions_come_first_one_section_after_the_other():
         "Contact friction is proportional to the contact pressure.",
         "interface: effective_rq = 14 um",
     ]
+
+
+def test_a_check_with_long_paths_stays_a_table_of_80_columns(underfoot, monkeypatch, tmp_path):
+    """Paths by their end, checksums by their beginning; --all has them whole."""
+    folder = tmp_path / "a_folder_of_a_laboratory_with_a_long_name" / "measurements" / "sole"
+    folder.mkdir(parents=True)
+    monkeypatch.setenv("COLUMNS", "80")
+    case = folder / "case.toml"
+    measured = EXAMPLES / "measured"
+    text = (
+        (measured / "case.toml").read_text(encoding="utf-8").replace('file = "compound.toml"', "")
+    )
+    for name in ("heel.stl", "sole.csv", "floor.csv"):
+        (folder / name).write_bytes((measured / name).read_bytes())
+        text = text.replace(f'"{name}"', f'"{folder.as_posix()}/{name}"')
+    terms = "{shear_modulus = '1 MPa', time = '1 ms'}"
+    more = f"relaxation = {{equilibrium_shear_modulus = '2 MPa', terms = [{terms}]}}\n"
+    case.write_text(text.replace("[shoe.material]", f"[shoe.material]\n{more}"), encoding="utf-8")
+    found = underfoot("check", case)
+    assert found.exit_code == 0, found.stderr
+    lines = found.stdout.splitlines()
+    assert max(map(len, lines)) <= 80
+    rows = [line.split() for line in lines]
+    assert ["value", "given", "origin"] in rows
+    (path,) = [row[1] for row in rows if row[:1] == ["floor.roughness.file"]]
+    assert path.startswith("…")
+    assert path.endswith("/sole/floor.csv")
+    assert ["equilibrium_shear_modulus"] in rows
+    whole = "".join(underfoot("check", case, "--all").stdout.split())
+    assert f"{folder.as_posix()}/floor.csv" in whole
+
+
+def test_a_wide_table_counts_the_rows_that_it_leaves_out(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    columns = tuple(f"a_rather_long_column_{k}" for k in range(8))
+    rows = [tuple(f"{k}.{row}" for k in range(8)) for row in range(20)]
+    print_table(Table("wide", columns, rows), everything=False)
+    said = capsys.readouterr().out
+    assert "8 more rows" in said
+    assert max(map(len, said.splitlines())) <= 80
 
 
 def test_debug_shows_the_traceback(underfoot, monkeypatch):

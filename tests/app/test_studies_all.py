@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
+from chromium import opened
 
 from commands import called, process
 from underfoot.core.errors import Cancelled
@@ -167,6 +168,10 @@ def test_a_finished_folder_is_judged_again_as_a_process(tmp_path):
     assert found.returncode == 0, found.stderr
     verdicts = {row["statement"]: row["verdict"] for row in json.loads(found.stdout)}
     assert verdicts["g3.order_dry_real_contact_area_and_one_strength"] == "disagrees"
+    again = tmp_path / "again"  # with the figures, drawn from study.json
+    assert called("studies", "summary", str(out), "--out", str(again)).returncode == 0
+    pictures = {path.name for path in (again / "g3").glob("*.png")}
+    assert pictures == {path.name for path in out.glob("*.png")} != set()
     empty = tmp_path / "empty"
     empty.mkdir()
     nothing = called("studies", "summary", str(empty))
@@ -183,6 +188,18 @@ def test_a_single_study_writes_its_page_with_figures_first(tmp_path):
     assert page.index("data:image/png") < page.index("<th>Statement</th>")
     assert page.count("data:image/png") == len(list(out.glob("*.png")))
     assert not re.search(r"(src|href)=[\"']https?:", page)
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("width", [1366, 390])
+def test_the_page_of_a_study_is_read_without_scrolling_sideways(tmp_path, width):
+    out = tmp_path / "g3"
+    assert process("studies", "run", "g3", "--out", out).returncode == 0
+    with opened(out / "report.html", width=width, height=800) as session:
+        assert session.value("document.documentElement.scrollWidth") <= width
+        seen = "[...document.querySelectorAll('details[open] tr')]"
+        tallest = session.value(f"Math.max(...{seen}.map(r => r.getBoundingClientRect().height))")
+        assert tallest < 400  # 540 px once, when a note was squeezed beyond the right edge
 
 
 def test_a_study_fits_a_terminal_of_80_columns(monkeypatch):

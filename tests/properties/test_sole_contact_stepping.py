@@ -109,18 +109,6 @@ def test_an_unloaded_sole_draws_no_suction_and_lets_go():
     assert freed.fluid_load <= 5.0 * (1 + 1e-3)
 
 
-def test_going_back_repeats_the_future():
-    sole = sliding()
-    sole.advance(0.03, normal_force=400.0, speed=0.5)
-    mark = sole.bookmark()
-    first = sole.advance(0.02, normal_force=200.0, speed=0.1)
-    sole.go_back(mark)
-    assert sole.time == pytest.approx(0.03)
-    second = sole.advance(0.02, normal_force=200.0, speed=0.1)
-    assert np.array_equal(first.fluid_pressure, second.fluid_pressure)
-    assert sole.history.time == sorted(sole.history.time)
-
-
 @pytest.mark.parametrize("profile", [Flat(), Facet(math.radians(8), 0.03)])
 def test_rolled_map_is_the_map_of_the_new_angle(profile):
     """On the cells of the sole, rolling turns every point about the rear end."""

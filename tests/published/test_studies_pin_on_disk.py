@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+import scipy.stats
 
 from underfoot.calibrate import CofPoints, fluid_points, pin_on_disk, roughness_series
-from underfoot.case.friction import RIVAL_DEVIATION, measured_fluids
+from underfoot.case.friction import RIVAL_DEVIATION, measured_fluids, range_95
 from underfoot.core import InputError
 from underfoot.core.catalogue import Catalogue
 from underfoot.friction import ONE_CURVE, OWN_BOUNDARY
@@ -228,6 +229,42 @@ def test_study_g3_judges_the_default_law():
             assert computed.quantities[f"default.{sole}.{end}"].interval[0] >= 0.0
     figures = {"fig22_dry_adhesion", "fig23_hysteresis", "fig24_fluid_sole", "fig25_shoe_floor"}
     assert set(computed.figures) == figures
+
+
+def test_study_g3_takes_the_loss_of_the_compounds_as_a_case_does():
+    """What the compounds lose is what a case of the same pair gives at its loss tangent."""
+    catalogue, draws = Catalogue.load(), default_law.draws_without_report()
+    one = g3.split(catalogue, draws, "soft rubber", "vinyl", 0)
+    material = catalogue.entry("material", "rubber_60a")
+    loss = material.sourced("loss_tangent")
+    assert range_95(loss) == pytest.approx((0.05, 0.30), rel=0.02)
+    rq = 1.25e-6 * 1.89
+    slope = 0.105e6 * rq / np.sqrt(1 + (0.105e6 * rq / 1.26) ** 2)
+    expected = 20.9 * 0.0125 / 0.105 * loss.value / 0.2 * slope
+    assert np.median(one.loss) == pytest.approx(expected, rel=0.1)
+    pins = [g3.split(catalogue, draws, sole, "vinyl", 0).loss for sole in g3.SOLES]
+    apart = np.corrcoef(np.log(pins))  # they share the laboratory, not the loss
+    assert apart[0, 1] < 0.8
+    computed = g3.compute(Options())
+    said = verdicts("g3", computed)
+    assert said["hysteresis_floor_loss_in_the_compound_alone"] == "disagrees"
+    by_sole = computed.quantities["default.loss"].values
+    assert max(by_sole) - min(by_sole) < g3.TIE
+
+
+def test_the_expected_analysis_of_variance_has_the_scatter_of_the_report():
+    """Two soles 1 N apart, floors alike: F = 6 sum (mean - grand)^2 / 0.82^2."""
+    none = {fluid: np.zeros(2) for fluid in g3.FLUIDS}
+
+    def made(force):
+        return g3.Split(np.full(2, force), np.zeros(2), none, (force, 0.0, {}), np.zeros(2))
+
+    soles = ("polyurethane", "hard rubber")
+    splits = {(s, f): made(1.0 + k) for k, s in enumerate(soles) for f in g3.FLOORS}
+    p = g3.expected_analysis(splits, "adhesion")
+    f = 6 * 2 * 0.5**2 / 0.82**2
+    assert p["sole"] == pytest.approx(scipy.stats.f.sf(f, 1, 8), rel=1e-6)
+    assert p["floor"] == pytest.approx(1.0)
 
 
 def test_unknown_mechanism_is_answered_with_the_nearest():

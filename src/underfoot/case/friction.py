@@ -151,7 +151,7 @@ class PairOption(FrictionOption):
                 context.floor.roughness.rq_or_estimate is not None,
             ),
             shore_a_deviation=(material.shore_a and material.sourced("shore_a").uncertainty) or 0.0,
-            loss_tangent=_spread(material.sourced("loss_tangent")) or LOSS_TANGENTS,
+            loss_tangent=range_95(material.sourced("loss_tangent")) or LOSS_TANGENTS,
             sole_slope=_slope(surfaces[0]),
             floor_slope=_slope(surfaces[1]),
         )
@@ -596,7 +596,7 @@ def _span(
     rq = roughness.rq_or_estimate
     if rq is None:
         return unknown
-    spread = _spread(SourcedValue(rq, "m", uncertainty=roughness.rq_uncertainty))
+    spread = range_95(SourcedValue(rq, "m", uncertainty=roughness.rq_uncertainty))
     assert spread is not None
     longest = HYSTERESIS_WAVES[2]
     share = min(1.0, (longest / (roughness.cutoff or longest)) ** hurst)
@@ -605,7 +605,7 @@ def _span(
     return spread[0] * share, spread[1] * share
 
 
-def _spread(given: SourcedValue) -> tuple[float, float] | None:
+def range_95(given: SourcedValue) -> tuple[float, float] | None:
     """Return a value twice, or its 95 % range where it has a spread; None without a value."""
     if given.value is None:
         return None

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
-from pathlib import Path
+from pathlib import Path, PurePath
 from textwrap import shorten, wrap
 from typing import TYPE_CHECKING, Any
 
@@ -35,8 +36,8 @@ REMARKS = ("", "Remark", "Source", "Basis", "origin")
 LONGEST_LINE = 110
 NARROWEST = 24
 """Characters of the last column below which the other columns wrap too."""
-LONGEST_VALUE = 36
-"""Characters of a cell above which the terminal prints it on a line of its own."""
+LONGEST_VALUE, LONGEST_PATH = 36, 24
+"""Characters of a cell above which the terminal prints it on a line of its own; of a path's end."""
 
 
 def answer(
@@ -147,10 +148,16 @@ def print_table(table: Table, *, everything: bool = True) -> None:
     last = len(table.columns) - 1
     if not everything and last > 1:
         cells = [
-            [*row[:-1], row[-1] if len(row[-1]) <= LONGEST_VALUE else shortened(row[-1])]
+            [
+                *map(narrowed, row[:-1]),
+                row[-1] if len(row[-1]) <= LONGEST_VALUE else shortened(row[-1]),
+            ]
             for row in cells
         ]
-    widths = [max(map(len, column)) for column in zip(table.columns, *cells, strict=True)]
+    widths = [
+        max(len(line) for cell in column for line in cell.split("\n"))
+        for column in zip(table.columns, *cells, strict=True)
+    ]
     if sum(widths) + 2 * last > console.width:
         if sum(width > LONGEST_VALUE for width in widths) > 1:
             _print_records(console, table, cells, everything=everything)
@@ -176,6 +183,18 @@ def print_table(table: Table, *, everything: bool = True) -> None:
     console.print(drawn)
 
 
+def narrowed(cell: str) -> str:
+    """Return a long path by its end, a checksum by its beginning, a dotted name on two lines."""
+    if len(cell) <= LONGEST_VALUE or re.search(r"\s", cell):
+        return cell
+    if re.fullmatch("[0-9a-f]{64}", cell):
+        return f"{cell[:SHORT]}…"
+    if len(names := PurePath(cell).parts) > 1:
+        return "…" + "/".join(names)[1 - LONGEST_PATH :]
+    first, dot, last = cell.rpartition(".")
+    return f"{first}.\n  {last}" if dot else cell
+
+
 def _print_records(
     console: Console, table: Table, cells: Sequence[Sequence[str]], *, everything: bool
 ) -> None:
@@ -183,12 +202,10 @@ def _print_records(
     label = max(map(len, table.columns[1:]))
     rows = cells if everything else cells[:MOST_RECORDS]
     for heading, *row in rows:
-        console.print(heading, markup=False)
+        console.print(heading.replace("\n  ", ""), markup=False)
         for name, cell in zip(table.columns[1:], row, strict=True):
             if cell and cell != "-":
-                indent = " " * (label + 4)
-                lines = wrap(cell, console.width - label - 4) or [""]
-                text = f"\n{indent}".join(lines)
+                text = f"\n{' ' * (label + 4)}".join(wrap(cell, console.width - label - 4))
                 console.print(f"  {name:{label}}  {text}", markup=False)
     _say_rest(console, len(cells) - len(rows))
 
@@ -218,7 +235,8 @@ def _print_blocks(
         if count:
             console.print()
         for line in (table.columns, *rows):
-            shown = [f"{line[k]:{min(widths[k], console.width)}}" for k in (*keys, *block)]
+            texts = {k: line[k].replace("\n  ", "") for k in (*keys, *block)}
+            shown = [f"{text:{min(widths[k], console.width)}}" for k, text in texts.items()]
             console.print("  ".join(shown).rstrip(), markup=False)
     _say_rest(console, len(cells) - len(rows))
 

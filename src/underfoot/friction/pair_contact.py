@@ -298,9 +298,9 @@ class Pair:
     package's own theory gives for the compound's spectrum, ``hysteresis_origin`` names where it
     comes from; None takes the closed form. ``full_contact`` is p_R (Pa) where a contact table gives
     it. ``contact_deviation`` is the standard deviation of ln of both where a contact table gives
-    them: finer waves make more of either. ``polymer`` names what soles of one compound share,
-    whatever their hardness and roughness. ``shore_a_deviation`` is the standard deviation of the
-    hardness. ``measured`` says of which of the two roughnesses the range is that of a measurement.
+    them: finer waves make more of either. ``polymer`` names what soles of one compound share of
+    friction and loss, whatever their hardness and roughness. ``shore_a_deviation`` is the standard
+    deviation of the hardness. ``measured`` tells roughness that was measured from one assumed.
     """
 
     shore_a: float
@@ -342,7 +342,8 @@ class Pair:
         }
         spans = {"sole_rq": self.sole_rq, "floor_rq": self.floor_rq}
         for name, (low, high) in (spans | {"loss_tangent": self.loss_tangent}).items():
-            subject = f"{name} {low:.3g} {high:.3g}"
+            owner = f" of {self.polymer}" if name == "loss_tangent" and self.polymer else ""
+            subject = f"{name} {low:.3g} {high:.3g}{owner}"
             share = draws.errors.get(subject)
             share = named_shares(seed, subject, draws.count) if share is None else share
             numbers[name] = low * (high / low) ** share

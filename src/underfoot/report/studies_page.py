@@ -34,7 +34,7 @@ def write_study(result: StudyResult, folder: Path) -> list[str]:
 
     Returns the figures' names.
     """
-    content = json.dumps(result.to_dict(), indent=1, ensure_ascii=False)
+    content = json.dumps(result.to_dict(figures=True), indent=1, ensure_ascii=False)
     (folder / "study.json").write_text(content, encoding="utf-8")
     for table in result.computed.tables:
         _write_csv(folder / f"{table.name}.csv", table.columns, table.rows)

@@ -41,10 +41,6 @@ class History:
     speed: list[float] = field(default_factory=list)
     shoe_angle: list[float] = field(default_factory=list)
 
-    def shortened(self, length: int) -> History:
-        """Return the first ``length`` entries."""
-        return History(*(getattr(self, name)[:length] for name in self.__slots__))
-
 
 @dataclass(slots=True)
 class Counts:

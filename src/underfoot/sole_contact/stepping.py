@@ -55,14 +55,13 @@ class Reporting:
 
 @dataclass(frozen=True, slots=True)
 class Bookmark:
-    """An instant of a ``SlidingSole`` to go back to."""
+    """An instant of a ``SlidingSole`` for another to start from."""
 
     march: tuple[Problem, State, NDArray[np.bool_], float]
     time: float
     load: float
     speed: float | None
     shoe_angle: float
-    length: int
 
 
 class SlidingSole:
@@ -235,7 +234,7 @@ class SlidingSole:
             self._angle = shoe_angle
 
     def bookmark(self) -> Bookmark:
-        """Return this instant, to try several continuations from."""
+        """Return this instant, for another sole to take over."""
         march = self._march
         return Bookmark(
             (march.problem, march.state, march.film, march.step),
@@ -243,16 +242,7 @@ class SlidingSole:
             self._load,
             self._speed,
             self._angle,
-            len(self.history.time),
         )
-
-    def go_back(self, mark: Bookmark) -> None:
-        """Return to an instant marked before."""
-        march = self._march
-        march.problem, march.state, march.film, march.step = mark.march
-        self._time, self._load, self._speed = mark.time, mark.load, mark.speed
-        self._angle = mark.shoe_angle
-        self.history = self.history.shortened(mark.length)
 
     def take_over(self, mark: Bookmark, first_step: float) -> None:
         """Start where another sole on the same grid was; the change comes with the next step.

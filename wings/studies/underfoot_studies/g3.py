@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from underfoot.case.friction import range_95
 from underfoot.core.arrays import Array
 from underfoot.core.catalogue import Catalogue
 from underfoot.fluid import BLOCKING
@@ -17,6 +18,7 @@ from underfoot.material import youngs_modulus_gent
 from underfoot.studies.figure import GREY, OURS, PRINTED, Figure, Layer, Panel, grouped_bars, points
 from underfoot.studies.runner import Computed, Options, Table
 from underfoot.studies.verdict import Quantity
+from underfoot_trial_analysis.statistics import analysis_of_variance
 
 from .default_law import (
     FAMILIES,
@@ -47,8 +49,9 @@ FLUIDS = {
 """Of Table 5, by the catalogue's names."""
 OIL = "gear_oil_75w140"
 """Blocks most of the adhesion: what is left counts as hysteresis (Eq. 23)."""
-TIE = 0.82 / np.sqrt(3.0)
-"""N: the report's standard deviation of a reading over its repeats, taken as three."""
+SCATTER, REPEATS = 0.82, 3
+"""N: the report's standard deviation of a reading; how often each was taken (assumed)."""
+TIE = SCATTER / np.sqrt(REPEATS)
 CONTACT_PRESSURE, LOAD, SPEED = 266.1e3, 20.9, 0.01
 """Pa, N, m/s (G.3.1)."""
 
@@ -59,13 +62,15 @@ class Split:
 
     ``adhesion`` (dry less oiled), ``hysteresis`` (under the oil) and ``lubricated`` by fluid (less
     the oiled one, none where that is higher) are (draws,);
-    ``medians`` are the same three at the medians of the law's inputs.
+    ``medians`` are the same three at the medians of the law's inputs. ``loss`` (draws,) is the part
+    of the oiled friction that the compound loses, by its loss tangent.
     """
 
     adhesion: Array
     hysteresis: Array
     lubricated: Mapping[str, Array]
     medians: tuple[float, float, Mapping[str, float]]
+    loss: Array
 
 
 def compute(options: Options) -> Computed:
@@ -94,6 +99,7 @@ def compute(options: Options) -> Computed:
         },
         (
             _split_table(splits),
+            _analysis_table(splits),
             _lubricated_table(splits),
             Table.of(
                 "eq26",
@@ -113,27 +119,37 @@ def compute(options: Options) -> Computed:
         ),
         {
             "fig22_dry_adhesion": _pair_figure(
-                {pair: (one.medians[0], one.adhesion) for pair, one in splits.items()},
-                "dry adhesion (N)",
+                {
+                    "dry adhesion (N)": {
+                        pair: (one.medians[0], one.adhesion) for pair, one in splits.items()
+                    }
+                },
                 "Fig. 22: dry adhesion by sole and floor; printed: hard rubber highest, "
                 "polyurethane lowest",
             ),
             "fig23_hysteresis": _pair_figure(
-                {pair: (one.medians[1], one.hysteresis) for pair, one in splits.items()},
-                "friction under gear oil (N)",
-                "Fig. 23: what counts as hysteresis; printed: most polyurethane on marble,\n"
-                "least hard rubber on vinyl",
+                {
+                    "friction under gear oil (N)": {
+                        pair: (one.medians[1], one.hysteresis) for pair, one in splits.items()
+                    },
+                    "of it lost in the compound (N)": {
+                        pair: (_middle(one, "loss"), one.loss) for pair, one in splits.items()
+                    },
+                },
+                "Fig. 23: what counts as hysteresis, and what of it the compound loses; printed:\n"
+                "most polyurethane on marble, least hard rubber on vinyl",
             ),
             "fig24_fluid_sole": _fluid_figure(catalogue, splits, left),
             "fig25_shoe_floor": _pair_figure(
                 {
-                    pair: (
-                        float(np.mean(list(one.medians[2].values()))),
-                        np.mean(list(one.lubricated.values()), axis=0),
-                    )
-                    for pair, one in splits.items()
+                    "adhesion, mean of six fluids (N)": {
+                        pair: (
+                            float(np.mean(list(one.medians[2].values()))),
+                            np.mean(list(one.lubricated.values()), axis=0),
+                        )
+                        for pair, one in splits.items()
+                    }
                 },
-                "adhesion, mean of six fluids (N)",
                 "Fig. 25: lubricated adhesion by sole and floor; printed: vinyl above marble but "
                 "for soft rubber",
             ),
@@ -146,14 +162,24 @@ def split(catalogue: Catalogue, draws: PairDraws, sole: str, floor: str, seed: i
     """Return the friction of a pair without fluid, under the oil and under each fluid."""
     shore, (sole_ra, floor_ra) = _pair_numbers(catalogue, sole, floor)
     rq = [(RQ_PER_RA * ra,) * 2 for ra in (sole_ra, floor_ra)]
+    loss = range_95(catalogue.entry("material", SOLES[sole]).sourced("loss_tangent"))
+    assert loss is not None
 
-    def friction(fluid: str) -> tuple[Array, float]:
+    def friction(fluid: str) -> tuple[Array, float, Array]:
         family = "dry" if fluid == "dry" else FAMILIES[fluid]
         viscosity = None if fluid == "dry" else viscosity_of(fluid)
-        pair = Pair(shore, (rq[0][0], rq[0][1]), (rq[1][0], rq[1][1]), family, polymer=sole)
-        drawn, _, median = cof_draws(pair, viscosity, SPEED, CONTACT_PRESSURE, draws, seed)
+        pair = Pair(
+            shore,
+            (rq[0][0], rq[0][1]),
+            (rq[1][0], rq[1][1]),
+            family,
+            polymer=sole,
+            loss_tangent=loss,
+        )
+        drawn, lost, median = cof_draws(pair, viscosity, SPEED, CONTACT_PRESSURE, draws, seed)
         name = f"{sole} on {floor}, {fluid}"
-        return LOAD * with_reading_error(drawn[:, 0], draws, name, seed), LOAD * float(median[0])
+        read = with_reading_error(drawn[:, 0], draws, name, seed)
+        return LOAD * read, LOAD * float(median[0]), LOAD * lost[:, 0]
 
     dry, oiled = friction("dry"), friction(OIL)
     wet = {name: friction(fluid) for name, fluid in FLUIDS.items()}
@@ -162,6 +188,7 @@ def split(catalogue: Catalogue, draws: PairDraws, sole: str, floor: str, seed: i
         oiled[0],
         {name: np.maximum(one[0] - oiled[0], 0.0) for name, one in wet.items()},
         (dry[1] - oiled[1], oiled[1], {k: max(one[1] - oiled[1], 0.0) for k, one in wet.items()}),
+        oiled[2],
     )
 
 
@@ -178,13 +205,14 @@ def default_quantities(splits: Mapping[tuple[str, str], Split]) -> dict[str, Qua
 
     def over_floors(sole: str, take: str) -> tuple[float, Array]:
         own = [splits[sole, floor] for floor in FLOORS]
-        medians = [one.medians[0] if take == "adhesion" else one.medians[1] for one in own]
+        medians = [_middle(one, take) for one in own]
         return float(np.mean(medians)), np.mean([getattr(one, take) for one in own], axis=0)
 
     quantities: dict[str, Quantity] = {}
     for take, printed in (
         ("adhesion", ("hard rubber", "soft rubber", "polyurethane")),
         ("hysteresis", ("polyurethane", "soft rubber", "hard rubber")),
+        ("loss", ("polyurethane", "soft rubber", "hard rubber")),
     ):
         values = {sole: over_floors(sole, take) for sole in SOLES}
         ends = [values[sole] for sole in printed]
@@ -206,26 +234,15 @@ def default_quantities(splits: Mapping[tuple[str, str], Split]) -> dict[str, Qua
             names=(first, second),
             chance=chance_of_order([one.adhesion for one in pair], TIE),
         )
-    extremes = [("polyurethane", "marble"), ("hard rubber", "vinyl")]
-    rest = [pair for pair in splits if pair not in extremes]
-    medians = {pair: one.medians[1] for pair, one in splits.items()}
-    highest = max(rest, key=lambda pair: medians[pair])
-    lowest = min(rest, key=lambda pair: medians[pair])
-    columns = [
-        splits[extremes[0]].hysteresis,
-        np.max([splits[pair].hysteresis for pair in rest], axis=0),
-        np.min([splits[pair].hysteresis for pair in rest], axis=0),
-        splits[extremes[1]].hysteresis,
-    ]
-    above = [first - second > TIE for first, second in (columns[:2], columns[2:])]
-    chance = float(np.mean(above[0] & above[1]))
-    pairs = (extremes[0], highest, lowest, extremes[1])
-    quantities["default.hysteresis_pairs"] = Quantity.of(
-        [medians[pair] for pair in pairs],
-        "N",
-        names=("polyurethane on marble", "highest other", "lowest other", "hard rubber on vinyl"),
-        chance=chance,
-    )
+    for take in ("hysteresis", "loss"):
+        quantities[f"default.{take}_pairs"] = _ends_of_the_pairs(splits, take)
+        by_floor = [splits["polyurethane", floor] for floor in ("marble", "vinyl")]
+        quantities[f"default.{take}_floor"] = Quantity.of(
+            [_middle(one, take) for one in by_floor],
+            "N",
+            names=("marble", "vinyl"),
+            chance=chance_of_order([getattr(one, take) for one in by_floor], TIE),
+        )
     spreads = {}
     for sole in SOLES:
         by_fluid = np.array(
@@ -252,6 +269,30 @@ def default_quantities(splits: Mapping[tuple[str, str], Split]) -> dict[str, Qua
         chance=chance_of_order([spreads[sole][1] for sole in order], TIE),
     )
     return quantities
+
+
+def _middle(one: Split, take: str) -> float:
+    """Return what a part of the friction is at the medians of the law's inputs, N."""
+    if take == "loss":
+        return float(np.median(one.loss))
+    return one.medians[0] if take == "adhesion" else one.medians[1]
+
+
+def _ends_of_the_pairs(splits: Mapping[tuple[str, str], Split], take: str) -> Quantity:
+    """Return a part of the friction of the pairs that the report names, and of those between."""
+    extremes = [("polyurethane", "marble"), ("hard rubber", "vinyl")]
+    rest = [pair for pair in splits if pair not in extremes]
+    medians = {pair: _middle(one, take) for pair, one in splits.items()}
+    others = [getattr(splits[pair], take) for pair in rest]
+    first, last = (getattr(splits[pair], take) for pair in extremes)
+    above = (first - np.max(others, axis=0) > TIE) & (np.min(others, axis=0) - last > TIE)
+    between = [medians[pair] for pair in rest]
+    return Quantity.of(
+        [medians[extremes[0]], max(between), min(between), medians[extremes[1]]],
+        "N",
+        names=("polyurethane on marble", "highest other", "lowest other", "hard rubber on vinyl"),
+        chance=float(np.mean(above)),
+    )
 
 
 def eq26_at_its_best(catalogue: Catalogue) -> tuple[dict[str, float], dict[str, Array]]:
@@ -320,12 +361,63 @@ def _split_table(splits: Mapping[tuple[str, str], Split]) -> Table:
         for name, drawn, value in (
             ("dry adhesion, N", one.adhesion, one.medians[0]),
             ("under gear oil, N", one.hysteresis, one.medians[1]),
+            ("of it lost in the compound, N", one.loss, _middle(one, "loss")),
         ):
             low, high = _interval(drawn)
             row |= {name: value, f"{name}: 95 %": f"{low:.2g} to {high:.2g}"}
         rows.append(row)
     title = "Friction of 20.9 N by the law of the pair, fitted without the report's readings"
     return Table.of("default_split", title, rows)
+
+
+PRINTED_EFFECTS = {
+    "adhesion": {"sole": "p < 0.01", "floor": "not named", "sole:floor": "p < 0.01"},
+    "hysteresis": {"sole": "affected", "floor": "affected", "sole:floor": "not named"},
+    "loss": {},
+}
+"""Of the analyses of variance in G.3.2."""
+
+
+def expected_analysis(splits: Mapping[tuple[str, str], Split], take: str) -> dict[str, float]:
+    """Return p of sole, floor and both together, as the report's test would find it.
+
+    Readings are the law's medians, three of each pair about them with the report's scatter: 0.82 N
+    is their standard deviation, so that chance moves nothing.
+    """
+    apart = np.array([-1.0, 0.0, 1.0]) * SCATTER
+    readings = [
+        (_middle(one, take) + each, *pair) for pair, one in splits.items() for each in apart
+    ]
+    forces, soles, floors = zip(*readings, strict=True)
+    table = analysis_of_variance(
+        list(forces),
+        {"sole": list(soles), "floor": list(floors)},
+        ("sole", "floor", "sole:floor"),
+    )
+    return {row.term: float(row.p) for row in table.rows if row.p is not None}
+
+
+def _analysis_table(splits: Mapping[tuple[str, str], Split]) -> Table:
+    names = {
+        "adhesion": "dry adhesion",
+        "hysteresis": "under gear oil",
+        "loss": "of it lost in the compound",
+    }
+    rows = [
+        {
+            "force": name,
+            "effect": term.replace(":", " with "),
+            "p": f"{p:.2g}" if p >= 1e-4 else "below 0.0001",
+            "printed": PRINTED_EFFECTS[take].get(term, "-"),
+        }
+        for take, name in names.items()
+        for term, p in expected_analysis(splits, take).items()
+    ]
+    title = (
+        "Analysis of variance of the law's medians, three readings a pair with the report's "
+        "scatter of 0.82 N"
+    )
+    return Table.of("analysis_of_variance", title, rows)
 
 
 def _lubricated_table(splits: Mapping[tuple[str, str], Split]) -> Table:
@@ -351,8 +443,9 @@ def _conclusions(splits: Mapping[tuple[str, str], Split]) -> tuple[str, ...]:
         "sole is the smoother one, and its real contact area is larger.",
         "Under gear oil, which the report counts as hysteresis, the softest sole has most "
         "friction: a boundary film is left that grows with softness. The floors come out the other "
-        "way round: vinyl, the rougher one, above marble, since hysteresis grows with the floor's "
-        "roughness.",
+        "way round: vinyl above marble, since the rougher floor sheds oil sooner and its waves "
+        "cost more loss.",
+        _words_on_loss(splits),
         f"Eq. 26 with Table 5 leaves at least {alpha['water']:.2f} N under water and "
         f"{alpha['canola oil']:.2f} N under canola oil on every pair, whatever the dry "
         "adhesion: alpha and beta are means over soles that behave differently (R2 0.49).",
@@ -361,23 +454,39 @@ def _conclusions(splits: Mapping[tuple[str, str], Split]) -> tuple[str, ...]:
     )
 
 
-def _pair_figure(
-    values: Mapping[tuple[str, str], tuple[float, Array]], label: str, title: str
-) -> Figure:
-    """Return bars of each sole on each floor, with 95 % of the joint draws."""
-    ends = {pair: _interval(drawn) for pair, (_, drawn) in values.items()}
-
-    def by_floor(take: Mapping[tuple[str, str], float]) -> dict[str, list[float]]:
-        return {f"on {floor}": [take[sole, floor] for sole in SOLES] for floor in FLOORS}
-
-    layers = grouped_bars(
-        by_floor({pair: value for pair, (value, _) in values.items()}),
-        colours=(OURS, "#7fb3d5"),
-        low=by_floor({pair: low for pair, (low, _) in ends.items()}),
-        high=by_floor({pair: high for pair, (_, high) in ends.items()}),
+def _words_on_loss(splits: Mapping[tuple[str, str], Split]) -> str:
+    loss = {pair: _middle(one, "loss") for pair, one in splits.items()}
+    share = max(loss[pair] / one.medians[1] for pair, one in splits.items())
+    by_floor = [np.mean([loss[sole, floor] for sole in SOLES]) for floor in ("vinyl", "marble")]
+    most = max(_interval(one.loss)[1] for one in splits.values())
+    return (
+        f"What the compounds lose by their loss tangent is {by_floor[0]:.2f} N on vinyl and "
+        f"{by_floor[1]:.2f} N on marble (95 % of the joint draws: up to {most:.1f} N), {share:.0%} "
+        "or less of the friction under gear oil: the rest is adhesion that the oil leaves. What is "
+        "published does not tell the loss of polyurethane from that of rubber, so it orders no "
+        "soles; marble, the smoother floor, gives the least."
     )
-    panel = Panel(layers, y_label=label, x_ticks=[*SOLES])
-    return Figure([panel], f"{title}\n(default law, 95 %; no values printed)", size=(7.4, 4.2))
+
+
+def _pair_figure(
+    shown: Mapping[str, Mapping[tuple[str, str], tuple[float, Array]]], title: str
+) -> Figure:
+    """Return bars of each sole on each floor, a panel a force, with 95 % of the joint draws."""
+    panels: list[Panel] = []
+    for label, values in shown.items():
+        ends = {pair: _interval(drawn) for pair, (_, drawn) in values.items()}
+        middles, lows, highs = (
+            {f"on {floor}": [take[sole, floor] for sole in SOLES] for floor in FLOORS}
+            for take in (
+                {pair: value for pair, (value, _) in values.items()},
+                {pair: low for pair, (low, _) in ends.items()},
+                {pair: high for pair, (_, high) in ends.items()},
+            )
+        )
+        bars = grouped_bars(middles, colours=(OURS, "#7fb3d5"), low=lows, high=highs)
+        panels.append(Panel(bars, y_label=label, x_ticks=[*SOLES]))
+    title = f"{title}\n(default law, 95 %; no values printed)"
+    return Figure(panels, title, columns=len(panels), size=(7.4 if len(panels) == 1 else 5.4, 4.2))
 
 
 def _fluid_figure(

@@ -514,7 +514,8 @@ def map_figure(readings: Sequence[Reading]) -> Figure:
         )
     return Figure(
         panels,
-        "Fig. 29: untreaded shoes in glycerol, seven tracks 10 mm apart; ring: highest reading",
+        "Fig. 29: untreaded shoes in glycerol, seven tracks 10 mm apart; ring: highest reading\n"
+        "(map at the shoe's own angle; numbers are means over neighbouring angles)",
         columns=2,
         size=(4.4, 5.2),
         share_y=True,

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.case.equations import EQUATIONS
+from underfoot.core.catalogue import Catalogue
 from underfoot.core.files import read_toml
 from underfoot.friction import Pair, PairContactLaw, PairDraws, packaged_pair_draws
 from underfoot.friction.pair_contact import Family
@@ -26,6 +27,7 @@ from underfoot.reference import soft_ehl_film
 from underfoot.studies import studies, study
 
 from .default_law import RQ_PER_RA, draws_without_report, viscosity_of
+from .g3 import FLOORS, split
 
 ROWS = Path(__file__).with_name("report_rows.toml")
 RATINGS = {"works": "works", "part": "in part", "outside": "outside the model"}
@@ -136,6 +138,11 @@ def default_numbers() -> dict[str, float]:
         pair["floor_rq"] = RQ_PER_RA * 1.89e-6
         oiled = cof(**pair, family="oil", fluid="gear_oil_75w140")
         adhesion[f"adhesion_{name}"] = 20.9 * (cof(**pair, family="dry") - oiled)
+    splits = {
+        floor: split(Catalogue.load(), draws_without_report(), "soft rubber", floor, 0)
+        for floor in FLOORS
+    }
+    loss = {f"loss_{floor}": float(np.median(one.loss)) for floor, one in splits.items()}
     film = soft_ehl_film(
         viscosity=74.6e-3,
         entrainment_speed=1.0,
@@ -162,6 +169,7 @@ def default_numbers() -> dict[str, float]:
         "glycerol_hard": cof(shore_a=70.0, **glycerol),
         "lambda_canola": float(film) / float(np.hypot(8.2e-6, 1.34e-6)),
         **adhesion,
+        **loss,
     }
 
 

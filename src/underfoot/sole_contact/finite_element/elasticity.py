@@ -59,11 +59,6 @@ class LandCompliance:
         object.__setattr__(self, "area", area)
         object.__setattr__(self, "overlap", overlap)
 
-    @property
-    def mean_rise(self) -> Array:
-        """Mean rise of the land around node i under a unit pressure at node j, m/Pa (n, n)."""
-        return self.work / self.area[:, None]
-
 
 def land_compliance(
     mesh: SoleMesh,
