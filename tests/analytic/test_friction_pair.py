@@ -378,7 +378,7 @@ def test_a_compound_and_a_floor_of_the_catalogue_are_drawn_over_their_spread():
 
 
 def test_packaged_draws_lie_on_the_safe_side_of_the_fit_to_every_reading():
-    """They are those of 55 wet readings: COF inside the interval of all 91, and not above them."""
+    """They are those of 55 wet readings: COF inside the interval of all 97, and not above them."""
     posterior = fitted(law_named("pair"), readings(), steps=1000, seed=5)
     assert posterior.effective > 500
     again = posterior.draws(1000, seed=1)

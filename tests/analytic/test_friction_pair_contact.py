@@ -121,6 +121,32 @@ def test_a_bound_scores_by_the_probability_beyond_it():
     assert score.error[0] == pytest.approx(0.0, abs=0.03)
 
 
+@pytest.mark.parametrize("median", [0.8, 0.2, 0.08])
+def test_a_bound_is_inside_by_the_share_of_the_draws_it_allows(median):
+    """A bound of 0.2 below, at and above the median: half of an interval, less, or nothing."""
+    draws = np.random.default_rng(0).normal(np.log(median), 0.5, (40_000, 1))
+    score = scored(draws, [made_up("lab", 1e-3, 0.2, kind="lower")])
+    allowed = norm.sf(np.log(0.2), np.log(median), 0.5)
+    for found, level in ((score.inside_50, 0.5), (score.inside_95, 0.95)):
+        high, low = (1 + level) / 2, max((1 - level) / 2, 1 - allowed)
+        assert found[0] == pytest.approx(max(0.0, high - low) / allowed, abs=0.02)
+
+
+def test_two_studies_of_one_laboratory_are_two_testers():
+    """The first error of a study moves all of its readings, and none of another's."""
+    rows = [made_up(name, 1e-3, 0.2) for name in ("one", "one", "two")]
+    rows = [replace(row, laboratory="one laboratory", words={**row.words, "floor": str(at)})
+            for at, row in enumerate(rows)]  # fmt: skip
+    law = law_named("one constant")
+    posterior = fitted(law, [])
+    fixed = replace(posterior, theta=np.zeros_like(posterior.theta),
+                    spreads=np.tile([0.3, 0.1, 0.1, 0.0], (len(posterior.theta), 1)))  # fmt: skip
+    latent, _ = fixed.predicted(rows)
+    together = np.cov(latent.T)
+    assert together[0, 1] == pytest.approx(0.09, rel=0.1)
+    assert abs(together[0, 2]) < 0.01
+
+
 def test_skewed_draws_score_by_mean_and_spread_and_err_by_their_median():
     draws = np.log([[0.1], [0.1], [0.1], [0.8]])
     score = scored(draws, [made_up("lab", 1e-3, 0.2)])

@@ -461,7 +461,7 @@ def _after(left_out: list[LaboratoryScore]) -> tuple[Table, dict[str, Quantity]]
 
 
 def _constants(posterior: PairPosterior) -> Table:
-    names = ("laboratory", "pair", "reading", "dry part of a laboratory")
+    names = ("tester", "pair", "reading", "dry part of a tester")
     every = [
         *zip(posterior.law.parameters, posterior.theta.T, strict=True),
         *zip((f"sd of ln COF, {name}" for name in names), posterior.spreads.T, strict=True),
