@@ -271,11 +271,11 @@ def default_quantities(splits: Mapping[tuple[str, str], Split]) -> dict[str, Qua
     return quantities
 
 
-def _middle(one: Split, take: str) -> float:
+def _middle(split: Split, take: str) -> float:
     """Return what a part of the friction is at the medians of the law's inputs, N."""
     if take == "loss":
-        return float(np.median(one.loss))
-    return one.medians[0] if take == "adhesion" else one.medians[1]
+        return float(np.median(split.loss))
+    return split.medians[0] if take == "adhesion" else split.medians[1]
 
 
 def _ends_of_the_pairs(splits: Mapping[tuple[str, str], Split], take: str) -> Quantity:
