@@ -135,7 +135,7 @@ def test_a_bound_is_inside_by_the_share_of_the_draws_it_allows(median):
 def test_two_studies_of_one_laboratory_are_two_testers():
     """The first error of a study moves all of its readings, and none of another's."""
     rows = [made_up(name, 1e-3, 0.2) for name in ("one", "one", "two")]
-    rows = [replace(row, laboratory="one laboratory", words={**row.words, "floor": str(at)})
+    rows = [replace(row, laboratory="one laboratory", labels={**row.labels, "floor": str(at)})
             for at, row in enumerate(rows)]  # fmt: skip
     law = law_named("one constant")
     posterior = fitted(law, [])
