@@ -127,4 +127,7 @@ def test_no_interval_of_a_positive_quantity_goes_below_zero(tmp_path):
     page = page.rename(tmp_path / "page.html")
     page.write_text("<tr><td>slip distance<td>54 mm (\u221291 to 199)</tr>", encoding="utf-8")
     assert len(bounds_below_zero(page)) == 1
+    head = "<tr><th>speed</th><th>95 % low</th></tr>"
+    page.write_text(f"<table>{head}<tr><td>peak</td><td>-0.38</td></tr></table>", encoding="utf-8")
+    assert len(bounds_below_zero(page)) == 1
     page.unlink()

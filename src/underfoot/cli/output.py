@@ -147,13 +147,8 @@ def print_table(table: Table, *, everything: bool = True) -> None:
     cells = table.cells()
     last = len(table.columns) - 1
     if not everything and last > 1:
-        cells = [
-            [
-                *map(narrowed, row[:-1]),
-                row[-1] if len(row[-1]) <= LONGEST_VALUE else shortened(row[-1]),
-            ]
-            for row in cells
-        ]
+        ends = [c if len(c) <= LONGEST_VALUE else shortened(c) for *_, c in cells]
+        cells = [[*map(narrowed, row[:-1]), end] for row, end in zip(cells, ends, strict=True)]
     widths = [
         max(len(line) for cell in column for line in cell.split("\n"))
         for column in zip(table.columns, *cells, strict=True)
