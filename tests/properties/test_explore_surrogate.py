@@ -113,7 +113,7 @@ def played(method, function):
     base = load(EXAMPLES / "work_shoe_full_tread_glycerol.toml")
     plan = read_plan(STUDY + method, base=base, folder=".")
     jobs, records = [], {}
-    while batch := next_batch(plan, StudyResult(plan, jobs, records)):
+    while batch := list(next_batch(plan, StudyResult(plan, jobs, records))):
         jobs += batch
         for job in batch:
             numbers = function(*job.point)

@@ -9,7 +9,7 @@ times the probability that every requirement holds.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -44,14 +44,14 @@ BEYOND = 0.1
 
 
 @threads_limited(1)
-def next_batch(plan: StudyPlan, so_far: StudyResult) -> list[Job]:
+def next_batch(plan: StudyPlan, so_far: StudyResult) -> Iterable[Job]:
     """Return the jobs of the next batch; none where the study is done."""
-    batch = max((job.batch for job in so_far.jobs), default=-1) + 1
-    count = len({job.design for job in so_far.jobs})
-    if batch == 0:
+    if not so_far.jobs:
         return _jobs(plan, first_points(plan), 0, 0)
-    if any(job.quick != plan.method.quick for job in so_far.jobs):
+    last = so_far.jobs[-1]
+    if last.quick != plan.method.quick:
         return []  # the front was the last
+    batch, count = last.batch + 1, last.design + 1
     left = min(plan.designs - count, plan.method.batch)
     try:
         if left > 0 and plan.method.kind in ("optimise", "robust"):
@@ -83,12 +83,11 @@ def first_points(plan: StudyPlan) -> list[tuple[float, ...]]:
     return plan.sampled_points(count)
 
 
-def _jobs(plan: StudyPlan, points: Sequence[Sequence[float]], first: int, batch: int) -> list[Job]:
-    return [
-        job
-        for number, point in enumerate(points, start=first)
-        for job in plan.jobs(number, point, batch)
-    ]
+def _jobs(
+    plan: StudyPlan, points: Sequence[Sequence[float]], first: int, batch: int
+) -> Iterator[Job]:
+    for number, point in enumerate(points, start=first):
+        yield from plan.jobs(number, point, batch)
 
 
 def _least_known(so_far: StudyResult, count: int) -> list[tuple[float, ...]]:
