@@ -141,7 +141,7 @@ def surrogate() -> Iterator[str]:
     with tempfile.TemporaryDirectory() as folder:
         result = study(FIVE, folder).run()
     for one in surrogates(result, result.plan.goals):
-        yield f"{one.name}: {one.words}"
+        yield f"{one.name}: {one.reliability}"
 
 
 def front() -> Iterator[str]:

@@ -71,7 +71,7 @@ def counted(calls: dict[str, int]) -> Callable[[], None]:
 
     def wrap(name: str) -> Callable[..., Any]:
         def call(*arguments: Any, **named: Any) -> Any:
-            answer = None if name == "fsync" else real[name](*arguments, **named)
+            answer: Any = None if name == "fsync" else real[name](*arguments, **named)
             calls[name] += 1 + (len(answer) // 100 if name == "listdir" else 0)
             return answer
 

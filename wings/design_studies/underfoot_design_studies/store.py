@@ -39,6 +39,7 @@ from underfoot.core import DataError, InputError
 from underfoot.core.fields import Fields, from_xarray
 from underfoot.core.files import MARKER, whole_file
 from underfoot.core.optional import optional_module
+from underfoot.core.text import harmless
 
 from .claims import Round, begin_round, clear, latest_round
 from .jobs import Jobs, add_batch, jobs_at
@@ -471,13 +472,20 @@ class Store:
         """Write results.csv and, where DuckDB is installed, results.parquet."""
         table = self.folder / "results.csv"
         with whole_file(table) as part:
-            cases.to_csv(part, index=False)
+            texts = cases.select_dtypes(exclude="number").columns
+            cases.assign(**{name: cases[name].map(_cell) for name in texts}).to_csv(
+                part, index=False
+            )
         if find_spec("duckdb") is None:
             return
         import duckdb
 
         with whole_file(table.with_suffix(".parquet")) as part, duckdb.connect() as database:
             database.read_csv(str(table), sample_size=-1).write_parquet(str(part))
+
+
+def _cell(value: Any) -> Any:
+    return harmless(value) if isinstance(value, str) else value
 
 
 def _locked(descriptor: int) -> bool | None:
