@@ -29,7 +29,7 @@ from underfoot_design_studies.study_file import load_plan
 TESTS = Path(__file__).parents[1]
 EXAMPLES = TESTS.parent / "examples"
 RAW = [name for name, one in vars(builtins).items() if isinstance(one, type) and "Error" in name]
-SWEEP = "frequency_hz,storage_pa,loss_pa\n" + "".join(
+SWEEP = "f (Hz),E_stor (Pa),E_loss (Pa)\n" + "".join(
     f"{10**k:g},{1e6 * 2**k:g},{2e5 * 2**k:g}\n" for k in range(-3, 4)
 )
 PRONY = """# M\u00fcller, compound with \u00b5m particles
@@ -70,7 +70,7 @@ def checked_mesh(path):
 
 def checked_sweep(path):
     for one in read.read_dynamic(path):
-        assert np.isfinite(one.storage).all()
+        assert np.isfinite(one.storage_modulus).all()
 
 
 def checked_history(path):
@@ -116,6 +116,13 @@ def test_a_damaged_file_is_read_or_refused_in_words(tmp_path, name, damage):
     path = tmp_path / name
     path.write_bytes(damaged(seed(name), damage))
     refusal(SEEDS[name][1], path)
+
+
+@pytest.mark.parametrize("name", SEEDS)
+def test_what_is_damaged_was_whole(tmp_path, name):
+    path = tmp_path / name
+    path.write_bytes(seed(name))
+    assert refusal(SEEDS[name][1], path) is None
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,8 @@ A batch is proposed when the one before has ended, so that the same study propos
 whichever machine computes them in whatever order. An optimisation begins with designs spread
 evenly, and then takes those of a genetic algorithm's front on the surrogates (NSGA-II; Deb et al.
 2002) that promise the largest growth of the hypervolume (Emmerich, Giannakoglou and Naujoks 2006),
-times the probability that every requirement holds.
+times the probability that every requirement holds. The front that grows is that of the surrogates'
+means at the designs, not of the runs as they came out: a lucky run is no front.
 """
 
 from __future__ import annotations
@@ -112,8 +113,9 @@ def _promising(so_far: StudyResult, count: int) -> list[tuple[float, ...]]:
     usable = np.isfinite(known).all(axis=1)
     low, high = known[usable].min(axis=0), known[usable].max(axis=0)
     span = np.where(high > low, high - low, 1.0)
-    scaled = (known - low) / span
-    front = scaled[so_far.allowed(so_far.designs)]
+    places = np.array([one.point for one in so_far.designs])
+    believed = np.column_stack([one.mean(places) for one in goals]) * signs
+    front = ((believed - low) / span)[so_far.allowed(so_far.designs)]
     measure = optional_module("moocore", "study", "An optimisation").Hypervolume(
         ref=[1.0 + BEYOND] * len(signs)
     )
